@@ -1,0 +1,56 @@
+/* snowglass/context.h - where an object's memory and messages come from.
+ *
+ * The library has no global state: the allocator, the last error message and
+ * the count of bytes live in a context that the caller makes first and frees
+ * last.  A context and all objects made with it belong to one thread at a
+ * time; different contexts are independent. */
+#ifndef SNOWGLASS_CONTEXT_H
+#define SNOWGLASS_CONTEXT_H
+
+#include <snowglass/status.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct snow_context snow_context;
+
+/* The caller's allocator.  `allocate` returns memory aligned as malloc's, or
+ * NULL; `release` accepts what `allocate` returned, never NULL. */
+typedef struct snow_allocator {
+    void *(*allocate)(void *user, size_t bytes);
+    void (*release)(void *user, void *block);
+    void *user;
+} snow_allocator;
+
+/* Hears remarks that are no errors: what was guessed, bytes after the data,
+ * a spacing replaced by 1.  `text` is one line without its end. */
+typedef void snow_notice_fn(void *user, const char *text);
+
+/* Makes a context.  `allocator` may be NULL (malloc and free); it is copied.
+ * Errors: SNOW_NO_MEMORY.  Free with snow_context_free. */
+SNOW_API snow_status snow_context_new(const snow_allocator *allocator,
+                                      snow_context **out);
+
+/* Frees a context after all objects made with it; NULL is accepted. */
+SNOW_API void snow_context_free(snow_context *context);
+
+/* The message of the last call that failed: one line that names the file,
+ * what is wrong and what to try; "" before any failure.  Owned by the context,
+ * valid until the next failure. */
+SNOW_API const char *snow_context_message(const snow_context *context);
+
+/* Sets who hears remarks; NULL (the default) for nobody. */
+SNOW_API void snow_context_set_notice(snow_context *context,
+                                      snow_notice_fn *notice, void *user);
+
+/* Bytes that objects of this context hold now, and the most they ever held. */
+SNOW_API uint64_t snow_context_bytes(const snow_context *context);
+SNOW_API uint64_t snow_context_peak_bytes(const snow_context *context);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,93 @@
+/* snowglass/image.h - the picture: float pixels, premultiplied, linear.
+ *
+ * Row 0 is the top.  Grey pictures have two channels (grey, alpha), colour
+ * pictures four (red, green, blue, alpha). */
+#ifndef SNOWGLASS_IMAGE_H
+#define SNOWGLASS_IMAGE_H
+
+#include <snowglass/context.h>
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct snow_image snow_image;
+
+/* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels.
+ * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.  Free with snow_image_free. */
+SNOW_API snow_status snow_image_new(snow_context *context, int width,
+                                    int height, int channels, snow_image **out);
+
+SNOW_API void snow_image_free(snow_image *image);
+
+SNOW_API int snow_image_width(const snow_image *image);
+SNOW_API int snow_image_height(const snow_image *image);
+SNOW_API int snow_image_channels(const snow_image *image);
+
+/* Pixel (x, y) has its channels at [(y * width + x) * channels]; owned by the
+ * image. */
+SNOW_API float *snow_image_pixels(snow_image *image);
+
+/* A 64-bit FNV-1a hash of the size, the channels and the bytes of all float
+ * pixels (of the little-endian form, -0 as 0): equal pictures, equal sums. */
+SNOW_API uint64_t snow_image_checksum(const snow_image *image);
+
+typedef struct snow_image_options {
+    bool flatten;         /* PNG: lay the picture on `background` */
+    double background[3]; /* red, green, blue, 0 to 1 */
+    int bits;             /* PNG: 8 or 16 bits a channel; 0 means 8 */
+    bool overwrite;       /* replace an existing file */
+} snow_image_options;
+
+/* Writes a picture in the format of the path's suffix; "-" is standard output,
+ * as PNG.
+ *   .png  straight alpha, round(255 x) or round(65535 x); without alpha when
+ *         flattened; grey when the picture is grey
+ *   .npy  float32 (height, width, 4), premultiplied RGBA
+ *   .pfm  float32 RGB, premultiplied, without alpha
+ * The file is written aside and renamed, so that it is whole or absent; an
+ * existing one is kept, and an error, unless options->overwrite.  `options`
+ * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; a
+ * background or bits for other than PNG), SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
+                                     const snow_image_options *options);
+
+/* Whether a path's suffix (or "-") is one that snow_image_save writes: asked
+ * before a long rendering.  Errors: SNOW_BAD_USAGE, SNOW_BAD_OUTPUT (it exists
+ * and `overwrite` is false; its folder is missing or not writable). */
+SNOW_API snow_status snow_image_check_path(snow_context *context,
+                                           const char *path, bool overwrite);
+
+/* Reads a picture: PNG (8 or 16 bits, grey or colour, with or without alpha;
+ * straight alpha is multiplied in), NPY (float32 (h, w, 4) or (h, w)), PFM.
+ * It has four channels.  Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_image_load(snow_context *context, const char *path,
+                                     snow_image **out);
+
+/* The same on a file's bytes in memory. */
+SNOW_API snow_status snow_image_load_memory(snow_context *context,
+                                            const char *name, const void *bytes,
+                                            size_t size, snow_image **out);
+
+/* How far two pictures differ, over all four premultiplied channels. */
+typedef struct snow_image_difference {
+    double largest; /* largest absolute difference; 0 when equal */
+    double mean;    /* mean absolute difference */
+    double psnr;    /* dB for a peak of 1; infinite when equal */
+    double ssim;    /* structural similarity of the luma over black, 8x8
+                       windows; 1 when equal */
+    int x, y;       /* a pixel of the largest difference */
+} snow_image_difference;
+
+/* Compares two pictures of one size (2 channels count as grey).  NaN equals
+ * NaN only.  Errors: SNOW_DIFFERENT when the sizes differ (the message gives
+ * them), SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_image_compare(const snow_image *a,
+                                        const snow_image *b,
+                                        snow_image_difference *out);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

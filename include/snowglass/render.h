@@ -1,0 +1,114 @@
+/* snowglass/render.h - from a volume to a picture: the paper's pipeline.
+ *
+ * A frame owns the buffers of the pipeline's stages (figure 7 of the paper)
+ * and keeps them from picture to picture. */
+#ifndef SNOWGLASS_RENDER_H
+#define SNOWGLASS_RENDER_H
+
+#include <snowglass/image.h>
+#include <snowglass/transfer.h>
+#include <snowglass/view.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct snow_frame snow_frame;
+
+/* How voxels reach the picture. */
+typedef enum snow_method {
+    SNOW_METHOD_AUTO = 0,
+    SNOW_METHOD_ORIGINAL, /* every voxel, no sparse matrix: the baseline */
+    SNOW_METHOD_TESTED,   /* as original, but each voxel's opacity is tested
+                             against the threshold first: the honest one */
+    SNOW_METHOD_FOOTPRINT /* interesting voxels only, through an encoding */
+} snow_method;
+
+/* How the places of interesting voxels are written: section 3.2. */
+typedef enum snow_encoding {
+    SNOW_ENCODING_AUTO = 0, /* by measured density and run length */
+    SNOW_ENCODING_CRS,
+    SNOW_ENCODING_BITMAP,
+    SNOW_ENCODING_RLE
+} snow_encoding;
+
+/* The reconstruction kernel along one grid axis (model, point 7). */
+typedef enum snow_kernel {
+    SNOW_KERNEL_BSPLINE = 0,
+    SNOW_KERNEL_TENT,
+    SNOW_KERNEL_GAUSS,
+    SNOW_KERNEL_BOX
+} snow_kernel;
+
+typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
+
+/* What a picture is made with.  Fill with snow_settings_init, then change. */
+typedef struct snow_settings {
+    size_t size;            /* bytes of this record, set by the initialiser */
+    double threshold;       /* opacity 0 to 255; greater is interesting (0) */
+    snow_method method;     /* (auto) */
+    snow_encoding encoding; /* (auto) */
+    snow_kernel kernel;     /* (bspline) */
+    int footprint;          /* support in voxels, 2 to 9; 0: the kernel's
+                               own, 2 for tent and box, else 4 (0) */
+    double opacity_length;  /* world length that an opacity is for; 0: the
+                               smallest voxel spacing (0) */
+    snow_shade shade;       /* (phong) */
+    double ambient;         /* 0 to 1 (0.2) */
+    double diffuse;         /* 0 to 1 (0.7) */
+    double specular;        /* 0 to 1 (0.2) */
+    double shininess;       /* exponent, at least 0 (20) */
+    double light_azimuth;   /* degrees to the camera's right (0: head light) */
+    double light_elevation; /* degrees up (0) */
+} snow_settings;
+
+SNOW_API void snow_settings_init(snow_settings *settings);
+
+/* What the last picture took.  Seconds are wall time. */
+typedef struct snow_stats {
+    snow_method method;       /* as chosen */
+    snow_encoding encoding;   /* as chosen; AUTO when none was used */
+    int footprint;            /* as chosen */
+    int slice_axis;           /* 0 x, 1 y, 2 z */
+    int64_t voxels;           /* all voxels */
+    int64_t interesting;      /* those above the threshold */
+    double sparse_ratio;      /* share of uninteresting voxels, 0 to 1 */
+    uint64_t ea_bytes;        /* encoded array */
+    uint64_t ia_bytes;        /* interesting-voxel array */
+    uint64_t pa_bytes;        /* slice-pointer array */
+    double seconds_classify;  /* transfer function applied */
+    double seconds_shade;     /* gradients and Phong's model */
+    double seconds_encode;    /* EA, IA, PA written */
+    double seconds_splat;     /* footprints into sheets */
+    double seconds_composite; /* sheets into the image */
+    double seconds_frame;     /* the whole picture */
+} snow_stats;
+
+/* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);
+SNOW_API void snow_frame_free(snow_frame *frame);
+
+/* Renders one picture: figure 8 of the paper on one processor.  `*image` is
+ * made anew and owned by the caller.  volume, transfer and frame must come from
+ * one context.  Errors: SNOW_BAD_USAGE (a setting out of range, with its
+ * name), SNOW_NO_MEMORY; then no image is made. */
+SNOW_API snow_status snow_frame_render(
+    snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
+    const snow_view *view, const snow_settings *settings, snow_image **image);
+
+/* Figures of the last picture; owned by the frame. */
+SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
+
+/* Names as the command line writes them, and back; a name that is unknown
+ * gives -1.  SNOW_METHOD_TESTED is "tested". */
+SNOW_API const char *snow_method_name(snow_method method);
+SNOW_API const char *snow_encoding_name(snow_encoding encoding);
+SNOW_API const char *snow_kernel_name(snow_kernel kernel);
+SNOW_API int snow_method_named(const char *name);
+SNOW_API int snow_encoding_named(const char *name);
+SNOW_API int snow_kernel_named(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,43 @@
+/* snowglass/status.h - what a call answers.
+ *
+ * Every function that can fail returns a snow_status; results leave through
+ * out-parameters, which are untouched on failure.  The values are pinned: they
+ * are also the exit codes of the command line tool. */
+#ifndef SNOWGLASS_STATUS_H
+#define SNOWGLASS_STATUS_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__)
+#define SNOW_API __attribute__((visibility("default")))
+#define SNOW_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define SNOW_API
+#define SNOW_PRINTF(text, first)
+#endif
+
+/* One list makes the enum, the names and the texts. */
+#define SNOW_STATUS_MAP(X)                                               \
+    X(OK, 0, "done")                                                     \
+    X(FAILED, 1, "rendering failed")                                     \
+    X(BAD_USAGE, 2, "an argument is out of its range")                   \
+    X(BAD_INPUT, 3, "the input is missing, unreadable or unsupported")   \
+    X(BAD_OUTPUT, 4, "the output cannot be written")                     \
+    X(NO_MEMORY, 5, "more memory is needed than is allowed or there is") \
+    X(DIFFERENT, 6, "the comparison found a difference")
+
+typedef enum snow_status {
+#define SNOW_STATUS_ENUM(name, value, text) SNOW_##name = value,
+    SNOW_STATUS_MAP(SNOW_STATUS_ENUM)
+#undef SNOW_STATUS_ENUM
+} snow_status;
+
+/* The text of a status: a constant string, never NULL. */
+SNOW_API const char *snow_status_text(snow_status status);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

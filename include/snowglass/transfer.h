@@ -1,0 +1,96 @@
+/* snowglass/transfer.h - the transfer function: data value to colour and
+ * opacity.
+ *
+ * Colour (straight, linear as stored) and opacity are each piecewise linear
+ * between control points in data units, constant beyond the ends; where a
+ * value repeats there is a step, and the value itself belongs to the later
+ * point.  Opacity is that of one reference length (see snow_settings). */
+#ifndef SNOWGLASS_TRANSFER_H
+#define SNOWGLASS_TRANSFER_H
+
+#include <snowglass/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct snow_transfer snow_transfer;
+
+typedef struct snow_color_point {
+    double value; /* data value */
+    double red;   /* 0 to 1 */
+    double green; /* 0 to 1 */
+    double blue;  /* 0 to 1 */
+} snow_color_point;
+
+typedef struct snow_opacity_point {
+    double value;   /* data value */
+    double opacity; /* 0 to 1 */
+} snow_opacity_point;
+
+/* A transfer function from its control points, which are copied.  Values must
+ * be finite and not fall; at least one point of each kind.
+ * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.  Free with snow_transfer_free. */
+SNOW_API snow_status snow_transfer_new(snow_context *context,
+                                       const snow_color_point *colors,
+                                       size_t color_count,
+                                       const snow_opacity_point *opacities,
+                                       size_t opacity_count,
+                                       snow_transfer **out);
+
+SNOW_API void snow_transfer_free(snow_transfer *transfer);
+
+/* Over which data values a look is spread. */
+typedef enum snow_range_kind {
+    SNOW_RANGE_AUTO = 0,   /* chosen from the histogram */
+    SNOW_RANGE_FULL,       /* smallest to largest finite value */
+    SNOW_RANGE_VALUES,     /* low to high, data values */
+    SNOW_RANGE_PERCENTILES /* low to high, percent of the finite voxels */
+} snow_range_kind;
+
+/* What a user asks of a look.  Zero everywhere: chosen from the histogram. */
+typedef struct snow_look {
+    const char *preset;   /* "linear", "ct-bone", ...; NULL: automatic */
+    const char *colormap; /* "grey", "viridis", ...; NULL: the preset's */
+    snow_range_kind range;
+    double low, high; /* for VALUES and PERCENTILES; low < high */
+    const snow_opacity_point *opacities; /* replace the preset's; NULL: keep */
+    size_t opacity_count;
+} snow_look;
+
+/* The transfer function that `look` asks for on `volume`.  A preset in data
+ * units (ct-*) keeps its values unless a range is given, over which it is then
+ * spread.  The result depends on the volume's values only, and is the same on
+ * every machine.  Errors: SNOW_BAD_USAGE (unknown name, bad points; the
+ * message lists the names), SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_transfer_make(const snow_volume *volume,
+                                        const snow_look *look,
+                                        snow_transfer **out);
+
+/* One line that says what was chosen: "grey 72..213, opacity 0 at 72 to 0.4
+ * at 213 (from the histogram)".  Owned by the transfer function. */
+SNOW_API const char *snow_transfer_text(const snow_transfer *transfer);
+
+/* Colour and opacity at a data value, straight; NaN gives zeros. */
+SNOW_API void snow_transfer_at(const snow_transfer *transfer, double value,
+                               double rgba[4]);
+
+/* True when every colour is grey, so that pictures need two channels. */
+SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);
+
+/* Share of uninteresting voxels, 0 to 1 (the paper's sparse ratio SR, section
+ * 5.2): those with opacity 0 or, for threshold T > 0, 255 a <= T + 0.0001. */
+SNOW_API double snow_transfer_sparse_ratio(const snow_transfer *transfer,
+                                           const snow_volume *volume,
+                                           double threshold);
+
+/* Name and description of preset and colour map `index` (from 0); NULL past
+ * the end. */
+SNOW_API const char *snow_preset_name(size_t index);
+SNOW_API const char *snow_preset_text(size_t index);
+SNOW_API const char *snow_colormap_name(size_t index);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

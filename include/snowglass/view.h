@@ -1,0 +1,49 @@
+/* snowglass/view.h - where the camera stands, and the image it exposes.
+ *
+ * Parallel projection.  The camera looks at the middle of the voxel boxes from
+ * a named side; azimuth turns it about the up axis, elevation about the new
+ * right, roll about the line of sight.  The pixel pitch is 2R / (zoom min(W,
+ * H)), where R is the distance from the target to the farthest corner: at zoom
+ * 1 the whole volume is in the picture whatever its turn. */
+#ifndef SNOWGLASS_VIEW_H
+#define SNOWGLASS_VIEW_H
+
+#include <snowglass/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct snow_view {
+    int width, height; /* image in pixels, 1 to 32768 each */
+    double back[3];    /* unit vector, target to camera, in the world */
+    double up[3];      /* unit vector, at right angles to back */
+    double azimuth;    /* degrees: moves the camera to its right */
+    double elevation;  /* degrees: moves the camera up */
+    double roll;       /* degrees: turns the camera clockwise */
+    double zoom;       /* above 0; 2 shows everything twice as large */
+} snow_view;
+
+/* The view by name: anterior posterior left right superior inferior iso +x -x
+ * +y -y +z -z, at 512x512, angles 0, zoom 1.  +z: the camera sits on the +z
+ * side, +y is up; for x and y sides +z is up; anterior is +y, left -x, superior
+ * +z; iso looks from (1, 1, 1), +z up.  Errors: SNOW_BAD_USAGE. */
+SNOW_API snow_status snow_view_named(snow_context *context, const char *name,
+                                     snow_view *out);
+
+/* The default view of a volume: anterior when its file gives a medical
+ * orientation, +z otherwise; at 512x512, angles 0, zoom 1. */
+SNOW_API void snow_view_default(const snow_volume *volume, snow_view *out);
+
+/* Name of view `index` (from 0); NULL past the end. */
+SNOW_API const char *snow_view_name(size_t index);
+
+/* The zoom at which one step of the smallest spacing is one pixel: a footprint
+ * of K voxels is then K pixels wide, as in the paper's Tables 2 and 3. */
+SNOW_API double snow_view_zoom_for_voxels(const snow_volume *volume, int width,
+                                          int height);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

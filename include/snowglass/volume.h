@@ -1,0 +1,170 @@
+/* snowglass/volume.h - a regular grid of samples with its place in the world.
+ *
+ * A volume keeps its voxels in their native scalar type, x fastest, in the
+ * machine's byte order, without padding.  One 4x4 matrix takes voxel indices
+ * (samples sit at integers) to world coordinates: millimetres, RAS+ for
+ * medical data. */
+#ifndef SNOWGLASS_VOLUME_H
+#define SNOWGLASS_VOLUME_H
+
+#include <snowglass/context.h>
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct snow_volume snow_volume;
+
+/* X(NAME, C type, text) for each scalar type, in the order of the enum. */
+#define SNOW_TYPE_MAP(X)          \
+    X(INT8, int8_t, "int8")       \
+    X(UINT8, uint8_t, "uint8")    \
+    X(INT16, int16_t, "int16")    \
+    X(UINT16, uint16_t, "uint16") \
+    X(INT32, int32_t, "int32")    \
+    X(UINT32, uint32_t, "uint32") \
+    X(INT64, int64_t, "int64")    \
+    X(UINT64, uint64_t, "uint64") \
+    X(FLOAT32, float, "float32")  \
+    X(FLOAT64, double, "float64")
+
+typedef enum snow_type {
+    SNOW_TYPE_NONE = 0, /* not told */
+#define SNOW_TYPE_ENUM(name, type, text) SNOW_##name,
+    SNOW_TYPE_MAP(SNOW_TYPE_ENUM)
+#undef SNOW_TYPE_ENUM
+} snow_type;
+
+/* Bytes of one value (0 for SNOW_TYPE_NONE); the type's name ("none"); the
+ * type of a name, SNOW_TYPE_NONE when unknown.  "float" and "double" are
+ * understood as float32 and float64. */
+SNOW_API size_t snow_type_size(snow_type type);
+SNOW_API const char *snow_type_name(snow_type type);
+SNOW_API snow_type snow_type_named(const char *name);
+
+/* What is known of a volume beside its voxels. */
+typedef struct snow_volume_info {
+    int64_t dims[3];     /* voxels along x, y, z; each at least 1 */
+    snow_type type;      /* native scalar type */
+    double spacing[3];   /* length of the matrix' columns; above 0 */
+    double matrix[4][4]; /* index -> world, row by row; last row 0 0 0 1 */
+    double slope;        /* data value = slope * native + intercept; */
+    double intercept;    /*   1 and 0 when the file says nothing */
+    bool medical;        /* world axes are a patient's right, anterior,
+                            superior */
+    char unit[16];       /* of spacing and matrix: "mm", "um", ... or "" */
+    const char *format;  /* constant: "raw", "nrrd", "nifti", "metaimage",
+                            "phantom", "memory" */
+    int64_t times;       /* time steps in the file, at least 1 */
+    int64_t time;        /* the one that was read, from 0 */
+} snow_volume_info;
+
+/* Byte order of raw data. */
+typedef enum snow_endian {
+    SNOW_ENDIAN_DEFAULT = 0, /* little */
+    SNOW_ENDIAN_LITTLE,
+    SNOW_ENDIAN_BIG
+} snow_endian;
+
+/* How to open a volume.  Zero everywhere is right for every format but raw. */
+typedef struct snow_volume_options {
+    int64_t dims[3];    /* raw only: voxels along x, y, z; 0: not told */
+    snow_type type;     /* raw only: scalar type */
+    snow_endian endian; /* raw only: byte order */
+    double spacing[3];  /* raw: voxel size in mm, 0 for 1; other formats:
+                           replaces the file's spacing, 0 keeps it */
+    uint64_t offset;    /* raw only: bytes to skip before the voxels */
+    int64_t time;       /* time step of a file with several, from 0 */
+} snow_volume_options;
+
+/* Opens a volume file.  The format is found from the first bytes, then from
+ * the name; gzip around any single file is undone.  A file that no reader
+ * knows is raw and needs `dims` and `type`.  "phantom:NAME" makes a built-in
+ * volume (options->dims then gives its size; 0 for the default).  `options`
+ * may be NULL.  Errors: SNOW_BAD_INPUT (missing, damaged, contradictory,
+ * unsupported; nothing is kept), SNOW_BAD_USAGE (options that do not fit the
+ * format), SNOW_NO_MEMORY.  Close with snow_volume_close. */
+SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
+                                      const snow_volume_options *options,
+                                      snow_volume **out);
+
+/* The same on a file's bytes in memory; `name` serves messages and the choice
+ * by suffix.  Files beside it (detached data) are refused.  `bytes` is read
+ * during the call only. */
+SNOW_API snow_status snow_volume_open_memory(snow_context *context,
+                                             const char *name,
+                                             const void *bytes, size_t size,
+                                             const snow_volume_options *options,
+                                             snow_volume **out);
+
+/* A volume over the caller's own voxels, which are shared, not copied, and
+ * must outlive it.  Of `info` the fields dims, type, matrix, slope, intercept,
+ * medical and unit count; a matrix of zeros means the identity, slope 0 means
+ * 1.  Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_volume_share(snow_context *context,
+                                       const snow_volume_info *info,
+                                       const void *voxels, snow_volume **out);
+
+/* A built-in test volume: "cube", "head", "engine", "shells" or
+ * "marschner-lobb".  `dims` NULL or 0s: its default size; `seed` moves what
+ * is random in it.  The same arguments give the same bytes on every machine.
+ * Errors: SNOW_BAD_USAGE (unknown name; sizes below 1), SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_volume_phantom(snow_context *context,
+                                         const char *name,
+                                         const int64_t dims[3], uint64_t seed,
+                                         snow_volume **out);
+
+/* Name and one-line description of phantom `index` (from 0); NULL past the
+ * end. */
+SNOW_API const char *snow_phantom_name(size_t index);
+SNOW_API const char *snow_phantom_text(size_t index);
+
+/* Name and description of input format `index` (from 0); NULL past the end. */
+SNOW_API const char *snow_format_name(size_t index);
+SNOW_API const char *snow_format_text(size_t index);
+
+/* Closes a volume and frees its voxels unless they are shared; NULL is
+ * accepted. */
+SNOW_API void snow_volume_close(snow_volume *volume);
+
+/* What is known of it; owned by the volume. */
+SNOW_API const snow_volume_info *snow_volume_describe(const snow_volume *);
+
+/* Its voxels: dims[0]*dims[1]*dims[2] values of the native type, x fastest;
+ * owned by the volume. */
+SNOW_API const void *snow_volume_voxels(const snow_volume *volume);
+
+/* Figures over the finite data values, after slope and intercept, summed in
+ * double in storage order.  min and max are NaN when no voxel is finite. */
+typedef struct snow_volume_measures {
+    int64_t voxels; /* all */
+    int64_t finite; /* finite ones */
+    double min, max;
+    double sum;  /* of values */
+    double wsum; /* of value * (linear index mod 1009 + 1) */
+} snow_volume_measures;
+
+SNOW_API void snow_volume_measure(const snow_volume *volume,
+                                  snow_volume_measures *out);
+
+/* Counts the finite data values in `bins` equal bins from lo to hi; value v
+ * falls into bin floor((v - lo) / (hi - lo) * bins), hi itself into the last;
+ * values outside are not counted.  `counts` has `bins` entries.
+ * Errors: SNOW_BAD_USAGE unless lo < hi, both finite, and bins > 0. */
+SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
+                                           double hi, size_t bins,
+                                           uint64_t *counts);
+
+/* Writes a volume with its geometry, in the format of the path's suffix:
+ * .nrrd, .nii, .nii.gz, .mha, .raw, .raw.gz.  The file is written aside and
+ * renamed, so that it is whole or absent; an existing one is kept, and an
+ * error, unless `overwrite`.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown
+ * suffix, a type that the format lacks), SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_volume_save(const snow_volume *volume,
+                                      const char *path, bool overwrite);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,191 @@
+/* base/context.c - contexts, their messages, and all allocation.
+ *
+ * Every block carries a header of one alignment unit in front, so that its size
+ * is known when it is freed and the context can tell what it holds:
+ *
+ *   raw ... | header { raw, bytes } pad | block, aligned to 64 ...
+ */
+#include "base/base.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ALIGNMENT 64
+
+typedef struct block_header {
+    void *raw;    /* what the allocator returned */
+    size_t bytes; /* asked for by the caller */
+} block_header;
+
+static_assert(sizeof(block_header) <= ALIGNMENT, "the header fits its unit");
+
+static void *malloc_allocate(void *user, size_t bytes) {
+    (void)user;
+    return malloc(bytes);
+}
+
+static void malloc_release(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+snow_status snow_context_new(const snow_allocator *allocator,
+                             snow_context **out) {
+    static const snow_allocator standard = {malloc_allocate, malloc_release,
+                                            NULL};
+    if (!allocator)
+        allocator = &standard;
+    snow_context *context =
+        allocator->allocate(allocator->user, sizeof *context);
+    if (!context)
+        return SNOW_NO_MEMORY;
+    *context = (snow_context){.allocator = *allocator};
+    *out = context;
+    return SNOW_OK;
+}
+
+void snow_context_free(snow_context *context) {
+    if (context) {
+        snow_allocator allocator = context->allocator;
+        allocator.release(allocator.user, context);
+    }
+}
+
+const char *snow_context_message(const snow_context *context) {
+    return context->message;
+}
+
+void snow_context_set_notice(snow_context *context, snow_notice_fn *notice,
+                             void *user) {
+    context->notice = notice;
+    context->notice_user = user;
+}
+
+uint64_t snow_context_bytes(const snow_context *context) {
+    return context->bytes;
+}
+
+uint64_t snow_context_peak_bytes(const snow_context *context) {
+    return context->peak;
+}
+
+const char *snow_status_text(snow_status status) {
+    switch (status) {
+#define STATUS_TEXT(name, value, text) \
+    case SNOW_##name:                  \
+        return text;
+        SNOW_STATUS_MAP(STATUS_TEXT)
+#undef STATUS_TEXT
+    }
+    return "unknown status";
+}
+
+snow_status snow_fail(snow_context *context, snow_status status,
+                      const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(context->message, sizeof context->message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+snow_status snow_fail_within(snow_context *context, snow_status status,
+                             const char *format, ...) {
+    char below[SNOW_MESSAGE_BYTES];
+    memcpy(below, context->message, sizeof below);
+    va_list arguments;
+    va_start(arguments, format);
+    int used =
+        vsnprintf(context->message, sizeof context->message, format, arguments);
+    va_end(arguments);
+    size_t at = used < 0 ? 0 : (size_t)used;
+    if (at < sizeof context->message)
+        snprintf(context->message + at, sizeof context->message - at, ": %s",
+                 below);
+    return status;
+}
+
+void snow_notify(snow_context *context, const char *format, ...) {
+    if (!context->notice)
+        return;
+    char text[SNOW_MESSAGE_BYTES];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    context->notice(context->notice_user, text);
+}
+
+static block_header *header_of(void *block) {
+    return (block_header *)(void *)((char *)block - ALIGNMENT);
+}
+
+void *snow_allocate(snow_context *context, size_t bytes) {
+    size_t extra = 2 * ALIGNMENT;
+    char *raw = NULL;
+    if (bytes <= SIZE_MAX - extra)
+        raw =
+            context->allocator.allocate(context->allocator.user, bytes + extra);
+    if (!raw) {
+        snow_fail(context, SNOW_NO_MEMORY,
+                  "no memory for %zu bytes more (%llu are held); close other "
+                  "programs or take a smaller volume",
+                  bytes, (unsigned long long)context->bytes);
+        return NULL;
+    }
+    char *block = raw + extra - (uintptr_t)raw % ALIGNMENT;
+    *header_of(block) = (block_header){raw, bytes};
+    context->bytes += bytes;
+    if (context->bytes > context->peak)
+        context->peak = context->bytes;
+    return block;
+}
+
+void *snow_allocate_clear(snow_context *context, size_t bytes) {
+    void *block = snow_allocate(context, bytes);
+    if (block)
+        memset(block, 0, bytes);
+    return block;
+}
+
+void *snow_allocate_array(snow_context *context, uint64_t count, size_t size) {
+    uint64_t bytes;
+    if (!snow_mul_u64(count, size, &bytes) || bytes > SIZE_MAX) {
+        snow_fail(context, SNOW_NO_MEMORY,
+                  "%llu times %zu bytes are more than an address can reach",
+                  (unsigned long long)count, size);
+        return NULL;
+    }
+    return snow_allocate(context, (size_t)bytes);
+}
+
+snow_status snow_reserve(snow_context *context, void *block_pointer,
+                         size_t *capacity, size_t keep, size_t bytes) {
+    if (bytes <= *capacity)
+        return SNOW_OK;
+    size_t wanted = *capacity + *capacity / 2;
+    if (wanted < bytes)
+        wanted = bytes;
+    void *grown = snow_allocate(context, wanted);
+    if (!grown)
+        return SNOW_NO_MEMORY;
+    void *old;
+    memcpy(&old, block_pointer, sizeof old);
+    if (keep)
+        memcpy(grown, old, keep);
+    snow_release(context, old);
+    memcpy(block_pointer, &grown, sizeof grown);
+    *capacity = wanted;
+    return SNOW_OK;
+}
+
+void snow_release(snow_context *context, void *block) {
+    if (!block)
+        return;
+    block_header header = *header_of(block);
+    context->bytes -= header.bytes;
+    context->allocator.release(context->allocator.user, header.raw);
+}

@@ -1,0 +1,47 @@
+/* base/text.c - numbers and names out of text that nobody vouches for. */
+#include "base/base.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* True when nothing but blanks follows. */
+static bool at_end(const char *text) {
+    while (isspace((unsigned char)*text))
+        text++;
+    return !*text;
+}
+
+bool snow_parse_int64(const char *text, int64_t *out) {
+    char *end;
+    errno = 0;
+    long long value = strtoll(text, &end, 10);
+    if (end == text || errno || !at_end(end))
+        return false;
+    *out = value;
+    return true;
+}
+
+/* The C library reads numbers by the program's locale, which only a program
+ * that calls setlocale changes; a comma as decimal point then fails the parse,
+ * it never changes a value. */
+bool snow_parse_double(const char *text, double *out) {
+    char *end;
+    double value = strtod(text, &end);
+    if (end == text || !at_end(end))
+        return false;
+    *out = value;
+    return true;
+}
+
+bool snow_has_suffix(const char *text, const char *suffix) {
+    size_t n = strlen(text), m = strlen(suffix);
+    if (m > n)
+        return false;
+    for (size_t i = 0; i < m; i++)
+        if (tolower((unsigned char)text[n - m + i]) !=
+            tolower((unsigned char)suffix[i]))
+            return false;
+    return true;
+}

@@ -1,0 +1,33 @@
+/* base/writer.h - bytes out: the one way in which files come into being.
+ *
+ * A writer fills a file of a temporary name beside the final one; commit
+ * syncs it and renames it into place.  Whatever happens before, nothing stands
+ * under the final name that is not whole. */
+#ifndef SNOW_WRITER_H
+#define SNOW_WRITER_H
+
+#include "base/base.h"
+
+typedef struct snow_writer snow_writer;
+
+/* Begins a file.  "-" is standard output, which is written through.  A path
+ * that exists is SNOW_BAD_OUTPUT unless `overwrite`; so is a folder that is
+ * missing or not writable. */
+snow_status snow_writer_open(snow_context *context, const char *path,
+                             bool overwrite, snow_writer **out);
+
+snow_context *snow_writer_context(const snow_writer *writer);
+
+/* Appends bytes.  Errors: SNOW_BAD_OUTPUT (disk full, say). */
+snow_status snow_writer_write(snow_writer *writer, const void *bytes,
+                              size_t size);
+
+/* Ends the file: flushes, syncs, renames, frees the writer.  On failure the
+ * temporary file is removed, and the writer freed as well. */
+snow_status snow_writer_commit(snow_writer *writer);
+
+/* Gives up: removes the temporary file and frees the writer; NULL is
+ * accepted. */
+void snow_writer_abandon(snow_writer *writer);
+
+#endif

@@ -1,0 +1,24 @@
+/* classify/transfer.h - the inside of a transfer function. */
+#ifndef SNOW_TRANSFER_H
+#define SNOW_TRANSFER_H
+
+#include "base/base.h"
+
+#include <snowglass/transfer.h>
+
+#define SNOW_TRANSFER_TEXT_BYTES 256
+
+struct snow_transfer {
+    snow_context *context;
+    snow_color_point *colors; /* values do not fall */
+    size_t color_count;       /* at least 1 */
+    snow_opacity_point *opacities;
+    size_t opacity_count;
+    bool grey;                           /* red = green = blue everywhere */
+    char text[SNOW_TRANSFER_TEXT_BYTES]; /* what was chosen, for people */
+};
+
+/* Opacity alone: most voxels need no more. */
+double snow_transfer_opacity(const snow_transfer *transfer, double value);
+
+#endif

@@ -1,0 +1,87 @@
+/* volume/volume.h - the inside of a volume, and what readers share.
+ *
+ * To add a format: write volume/NAME.c with one snow_format record, and name
+ * the record in the table of volume/formats.c.  Nothing else. */
+#ifndef SNOW_VOLUME_H
+#define SNOW_VOLUME_H
+
+#include "base/base.h"
+#include "base/source.h"
+#include "base/writer.h"
+
+#include <snowglass/volume.h>
+
+struct snow_volume {
+    snow_context *context;
+    snow_volume_info info;
+    const void *voxels;
+    void *owned; /* the block to free, NULL when the voxels are shared */
+};
+
+/* A volume format.  `read` gets the source at its first byte (gzip undone) and
+ * makes the volume; `probe` says whether the first `size` bytes look like the
+ * format; `write` may be NULL. */
+typedef struct snow_format {
+    const char *name;        /* "nrrd" */
+    const char *text;        /* one line for people */
+    const char *suffixes[6]; /* ".nrrd", ".nhdr", NULL */
+    bool (*probe)(const unsigned char *bytes, size_t size);
+    snow_status (*read)(snow_source *source, const snow_volume_options *options,
+                        snow_volume **out);
+    snow_status (*write)(const snow_volume *volume, const char *path,
+                         snow_writer *writer);
+} snow_format;
+
+extern const snow_format snow_format_raw;
+extern const snow_format snow_format_nrrd;
+extern const snow_format snow_format_nifti;
+extern const snow_format snow_format_metaimage;
+
+/* An info with one voxel's defaults: identity matrix, slope 1, one time step,
+ * unit "", and the given format name. */
+snow_volume_info snow_volume_info_default(const char *format);
+
+/* Fills spacing from the columns of the matrix. */
+void snow_volume_info_measure(snow_volume_info *info);
+
+/* The number of voxels and of bytes of a volume of these dims and type.
+ * False when a dim is below 1, the type unknown, or a product overflows 63
+ * bits. */
+bool snow_volume_count(const int64_t dims[3], snow_type type, int64_t *voxels,
+                       uint64_t *bytes);
+
+/* Checks what a header said before anything is allocated: dims at least 1 and
+ * their product below 2^63 bytes, a known type, a matrix that is finite and
+ * can be inverted, slope and intercept finite and slope not 0.
+ * Errors: SNOW_BAD_INPUT with the reason (not the file's name). */
+snow_status snow_volume_info_check(snow_context *context,
+                                   const snow_volume_info *info);
+
+/* A volume with room for its voxels, uncleared; info is checked and its
+ * spacing measured.  The writable voxels are (void *)volume->owned. */
+snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
+                            snow_volume **out);
+
+/* The usual end of a binary reader: checks that the source can hold the
+ * voxels, makes the volume, reads them, swaps bytes when `big_endian` differs
+ * from the machine, finishes the source.  `skip` bytes (other time steps) lie
+ * before the voxels and `rest` after them, both within the data. */
+snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
+                             bool big_endian, uint64_t skip, uint64_t rest,
+                             snow_volume **out);
+
+/* True on machines that store the high byte first. */
+bool snow_machine_big_endian(void);
+
+/* Reverses the bytes of `count` values of `size` bytes in place. */
+void snow_swap_bytes(void *values, uint64_t count, size_t size);
+
+/* 3x3 helpers on the matrix' linear part.  Invert returns false when the
+ * determinant is 0 or not finite relative to the columns' lengths. */
+bool snow_matrix_invert3(const double m[4][4], double inverse[3][3]);
+
+/* The native value at a linear index as a double (int64 values beyond 2^53
+ * round). */
+double snow_volume_native(const snow_volume *volume, int64_t index);
+
+#endif

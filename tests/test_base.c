@@ -1,0 +1,88 @@
+/* tests/test_base.c - contexts, memory and numbers keep their promises. */
+#include "support.h"
+
+static void
+a_failed_allocation_tells_its_size_and_changes_nothing(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    assert_null(snow_allocate(context, SIZE_MAX / 2));
+    assert_non_null(strstr(snow_context_message(context), "no memory"));
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+static void blocks_are_aligned_and_counted(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    void *a = snow_allocate(context, 1), *b = snow_allocate(context, 100);
+    assert_int_equal((uintptr_t)a % 64, 0);
+    assert_int_equal((uintptr_t)b % 64, 0);
+    assert_int_equal(snow_context_bytes(context), 101);
+    snow_release(context, a);
+    snow_release(context, b);
+    assert_int_equal(snow_context_bytes(context), 0);
+    assert_int_equal(snow_context_peak_bytes(context), 101);
+    snow_context_free(context);
+}
+
+static void products_that_overflow_are_refused(void **state) {
+    (void)state;
+    uint64_t product = 7;
+    assert_false(snow_mul_u64(UINT64_MAX / 2, 3, &product));
+    assert_int_equal(product, 7);
+    assert_true(snow_mul_u64(UINT32_MAX, UINT32_MAX, &product));
+    assert_true(product == (uint64_t)UINT32_MAX * UINT32_MAX);
+}
+
+static void a_reserved_block_keeps_its_bytes(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    char *block = NULL;
+    size_t capacity = 0;
+    assert_int_equal(snow_reserve(context, &block, &capacity, 0, 3), SNOW_OK);
+    memcpy(block, "abc", 3);
+    assert_int_equal(snow_reserve(context, &block, &capacity, 3, 999), SNOW_OK);
+    assert_memory_equal(block, "abc", 3);
+    assert_true(capacity >= 999);
+    snow_release(context, block);
+    snow_context_free(context);
+}
+
+static void numbers_are_whole_or_refused(void **state) {
+    (void)state;
+    int64_t i = 5;
+    double d = 5;
+    assert_false(snow_parse_int64("12x", &i));
+    assert_false(snow_parse_int64("", &i));
+    assert_false(snow_parse_int64("99999999999999999999", &i));
+    assert_int_equal(i, 5);
+    assert_true(snow_parse_int64(" -12 ", &i));
+    assert_int_equal(i, -12);
+    assert_false(snow_parse_double("1.5,", &d));
+    assert_true(snow_parse_double("1.5e3", &d));
+    assert_true(d == 1500);
+}
+
+static void layers_add_what_they_know_to_a_message(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_fail(context, SNOW_BAD_INPUT, "line %d is empty", 3);
+    assert_int_equal(snow_fail_within(context, SNOW_BAD_INPUT, "a.nrrd"),
+                     SNOW_BAD_INPUT);
+    assert_string_equal(snow_context_message(context),
+                        "a.nrrd: line 3 is empty");
+    snow_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(
+            a_failed_allocation_tells_its_size_and_changes_nothing),
+        cmocka_unit_test(blocks_are_aligned_and_counted),
+        cmocka_unit_test(products_that_overflow_are_refused),
+        cmocka_unit_test(a_reserved_block_keeps_its_bytes),
+        cmocka_unit_test(numbers_are_whole_or_refused),
+        cmocka_unit_test(layers_add_what_they_know_to_a_message),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
