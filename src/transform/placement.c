@@ -15,15 +15,6 @@ static void step_of(const snow_volume_info *info, int axis, double step[3]) {
         step[i] = info->matrix[i][axis];
 }
 
-/* The world position of an index position. */
-static void world_of(const snow_volume_info *info, const double index[3],
-                     double world[3]) {
-    for (int i = 0; i < 3; i++)
-        world[i] = info->matrix[i][0] * index[0] +
-                   info->matrix[i][1] * index[1] +
-                   info->matrix[i][2] * index[2] + info->matrix[i][3];
-}
-
 double snow_volume_radius(const snow_volume_info *info) {
     double farthest = 0;
     for (int corner = 0; corner < 4; corner++) {
