@@ -20,8 +20,9 @@ static inline void SPLAT_THROW(const snow_splatter *splatter, snow_sheet *sheet,
     int bottom = snow_last_pixel(y + splatter->reach[1], sheet->height);
     for (; line <= bottom; line++) {
         double dy = line + 0.5 - y;
-        double from = fmax(u->lean * dy - u->extent, v->lean * dy - v->extent);
-        double to = fmin(u->lean * dy + u->extent, v->lean * dy + v->extent);
+        double middle_u = u->lean * dy, middle_v = v->lean * dy;
+        double from = larger(middle_u - u->extent, middle_v - v->extent);
+        double to = smaller(middle_u + u->extent, middle_v + v->extent);
         int first = snow_first_pixel(x + from, sheet->width);
         int last = snow_last_pixel(x + to, sheet->width);
         double dx = first + 0.5 - x;

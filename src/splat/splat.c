@@ -27,6 +27,15 @@ static inline float box_weight(const snow_splatter *splatter, float u,
            snow_taper_box(&splatter->along_v, (double)v);
 }
 
+/* As fmin and fmax, but inline: no NaN comes here. */
+static inline double smaller(double a, double b) {
+    return a < b ? a : b;
+}
+
+static inline double larger(double a, double b) {
+    return a > b ? a : b;
+}
+
 #define SPLAT_CHANNELS 2
 #define SPLAT_WEIGHT table_weight
 #define SPLAT_ROW oblique_grey

@@ -6,16 +6,6 @@
 /* Pixels by which an origin may move before the weights are made anew. */
 #define SAME_PLACE 1e-9
 
-int snow_first_pixel(double from, int pixels) {
-    double first = ceil(from - 0.5);
-    return first < 0 ? 0 : first < pixels ? (int)first : pixels;
-}
-
-int snow_last_pixel(double to, int pixels) {
-    double last = floor(to - 0.5);
-    return last < 0 ? -1 : last < pixels ? (int)last : pixels - 1;
-}
-
 snow_status snow_taps_init(snow_context *context, const snow_taper *taper,
                            int64_t voxels, int pixels, snow_taps *out) {
     /* A pixel is reached by at most this many voxels. */

@@ -27,9 +27,25 @@ void snow_taps_fini(snow_context *context, snow_taps *taps);
 void snow_taps_place(snow_taps *taps, const snow_taper *taper, int64_t voxels,
                      int pixels, double origin, double step);
 
-/* The first and the last pixel whose centre lies in [from, to], within an axis
- * of `pixels` pixels; last < first when there is none. */
-int snow_first_pixel(double from, int pixels);
-int snow_last_pixel(double to, int pixels);
+/* The first pixel whose centre is at `from` or beyond, within an axis of
+ * `pixels` pixels; `pixels` when there is none.  Called for every row of every
+ * footprint, so it rounds by a cast: ceil() is a call without SSE4.1. */
+static inline int snow_first_pixel(double from, int pixels) {
+    double place = from - 0.5;
+    if (!(place > 0))
+        return 0;
+    if (place > pixels)
+        return pixels;
+    int below = (int)place;
+    return below + ((double)below < place);
+}
+
+/* The last pixel whose centre is at `to` or before; -1 when there is none. */
+static inline int snow_last_pixel(double to, int pixels) {
+    double place = to - 0.5;
+    if (!(place >= 0))
+        return -1;
+    return place < pixels ? (int)place : pixels - 1;
+}
 
 #endif
