@@ -1,0 +1,15 @@
+/* bench/table2.c - Table 2 of the paper: original splatting against the three
+ * sparse encodings, footprint 2x2 (it shares a line with Table 3). */
+#include "bench.h"
+
+int bench_table2(snow_context *context, const bench_options *options) {
+    static const bench_paper_row rows[] = {
+        {BENCH_CUBE, "Cube", 10, 2, 98, {4.081, 0, 1.100, 1.454, 1.275}},
+        {BENCH_HEAD, "Head", 10, 2, 47, {7.644, 0, 5.460, 5.862, 5.958}},
+        {BENCH_HEAD, "Head", 30, 2, 70, {7.102, 0, 3.467, 4.067, 4.296}},
+        {BENCH_ENGINE, "Engine", 10, 2, 77, {6.490, 0, 2.891, 3.294, 3.530}},
+        {BENCH_ENGINE, "Engine", 30, 2, 81, {5.518, 0, 2.503, 3.098, 3.365}},
+    };
+    return bench_print_rows(context, options, 2, rows,
+                            sizeof rows / sizeof rows[0]);
+}
