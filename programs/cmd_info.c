@@ -21,23 +21,24 @@ typedef struct facts {
     const snow_volume_info *info;
     const snow_transfer *transfer;
     snow_volume_measures measures;
-    double thresholds[3];
+    double thresholds[3], ratios[3];
     size_t threshold_count;
 } facts;
 
-static facts gather(const options *asked, const snow_volume *volume,
-                    const snow_transfer *transfer) {
-    facts f = {.volume = volume,
-               .info = snow_volume_describe(volume),
-               .transfer = transfer,
-               .thresholds = {asked->threshold},
-               .threshold_count = 1};
+static snow_status gather(const options *asked, facts *f) {
+    f->info = snow_volume_describe(f->volume);
+    f->thresholds[0] = asked->threshold;
+    f->threshold_count = 1;
     if (asked->threshold < 0) {
-        memcpy(f.thresholds, paper_thresholds, sizeof paper_thresholds);
-        f.threshold_count = 3;
+        memcpy(f->thresholds, paper_thresholds, sizeof paper_thresholds);
+        f->threshold_count = 3;
     }
-    snow_volume_measure(volume, &f.measures);
-    return f;
+    snow_volume_measure(f->volume, &f->measures);
+    snow_status status = SNOW_OK;
+    for (size_t i = 0; i < f->threshold_count && status == SNOW_OK; i++)
+        status = snow_transfer_sparse_ratio(f->transfer, f->volume,
+                                            f->thresholds[i], &f->ratios[i]);
+    return status;
 }
 
 /* --- orientation -----------------------------------------------------------
@@ -116,9 +117,7 @@ static void print_values(const facts *f) {
     printf("%-14s%s\n", "look", snow_transfer_text(f->transfer));
     for (size_t i = 0; i < f->threshold_count; i++)
         printf("%-14s%5.1f %% at threshold %g\n", i ? "" : "sparse ratio",
-               100 * snow_transfer_sparse_ratio(f->transfer, f->volume,
-                                                f->thresholds[i]),
-               f->thresholds[i]);
+               100 * f->ratios[i], f->thresholds[i]);
 }
 
 /* False when there is nothing to spread over bins. */
@@ -201,10 +200,8 @@ static json_t *sparse_json(const facts *f) {
     json_t *list = json_array();
     for (size_t i = 0; i < f->threshold_count; i++) {
         json_t *row = json_object();
-        double ratio = snow_transfer_sparse_ratio(f->transfer, f->volume,
-                                                  f->thresholds[i]);
         json_object_set_new(row, "threshold", json_number(f->thresholds[i]));
-        json_object_set_new(row, "ratio", json_number(ratio));
+        json_object_set_new(row, "ratio", json_number(f->ratios[i]));
         json_array_append_new(list, row);
     }
     return list;
@@ -238,8 +235,12 @@ int cmd_info(const options *asked) {
     if (done == GO_ON)
         done = open_look(context, asked, volume, &transfer);
     if (done == GO_ON) {
-        facts f = gather(asked, volume, transfer);
-        done = asked->json ? tell_json(&f) : tell_text(&f);
+        facts f = {.volume = volume, .transfer = transfer};
+        snow_status status = gather(asked, &f);
+        if (status != SNOW_OK)
+            done = fail_status(context, status);
+        else
+            done = asked->json ? tell_json(&f) : tell_text(&f);
     }
     snow_transfer_free(transfer);
     snow_volume_close(volume);

@@ -30,21 +30,18 @@ static const char examples[] =
 
 /* Words of `text` from column `at`, wrapped to `indent`. */
 static void print_wrapped(const char *text, int at, int indent) {
-    while (*text) {
+    for (bool first = true; *text; first = false) {
         int length = (int)strcspn(text, " ");
-        if (at + 1 + length > WIDTH && at > indent) {
+        if (!first && at + 1 + length > WIDTH) {
             printf("\n%*s", indent, "");
             at = indent;
+        } else if (!first) {
+            printf(" ");
+            at++;
         }
         printf("%.*s", length, text);
         at += length;
-        text += length;
-        if (*text == ' ') {
-            text++;
-            if (at + 1 + (int)strcspn(text, " ") <= WIDTH)
-                printf(" ");
-            at++;
-        }
+        text += length + (text[length] == ' ');
     }
     printf("\n");
 }
@@ -70,28 +67,35 @@ static bool belongs(const option_row *row, topic which, unsigned verbs) {
     return row->topic == which && (row->verbs & verbs) != 0;
 }
 
-/* The options of a topic that any of the verbs takes, built ones first. */
-static void print_topic(topic which, unsigned verbs, bool later) {
-    bool any = false;
+static void print_heading(topic which) {
+    printf("%s: %s\n", topic_table[which].name, topic_table[which].text);
+}
+
+static bool has_options(topic which, unsigned verbs) {
+    const option_row *row = option_table;
+    while (row->name && !(row->read && belongs(row, which, verbs)))
+        row++;
+    return row->name != NULL;
+}
+
+static void print_options(topic which, unsigned verbs) {
     for (const option_row *row = option_table; row->name; row++) {
-        if (belongs(row, which, verbs) && row->read) {
-            if (!any)
-                printf("\n%s: %s\n", topic_table[which].name,
-                       topic_table[which].text);
-            any = true;
+        if (row->read && belongs(row, which, verbs))
             print_option(row);
-        }
     }
-    char line[512] = "not built yet:";
-    size_t used = strlen(line);
+}
+
+static void print_later(topic which) {
+    char line[512] = "";
+    size_t used = 0;
     for (const option_row *row = option_table; row->name; row++) {
-        if (belongs(row, which, verbs) && !row->read && used < sizeof line)
+        if (!row->read && row->topic == which && used < sizeof line)
             used += (size_t)snprintf(line + used, sizeof line - used, " --%s",
                                      row->name);
     }
-    if (later && strlen(line) > strlen("not built yet:")) {
-        printf("  ");
-        print_wrapped(line, 2, 4);
+    if (used) {
+        printf("  not built yet:");
+        print_wrapped(line, 16, 4);
     }
 }
 
@@ -110,7 +114,9 @@ static void print_names(const char *title, const char *(*name)(size_t),
 }
 
 static int print_topic_page(topic which) {
-    print_topic(which, ~0U, true);
+    print_heading(which);
+    print_options(which, ~0U);
+    print_later(which);
     if (which == TOPIC_LOOK) {
         print_names("presets", snow_preset_name, snow_preset_text);
         print_names("colour maps", snow_colormap_name, NULL);
@@ -128,8 +134,13 @@ static int print_verb_page(const verb_row *row) {
     if (!row->bit)
         return fail_usage("%s is not built yet; %s", row->name, row->text);
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
-    for (int i = 0; topic_table[i].name; i++)
-        print_topic((topic)i, row->bit, false);
+    for (int i = 0; topic_table[i].name; i++) {
+        if (has_options((topic)i, row->bit)) {
+            printf("\n");
+            print_heading((topic)i);
+            print_options((topic)i, row->bit);
+        }
+    }
     if (row->bit == VERB_PHANTOM)
         print_names("phantoms", snow_phantom_name, snow_phantom_text);
     return finish_stdout();

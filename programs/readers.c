@@ -167,7 +167,7 @@ bool read_type(const option_row *row, const char *text, void *field,
     (void)row;
     snow_type type = snow_type_named(text);
     if (type == SNOW_TYPE_NONE)
-        return refuse(wrong, "is no type of voxels; choose from: "
+        return refuse(wrong, "is no type of voxels; choose from:"
 #define TYPE_NAME(name, type, text) " " text
                       SNOW_TYPE_MAP(TYPE_NAME));
 #undef TYPE_NAME

@@ -16,8 +16,8 @@
 
 #define LINE_BYTES 2048
 
-/* Digits that bring every double back. */
-#define JSON_FORM (JSON_INDENT(2) | JSON_REAL_PRECISION(17))
+/* One line; digits that bring every double back. */
+#define JSON_FORM JSON_REAL_PRECISION(17)
 
 static void say_list(const char *format, va_list arguments) {
     char line[LINE_BYTES];
