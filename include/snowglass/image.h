@@ -30,7 +30,8 @@ SNOW_API int snow_image_channels(const snow_image *image);
 SNOW_API float *snow_image_pixels(snow_image *image);
 
 /* A 64-bit FNV-1a hash of the size, the channels and the bytes of all float
- * pixels (of the little-endian form, -0 as 0): equal pictures, equal sums. */
+ * pixels (of the little-endian form, -0 as 0, every NaN as 0x7fc00000): equal
+ * pictures, equal sums. */
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 typedef struct snow_image_options {
@@ -42,8 +43,9 @@ typedef struct snow_image_options {
 
 /* Writes a picture in the format of the path's suffix; "-" is standard output,
  * as PNG.
- *   .png  straight alpha, round(255 x) or round(65535 x); without alpha when
- *         flattened; grey when the picture is grey
+ *   .png  straight alpha, round(255 x) or round(65535 x), x limited to 0 to 1;
+ *         pixels with a NaN are transparent; without alpha when flattened; grey
+ *         when the picture has two channels (and the background no colour)
  *   .npy  float32 (height, width, 4), premultiplied RGBA
  *   .pfm  float32 RGB, premultiplied, without alpha
  * The file is written aside and renamed, so that it is whole or absent; an
@@ -60,8 +62,8 @@ SNOW_API snow_status snow_image_check_path(snow_context *context,
                                            const char *path, bool overwrite);
 
 /* Reads a picture: PNG (8 or 16 bits, grey or colour, with or without alpha;
- * straight alpha is multiplied in), NPY (float32 (h, w, 4) or (h, w)), PFM.
- * It has four channels.  Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
+ * straight alpha is multiplied in), NPY (float32 or float64, (h, w) or (h, w, 1
+ * to 4)), PFM.  It has four channels; alpha is 1 where the file has none.  Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_load(snow_context *context, const char *path,
                                      snow_image **out);
 
@@ -81,7 +83,7 @@ typedef struct snow_image_difference {
 } snow_image_difference;
 
 /* Compares two pictures of one size (2 channels count as grey).  NaN equals
- * NaN only.  Errors: SNOW_DIFFERENT when the sizes differ (the message gives
+ * NaN only, an infinity itself only: else they are infinitely far apart.  Errors: SNOW_DIFFERENT when the sizes differ (the message gives
  * them), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_compare(const snow_image *a,
                                         const snow_image *b,

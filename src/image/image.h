@@ -8,10 +8,76 @@
 
 #include <snowglass/image.h>
 
+/* The longest side of a picture, in pixels. */
+#define SNOW_IMAGE_SIDE 32768
+
 struct snow_image {
     snow_context *context;
     int width, height, channels;
     float *pixels; /* [(y * width + x) * channels] */
 };
+
+/* As snow_image_new, but the pixels are undefined.  For readers, which fill
+ * them: a size that a file merely claims then costs address space only. */
+snow_status snow_image_make(snow_context *context, int width, int height,
+                            int channels, snow_image **out);
+
+/* Pixel `index` (y * width + x) as red, green, blue, alpha; grey is r = g = b.
+ */
+static inline void snow_image_rgba(const snow_image *image, size_t index,
+                                   float rgba[4]) {
+    const float *pixel = image->pixels + index * (size_t)image->channels;
+    bool grey = image->channels == 2;
+    rgba[0] = pixel[0];
+    rgba[1] = pixel[grey ? 0 : 1];
+    rgba[2] = pixel[grey ? 0 : 2];
+    rgba[3] = pixel[grey ? 1 : 3];
+}
+
+/* --- formats -------------------------------------------------------------- */
+
+/* What one file format can do.  A new one is a file that defines its record,
+ * and a line in the table of formats.c. */
+typedef struct snow_image_format {
+    const char *name;   /* for messages: "PNG" */
+    const char *suffix; /* of the files it writes: ".png" */
+    bool has_depth;     /* heeds options->bits and the background */
+
+    /* Writes the picture.  The caller opened the writer, and commits it. */
+    snow_status (*write)(const snow_image *image,
+                         const snow_image_options *options,
+                         snow_writer *writer);
+
+    /* Whether a file that begins with these bytes is of this format. */
+    bool (*probe)(const unsigned char *bytes, size_t size);
+
+    /* Makes a picture of four channels from the source's first byte on. */
+    snow_status (*read)(snow_source *source, snow_image **out);
+} snow_image_format;
+
+extern const snow_image_format snow_image_png, snow_image_npy, snow_image_pfm;
+
+/* Refuses, on behalf of a reader, sides outside 1 to SNOW_IMAGE_SIDE. */
+snow_status snow_image_check_sides(const snow_source *source, int64_t width,
+                                   int64_t height);
+
+/* How plain floats lie in a file. */
+typedef struct snow_float_layout {
+    int channels;     /* 1 grey, 2 grey and alpha, 3 colour, 4 with alpha */
+    int sample_bytes; /* 4 or 8 */
+    bool big_endian;
+    bool bottom_up; /* the file's first row is the picture's last */
+} snow_float_layout;
+
+/* Reads `width` x `height` pixels from where the source stands; alpha is 1
+ * where the file has none. */
+snow_status snow_image_read_floats(snow_source *source, int64_t width,
+                                   int64_t height,
+                                   const snow_float_layout *layout,
+                                   snow_image **out);
+
+/* Appends all pixels as little-endian 32-bit floats, 3 or 4 a pixel. */
+snow_status snow_image_write_floats(const snow_image *image, int channels,
+                                    bool bottom_up, snow_writer *writer);
 
 #endif
