@@ -1,0 +1,69 @@
+/* cmd_compare.c - how far two pictures differ, and whether that is too far. */
+#include "commands.h"
+#include "report.h"
+
+#include <stdio.h>
+
+static int load_pair(snow_context *context, char **paths,
+                     snow_image *images[2]) {
+    for (int i = 0; i < 2; i++) {
+        snow_status status = snow_image_load(context, paths[i], &images[i]);
+        if (status != SNOW_OK)
+            return fail_status(context, status);
+    }
+    return GO_ON;
+}
+
+static int tell_json(const snow_image_difference *d, double tolerance,
+                     bool within) {
+    json_t *object = json_object();
+    json_object_set_new(object, "within", json_boolean(within));
+    json_object_set_new(object, "tolerance", json_number(tolerance));
+    json_object_set_new(object, "largest", json_number(d->largest));
+    json_object_set_new(object, "x", json_integer(d->x));
+    json_object_set_new(object, "y", json_integer(d->y));
+    json_object_set_new(object, "mean", json_number(d->mean));
+    json_object_set_new(object, "psnr", json_number(d->psnr));
+    json_object_set_new(object, "ssim", json_number(d->ssim));
+    return print_json(object);
+}
+
+static int tell_text(const snow_image_difference *d, double tolerance,
+                     bool within) {
+    printf("largest  %.9g at pixel %d,%d\n", d->largest, d->x, d->y);
+    printf("mean     %.9g\n", d->mean);
+    printf("psnr     %.4g dB\n", d->psnr);
+    printf("ssim     %.6f\n", d->ssim);
+    printf("%s the tolerance of %.9g\n", within ? "within" : "beyond",
+           tolerance);
+    return finish_stdout();
+}
+
+/* A largest difference of NaN is beyond every tolerance. */
+static int judge(const options *asked, const snow_image_difference *d) {
+    bool within = d->largest <= asked->tolerance;
+    int done = asked->json ? tell_json(d, asked->tolerance, within)
+                           : tell_text(d, asked->tolerance, within);
+    if (done == SNOW_OK && !within)
+        return SNOW_DIFFERENT;
+    return done;
+}
+
+int cmd_compare(const options *asked) {
+    snow_context *context = NULL;
+    snow_image *images[2] = {NULL, NULL};
+    snow_image_difference difference;
+    int done = open_context(asked, &context);
+    if (done == GO_ON)
+        done = load_pair(context, asked->operands, images);
+    if (done == GO_ON) {
+        snow_status status =
+            snow_image_compare(images[0], images[1], &difference);
+        done = status == SNOW_OK ? judge(asked, &difference)
+                                 : fail_status(context, status);
+    }
+    snow_image_free(images[0]);
+    snow_image_free(images[1]);
+    snow_context_free(context);
+    return done;
+}

@@ -1,0 +1,127 @@
+/* cmd_doctor.c - what this build and this machine can do.  The names come from
+ * the library's own lists, so that the answer cannot grow old. */
+#include "commands.h"
+#include "report.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Formats that are written: the library names them by suffix only. */
+static const char *const volume_suffixes =
+    ".nrrd .nii .nii.gz .mha .raw .raw.gz";
+static const char *const picture_suffixes = ".png .npy .pfm";
+
+static const char *encoding_at(size_t i) {
+    return i < 3 ? snow_encoding_name((snow_encoding)(i + SNOW_ENCODING_CRS))
+                 : NULL;
+}
+
+static const char *kernel_at(size_t i) {
+    return i < 4 ? snow_kernel_name((snow_kernel)(i + SNOW_KERNEL_BSPLINE))
+                 : NULL;
+}
+
+/* The methods that --method takes; "tested" serves the paper's tables. */
+static const char *method_at(size_t i) {
+    static const snow_method methods[] = {SNOW_METHOD_ORIGINAL,
+                                          SNOW_METHOD_FOOTPRINT};
+    return i < 2 ? snow_method_name(methods[i]) : NULL;
+}
+
+static const struct {
+    const char *key;
+    const char *(*at)(size_t index);
+} lists[] = {
+    {"formats", snow_format_name}, {"phantoms", snow_phantom_name},
+    {"presets", snow_preset_name}, {"colormaps", snow_colormap_name},
+    {"views", snow_view_name},     {"kernels", kernel_at},
+    {"encodings", encoding_at},    {"methods", method_at},
+};
+
+#define LISTS (sizeof lists / sizeof *lists)
+
+/* Bytes that the machine has, and those that the control group allows: the
+ * smaller one, or 0 when neither is known. */
+static uint64_t memory_bytes(void) {
+    uint64_t limit = 0;
+    long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+    if (pages > 0 && page > 0)
+        limit = (uint64_t)pages * (uint64_t)page;
+    FILE *file = fopen("/sys/fs/cgroup/memory.max", "r");
+    char text[32] = "";
+    uint64_t group;
+    if (file && fgets(text, sizeof text, file)) {
+        text[strcspn(text, "\n")] = '\0';
+        if (value_count(text, &group) && (limit == 0 || group < limit))
+            limit = group;
+    }
+    if (file)
+        fclose(file);
+    return limit;
+}
+
+static json_t *words_json(const char *words) {
+    json_t *list = json_array();
+    while (*words) {
+        size_t length = strcspn(words, " ");
+        json_array_append_new(list, json_stringn(words, length));
+        words += length + (words[length] == ' ');
+    }
+    return list;
+}
+
+static json_t *list_json(const char *(*at)(size_t)) {
+    json_t *list = json_array();
+    for (size_t i = 0; at(i); i++)
+        json_array_append_new(list, json_string(at(i)));
+    return list;
+}
+
+static int tell_json(void) {
+    json_t *o = json_object();
+    json_object_set_new(o, "version", json_string(snow_version()));
+    for (size_t i = 0; i < LISTS; i++)
+        json_object_set_new(o, lists[i].key, list_json(lists[i].at));
+    json_object_set_new(o, "volume_outputs", words_json(volume_suffixes));
+    json_object_set_new(o, "picture_outputs", words_json(picture_suffixes));
+    json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
+    json_object_set_new(o, "isa", json_string(snow_isa_used()));
+    json_object_set_new(o, "threads", json_integer(1));
+    json_object_set_new(o, "mpi", json_false());
+    json_object_set_new(o, "display", json_false());
+    json_object_set_new(o, "memory_bytes",
+                        json_integer((json_int_t)memory_bytes()));
+    json_object_set_new(o, "jansson", json_string(jansson_version_str()));
+    return print_json(o);
+}
+
+static void print_row(const char *key, const char *text) {
+    printf("%-16s%s\n", key, text);
+}
+
+static int tell_text(void) {
+    print_row("version", snow_version());
+    for (size_t i = 0; i < LISTS; i++) {
+        printf("%-16s", lists[i].key);
+        for (size_t k = 0; lists[i].at(k); k++)
+            printf("%s%s", k ? " " : "", lists[i].at(k));
+        printf("\n");
+    }
+    print_row("volume outputs", volume_suffixes);
+    print_row("picture outputs", picture_suffixes);
+    printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
+           snow_isa_used());
+    print_row("threads", "1 (more are not built yet)");
+    print_row("mpi", "no (not built yet)");
+    print_row("display", "not needed");
+    printf("%-16s%.1f GiB\n", "memory",
+           (double)memory_bytes() / (double)(1 << 30));
+    print_row("jansson", jansson_version_str());
+    return finish_stdout();
+}
+
+int cmd_doctor(const options *asked) {
+    return asked->json ? tell_json() : tell_text();
+}

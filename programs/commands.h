@@ -1,0 +1,27 @@
+/* commands.h - the verbs, and what several of them share.  Each verb answers
+ * an exit code. */
+#ifndef COMMANDS_H
+#define COMMANDS_H
+
+#include "options.h"
+
+int cmd_render(const options *asked);
+int cmd_info(const options *asked);
+int cmd_phantom(const options *asked);
+int cmd_compare(const options *asked);
+int cmd_doctor(const options *asked);
+
+/* Opens the volume that the options name: a file, phantom:NAME, or "-" for
+ * standard input.  Answers GO_ON or an exit code. */
+int open_input(snow_context *context, const options *asked, const char *path,
+               snow_volume **out);
+
+/* The transfer function that the options ask for.  Answers GO_ON or an exit
+ * code. */
+int open_look(snow_context *context, const options *asked,
+              const snow_volume *volume, snow_transfer **out);
+
+/* "raw 256x256x110 uint8, spacing 1x1x1 mm". */
+void describe_volume(const snow_volume *volume, char *out, size_t size);
+
+#endif

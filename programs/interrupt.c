@@ -1,0 +1,44 @@
+/* interrupt.c - signal handlers that only use what is safe in them. */
+#include "interrupt.h"
+#include "options.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t held, pending;
+
+static void leave(int signal_number) {
+    static const char text[] = "snowglass: interrupted\n";
+    (void)signal_number;
+    if (held && !pending) {
+        pending = 1;
+        return;
+    }
+    ssize_t told = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)told;
+    _exit(EXIT_INTERRUPTED);
+}
+
+/* A signal that the parent has switched off (nohup) stays so. */
+static void listen_to(int signal_number) {
+    struct sigaction action = {.sa_handler = leave, .sa_flags = SA_RESTART};
+    struct sigaction old;
+    sigemptyset(&action.sa_mask);
+    if (sigaction(signal_number, NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+        sigaction(signal_number, &action, NULL);
+}
+
+void interrupt_install(void) {
+    listen_to(SIGINT);
+    listen_to(SIGTERM);
+    /* A reader that went away is an error of the write, exit code 4. */
+    signal(SIGPIPE, SIG_IGN);
+}
+
+void interrupt_hold(void) {
+    held = 1;
+}
+
+void interrupt_release(void) {
+    held = 0;
+}

@@ -1,0 +1,84 @@
+/* main.c - the tool: which verb is meant, and what it answers.
+ *
+ * The first word is a verb, or the call is a bare `render`.  The tool stands on
+ * the public headers only; its exit codes are the library's status values and
+ * 130. */
+#include "bench.h"
+#include "commands.h"
+#include "interrupt.h"
+#include "report.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* With a standard stream closed, the next file that is opened would take its
+ * place and get what was meant for it. */
+static void fill_standard_streams(void) {
+    for (int handle = 0; handle <= 2; handle++) {
+        if (fcntl(handle, F_GETFD) == -1)
+            (void)!open("/dev/null", handle == 1 ? O_RDONLY : O_RDWR);
+    }
+}
+
+static int print_version(void) {
+    printf("snowglass %s\n", snow_version());
+    return finish_stdout();
+}
+
+static int run_help(const options *asked) {
+    if (asked->operand_count > 1)
+        return fail_usage("%s: one word too many for help; give one topic",
+                          asked->operands[1]);
+    return help_print(asked->operand_count ? asked->operands[0] : NULL, NULL);
+}
+
+static int run_verb(const verb_row *verb, const options *asked) {
+    switch (verb->bit) {
+    case VERB_RENDER:
+        return cmd_render(asked);
+    case VERB_INFO:
+        return cmd_info(asked);
+    case VERB_PHANTOM:
+        return cmd_phantom(asked);
+    case VERB_COMPARE:
+        return cmd_compare(asked);
+    case VERB_DOCTOR:
+        return cmd_doctor(asked);
+    default:
+        return run_help(asked);
+    }
+}
+
+/* `named` tells a verb that was written from the one that is understood. */
+static int run(const verb_row *verb, bool named, int argc, char **argv) {
+    options asked;
+    options_init(&asked);
+    int done = options_parse(&asked, verb, argc, argv);
+    if (done != GO_ON)
+        return done;
+    if (asked.version)
+        return print_version();
+    if (asked.help)
+        return help_print(asked.help_word,
+                          named && verb->bit != VERB_HELP ? verb : NULL);
+    return run_verb(verb, &asked);
+}
+
+int main(int argc, char **argv) {
+    fill_standard_streams();
+    interrupt_install();
+    if (argc < 2) {
+        help_hint();
+        return SNOW_BAD_USAGE;
+    }
+    const verb_row *verb = verb_named(argv[1]);
+    if (!verb)
+        return run(verb_of(VERB_RENDER), false, argc, argv);
+    if (!verb->bit)
+        return fail_usage("%s is not built yet; %s", verb->name, verb->text);
+    if (verb->bit == VERB_BENCH)
+        return bench_main(argc - 1, argv + 1);
+    return run(verb, true, argc - 1, argv + 1);
+}

@@ -1,0 +1,216 @@
+/* option_table.c - every option, verb and topic of the command line, as data.
+ *
+ * A row is one option: name, letter, argument, topic, verbs, reader, field,
+ * range, choices that are not built yet, help.  A row made with LATER is known
+ * but not built: it is refused by name, with its text as the advice. */
+#include "readers.h"
+
+#include <stddef.h>
+
+#define FIELD(name) offsetof(options, name)
+#define LATER(name, letter, argument, topic, advice) \
+    { name, letter, argument, topic, RENDER, NULL, 0, 0, 0, "", advice }
+
+enum {
+    RENDER = VERB_RENDER,
+    INFO = VERB_INFO,
+    PHANTOM = VERB_PHANTOM,
+    COMPARE = VERB_COMPARE,
+    DOCTOR = VERB_DOCTOR,
+    INPUT = VERB_RENDER | VERB_INFO,
+    EVERY = VERB_RENDER | VERB_INFO | VERB_PHANTOM | VERB_COMPARE |
+            VERB_DOCTOR | VERB_HELP
+};
+
+/* clang-format off */
+const option_row option_table[] = {
+    {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM, read_text,
+     FIELD(output), 0, 0, "",
+     "where to write: .png .npy .pfm, or - for a PNG on standard output; a "
+     "phantom: .nrrd .nii .nii.gz .mha .raw .raw.gz"},
+    {"size", 's', "WxH", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
+     "pixels of the picture (512x512)"},
+    {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
+     FIELD(background), 0, 0, "",
+     "lay the PNG on a colour: a name, #rgb, #rrggbb or r,g,b of 0 to 1 (none: "
+     "it stays transparent)"},
+    {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
+     "", "bits a channel of the PNG (8)"},
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM, read_flag,
+     FIELD(overwrite), 0, 0, "",
+     "replace files that exist, of --output and --stats (they are kept)"},
+    LATER("depth", 0, "FILE", TOPIC_OUTPUT, "leave it out"),
+
+    {"mode", 'm', "over", TOPIC_MODE, RENDER, read_choice, FIELD(mode), 0, 0,
+     "mip|minip|mean|sum|iso", "how samples of a ray make a pixel (over)"},
+    LATER("iso", 0, "VALUE", TOPIC_MODE,
+          "a step of --opacity at the value looks alike"),
+
+    {"threshold", 0, "T", TOPIC_SPARSE, INPUT, read_real, FIELD(threshold), 0,
+     255, "", "a voxel with opacity greater than T of 255 is interesting; info "
+     "lists 0, 10 and 30 (0)"},
+    {"encoding", 0, "auto|crs|bitmap|rle", TOPIC_SPARSE, RENDER, read_choice,
+     FIELD(encoding), 0, 0, "",
+     "how the places of interesting voxels are kept (auto)"},
+    {"method", 0, "auto|original|footprint", TOPIC_SPARSE, RENDER, read_choice,
+     FIELD(method), 0, 0, "sheared",
+     "original splats every voxel, footprint the interesting ones (auto)"},
+
+    {"kernel", 0, "tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
+     FIELD(kernel), 0, 0, "", "the reconstruction kernel (bspline)"},
+    {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
+     2, 9, "", "its support in voxels, 2 to 9 (2 for tent and box, else 4)"},
+
+    {"preset", 0, "NAME", TOPIC_LOOK, INPUT, read_text, FIELD(preset), 0, 0, "",
+     "a transfer function by name (chosen from the histogram)"},
+    {"colormap", 'c', "NAME", TOPIC_LOOK, INPUT, read_text, FIELD(colormap), 0,
+     0, "", "colours along the range (grey, or the preset's)"},
+    {"opacity", 0, "V:O,V:O", TOPIC_LOOK, INPUT, read_points, FIELD(opacities),
+     0, 0, "", "opacities 0 to 1 at data values, linear between them"},
+    {"window", 'w', "W", TOPIC_LOOK, INPUT, read_real, FIELD(window), 1e-300,
+     1e300, "", "width of the range of data values, with --level"},
+    {"level", 0, "L", TOPIC_LOOK, INPUT, read_real, FIELD(level), 0, 0, "",
+     "middle of the range of data values, with --window"},
+    {"range", 0, "LO,HI|pLO,pHI|full", TOPIC_LOOK, INPUT, read_range,
+     FIELD(range), 0, 0, "",
+     "data values, percentiles of the finite voxels, or all that the look "
+     "spreads over (chosen from the histogram)"},
+    {"opacity-unit", 0, "voxel|mm", TOPIC_LOOK, RENDER, read_choice,
+     FIELD(opacity_unit), 0, 0, "",
+     "the length that an opacity is for: the smallest voxel spacing or a "
+     "millimetre (voxel)"},
+    {"shade", 0, "phong|none", TOPIC_LOOK, RENDER, read_choice, FIELD(shade), 0,
+     0, "", "shading of the voxels (phong)"},
+    {"light", 0, "AZ,EL", TOPIC_LOOK, RENDER, read_directions, FIELD(light), 0,
+     0, "", "degrees of the light to the camera's right and up (0,0)"},
+    {"ambient", 0, "A", TOPIC_LOOK, RENDER, read_real, FIELD(ambient), 0, 1, "",
+     "share of ambient light (0.2)"},
+    {"diffuse", 0, "D", TOPIC_LOOK, RENDER, read_real, FIELD(diffuse), 0, 1, "",
+     "share of diffuse light (0.7)"},
+    {"specular", 0, "S", TOPIC_LOOK, RENDER, read_real, FIELD(specular), 0, 1,
+     "", "share of specular light (0.2)"},
+    {"shininess", 0, "N", TOPIC_LOOK, RENDER, read_real, FIELD(shininess), 0,
+     1000, "", "exponent of the specular light (20)"},
+    LATER("tf", 0, "FILE", TOPIC_LOOK, "give --preset, --colormap and "
+          "--opacity"),
+    LATER("log", 0, NULL, TOPIC_LOOK, "give --range or --opacity over the low "
+          "values"),
+
+    LATER("quality", 0, "draft|normal|high", TOPIC_QUALITY,
+          "--kernel and --footprint set the quality"),
+
+    {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_text, FIELD(view), 0, 0, "",
+     "the side the camera is on (anterior when the file has a medical "
+     "orientation, else +z)"},
+    {"azimuth", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(azimuth),
+     0, 0, "", "then moves it to its right around the up axis (0)"},
+    {"elevation", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real,
+     FIELD(elevation), 0, 0, "", "then moves it up (0)"},
+    {"roll", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(roll), 0, 0,
+     "", "then turns it clockwise (0)"},
+    {"zoom", 0, "Z", TOPIC_CAMERA, RENDER, read_real, FIELD(zoom), 1e-6, 1e6,
+     "", "magnifies; at 1 the whole volume is in view (1)"},
+    LATER("perspective", 0, "FOV", TOPIC_CAMERA,
+          "leave it out for a parallel projection"),
+    LATER("position", 0, "X,Y,Z", TOPIC_CAMERA,
+          "give --view, --azimuth and --elevation"),
+    LATER("target", 0, "X,Y,Z", TOPIC_CAMERA,
+          "the camera looks at the middle of the volume"),
+    LATER("up", 0, "X,Y,Z", TOPIC_CAMERA, "give --view and --roll"),
+
+    {"no-labels", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(no_labels), 0,
+     0, "", "without orientation letters (there are none yet)"},
+    LATER("legend", 0, NULL, TOPIC_LABELS, "leave it out"),
+
+    {"dims", 0, "XxYxZ", TOPIC_DATA, INPUT | PHANTOM, read_dims, FIELD(dims), 0,
+     0, "", "voxels of raw data or of a phantom, x fastest"},
+    {"type", 0, "TYPE", TOPIC_DATA, INPUT, read_type, FIELD(type), 0, 0, "",
+     "of raw data: int8 to int64, uint8 to uint64, float32, float64"},
+    {"spacing", 0, "XxYxZ", TOPIC_DATA, INPUT, read_spacing, FIELD(spacing), 0,
+     0, "", "voxel size; replaces the file's (raw data: 1x1x1 mm)"},
+    {"endian", 0, "little|big", TOPIC_DATA, INPUT, read_choice, FIELD(endian),
+     0, 0, "", "byte order of raw data (little)"},
+    {"offset", 0, "BYTES", TOPIC_DATA, INPUT, read_count, FIELD(offset), 0, 0,
+     "", "bytes before the voxels of raw data (0)"},
+    {"time", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(time), 0, 9e15, "",
+     "time step of a file with several, from 0 (0)"},
+    LATER("dataset", 0, "PATH", TOPIC_DATA, "HDF5 is not read yet"),
+    LATER("channel", 0, "N", TOPIC_DATA, "give a file with one channel"),
+    LATER("series", 0, "UID|N", TOPIC_DATA, "DICOM is not read yet"),
+    LATER("crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA,
+          "give a smaller file, or --zoom"),
+    LATER("mask", 0, "FILE", TOPIC_DATA, "give a masked file"),
+    LATER("labels", 0, "LIST", TOPIC_DATA, "give a masked file"),
+
+    {"threads", 'j', "1", TOPIC_RUN, RENDER, read_threads, FIELD(threads), 1,
+     4096, "", "threads that render; more than one is not built yet (1)"},
+    {"deterministic", 0, NULL, TOPIC_RUN, RENDER, read_flag,
+     FIELD(deterministic), 0, 0, "",
+     "the same bits on every run and machine (always so with one thread)"},
+    {"isa", 0, "scalar", TOPIC_RUN, RENDER, read_choice, FIELD(isa), 0, 0,
+     "avx2|avx512|neon", "instruction set of the kernels (scalar)"},
+    {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
+     FIELD(progress), 0, 0, "",
+     "names each stage on stderr as it begins (auto: on a terminal)"},
+    {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
+     "write figures of the run as JSON; - is standard output; a file that "
+     "exists needs --overwrite"},
+    {"verbose", 'v', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), 1,
+     0, "", "tell seconds and bytes of every stage"},
+    {"quiet", 'q', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), -1,
+     0, "", "tell nothing but errors"},
+    LATER("memory", 0, "SIZE", TOPIC_RUN,
+          "limit the process with ulimit -v or a cgroup"),
+    LATER("config", 0, "FILE", TOPIC_RUN, "give the options themselves"),
+    LATER("save-config", 0, "FILE", TOPIC_RUN, "keep the command line"),
+
+    {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR, read_flag,
+     FIELD(json), 0, 0, "", "write one JSON object"},
+    {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
+     "moves what is random in a phantom (0)"},
+    {"tolerance", 0, "X", TOPIC_MORE, COMPARE, read_tolerance, FIELD(tolerance),
+     0, 1, "", "the largest difference that counts as equal, 0 to 1, or as "
+     "1/255 (0)"},
+    {"help", 'h', "TOPIC", TOPIC_MORE, EVERY, read_flag, FIELD(help), 0, 0, "",
+     "this help, or that of a topic or a verb"},
+    {"version", 0, NULL, TOPIC_MORE, EVERY, read_flag, FIELD(version), 0, 0, "",
+     "the version"},
+    LATER("frames", 0, "N", TOPIC_MORE, "render pictures one by one"),
+    LATER("resume", 0, NULL, TOPIC_MORE, "render pictures one by one"),
+    {.name = NULL},
+};
+
+const verb_row verb_table[] = {
+    {"render", VERB_RENDER, 1, "INPUT -o OUT", "one picture; the default verb"},
+    {"info", VERB_INFO, 1, "INPUT [--json]",
+     "geometry, type, range, histogram, sparse ratio"},
+    {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},
+    {"compare", VERB_COMPARE, 2, "A B [--tolerance X]",
+     "largest difference, PSNR and SSIM of two pictures"},
+    {"bench", VERB_BENCH, -1, "table1|table2|table3",
+     "the paper's tables, measured"},
+    {"doctor", VERB_DOCTOR, 0, "[--json]", "what this build and machine can do"},
+    {"help", VERB_HELP, -1, "[TOPIC|VERB]", "help on a topic or a verb"},
+    {"turntable", 0, 0, "", "render pictures one by one with --azimuth"},
+    {"movie", 0, 0, "", "render time steps one by one with --time"},
+    {"convert", 0, 0, "", "phantom writes volumes, other tools convert them"},
+    {"tf", 0, 0, "", "snowglass help look lists presets and colour maps"},
+    {"serve", 0, 0, "", "render writes pictures"},
+    {.name = NULL},
+};
+
+const topic_row topic_table[] = {
+    {"output", "the picture file: size, background, bits"},
+    {"mode", "how samples make a pixel"},
+    {"sparse", "interesting voxels, encodings, methods"},
+    {"kernel", "the reconstruction kernel and its footprint"},
+    {"look", "transfer function, colours, shading"},
+    {"quality", "one word for speed or beauty"},
+    {"camera", "where the picture is taken from"},
+    {"labels", "letters and bars in the picture"},
+    {"data", "raw files, time steps"},
+    {"run", "threads, figures, talk"},
+    {"more", "options of single verbs"},
+    {NULL, NULL},
+};
+/* clang-format on */

@@ -1,0 +1,209 @@
+/* options.c - the parser: getopt_long over the one table.
+ *
+ * Options may follow operands, "--" ends them, a repeated one counts as told
+ * last.  What is unknown, of another verb, or not built yet is refused. */
+#include "options.h"
+#include "report.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define ROWS_MAX 96
+
+/* Beyond all characters, so that long options do not collide with letters. */
+#define FIRST_LONG 256
+
+void options_init(options *out) {
+    snow_settings settings;
+    snow_settings_init(&settings);
+    *out = (options){
+        .size = {512, 512},
+        .threshold = -1,
+        .encoding = snow_encoding_name(settings.encoding),
+        .method = snow_method_name(settings.method),
+        .kernel = snow_kernel_name(settings.kernel),
+        .mode = "over",
+        .window = NAN,
+        .level = NAN,
+        .opacity_unit = "voxel",
+        .shade = "phong",
+        .ambient = settings.ambient,
+        .diffuse = settings.diffuse,
+        .specular = settings.specular,
+        .shininess = settings.shininess,
+        .zoom = 1,
+        .endian = "little",
+        .progress = "auto",
+        .isa = snow_isa_used(),
+        .threads = 1,
+    };
+}
+
+const verb_row *verb_named(const char *name) {
+    for (const verb_row *row = verb_table; row->name; row++) {
+        if (strcmp(row->name, name) == 0)
+            return row;
+    }
+    return NULL;
+}
+
+const verb_row *verb_of(unsigned bit) {
+    const verb_row *row = verb_table;
+    while (row->name && row->bit != bit)
+        row++;
+    return row;
+}
+
+/* The table in getopt's form. */
+static void fill_getopt(struct option longs[ROWS_MAX + 1],
+                        char letters[2 * ROWS_MAX + 2]) {
+    size_t used = 0;
+    int count = 0;
+    letters[used++] = ':'; /* tells a missing argument from an unknown name */
+    for (const option_row *row = option_table; row->name && count < ROWS_MAX;
+         row++, count++) {
+        bool optional = row->argument &&
+                        (row->read == NULL || strcmp(row->name, "help") == 0);
+        int argument = optional        ? optional_argument
+                       : row->argument ? required_argument
+                                       : no_argument;
+        longs[count] =
+            (struct option){row->name, argument, NULL, FIRST_LONG + count};
+        if (row->letter) {
+            letters[used++] = row->letter;
+            if (argument == required_argument)
+                letters[used++] = ':';
+        }
+    }
+    longs[count] = (struct option){NULL, 0, NULL, 0};
+    letters[used] = '\0';
+}
+
+static const option_row *row_of(int code) {
+    if (code >= FIRST_LONG)
+        return &option_table[code - FIRST_LONG];
+    const option_row *row = option_table;
+    while (row->name && row->letter != code)
+        row++;
+    return row->name ? row : NULL;
+}
+
+/* The option whose name is nearest to the given one, when it is near. */
+static const char *nearest_option(const char *name, unsigned verb) {
+    const char *best = NULL;
+    int least = (int)strlen(name) / 3 + 2;
+    for (const option_row *row = option_table; row->name; row++) {
+        int distance = value_distance(name, row->name);
+        if ((row->verbs & verb) && row->read && distance < least) {
+            least = distance;
+            best = row->name;
+        }
+    }
+    return best;
+}
+
+static bool is_ambiguous(const char *name, size_t length) {
+    int hits = 0;
+    for (const option_row *row = option_table; row->name; row++)
+        hits += strncmp(row->name, name, length) == 0;
+    return hits > 1;
+}
+
+/* getopt met a word that it does not know: `word` as it was written, `code`
+ * the row of an option that was given an argument which it does not take. */
+static int refuse_unknown(const verb_row *verb, const char *word, int code) {
+    if (code >= FIRST_LONG)
+        return fail_usage("%s: --%s takes no value; leave out what follows =",
+                          word, row_of(code)->name);
+    if (code)
+        return fail_usage("-%c: unknown option; see snowglass help %s", code,
+                          verb->name);
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    if (is_ambiguous(name, strlen(name)))
+        return fail_usage("--%s: begins several options; write it in full, "
+                          "see snowglass help %s",
+                          name, verb->name);
+    const char *near = nearest_option(name, verb->bit);
+    if (near)
+        return fail_usage("--%s: unknown option; did you mean --%s?", name,
+                          near);
+    return fail_usage("--%s: unknown option; see snowglass help %s", name,
+                      verb->name);
+}
+
+/* An option that exists, but for other verbs. */
+static int refuse_foreign(const option_row *row, const verb_row *verb) {
+    for (const verb_row *other = verb_table; other->name; other++) {
+        if (other->bit & row->verbs)
+            return fail_usage("--%s: no option of %s; it belongs to %s",
+                              row->name, verb->name, other->name);
+    }
+    return fail_usage("--%s: no option of %s", row->name, verb->name);
+}
+
+static int take(options *out, const option_row *row, const verb_row *verb,
+                const char *text) {
+    if (!row->read)
+        return fail_usage("--%s is not built yet; %s", row->name, row->text);
+    if (!(row->verbs & verb->bit))
+        return refuse_foreign(row, verb);
+    char wrong[WRONG_BYTES];
+    if (row->read(row, text ? text : "", (char *)out + row->field, wrong))
+        return GO_ON;
+    return fail_usage("--%s: '%s' %s", row->name, text, wrong);
+}
+
+/* --help ends the reading; the word after it is its topic. */
+static int take_help(options *out, int argc, char **argv, const char *text) {
+    bool follows = !text && optind < argc && argv[optind][0] != '-';
+    out->help = true;
+    out->help_word = follows ? argv[optind] : text;
+    return GO_ON;
+}
+
+static int refuse_count(const options *out, const verb_row *verb) {
+    if (out->operand_count < verb->operands)
+        return fail_usage("%s: something is missing; give snowglass %s %s",
+                          verb->name, verb->name, verb->usage);
+    const char *first = out->operands[0];
+    for (const verb_row *other = verb_table; other->name; other++) {
+        if (verb->bit == VERB_RENDER && access(first, F_OK) != 0 &&
+            value_distance(first, other->name) < 3)
+            return fail_usage("%s: no verb; did you mean %s?", first,
+                              other->name);
+    }
+    return fail_usage("%s: one word too many for %s; give snowglass %s %s",
+                      out->operands[verb->operands], verb->name, verb->name,
+                      verb->usage);
+}
+
+int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
+    struct option longs[ROWS_MAX + 1];
+    char letters[2 * ROWS_MAX + 2];
+    fill_getopt(longs, letters);
+    opterr = 0;
+    optind = 1;
+    int code;
+    while ((code = getopt_long(argc, argv, letters, longs, NULL)) != -1) {
+        if (code == '?')
+            return refuse_unknown(verb, argv[optind - 1], optopt);
+        const option_row *row = row_of(code == ':' ? optopt : code);
+        if (code == ':')
+            return fail_usage("--%s: its value is missing; give --%s %s",
+                              row->name, row->name, row->argument);
+        if (strcmp(row->name, "help") == 0)
+            return take_help(out, argc, argv, optarg);
+        int done = take(out, row, verb, optarg);
+        if (done != GO_ON || out->version)
+            return done;
+    }
+    out->operands = argv + optind;
+    out->operand_count = argc - optind;
+    if (verb->operands >= 0 && out->operand_count != verb->operands)
+        return refuse_count(out, verb);
+    return GO_ON;
+}

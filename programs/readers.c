@@ -1,0 +1,220 @@
+/* readers.c - from an option's argument to its field, or to the end of a
+ * sentence that says what would have been right. */
+#include "readers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define IMAGE_SIDE_MAX 32768
+
+static bool refuse(char wrong[WRONG_BYTES], const char *text) {
+    snprintf(wrong, WRONG_BYTES, "%s", text);
+    return false;
+}
+
+bool read_text(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!*text)
+        return refuse(wrong, "is empty; give a value");
+    *(const char **)field = text;
+    return true;
+}
+
+bool read_flag(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    (void)row;
+    (void)text;
+    (void)wrong;
+    *(bool *)field = true;
+    return true;
+}
+
+bool read_constant(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    (void)text;
+    (void)wrong;
+    *(int *)field = (int)row->low;
+    return true;
+}
+
+/* "a|b|c" as people write it: "a, b, c". */
+static void spell_choices(const char *choices, char *out, size_t size) {
+    size_t used = 0;
+    for (; *choices && used + 3 < size; choices++) {
+        out[used++] = *choices == '|' ? ',' : *choices;
+        if (*choices == '|')
+            out[used++] = ' ';
+    }
+    out[used] = '\0';
+}
+
+bool read_choice(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    if (value_is_choice(row->argument, text)) {
+        *(const char **)field = text;
+        return true;
+    }
+    char choices[128];
+    spell_choices(row->argument, choices, sizeof choices);
+    const char *fault =
+        value_is_choice(row->later, text) ? "is not built yet" : "is unknown";
+    snprintf(wrong, WRONG_BYTES, "%s; choose from: %s", fault, choices);
+    return false;
+}
+
+static bool is_within(const option_row *row, double value) {
+    bool any = row->low == 0 && row->high == 0;
+    return any || (value >= row->low && value <= row->high);
+}
+
+static bool refuse_number(const option_row *row, const char *kind,
+                          char wrong[WRONG_BYTES]) {
+    if (row->low == 0 && row->high == 0)
+        snprintf(wrong, WRONG_BYTES, "is not a finite number; give %s", kind);
+    else
+        snprintf(wrong, WRONG_BYTES,
+                 "is out of range; give %s from %.10g to "
+                 "%.10g",
+                 kind, row->low, row->high);
+    return false;
+}
+
+bool read_real(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    double value;
+    if (!value_real(text, &value) || !is_within(row, value))
+        return refuse_number(row, "a decimal number", wrong);
+    *(double *)field = value;
+    return true;
+}
+
+bool read_tolerance(const option_row *row, const char *text, void *field,
+                    char wrong[WRONG_BYTES]) {
+    double value;
+    if (!value_quotient(text, &value) || !is_within(row, value))
+        return refuse(wrong, "is not a difference; give a number from 0 to 1 "
+                             "such as 0.004 or 1/255");
+    *(double *)field = value;
+    return true;
+}
+
+bool read_integer(const option_row *row, const char *text, void *field,
+                  char wrong[WRONG_BYTES]) {
+    int64_t value;
+    if (!value_integer(text, &value) || !is_within(row, (double)value))
+        return refuse_number(row, "a whole number", wrong);
+    *(int64_t *)field = value;
+    return true;
+}
+
+bool read_count(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_count(text, (uint64_t *)field))
+        return refuse(wrong, "is not a whole number from 0; give digits only");
+    return true;
+}
+
+bool read_threads(const option_row *row, const char *text, void *field,
+                  char wrong[WRONG_BYTES]) {
+    if (!read_integer(row, text, field, wrong))
+        return false;
+    if (*(int64_t *)field != 1)
+        return refuse(wrong, "is not built yet; one thread works: give 1");
+    return true;
+}
+
+bool read_size(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    (void)row;
+    int64_t size[2];
+    if (!value_integers(text, 'x', 2, size) || size[0] < 1 || size[1] < 1 ||
+        size[0] > IMAGE_SIDE_MAX || size[1] > IMAGE_SIDE_MAX)
+        return refuse(wrong, "is not a picture size; give WIDTHxHEIGHT of 1 to "
+                             "32768 pixels each, such as 512x512");
+    memcpy(field, size, sizeof size);
+    return true;
+}
+
+bool read_dims(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    (void)row;
+    int64_t dims[3];
+    if (!value_integers(text, 'x', 3, dims) || dims[0] < 1 || dims[1] < 1 ||
+        dims[2] < 1)
+        return refuse(wrong, "are not dimensions; give voxels along x, y and "
+                             "z, at least 1 each, such as 256x256x110");
+    memcpy(field, dims, sizeof dims);
+    return true;
+}
+
+bool read_spacing(const option_row *row, const char *text, void *field,
+                  char wrong[WRONG_BYTES]) {
+    (void)row;
+    double spacing[3];
+    if (!value_reals(text, 'x', 3, spacing) || spacing[0] <= 0 ||
+        spacing[1] <= 0 || spacing[2] <= 0)
+        return refuse(wrong, "is not a spacing; give voxel sizes above 0 along "
+                             "x, y and z, such as 0.5x0.5x2");
+    memcpy(field, spacing, sizeof spacing);
+    return true;
+}
+
+bool read_type(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    (void)row;
+    snow_type type = snow_type_named(text);
+    if (type == SNOW_TYPE_NONE)
+        return refuse(wrong, "is no type of voxels; choose from:"
+#define TYPE_NAME(name, type, text) " " text
+                      SNOW_TYPE_MAP(TYPE_NAME));
+#undef TYPE_NAME
+    *(snow_type *)field = type;
+    return true;
+}
+
+bool read_color(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (value_color(text, field))
+        return true;
+    char names[128];
+    value_color_names(names, sizeof names);
+    snprintf(wrong, WRONG_BYTES,
+             "is no colour; give none, #rgb, #rrggbb, "
+             "red,green,blue of 0 to 1, or a name: %s",
+             names);
+    return false;
+}
+
+bool read_range(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_range(text, field))
+        return refuse(wrong, "is no range; give LOW,HIGH in data values, "
+                             "pLOW,pHIGH in percent such as p1,p99, or full");
+    return true;
+}
+
+bool read_points(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_points(text, field))
+        return refuse(wrong, "are no control points; give VALUE:OPACITY pairs, "
+                             "values rising, opacities 0 to 1, at most 256, "
+                             "such as 80:0,200:0.5");
+    return true;
+}
+
+bool read_directions(const option_row *row, const char *text, void *field,
+                     char wrong[WRONG_BYTES]) {
+    (void)row;
+    double pair[2];
+    if (!value_reals(text, ',', 2, pair))
+        return refuse(wrong, "is no direction; give AZIMUTH,ELEVATION in "
+                             "degrees, such as 30,45");
+    memcpy(field, pair, sizeof pair);
+    return true;
+}

@@ -1,0 +1,120 @@
+/* render_stats.c - seconds, bytes and the checksum of one picture. */
+#include "render_stats.h"
+#include "report.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+static uint64_t volume_bytes(const snow_volume_info *info) {
+    return (uint64_t)(info->dims[0] * info->dims[1] * info->dims[2]) *
+           snow_type_size(info->type);
+}
+
+/* "none" where no encoding was used. */
+static const char *encoding_text(const snow_stats *stats) {
+    return stats->encoding == SNOW_ENCODING_AUTO
+               ? "none"
+               : snow_encoding_name(stats->encoding);
+}
+
+static json_t *volume_json(const snow_volume_info *info) {
+    json_t *object = json_object();
+    json_object_set_new(object, "dims", json_sizes(info->dims, 3));
+    json_object_set_new(object, "type",
+                        json_string(snow_type_name(info->type)));
+    json_object_set_new(object, "spacing", json_vector(info->spacing, 3));
+    return object;
+}
+
+static void set_bytes(json_t *object, const char *key, uint64_t bytes) {
+    json_object_set_new(object, key, json_integer((json_int_t)bytes));
+}
+
+static json_t *bytes_json(const render_report *report) {
+    const snow_stats *stats = snow_frame_stats(report->frame);
+    json_t *object = json_object();
+    set_bytes(object, "volume",
+              volume_bytes(snow_volume_describe(report->volume)));
+    set_bytes(object, "ea", stats->ea_bytes);
+    set_bytes(object, "ia", stats->ia_bytes);
+    set_bytes(object, "pa", stats->pa_bytes);
+    set_bytes(object, "peak", snow_context_peak_bytes(report->context));
+    return object;
+}
+
+/* warp and combine are stages of other methods and of several processors;
+ * their time is 0 here. */
+static json_t *seconds_json(const render_report *report) {
+    const snow_stats *stats = snow_frame_stats(report->frame);
+    const struct {
+        const char *key;
+        double seconds;
+    } rows[] = {{"read", report->times->read},
+                {"classify", stats->seconds_classify},
+                {"shade", stats->seconds_shade},
+                {"encode", stats->seconds_encode},
+                {"splat", stats->seconds_splat},
+                {"composite", stats->seconds_composite},
+                {"warp", 0},
+                {"combine", 0},
+                {"write", report->times->write},
+                {"frame", stats->seconds_frame},
+                {"total", report->times->total}};
+    json_t *object = json_object();
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        json_object_set_new(object, rows[i].key, json_number(rows[i].seconds));
+    return object;
+}
+
+static json_t *image_json(const snow_image *image) {
+    char checksum[17];
+    snprintf(checksum, sizeof checksum, "%016" PRIx64,
+             snow_image_checksum(image));
+    json_t *object = json_object();
+    json_object_set_new(object, "width", json_integer(snow_image_width(image)));
+    json_object_set_new(object, "height",
+                        json_integer(snow_image_height(image)));
+    json_object_set_new(object, "checksum", json_string(checksum));
+    return object;
+}
+
+json_t *stats_json(const render_report *report) {
+    const snow_stats *stats = snow_frame_stats(report->frame);
+    const snow_settings *settings = report->settings;
+    json_t *o = json_object();
+    json_object_set_new(o, "version", json_string(snow_version()));
+    json_object_set_new(o, "volume",
+                        volume_json(snow_volume_describe(report->volume)));
+    json_object_set_new(o, "threshold", json_number(settings->threshold));
+    json_object_set_new(o, "sparse_ratio", json_number(stats->sparse_ratio));
+    json_object_set_new(o, "encoding", json_string(encoding_text(stats)));
+    json_object_set_new(o, "method",
+                        json_string(snow_method_name(stats->method)));
+    json_object_set_new(o, "kernel",
+                        json_string(snow_kernel_name(settings->kernel)));
+    json_object_set_new(o, "footprint", json_integer(stats->footprint));
+    json_object_set_new(o, "threads", json_integer(1));
+    json_object_set_new(o, "ranks", json_integer(1));
+    json_object_set_new(o, "isa", json_string(snow_isa_used()));
+    json_object_set_new(o, "bytes", bytes_json(report));
+    json_object_set_new(o, "seconds", seconds_json(report));
+    json_object_set_new(o, "image", image_json(report->image));
+    return o;
+}
+
+void tell_stats(const render_report *report) {
+    const snow_stats *stats = snow_frame_stats(report->frame);
+    const render_times *times = report->times;
+    say("seconds: read %.3f, classify %.3f, shade %.3f, encode %.3f, splat "
+        "%.3f, composite %.3f, frame %.3f, write %.3f, total %.3f",
+        times->read, stats->seconds_classify, stats->seconds_shade,
+        stats->seconds_encode, stats->seconds_splat, stats->seconds_composite,
+        stats->seconds_frame, times->write, times->total);
+    say("bytes: volume %" PRIu64 ", EA %" PRIu64 ", IA %" PRIu64 ", PA %" PRIu64
+        ", peak %" PRIu64,
+        volume_bytes(snow_volume_describe(report->volume)), stats->ea_bytes,
+        stats->ia_bytes, stats->pa_bytes,
+        snow_context_peak_bytes(report->context));
+    say("interesting voxels: %" PRId64 " of %" PRId64 ", sparse ratio %.1f %%",
+        stats->interesting, stats->voxels, 100 * stats->sparse_ratio);
+}

@@ -1,0 +1,60 @@
+/* values.h - the values that options take, read strictly from text.
+ *
+ * Numbers are decimal, finite and end where the text ends; nothing is rounded
+ * to fit.  Every reader leaves its result untouched when it answers false. */
+#ifndef VALUES_H
+#define VALUES_H
+
+#include <snowglass/snowglass.h>
+
+/* Room for the end of an error message, see options.h. */
+#define WRONG_BYTES 256
+
+#define POINTS_MAX 256
+
+/* A list of control points of the opacity. */
+typedef struct point_list {
+    snow_opacity_point points[POINTS_MAX];
+    size_t count;
+} point_list;
+
+typedef struct range_value {
+    snow_range_kind kind;
+    double low, high;
+} range_value;
+
+typedef struct color_value {
+    bool given; /* false: transparent */
+    double rgb[3];
+} color_value;
+
+bool value_real(const char *text, double *out);
+bool value_integer(const char *text, int64_t *out);
+bool value_count(const char *text, uint64_t *out);
+
+/* A number, or a quotient of two such as 1/255. */
+bool value_quotient(const char *text, double *out);
+
+/* `count` numbers between single characters `separator`: "256x256x110". */
+bool value_reals(const char *text, char separator, int count, double *out);
+bool value_integers(const char *text, char separator, int count, int64_t *out);
+
+/* "none", a name, #rgb, #rrggbb, or red,green,blue of 0 to 1. */
+bool value_color(const char *text, color_value *out);
+
+/* The names of colours, separated by blanks. */
+void value_color_names(char *out, size_t size);
+
+/* "lo,hi", "p1,p99" or "full". */
+bool value_range(const char *text, range_value *out);
+
+/* "v:o,v:o,...": values that do not fall, opacities 0 to 1. */
+bool value_points(const char *text, point_list *out);
+
+/* True when `text` is one of the words of "a|b|c"; "" is none. */
+bool value_is_choice(const char *choices, const char *text);
+
+/* How many single-character edits make one word the other: for suggestions. */
+int value_distance(const char *a, const char *b);
+
+#endif
