@@ -56,11 +56,12 @@ int reference_slice_axis(const reference_scene *scene,
 double reference_slice_step(const reference_scene *scene,
                             const reference_camera *camera, int axis);
 
-/* The kernel b(t) before normalisation, its support in voxels, and the factor
- * by which it is widened where a pixel is `rho` voxels wide (point 7).  A box
- * is [-K/2, K/2) and Gauss' cut the same; a distance within 1e-5 of an edge
- * counts as on it, so that rounding does not decide. */
-double reference_kernel(snow_kernel kernel, int support, double t);
+/* The kernel b(t / w) before normalisation, widened by `w`; the support in
+ * voxels that the settings mean; and the factor w for pixels that are `rho`
+ * voxels wide (point 7).  A box is [-wK/2, wK/2) and Gauss' cut the same; a
+ * distance within 1e-5 voxels of an edge counts as on it, so that rounding does
+ * not decide. */
+double reference_kernel(snow_kernel kernel, int support, double w, double t);
 int reference_support(const snow_settings *settings);
 double reference_widening(snow_kernel kernel, int support, double rho);
 

@@ -26,11 +26,11 @@ static bool inside(double half, double t) {
     return t >= -half - EDGE && t < half - EDGE;
 }
 
-double reference_kernel(snow_kernel kernel, int support, double t) {
-    double half = support / 2.0, sigma = support / 8.0;
+double reference_kernel(snow_kernel kernel, int support, double w, double t) {
+    double half = w * support / 2, sigma = w * support / 8;
     switch (kernel) {
     case SNOW_KERNEL_TENT:
-        return fmax(0, 1 - 2 * fabs(t) / support);
+        return fmax(0, 1 - fabs(t) / half);
     case SNOW_KERNEL_GAUSS:
         return inside(half, t) ? exp(-t * t / (2 * sigma * sigma)) : 0;
     case SNOW_KERNEL_BOX:
@@ -38,7 +38,7 @@ double reference_kernel(snow_kernel kernel, int support, double t) {
     case SNOW_KERNEL_BSPLINE:
         break;
     }
-    return bspline(support, t);
+    return bspline(support, t / w);
 }
 
 int reference_support(const snow_settings *settings) {
@@ -81,7 +81,7 @@ void reference_weights(snow_kernel kernel, int support, double w, double u,
         return;
     double sum = 0;
     for (int64_t i = lowest; i <= highest; i++) {
-        double b = reference_kernel(kernel, support, (u - (double)i) / w);
+        double b = reference_kernel(kernel, support, w, u - (double)i);
         sum += b;
         if (i >= 0 && i < count)
             weights[i] = b;

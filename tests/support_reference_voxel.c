@@ -70,13 +70,15 @@ void reference_classify(const reference_scene *scene, double value,
 }
 
 /* Half the difference of both neighbours, or the difference to the one that is
- * there. */
+ * there.  An infinite value has no slope to it: it counts as NaN does. */
 static double difference(double before, double here, double after) {
-    if (!isnan(before) && !isnan(after))
+    if (isfinite(before) && isfinite(after))
         return (after - before) / 2;
-    if (!isnan(after))
+    if (!isfinite(here))
+        return 0;
+    if (isfinite(after))
         return after - here;
-    return isnan(before) ? 0 : here - before;
+    return isfinite(before) ? here - before : 0;
 }
 
 static void gradient_at(const reference_scene *scene, int64_t i, int64_t j,
@@ -123,7 +125,7 @@ void reference_shade(const reference_scene *scene,
         n[c] = inverse[0][c] * gradient[0] + inverse[1][c] * gradient[1] +
                inverse[2][c] * gradient[2];
     double length = normalise(n);
-    bool flat = !isfinite(length) || length == 0;
+    bool flat = !(length > 0);
     double turned = dot(n, camera->back) < 0 ? -1 : 1;
     light_of(s, camera, light);
     for (int c = 0; c < 3; c++)

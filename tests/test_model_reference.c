@@ -14,21 +14,23 @@ static void kernels_have_the_shapes_of_their_names(void **state) {
     (void)state;
     /* Values of the linear, quadratic and cubic B-spline from their closed
      * forms. */
-    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 2, 0.25), 0.75, 1e-12);
-    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 3, 0.5), 0.5, 1e-12);
-    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 3, 0), 0.75, 1e-12);
-    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 4, 0), 2.0 / 3, 1e-12);
-    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 4, -1), 1.0 / 6, 1e-12);
-    assert_near(reference_kernel(SNOW_KERNEL_TENT, 4, -1), 0.5, 1e-12);
-    assert_near(reference_kernel(SNOW_KERNEL_GAUSS, 4, 0.5), exp(-0.5), 1e-12);
-    assert_true(reference_kernel(SNOW_KERNEL_BOX, 3, -1.5) == 1);
-    assert_true(reference_kernel(SNOW_KERNEL_BOX, 3, 1.5) == 0);
+    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 2, 1, 0.25), 0.75, 1e-12);
+    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 3, 1, 0.5), 0.5, 1e-12);
+    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 3, 1, 0), 0.75, 1e-12);
+    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 4, 1, 0), 2.0 / 3, 1e-12);
+    assert_near(reference_kernel(SNOW_KERNEL_BSPLINE, 4, 1, -1), 1.0 / 6,
+                1e-12);
+    assert_near(reference_kernel(SNOW_KERNEL_TENT, 4, 1, -1), 0.5, 1e-12);
+    assert_near(reference_kernel(SNOW_KERNEL_GAUSS, 4, 1, 0.5), exp(-0.5),
+                1e-12);
+    assert_true(reference_kernel(SNOW_KERNEL_BOX, 3, 1, -1.5) == 1);
+    assert_true(reference_kernel(SNOW_KERNEL_BOX, 3, 1, 1.5) == 0);
 }
 
 static double moment(snow_kernel kernel, int support, int power) {
     double sum = 0, step = 1 / 512.0;
     for (double t = -5 + step / 2; t < 5; t += step)
-        sum += step * pow(t, power) * reference_kernel(kernel, support, t);
+        sum += step * pow(t, power) * reference_kernel(kernel, support, 1, t);
     return sum;
 }
 
