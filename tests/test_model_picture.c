@@ -1,0 +1,311 @@
+/* tests/test_model_picture.c - pictures of the library equal the reference's.
+ *
+ * Small volumes through every kernel, footprint, view, zoom, size, scalar
+ * type, matrix, shading and threshold.  Where all combinations would be too
+ * many, one factor runs through all its values while the others are drawn. */
+#include "support_model.h"
+
+#include <math.h>
+
+/* The largest difference that a float path may have. */
+#define BOUND 1e-3
+
+typedef struct stand {
+    double back[3], up[3];
+    double azimuth, elevation, roll;
+} stand;
+
+#define THIRD 0.57735026918962576
+#define SIXTH 0.40824829046386302
+
+static const stand stands[] = {
+    {{0, 0, 1}, {0, 1, 0}, 0, 0, 0},
+    {{0, 0, -1}, {0, 1, 0}, 0, 0, 0},
+    {{0, 1, 0}, {0, 0, 1}, 0, 0, 0},
+    {{0, -1, 0}, {0, 0, 1}, 0, 0, 0},
+    {{1, 0, 0}, {0, 0, 1}, 0, 0, 0},
+    {{-1, 0, 0}, {0, 0, 1}, 0, 0, 0},
+    {{0, 0, 1}, {0, 1, 0}, 0, 0, 90},
+    {{0, 1, 0}, {0, 0, 1}, 0, 0, 180},
+    {{-1, 0, 0}, {0, 0, 1}, 0, 0, -90},
+    {{0, 0, 1}, {0, 1, 0}, 30, 20, 0},
+    {{0, 0, 1}, {0, 1, 0}, 45, 0, 0},
+    {{0, 0, 1}, {0, 1, 0}, 10, 80, 0},
+    {{0, 1, 0}, {0, 0, 1}, -120, -35, 25},
+    {{1, 0, 0}, {0, 0, 1}, 90, 45, 0},
+    {{THIRD, THIRD, THIRD}, {-SIXTH, -SIXTH, 2 * SIXTH}, 0, 0, 0},
+};
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static const snow_type types[] = {
+    SNOW_INT8,   SNOW_UINT8, SNOW_INT16,  SNOW_UINT16,  SNOW_INT32,
+    SNOW_UINT32, SNOW_INT64, SNOW_UINT64, SNOW_FLOAT32, SNOW_FLOAT64,
+};
+static const snow_kernel kernels[] = {SNOW_KERNEL_BSPLINE, SNOW_KERNEL_TENT,
+                                      SNOW_KERNEL_GAUSS, SNOW_KERNEL_BOX};
+static const double zooms[] = {0.3, 1, 4};
+static const double thresholds[] = {0, 10, 30};
+static const int64_t dims[3] = {13, 10, 15};
+
+static void stand_at(reference_scene *scene, size_t n, double zoom) {
+    const stand *s = &stands[n % COUNT(stands)];
+    model_look(scene, s->back, s->up);
+    model_turn(scene, s->azimuth, s->elevation, s->roll, zoom);
+}
+
+static size_t draw(uint64_t *state, size_t count) {
+    return (size_t)(support_random(state) >> 33) % count;
+}
+
+/* A scene that is drawn but for what the caller sets afterwards. */
+static reference_scene drawn_scene(uint64_t *state) {
+    reference_scene scene =
+        model_scene(dims, types[draw(state, COUNT(types))], draw(state, 2) == 0,
+                    (model_matrix)draw(state, MODEL_MATRICES), draw(state, 99));
+    scene.view.width = 24;
+    scene.view.height = 18;
+    stand_at(&scene, draw(state, COUNT(stands)),
+             zooms[draw(state, COUNT(zooms))]);
+    scene.settings.shade =
+        draw(state, 2) == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+    scene.settings.threshold = thresholds[draw(state, COUNT(thresholds))];
+    if (scene.settings.threshold == 0 && draw(state, 3) == 0)
+        scene.settings.method = SNOW_METHOD_ORIGINAL;
+    else if (draw(state, 3) == 0)
+        scene.settings.method = SNOW_METHOD_TESTED;
+    scene.settings.encoding = (snow_encoding)draw(state, 4);
+    return scene;
+}
+
+static void say(double largest, int pictures) {
+    print_message("             %d pictures differ by up to %.2g\n", pictures,
+                  largest);
+}
+
+static void every_kernel_and_footprint_from_every_side(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    uint64_t random = 1;
+    double largest = 0;
+    int pictures = 0;
+    for (size_t k = 0; k < COUNT(kernels); k++)
+        for (int footprint = 2; footprint <= 9; footprint++)
+            for (size_t n = 0; n < COUNT(stands) * COUNT(zooms); n++) {
+                reference_scene scene = drawn_scene(&random);
+                scene.settings.kernel = kernels[k];
+                scene.settings.footprint = footprint;
+                stand_at(&scene, n, zooms[n / COUNT(stands)]);
+                largest = fmax(largest, model_check(&stage, &scene, BOUND));
+                pictures++;
+                model_free(&scene);
+            }
+    say(largest, pictures);
+    model_close(&stage);
+}
+
+static void every_type_matrix_threshold_and_shading(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    uint64_t random = 2;
+    double largest = 0;
+    size_t n = 0;
+    for (; n < COUNT(types) * MODEL_MATRICES * 12; n++) {
+        reference_scene drawn = drawn_scene(&random);
+        size_t rest = n / COUNT(types) / MODEL_MATRICES;
+        reference_scene scene =
+            model_scene(dims, types[n % COUNT(types)], rest % 2 == 0,
+                        (model_matrix)(n / COUNT(types) % MODEL_MATRICES), n);
+        scene.view = drawn.view;
+        scene.settings.shade =
+            rest / 2 % 2 == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+        scene.settings.threshold = thresholds[rest / 4];
+        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        model_free(&scene);
+        model_free(&drawn);
+    }
+    say(largest, (int)n);
+    model_close(&stage);
+}
+
+static void every_size_of_picture(void **state) {
+    (void)state;
+    static const int sizes[][2] = {{1, 1},  {7, 5}, {64, 48}, {48, 64}, {1, 30},
+                                   {30, 1}, {2, 2}, {17, 33}, {100, 3}, {8, 8}};
+    model_stage stage = model_open();
+    uint64_t random = 3;
+    double largest = 0;
+    int pictures = 0;
+    for (size_t s = 0; s < COUNT(sizes); s++)
+        for (size_t n = 0; n < COUNT(stands); n++) {
+            reference_scene scene = drawn_scene(&random);
+            stand_at(&scene, n, zooms[draw(&random, COUNT(zooms))]);
+            scene.view.width = sizes[s][0];
+            scene.view.height = sizes[s][1];
+            scene.settings.kernel = kernels[draw(&random, COUNT(kernels))];
+            largest = fmax(largest, model_check(&stage, &scene, BOUND));
+            pictures++;
+            model_free(&scene);
+        }
+    say(largest, pictures);
+    model_close(&stage);
+}
+
+static void volumes_thin_along_some_axes(void **state) {
+    (void)state;
+    static const int64_t thin[][3] = {
+        {1, 1, 1}, {9, 1, 1}, {1, 9, 1},   {1, 1, 9},   {7, 5, 1},  {7, 1, 5},
+        {1, 7, 5}, {2, 2, 2}, {300, 2, 3}, {3, 270, 2}, {2, 3, 260}};
+    model_stage stage = model_open();
+    uint64_t random = 4;
+    double largest = 0;
+    int pictures = 0;
+    for (size_t t = 0; t < COUNT(thin); t++)
+        for (size_t n = 0; n < COUNT(stands); n++) {
+            model_matrix matrix = (model_matrix)draw(&random, MODEL_MATRICES);
+            reference_scene scene =
+                model_scene(thin[t], types[draw(&random, COUNT(types))],
+                            draw(&random, 2) == 0, matrix, n);
+            const snow_opacity_point opacities[] = {{0, 0.01}, {100, 0.9}};
+            scene.opacities = opacities;
+            scene.opacity_count = 2;
+            scene.view.width = 24;
+            scene.view.height = 18;
+            stand_at(&scene, n, zooms[draw(&random, COUNT(zooms))]);
+            scene.settings.kernel = kernels[draw(&random, COUNT(kernels))];
+            largest = fmax(largest, model_check(&stage, &scene, BOUND));
+            pictures++;
+            free((void *)(uintptr_t)scene.voxels);
+        }
+    say(largest, pictures);
+    model_close(&stage);
+}
+
+/* Puts NaN and infinities among the voxels of a real type. */
+static void spoil(reference_scene *scene, uint64_t *random) {
+    static const double odd[] = {(double)NAN, (double)INFINITY,
+                                 -(double)INFINITY};
+    for (int n = 0; n < 13 * 10 * 15 / 6; n++) {
+        size_t at = draw(random, 13 * 10 * 15);
+        double value = odd[draw(random, 3)];
+        void *voxels = (void *)(uintptr_t)scene->voxels;
+        if (scene->info.type == SNOW_FLOAT32)
+            ((float *)voxels)[at] = (float)value;
+        else
+            ((double *)voxels)[at] = value;
+    }
+}
+
+static void voxels_that_are_no_numbers_or_infinite(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    uint64_t random = 5;
+    double largest = 0;
+    int pictures = 0;
+    for (size_t n = 0; n < 2 * COUNT(stands); n++) {
+        reference_scene scene =
+            model_scene(dims, n % 2 == 0 ? SNOW_FLOAT32 : SNOW_FLOAT64,
+                        n % 3 == 0, MODEL_OBLIQUE, n);
+        spoil(&scene, &random);
+        scene.view.width = 24;
+        scene.view.height = 18;
+        stand_at(&scene, n, 1);
+        scene.settings.method = (snow_method)(n % 4);
+        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        pictures++;
+        model_free(&scene);
+    }
+    say(largest, pictures);
+    model_close(&stage);
+}
+
+static void lights_from_all_sides_and_every_coefficient(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    uint64_t random = 6;
+    double largest = 0;
+    int pictures = 0;
+    /* Real numbers with noise: no gradient is square to the line of sight, so
+     * that rounding does not decide which way it is turned. */
+    for (size_t n = 0; n < 60; n++) {
+        reference_scene scene = model_scene(
+            dims, SNOW_FLOAT32, false, (model_matrix)(n % MODEL_MATRICES), n);
+        snow_settings *settings = &scene.settings;
+        scene.view.width = 24;
+        scene.view.height = 18;
+        stand_at(&scene, n, 1);
+        settings->light_azimuth = 360 * support_uniform(&random) - 180;
+        settings->light_elevation = 180 * support_uniform(&random) - 90;
+        settings->ambient = support_uniform(&random);
+        settings->diffuse = support_uniform(&random);
+        settings->specular = support_uniform(&random);
+        settings->shininess = n % 5 == 0 ? 0 : 100 * support_uniform(&random);
+        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        pictures++;
+        model_free(&scene);
+    }
+    say(largest, pictures);
+    model_close(&stage);
+}
+
+static void opacities_of_other_lengths_than_a_voxel(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    static const double lengths[] = {0.1, 0.9, 3, 40};
+    double largest = 0;
+    for (size_t n = 0; n < 2 * COUNT(stands); n++) {
+        reference_scene scene = model_scene(
+            dims, SNOW_UINT8, true, (model_matrix)(n % MODEL_MATRICES), n);
+        stand_at(&scene, n, 1);
+        scene.view.width = 24;
+        scene.view.height = 18;
+        scene.settings.opacity_length = lengths[n % COUNT(lengths)];
+        scene.settings.threshold = thresholds[n % COUNT(thresholds)];
+        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        model_free(&scene);
+    }
+    say(largest, 2 * COUNT(stands));
+    model_close(&stage);
+}
+
+static void transfer_functions_of_any_shape(void **state) {
+    (void)state;
+    static const snow_opacity_point one[] = {{50, 0.4}};
+    static const snow_opacity_point teeth[] = {{10, 0}, {20, 1}, {20, 0},
+                                               {50, 1}, {50, 0}, {50, 0.3},
+                                               {90, 0}, {90, 1}};
+    static const snow_color_point red[] = {{1e9, 1, 0, 0}};
+    static const snow_color_point steps[] = {
+        {30, 1, 0, 0}, {30, 0, 1, 0}, {60, 0, 0, 1}, {60, 1, 1, 1}};
+    model_stage stage = model_open();
+    double largest = 0;
+    for (size_t n = 0; n < 4 * COUNT(types); n++) {
+        reference_scene scene = model_scene(
+            dims, types[n / 4], false, (model_matrix)(n % MODEL_MATRICES), n);
+        scene.opacities = n % 2 == 0 ? one : teeth;
+        scene.opacity_count = n % 2 == 0 ? COUNT(one) : COUNT(teeth);
+        scene.colors = n / 2 % 2 == 0 ? red : steps;
+        scene.color_count = n / 2 % 2 == 0 ? COUNT(red) : COUNT(steps);
+        scene.view.width = 24;
+        scene.view.height = 18;
+        stand_at(&scene, n, 1);
+        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        free((void *)(uintptr_t)scene.voxels);
+    }
+    say(largest, 4 * COUNT(types));
+    model_close(&stage);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_kernel_and_footprint_from_every_side),
+        cmocka_unit_test(every_type_matrix_threshold_and_shading),
+        cmocka_unit_test(every_size_of_picture),
+        cmocka_unit_test(volumes_thin_along_some_axes),
+        cmocka_unit_test(voxels_that_are_no_numbers_or_infinite),
+        cmocka_unit_test(lights_from_all_sides_and_every_coefficient),
+        cmocka_unit_test(opacities_of_other_lengths_than_a_voxel),
+        cmocka_unit_test(transfer_functions_of_any_shape),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
