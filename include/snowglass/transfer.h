@@ -79,10 +79,12 @@ SNOW_API void snow_transfer_at(const snow_transfer *transfer, double value,
 SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);
 
 /* Share of uninteresting voxels, 0 to 1 (the paper's sparse ratio SR, section
- * 5.2): those with opacity 0 or, for threshold T > 0, 255 a <= T + 0.0001. */
-SNOW_API double snow_transfer_sparse_ratio(const snow_transfer *transfer,
-                                           const snow_volume *volume,
-                                           double threshold);
+ * 5.2): those with opacity 0 or, for threshold T > 0, 255 a <= T + 0.0001.
+ * Errors: SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
+                                                const snow_volume *volume,
+                                                double threshold,
+                                                double *ratio);
 
 /* Name and description of preset and colour map `index` (from 0); NULL past
  * the end. */

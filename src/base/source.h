@@ -13,8 +13,9 @@ typedef struct snow_source snow_source;
 /* The most that snow_source_peek can show. */
 #define SNOW_PEEK_BYTES 4096
 
-/* A regular file (or a pipe; never a folder or a device).  A gzip stream is
- * unpacked in passing, its check sums verified, whatever its name.
+/* A regular file (or a pipe, "-" for standard input; never a folder or a
+ * device).  A gzip stream is unpacked in passing, its check sums verified,
+ * whatever its name.
  * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
 snow_status snow_source_open(snow_context *context, const char *path,
                              snow_source **out);
@@ -26,9 +27,17 @@ snow_status snow_source_open_memory(snow_context *context, const char *name,
                                     snow_source **out);
 
 /* The file `name` as told by the header that `source` is: relative to its
- * folder, or absolute.  Refused for sources in memory. */
+ * folder, or absolute.  Refused for sources in memory, and for a name that is
+ * no regular file.  "as_is" leaves gzip packed, for headers that tell whether
+ * their data are. */
 snow_status snow_source_open_sibling(const snow_source *source,
                                      const char *name, snow_source **out);
+snow_status snow_source_open_sibling_as_is(const snow_source *source,
+                                           const char *name, snow_source **out);
+
+/* Says that from here on the bytes are a gzip or zlib stream, which all later
+ * calls unpack. */
+snow_status snow_source_unpack(snow_source *source);
 
 void snow_source_close(snow_source *source);
 

@@ -19,7 +19,8 @@ struct snow_volume {
 };
 
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and
- * makes the volume; `probe` says whether the first `size` bytes look like the
+ * makes the volume; its messages need not name the file, and its options are
+ * never NULL; `probe` says whether the first `size` bytes look like the
  * format; `write` may be NULL. */
 typedef struct snow_format {
     const char *name;        /* "nrrd" */
@@ -70,6 +71,18 @@ snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
                              bool big_endian, uint64_t skip, uint64_t rest,
                              snow_volume **out);
 
+/* For a reader that has set info->times: takes the time step of the options
+ * into info->time and tells the listener when there are several.
+ * Errors: SNOW_BAD_USAGE when there is no such step. */
+snow_status snow_volume_pick_time(snow_context *context,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info);
+
+/* The format whose files begin like these bytes; the one of a file name; NULL
+ * when there is none. */
+const snow_format *snow_format_of_bytes(const void *bytes, size_t size);
+const snow_format *snow_format_of_name(const char *name);
+
 /* True on machines that store the high byte first. */
 bool snow_machine_big_endian(void);
 
@@ -81,7 +94,9 @@ void snow_swap_bytes(void *values, uint64_t count, size_t size);
 bool snow_matrix_invert3(const double m[4][4], double inverse[3][3]);
 
 /* The native value at a linear index as a double (int64 values beyond 2^53
- * round). */
+ * round); and `count` of them from index `first` on. */
 double snow_volume_native(const snow_volume *volume, int64_t index);
+void snow_volume_natives(const snow_volume *volume, int64_t first, size_t count,
+                         double *out);
 
 #endif

@@ -1,0 +1,175 @@
+/* base/layer.c - buffering, and the two bottoms that bytes come from.
+ *
+ * Files are read by descriptor: the C library's streams would allocate behind
+ * the context's back. */
+#include "base/layer.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct file_layer {
+    snow_layer layer;
+    int descriptor;
+} file_layer;
+
+typedef struct memory_layer {
+    snow_layer layer;
+    const unsigned char *bytes; /* the caller's, what is still to come */
+    size_t left;
+} memory_layer;
+
+void *snow_layer_allocate(snow_context *context, size_t bytes) {
+    snow_layer *layer = snow_allocate(context, bytes + SNOW_LAYER_BYTES);
+    if (!layer)
+        return NULL;
+    memset(layer, 0, bytes);
+    layer->context = context;
+    layer->buffer = (unsigned char *)layer + bytes;
+    return layer;
+}
+
+void snow_layer_close(snow_layer *layer) {
+    while (layer) {
+        snow_layer *below = layer->below;
+        if (layer->fini)
+            layer->fini(layer);
+        snow_release(layer->context, layer);
+        layer = below;
+    }
+}
+
+snow_status snow_layer_fill(snow_layer *layer, size_t size) {
+    if (layer->end - layer->begin >= size)
+        return SNOW_OK;
+    memmove(layer->buffer, layer->buffer + layer->begin,
+            layer->end - layer->begin);
+    layer->end -= layer->begin;
+    layer->begin = 0;
+    while (layer->end < size) {
+        size_t got;
+        SNOW_TRY(layer->pull(layer, layer->buffer + layer->end,
+                             SNOW_LAYER_BYTES - layer->end, &got));
+        if (!got)
+            break;
+        layer->end += got;
+    }
+    return SNOW_OK;
+}
+
+void snow_layer_drop(snow_layer *layer, size_t count) {
+    layer->begin += count;
+    layer->taken += count;
+}
+
+snow_status snow_layer_read(snow_layer *layer, void *bytes, size_t size,
+                            size_t *got) {
+    unsigned char *to = bytes;
+    size_t done = layer->end - layer->begin;
+    if (done > size)
+        done = size;
+    if (done)
+        memcpy(to, layer->buffer + layer->begin, done);
+    snow_layer_drop(layer, done);
+    /* What is large passes the buffer by. */
+    while (done < size) {
+        size_t more;
+        if (size - done >= SNOW_LAYER_BYTES) {
+            SNOW_TRY(layer->pull(layer, to + done, size - done, &more));
+            layer->taken += more;
+        } else {
+            SNOW_TRY(snow_layer_fill(layer, 1));
+            more = layer->end - layer->begin;
+            if (more > size - done)
+                more = size - done;
+            if (more)
+                memcpy(to + done, layer->buffer + layer->begin, more);
+            snow_layer_drop(layer, more);
+        }
+        if (!more)
+            break;
+        done += more;
+    }
+    *got = done;
+    return SNOW_OK;
+}
+
+/* A file that grew or shrank after it was opened counts by its first size. */
+int64_t snow_layer_remaining(const snow_layer *layer) {
+    if (layer->size < 0)
+        return -1;
+    uint64_t size = (uint64_t)layer->size;
+    return layer->taken < size ? (int64_t)(size - layer->taken) : 0;
+}
+
+static bool jump_in_file(snow_layer *layer, uint64_t count) {
+    return lseek(((file_layer *)layer)->descriptor, (off_t)count, SEEK_CUR) >=
+           0;
+}
+
+static snow_status pull_file(snow_layer *layer, void *bytes, size_t size,
+                             size_t *got) {
+    ssize_t count;
+    do
+        count = read(((file_layer *)layer)->descriptor, bytes, size);
+    while (count < 0 && errno == EINTR);
+    if (count < 0) {
+        char why[128] = "";
+        strerror_r(errno, why, sizeof why);
+        return snow_fail(layer->context, SNOW_BAD_INPUT,
+                         "%s: cannot be read: %s; check the disk and the "
+                         "permissions",
+                         layer->name, why);
+    }
+    *got = (size_t)count;
+    return SNOW_OK;
+}
+
+static void close_file(snow_layer *layer) {
+    close(((file_layer *)layer)->descriptor);
+}
+
+snow_status snow_layer_open_file(snow_context *context, const char *name,
+                                 int descriptor, int64_t size,
+                                 snow_layer **out) {
+    file_layer *file = snow_layer_allocate(context, sizeof *file);
+    if (!file)
+        return SNOW_NO_MEMORY;
+    file->layer.name = name;
+    file->layer.pull = pull_file;
+    file->layer.jump = jump_in_file;
+    file->layer.fini = close_file;
+    file->layer.size = size;
+    file->descriptor = descriptor;
+    *out = &file->layer;
+    return SNOW_OK;
+}
+
+static snow_status pull_memory(snow_layer *layer, void *bytes, size_t size,
+                               size_t *got) {
+    memory_layer *memory = (memory_layer *)layer;
+    if (size > memory->left)
+        size = memory->left;
+    if (size)
+        memcpy(bytes, memory->bytes, size);
+    memory->bytes += size;
+    memory->left -= size;
+    *got = size;
+    return SNOW_OK;
+}
+
+snow_status snow_layer_open_memory(snow_context *context, const char *name,
+                                   const void *bytes, size_t size,
+                                   snow_layer **out) {
+    static const unsigned char nothing[1];
+    memory_layer *memory = snow_layer_allocate(context, sizeof *memory);
+    if (!memory)
+        return SNOW_NO_MEMORY;
+    memory->layer.name = name;
+    memory->layer.pull = pull_memory;
+    memory->layer.size = (int64_t)size;
+    memory->bytes = size ? bytes : nothing;
+    memory->left = size;
+    *out = &memory->layer;
+    return SNOW_OK;
+}

@@ -1,0 +1,178 @@
+/* base/source_open.c - which files may be opened, and how a name in a header
+ * becomes a path.
+ *
+ * A name on the command line may be a pipe, "-" is standard input; a name in a
+ * header, which nobody vouches for, must be a regular file. */
+#include "base/layer.h"
+#include "base/source_parts.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A source without layers; *name gets its own copy of `name_bytes` bytes and a
+ * closing NUL. */
+static snow_status new_source(snow_context *context, const char *name,
+                              size_t name_bytes, snow_source **out) {
+    snow_source *source =
+        snow_allocate_clear(context, sizeof *source + name_bytes + 1);
+    if (!source)
+        return SNOW_NO_MEMORY;
+    source->context = context;
+    source->name = (char *)(source + 1);
+    memcpy(source->name, name, name_bytes);
+    *out = source;
+    return SNOW_OK;
+}
+
+static snow_status unpack_gzip(snow_source *source) {
+    snow_layer *top = source->top;
+    SNOW_TRY(snow_layer_fill(top, 4));
+    if (snow_looks_gzip(top->buffer + top->begin, top->end - top->begin))
+        return snow_source_unpack(source);
+    return SNOW_OK;
+}
+
+static snow_status fail_by_errno(snow_source *source) {
+    char why[128] = "";
+    strerror_r(errno, why, sizeof why);
+    return snow_fail(source->context, SNOW_BAD_INPUT,
+                     "%s: cannot be opened: %s; check the name and the "
+                     "permissions",
+                     source->name, why);
+}
+
+/* Refuses what is no file of data. */
+static snow_status check_mode(snow_source *source, const struct stat *about,
+                              bool pipes) {
+    if (S_ISREG(about->st_mode) ||
+        (pipes && (S_ISFIFO(about->st_mode) || S_ISSOCK(about->st_mode))))
+        return SNOW_OK;
+    return snow_fail(source->context, SNOW_BAD_INPUT,
+                     "%s: is %s; give a file of data", source->name,
+                     S_ISDIR(about->st_mode)    ? "a folder"
+                     : S_ISFIFO(about->st_mode) ? "a pipe"
+                                                : "a device");
+}
+
+/* Opens the path, or standard input for NULL. */
+static snow_status open_descriptor(snow_source *source, const char *path,
+                                   bool pipes, int *out, int64_t *size) {
+    struct stat about;
+    /* Before opening, since to open a device can have effects of its own, and
+     * again after it, when the path can no longer change its meaning. */
+    if (path) {
+        if (stat(path, &about))
+            return fail_by_errno(source);
+        SNOW_TRY(check_mode(source, &about, pipes));
+    }
+    int descriptor =
+        path ? open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY) : dup(STDIN_FILENO);
+    if (descriptor < 0)
+        return fail_by_errno(source);
+    snow_status status = SNOW_OK;
+    if (fstat(descriptor, &about))
+        status = fail_by_errno(source);
+    else
+        status = check_mode(source, &about, pipes);
+    if (status != SNOW_OK) {
+        close(descriptor);
+        return status;
+    }
+    /* Standard input may have been read from already. */
+    off_t at = path ? 0 : lseek(descriptor, 0, SEEK_CUR);
+    *size = -1;
+    if (S_ISREG(about.st_mode) && at >= 0 && at <= about.st_size)
+        *size = about.st_size - at;
+    *out = descriptor;
+    return SNOW_OK;
+}
+
+/* Opens `path` (NULL: standard input) under the name of the path. */
+static snow_status open_path(snow_context *context, const char *path,
+                             bool pipes, bool unpack, snow_source **out) {
+    snow_source *source;
+    const char *name = path ? path : "standard input";
+    SNOW_TRY(new_source(context, name, strlen(name), &source));
+    source->siblings = true;
+    int descriptor = -1;
+    int64_t size = -1;
+    snow_status status =
+        open_descriptor(source, path, pipes, &descriptor, &size);
+    if (status == SNOW_OK) {
+        status = snow_layer_open_file(context, source->name, descriptor, size,
+                                      &source->top);
+        if (status != SNOW_OK)
+            close(descriptor);
+    }
+    if (status == SNOW_OK && unpack)
+        status = unpack_gzip(source);
+    if (status != SNOW_OK) {
+        snow_source_close(source);
+        return status;
+    }
+    *out = source;
+    return SNOW_OK;
+}
+
+snow_status snow_source_open(snow_context *context, const char *path,
+                             snow_source **out) {
+    return open_path(context, strcmp(path, "-") ? path : NULL, true, true, out);
+}
+
+snow_status snow_source_open_memory(snow_context *context, const char *name,
+                                    const void *bytes, size_t size,
+                                    snow_source **out) {
+    snow_source *source;
+    SNOW_TRY(new_source(context, name, strlen(name), &source));
+    snow_status status = snow_layer_open_memory(context, source->name, bytes,
+                                                size, &source->top);
+    if (status == SNOW_OK)
+        status = unpack_gzip(source);
+    if (status != SNOW_OK) {
+        snow_source_close(source);
+        return status;
+    }
+    *out = source;
+    return SNOW_OK;
+}
+
+static snow_status open_beside(const snow_source *source, const char *name,
+                               bool unpack, snow_source **out) {
+    snow_context *context = source->context;
+    if (!source->siblings)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "%s: its data are in another file (%s), which cannot "
+                         "be reached from here; open the header as a file",
+                         source->name, name);
+    if (!*name || strstr(name, "://"))
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "%s: names \"%s\" as its data, which is no file; "
+                         "correct the header",
+                         source->name, name);
+    const char *slash = *name == '/' ? NULL : strrchr(source->name, '/');
+    size_t folder = slash ? (size_t)(slash - source->name) + 1 : 0;
+    size_t length = strlen(name);
+    char *path = snow_allocate(context, folder + length + 1);
+    if (!path)
+        return SNOW_NO_MEMORY;
+    memcpy(path, source->name, folder);
+    memcpy(path + folder, name, length + 1);
+    snow_status status = open_path(context, path, false, unpack, out);
+    snow_release(context, path);
+    return status;
+}
+
+snow_status snow_source_open_sibling(const snow_source *source,
+                                     const char *name, snow_source **out) {
+    return open_beside(source, name, true, out);
+}
+
+snow_status snow_source_open_sibling_as_is(const snow_source *source,
+                                           const char *name,
+                                           snow_source **out) {
+    return open_beside(source, name, false, out);
+}

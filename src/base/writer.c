@@ -1,0 +1,323 @@
+/* base/writer.c - files that are whole or absent.
+ *
+ * Bytes go to a hidden file beside the final one:
+ *
+ *   folder/.NAME.snow-XXXXXX  --write, fsync-->  --link or rename-->
+ *   folder/NAME               --fsync of the folder
+ *
+ * so that a crash, a full disk or a signal leaves at most the hidden file,
+ * never half of NAME.  Without `overwrite` the last step is link(2), which
+ * fails when NAME has come into being meanwhile; rename(2) would destroy it.
+ * Standard output, devices and pipes cannot be renamed: they are written
+ * through. */
+#define _XOPEN_SOURCE 700 /* realpath */
+#include "base/writer.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define BUFFER_BYTES 65536
+#define SUFFIX_LETTERS 6
+/* As much of the final name as a temporary one repeats: the longest name of a
+ * file, 255 bytes, less the dots, "snow-" and letters around it. */
+#define NAME_PART 200
+
+struct snow_writer {
+    snow_context *context;
+    char *path;         /* the final name, its links resolved */
+    char *temporary;    /* NULL: written through */
+    const char *told;   /* the name that the caller knows, in `path`'s block */
+    int file;           /* -1: closed */
+    bool overwrite;     /* may NAME be replaced? */
+    snow_status status; /* of the first write that failed */
+    size_t fill;        /* bytes waiting in the buffer */
+    unsigned char buffer[BUFFER_BYTES];
+};
+
+/* What a user can do about an error number of open, write or rename. */
+static const char *remedy(int number) {
+    switch (number) {
+    case ENOSPC:
+    case EDQUOT:
+        return "free some space or write elsewhere";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+        return "choose a folder that you may write to";
+    case ENOENT:
+    case ENOTDIR:
+        return "make the folder first, or correct the name";
+    case EFBIG:
+        return "choose a file system or limit that allows larger files";
+    case ENAMETOOLONG:
+        return "choose a shorter name";
+    case EPIPE:
+        return "the program that reads the output has ended";
+    default:
+        return "try another folder or disk";
+    }
+}
+
+static snow_status fail_by_number(snow_context *context, const char *path,
+                                  const char *action, int number) {
+    char reason[128];
+    if (strerror_r(number, reason, sizeof reason))
+        snprintf(reason, sizeof reason, "error %d", number);
+    return snow_fail(context, SNOW_BAD_OUTPUT, "%s: cannot %s: %s; %s", path,
+                     action, reason, remedy(number));
+}
+
+/* Where the last part of a path starts. */
+static size_t folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* Six letters that differ from call to call; O_EXCL decides whether the name
+ * is free, so they need not be secret. */
+static void fill_letters(char *letters, const void *salt, int attempt) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    uint64_t mixed = (uint64_t)now.tv_nsec ^ (uint64_t)now.tv_sec << 30 ^
+                     (uint64_t)getpid() << 17 ^ (uint64_t)(uintptr_t)salt;
+    mixed = (mixed + (uint64_t)attempt) * UINT64_C(0x9E3779B97F4A7C15);
+    for (int i = 0; i < SUFFIX_LETTERS; i++, mixed /= 26)
+        letters[i] = (char)('a' + mixed % 26);
+}
+
+/* Makes and opens the hidden file.  Mode 0666 less the process' umask, as any
+ * file that a program makes. */
+static snow_status open_temporary(snow_writer *writer) {
+    const char *name = writer->path + folder_length(writer->path);
+    size_t folder = (size_t)(name - writer->path);
+    size_t room = folder + NAME_PART + 16;
+    writer->temporary = snow_allocate(writer->context, room);
+    if (!writer->temporary)
+        return SNOW_NO_MEMORY;
+    for (int attempt = 0; attempt < 100; attempt++) {
+        char letters[SUFFIX_LETTERS + 1] = "";
+        fill_letters(letters, writer, attempt);
+        snprintf(writer->temporary, room, "%.*s.%.*s.snow-%s", (int)folder,
+                 writer->path, NAME_PART, name, letters);
+        writer->file =
+            open(writer->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
+                 S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH);
+        if (writer->file >= 0)
+            return SNOW_OK;
+        if (errno != EEXIST)
+            break;
+    }
+    int number = errno;
+    snow_release(writer->context, writer->temporary);
+    writer->temporary = NULL; /* it is not ours to remove */
+    return fail_by_number(writer->context, writer->told, "be written", number);
+}
+
+static snow_status fail_existing(const snow_writer *writer) {
+    return snow_fail(writer->context, SNOW_BAD_OUTPUT,
+                     "%s: the file exists; choose another name or allow "
+                     "overwriting",
+                     writer->told);
+}
+
+/* Opens the way to the path, whatever stands there now. */
+static snow_status open_target(snow_writer *writer) {
+    snow_context *context = writer->context;
+    const char *path = writer->path;
+    if (!path[folder_length(path)])
+        return snow_fail(context, SNOW_BAD_OUTPUT,
+                         "\"%s\" names no file; give a file name", path);
+    struct stat here;
+    if (stat(path, &here)) {
+        /* A link to nowhere is not followed: it counts as a file. */
+        if (!writer->overwrite && lstat(path, &here) == 0)
+            return fail_existing(writer);
+        return open_temporary(writer);
+    }
+    if (S_ISDIR(here.st_mode))
+        return snow_fail(context, SNOW_BAD_OUTPUT,
+                         "%s: is a folder; name a file in it", writer->told);
+    if (S_ISREG(here.st_mode))
+        return writer->overwrite ? open_temporary(writer)
+                                 : fail_existing(writer);
+    writer->file = open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC);
+    return writer->file >= 0
+               ? SNOW_OK
+               : fail_by_number(context, writer->told, "be written", errno);
+}
+
+/* Stores the path twice, as told and with its links resolved, so that a link
+ * to a file stays one and its target is replaced. */
+static snow_status keep_paths(snow_writer *writer, const char *path) {
+    char resolved[PATH_MAX];
+    const char *target = realpath(path, resolved) ? resolved : path;
+    size_t told = strlen(path) + 1, real = strlen(target) + 1;
+    writer->path = snow_allocate(writer->context, told + real);
+    if (!writer->path)
+        return SNOW_NO_MEMORY;
+    memcpy(writer->path, target, real);
+    memcpy(writer->path + real, path, told);
+    writer->told = writer->path + real;
+    return SNOW_OK;
+}
+
+snow_status snow_writer_open(snow_context *context, const char *path,
+                             bool overwrite, snow_writer **out) {
+    snow_writer *writer = snow_allocate(context, sizeof *writer);
+    if (!writer)
+        return SNOW_NO_MEMORY;
+    writer->context = context;
+    writer->path = writer->temporary = NULL;
+    writer->told = "standard output";
+    writer->file = STDOUT_FILENO;
+    writer->overwrite = overwrite;
+    writer->status = SNOW_OK;
+    writer->fill = 0;
+    snow_status status = SNOW_OK;
+    if (strcmp(path, "-") != 0) {
+        writer->file = -1;
+        status = keep_paths(writer, path);
+        if (status == SNOW_OK)
+            status = open_target(writer);
+    }
+    if (status != SNOW_OK)
+        snow_writer_abandon(writer);
+    else
+        *out = writer;
+    return status;
+}
+
+snow_context *snow_writer_context(const snow_writer *writer) {
+    return writer->context;
+}
+
+static snow_status write_through(snow_writer *writer,
+                                 const unsigned char *bytes, size_t size) {
+    while (size) {
+        /* The kernel takes less than 2^31 at once. */
+        ssize_t taken =
+            write(writer->file, bytes, size < INT_MAX ? size : INT_MAX);
+        if (taken < 0 && errno == EINTR)
+            continue;
+        if (taken <= 0) {
+            writer->status = fail_by_number(writer->context, writer->told,
+                                            "be written", taken ? errno : EIO);
+            return writer->status;
+        }
+        bytes += taken;
+        size -= (size_t)taken;
+    }
+    return SNOW_OK;
+}
+
+static snow_status flush_buffer(snow_writer *writer) {
+    size_t fill = writer->fill;
+    writer->fill = 0;
+    return write_through(writer, writer->buffer, fill);
+}
+
+snow_status snow_writer_write(snow_writer *writer, const void *bytes,
+                              size_t size) {
+    if (writer->status != SNOW_OK)
+        return writer->status;
+    if (size > BUFFER_BYTES - writer->fill)
+        SNOW_TRY(flush_buffer(writer));
+    if (size >= BUFFER_BYTES)
+        return write_through(writer, bytes, size);
+    if (size)
+        memcpy(writer->buffer + writer->fill, bytes, size);
+    writer->fill += size;
+    return SNOW_OK;
+}
+
+/* Closes what was opened here.  Network file systems tell of a full disk only
+ * now. */
+static int close_file(snow_writer *writer) {
+    int file = writer->file;
+    writer->file = -1;
+    if (file < 0 || file == STDOUT_FILENO)
+        return 0;
+    return close(file) ? errno : 0;
+}
+
+/* Gives the finished file its name; the error number or 0. */
+static int place_file(snow_writer *writer) {
+    if (!writer->overwrite) {
+        if (link(writer->temporary, writer->path) == 0) {
+            unlink(writer->temporary);
+            return 0;
+        }
+        if (errno == EEXIST)
+            return errno;
+        /* A file system without hard links: look, then rename. */
+        struct stat here;
+        if (lstat(writer->path, &here) == 0)
+            return EEXIST;
+    }
+    return rename(writer->temporary, writer->path) ? errno : 0;
+}
+
+/* Makes the new name last through a power cut.  Not every file system can; the
+ * file is whole in any case. */
+static void sync_folder(snow_writer *writer) {
+    size_t length = folder_length(writer->path);
+    writer->path[length] = 0; /* the file name is no longer needed */
+    int folder = open(length ? writer->path : ".", O_RDONLY | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    (void)fsync(folder);
+    close(folder);
+}
+
+/* Syncs, closes, renames. */
+static snow_status finish_file(snow_writer *writer) {
+    int number = 0;
+    if (writer->temporary && fsync(writer->file) && errno != EINVAL)
+        number = errno;
+    int closing = close_file(writer);
+    if (!number)
+        number = closing;
+    if (number)
+        return fail_by_number(writer->context, writer->told, "be written",
+                              number);
+    if (!writer->temporary)
+        return SNOW_OK;
+    number = place_file(writer);
+    if (number == EEXIST)
+        return fail_existing(writer);
+    if (number)
+        return fail_by_number(writer->context, writer->told, "be named",
+                              number);
+    snow_release(writer->context, writer->temporary);
+    writer->temporary = NULL; /* it bears its final name */
+    sync_folder(writer);
+    return SNOW_OK;
+}
+
+snow_status snow_writer_commit(snow_writer *writer) {
+    snow_status status = writer->status;
+    if (status == SNOW_OK)
+        status = flush_buffer(writer);
+    if (status == SNOW_OK)
+        status = finish_file(writer);
+    snow_writer_abandon(writer);
+    return status;
+}
+
+void snow_writer_abandon(snow_writer *writer) {
+    if (!writer)
+        return;
+    (void)close_file(writer);
+    if (writer->temporary)
+        unlink(writer->temporary);
+    snow_release(writer->context, writer->temporary);
+    snow_release(writer->context, writer->path);
+    snow_release(writer->context, writer);
+}

@@ -1,0 +1,165 @@
+/* classify/classify.c - transfer function applied: native value to sample
+ * (model, points 3 and 6).
+ *
+ * A voxel is interesting when its opacity is above 0 and, for a threshold
+ * T > 0, 255 a > T + 0.0001; a is the opacity before it is corrected for the
+ * path length.  What is uninteresting contributes nothing. */
+#include "classify/classify.h"
+
+#include <math.h>
+#include <string.h>
+
+/* So that rounding never decides whether a voxel is above the threshold. */
+#define THRESHOLD_MARGIN 0.0001
+
+#define ROW_TYPE int8_t
+#define ROW_NAME classify_row_int8
+#define ROW_LOWEST INT8_MIN
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE uint8_t
+#define ROW_NAME classify_row_uint8
+#define ROW_LOWEST 0
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE int16_t
+#define ROW_NAME classify_row_int16
+#define ROW_LOWEST INT16_MIN
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE uint16_t
+#define ROW_NAME classify_row_uint16
+#define ROW_LOWEST 0
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE int32_t
+#define ROW_NAME classify_row_int32
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE uint32_t
+#define ROW_NAME classify_row_uint32
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE int64_t
+#define ROW_NAME classify_row_int64
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE uint64_t
+#define ROW_NAME classify_row_uint64
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE float
+#define ROW_NAME classify_row_float32
+#include "classify/classify_row.tmpl.h"
+#define ROW_TYPE double
+#define ROW_NAME classify_row_float64
+#include "classify/classify_row.tmpl.h"
+
+/* Per scalar type: its row loop, and the native values that a table spans
+ * (none for types too wide for one). */
+static const struct type_row {
+    snow_classify_row_fn *classify_row;
+    int32_t lowest, values;
+} type_rows[] = {
+    [SNOW_INT8] = {classify_row_int8, INT8_MIN, 256},
+    [SNOW_UINT8] = {classify_row_uint8, 0, 256},
+    [SNOW_INT16] = {classify_row_int16, INT16_MIN, 65536},
+    [SNOW_UINT16] = {classify_row_uint16, 0, 65536},
+    [SNOW_INT32] = {classify_row_int32, 0, 0},
+    [SNOW_UINT32] = {classify_row_uint32, 0, 0},
+    [SNOW_INT64] = {classify_row_int64, 0, 0},
+    [SNOW_UINT64] = {classify_row_uint64, 0, 0},
+    [SNOW_FLOAT32] = {classify_row_float32, 0, 0},
+    [SNOW_FLOAT64] = {classify_row_float64, 0, 0},
+};
+
+bool snow_classify_value(const snow_classifier *c, double native,
+                         float *sample) {
+    const snow_volume_info *info = &c->volume->info;
+    double value = info->slope * native + info->intercept;
+    double opacity = snow_transfer_opacity(c->transfer, value);
+    memset(sample, 0, (size_t)c->channels * sizeof *sample);
+    if (!(opacity > 0))
+        return false;
+    bool interesting =
+        !(c->threshold > 0) || 255 * opacity > c->threshold + THRESHOLD_MARGIN;
+    if (!interesting && !c->keep_all)
+        return false;
+    double rgba[4];
+    snow_transfer_at(c->transfer, value, rgba);
+    double corrected = 1 - pow(1 - opacity, c->exponent);
+    double weight = c->premultiply ? corrected : 1;
+    for (int i = 0; i < c->channels - 1; i++)
+        sample[i] = (float)(rgba[i] * weight);
+    sample[c->channels - 1] = (float)corrected;
+    return interesting;
+}
+
+static snow_status make_table(snow_context *context, snow_classifier *c,
+                              const struct type_row *row) {
+    size_t values = (size_t)row->values, channels = (size_t)c->channels;
+    c->keep = snow_allocate(context, values);
+    c->table = snow_allocate_array(context, values, channels * sizeof(float));
+    if (!c->keep || !c->table) {
+        snow_classifier_fini(context, c);
+        return SNOW_NO_MEMORY;
+    }
+    for (size_t i = 0; i < values; i++) {
+        double native = (double)row->lowest + (double)i;
+        c->keep[i] = snow_classify_value(c, native, c->table + i * channels) ||
+                     c->keep_all;
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_classifier_init(snow_context *context,
+                                 const snow_volume *volume,
+                                 const snow_transfer *transfer,
+                                 const snow_classify_options *options,
+                                 snow_classifier *out) {
+    const struct type_row *row = &type_rows[volume->info.type];
+    snow_classifier c = {
+        .volume = volume,
+        .transfer = transfer,
+        .channels = transfer->grey ? 2 : 4,
+        .keep_all = options->keep_all,
+        .premultiply = options->premultiply,
+        .threshold = options->threshold,
+        .exponent = options->opacity_exponent,
+        .classify_row = row->classify_row,
+    };
+    if (row->values)
+        SNOW_TRY(make_table(context, &c, row));
+    *out = c;
+    return SNOW_OK;
+}
+
+void snow_classifier_fini(snow_context *context, snow_classifier *c) {
+    snow_release(context, c->keep);
+    snow_release(context, c->table);
+    c->keep = NULL;
+    c->table = NULL;
+}
+
+const void *snow_row_voxels(const snow_volume *volume,
+                            const snow_placement *placement, int64_t slice,
+                            int64_t row, int64_t *stride) {
+    const int64_t *dims = volume->info.dims;
+    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
+    *stride = strides[placement->u_axis];
+    int64_t first = slice * strides[placement->slice_axis] +
+                    row * strides[placement->v_axis];
+    return (const char *)volume->voxels +
+           (size_t)first * snow_type_size(volume->info.type);
+}
+
+void snow_classify_strip(const snow_classifier *classifier,
+                         const snow_placement *placement, int64_t slice,
+                         int64_t first, int64_t rows, snow_strip *strip) {
+    strip->slice = slice;
+    strip->first_row = first;
+    strip->rows = rows;
+    strip->count = 0;
+    for (int64_t row = 0; row < rows; row++) {
+        int64_t stride;
+        const void *voxels = snow_row_voxels(classifier->volume, placement,
+                                             slice, first + row, &stride);
+        strip->count += classifier->classify_row(
+            classifier, voxels, stride, placement->columns,
+            strip->columns + strip->count,
+            strip->samples + strip->count * (size_t)classifier->channels);
+        strip->row_end[row] = strip->count;
+    }
+}

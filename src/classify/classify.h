@@ -1,0 +1,117 @@
+/* classify/classify.h - classification and shading (C&S in figure 7): native
+ * voxels of a slice become samples of colour and opacity.
+ *
+ * The unit of work is a strip: some rows of one slice, few enough to stay in
+ * the second-level cache between the stages.  Only voxels that are kept have
+ * an entry, in order of row and column:
+ *
+ *   row j of the slice   . a b . . c        row_end  ... 3 ...
+ *                                           columns  1 2 5
+ *                                           samples  a b c
+ */
+#ifndef SNOW_CLASSIFY_H
+#define SNOW_CLASSIFY_H
+
+#include "classify/transfer.h"
+#include "transform/transform.h"
+#include "volume/volume.h"
+
+#include <snowglass/render.h>
+
+typedef struct snow_strip {
+    int64_t slice, first_row, rows;
+    size_t count;      /* voxels kept */
+    size_t *row_end;   /* per row: the entries up to its end */
+    uint32_t *columns; /* per entry */
+    float *samples;    /* per entry: (grey, a) or (r, g, b, a) */
+    /* What the buffers have room for, set by snow_strip_init. */
+    int64_t room_rows, room_columns;
+} snow_strip;
+
+/* Makes room for strips of slices placed so.  The strip's buffers belong to
+ * the context; free with snow_strip_free.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_strip_init(snow_context *context,
+                            const snow_placement *placement, int channels,
+                            snow_strip *strip);
+void snow_strip_free(snow_context *context, snow_strip *strip);
+
+typedef struct snow_classifier snow_classifier;
+
+/* Classifies one row: `voxels` is its first voxel, `stride` the step between
+ * columns in values.  Returns how many voxels are kept. */
+typedef size_t snow_classify_row_fn(const snow_classifier *classifier,
+                                    const void *voxels, int64_t stride,
+                                    int64_t columns, uint32_t *kept,
+                                    float *samples);
+
+/* The transfer function made ready for one volume, threshold and path length.
+ * For 8- and 16-bit voxels it is a table over all native values. */
+struct snow_classifier {
+    const snow_volume *volume;
+    const snow_transfer *transfer;
+    int channels;     /* 2 or 4 */
+    bool keep_all;    /* uninteresting voxels too, as samples of 0 */
+    bool premultiply; /* colour times opacity already here */
+    double threshold; /* opacity 0 to 255 */
+    double exponent;  /* path length / reference length */
+    snow_classify_row_fn *classify_row;
+    unsigned char *keep; /* per native value: is it kept? */
+    float *table;        /* per native value: its sample */
+};
+
+/* What a classifier is asked to be. */
+typedef struct snow_classify_options {
+    double threshold;
+    double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, point 6) */
+    bool keep_all, premultiply;
+} snow_classify_options;
+
+/* Errors: SNOW_NO_MEMORY.  Free with snow_classifier_fini. */
+snow_status snow_classifier_init(snow_context *context,
+                                 const snow_volume *volume,
+                                 const snow_transfer *transfer,
+                                 const snow_classify_options *options,
+                                 snow_classifier *out);
+void snow_classifier_fini(snow_context *context, snow_classifier *classifier);
+
+/* The sample of one native value; true when it is interesting.  An
+ * uninteresting one has a sample of zeros. */
+bool snow_classify_value(const snow_classifier *classifier, double native,
+                         float *sample);
+
+/* Classifies rows [first, first + rows) of a slice into the strip. */
+void snow_classify_strip(const snow_classifier *classifier,
+                         const snow_placement *placement, int64_t slice,
+                         int64_t first, int64_t rows, snow_strip *strip);
+
+/* The native voxel at the beginning of a row of a slice, and the step between
+ * columns. */
+const void *snow_row_voxels(const snow_volume *volume,
+                            const snow_placement *placement, int64_t slice,
+                            int64_t row, int64_t *stride);
+
+/* --- shading: classify/shade.c ---------------------------------------------
+ */
+
+/* Phong's model made ready for one view: its vectors carried to index space,
+ * so that a gradient need not be carried to the world. */
+typedef struct snow_shader {
+    const snow_volume *volume;
+    const snow_placement *placement;
+    double ambient, diffuse, specular, shininess;
+    double light[3], half[3], viewer[3]; /* W^T times the world vector */
+    double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
+} snow_shader;
+
+/* W is the inverse transpose of the matrix' linear part, which carries index
+ * gradients to the world.  Errors: SNOW_BAD_USAGE (a singular matrix). */
+snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
+                             const snow_placement *placement,
+                             const snow_settings *settings, snow_shader *out);
+
+/* Shades the samples of a strip (straight colours) and multiplies colour by
+ * opacity (model, point 4).  Samples of opacity 0 stay 0. */
+void snow_shade_strip(const snow_shader *shader, int channels,
+                      snow_strip *strip);
+
+#endif

@@ -1,0 +1,43 @@
+/* classify/classify_row.tmpl.h - the row loops of classification, for one
+ * scalar type.  Define before including:
+ *
+ *   ROW_TYPE    C type of a voxel
+ *   ROW_NAME    name of the function
+ *   ROW_LOWEST  the smallest value of the type: with it the row is classified
+ *               by the table; without it every voxel is evaluated
+ *
+ * All are undefined at the end. */
+
+static size_t ROW_NAME(const snow_classifier *c, const void *voxels,
+                       int64_t stride, int64_t columns, uint32_t *kept,
+                       float *samples) {
+    const ROW_TYPE *voxel = voxels;
+    size_t count = 0;
+#ifdef ROW_LOWEST
+    /* The places first, without a branch: a voxel that is not kept is
+     * overwritten by the next one. */
+    for (int64_t i = 0; i < columns; i++) {
+        kept[count] = (uint32_t)i;
+        count += c->keep[(int)voxel[i * stride] - (ROW_LOWEST)];
+    }
+    size_t size = (size_t)c->channels;
+    for (size_t n = 0; n < count; n++) {
+        int value = voxel[kept[n] * stride];
+        const float *entry = c->table + (size_t)(value - (ROW_LOWEST)) * size;
+        for (size_t channel = 0; channel < size; channel++)
+            samples[n * size + channel] = entry[channel];
+    }
+#else
+    for (int64_t i = 0; i < columns; i++) {
+        double value = (double)voxel[i * stride];
+        float *sample = samples + count * (size_t)c->channels;
+        kept[count] = (uint32_t)i;
+        count += snow_classify_value(c, value, sample) || c->keep_all;
+    }
+#endif
+    return count;
+}
+
+#undef ROW_TYPE
+#undef ROW_NAME
+#undef ROW_LOWEST

@@ -1,0 +1,172 @@
+/* classify/shade.c - Phong's model on gradients of the native values, for the
+ * voxels that are kept only (the paper's outlook in section 6; model, point 4).
+ *
+ *   colour = min(1, c (ambient + diffuse n.l) + specular (n.h)^shininess)
+ *
+ * The normal n is W g / |W g| for an index gradient g, so n.l is
+ * g.(W^T l) / |W g|: only scalars leave index space. */
+#include "base/vec3.h"
+#include "classify/classify.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The difference at `here` from neighbours that count only when finite. */
+static double difference(double here, double below, double above) {
+    bool has_below = isfinite(below), has_above = isfinite(above);
+    if (has_below && has_above)
+        return (above - below) / 2;
+    if (has_above && isfinite(here))
+        return above - here;
+    if (has_below && isfinite(here))
+        return here - below;
+    return 0;
+}
+
+#define GRADIENT_TYPE int8_t
+#define GRADIENT_NAME gradient_int8
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE uint8_t
+#define GRADIENT_NAME gradient_uint8
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE int16_t
+#define GRADIENT_NAME gradient_int16
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE uint16_t
+#define GRADIENT_NAME gradient_uint16
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE int32_t
+#define GRADIENT_NAME gradient_int32
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE uint32_t
+#define GRADIENT_NAME gradient_uint32
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE int64_t
+#define GRADIENT_NAME gradient_int64
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE uint64_t
+#define GRADIENT_NAME gradient_uint64
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE float
+#define GRADIENT_NAME gradient_float32
+#include "classify/gradient.tmpl.h"
+#define GRADIENT_TYPE double
+#define GRADIENT_NAME gradient_float64
+#include "classify/gradient.tmpl.h"
+
+typedef void gradient_fn(const void *voxels, const int64_t dims[3],
+                         const int64_t at[3], double gradient[3]);
+
+static gradient_fn *const type_gradients[] = {
+    [SNOW_INT8] = gradient_int8,       [SNOW_UINT8] = gradient_uint8,
+    [SNOW_INT16] = gradient_int16,     [SNOW_UINT16] = gradient_uint16,
+    [SNOW_INT32] = gradient_int32,     [SNOW_UINT32] = gradient_uint32,
+    [SNOW_INT64] = gradient_int64,     [SNOW_UINT64] = gradient_uint64,
+    [SNOW_FLOAT32] = gradient_float32, [SNOW_FLOAT64] = gradient_float64,
+};
+
+/* out = W^T v, where W is the inverse transpose and `inverse` the inverse. */
+static void to_index(double inverse[3][3], const double v[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = snow_dot(inverse[i], v);
+}
+
+/* The direction to the light: from the camera's, to its right, then up. */
+static void light_direction(const snow_placement *placement,
+                            const snow_settings *settings, double light[3]) {
+    double right[3], up[3];
+    memcpy(right, placement->right, sizeof right);
+    memcpy(up, placement->up, sizeof up);
+    memcpy(light, placement->back, 3 * sizeof *light);
+    snow_frame_turn(right, up, light, settings->light_azimuth,
+                    settings->light_elevation, 0);
+}
+
+snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
+                             const snow_placement *placement,
+                             const snow_settings *settings, snow_shader *out) {
+    snow_shader shader = {
+        .volume = volume,
+        .placement = placement,
+        .ambient = settings->ambient,
+        .diffuse = settings->diffuse,
+        .specular = settings->specular,
+        .shininess = settings->shininess,
+    };
+    double inverse[3][3], light[3], half[3];
+    if (!snow_matrix_invert3(volume->info.matrix, inverse))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "the volume's matrix cannot be inverted");
+    light_direction(placement, settings, light);
+    for (int i = 0; i < 3; i++)
+        half[i] = light[i] + placement->back[i];
+    /* A light straight behind the volume has no half-way vector. */
+    if (snow_length(half) > 1e-9)
+        snow_normalize(half);
+    else
+        shader.specular = 0;
+    to_index(inverse, light, shader.light);
+    to_index(inverse, half, shader.half);
+    to_index(inverse, placement->back, shader.viewer);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            shader.metric[i][j] = snow_dot(inverse[i], inverse[j]);
+    *out = shader;
+    return SNOW_OK;
+}
+
+/* The factor of the colour and the white added to it, for a gradient. */
+static void reflect(const snow_shader *shader, const double g[3],
+                    double *factor, double *white) {
+    double carried[3] = {snow_dot(shader->metric[0], g),
+                         snow_dot(shader->metric[1], g),
+                         snow_dot(shader->metric[2], g)};
+    double square = snow_dot(carried, g);
+    *factor = shader->ambient;
+    *white = 0;
+    if (!(square > 0) || !isfinite(square))
+        return;
+    double scale = 1 / sqrt(square);
+    if (snow_dot(g, shader->viewer) < 0)
+        scale = -scale;
+    double lambert = scale * snow_dot(g, shader->light);
+    if (lambert <= 0)
+        return;
+    double highlight = scale * snow_dot(g, shader->half);
+    *factor += shader->diffuse * lambert;
+    if (highlight > 0 && shader->specular > 0)
+        *white = shader->specular * pow(highlight, shader->shininess);
+}
+
+/* Shades one sample, and multiplies its colour by its opacity. */
+static void shade_sample(const snow_shader *shader, const double gradient[3],
+                         int channels, float *sample) {
+    double factor, white;
+    reflect(shader, gradient, &factor, &white);
+    float opacity = sample[channels - 1];
+    for (int i = 0; i < channels - 1; i++)
+        sample[i] =
+            (float)fmin(1, factor * (double)sample[i] + white) * opacity;
+}
+
+void snow_shade_strip(const snow_shader *shader, int channels,
+                      snow_strip *strip) {
+    const snow_placement *p = shader->placement;
+    const snow_volume *volume = shader->volume;
+    gradient_fn *gradient_of = type_gradients[volume->info.type];
+    int64_t at[3];
+    at[p->slice_axis] = strip->slice;
+    size_t n = 0;
+    for (int64_t row = 0; row < strip->rows; row++) {
+        at[p->v_axis] = strip->first_row + row;
+        for (; n < strip->row_end[row]; n++) {
+            float *sample = strip->samples + n * (size_t)channels;
+            if (!(sample[channels - 1] > 0))
+                continue;
+            double gradient[3];
+            at[p->u_axis] = strip->columns[n];
+            gradient_of(volume->voxels, volume->info.dims, at, gradient);
+            shade_sample(shader, gradient, channels, sample);
+        }
+    }
+}

@@ -1,0 +1,36 @@
+/* classify/strip.c - the buffers that a strip of a slice passes through. */
+#include "classify/classify.h"
+
+/* Voxels of a strip: with 4 bytes of column and 16 of sample each, 320 KB, a
+ * part of today's second-level caches. */
+#define STRIP_VOXELS 16384
+
+snow_status snow_strip_init(snow_context *context,
+                            const snow_placement *placement, int channels,
+                            snow_strip *strip) {
+    int64_t rows = STRIP_VOXELS / placement->columns;
+    if (rows > placement->rows)
+        rows = placement->rows;
+    if (rows < 1)
+        rows = 1;
+    uint64_t voxels = (uint64_t)rows * (uint64_t)placement->columns;
+    *strip =
+        (snow_strip){.room_rows = rows, .room_columns = placement->columns};
+    strip->row_end =
+        snow_allocate_array(context, (uint64_t)rows, sizeof *strip->row_end);
+    strip->columns =
+        snow_allocate_array(context, voxels, sizeof *strip->columns);
+    strip->samples = snow_allocate_array(
+        context, voxels, (size_t)channels * sizeof *strip->samples);
+    if (strip->row_end && strip->columns && strip->samples)
+        return SNOW_OK;
+    snow_strip_free(context, strip);
+    return SNOW_NO_MEMORY;
+}
+
+void snow_strip_free(snow_context *context, snow_strip *strip) {
+    snow_release(context, strip->row_end);
+    snow_release(context, strip->columns);
+    snow_release(context, strip->samples);
+    *strip = (snow_strip){0};
+}

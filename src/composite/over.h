@@ -1,0 +1,16 @@
+/* composite/over.h - composition (Cp in figure 7): sheets into the image,
+ * front to back, by Porter and Duff's over; premultiplied, linear as stored. */
+#ifndef SNOW_OVER_H
+#define SNOW_OVER_H
+
+#include "splat/splat.h"
+
+/* front += (1 - front.alpha) * back, for `count` pixels of `channels` floats,
+ * alpha last. */
+void snow_over_row(float *front, const float *back, size_t count, int channels);
+
+/* Lays a sheet behind what the image holds so far, and clears the sheet.  They
+ * have one size and number of channels. */
+void snow_composite_sheet(float *image, snow_sheet *sheet);
+
+#endif

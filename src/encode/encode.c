@@ -1,0 +1,132 @@
+/* encode/encode.c - what the three schemes share: IA, PA and the walk
+ * (section 3.1 of the paper, figure 3). */
+#include "encode/encode.h"
+
+#include <string.h>
+
+/* The bit-map is read a word at a time, up to this far beyond EA's end. */
+#define EA_MARGIN 8
+
+const snow_scheme *snow_scheme_of(snow_encoding encoding) {
+    switch (encoding) {
+    case SNOW_ENCODING_CRS:
+        return &snow_scheme_crs;
+    case SNOW_ENCODING_RLE:
+        return &snow_scheme_rle;
+    default:
+        return &snow_scheme_bitmap;
+    }
+}
+
+snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
+                                   uint64_t runs) {
+    if ((double)interesting < 0.05 * (double)voxels)
+        return SNOW_ENCODING_CRS;
+    if (interesting >= 16 * runs)
+        return SNOW_ENCODING_RLE;
+    return SNOW_ENCODING_BITMAP;
+}
+
+snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
+                              const snow_placement *placement, int channels) {
+    uint64_t voxels, pointers;
+    if (!snow_mul_u64((uint64_t)placement->columns, (uint64_t)placement->rows,
+                      &voxels) ||
+        voxels > UINT32_MAX ||
+        !snow_mul_u64((uint64_t)placement->slices + 1, sizeof *s->pa,
+                      &pointers))
+        return snow_fail(s->context, SNOW_BAD_USAGE,
+                         "slices of %lldx%lld voxels are too large to encode; "
+                         "take a part of the volume",
+                         (long long)placement->columns,
+                         (long long)placement->rows);
+    SNOW_TRY(
+        snow_reserve(s->context, &s->pa, &s->pa_capacity, 0, (size_t)pointers));
+    s->scheme = scheme;
+    s->channels = channels;
+    s->columns = placement->columns;
+    s->rows = placement->rows;
+    s->slices = placement->slices;
+    s->filled = 0;
+    s->ea_bytes = s->ia_voxels = 0;
+    s->pa[0] = (snow_slice_pointer){0, 0};
+    return SNOW_OK;
+}
+
+snow_status snow_sparse_grow_ea(snow_sparse *s, size_t size) {
+    SNOW_TRY(snow_reserve(s->context, &s->ea, &s->ea_capacity, s->ea_bytes,
+                          s->ea_bytes + size + EA_MARGIN));
+    memset(s->ea + s->ea_bytes, 0, size + EA_MARGIN);
+    s->ea_bytes += size;
+    return SNOW_OK;
+}
+
+snow_status snow_sparse_begin_slice(snow_sparse *s) {
+    s->row = 0;
+    return s->scheme->begin_slice(s);
+}
+
+/* Appends samples to IA. */
+static snow_status add_samples(snow_sparse *s, const float *samples,
+                               size_t count) {
+    size_t sample = (size_t)s->channels * sizeof *samples;
+    size_t bytes = s->ia_voxels * sample;
+    SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity, bytes,
+                          bytes + count * sample));
+    if (count)
+        memcpy(s->ia + s->ia_voxels * (size_t)s->channels, samples,
+               count * sample);
+    s->ia_voxels += count;
+    return SNOW_OK;
+}
+
+snow_status snow_sparse_add_strip(snow_sparse *s, const snow_strip *strip) {
+    SNOW_TRY(add_samples(s, strip->samples, strip->count));
+    size_t begin = 0;
+    for (int64_t row = 0; row < strip->rows; row++) {
+        size_t end = strip->row_end[row];
+        SNOW_TRY(s->scheme->add_row(s, strip->columns + begin, end - begin));
+        s->row++;
+        begin = end;
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_sparse_end_slice(snow_sparse *s) {
+    SNOW_TRY(s->scheme->end_slice(s));
+    s->filled++;
+    s->pa[s->filled] = (snow_slice_pointer){s->ea_bytes, s->ia_voxels};
+    return SNOW_OK;
+}
+
+void snow_sparse_fini(snow_sparse *s) {
+    snow_release(s->context, s->ea);
+    snow_release(s->context, s->ia);
+    snow_release(s->context, s->pa);
+    *s = (snow_sparse){.context = s->context};
+}
+
+void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
+    snow_slice_pointer pointer = s->pa[slice];
+    *walk = (snow_walk){.sparse = s,
+                        .ea = s->ea + pointer.ea,
+                        .samples = s->ia + pointer.ia * (size_t)s->channels};
+}
+
+size_t snow_walk_row(snow_walk *walk, snow_span *spans, const float **samples) {
+    size_t count = walk->sparse->scheme->next_row(walk, spans), voxels = 0;
+    for (size_t i = 0; i < count; i++)
+        voxels += spans[i].length;
+    *samples = walk->samples;
+    walk->samples += voxels * (size_t)walk->sparse->channels;
+    walk->row++;
+    return count;
+}
+
+size_t snow_spans_of_columns(const uint32_t *columns, size_t count,
+                             snow_span *spans) {
+    size_t spanned = 0;
+    for (size_t i = 0; i < count; i++)
+        spanned = snow_span_append(spans, spanned, columns[i], 1);
+    return spanned;
+}

@@ -1,0 +1,306 @@
+/* frame.c - one picture, from voxels to pixels: figure 8 of the paper, whose
+ * line numbers stand in the margin of snow_frame_render.  Each line calls one
+ * stage of figure 7; how a stage works is told in its folder. */
+#include "frame.h"
+#include "base/base.h"
+#include "classify/classify.h"
+#include "combine/combine.h"
+#include "composite/over.h"
+#include "decompose/slab.h"
+#include "encode/encode.h"
+#include "image/image.h"
+#include "splat/splat.h"
+#include "transform/transform.h"
+
+#include <math.h>
+
+struct snow_frame {
+    snow_context *context;
+    snow_stats stats;
+    /* Buffers of the stages, kept from picture to picture. */
+    snow_sparse sparse; /* EA, IA, PA */
+    snow_sheet sheet;
+    snow_span *spans; /* of one row */
+    size_t spans_capacity;
+};
+
+/* What one picture is made from; lives as long as the call. */
+typedef struct snow_job {
+    snow_frame *frame;
+    snow_settings settings; /* with every AUTO resolved */
+    snow_placement placement;
+    snow_slab slab;
+    snow_classifier classifier;
+    snow_shader shader;
+    snow_strip strip;
+    snow_splatter splatter;
+    int channels;
+    float *pixels; /* the local image */
+} snow_job;
+
+snow_status snow_frame_new(snow_context *context, snow_frame **out) {
+    snow_frame *frame = snow_allocate_clear(context, sizeof *frame);
+    if (!frame)
+        return SNOW_NO_MEMORY;
+    frame->context = frame->sparse.context = context;
+    *out = frame;
+    return SNOW_OK;
+}
+
+void snow_frame_free(snow_frame *frame) {
+    if (!frame)
+        return;
+    snow_sparse_fini(&frame->sparse);
+    snow_release(frame->context, frame->sheet.pixels);
+    snow_release(frame->context, frame->spans);
+    snow_release(frame->context, frame);
+}
+
+const snow_stats *snow_frame_stats(const snow_frame *frame) {
+    return &frame->stats;
+}
+
+/* Adds the seconds since *mark to a total, and moves the mark. */
+static void lap(double *mark, double *total) {
+    double now = snow_seconds();
+    *total += now - *mark;
+    *mark = now;
+}
+
+/* Classifies and shades rows of a slice from `row` on into the job's strip. */
+static void classify_and_shade(snow_job *job, int64_t slice, int64_t row) {
+    snow_stats *stats = &job->frame->stats;
+    snow_strip *strip = &job->strip;
+    int64_t rows = job->placement.rows - row;
+    double mark = snow_seconds();
+    snow_classify_strip(&job->classifier, &job->placement, slice, row,
+                        rows < strip->room_rows ? rows : strip->room_rows,
+                        strip);
+    lap(&mark, &stats->seconds_classify);
+    if (job->settings.shade == SNOW_SHADE_PHONG)
+        snow_shade_strip(&job->shader, job->channels, strip);
+    lap(&mark, &stats->seconds_shade);
+}
+
+/* Measures density and runs on every 8th row of every 8th slice. */
+static snow_encoding choose_encoding(snow_job *job) {
+    const snow_placement *p = &job->placement;
+    uint64_t voxels = 0, interesting = 0, runs = 0;
+    for (int64_t slice = 0; slice < p->slices; slice += 8)
+        for (int64_t row = slice / 8 % 8; row < p->rows; row += 8) {
+            snow_classify_strip(&job->classifier, p, slice, row, 1,
+                                &job->strip);
+            voxels += (uint64_t)p->columns;
+            interesting += job->strip.count;
+            runs += snow_spans_of_columns(job->strip.columns, job->strip.count,
+                                          job->frame->spans);
+        }
+    return snow_encoding_choose(voxels, interesting, runs);
+}
+
+/* Lines 04 to 06: one slice into the sparse matrix. */
+static snow_status encode_slice(snow_job *job, int64_t slice) {
+    snow_sparse *sparse = &job->frame->sparse;
+    SNOW_TRY(snow_sparse_begin_slice(sparse));
+    for (int64_t row = 0; row < job->placement.rows;
+         row += job->strip.room_rows) {
+        classify_and_shade(job, slice, row);
+        double mark = snow_seconds();
+        SNOW_TRY(snow_sparse_add_strip(sparse, &job->strip));
+        lap(&mark, &job->frame->stats.seconds_encode);
+    }
+    return snow_sparse_end_slice(sparse);
+}
+
+/* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
+static void splat_encoded_slice(snow_job *job, int64_t slice) {
+    snow_walk walk;
+    snow_walk_begin(&walk, &job->frame->sparse, slice - job->slab.first);
+    for (int64_t row = 0; row < job->placement.rows; row++) {
+        const float *samples;
+        size_t count = snow_walk_row(&walk, job->frame->spans, &samples);
+        snow_splat_row(&job->splatter, &job->frame->sheet, row,
+                       job->frame->spans, count, samples);
+    }
+}
+
+/* The same without a sparse matrix, row by row out of the volume: original
+ * splatting, where the classifier keeps every voxel, and tested splatting. */
+static void splat_classified_slice(snow_job *job, int64_t slice) {
+    snow_strip *strip = &job->strip;
+    for (int64_t row = 0; row < job->placement.rows; row += strip->room_rows) {
+        classify_and_shade(job, slice, row);
+        double mark = snow_seconds();
+        size_t begin = 0;
+        for (int64_t n = 0; n < strip->rows; n++) {
+            size_t end = strip->row_end[n];
+            size_t spans = snow_spans_of_columns(
+                strip->columns + begin, end - begin, job->frame->spans);
+            snow_splat_row(&job->splatter, &job->frame->sheet, row + n,
+                           job->frame->spans, spans,
+                           strip->samples + begin * (size_t)job->channels);
+            begin = end;
+        }
+        lap(&mark, &job->frame->stats.seconds_splat);
+    }
+}
+
+/* The slab's n-th slice from the viewer. */
+static int64_t nth_slice(const snow_job *job, int64_t n) {
+    snow_slab slab = job->slab;
+    return slab.first + (job->placement.nearest_first ? n : slab.count - 1 - n);
+}
+
+/* Line 07, from front to back: the slab's slices onto the sheet, and each
+ * sheet into the local image. */
+static void splat_and_composite(snow_job *job) {
+    snow_stats *stats = &job->frame->stats;
+    for (int64_t n = 0; n < job->slab.count; n++) {
+        int64_t slice = nth_slice(job, n);
+        snow_splatter_begin_slice(&job->splatter, slice);
+        double mark = snow_seconds();
+        if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
+            splat_encoded_slice(job, slice);
+            lap(&mark, &stats->seconds_splat);
+        } else {
+            splat_classified_slice(job, slice);
+            mark = snow_seconds();
+        }
+        snow_composite_sheet(job->pixels, &job->frame->sheet);
+        lap(&mark, &stats->seconds_composite);
+    }
+}
+
+/* Classifier, shader, splatter and buffers for this volume, look and view. */
+static snow_status prepare(snow_job *job, const snow_volume *volume,
+                           const snow_transfer *transfer,
+                           const snow_view *view) {
+    snow_frame *frame = job->frame;
+    snow_context *context = frame->context;
+    snow_settings *settings = &job->settings;
+    const snow_placement *p = &job->placement;
+    SNOW_TRY(snow_settings_resolve(context, volume, settings));
+    SNOW_TRY(
+        snow_placement_make(context, &volume->info, view, &job->placement));
+    snow_classify_options options = {
+        .threshold = settings->threshold,
+        .opacity_exponent = p->path / settings->opacity_length,
+        .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
+        .premultiply = settings->shade == SNOW_SHADE_NONE,
+    };
+    job->channels = transfer->grey ? 2 : 4;
+    SNOW_TRY(snow_classifier_init(context, volume, transfer, &options,
+                                  &job->classifier));
+    /* Lines 02 and 03; normals are made for the voxels that are kept. */
+    SNOW_TRY(snow_shader_init(context, volume, p, settings, &job->shader));
+    SNOW_TRY(snow_strip_init(context, p, job->channels, &job->strip));
+    SNOW_TRY(snow_splatter_init(context, p, settings->kernel,
+                                settings->footprint, job->channels,
+                                &job->splatter));
+    SNOW_TRY(snow_sheet_begin(context, p->width, p->height, job->channels,
+                              &frame->sheet));
+    return snow_reserve(context, &frame->spans, &frame->spans_capacity, 0,
+                        ((size_t)p->columns / 2 + 1) * sizeof *frame->spans);
+}
+
+/* Lines 04 to 06 for the slab: the volume into the sparse matrix. */
+static snow_status encode_slab(snow_job *job) {
+    snow_settings *settings = &job->settings;
+    if (settings->encoding == SNOW_ENCODING_AUTO)
+        settings->encoding = choose_encoding(job);
+    SNOW_TRY(snow_sparse_begin(&job->frame->sparse,
+                               snow_scheme_of(settings->encoding),
+                               &job->placement, job->channels));
+    for (int64_t n = 0; n < job->slab.count; n++)
+        SNOW_TRY(encode_slice(job, job->slab.first + n));
+    return SNOW_OK;
+}
+
+static void finish(snow_job *job) {
+    snow_context *context = job->frame->context;
+    snow_splatter_fini(context, &job->splatter);
+    snow_strip_free(context, &job->strip);
+    snow_classifier_fini(context, &job->classifier);
+}
+
+/* What is known at the end beside the times.  Without a sparse matrix nothing
+ * holds the number of interesting voxels, and they are counted here. */
+static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
+                              const snow_transfer *transfer,
+                              snow_stats *stats) {
+    const snow_sparse *sparse = &job->frame->sparse;
+    const snow_placement *p = &job->placement;
+    stats->method = job->settings.method;
+    stats->footprint = job->settings.footprint;
+    stats->slice_axis = p->slice_axis;
+    stats->voxels = p->columns * p->rows * job->slab.count;
+    double voxels = (double)stats->voxels;
+    if (stats->method != SNOW_METHOD_FOOTPRINT) {
+        SNOW_TRY(snow_transfer_sparse_ratio(
+            transfer, volume, job->settings.threshold, &stats->sparse_ratio));
+        stats->interesting = llround(voxels * (1 - stats->sparse_ratio));
+        return SNOW_OK;
+    }
+    stats->encoding = job->settings.encoding;
+    stats->interesting = (int64_t)sparse->ia_voxels;
+    stats->sparse_ratio =
+        voxels > 0 ? 1 - (double)sparse->ia_voxels / voxels : 1;
+    stats->ea_bytes = sparse->ea_bytes;
+    stats->ia_bytes =
+        sparse->ia_voxels * (size_t)sparse->channels * sizeof *sparse->ia;
+    stats->pa_bytes = (uint64_t)(sparse->filled + 1) * sizeof *sparse->pa;
+    return SNOW_OK;
+}
+
+/* Figure 8, lines 01 to 13, for a job whose stages are ready. */
+static snow_status render_slab(snow_job *job, int parts, int part) {
+    /* 01 */ job->slab = snow_slab_equal(job->placement.slices, parts, part);
+    if (job->settings.method == SNOW_METHOD_FOOTPRINT)
+        /* 04 - 06 */ SNOW_TRY(encode_slab(job));
+    /* 07 - 13 */ splat_and_composite(job);
+    return SNOW_OK;
+}
+
+snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
+                                   const snow_transfer *transfer,
+                                   const snow_view *view,
+                                   const snow_settings *settings, int parts,
+                                   int part, snow_image **out) {
+    double start = snow_seconds();
+    snow_job job = {.frame = frame, .settings = *settings};
+    snow_image *image = NULL;
+    frame->stats = (snow_stats){0};
+    /* 02 - 03 */ snow_status status = prepare(&job, volume, transfer, view);
+    if (status == SNOW_OK)
+        status = snow_image_new(frame->context, view->width, view->height,
+                                job.channels, &image);
+    if (status == SNOW_OK) {
+        job.pixels = snow_image_pixels(image);
+        status = render_slab(&job, parts, part);
+        frame->stats.seconds_frame = snow_seconds() - start;
+    }
+    if (status == SNOW_OK)
+        status = fill_stats(&job, volume, transfer, &frame->stats);
+    finish(&job);
+    if (status == SNOW_OK)
+        *out = image;
+    else
+        snow_image_free(image);
+    return status;
+}
+
+snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
+                              const snow_transfer *transfer,
+                              const snow_view *view,
+                              const snow_settings *settings,
+                              snow_image **image) {
+    snow_image *local;
+    SNOW_TRY(snow_frame_render_slab(frame, volume, transfer, view, settings, 1,
+                                    0, &local));
+    /* 14 - 18: one processor has no partner; its local image is the picture. */
+    float *pixels = snow_image_pixels(local);
+    snow_combine_tree(&pixels, 1, (size_t)view->width * (size_t)view->height,
+                      snow_image_channels(local));
+    /* 19 - 20 */ *image = local;
+    return SNOW_OK;
+}

@@ -1,0 +1,25 @@
+/* frame.h - what the top of the library shares: settings made definite, and
+ * rendering one processor's part. */
+#ifndef SNOW_FRAME_H
+#define SNOW_FRAME_H
+
+#include "base/base.h"
+
+#include <snowglass/render.h>
+
+/* Checks every setting and replaces what is 0 or AUTO by what is meant for
+ * this volume, but for the encoding, which is measured later.
+ * Errors: SNOW_BAD_USAGE with the setting's name and range. */
+snow_status snow_settings_resolve(snow_context *context,
+                                  const snow_volume *volume,
+                                  snow_settings *settings);
+
+/* Renders the slab `part` of `parts` (decompose/slab.h), in the place where it
+ * lies in the whole picture: the local image of one processor. */
+snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
+                                   const snow_transfer *transfer,
+                                   const snow_view *view,
+                                   const snow_settings *settings, int parts,
+                                   int part, snow_image **out);
+
+#endif

@@ -1,0 +1,122 @@
+/* settings.c - the settings of a picture: defaults, names, ranges. */
+#include "frame.h"
+#include "splat/kernel.h"
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const methods[] = {
+    [SNOW_METHOD_AUTO] = "auto",
+    [SNOW_METHOD_ORIGINAL] = "original",
+    [SNOW_METHOD_TESTED] = "tested",
+    [SNOW_METHOD_FOOTPRINT] = "footprint",
+};
+
+static const char *const encodings[] = {
+    [SNOW_ENCODING_AUTO] = "auto",
+    [SNOW_ENCODING_CRS] = "crs",
+    [SNOW_ENCODING_BITMAP] = "bitmap",
+    [SNOW_ENCODING_RLE] = "rle",
+};
+
+#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
+
+/* The index of a name, or -1. */
+static int find_name(const char *const *names, int count, const char *name) {
+    for (int i = 0; i < count; i++)
+        if (strcmp(name, names[i]) == 0)
+            return i;
+    return -1;
+}
+
+const char *snow_method_name(snow_method method) {
+    return methods[method];
+}
+
+const char *snow_encoding_name(snow_encoding encoding) {
+    return encodings[encoding];
+}
+
+int snow_method_named(const char *name) {
+    return find_name(methods, COUNT(methods), name);
+}
+
+int snow_encoding_named(const char *name) {
+    return find_name(encodings, COUNT(encodings), name);
+}
+
+void snow_settings_init(snow_settings *settings) {
+    *settings = (snow_settings){
+        .size = sizeof *settings,
+        .ambient = 0.2,
+        .diffuse = 0.7,
+        .specular = 0.2,
+        .shininess = 20,
+    };
+}
+
+/* Refuses a number outside of [low, high], or not a number. */
+static snow_status check_range(snow_context *context, const char *name,
+                               double value, double low, double high) {
+    if (value >= low && value <= high)
+        return SNOW_OK;
+    return snow_fail(context, SNOW_BAD_USAGE,
+                     "%s is %g; take a number from %g to %g", name, value, low,
+                     high);
+}
+
+static snow_status check_choice(snow_context *context, const char *name,
+                                int value, int count) {
+    if (value >= 0 && value < count)
+        return SNOW_OK;
+    return snow_fail(context, SNOW_BAD_USAGE,
+                     "%s is %d, which is none of its values", name, value);
+}
+
+/* A footprint of 0 stands for the kernel's own, which is in range. */
+static snow_status check_numbers(snow_context *context,
+                                 const snow_settings *s) {
+    const struct {
+        const char *name;
+        double value, low, high;
+    } numbers[] = {
+        {"threshold", s->threshold, 0, 255},
+        {"footprint", s->footprint ? s->footprint : 2, 2, SNOW_FOOTPRINT_MOST},
+        {"ambient", s->ambient, 0, 1},
+        {"diffuse", s->diffuse, 0, 1},
+        {"specular", s->specular, 0, 1},
+        {"shininess", s->shininess, 0, 1e6},
+        {"light azimuth", s->light_azimuth, -1e6, 1e6},
+        {"light elevation", s->light_elevation, -1e6, 1e6},
+        {"opacity length", s->opacity_length, 0, 1e300},
+    };
+    for (int i = 0; i < COUNT(numbers); i++)
+        SNOW_TRY(check_range(context, numbers[i].name, numbers[i].value,
+                             numbers[i].low, numbers[i].high));
+    return SNOW_OK;
+}
+
+snow_status snow_settings_resolve(snow_context *context,
+                                  const snow_volume *volume, snow_settings *s) {
+    if (s->size != sizeof *s)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "settings are of another version; fill them with "
+                         "snow_settings_init");
+    SNOW_TRY(check_choice(context, "method", (int)s->method, COUNT(methods)));
+    SNOW_TRY(
+        check_choice(context, "encoding", (int)s->encoding, COUNT(encodings)));
+    SNOW_TRY(
+        check_choice(context, "kernel", (int)s->kernel, SNOW_KERNEL_BOX + 1));
+    SNOW_TRY(
+        check_choice(context, "shade", (int)s->shade, SNOW_SHADE_NONE + 1));
+    SNOW_TRY(check_numbers(context, s));
+    if (s->method == SNOW_METHOD_AUTO)
+        s->method = SNOW_METHOD_FOOTPRINT;
+    if (s->footprint == 0)
+        s->footprint = snow_kernel_default_support(s->kernel);
+    const double *spacing = volume->info.spacing;
+    if (s->opacity_length == 0)
+        s->opacity_length = fmin(spacing[0], fmin(spacing[1], spacing[2]));
+    return SNOW_OK;
+}

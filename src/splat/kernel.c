@@ -1,0 +1,147 @@
+/* splat/kernel.c - the kernels of splat/kernel.h, in double, and their tables.
+ */
+#include "splat/kernel.h"
+
+#include <math.h>
+#include <string.h>
+
+#define EDGE 1e-5 /* distances that count as on an edge, voxels */
+#define CELLS_PER_VOXEL 256
+#define MARGIN_CELLS 2 /* empty cells on either side of a table */
+
+/* The centred B-spline of order K (degree K - 1), by de Boor's recursion over
+ * the K+1 knots -K/2 .. K/2. */
+static double bspline(int order, double t) {
+    double x = t + order / 2.0; /* knots at 0 .. K */
+    double basis[SNOW_FOOTPRINT_MOST];
+    for (int i = 0; i < order; i++)
+        basis[i] = x >= i && x < i + 1 ? 1 : 0;
+    for (int k = 2; k <= order; k++)
+        for (int i = 0; i + k <= order; i++)
+            basis[i] =
+                ((x - i) * basis[i] + (i + k - x) * basis[i + 1]) / (k - 1);
+    return basis[0];
+}
+
+static double tent(int support, double t) {
+    return fmax(0, 1 - 2 * fabs(t) / support);
+}
+
+static double gauss(int support, double t) {
+    double sigma = support / 8.0;
+    return exp(-t * t / (2 * sigma * sigma));
+}
+
+static double box(int support, double t) {
+    (void)support;
+    (void)t;
+    return 1;
+}
+
+static const struct kernel_entry {
+    const char *name;
+    double (*value)(int support, double t); /* inside the support */
+    int default_support;
+} kernels[] = {
+    [SNOW_KERNEL_BSPLINE] = {"bspline", bspline, 4},
+    [SNOW_KERNEL_TENT] = {"tent", tent, 2},
+    [SNOW_KERNEL_GAUSS] = {"gauss", gauss, 4},
+    [SNOW_KERNEL_BOX] = {"box", box, 2},
+};
+
+#define KERNEL_COUNT (int)(sizeof kernels / sizeof kernels[0])
+
+const char *snow_kernel_name(snow_kernel kernel) {
+    return kernels[kernel].name;
+}
+
+int snow_kernel_named(const char *name) {
+    for (int i = 0; i < KERNEL_COUNT; i++)
+        if (strcmp(name, kernels[i].name) == 0)
+            return i;
+    return -1;
+}
+
+int snow_kernel_default_support(snow_kernel kernel) {
+    return kernels[kernel].default_support;
+}
+
+static double variance_of(snow_kernel kernel, double support) {
+    switch (kernel) {
+    case SNOW_KERNEL_TENT:
+        return support * support / 24;
+    case SNOW_KERNEL_GAUSS:
+        return support * support / 64;
+    case SNOW_KERNEL_BOX:
+        return support * support / 12;
+    default:
+        return support / 12;
+    }
+}
+
+snow_taper snow_taper_make(snow_kernel kernel, int support, double rho) {
+    double variance = variance_of(kernel, support);
+    double wide = sqrt(1 + fmax(0, rho * rho - 1) / (12 * variance));
+    return (snow_taper){kernel, support, wide * support / 2, wide};
+}
+
+bool snow_taper_covers(const snow_taper *taper, double t) {
+    return t >= -taper->half - EDGE && t < taper->half - EDGE;
+}
+
+double snow_taper_reach(const snow_taper *taper) {
+    return taper->half + 2 * EDGE;
+}
+
+/* b(t / w), 0 outside of the support. */
+static double value_at(const snow_taper *taper, double t) {
+    if (!snow_taper_covers(taper, t))
+        return 0;
+    return kernels[taper->kernel].value(taper->support, t / taper->wide);
+}
+
+double snow_taper_weight(const snow_taper *taper, double t) {
+    double value = value_at(taper, t), sum = 0;
+    if (value <= 0)
+        return 0;
+    double first = ceil(-taper->half - EDGE - t);
+    for (double n = first; t + n < taper->half - EDGE; n++)
+        sum += value_at(taper, t + n);
+    return value / sum;
+}
+
+float snow_taper_box(const snow_taper *taper, double t) {
+    double from_left = t + taper->half + EDGE, width = 2 * taper->half;
+    if (from_left < 0 || from_left >= width)
+        return 0;
+    /* Shifted copies of the point begin at its fraction and end at width. */
+    double fraction = from_left - floor(from_left);
+    return (float)(1 / ceil(width - fraction));
+}
+
+snow_status snow_taper_table_make(snow_context *context,
+                                  const snow_taper *taper,
+                                  snow_taper_table *out) {
+    /* A wide kernel is smooth: fewer cells per voxel serve it as well. */
+    double fine = fmax(CELLS_PER_VOXEL / taper->wide, 32);
+    size_t cells = 2 * (size_t)ceil(taper->half * fine);
+    double scale = (double)cells / (2 * taper->half);
+    size_t all = cells + 2 * MARGIN_CELLS;
+    snow_taper_cell *table = snow_allocate_array(context, all, sizeof *table);
+    if (!table)
+        return SNOW_NO_MEMORY;
+    memset(table, 0, all * sizeof *table);
+    /* A little inside the ends, where a half-open kernel has its values. */
+    double inside = taper->half - 2 * EDGE, weight = 0;
+    for (size_t c = 0; c <= cells; c++) {
+        double t = (double)c / scale - taper->half;
+        double next = snow_taper_weight(taper, fmin(fmax(t, -inside), inside));
+        if (c > 0)
+            table[MARGIN_CELLS + c - 1] =
+                (snow_taper_cell){(float)weight, (float)(next - weight)};
+        weight = next;
+    }
+    *out = (snow_taper_table){
+        table, (float)(taper->half + MARGIN_CELLS / scale), (float)scale};
+    return SNOW_OK;
+}

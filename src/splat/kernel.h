@@ -1,0 +1,82 @@
+/* splat/kernel.h - reconstruction kernels along one grid axis (model, point 7).
+ *
+ * A kernel b has a support of K voxels.  Where a pixel is wider than a voxel
+ * it is widened by a factor w (anti-aliasing after Swan et al. 1997):
+ *
+ *   w = sqrt(1 + max(0, rho^2 - 1) / (12 V))
+ *
+ * with V the kernel's variance and rho the pixel's extent along the axis in
+ * voxels.  The weight of a voxel at distance t is b(t / w), divided by its sum
+ * over all integer shifts of t: weights add up to 1 anywhere inside.
+ *
+ *   name     b(t), |t| <= K/2             V        default K
+ *   bspline  B-spline of order K          K / 12   4 (cubic)
+ *   tent     1 - 2 |t| / K                K^2/24   2
+ *   gauss    exp(-t^2 / 2 s^2), s = K/8   K^2/64   4
+ *   box      1                            K^2/12   2
+ *
+ * The support is half open: distances within 1e-5 of an edge count as on it,
+ * so that rounding does not decide at grid-aligned views. */
+#ifndef SNOW_KERNEL_H
+#define SNOW_KERNEL_H
+
+#include "base/base.h"
+
+#include <snowglass/render.h>
+
+#define SNOW_FOOTPRINT_MOST 9
+
+/* A kernel of one view and grid axis. */
+typedef struct snow_taper {
+    snow_kernel kernel;
+    int support; /* K, voxels */
+    double half; /* w K / 2: half the widened support, voxels */
+    double wide; /* w */
+} snow_taper;
+
+/* The support that a kernel has when none is asked for. */
+int snow_kernel_default_support(snow_kernel kernel);
+
+/* A kernel for pixels that are `rho` voxels wide along the axis. */
+snow_taper snow_taper_make(snow_kernel kernel, int support, double rho);
+
+/* Whether distance t (voxels) lies in the half-open support, and a distance
+ * beyond which none does. */
+bool snow_taper_covers(const snow_taper *taper, double t);
+double snow_taper_reach(const snow_taper *taper);
+
+/* The weight of a voxel at distance t, in double: the definition. */
+double snow_taper_weight(const snow_taper *taper, double t);
+
+/* The weight as a table: cell c spans the distances from c / scale - shift and
+ * holds the weight at its beginning and the rise to its end.  Smooth kernels
+ * are met to about 1e-5 of their peak, and kinks at 0 and at the ends fall
+ * between cells.  Not for the box, which jumps. */
+typedef struct snow_taper_cell {
+    float weight, rise;
+} snow_taper_cell;
+
+typedef struct snow_taper_table {
+    snow_taper_cell *cells;
+    float shift; /* half the support and a margin of empty cells, voxels */
+    float scale; /* cells per voxel */
+} snow_taper_table;
+
+/* Errors: SNOW_NO_MEMORY.  Free with snow_release(context, table->cells). */
+snow_status snow_taper_table_make(snow_context *context,
+                                  const snow_taper *taper,
+                                  snow_taper_table *out);
+
+/* The weight at t by the table; |t| may pass the support by a few EDGE. */
+static inline float snow_taper_look_up(const snow_taper_table *table, float t) {
+    float place = (t + table->shift) * table->scale;
+    int cell = (int)place;
+    snow_taper_cell c = table->cells[cell];
+    return c.weight + (place - (float)cell) * c.rise;
+}
+
+/* The weight of a box in closed form: one over the number of voxels whose
+ * support holds the point. */
+float snow_taper_box(const snow_taper *taper, double t);
+
+#endif

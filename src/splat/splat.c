@@ -1,0 +1,188 @@
+/* splat/splat.c - the footprints of one view (figure 2 of the paper), and the
+ * sheet that they fall on. */
+#include "splat/splat.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SPLAT_CHANNELS 2
+#define SPLAT_ROW aligned_grey
+#define SPLAT_STAMP stamp_grey
+#include "splat/aligned.tmpl.h"
+
+#define SPLAT_CHANNELS 4
+#define SPLAT_ROW aligned_rgba
+#define SPLAT_STAMP stamp_rgba
+#include "splat/aligned.tmpl.h"
+
+static inline float table_weight(const snow_splatter *splatter, float u,
+                                 float v) {
+    return snow_taper_look_up(&splatter->table_u, u) *
+           snow_taper_look_up(&splatter->table_v, v);
+}
+
+static inline float box_weight(const snow_splatter *splatter, float u,
+                               float v) {
+    return snow_taper_box(&splatter->along_u, (double)u) *
+           snow_taper_box(&splatter->along_v, (double)v);
+}
+
+#define SPLAT_CHANNELS 2
+#define SPLAT_WEIGHT table_weight
+#define SPLAT_ROW oblique_grey
+#define SPLAT_THROW throw_grey
+#include "splat/oblique.tmpl.h"
+
+#define SPLAT_CHANNELS 4
+#define SPLAT_WEIGHT table_weight
+#define SPLAT_ROW oblique_rgba
+#define SPLAT_THROW throw_rgba
+#include "splat/oblique.tmpl.h"
+
+#define SPLAT_CHANNELS 2
+#define SPLAT_WEIGHT box_weight
+#define SPLAT_ROW oblique_box_grey
+#define SPLAT_THROW throw_box_grey
+#include "splat/oblique.tmpl.h"
+
+#define SPLAT_CHANNELS 4
+#define SPLAT_WEIGHT box_weight
+#define SPLAT_ROW oblique_box_rgba
+#define SPLAT_THROW throw_box_rgba
+#include "splat/oblique.tmpl.h"
+
+/* Pixels by which the far end of a slice may be off its image axis in a view
+ * that counts as aligned. */
+#define ALIGNED 1e-6
+
+/* Pixels to the right per voxel below which an axis counts as upright. */
+#define UPRIGHT 1e-9
+
+/* Whether steps along u move along one image axis only, and along v along the
+ * other: u along `axis` (0 x, 1 y). */
+static bool lies_along(const snow_placement *p, int axis) {
+    return fabs(p->step_u[1 - axis]) * (double)p->columns +
+               fabs(p->step_v[axis]) * (double)p->rows <
+           ALIGNED;
+}
+
+static snow_oblique_axis oblique_axis(const double inverse[2],
+                                      const snow_taper *taper) {
+    snow_oblique_axis axis = {inverse[0], inverse[1], 0, INFINITY};
+    if (fabs(axis.step) > UPRIGHT) {
+        axis.lean = -axis.rise / axis.step;
+        axis.extent = snow_taper_reach(taper) / fabs(axis.step);
+    }
+    return axis;
+}
+
+static snow_status init_aligned(snow_context *context, int channels,
+                                snow_splatter *s) {
+    const snow_placement *p = s->placement;
+    int across = s->transposed ? p->height : p->width;
+    int down = s->transposed ? p->width : p->height;
+    s->splat_row = channels == 2 ? aligned_grey : aligned_rgba;
+    SNOW_TRY(
+        snow_taps_init(context, &s->along_u, p->columns, across, &s->taps_u));
+    return snow_taps_init(context, &s->along_v, p->rows, down, &s->taps_v);
+}
+
+static snow_status init_oblique(snow_context *context, int channels,
+                                snow_splatter *s) {
+    const snow_placement *p = s->placement;
+    s->oblique_u = oblique_axis(p->inverse[0], &s->along_u);
+    s->oblique_v = oblique_axis(p->inverse[1], &s->along_v);
+    if (s->along_u.kernel == SNOW_KERNEL_BOX) {
+        s->splat_row = channels == 2 ? oblique_box_grey : oblique_box_rgba;
+        return SNOW_OK;
+    }
+    s->splat_row = channels == 2 ? oblique_grey : oblique_rgba;
+    SNOW_TRY(snow_taper_table_make(context, &s->along_u, &s->table_u));
+    return snow_taper_table_make(context, &s->along_v, &s->table_v);
+}
+
+snow_status snow_splatter_init(snow_context *context, const snow_placement *p,
+                               snow_kernel kernel, int support, int channels,
+                               snow_splatter *out) {
+    snow_splatter s = {.placement = p};
+    s.along_u = snow_taper_make(kernel, support,
+                                hypot(p->inverse[0][0], p->inverse[0][1]));
+    s.along_v = snow_taper_make(kernel, support,
+                                hypot(p->inverse[1][0], p->inverse[1][1]));
+    for (int i = 0; i < 2; i++)
+        s.reach[i] = fabs(p->step_u[i]) * snow_taper_reach(&s.along_u) +
+                     fabs(p->step_v[i]) * snow_taper_reach(&s.along_v);
+    s.transposed = lies_along(p, 1);
+    bool aligned = s.transposed || lies_along(p, 0);
+    snow_status status = aligned ? init_aligned(context, channels, &s)
+                                 : init_oblique(context, channels, &s);
+    if (status != SNOW_OK)
+        snow_splatter_fini(context, &s);
+    else
+        *out = s;
+    return status;
+}
+
+void snow_splatter_fini(snow_context *context, snow_splatter *s) {
+    snow_taps_fini(context, &s->taps_u);
+    snow_taps_fini(context, &s->taps_v);
+    snow_release(context, s->table_u.cells);
+    snow_release(context, s->table_v.cells);
+    *s = (snow_splatter){0};
+}
+
+void snow_splatter_begin_slice(snow_splatter *s, int64_t slice) {
+    const snow_placement *p = s->placement;
+    for (int i = 0; i < 2; i++)
+        s->origin[i] = p->origin[i] + (double)slice * p->step_slice[i];
+    if (!s->taps_u.count)
+        return;
+    int u = s->transposed ? 1 : 0, v = 1 - u;
+    const int pixels[2] = {p->width, p->height};
+    snow_taps_place(&s->taps_u, &s->along_u, p->columns, pixels[u],
+                    s->origin[u], p->step_u[u]);
+    snow_taps_place(&s->taps_v, &s->along_v, p->rows, pixels[v], s->origin[v],
+                    p->step_v[v]);
+}
+
+/* Marks the pixels that a voxel of the current slice can reach. */
+static void mark_voxel(const snow_splatter *s, snow_sheet *sheet,
+                       int64_t column, int64_t row) {
+    const snow_placement *p = s->placement;
+    double at[2];
+    for (int i = 0; i < 2; i++)
+        at[i] = s->origin[i] + (double)column * p->step_u[i] +
+                (double)row * p->step_v[i];
+    int x0 = snow_first_pixel(at[0] - s->reach[0], sheet->width);
+    int y0 = snow_first_pixel(at[1] - s->reach[1], sheet->height);
+    int x1 = snow_last_pixel(at[0] + s->reach[0], sheet->width) + 1;
+    int y1 = snow_last_pixel(at[1] + s->reach[1], sheet->height) + 1;
+    sheet->x0 = x0 < sheet->x0 ? x0 : sheet->x0;
+    sheet->y0 = y0 < sheet->y0 ? y0 : sheet->y0;
+    sheet->x1 = x1 > sheet->x1 ? x1 : sheet->x1;
+    sheet->y1 = y1 > sheet->y1 ? y1 : sheet->y1;
+}
+
+void snow_splat_row(const snow_splatter *s, snow_sheet *sheet, int64_t row,
+                    const snow_span *spans, size_t count,
+                    const float *samples) {
+    if (!count)
+        return;
+    snow_span last = spans[count - 1];
+    mark_voxel(s, sheet, spans[0].column, row);
+    mark_voxel(s, sheet, (int64_t)last.column + last.length - 1, row);
+    s->splat_row(s, sheet, row, spans, count, samples);
+}
+
+snow_status snow_sheet_begin(snow_context *context, int width, int height,
+                             int channels, snow_sheet *sheet) {
+    size_t bytes = (size_t)width * (size_t)height * (size_t)channels *
+                   sizeof *sheet->pixels;
+    SNOW_TRY(snow_reserve(context, &sheet->pixels, &sheet->capacity, 0, bytes));
+    memset(sheet->pixels, 0, bytes);
+    sheet->width = width;
+    sheet->height = height;
+    sheet->channels = channels;
+    snow_sheet_unmark(sheet);
+    return SNOW_OK;
+}

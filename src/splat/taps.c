@@ -1,0 +1,77 @@
+/* splat/taps.c - footprint tables along one image axis; see splat/taps.h. */
+#include "splat/taps.h"
+
+#include <math.h>
+
+/* Pixels by which an origin may move before the weights are made anew. */
+#define SAME_PLACE 1e-9
+
+int snow_first_pixel(double from, int pixels) {
+    double first = ceil(from - 0.5);
+    return first < 0 ? 0 : first < pixels ? (int)first : pixels;
+}
+
+int snow_last_pixel(double to, int pixels) {
+    double last = floor(to - 0.5);
+    return last < 0 ? -1 : last < pixels ? (int)last : pixels - 1;
+}
+
+snow_status snow_taps_init(snow_context *context, const snow_taper *taper,
+                           int64_t voxels, int pixels, snow_taps *out) {
+    /* A pixel is reached by at most this many voxels. */
+    uint64_t reached = (uint64_t)ceil(2 * taper->half) + 1, count;
+    count = (uint64_t)voxels;
+    snow_taps taps = {.origin = NAN};
+    taps.first = snow_allocate_array(context, count, sizeof *taps.first);
+    taps.count = snow_allocate_array(context, count, sizeof *taps.count);
+    taps.offset = snow_allocate_array(context, count, sizeof *taps.offset);
+    taps.weights = snow_allocate_array(context, (uint64_t)pixels * reached,
+                                       sizeof *taps.weights);
+    if (!taps.first || !taps.count || !taps.offset || !taps.weights) {
+        snow_taps_fini(context, &taps);
+        return SNOW_NO_MEMORY;
+    }
+    *out = taps;
+    return SNOW_OK;
+}
+
+void snow_taps_fini(snow_context *context, snow_taps *taps) {
+    snow_release(context, taps->first);
+    snow_release(context, taps->count);
+    snow_release(context, taps->offset);
+    snow_release(context, taps->weights);
+    *taps = (snow_taps){.origin = NAN};
+}
+
+/* Fills the run of one voxel at `centre`; returns its number of pixels. */
+static int fill_run(const snow_taper *taper, int pixels, double centre,
+                    double step, int *first, float *weights) {
+    double reach = snow_taper_reach(taper) * fabs(step);
+    int last = snow_last_pixel(centre + reach, pixels), count = 0;
+    *first = snow_first_pixel(centre - reach, pixels);
+    for (int pixel = *first; pixel <= last; pixel++) {
+        double t = (pixel + 0.5 - centre) / step;
+        if (snow_taper_covers(taper, t))
+            weights[count++] = (float)snow_taper_weight(taper, t);
+        else if (!count)
+            (*first)++;
+    }
+    return count;
+}
+
+void snow_taps_place(snow_taps *taps, const snow_taper *taper, int64_t voxels,
+                     int pixels, double origin, double step) {
+    if (fabs(origin - taps->origin) < SAME_PLACE)
+        return;
+    uint32_t offset = 0;
+    for (int64_t n = 0; n < voxels; n++) {
+        int first;
+        int count = fill_run(taper, pixels, origin + (double)n * step, step,
+                             &first, taps->weights + offset);
+        taps->first[n] = first;
+        taps->count[n] = count;
+        taps->offset[n] = offset;
+        offset += (uint32_t)count;
+    }
+    taps->origin = origin;
+}

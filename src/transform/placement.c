@@ -1,0 +1,157 @@
+/* transform/placement.c - a volume before the camera: the slice axis, the
+ * order of slices, and the affine map from voxels to pixels. */
+#include "base/vec3.h"
+#include "transform/transform.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Two axes whose cosines differ by less are equally good. */
+#define AXIS_TIE 1e-6
+
+/* Column `axis` of the matrix: the world step from one voxel to the next. */
+static void step_of(const snow_volume_info *info, int axis, double step[3]) {
+    for (int i = 0; i < 3; i++)
+        step[i] = info->matrix[i][axis];
+}
+
+double snow_volume_radius(const snow_volume_info *info) {
+    double farthest = 0;
+    for (int corner = 0; corner < 4; corner++) {
+        double sum[3] = {0, 0, 0};
+        for (int axis = 0; axis < 3; axis++) {
+            double half = (double)info->dims[axis] / 2;
+            double sign = corner >> axis & 1 ? -half : half;
+            for (int i = 0; i < 3; i++)
+                sum[i] += sign * info->matrix[i][axis];
+        }
+        farthest = fmax(farthest, snow_length(sum));
+    }
+    return farthest;
+}
+
+/* The unit normal of the slices along `axis`. */
+static void slice_normal(const snow_volume_info *info, int axis,
+                         double normal[3]) {
+    double a[3], b[3];
+    step_of(info, (axis + 1) % 3, a);
+    step_of(info, (axis + 2) % 3, b);
+    snow_cross(a, b, normal);
+    snow_normalize(normal);
+}
+
+/* Chooses the slice axis; the cosine between its normal and the line of sight
+ * is positive in size. */
+static void choose_axis(const snow_volume_info *info, snow_placement *p) {
+    double best = -1;
+    for (int axis = 2; axis >= 0; axis--) {
+        double normal[3];
+        slice_normal(info, axis, normal);
+        double cosine = fabs(snow_dot(normal, p->back));
+        if (cosine > best + AXIS_TIE) {
+            best = cosine;
+            p->slice_axis = axis;
+        }
+    }
+    p->u_axis = p->slice_axis == 0 ? 1 : 0;
+    p->v_axis = p->slice_axis == 2 ? 1 : 2;
+    p->columns = info->dims[p->u_axis];
+    p->rows = info->dims[p->v_axis];
+    p->slices = info->dims[p->slice_axis];
+}
+
+/* The ray's length between two slice planes, and which side is near. */
+static void measure_path(const snow_volume_info *info, snow_placement *p) {
+    double normal[3], step[3];
+    slice_normal(info, p->slice_axis, normal);
+    step_of(info, p->slice_axis, step);
+    double distance = snow_dot(normal, step);
+    double cosine = snow_dot(normal, p->back);
+    p->path = fabs(distance / cosine);
+    p->nearest_first = distance * cosine < 0;
+}
+
+/* Maps a world step to pixels. */
+static void to_pixels(const snow_placement *p, const double step[3],
+                      double pitch, double pixels[2]) {
+    pixels[0] = snow_dot(step, p->right) / pitch;
+    pixels[1] = -snow_dot(step, p->up) / pitch;
+}
+
+static void place_slices(const snow_volume_info *info, const snow_view *view,
+                         snow_placement *p) {
+    double pitch = 2 * snow_volume_radius(info) /
+                   (view->zoom * fmin(view->width, view->height));
+    double *steps[3];
+    steps[p->u_axis] = p->step_u;
+    steps[p->v_axis] = p->step_v;
+    steps[p->slice_axis] = p->step_slice;
+    /* The target, the middle of the boxes, falls on the image's middle. */
+    p->origin[0] = view->width / 2.0;
+    p->origin[1] = view->height / 2.0;
+    for (int axis = 0; axis < 3; axis++) {
+        double step[3];
+        step_of(info, axis, step);
+        to_pixels(p, step, pitch, steps[axis]);
+        for (int i = 0; i < 2; i++)
+            p->origin[i] -= steps[axis][i] * ((double)info->dims[axis] - 1) / 2;
+    }
+}
+
+static bool invert_slice_map(snow_placement *p) {
+    double determinant =
+        p->step_u[0] * p->step_v[1] - p->step_v[0] * p->step_u[1];
+    if (!(fabs(determinant) > 0) || !isfinite(1 / determinant))
+        return false;
+    p->inverse[0][0] = p->step_v[1] / determinant;
+    p->inverse[0][1] = -p->step_v[0] / determinant;
+    p->inverse[1][0] = -p->step_u[1] / determinant;
+    p->inverse[1][1] = p->step_u[0] / determinant;
+    return true;
+}
+
+static snow_status check_view(snow_context *context, const snow_view *view) {
+    if (view->width < 1 || view->width > 32768 || view->height < 1 ||
+        view->height > 32768)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "an image of %dx%d pixels is not possible; take 1 to "
+                         "32768 a side",
+                         view->width, view->height);
+    if (!(view->zoom > 0) || !isfinite(view->zoom))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "zoom is %g; take a number above 0", view->zoom);
+    if (!isfinite(view->azimuth) || !isfinite(view->elevation) ||
+        !isfinite(view->roll))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a camera angle is not a finite number");
+    if (fabs(snow_length(view->back) - 1) > 1e-6 ||
+        fabs(snow_length(view->up) - 1) > 1e-6 ||
+        fabs(snow_dot(view->back, view->up)) > 1e-6)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "back and up must be unit vectors at right angles; "
+                         "begin with snow_view_named");
+    return SNOW_OK;
+}
+
+snow_status snow_placement_make(snow_context *context,
+                                const snow_volume_info *info,
+                                const snow_view *view, snow_placement *out) {
+    SNOW_TRY(check_view(context, view));
+    snow_placement p = {.width = view->width, .height = view->height};
+    memcpy(p.back, view->back, sizeof p.back);
+    memcpy(p.up, view->up, sizeof p.up);
+    snow_cross(p.up, p.back, p.right);
+    snow_frame_turn(p.right, p.up, p.back, view->azimuth, view->elevation,
+                    view->roll);
+    choose_axis(info, &p);
+    measure_path(info, &p);
+    place_slices(info, view, &p);
+    if (!isfinite(p.path) || !isfinite(p.origin[0]) || !isfinite(p.origin[1]) ||
+        !invert_slice_map(&p))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "the volume's geometry is too flat or too large to be "
+                         "seen at zoom %g",
+                         view->zoom);
+    *out = p;
+    return SNOW_OK;
+}

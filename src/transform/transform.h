@@ -1,0 +1,50 @@
+/* transform/transform.h - the transformation stage (T in figure 7): where the
+ * camera stands, which slices the volume is cut into, and where a slice's
+ * voxels fall in the picture.
+ *
+ * Parallel projection is affine: voxel (u, v) of slice k has its centre at
+ *
+ *   (x, y) = origin + u * step_u + v * step_v + k * step_slice
+ *
+ * in pixels, x to the right, y down, the first pixel's centre at (1/2, 1/2). */
+#ifndef SNOW_TRANSFORM_H
+#define SNOW_TRANSFORM_H
+
+#include "base/base.h"
+
+#include <snowglass/view.h>
+
+typedef struct snow_placement {
+    /* The camera as a right-handed frame of unit vectors in the world. */
+    double right[3], up[3], back[3];
+
+    int width, height; /* image, pixels */
+
+    /* How the volume is cut: u runs along a slice's rows, v across them. */
+    int slice_axis, u_axis, v_axis; /* 0 x, 1 y, 2 z */
+    int64_t columns, rows, slices;
+    bool nearest_first; /* slice 0 is the nearest to the viewer */
+
+    double origin[2], step_u[2], step_v[2], step_slice[2]; /* pixels */
+    double inverse[2][2]; /* pixels to (u, v): the inverse of step_u, step_v */
+
+    double path; /* world length of a ray between two slice planes */
+} snow_placement;
+
+/* Places a volume before a camera (model, points 2, 5 and 6).  The slice axis
+ * is the one whose slice normal is most parallel to the line of sight; within
+ * 1e-6, z before y before x.  Errors: SNOW_BAD_USAGE. */
+snow_status snow_placement_make(snow_context *context,
+                                const snow_volume_info *info,
+                                const snow_view *view, snow_placement *out);
+
+/* Turns a frame of unit vectors: azimuth about up, then elevation about the
+ * new right, then roll about the line of sight; degrees, as VTK's camera. */
+void snow_frame_turn(double right[3], double up[3], double back[3],
+                     double azimuth, double elevation, double roll);
+
+/* World distance from the middle of the voxel boxes to their farthest corner.
+ */
+double snow_volume_radius(const snow_volume_info *info);
+
+#endif

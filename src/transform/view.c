@@ -1,0 +1,111 @@
+/* transform/view.c - views by name, and how a camera is turned.
+ *
+ * In the RAS world anterior is +y, left -x, superior +z.  A frame is right,
+ * up, back, with back pointing from the target to the camera. */
+#include "base/vec3.h"
+#include "transform/transform.h"
+
+#include <math.h>
+#include <string.h>
+
+#define THIRD 0.57735026918962576451 /* 1 / sqrt(3) */
+#define SIXTH 0.40824829046386301637 /* 1 / sqrt(6) */
+
+static const struct named_view {
+    const char *name;
+    double back[3], up[3];
+} views[] = {
+    {"anterior", {0, 1, 0}, {0, 0, 1}},
+    {"posterior", {0, -1, 0}, {0, 0, 1}},
+    {"left", {-1, 0, 0}, {0, 0, 1}},
+    {"right", {1, 0, 0}, {0, 0, 1}},
+    {"superior", {0, 0, 1}, {0, 1, 0}},
+    {"inferior", {0, 0, -1}, {0, 1, 0}},
+    {"iso", {THIRD, THIRD, THIRD}, {-SIXTH, -SIXTH, 2 * SIXTH}},
+    {"+x", {1, 0, 0}, {0, 0, 1}},
+    {"-x", {-1, 0, 0}, {0, 0, 1}},
+    {"+y", {0, 1, 0}, {0, 0, 1}},
+    {"-y", {0, -1, 0}, {0, 0, 1}},
+    {"+z", {0, 0, 1}, {0, 1, 0}},
+    {"-z", {0, 0, -1}, {0, 1, 0}},
+};
+
+#define VIEW_COUNT (sizeof views / sizeof views[0])
+
+const char *snow_view_name(size_t index) {
+    return index < VIEW_COUNT ? views[index].name : NULL;
+}
+
+static void set_view(const struct named_view *named, snow_view *out) {
+    *out = (snow_view){.width = 512, .height = 512, .zoom = 1};
+    memcpy(out->back, named->back, sizeof out->back);
+    memcpy(out->up, named->up, sizeof out->up);
+}
+
+snow_status snow_view_named(snow_context *context, const char *name,
+                            snow_view *out) {
+    for (size_t i = 0; i < VIEW_COUNT; i++)
+        if (strcmp(name, views[i].name) == 0) {
+            set_view(&views[i], out);
+            return SNOW_OK;
+        }
+    return snow_fail(context, SNOW_BAD_USAGE,
+                     "there is no view '%s'; take anterior, posterior, left, "
+                     "right, superior, inferior, iso, +x, -x, +y, -y, +z or -z",
+                     name);
+}
+
+void snow_view_default(const snow_volume *volume, snow_view *out) {
+    bool medical = snow_volume_describe(volume)->medical;
+    const char *name = medical ? "anterior" : "+z";
+    for (size_t i = 0; i < VIEW_COUNT; i++)
+        if (strcmp(name, views[i].name) == 0)
+            set_view(&views[i], out);
+}
+
+double snow_view_zoom_for_voxels(const snow_volume *volume, int width,
+                                 int height) {
+    const snow_volume_info *info = snow_volume_describe(volume);
+    double voxel =
+        fmin(info->spacing[0], fmin(info->spacing[1], info->spacing[2]));
+    return 2 * snow_volume_radius(info) / (voxel * fmin(width, height));
+}
+
+/* Cosine and sine of an angle in degrees, exact at multiples of 90. */
+static void turn_of(double degrees, double *cosine, double *sine) {
+    const double radian = 0.017453292519943295769; /* pi / 180 */
+    double quarter = floor(degrees / 90 + 0.5);
+    double rest = (degrees - 90 * quarter) * radian; /* -45 to 45 degrees */
+    double c = cos(rest), s = sin(rest);
+    switch ((int)(quarter - 4 * floor(quarter / 4))) {
+    case 0:
+        *cosine = c, *sine = s;
+        break;
+    case 1:
+        *cosine = -s, *sine = c;
+        break;
+    case 2:
+        *cosine = -c, *sine = -s;
+        break;
+    default:
+        *cosine = s, *sine = -c;
+    }
+}
+
+/* Turns a towards b, and b away from a. */
+static void turn_pair(double a[3], double b[3], double degrees) {
+    double c, s;
+    turn_of(degrees, &c, &s);
+    for (int i = 0; i < 3; i++) {
+        double old = a[i];
+        a[i] = c * old + s * b[i];
+        b[i] = c * b[i] - s * old;
+    }
+}
+
+void snow_frame_turn(double right[3], double up[3], double back[3],
+                     double azimuth, double elevation, double roll) {
+    turn_pair(back, right, azimuth);
+    turn_pair(back, up, elevation);
+    turn_pair(up, right, roll);
+}

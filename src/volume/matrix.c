@@ -1,0 +1,47 @@
+/* volume/matrix.c - the linear part of the index-to-world matrix. */
+#include "volume/volume.h"
+
+#include <math.h>
+
+/* Axes whose directions span less than this share of a box are taken for
+ * lying in one plane: no scanner shears that much, while what single precision
+ * leaves of a plane is smaller. */
+#define FLATTEST 1e-6
+
+static double column_length(const double m[4][4], int column) {
+    return hypot(hypot(m[0][column], m[1][column]), m[2][column]);
+}
+
+void snow_volume_info_measure(snow_volume_info *info) {
+    const snow_volume_info *known = info; /* C11 wants the const */
+    for (int i = 0; i < 3; i++)
+        info->spacing[i] = column_length(known->matrix, i);
+}
+
+bool snow_matrix_invert3(const double m[4][4], double inverse[3][3]) {
+    /* The columns are scaled to length 1 first, so that tiny and huge spacings
+     * neither vanish nor overflow in the products. */
+    double u[3][3], length[3], adjugate[3][3];
+    for (int j = 0; j < 3; j++) {
+        length[j] = column_length(m, j);
+        if (!(length[j] > 0) || !isfinite(length[j]) ||
+            !isfinite(1 / length[j]))
+            return false;
+        for (int i = 0; i < 3; i++)
+            u[i][j] = m[i][j] / length[j];
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) {
+            int a = (j + 1) % 3, b = (j + 2) % 3;
+            int c = (i + 1) % 3, d = (i + 2) % 3;
+            adjugate[i][j] = u[a][c] * u[b][d] - u[a][d] * u[b][c];
+        }
+    double determinant = u[0][0] * adjugate[0][0] + u[0][1] * adjugate[1][0] +
+                         u[0][2] * adjugate[2][0];
+    if (!(fabs(determinant) > FLATTEST))
+        return false;
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            inverse[i][j] = adjugate[i][j] / determinant / length[i];
+    return true;
+}

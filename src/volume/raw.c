@@ -1,0 +1,125 @@
+/* volume/raw.c - voxels and nothing else; the user tells what they are.
+ *
+ * What the user leaves out is looked for in the file's name, where archives of
+ * volumes put it: engine_256x256x110_uint8.raw, head_64x64x93_u16le.raw.gz. */
+#include "volume/volume.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *base_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Reads "256x256x110" that fills the word. */
+static bool parse_dims(const char *word, size_t length, int64_t dims[3]) {
+    int64_t found[3];
+    const char *at = word, *end = word + length;
+    for (int i = 0; i < 3; i++) {
+        if (i && (at == end || *at++ != 'x'))
+            return false;
+        const char *digits = at;
+        for (found[i] = 0; at < end && isdigit((unsigned char)*at); at++)
+            found[i] = found[i] * 10 + (*at - '0');
+        /* Nine digits cannot overflow; no volume has longer sides. */
+        if (at == digits || at - digits > 9 || !found[i])
+            return false;
+    }
+    if (at != end)
+        return false;
+    memcpy(dims, found, sizeof found);
+    return true;
+}
+
+/* Reads a type with or without byte order: "uint8", "u16be", "f32". */
+static bool parse_type(const char *word, size_t length, snow_type *type,
+                       snow_endian *endian) {
+    static const char *const brief[][2] = {
+        {"i8", "int8"},     {"u8", "uint8"},      {"i16", "int16"},
+        {"u16", "uint16"},  {"i32", "int32"},     {"u32", "uint32"},
+        {"i64", "int64"},   {"u64", "uint64"},    {"f32", "float32"},
+        {"f64", "float64"}, {"s8", "int8"},       {"s16", "int16"},
+        {"s32", "int32"},   {"ushort", "uint16"}, {"short", "int16"},
+        {"uchar", "uint8"},
+    };
+    char text[16];
+    if (length >= sizeof text)
+        return false;
+    for (size_t i = 0; i < length; i++)
+        text[i] = (char)tolower((unsigned char)word[i]);
+    text[length] = 0;
+    snow_endian order = SNOW_ENDIAN_DEFAULT;
+    if (snow_has_suffix(text, "be"))
+        order = SNOW_ENDIAN_BIG;
+    else if (snow_has_suffix(text, "le") && !snow_has_suffix(text, "double"))
+        order = SNOW_ENDIAN_LITTLE;
+    if (order)
+        text[length - 2] = 0;
+    const char *name = text;
+    for (size_t i = 0; i < sizeof brief / sizeof *brief; i++)
+        if (!strcmp(text, brief[i][0]))
+            name = brief[i][1];
+    if (!snow_type_named(name))
+        return false;
+    *type = snow_type_named(name);
+    *endian = order;
+    return true;
+}
+
+/* Fills what the options leave open from the words of the name. */
+static void read_name(snow_context *context, const char *path,
+                      snow_volume_options *options) {
+    snow_volume_options found = {0};
+    for (const char *word = base_name(path); *word;) {
+        size_t length = strcspn(word, "_.- ");
+        if (!found.dims[0])
+            parse_dims(word, length, found.dims);
+        if (!found.type)
+            parse_type(word, length, &found.type, &found.endian);
+        word += length;
+        word += strspn(word, "_.- ");
+    }
+    bool dims = !options->dims[0] && found.dims[0];
+    bool type = !options->type && found.type;
+    if (dims)
+        memcpy(options->dims, found.dims, sizeof found.dims);
+    if (type)
+        options->type = found.type;
+    if (type && !options->endian)
+        options->endian = found.endian;
+    if (dims || type)
+        snow_notify(
+            context, "%s: read as %lldx%lldx%lld %s, %s endian, by its name",
+            path, (long long)options->dims[0], (long long)options->dims[1],
+            (long long)options->dims[2], snow_type_name(options->type),
+            options->endian == SNOW_ENDIAN_BIG ? "big" : "little");
+}
+
+static snow_status read_raw(snow_source *source,
+                            const snow_volume_options *options,
+                            snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    snow_volume_options all = *options;
+    if (!all.dims[0] || !all.type)
+        read_name(context, snow_source_name(source), &all);
+    if (!all.dims[0] || !all.dims[1] || !all.dims[2] || !all.type)
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "is of no known format; if it is raw data, give "
+            "--dims XxYxZ and --type (uint8, int16, float32, ...)");
+    snow_volume_info info = snow_volume_info_default("raw");
+    memcpy(info.dims, all.dims, sizeof info.dims);
+    info.type = all.type;
+    SNOW_TRY(snow_volume_pick_time(context, &all, &info));
+    return snow_volume_read(source, &info, all.endian == SNOW_ENDIAN_BIG,
+                            all.offset, 0, out);
+}
+
+const snow_format snow_format_raw = {
+    .name = "raw",
+    .text = "voxels alone, described by options (.raw, .raw.gz, any name)",
+    .suffixes = {".raw", ".raw.gz", ".bin", ".bin.gz"},
+    .read = read_raw,
+};

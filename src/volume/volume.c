@@ -1,0 +1,207 @@
+/* volume/volume.c - making, checking, reading and closing a volume.
+ *
+ * What a header says is checked here, in one place, before any voxel gets its
+ * memory: every reader goes through snow_volume_new. */
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The largest count of bytes that an int64_t can address. */
+#define MOST_BYTES ((uint64_t)INT64_MAX)
+
+snow_volume_info snow_volume_info_default(const char *format) {
+    snow_volume_info info = {.dims = {1, 1, 1},
+                             .spacing = {1, 1, 1},
+                             .slope = 1,
+                             .format = format,
+                             .times = 1};
+    for (int i = 0; i < 4; i++)
+        info.matrix[i][i] = 1;
+    return info;
+}
+
+bool snow_volume_count(const int64_t dims[3], snow_type type, int64_t *voxels,
+                       uint64_t *bytes) {
+    uint64_t count = 1, size;
+    for (int i = 0; i < 3; i++)
+        if (dims[i] < 1 || !snow_mul_u64(count, (uint64_t)dims[i], &count))
+            return false;
+    if (!snow_type_size(type) ||
+        !snow_mul_u64(count, snow_type_size(type), &size) || size > MOST_BYTES)
+        return false;
+    *voxels = (int64_t)count;
+    *bytes = size;
+    return true;
+}
+
+static bool matrix_is_finite(const double m[4][4]) {
+    for (int i = 0; i < 16; i++)
+        if (!isfinite(m[i / 4][i % 4]))
+            return false;
+    return m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 && m[3][3] == 1;
+}
+
+snow_status snow_volume_info_check(snow_context *context,
+                                   const snow_volume_info *info) {
+    int64_t voxels;
+    uint64_t bytes;
+    double inverse[3][3];
+    const int64_t *dims = info->dims;
+    if (!snow_type_size(info->type))
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "the scalar type is not known; give one of int8 to "
+                         "float64");
+    if (dims[0] < 1 || dims[1] < 1 || dims[2] < 1)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "a volume of %lldx%lldx%lld voxels is empty; every "
+                         "size must be at least 1",
+                         (long long)dims[0], (long long)dims[1],
+                         (long long)dims[2]);
+    if (!snow_volume_count(dims, info->type, &voxels, &bytes))
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "a volume of %lldx%lldx%lld voxels is larger than any "
+                         "file; check the sizes",
+                         (long long)dims[0], (long long)dims[1],
+                         (long long)dims[2]);
+    if (!matrix_is_finite(info->matrix) ||
+        !snow_matrix_invert3(info->matrix, inverse))
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "the spacing or the directions of the axes are zero, "
+                         "not finite or in one plane; correct them in the "
+                         "header");
+    if (!isfinite(info->slope) || !isfinite(info->intercept) ||
+        info->slope == 0)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "slope %g and intercept %g make no values; correct "
+                         "them in the header",
+                         info->slope, info->intercept);
+    return SNOW_OK;
+}
+
+/* A volume over given voxels; info is already checked. */
+static snow_status wrap(snow_context *context, const snow_volume_info *info,
+                        const void *voxels, snow_volume **out) {
+    snow_volume *volume = snow_allocate_clear(context, sizeof *volume);
+    if (!volume)
+        return SNOW_NO_MEMORY;
+    volume->context = context;
+    volume->info = *info;
+    volume->voxels = voxels;
+    snow_volume_info_measure(&volume->info);
+    *out = volume;
+    return SNOW_OK;
+}
+
+snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
+                            snow_volume **out) {
+    int64_t count;
+    uint64_t bytes;
+    SNOW_TRY(snow_volume_info_check(context, info));
+    snow_volume_count(info->dims, info->type, &count, &bytes);
+    void *voxels = snow_allocate_array(context, bytes, 1);
+    if (!voxels)
+        return SNOW_NO_MEMORY;
+    snow_volume *volume;
+    snow_status status = wrap(context, info, voxels, &volume);
+    if (status != SNOW_OK) {
+        snow_release(context, voxels);
+        return status;
+    }
+    volume->owned = voxels;
+    *out = volume;
+    return SNOW_OK;
+}
+
+snow_status snow_volume_share(snow_context *context,
+                              const snow_volume_info *info, const void *voxels,
+                              snow_volume **out) {
+    if (!voxels)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "there are no voxels to share; give their address");
+    static const double zero[4][4];
+    snow_volume_info own = snow_volume_info_default("memory");
+    memcpy(own.dims, info->dims, sizeof own.dims);
+    own.type = info->type;
+    if (memcmp(info->matrix, zero, sizeof zero) != 0)
+        memcpy(own.matrix, info->matrix, sizeof own.matrix);
+    own.slope = info->slope == 0 ? 1 : info->slope;
+    own.intercept = info->intercept;
+    own.medical = info->medical;
+    memcpy(own.unit, info->unit, sizeof own.unit);
+    own.unit[sizeof own.unit - 1] = 0;
+    snow_status status = snow_volume_info_check(context, &own);
+    if (status != SNOW_OK)
+        return SNOW_BAD_USAGE; /* the caller's, not a file's */
+    return wrap(context, &own, voxels, out);
+}
+
+/* skip + bytes + rest, all that the source must hold. */
+static bool add_up(uint64_t skip, uint64_t bytes, uint64_t rest,
+                   uint64_t *out) {
+    return snow_add_u64(skip, bytes, out) && snow_add_u64(*out, rest, out);
+}
+
+snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
+                             bool big_endian, uint64_t skip, uint64_t rest,
+                             snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    int64_t count;
+    uint64_t bytes, all;
+    SNOW_TRY(snow_volume_info_check(context, info));
+    snow_volume_count(info->dims, info->type, &count, &bytes);
+    if (!add_up(skip, bytes, rest, &all))
+        all = UINT64_MAX;
+    SNOW_TRY(snow_source_expect(source, all, "the voxels"));
+    snow_volume *volume;
+    SNOW_TRY(snow_volume_new(context, info, &volume));
+    snow_status status = snow_source_skip(source, skip, "the voxels");
+    if (status == SNOW_OK)
+        status = snow_source_read_all(source, volume->owned, (size_t)bytes,
+                                      "the voxels");
+    if (status == SNOW_OK)
+        status = snow_source_skip(source, rest, "the voxels");
+    if (status == SNOW_OK)
+        status = snow_source_finish(source);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    if (big_endian != snow_machine_big_endian())
+        snow_swap_bytes(volume->owned, (uint64_t)count,
+                        snow_type_size(info->type));
+    *out = volume;
+    return SNOW_OK;
+}
+
+snow_status snow_volume_pick_time(snow_context *context,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info) {
+    if (options->time < 0 || options->time >= info->times)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "there is no time step %lld; the file has %lld, "
+                         "counted from 0",
+                         (long long)options->time, (long long)info->times);
+    info->time = options->time;
+    if (info->times > 1)
+        snow_notify(context,
+                    "time step %lld of %lld (counted from 0) is taken; "
+                    "--time N takes another",
+                    (long long)info->time, (long long)info->times);
+    return SNOW_OK;
+}
+
+void snow_volume_close(snow_volume *volume) {
+    if (volume) {
+        snow_release(volume->context, volume->owned);
+        snow_release(volume->context, volume);
+    }
+}
+
+const snow_volume_info *snow_volume_describe(const snow_volume *volume) {
+    return &volume->info;
+}
+
+const void *snow_volume_voxels(const snow_volume *volume) {
+    return volume->voxels;
+}
