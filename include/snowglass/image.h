@@ -63,7 +63,8 @@ SNOW_API snow_status snow_image_check_path(snow_context *context,
 
 /* Reads a picture: PNG (8 or 16 bits, grey or colour, with or without alpha;
  * straight alpha is multiplied in), NPY (float32 or float64, (h, w) or (h, w, 1
- * to 4)), PFM.  It has four channels; alpha is 1 where the file has none.  Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
+ * to 4)), PFM.  It has four channels; alpha is 1 where the file has none.
+ * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_load(snow_context *context, const char *path,
                                      snow_image **out);
 
@@ -83,8 +84,9 @@ typedef struct snow_image_difference {
 } snow_image_difference;
 
 /* Compares two pictures of one size (2 channels count as grey).  NaN equals
- * NaN only, an infinity itself only: else they are infinitely far apart.  Errors: SNOW_DIFFERENT when the sizes differ (the message gives
- * them), SNOW_NO_MEMORY. */
+ * NaN only, an infinity itself only: else they are infinitely far apart.
+ * Errors: SNOW_DIFFERENT when the sizes differ (the message gives them),
+ * SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_compare(const snow_image *a,
                                         const snow_image *b,
                                         snow_image_difference *out);
