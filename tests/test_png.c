@@ -452,15 +452,49 @@ static void seal_chunk(unsigned char *chunk) {
         chunk[8 + size + (size_t)i] = (unsigned char)(crc >> (24 - 8 * i));
 }
 
-static void a_wrong_sum_of_the_pixels_is_refused(void **state) {
-    image_fixture *f = *state;
+/* The Adler-32 in an IDAT chunk of its own, which is read after the pixels. */
+static support_bytes split_file(void) {
     support_bytes data = small_file();
     unsigned char *chunk = data.bytes + 8 + 25 + 16;
     assert_memory_equal(chunk + 4, "IDAT", 4);
-    size_t size = (size_t)chunk[2] << 8 | chunk[3];
-    chunk[8 + size - 1] ^= 1; /* the last byte of the Adler-32 */
-    seal_chunk(chunk);
+    size_t size = ((size_t)chunk[2] << 8 | chunk[3]) - 4;
+    support_bytes split = {calloc(1, data.size + 12), data.size + 12};
+    memcpy(split.bytes, data.bytes, (size_t)(chunk - data.bytes) + 8 + size);
+    unsigned char *first = split.bytes + 8 + 25 + 16;
+    unsigned char *second = first + 12 + size;
+    first[2] = (unsigned char)(size >> 8);
+    first[3] = (unsigned char)(size & 255);
+    seal_chunk(first);
+    memcpy(second, "\0\0\0\4IDAT", 8);
+    memcpy(second + 8, chunk + 8 + size, 4);
+    seal_chunk(second);
+    /* IEND is the last 12 bytes of both */
+    memcpy(second + 16, data.bytes + data.size - 12, 12);
+    free(data.bytes);
+    return split;
+}
+
+static void a_wrong_sum_of_the_pixels_is_refused(void **state) {
+    image_fixture *f = *state;
+    support_bytes data = split_file();
+    snow_image_free(support_load(f->context, data.bytes, data.size));
+    unsigned char *last = data.bytes + data.size - 12 - 16;
+    last[11] ^= 1;
+    seal_chunk(last);
     support_assert_refused(f->context, data.bytes, data.size);
+    free(data.bytes);
+}
+
+/* A chunk that is not needed may be nonsense, as long as its CRC is right. */
+static void other_chunks_are_passed_over(void **state) {
+    image_fixture *f = *state;
+    support_bytes data = small_file();
+    unsigned char *chunk = data.bytes + 8 + 25;
+    assert_memory_equal(chunk + 4, "gAMA", 4);
+    memcpy(chunk + 4, "sRGB", 4); /* which has one byte, not four */
+    support_assert_refused(f->context, data.bytes, data.size);
+    seal_chunk(chunk);
+    snow_image_free(support_load(f->context, data.bytes, data.size));
     free(data.bytes);
 }
 
@@ -523,6 +557,7 @@ int main(void) {
         TEST(a_file_cut_anywhere_is_refused),
         TEST(any_changed_bit_is_refused),
         TEST(a_wrong_sum_of_the_pixels_is_refused),
+        TEST(other_chunks_are_passed_over),
         TEST(sizes_the_file_cannot_hold_cost_no_memory),
         TEST(bytes_after_the_end_are_told),
     };
