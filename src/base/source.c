@@ -193,8 +193,9 @@ snow_status snow_source_finish(snow_source *source) {
     }
     if (left)
         snow_notify(source->context,
-                    "%s: %llu bytes after the data are ignored; check the "
-                    "sizes and the type",
-                    source->name, (unsigned long long)left);
+                    "%s: %llu byte%s after the data ignored; check the sizes "
+                    "and the type",
+                    source->name, (unsigned long long)left,
+                    left == 1 ? "" : "s");
     return SNOW_OK;
 }

@@ -1,0 +1,73 @@
+/* fuzz/capped.h - what the fuzz targets of the volume readers share: an
+ * allocator that gives no more than CAP bytes, and one look at an input. */
+#ifndef SNOW_FUZZ_CAPPED_H
+#define SNOW_FUZZ_CAPPED_H
+
+#include <snowglass/snowglass.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#define CAP ((size_t)64 << 20)
+
+typedef union capped_block {
+    size_t bytes;
+    max_align_t alignment;
+} capped_block;
+
+static void *capped_allocate(void *user, size_t bytes) {
+    size_t *held = user;
+    if (bytes > CAP - *held)
+        return NULL;
+    capped_block *block = malloc(bytes + sizeof *block);
+    if (!block)
+        return NULL;
+    block->bytes = bytes;
+    *held += bytes;
+    return block + 1;
+}
+
+static void capped_release(void *user, void *memory) {
+    capped_block *block = (capped_block *)memory - 1;
+    *(size_t *)user -= block->bytes;
+    free(block);
+}
+
+static void ignore_notice(void *user, const char *text) {
+    (void)user;
+    (void)text;
+}
+
+/* Opens and measures the bytes as a volume.  Stops the program when a failure
+ * comes without a message of one line, or memory stays behind. */
+static void look_at(const char *name, const uint8_t *bytes, size_t size,
+                    const snow_volume_options *options) {
+    size_t held = 0;
+    snow_allocator allocator = {capped_allocate, capped_release, &held};
+    snow_context *context;
+    if (snow_context_new(&allocator, &context) != SNOW_OK)
+        abort();
+    snow_context_set_notice(context, ignore_notice, NULL);
+    snow_volume *volume = NULL;
+    snow_status status =
+        snow_volume_open_memory(context, name, bytes, size, options, &volume);
+    if (status == SNOW_OK) {
+        snow_volume_measures measures;
+        uint64_t counts[16];
+        snow_volume_measure(volume, &measures);
+        snow_volume_histogram(volume, -10, 1000, 16, counts);
+        if (measures.finite > measures.voxels)
+            abort();
+        snow_volume_close(volume);
+    } else if (volume || !*snow_context_message(context))
+        abort();
+    for (const char *at = snow_context_message(context); *at; at++)
+        if (*at == '\n')
+            abort();
+    if (snow_context_bytes(context))
+        abort();
+    snow_context_free(context);
+    if (held)
+        abort();
+}
+
+#endif

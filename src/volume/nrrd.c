@@ -1,0 +1,41 @@
+/* volume/nrrd.c - the NRRD format, as its parts in volume/nrrd.h read it. */
+#include "volume/nrrd.h"
+
+#include <string.h>
+
+static bool looks_nrrd(const unsigned char *bytes, size_t size) {
+    return size >= 6 && !memcmp(bytes, "NRRD00", 6);
+}
+
+static snow_status read_parsed(snow_source *source, const nrrd_text *text,
+                               const snow_volume_options *options,
+                               snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    nrrd_header header;
+    nrrd_files files;
+    nrrd_window window;
+    snow_volume_info info = snow_volume_info_default("nrrd");
+    SNOW_TRY(snow_nrrd_parse_header(context, text, &header));
+    SNOW_TRY(snow_nrrd_lay_out(context, &header, options, &info, &window));
+    SNOW_TRY(snow_nrrd_find_files(context, text, &header, &files));
+    return snow_nrrd_read_data(source, &header, &files, &info, &window, out);
+}
+
+static snow_status read_nrrd(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume **out) {
+    nrrd_text text;
+    snow_status status = snow_nrrd_read_text(source, &text);
+    if (status == SNOW_OK)
+        status = read_parsed(source, &text, options, out);
+    snow_release(snow_source_context(source), text.block);
+    return status;
+}
+
+const snow_format snow_format_nrrd = {
+    .name = "nrrd",
+    .text = "NRRD, attached or detached; raw, gzip, ascii (.nrrd, .nhdr)",
+    .suffixes = {".nrrd", ".nhdr", ".nrrd.gz"},
+    .probe = looks_nrrd,
+    .read = read_nrrd,
+};

@@ -1,0 +1,246 @@
+/* volume/nrrd_data.c - an NRRD array's bytes, from wherever the header says.
+ *
+ * Lines are skipped in the file as it is, bytes after unpacking; a byte skip
+ * of -1 means that the data are the last bytes.  Every file is measured before
+ * the voxels get their memory, and read whole. */
+#include "volume/nrrd.h"
+
+#include <string.h>
+
+#define MOST_NAME_BYTES 4096
+
+static snow_status skip_lines(snow_source *source, uint64_t lines) {
+    char bytes[SNOW_PEEK_BYTES];
+    size_t got;
+    while (lines) {
+        SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
+        if (!got)
+            return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                             "%s: has fewer lines than its header skips; "
+                             "correct \"line skip\"",
+                             snow_source_name(source));
+        const char *end = memchr(bytes, '\n', got);
+        if (end) {
+            got = (size_t)(end - bytes) + 1;
+            lines--;
+        }
+        SNOW_TRY(snow_source_skip(source, got, "the skipped lines"));
+    }
+    return SNOW_OK;
+}
+
+/* Headers are often written by hand for the data of another format, whose own
+ * header then counts as voxels. */
+static snow_status refuse_other_format(snow_source *source) {
+    unsigned char bytes[SNOW_PEEK_BYTES];
+    size_t got;
+    SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
+    const snow_format *format = snow_format_of_bytes(bytes, got);
+    if (!format)
+        return SNOW_OK;
+    return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                     "%s: is a %s file with a header of its own, which is not "
+                     "data; add \"byte skip: -1\" to the NRRD header",
+                     snow_source_name(source), format->name);
+}
+
+/* Goes to the first byte of a file's data, or, for data at the end that cannot
+ * be found without reading (*at_end), to where reading begins; checks that
+ * `size` bytes can be there. */
+static snow_status go_to_data(snow_source *source, const nrrd_header *header,
+                              bool attached, const nrrd_window *window,
+                              bool *at_end) {
+    uint64_t size = window->all;
+    *at_end = false;
+    SNOW_TRY(skip_lines(source, header->line_skip));
+    if (header->encoding == NRRD_GZIP)
+        SNOW_TRY(snow_source_unpack(source));
+    if (header->encoding == NRRD_ASCII) /* a digit each, and what separates */
+        size = 2 * (size / snow_type_size(header->type)) - 1;
+    if (!attached && !header->line_skip && !header->byte_skip)
+        SNOW_TRY(refuse_other_format(source));
+    if (header->byte_skip >= 0) {
+        SNOW_TRY(snow_source_skip(source, (uint64_t)header->byte_skip,
+                                  "the skipped bytes"));
+        return snow_source_expect(source, size, "the voxels");
+    }
+    SNOW_TRY(snow_source_expect(source, size, "the voxels"));
+    int64_t remaining = snow_source_remaining(source);
+    *at_end = remaining < 0;
+    if (*at_end)
+        return SNOW_OK;
+    return snow_source_skip(source, (uint64_t)remaining - size, "the voxels");
+}
+
+static void reverse(unsigned char *bytes, uint64_t count) {
+    for (uint64_t i = 0; i < count / 2; i++) {
+        unsigned char last = bytes[count - 1 - i];
+        bytes[count - 1 - i] = bytes[i];
+        bytes[i] = last;
+    }
+}
+
+/* Reads to the end, keeping the last `size` bytes in a ring. */
+static snow_status read_into_ring(snow_source *source, unsigned char *ring,
+                                  uint64_t size) {
+    uint64_t at = 0, total = 0;
+    for (size_t got = 1; got;) {
+        SNOW_TRY(
+            snow_source_read(source, ring + at, (size_t)(size - at), &got));
+        at = (at + got) % size;
+        total += got;
+    }
+    if (total < size)
+        return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                         "%s: has %llu bytes where the voxels need %llu; the "
+                         "file is cut, or its sizes or type are wrong",
+                         snow_source_name(source), (unsigned long long)total,
+                         (unsigned long long)size);
+    /* The oldest byte stands at `at`: turn the ring to begin with it. */
+    reverse(ring, at);
+    reverse(ring + at, size - at);
+    reverse(ring, size);
+    return SNOW_OK;
+}
+
+static snow_status read_last_bytes(snow_source *source,
+                                   const nrrd_window *window, void *to) {
+    if (window->count == window->all)
+        return read_into_ring(source, to, window->all);
+    snow_context *context = snow_source_context(source);
+    unsigned char *ring = snow_allocate_array(context, window->all, 1);
+    if (!ring)
+        return SNOW_NO_MEMORY;
+    snow_status status = read_into_ring(source, ring, window->all);
+    if (status == SNOW_OK)
+        memcpy(to, ring + window->skip, (size_t)window->count);
+    snow_release(context, ring);
+    return status;
+}
+
+/* Reads one file's part of the window from where go_to_data left it. */
+static snow_status read_window(snow_source *source, const nrrd_header *header,
+                               const nrrd_window *window, bool at_end,
+                               void *to) {
+    if (header->encoding == NRRD_ASCII)
+        SNOW_TRY(snow_nrrd_read_numbers(source, header->type, window, to));
+    else if (at_end)
+        SNOW_TRY(read_last_bytes(source, window, to));
+    else {
+        SNOW_TRY(snow_source_skip(source, window->skip, "the voxels"));
+        SNOW_TRY(snow_source_read_all(source, to, (size_t)window->count,
+                                      "the voxels"));
+        SNOW_TRY(snow_source_skip(
+            source, window->all - window->skip - window->count, "the voxels"));
+    }
+    return snow_source_finish(source);
+}
+
+/* All data behind one another in one file. */
+static snow_status read_single(snow_source *source, const nrrd_header *header,
+                               bool attached, const snow_volume_info *info,
+                               const nrrd_window *window, snow_volume **out) {
+    bool at_end;
+    SNOW_TRY(go_to_data(source, header, attached, window, &at_end));
+    snow_volume *volume;
+    SNOW_TRY(snow_volume_new(snow_source_context(source), info, &volume));
+    snow_status status =
+        read_window(source, header, window, at_end, volume->owned);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    *out = volume;
+    return SNOW_OK;
+}
+
+/* The part of the window that lies in file `index`, in that file's bytes;
+ * false when there is none. */
+static bool cut_window(const nrrd_window *window, uint64_t piece,
+                       uint64_t index, nrrd_window *out) {
+    uint64_t begin = index * piece, end = begin + piece;
+    uint64_t from = window->skip > begin ? window->skip : begin;
+    uint64_t to = window->skip + window->count;
+    if (to > end)
+        to = end;
+    *out = (nrrd_window){from - begin, to - from, piece};
+    return from < to;
+}
+
+/* Opens each file that is needed and measures it; with `voxels` reads it too.
+ * Two passes over the files make sure that all are there before any memory is
+ * taken. */
+static snow_status walk_files(snow_source *source, const nrrd_header *header,
+                              const nrrd_files *files,
+                              const nrrd_window *window,
+                              unsigned char *voxels) {
+    char name[MOST_NAME_BYTES];
+    const char *at = NULL;
+    uint64_t piece = window->all / files->count;
+    for (uint64_t i = 0; i < files->count; i++) {
+        nrrd_window part;
+        SNOW_TRY(snow_nrrd_file_name(snow_source_context(source), files, i, &at,
+                                     name, sizeof name));
+        if (!cut_window(window, piece, i, &part))
+            continue;
+        snow_source *file;
+        bool at_end;
+        SNOW_TRY(snow_source_open_sibling_as_is(source, name, &file));
+        snow_status status = go_to_data(file, header, false, &part, &at_end);
+        if (status == SNOW_OK && voxels)
+            status = read_window(file, header, &part, at_end, voxels);
+        snow_source_close(file);
+        SNOW_TRY(status);
+        if (voxels)
+            voxels += part.count;
+    }
+    return SNOW_OK;
+}
+
+static snow_status read_files(snow_source *source, const nrrd_header *header,
+                              const nrrd_files *files,
+                              const snow_volume_info *info,
+                              const nrrd_window *window, snow_volume **out) {
+    SNOW_TRY(walk_files(source, header, files, window, NULL));
+    snow_volume *volume;
+    SNOW_TRY(snow_volume_new(snow_source_context(source), info, &volume));
+    snow_status status =
+        walk_files(source, header, files, window, volume->owned);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    *out = volume;
+    return SNOW_OK;
+}
+
+static snow_status read_sibling(snow_source *source, const nrrd_header *header,
+                                const nrrd_files *files,
+                                const snow_volume_info *info,
+                                const nrrd_window *window, snow_volume **out) {
+    snow_source *file;
+    SNOW_TRY(snow_source_open_sibling_as_is(source, files->name, &file));
+    snow_status status = read_single(file, header, false, info, window, out);
+    snow_source_close(file);
+    return status;
+}
+
+snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
+                                const nrrd_files *files,
+                                const snow_volume_info *info,
+                                const nrrd_window *window, snow_volume **out) {
+    snow_volume *volume;
+    if (files->place == NRRD_ATTACHED)
+        SNOW_TRY(read_single(source, header, true, info, window, &volume));
+    else if (files->place == NRRD_SINGLE)
+        SNOW_TRY(read_sibling(source, header, files, info, window, &volume));
+    else
+        SNOW_TRY(read_files(source, header, files, info, window, &volume));
+    if (header->encoding != NRRD_ASCII &&
+        header->big_endian != snow_machine_big_endian()) {
+        size_t size = snow_type_size(info->type);
+        snow_swap_bytes(volume->owned, window->count / size, size);
+    }
+    *out = volume;
+    return SNOW_OK;
+}

@@ -1,0 +1,411 @@
+/* volume/nrrd_header.c - the fields of an NRRD header, understood and checked.
+ *
+ * Names are compared without regard to case, blanks, dashes and underscores,
+ * which covers the many spellings that the format allows. */
+#include "volume/nrrd.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#define WORD_BYTES 64
+
+typedef struct name_value {
+    const char *name; /* lower case, without blanks and dashes */
+    int value;
+} name_value;
+
+static const name_value type_names[] = {
+    {"signedchar", SNOW_INT8},
+    {"int8", SNOW_INT8},
+    {"int8t", SNOW_INT8},
+    {"uchar", SNOW_UINT8},
+    {"unsignedchar", SNOW_UINT8},
+    {"uint8", SNOW_UINT8},
+    {"uint8t", SNOW_UINT8},
+    {"short", SNOW_INT16},
+    {"shortint", SNOW_INT16},
+    {"signedshort", SNOW_INT16},
+    {"signedshortint", SNOW_INT16},
+    {"int16", SNOW_INT16},
+    {"int16t", SNOW_INT16},
+    {"ushort", SNOW_UINT16},
+    {"unsignedshort", SNOW_UINT16},
+    {"unsignedshortint", SNOW_UINT16},
+    {"uint16", SNOW_UINT16},
+    {"uint16t", SNOW_UINT16},
+    {"int", SNOW_INT32},
+    {"signedint", SNOW_INT32},
+    {"int32", SNOW_INT32},
+    {"int32t", SNOW_INT32},
+    {"uint", SNOW_UINT32},
+    {"unsignedint", SNOW_UINT32},
+    {"uint32", SNOW_UINT32},
+    {"uint32t", SNOW_UINT32},
+    {"longlong", SNOW_INT64},
+    {"longlongint", SNOW_INT64},
+    {"signedlonglong", SNOW_INT64},
+    {"signedlonglongint", SNOW_INT64},
+    {"int64", SNOW_INT64},
+    {"int64t", SNOW_INT64},
+    {"ulonglong", SNOW_UINT64},
+    {"unsignedlonglong", SNOW_UINT64},
+    {"unsignedlonglongint", SNOW_UINT64},
+    {"uint64", SNOW_UINT64},
+    {"uint64t", SNOW_UINT64},
+    {"float", SNOW_FLOAT32},
+    {"float32", SNOW_FLOAT32},
+    {"double", SNOW_FLOAT64},
+    {"float64", SNOW_FLOAT64},
+    {NULL, 0},
+};
+
+static const name_value encoding_names[] = {
+    {"raw", NRRD_RAW},
+    {"gzip", NRRD_GZIP},
+    {"gz", NRRD_GZIP},
+    {"ascii", NRRD_ASCII},
+    {"text", NRRD_ASCII},
+    {"txt", NRRD_ASCII},
+    {NULL, 0},
+};
+
+/* What is no value of its own: complex numbers, vectors, colours, tensors. */
+static const name_value role_names[] = {
+    {"domain", NRRD_AXIS_SPACE}, {"space", NRRD_AXIS_SPACE},
+    {"time", NRRD_AXIS_TIME},    {"list", NRRD_AXIS_TIME},
+    {"???", NRRD_AXIS_UNTOLD},   {"none", NRRD_AXIS_UNTOLD},
+    {NULL, NRRD_AXIS_VALUES},
+};
+
+/* Worlds: how many coordinates, and what turns them to RAS+ (the medical ones)
+ * or to a right hand. */
+static const struct world {
+    const char *names[2];
+    int dimension;
+    double turn[3];
+    bool medical;
+} worlds[] = {
+    {{"rightanteriorsuperior", "ras"}, 3, {1, 1, 1}, true},
+    {{"leftanteriorsuperior", "las"}, 3, {-1, 1, 1}, true},
+    {{"leftposteriorsuperior", "lps"}, 3, {-1, -1, 1}, true},
+    {{"rightanteriorsuperiortime", "rast"}, 4, {1, 1, 1}, true},
+    {{"leftanteriorsuperiortime", "last"}, 4, {-1, 1, 1}, true},
+    {{"leftposteriorsuperiortime", "lpst"}, 4, {-1, -1, 1}, true},
+    {{"scannerxyz", ""}, 3, {1, 1, 1}, false},
+    {{"scannerxyztime", ""}, 4, {1, 1, 1}, false},
+    {{"3drighthanded", ""}, 3, {1, 1, 1}, false},
+    {{"3drighthandedtime", ""}, 4, {1, 1, 1}, false},
+    {{"3dlefthanded", ""}, 3, {1, 1, -1}, false},
+    {{"3dlefthandedtime", ""}, 4, {1, 1, -1}, false},
+};
+
+static snow_status fail_field(snow_context *context, const nrrd_text *text,
+                              nrrd_field field, const char *wrong) {
+    const char *value = snow_nrrd_value(text, field);
+    if (!value)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "the header has no field \"%s\"; add it",
+                         snow_nrrd_field_name(field));
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "the header's field \"%s: %.60s\" %s; correct it",
+                     snow_nrrd_field_name(field), value, wrong);
+}
+
+/* The value in the form of the name tables. */
+static void plain_name(const char *value, char name[WORD_BYTES]) {
+    size_t used = 0;
+    for (; *value && used + 1 < WORD_BYTES; value++)
+        if (!strchr(" \t-_", *value))
+            name[used++] = (char)tolower((unsigned char)*value);
+    name[used] = 0;
+}
+
+/* The entry of this name, or the closing one. */
+static const name_value *look_up(const name_value *table, const char *value) {
+    char name[WORD_BYTES];
+    plain_name(value, name);
+    while (table->name && strcmp(table->name, name) != 0)
+        table++;
+    return table;
+}
+
+/* Takes the next word, cut to its room; false at the end. */
+static bool next_word(const char **at, char word[WORD_BYTES]) {
+    *at += strspn(*at, " \t");
+    size_t length = strcspn(*at, " \t");
+    size_t kept = length < WORD_BYTES ? length : WORD_BYTES - 1;
+    memcpy(word, *at, kept);
+    word[kept] = 0;
+    *at += length;
+    return length > 0;
+}
+
+/* Takes "(1,0,0.5)" with `count` numbers. */
+static bool next_vector(const char **at, int count, double *out) {
+    const char *from = *at + strspn(*at, " \t");
+    if (*from++ != '(')
+        return false;
+    for (int i = 0; i < count; i++) {
+        char number[WORD_BYTES];
+        size_t length = strcspn(from, ",)");
+        if (length >= sizeof number ||
+            from[length] != (i + 1 < count ? ',' : ')'))
+            return false;
+        memcpy(number, from, length);
+        number[length] = 0;
+        if (!snow_parse_double(number, &out[i]))
+            return false;
+        from += length + 1;
+    }
+    *at = from;
+    return true;
+}
+
+static snow_status parse_type(snow_context *context, const nrrd_text *text,
+                              nrrd_header *out) {
+    const char *value = snow_nrrd_value(text, NRRD_TYPE);
+    out->type =
+        value ? (snow_type)look_up(type_names, value)->value : SNOW_TYPE_NONE;
+    if (!out->type)
+        return fail_field(context, text, NRRD_TYPE,
+                          "is no scalar type that is read (8 to 64 bit "
+                          "integers, float, double)");
+    return SNOW_OK;
+}
+
+static snow_status parse_encoding(snow_context *context, const nrrd_text *text,
+                                  nrrd_header *out) {
+    const char *value = snow_nrrd_value(text, NRRD_ENCODING);
+    if (!value)
+        return fail_field(context, text, NRRD_ENCODING, "");
+    const name_value *entry = look_up(encoding_names, value);
+    if (!entry->name)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "the encoding \"%.40s\" is not supported; recompress "
+                         "the file with gzip",
+                         value);
+    out->encoding = (nrrd_encoding)entry->value;
+    return SNOW_OK;
+}
+
+static snow_status parse_endian(snow_context *context, const nrrd_text *text,
+                                nrrd_header *out) {
+    const char *value = snow_nrrd_value(text, NRRD_ENDIAN);
+    bool matters = out->encoding != NRRD_ASCII && snow_type_size(out->type) > 1;
+    if (!value && matters)
+        return fail_field(context, text, NRRD_ENDIAN, "");
+    out->big_endian = snow_machine_big_endian();
+    if (!value)
+        return SNOW_OK;
+    char name[WORD_BYTES];
+    plain_name(value, name);
+    out->big_endian = !strcmp(name, "big");
+    if (!out->big_endian && strcmp(name, "little") != 0)
+        return fail_field(context, text, NRRD_ENDIAN,
+                          "is neither big nor little");
+    return SNOW_OK;
+}
+
+static snow_status parse_dimension(snow_context *context, const nrrd_text *text,
+                                   nrrd_header *out) {
+    const char *value = snow_nrrd_value(text, NRRD_DIMENSION);
+    int64_t dimension;
+    if (!value || !snow_parse_int64(value, &dimension) || dimension < 1 ||
+        dimension > NRRD_MOST_AXES)
+        return fail_field(context, text, NRRD_DIMENSION,
+                          "is no number of axes from 1 to 16");
+    out->dimension = (int)dimension;
+    return SNOW_OK;
+}
+
+static snow_status parse_sizes(snow_context *context, const nrrd_text *text,
+                               nrrd_header *out) {
+    const char *at = snow_nrrd_value(text, NRRD_SIZES);
+    char word[WORD_BYTES];
+    if (!at)
+        return fail_field(context, text, NRRD_SIZES, "");
+    for (int i = 0; i < out->dimension; i++)
+        if (!next_word(&at, word) ||
+            !snow_parse_int64(word, &out->axes[i].size) ||
+            out->axes[i].size < 1)
+            return fail_field(context, text, NRRD_SIZES,
+                              "has not one whole number above 0 for each axis");
+    if (next_word(&at, word))
+        return fail_field(context, text, NRRD_SIZES,
+                          "has more numbers than there are axes");
+    return SNOW_OK;
+}
+
+static snow_status parse_spacings(snow_context *context, const nrrd_text *text,
+                                  nrrd_header *out) {
+    const char *at = snow_nrrd_value(text, NRRD_SPACINGS);
+    char word[WORD_BYTES];
+    for (int i = 0; i < out->dimension; i++) {
+        out->axes[i].spacing = 1;
+        if (at && (!next_word(&at, word) ||
+                   !snow_parse_double(word, &out->axes[i].spacing)))
+            return fail_field(context, text, NRRD_SPACINGS,
+                              "has not one number for each axis");
+    }
+    if (at && next_word(&at, word))
+        return fail_field(context, text, NRRD_SPACINGS,
+                          "has more numbers than there are axes");
+    return SNOW_OK;
+}
+
+static snow_status parse_kinds(snow_context *context, const nrrd_text *text,
+                               nrrd_header *out) {
+    const char *at = snow_nrrd_value(text, NRRD_KINDS);
+    char word[WORD_BYTES];
+    for (int i = 0; at && i < out->dimension; i++) {
+        if (!next_word(&at, word))
+            return fail_field(context, text, NRRD_KINDS,
+                              "has not one kind for each axis");
+        out->axes[i].role = (nrrd_role)look_up(role_names, word)->value;
+    }
+    if (at && next_word(&at, word))
+        return fail_field(context, text, NRRD_KINDS,
+                          "has more kinds than there are axes");
+    return SNOW_OK;
+}
+
+/* The number of world coordinates: from the world's name, or told, or 3. */
+static snow_status parse_world(snow_context *context, const nrrd_text *text,
+                               nrrd_header *out, int *dimension) {
+    const char *space = snow_nrrd_value(text, NRRD_SPACE);
+    const char *told = snow_nrrd_value(text, NRRD_SPACE_DIMENSION);
+    int64_t count = 3;
+    for (int i = 0; i < 3; i++)
+        out->turn[i] = 1;
+    if (told && (!snow_parse_int64(told, &count) || count < 1 || count > 4))
+        return fail_field(context, text, NRRD_SPACE_DIMENSION,
+                          "is no number of world axes from 1 to 4");
+    *dimension = (int)count;
+    if (!space)
+        return SNOW_OK;
+    char name[WORD_BYTES];
+    plain_name(space, name);
+    for (size_t i = 0; i < sizeof worlds / sizeof *worlds; i++) {
+        if (strcmp(name, worlds[i].names[0]) != 0 &&
+            strcmp(name, worlds[i].names[1]) != 0)
+            continue;
+        if (told && count != worlds[i].dimension)
+            return fail_field(context, text, NRRD_SPACE_DIMENSION,
+                              "contradicts the field \"space\"");
+        *dimension = worlds[i].dimension;
+        memcpy(out->turn, worlds[i].turn, sizeof out->turn);
+        out->medical = worlds[i].medical;
+        return SNOW_OK;
+    }
+    return fail_field(context, text, NRRD_SPACE, "is no space of the format");
+}
+
+/* One axis: a vector, or "none" for what does not run through space. */
+static bool next_direction(const char **at, int dimension, nrrd_axis *axis) {
+    char word[WORD_BYTES];
+    const char *from = *at;
+    double *step = axis->direction;
+    if (next_vector(at, dimension, step)) {
+        /* All NaN is another way of saying "none". */
+        for (int i = 0; i < dimension; i++)
+            axis->directed |= !isnan(step[i]);
+        return true;
+    }
+    if (!next_word(&from, word) || strcmp(word, "none") != 0)
+        return false;
+    *at = from;
+    return true;
+}
+
+static snow_status parse_directions(snow_context *context,
+                                    const nrrd_text *text, int dimension,
+                                    nrrd_header *out) {
+    const char *at = snow_nrrd_value(text, NRRD_DIRECTIONS);
+    out->directions = at != NULL;
+    for (int i = 0; at && i < out->dimension; i++)
+        if (!next_direction(&at, dimension, &out->axes[i]))
+            return fail_field(context, text, NRRD_DIRECTIONS,
+                              "has not one vector or \"none\" for each axis");
+    if (at && at[strspn(at, " \t")])
+        return fail_field(context, text, NRRD_DIRECTIONS,
+                          "has more vectors than there are axes");
+    at = snow_nrrd_value(text, NRRD_ORIGIN);
+    if (at &&
+        (!next_vector(&at, dimension, out->origin) || at[strspn(at, " \t")]))
+        return fail_field(context, text, NRRD_ORIGIN,
+                          "is no vector of the space");
+    return SNOW_OK;
+}
+
+/* Copies the first string in quotes that is not empty, as far as it is plain
+ * text; the micro sign becomes a u. */
+static void copy_unit(const char *value, char unit[16]) {
+    const char *end;
+    for (; (value = strchr(value, '"')); value = end + 1) {
+        end = strchr(++value, '"');
+        if (!end)
+            return;
+        if (end > value)
+            break;
+    }
+    if (!value)
+        return;
+    size_t used = 0;
+    static const char *const micro[] = {"\xc2\xb5", "\xce\xbc"};
+    if (!strncmp(value, micro[0], 2) || !strncmp(value, micro[1], 2)) {
+        unit[used++] = 'u';
+        value += 2;
+    }
+    for (; value < end && used < 15; value++)
+        if (isprint((unsigned char)*value))
+            unit[used++] = *value;
+    unit[used] = 0;
+}
+
+static void parse_unit(const nrrd_text *text, nrrd_header *out) {
+    const char *value = snow_nrrd_value(text, NRRD_SPACE_UNITS);
+    if (!value)
+        value = snow_nrrd_value(text, NRRD_UNITS);
+    if (value)
+        copy_unit(value, out->unit);
+    if (!*out->unit && out->medical)
+        strcpy(out->unit, "mm");
+}
+
+static snow_status parse_skips(snow_context *context, const nrrd_text *text,
+                               nrrd_header *out) {
+    const char *lines = snow_nrrd_value(text, NRRD_LINE_SKIP);
+    const char *bytes = snow_nrrd_value(text, NRRD_BYTE_SKIP);
+    int64_t skip;
+    if (lines) {
+        if (!snow_parse_int64(lines, &skip) || skip < 0)
+            return fail_field(context, text, NRRD_LINE_SKIP,
+                              "is no number of lines");
+        out->line_skip = (uint64_t)skip;
+    }
+    if (bytes &&
+        (!snow_parse_int64(bytes, &out->byte_skip) || out->byte_skip < -1 ||
+         (out->byte_skip < 0 && out->encoding == NRRD_ASCII)))
+        return fail_field(context, text, NRRD_BYTE_SKIP,
+                          "is no number of bytes (nor -1 before binary data)");
+    return SNOW_OK;
+}
+
+snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
+                                   nrrd_header *out) {
+    int dimension = 3;
+    *out = (nrrd_header){0};
+    SNOW_TRY(parse_type(context, text, out));
+    SNOW_TRY(parse_encoding(context, text, out));
+    SNOW_TRY(parse_endian(context, text, out));
+    SNOW_TRY(parse_dimension(context, text, out));
+    SNOW_TRY(parse_sizes(context, text, out));
+    SNOW_TRY(parse_spacings(context, text, out));
+    SNOW_TRY(parse_kinds(context, text, out));
+    SNOW_TRY(parse_world(context, text, out, &dimension));
+    SNOW_TRY(parse_directions(context, text, dimension, out));
+    SNOW_TRY(parse_skips(context, text, out));
+    parse_unit(text, out);
+    return SNOW_OK;
+}
