@@ -16,6 +16,10 @@ int cmd_doctor(const options *asked);
 int open_input(snow_context *context, const options *asked, const char *path,
                snow_volume **out);
 
+/* Refuses look options that contradict each other: asked before a volume is
+ * read.  Answers GO_ON or an exit code. */
+int check_look(const options *asked);
+
 /* The transfer function that the options ask for.  Answers GO_ON or an exit
  * code. */
 int open_look(snow_context *context, const options *asked,

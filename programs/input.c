@@ -73,21 +73,15 @@ int open_input(snow_context *context, const options *asked, const char *path,
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
-/* --window and --level are another way to write --range. */
-static int take_window(const options *asked, snow_look *look) {
+int check_look(const options *asked) {
     bool window = !isnan(asked->window), level = !isnan(asked->level);
     if (window != level)
         return fail_usage("--%s: needs --%s beside it",
                           window ? "window" : "level",
                           window ? "level" : "window");
-    if (!window)
-        return GO_ON;
-    if (asked->range.kind != SNOW_RANGE_AUTO)
+    if (window && asked->range.kind != SNOW_RANGE_AUTO)
         return fail_usage("--window: does not go with --range; give one of "
                           "them");
-    look->range = SNOW_RANGE_VALUES;
-    look->low = asked->level - asked->window / 2;
-    look->high = asked->level + asked->window / 2;
     return GO_ON;
 }
 
@@ -98,13 +92,15 @@ int open_look(snow_context *context, const options *asked,
                       .range = asked->range.kind,
                       .low = asked->range.low,
                       .high = asked->range.high};
+    if (!isnan(asked->window)) { /* another way to write a range */
+        look.range = SNOW_RANGE_VALUES;
+        look.low = asked->level - asked->window / 2;
+        look.high = asked->level + asked->window / 2;
+    }
     if (asked->opacities.count) {
         look.opacities = asked->opacities.points;
         look.opacity_count = asked->opacities.count;
     }
-    int done = take_window(asked, &look);
-    if (done != GO_ON)
-        return done;
     snow_status status = snow_transfer_make(volume, &look, out);
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
