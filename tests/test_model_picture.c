@@ -104,6 +104,46 @@ static void every_kernel_and_footprint_from_every_side(void **state) {
     model_close(&stage);
 }
 
+/* The zoom at which a pixel is as wide as `length` in the world. */
+static double zoom_for(const reference_scene *scene, double length) {
+    reference_camera camera;
+    reference_scene plain = *scene;
+    plain.view.zoom = 1;
+    reference_camera_of(&plain, &camera);
+    return camera.pitch / length;
+}
+
+/* Here every distance of a voxel and a pixel is a round number, and edges of
+ * kernels fall on voxels. */
+static void pixels_that_lie_on_the_grid(void **state) {
+    (void)state;
+    static const double lengths[] = {1, 0.5, 2, 0.25, 4};
+    model_stage stage = model_open();
+    uint64_t random = 7;
+    double largest = 0;
+    size_t pictures = COUNT(kernels) * 8 * COUNT(lengths) * 9;
+    for (size_t n = 0; n < pictures; n++) {
+        reference_scene scene = drawn_scene(&random);
+        size_t rest = n / 9;
+        /* Odd and even sizes move pixels by half a voxel. */
+        scene.view.width = 21 + (int)draw(&random, 2);
+        scene.view.height = 18 + (int)draw(&random, 2);
+        scene.settings.kernel = kernels[rest % COUNT(kernels)];
+        scene.settings.footprint = 2 + (int)(rest / COUNT(kernels) % 8);
+        scene.info.matrix[0][0] = scene.info.matrix[1][1] = 1;
+        scene.info.matrix[2][2] = n % 2 == 0 ? 1 : 2;
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 4; c++)
+                scene.info.matrix[r][c] *= r == c;
+        double length = lengths[rest / COUNT(kernels) / 8];
+        stand_at(&scene, n % 9, zoom_for(&scene, length));
+        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        model_free(&scene);
+    }
+    say(largest, (int)pictures);
+    model_close(&stage);
+}
+
 static void every_type_matrix_threshold_and_shading(void **state) {
     (void)state;
     model_stage stage = model_open();
@@ -299,6 +339,7 @@ static void transfer_functions_of_any_shape(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kernel_and_footprint_from_every_side),
+        cmocka_unit_test(pixels_that_lie_on_the_grid),
         cmocka_unit_test(every_type_matrix_threshold_and_shading),
         cmocka_unit_test(every_size_of_picture),
         cmocka_unit_test(volumes_thin_along_some_axes),
