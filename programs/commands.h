@@ -11,6 +11,10 @@ int cmd_phantom(const options *asked);
 int cmd_compare(const options *asked);
 int cmd_doctor(const options *asked);
 
+/* All of standard input, for the caller to free().  Answers GO_ON or an exit
+ * code. */
+int read_standard_input(char **out, size_t *size);
+
 /* Opens the volume that the options name: a file, phantom:NAME, or "-" for
  * standard input.  Answers GO_ON or an exit code. */
 int open_input(snow_context *context, const options *asked, const char *path,

@@ -1,5 +1,6 @@
 /* help.c - the help, written from the tables of option_table.c and from the
  * library's lists of names; lines are at most 80 characters wide. */
+#include "bench.h"
 #include "options.h"
 #include "report.h"
 
@@ -133,6 +134,11 @@ static int print_topic_page(topic which) {
 static int print_verb_page(const verb_row *row) {
     if (!row->bit)
         return fail_usage("%s is not built yet; %s", row->name, row->text);
+    if (row->bit == VERB_BENCH) { /* it reads and tells its own options */
+        char *words[] = {"bench", "--help", NULL};
+        bench_main(2, words);
+        return finish_stdout();
+    }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
     for (int i = 0; topic_table[i].name; i++) {
         if (has_options((topic)i, row->bit)) {

@@ -25,11 +25,10 @@ static snow_volume_options data_options(const options *asked) {
     return data;
 }
 
-/* All of standard input; the caller frees it.  NULL after an error, which
- * errno names. */
-static char *read_stream(size_t *size) {
+int read_standard_input(char **out, size_t *size) {
     size_t room = STREAM_BYTES, used = 0;
     char *bytes = malloc(room);
+    errno = 0;
     while (bytes) {
         used += fread(bytes + used, 1, room - used, stdin);
         if (used < room)
@@ -40,24 +39,25 @@ static char *read_stream(size_t *size) {
         bytes = grown;
         room *= 2;
     }
-    if (bytes && ferror(stdin)) {
-        free(bytes);
-        bytes = NULL;
+    if (bytes && !ferror(stdin)) {
+        *out = bytes;
+        *size = used;
+        return GO_ON;
     }
-    *size = used;
-    return bytes;
+    say("standard input: %s; give a file",
+        bytes && errno ? strerror(errno) : "too large for the memory");
+    int code = bytes ? SNOW_BAD_INPUT : SNOW_NO_MEMORY;
+    free(bytes);
+    return code;
 }
 
 static int open_stream(snow_context *context, const snow_volume_options *data,
                        snow_volume **out) {
+    char *bytes;
     size_t size;
-    errno = 0;
-    char *bytes = read_stream(&size);
-    if (!bytes) {
-        say("standard input: %s; give a file",
-            errno ? strerror(errno) : "cannot be read");
-        return errno == ENOMEM ? SNOW_NO_MEMORY : SNOW_BAD_INPUT;
-    }
+    int done = read_standard_input(&bytes, &size);
+    if (done != GO_ON)
+        return done;
     snow_status status = snow_volume_open_memory(context, "standard input",
                                                  bytes, size, data, out);
     free(bytes);

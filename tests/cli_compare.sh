@@ -32,6 +32,8 @@ says '1 ?x ?1 .*2 ?x ?1 '
 plain_error
 run 6 "NaN and a number" "$TOOL" compare nan.pfm half.pfm --tolerance 1
 run 0 "NaN and NaN" "$TOOL" compare nan.pfm nan.pfm
+check "standard input" bash -c \
+    "'$TOOL' compare - half.pfm <half.pfm | grep -q '^within'"
 head -c 15 half.pfm >cut.pfm
 run 3 "a cut picture" "$TOOL" compare cut.pfm half.pfm
 says 'cut.pfm'
