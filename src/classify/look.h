@@ -1,0 +1,82 @@
+/* classify/look.h - how a look becomes a transfer function: presets, colour
+ * maps and the histogram's say, each drafted as control points. */
+#ifndef SNOW_LOOK_H
+#define SNOW_LOOK_H
+
+#include "classify/transfer.h"
+#include "volume/volume.h"
+
+#define SNOW_DRAFT_POINTS 32
+
+/* A transfer function in the making. */
+typedef struct snow_draft {
+    const char *name;   /* of the colours, for people */
+    const char *reason; /* why these values, for people */
+    double low, high;   /* the data values that it is spread over */
+    snow_color_point colors[SNOW_DRAFT_POINTS];
+    size_t color_count;
+    snow_opacity_point opacities[SNOW_DRAFT_POINTS];
+    size_t opacity_count;
+} snow_draft;
+
+/* What a volume's values are like at a glance. */
+typedef struct snow_census {
+    uint64_t finite;
+    double min, max; /* of finite data values; NaN when there is none */
+    uint64_t at_min; /* how many have the smallest value */
+} snow_census;
+
+void snow_take_census(const snow_volume *volume, snow_census *out);
+
+#define SNOW_QUANTILES_MOST 4
+
+/* The data value that is not exceeded by the share `fractions[n]` of the finite
+ * voxels (an existing value, no interpolation), for up to SNOW_QUANTILES_MOST
+ * shares of 0 to 1.  The volume has at least one finite voxel.
+ * Errors: SNOW_NO_MEMORY. */
+snow_status snow_quantiles(const snow_volume *volume, uint64_t finite,
+                           const double *fractions, size_t count, double *out);
+
+/* Where the histogram parts background from object. */
+typedef struct snow_parting {
+    bool constant;     /* fewer than two values: nothing to part */
+    double background; /* mean value below the threshold */
+    double threshold;
+    double object;   /* mean value above it */
+    double top;      /* robust largest value */
+    double faint;    /* where faint structure starts below the threshold */
+    bool with_faint; /* there is such structure, and it is sparse */
+} snow_parting;
+
+/* Reads the histogram.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_part_histogram(const snow_volume *volume,
+                                const snow_census *census, snow_parting *out);
+
+/* The look without any wish.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_draft_automatic(const snow_volume *volume,
+                                 const snow_census *census, snow_draft *out);
+
+/* A preset by its name; its index, or -1. */
+int snow_preset_find(const char *name);
+
+/* True when a preset's values are Hounsfield units. */
+bool snow_preset_is_hounsfield(int preset);
+
+/* The draft of a preset.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_draft_preset(int preset, const snow_volume *volume,
+                              const snow_census *census, snow_draft *out);
+
+/* Smallest to largest finite value, made apart when they are one. */
+void snow_full_range(const snow_census *census, double *low, double *high);
+
+/* A colour map by its name, also "gray"; its index, or -1. */
+int snow_colormap_find(const char *name);
+
+/* Replaces a draft's colours by a map over low..high. */
+void snow_draft_colormap(snow_draft *draft, int colormap, double low,
+                         double high);
+
+/* low + share * (high - low), for any finite ends. */
+double snow_between(double low, double high, double share);
+
+#endif

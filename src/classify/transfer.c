@@ -1,0 +1,181 @@
+/* classify/transfer.c - transfer functions: control points and their values.
+ *
+ * Points lie in rising order, so a value is looked up by bisection.  The
+ * search is for the first point beyond the value: where a value repeats, the
+ * value itself then belongs to the later point, and the step is above it. */
+#include "classify/transfer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Checks one point of either kind; `last` is the value before it. */
+static snow_status check_point(snow_context *context, const char *kind,
+                               size_t index, double value, double last) {
+    if (!isfinite(value))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s point %zu has the value %g; give finite values",
+                         kind, index + 1, value);
+    if (index && value < last)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s point %zu at %g comes after %g; give the points "
+                         "in rising order of values",
+                         kind, index + 1, value, last);
+    return SNOW_OK;
+}
+
+static bool in_unit(double x) {
+    return x >= 0 && x <= 1;
+}
+
+static snow_status check_colors(snow_context *context,
+                                const snow_color_point *colors, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const snow_color_point *c = colors + i;
+        SNOW_TRY(check_point(context, "colour", i, c->value,
+                             i ? colors[i - 1].value : 0));
+        if (!in_unit(c->red) || !in_unit(c->green) || !in_unit(c->blue))
+            return snow_fail(context, SNOW_BAD_USAGE,
+                             "colour point %zu is (%g, %g, %g); red, green and "
+                             "blue go from 0 to 1",
+                             i + 1, c->red, c->green, c->blue);
+    }
+    return SNOW_OK;
+}
+
+static snow_status check_opacities(snow_context *context,
+                                   const snow_opacity_point *opacities,
+                                   size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        SNOW_TRY(check_point(context, "opacity", i, opacities[i].value,
+                             i ? opacities[i - 1].value : 0));
+        if (!in_unit(opacities[i].opacity))
+            return snow_fail(context, SNOW_BAD_USAGE,
+                             "opacity point %zu is %g; opacity goes from 0 to "
+                             "1",
+                             i + 1, opacities[i].opacity);
+    }
+    return SNOW_OK;
+}
+
+static bool all_grey(const snow_color_point *colors, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (colors[i].red != colors[i].green || colors[i].red != colors[i].blue)
+            return false;
+    return true;
+}
+
+static void *copy(snow_context *context, const void *items, size_t count,
+                  size_t size) {
+    void *block = snow_allocate_array(context, count, size);
+    if (block)
+        memcpy(block, items, count * size);
+    return block;
+}
+
+snow_status snow_transfer_new(snow_context *context,
+                              const snow_color_point *colors,
+                              size_t color_count,
+                              const snow_opacity_point *opacities,
+                              size_t opacity_count, snow_transfer **out) {
+    if (!color_count || !opacity_count)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a transfer function of %zu colours and %zu opacities "
+                         "is incomplete; give at least one point of each",
+                         color_count, opacity_count);
+    SNOW_TRY(check_colors(context, colors, color_count));
+    SNOW_TRY(check_opacities(context, opacities, opacity_count));
+    snow_transfer *transfer = snow_allocate_clear(context, sizeof *transfer);
+    if (!transfer)
+        return SNOW_NO_MEMORY;
+    transfer->context = context;
+    transfer->color_count = color_count;
+    transfer->opacity_count = opacity_count;
+    transfer->grey = all_grey(colors, color_count);
+    transfer->colors = copy(context, colors, color_count, sizeof *colors);
+    transfer->opacities =
+        copy(context, opacities, opacity_count, sizeof *opacities);
+    if (!transfer->colors || !transfer->opacities) {
+        snow_transfer_free(transfer);
+        return SNOW_NO_MEMORY;
+    }
+    snprintf(transfer->text, sizeof transfer->text,
+             "%zu colour and %zu opacity points", color_count, opacity_count);
+    *out = transfer;
+    return SNOW_OK;
+}
+
+void snow_transfer_free(snow_transfer *transfer) {
+    if (!transfer)
+        return;
+    snow_release(transfer->context, transfer->colors);
+    snow_release(transfer->context, transfer->opacities);
+    snow_release(transfer->context, transfer);
+}
+
+const char *snow_transfer_text(const snow_transfer *transfer) {
+    return transfer->text;
+}
+
+bool snow_transfer_is_grey(const snow_transfer *transfer) {
+    return transfer->grey;
+}
+
+/* How far `value` is on the way from a to b, which differ; halves where their
+ * distance is more than a double can hold. */
+static double part_of_way(double value, double a, double b) {
+    if (isfinite(b - a))
+        return (value - a) / (b - a);
+    return (value / 2 - a / 2) / (b / 2 - a / 2);
+}
+
+static double mix(double a, double b, double t) {
+    return a + (b - a) * t;
+}
+
+double snow_transfer_opacity(const snow_transfer *transfer, double value) {
+    const snow_opacity_point *points = transfer->opacities;
+    size_t low = 0, high = transfer->opacity_count; /* first one beyond */
+    if (isnan(value))
+        return 0;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (points[middle].value > value)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    if (low == 0)
+        return points[0].opacity;
+    if (low == transfer->opacity_count)
+        return points[low - 1].opacity;
+    double t = part_of_way(value, points[low - 1].value, points[low].value);
+    return mix(points[low - 1].opacity, points[low].opacity, t);
+}
+
+void snow_transfer_at(const snow_transfer *transfer, double value,
+                      double rgba[4]) {
+    const snow_color_point *points = transfer->colors;
+    size_t low = 0, high = transfer->color_count; /* first one beyond */
+    if (isnan(value)) {
+        rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
+        return;
+    }
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (points[middle].value > value)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    const snow_color_point *a = points + (low ? low - 1 : 0), *b = a;
+    double t = 0;
+    if (low > 0 && low < transfer->color_count) {
+        b = a + 1;
+        t = part_of_way(value, a->value, b->value);
+    }
+    rgba[0] = mix(a->red, b->red, t);
+    rgba[1] = mix(a->green, b->green, t);
+    rgba[2] = mix(a->blue, b->blue, t);
+    rgba[3] = snow_transfer_opacity(transfer, value);
+}
