@@ -9,6 +9,7 @@
 
 #define WIDTH 80
 #define COLUMN 29 /* where the texts of options begin */
+#define NAMES 20  /* and those of names in a list */
 
 static const char overview[] =
     "snowglass - volume rendering by sparse splatting\n"
@@ -105,10 +106,12 @@ static void print_names(const char *title, const char *(*name)(size_t),
                         const char *(*text)(size_t)) {
     printf("\n%s:%s", title, text ? "\n" : "");
     for (size_t i = 0; name(i); i++) {
-        if (text)
-            printf("  %-18s%s\n", name(i), text(i));
-        else
+        if (text) {
+            printf("  %-18s", name(i));
+            print_wrapped(text(i), NAMES, NAMES);
+        } else {
             printf(" %s", name(i));
+        }
     }
     if (!text)
         printf("\n");

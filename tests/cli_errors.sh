@@ -73,6 +73,16 @@ if [ "$(id -u)" -ne 0 ]; then
 fi
 refused 4 "a folder that is a file" "kept" render -o kept/a.png
 
+# Under a limit of address space; sanitizers do not start there.
+limited() { (ulimit -v 1500000 && "$@"); }
+if limited "$TOOL" --version >/dev/null 2>&1; then
+    refused 5 "a volume beyond the memory" "memory" \
+        limited "$TOOL" phantom:cube --dims 1500x1500x1500 -o huge.png
+    refused 5 "a picture beyond the memory" "memory" \
+        limited "$TOOL" phantom:cube --dims 8x8x8 -s 32768x32768 -o huge.png
+    check "leaves no picture" absent huge.png
+fi
+
 if [ -c /dev/full ]; then
     full() { "$@" >/dev/full; }
     run 4 "a picture to a full device" full render -q -o -
