@@ -65,6 +65,7 @@ static snow_status render(bench_run *run, bench_way way, double threshold,
     run->settings.method = ways[way].method;
     run->settings.encoding = ways[way].encoding;
     run->settings.threshold = threshold;
+    double start = cpu_seconds();
     snow_status status = snow_frame_render(run->frame, run->volume->volume,
                                            run->volume->transfer, &run->view,
                                            &run->settings, &image);
