@@ -227,6 +227,28 @@ static void a_whole_file_may_be_packed(void **state) {
     support_files_end(&files);
 }
 
+/* The last bytes of a stream, of which one time step is wanted. */
+static void a_step_among_the_last_bytes_of_gzip_is_found(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    unsigned char data[60] = "head", packed[200];
+    memcpy(data + 4, counting(), 48);
+    static const char header[] =
+        MAGIC "type: uint8\nencoding: gzip\ndimension: 4\nsizes: 4 2 2 3\n"
+              "kinds: domain domain domain time\nbyte skip: -1\n\n";
+    size_t size = support_gzip(data, 52, packed, sizeof packed);
+    const snow_volume_options options = {.time = 1};
+    snow_volume *volume = support_opened(
+        &files, write_nrrd(&files, "a.nrrd", header, packed, size), &options);
+    assert_memory_equal(snow_volume_voxels(volume), counting() + 16, 16);
+    snow_volume_close(volume);
+    size = support_gzip(data, 47, packed, sizeof packed);
+    support_refused(&files, write_nrrd(&files, "b.nrrd", header, packed, size),
+                    NULL, SNOW_BAD_INPUT, "47 bytes", MOST);
+    support_files_end(&files);
+}
+
 static void numbers_in_text_are_read(void **state) {
     (void)state;
     support_files files;
@@ -250,6 +272,23 @@ static void numbers_in_text_are_read(void **state) {
     assert_true(*(const uint64_t *)snow_volume_voxels(volume) == UINT64_MAX);
     snow_volume_close(volume);
     assert_int_equal(files.notices, 0);
+    volume = support_opened(
+        &files,
+        support_write_text(&files, "c.nrrd",
+                           MAGIC "type: float\ndimension: 1\nsizes: 2\n"
+                                 "encoding: ascii\n\n0.5 -1e2 and more"),
+        NULL);
+    assert_true(((const float *)snow_volume_voxels(volume))[1] == -100);
+    snow_volume_close(volume);
+    assert_int_equal(files.notices, 1);
+    volume = support_opened(
+        &files,
+        support_write_text(&files, "d.nrrd",
+                           MAGIC "type: uint\ndimension: 1\nsizes: 1\n"
+                                 "encoding: ascii\n\n4294967295"),
+        NULL);
+    assert_true(*(const uint32_t *)snow_volume_voxels(volume) == UINT32_MAX);
+    snow_volume_close(volume);
     support_files_end(&files);
 }
 
@@ -260,7 +299,7 @@ static void text_that_is_no_number_of_the_type_is_refused(void **state) {
     static const char *const texts[][2] = {
         {"uint8", "1 256"}, {"uint8", "1 -1"},    {"int8", "1 128"},
         {"short", "1 2.5"}, {"uint64", "1 -1"},   {"int", "1 x"},
-        {"double", "1 1e"}, {"int64", "1 1e999"},
+        {"double", "1 1e"}, {"int64", "1 1e999"}, {"uint", "1 -1"},
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char text[200];
@@ -271,6 +310,13 @@ static void text_that_is_no_number_of_the_type_is_refused(void **state) {
         support_refused(&files, support_write_text(&files, "a.nrrd", text),
                         NULL, SNOW_BAD_INPUT, "is no", MOST);
     }
+    /* One number that would be two if it were cut where room ends. */
+    char digits[1000] = MAGIC "type: double\ndimension: 1\nsizes: 2\n"
+                              "encoding: txt\n\n0.";
+    size_t used = strlen(digits);
+    memset(digits + used, '3', sizeof digits - 1 - used);
+    support_refused(&files, support_write_text(&files, "c.nrrd", digits), NULL,
+                    SNOW_BAD_INPUT, "is no", MOST);
     support_refused(&files,
                     support_write_text(&files, "b.nrrd",
                                        MAGIC "type: int\ndimension: 1\n"
@@ -473,6 +519,16 @@ static void contradictions_are_refused(void **state) {
         {MAGIC "type: uint8\nencoding: raw\ndimension: 3\nsizes: 1 2 3 4\n\n",
          "more numbers"},
         {RAW "spacings: 1 1\n\n", "spacings"},
+        {RAW "spacings: 1 1 1 1\n\n", "spacings"},
+        {RAW "kinds: domain domain domain time\n\n", "kinds"},
+        {RAW "space dimension: 9\n\n", "space dimension"},
+        {RAW "space: RAS\nspace directions: (1,0,0) (0,1,0) (0,0,1) none\n\n",
+         "directions"},
+        {RAW "spacings: 1 1 1\x1b[31m\n\n", "1?[31m"},
+        {MAGIC "type: uint8\nencoding: raw\ndimension: 4\n"
+               "kinds: domain domain domain time\n"
+               "sizes: 2000000000 2000000000 2 9000000000\n\n",
+         "time steps"},
         {RAW "kinds: domain domain\n\n", "kinds"},
         {RAW "space: nowhere\n\n", "nowhere"},
         {RAW "space: RAS\nspace dimension: 2\n\n", "contradicts"},
@@ -491,10 +547,25 @@ static void contradictions_are_refused(void **state) {
 #undef RAW
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
         refused(&files, headers[i][0], headers[i][1]);
-    const char *path =
-        support_write_text(&files, "b.nrrd", SHORTS "encoding: raw\n");
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "within its header",
-                    MOST);
+    support_files_end(&files);
+}
+
+static void headers_alone_that_promise_no_data_are_refused(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    static const char *const headers[][2] = {
+        {SHORTS "encoding: raw\n", "within its header"},
+        {SHORTS "encoding: raw\ndata file: LIST\n", "number of files"},
+        {SHORTS "encoding: raw\ndata file: LIST x\na\nb\n", "LIST"},
+        {SHORTS "encoding: raw\ndata file: LIST 4\na\n", "number of files"},
+        {SHORTS "encoding: raw\ndata file: s%d 1 9 -1\n", "number of files"},
+        {SHORTS "encoding: raw\ndata file: s%d 1 9 0\n", "number of files"},
+    };
+    for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
+        support_refused(&files,
+                        support_write_text(&files, "a.nhdr", headers[i][0]),
+                        NULL, SNOW_BAD_INPUT, headers[i][1], MOST);
     support_files_end(&files);
 }
 
@@ -646,6 +717,8 @@ static void slices_in_files_are_joined(void **state) {
     write_pieces(&files, "slice", 24, false);
     write_pieces(&files, "packed", 24, true);
     write_pieces(&files, "row", 8, false);
+    support_write(&files, "blank  1.x", counting(), 24);
+    support_write(&files, "blank  2.x", counting() + 24, 24);
     static const char *const fields[] = {
         "raw\ndata file: LIST\nslice10\nslice09\n",
         "raw\ndata file: LIST 2\nslice10\nslice09",
@@ -654,6 +727,7 @@ static void slices_in_files_are_joined(void **state) {
         "raw\ndata file: LIST 1\nrow10\nrow09\nrow08\nrow07\nrow06\nrow05\n",
         "raw\ndata file: slice%02d 10 9 -1\n",
         "raw\ndata file: row%02u 10 5 -1 1\n",
+        "raw\ndata file: blank%3d.x 1 2 1\n",
         "gzip\ndata file: packed%02d 10 8 -1 2\n",
     };
     size_t count = sizeof fields / sizeof *fields;
@@ -709,8 +783,9 @@ static void odd_patterns_are_names(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    static const char *const names[] = {"%s 1 2 1",    "%n",     "a%d%d 1 2 1",
-                                        "%100d 1 2 1", "%d 1 2", "%"};
+    static const char *const names[] = {
+        "%s 1 2 1", "%n", "a%d%d 1 2 1", "%100d 1 2 1",
+        "%d 1 2",   "%",  "%d x 2 1",    "%d 111111111111111111111111 1 1"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char header[300];
         support_write(&files, names[i], counting(), 48);
@@ -885,6 +960,7 @@ int main(void) {
         cmocka_unit_test(gzip_data_are_unpacked),
         cmocka_unit_test(skips_apply_on_their_side_of_the_packing),
         cmocka_unit_test(a_whole_file_may_be_packed),
+        cmocka_unit_test(a_step_among_the_last_bytes_of_gzip_is_found),
         cmocka_unit_test(numbers_in_text_are_read),
         cmocka_unit_test(text_that_is_no_number_of_the_type_is_refused),
         cmocka_unit_test(spaces_are_turned_to_ras),
@@ -895,6 +971,7 @@ int main(void) {
         cmocka_unit_test(axes_of_one_sample_are_left_out),
         cmocka_unit_test(vectors_colours_and_unknown_axes_are_refused),
         cmocka_unit_test(contradictions_are_refused),
+        cmocka_unit_test(headers_alone_that_promise_no_data_are_refused),
         cmocka_unit_test(spacings_that_are_none_are_refused),
         cmocka_unit_test(sizes_that_lie_are_refused_before_their_memory),
         cmocka_unit_test(data_too_short_or_too_long_are_told),
