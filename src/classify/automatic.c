@@ -187,7 +187,7 @@ snow_status snow_draft_automatic(const snow_volume *volume,
     if (p.constant) {
         double low, high;
         snow_full_range(census, &low, &high);
-        draft_grey(&draft, low, high, 0.5);
+        draft_grey(&draft, low, high, 0.6);
         add_opacity(&draft, low, 0);
         add_opacity(&draft, high, 0.8);
         draft.reason = "one value only";
