@@ -30,7 +30,7 @@ int support_image_teardown(void **state) {
     return 0;
 }
 
-const char *support_path(image_fixture *fixture, const char *name) {
+const char *support_image_path(image_fixture *fixture, const char *name) {
     if (fixture->path[0])
         unlink(fixture->path);
     snprintf(fixture->path, sizeof fixture->path, "%s/%s", fixture->folder,
@@ -38,7 +38,7 @@ const char *support_path(image_fixture *fixture, const char *name) {
     return fixture->path;
 }
 
-int support_count_files(const image_fixture *fixture) {
+int support_image_files(const image_fixture *fixture) {
     DIR *listing = opendir(fixture->folder);
     assert_non_null(listing);
     int count = -2; /* . and .. */
