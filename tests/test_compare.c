@@ -186,10 +186,10 @@ static void a_bright_spot_spoils_its_own_windows_only(void **state) {
 static void rounding_of_huge_values_makes_no_difference(void **state) {
     image_fixture *f = *state;
     uint64_t seed = 5;
-    for (int power = -30; power < 38; power++) {
-        snow_image *a = picture(f, 8, 8, 2);
-        float value = (float)(support_uniform(&seed) * pow(10, power));
-        for (int i = 0; i < 64; i++)
+    for (int round = 0; round < 500; round++) {
+        snow_image *a = picture(f, 1, 35, 2);
+        float value = (float)(support_uniform(&seed) * 1e16);
+        for (int i = 0; i < 35; i++)
             snow_image_pixels(a)[2 * i] = value;
         assert_true(compare(a, a).ssim == 1);
         snow_image_free(a);
