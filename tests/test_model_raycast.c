@@ -40,7 +40,7 @@ static snow_image *image_of(const model_stage *stage, int width, int height) {
     return image;
 }
 
-static void keep_pair(const model_stage *stage, const subject *subject,
+static void keep_pair(const model_stage *stage, const subject *what,
                       snow_image *splatted, snow_image *cast) {
     const char *folder = getenv("SNOW_PICTURES");
     if (!folder)
@@ -53,16 +53,15 @@ static void keep_pair(const model_stage *stage, const subject *subject,
                    snow_image_pixels(side ? cast : splatted) + 4 * width * y,
                    (size_t)width * 4 * sizeof(float));
     char path[1024];
-    snprintf(path, sizeof path, "%s/%s-%s-%g.png", folder, subject->name,
-             subject->shade == SNOW_SHADE_PHONG ? "phong" : "none",
-             subject->azimuth);
+    snprintf(path, sizeof path, "%s/%s-%s-%g.png", folder, what->name,
+             what->shade == SNOW_SHADE_PHONG ? "phong" : "none", what->azimuth);
     snow_image_options options = {.flatten = true, .overwrite = true};
     assert_int_equal(snow_image_save(pair, path, &options), SNOW_OK);
     snow_image_free(pair);
 }
 
 /* The structural similarity of a subject's splatted and ray-cast pictures. */
-static double similarity(const model_stage *stage, const subject *subject,
+static double similarity(const model_stage *stage, const subject *what,
                          const reference_scene *scene) {
     int width = scene->view.width, height = scene->view.height;
     snow_image *splatted = image_of(stage, width, height);
@@ -77,10 +76,10 @@ static double similarity(const model_stage *stage, const subject *subject,
     assert_int_equal(snow_image_compare(splatted, cast, &difference), SNOW_OK);
     print_message("             %s, shade %s: SSIM %.4f, PSNR %.1f dB, mean "
                   "difference %.4f\n",
-                  subject->name,
-                  subject->shade == SNOW_SHADE_PHONG ? "phong" : "none",
+                  what->name,
+                  what->shade == SNOW_SHADE_PHONG ? "phong" : "none",
                   difference.ssim, difference.psnr, difference.mean);
-    keep_pair(stage, subject, splatted, cast);
+    keep_pair(stage, what, splatted, cast);
     free(picture);
     free(rays);
     snow_image_free(splatted);
@@ -88,30 +87,30 @@ static double similarity(const model_stage *stage, const subject *subject,
     return difference.ssim;
 }
 
-static void check_subject(const subject *subject) {
+static void check_subject(const subject *what) {
     model_stage stage = model_open();
     snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_phantom(stage.context, subject->name,
-                                         subject->dims, 0, &volume),
-                     SNOW_OK);
+    assert_int_equal(
+        snow_volume_phantom(stage.context, what->name, what->dims, 0, &volume),
+        SNOW_OK);
     bool bytes = snow_volume_describe(volume)->type == SNOW_UINT8;
     reference_scene scene = {
         .info = *snow_volume_describe(volume),
         .voxels = snow_volume_voxels(volume),
         .colors = bytes ? byte_colors : signal_colors,
         .color_count = bytes ? 3 : 2,
-        .opacities = subject->opacities,
-        .opacity_count = subject->opacity_count,
+        .opacities = what->opacities,
+        .opacity_count = what->opacity_count,
         .view = {.width = 128,
                  .height = 128,
                  .back = {0, 0, 1},
                  .up = {0, 1, 0}},
     };
-    model_turn(&scene, subject->azimuth, subject->elevation, 0, 1.3);
+    model_turn(&scene, what->azimuth, what->elevation, 0, 1.3);
     snow_settings_init(&scene.settings);
-    scene.settings.shade = subject->shade;
-    double ssim = similarity(&stage, subject, &scene);
-    assert_true(ssim >= subject->ssim);
+    scene.settings.shade = what->shade;
+    double ssim = similarity(&stage, what, &scene);
+    assert_true(ssim >= what->ssim);
     snow_volume_close(volume);
     model_close(&stage);
 }
