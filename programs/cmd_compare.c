@@ -3,15 +3,26 @@
 #include "report.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
-static int load_pair(snow_context *context, char **paths,
-                     snow_image *images[2]) {
-    for (int i = 0; i < 2; i++) {
-        snow_status status = snow_image_load(context, paths[i], &images[i]);
-        if (status != SNOW_OK)
-            return fail_status(context, status);
-    }
-    return GO_ON;
+static int load_stream(snow_context *context, snow_image **out) {
+    char *bytes;
+    size_t size;
+    int done = read_standard_input(&bytes, &size);
+    if (done != GO_ON)
+        return done;
+    snow_status status =
+        snow_image_load_memory(context, "standard input", bytes, size, out);
+    free(bytes);
+    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+}
+
+static int load(snow_context *context, const char *path, snow_image **out) {
+    if (strcmp(path, "-") == 0)
+        return load_stream(context, out);
+    snow_status status = snow_image_load(context, path, out);
+    return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
 static int tell_json(const snow_image_difference *d, double tolerance,
@@ -55,7 +66,9 @@ int cmd_compare(const options *asked) {
     snow_image_difference difference;
     int done = open_context(asked, &context);
     if (done == GO_ON)
-        done = load_pair(context, asked->operands, images);
+        done = load(context, asked->operands[0], &images[0]);
+    if (done == GO_ON)
+        done = load(context, asked->operands[1], &images[1]);
     if (done == GO_ON) {
         snow_status status =
             snow_image_compare(images[0], images[1], &difference);

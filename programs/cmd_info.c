@@ -229,7 +229,9 @@ int cmd_info(const options *asked) {
     snow_context *context = NULL;
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
-    int done = open_context(asked, &context);
+    int done = check_look(asked);
+    if (done == GO_ON)
+        done = open_context(asked, &context);
     if (done == GO_ON)
         done = open_input(context, asked, asked->operands[0], &volume);
     if (done == GO_ON)

@@ -35,7 +35,7 @@ static int check_combination(const options *asked) {
     if (is_stream(asked->output) && isatty(STDOUT_FILENO))
         return fail_usage("--output: '-' is a terminal; send it to a pipe or a "
                           "file");
-    return GO_ON;
+    return check_look(asked);
 }
 
 static int check_paths(snow_context *context, const options *asked) {

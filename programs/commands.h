@@ -11,10 +11,18 @@ int cmd_phantom(const options *asked);
 int cmd_compare(const options *asked);
 int cmd_doctor(const options *asked);
 
+/* All of standard input, for the caller to free().  Answers GO_ON or an exit
+ * code. */
+int read_standard_input(char **out, size_t *size);
+
 /* Opens the volume that the options name: a file, phantom:NAME, or "-" for
  * standard input.  Answers GO_ON or an exit code. */
 int open_input(snow_context *context, const options *asked, const char *path,
                snow_volume **out);
+
+/* Refuses look options that contradict each other: asked before a volume is
+ * read.  Answers GO_ON or an exit code. */
+int check_look(const options *asked);
 
 /* The transfer function that the options ask for.  Answers GO_ON or an exit
  * code. */

@@ -1,5 +1,6 @@
 /* help.c - the help, written from the tables of option_table.c and from the
  * library's lists of names; lines are at most 80 characters wide. */
+#include "bench.h"
 #include "options.h"
 #include "report.h"
 
@@ -8,6 +9,7 @@
 
 #define WIDTH 80
 #define COLUMN 29 /* where the texts of options begin */
+#define NAMES 20  /* and those of names in a list */
 
 static const char overview[] =
     "snowglass - volume rendering by sparse splatting\n"
@@ -104,10 +106,12 @@ static void print_names(const char *title, const char *(*name)(size_t),
                         const char *(*text)(size_t)) {
     printf("\n%s:%s", title, text ? "\n" : "");
     for (size_t i = 0; name(i); i++) {
-        if (text)
-            printf("  %-18s%s\n", name(i), text(i));
-        else
+        if (text) {
+            printf("  %-18s", name(i));
+            print_wrapped(text(i), NAMES, NAMES);
+        } else {
             printf(" %s", name(i));
+        }
     }
     if (!text)
         printf("\n");
@@ -133,6 +137,11 @@ static int print_topic_page(topic which) {
 static int print_verb_page(const verb_row *row) {
     if (!row->bit)
         return fail_usage("%s is not built yet; %s", row->name, row->text);
+    if (row->bit == VERB_BENCH) { /* it reads and tells its own options */
+        char *words[] = {"bench", "--help", NULL};
+        bench_main(2, words);
+        return finish_stdout();
+    }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
     for (int i = 0; topic_table[i].name; i++) {
         if (has_options((topic)i, row->bit)) {

@@ -25,11 +25,10 @@ static snow_volume_options data_options(const options *asked) {
     return data;
 }
 
-/* All of standard input; the caller frees it.  NULL after an error, which
- * errno names. */
-static char *read_stream(size_t *size) {
+int read_standard_input(char **out, size_t *size) {
     size_t room = STREAM_BYTES, used = 0;
     char *bytes = malloc(room);
+    errno = 0;
     while (bytes) {
         used += fread(bytes + used, 1, room - used, stdin);
         if (used < room)
@@ -40,24 +39,25 @@ static char *read_stream(size_t *size) {
         bytes = grown;
         room *= 2;
     }
-    if (bytes && ferror(stdin)) {
-        free(bytes);
-        bytes = NULL;
+    if (bytes && !ferror(stdin)) {
+        *out = bytes;
+        *size = used;
+        return GO_ON;
     }
-    *size = used;
-    return bytes;
+    say("standard input: %s; give a file",
+        bytes && errno ? strerror(errno) : "too large for the memory");
+    int code = bytes ? SNOW_BAD_INPUT : SNOW_NO_MEMORY;
+    free(bytes);
+    return code;
 }
 
 static int open_stream(snow_context *context, const snow_volume_options *data,
                        snow_volume **out) {
+    char *bytes;
     size_t size;
-    errno = 0;
-    char *bytes = read_stream(&size);
-    if (!bytes) {
-        say("standard input: %s; give a file",
-            errno ? strerror(errno) : "cannot be read");
-        return errno == ENOMEM ? SNOW_NO_MEMORY : SNOW_BAD_INPUT;
-    }
+    int done = read_standard_input(&bytes, &size);
+    if (done != GO_ON)
+        return done;
     snow_status status = snow_volume_open_memory(context, "standard input",
                                                  bytes, size, data, out);
     free(bytes);
@@ -73,21 +73,15 @@ int open_input(snow_context *context, const options *asked, const char *path,
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
-/* --window and --level are another way to write --range. */
-static int take_window(const options *asked, snow_look *look) {
+int check_look(const options *asked) {
     bool window = !isnan(asked->window), level = !isnan(asked->level);
     if (window != level)
         return fail_usage("--%s: needs --%s beside it",
                           window ? "window" : "level",
                           window ? "level" : "window");
-    if (!window)
-        return GO_ON;
-    if (asked->range.kind != SNOW_RANGE_AUTO)
+    if (window && asked->range.kind != SNOW_RANGE_AUTO)
         return fail_usage("--window: does not go with --range; give one of "
                           "them");
-    look->range = SNOW_RANGE_VALUES;
-    look->low = asked->level - asked->window / 2;
-    look->high = asked->level + asked->window / 2;
     return GO_ON;
 }
 
@@ -98,13 +92,15 @@ int open_look(snow_context *context, const options *asked,
                       .range = asked->range.kind,
                       .low = asked->range.low,
                       .high = asked->range.high};
+    if (!isnan(asked->window)) { /* another way to write a range */
+        look.range = SNOW_RANGE_VALUES;
+        look.low = asked->level - asked->window / 2;
+        look.high = asked->level + asked->window / 2;
+    }
     if (asked->opacities.count) {
         look.opacities = asked->opacities.points;
         look.opacity_count = asked->opacities.count;
     }
-    int done = take_window(asked, &look);
-    if (done != GO_ON)
-        return done;
     snow_status status = snow_transfer_make(volume, &look, out);
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }

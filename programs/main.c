@@ -78,7 +78,9 @@ int main(int argc, char **argv) {
         return run(verb_of(VERB_RENDER), false, argc, argv);
     if (!verb->bit)
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
-    if (verb->bit == VERB_BENCH)
-        return bench_main(argc - 1, argv + 1);
+    if (verb->bit == VERB_BENCH) {
+        int done = bench_main(argc - 1, argv + 1);
+        return done == SNOW_OK ? finish_stdout() : done;
+    }
     return run(verb, true, argc - 1, argv + 1);
 }

@@ -127,7 +127,7 @@ const option_row option_table[] = {
     {"type", 0, "TYPE", TOPIC_DATA, INPUT, read_type, FIELD(type), 0, 0, "",
      "of raw data: int8 to int64, uint8 to uint64, float32, float64"},
     {"spacing", 0, "XxYxZ", TOPIC_DATA, INPUT, read_spacing, FIELD(spacing), 0,
-     0, "", "voxel size; replaces the file's (raw data: 1x1x1 mm)"},
+     0, "", "voxel size; replaces the file's (raw data: 1x1x1)"},
     {"endian", 0, "little|big", TOPIC_DATA, INPUT, read_choice, FIELD(endian),
      0, 0, "", "byte order of raw data (little)"},
     {"offset", 0, "BYTES", TOPIC_DATA, INPUT, read_count, FIELD(offset), 0, 0,

@@ -35,7 +35,6 @@ void options_init(options *out) {
         .specular = settings.specular,
         .shininess = settings.shininess,
         .zoom = 1,
-        .endian = "little",
         .progress = "auto",
         .isa = snow_isa_used(),
         .threads = 1,
@@ -165,20 +164,33 @@ static int take_help(options *out, int argc, char **argv, const char *text) {
     return GO_ON;
 }
 
-static int refuse_count(const options *out, const verb_row *verb) {
-    if (out->operand_count < verb->operands)
-        return fail_usage("%s: something is missing; give snowglass %s %s",
-                          verb->name, verb->name, verb->usage);
+/* A word too many may be a verb that was misspelt, or that stands behind the
+ * options. */
+static int refuse_words(const options *out, const verb_row *verb) {
     const char *first = out->operands[0];
     for (const verb_row *other = verb_table; other->name; other++) {
-        if (verb->bit == VERB_RENDER && access(first, F_OK) != 0 &&
-            value_distance(first, other->name) < 3)
+        int distance = value_distance(first, other->name);
+        if (verb->bit != VERB_RENDER || access(first, F_OK) == 0)
+            continue;
+        if (distance == 0)
+            return fail_usage("%s: the verb comes first; give snowglass %s %s",
+                              first, other->name, other->usage);
+        if (distance <= (int)strlen(first) / 3)
             return fail_usage("%s: no verb; did you mean %s?", first,
                               other->name);
     }
     return fail_usage("%s: one word too many for %s; give snowglass %s %s",
                       out->operands[verb->operands], verb->name, verb->name,
                       verb->usage);
+}
+
+static int check_count(const options *out, const verb_row *verb) {
+    if (verb->operands < 0 || out->operand_count == verb->operands)
+        return GO_ON;
+    if (out->operand_count > verb->operands)
+        return refuse_words(out, verb);
+    return fail_usage("%s: something is missing; give snowglass %s %s",
+                      verb->name, verb->name, verb->usage);
 }
 
 int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
@@ -203,7 +215,5 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
     }
     out->operands = argv + optind;
     out->operand_count = argc - optind;
-    if (verb->operands >= 0 && out->operand_count != verb->operands)
-        return refuse_count(out, verb);
-    return GO_ON;
+    return check_count(out, verb);
 }

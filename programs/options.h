@@ -66,8 +66,8 @@ typedef struct options {
 
     int64_t dims[3]; /* 0: not told */
     snow_type type;
-    double spacing[3]; /* 0: not told */
-    const char *endian;
+    double spacing[3];  /* 0: not told */
+    const char *endian; /* NULL: not told */
     uint64_t offset;
     int64_t time;
     uint64_t seed;

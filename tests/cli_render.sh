@@ -1,0 +1,148 @@
+#!/bin/bash
+# Pictures of every phantom, in every format; figures; streams; the promises of
+# equality between encodings and methods.
+. "$(dirname "$0")/support_shell.sh"
+
+# Every phantom gives a picture that differs from an empty one.
+for name in cube head engine shells marschner-lobb; do
+    small="phantom:$name --dims 24x24x20 -s 40x30"
+    # shellcheck disable=SC2086
+    run 0 "phantom:$name" "$TOOL" $small -o $name.png
+    check "phantom:$name is a PNG" is_png $name.png
+    says "phantom:$name: phantom 24x24x20"
+    # shellcheck disable=SC2086
+    run 0 "phantom:$name made transparent" "$TOOL" $small -o empty_$name.png \
+        --opacity 0:0
+    run 6 "phantom:$name shows something" \
+        "$TOOL" compare $name.png empty_$name.png
+done
+run 0 "two transparent pictures" \
+    "$TOOL" compare empty_cube.png empty_head.png
+
+small="phantom:shells --dims 24x24x20 -s 40x30"
+# shellcheck disable=SC2086
+render() { "$TOOL" $small "$@"; }
+
+run 0 "-q is silent" render -q -o quiet.png
+check "-q is silent: no word" [ ! -s "$ERR" ] 
+run 0 "one line without -q" render -o said.png
+check "it is one line" [ "$(wc -l <"$ERR")" -eq 1 ]
+says "view \+z; method (footprint|original)"
+run 0 "-v tells more" render -v -o more.png
+says "^snowglass: seconds: read"
+says "^snowglass: bytes: volume"
+run 0 "--progress always" render --progress always -o p.png
+says "^snowglass: rendering$"
+run 0 "the last of -v -q counts" render -v -q -o r.png
+check "the last of -v -q counts: silent" [ ! -s "$ERR" ]
+
+# The options of every topic are taken, and those that must change the picture
+# do.
+run 0 "a picture to begin with" render -q -o base.npy
+changes() {
+    rm -f changed.npy
+    run 0 "render $*" render -q -o changed.npy "$@"
+    run 6 "$* changes the picture" "$TOOL" compare base.npy changed.npy
+}
+same() {
+    rm -f same.npy
+    run 0 "render $*" render -q -o same.npy "$@"
+    run 0 "$* does not change the picture" "$TOOL" compare base.npy same.npy
+}
+changes --azimuth -30
+changes --elevation 20
+changes --roll 15
+changes --zoom 2
+changes --view left
+changes --view -z
+changes --threshold 60
+changes --kernel tent
+changes --kernel gauss
+changes --kernel box
+changes --footprint 3
+changes --colormap viridis
+changes --preset linear
+changes --opacity 0:0,1:0.1
+changes --range p20,p60
+changes --range full --opacity 0:0.1
+changes --window 1 --level 0.5
+changes --opacity-unit mm --spacing 2x2x2
+changes --shade none
+changes --light 60,30
+changes --ambient 0.6
+changes --diffuse 0.1
+changes --specular 0.9
+changes --specular 0.5 --shininess 3
+changes --spacing 1x1x3
+same -m over
+same -j 1
+same --deterministic
+same --isa scalar
+same --no-labels
+same --progress never
+same --encoding crs
+same --encoding bitmap
+same --encoding rle
+same --method original
+same --method footprint
+same --azimuth 50 --azimuth 0
+same --size 9x9 -s 40x30
+
+# Streams and formats.
+run 0 "the picture to standard output" render -q -o -
+check "is a PNG" is_png "$OUT"
+cp "$OUT" stream.png
+run 0 "the same to a file" render -q -o stream_file.png
+check "is the same, byte for byte" cmp -s stream.png stream_file.png
+run 0 "16 bits" render -q -o deep.png --bits 16
+run 0 "16 bits are near the floats" \
+    "$TOOL" compare base.npy deep.png --tolerance 0.001
+run 0 "8 bits are near the floats" \
+    "$TOOL" compare base.npy stream.png --tolerance 1/255
+run 0 "a background" render -q -o ground.png --background '#ff8000'
+run 6 "a background shows" "$TOOL" compare stream.png ground.png
+run 0 "the same background in words of numbers" \
+    render -q -o ground2.png --background 1,0.50196,0
+run 0 "gives the same picture" "$TOOL" compare ground.png ground2.png
+run 0 "PFM" render -q -o base.pfm
+check "PFM begins with PF" [ "$(head -c 2 base.pfm)" = PF ]
+check "NPY has its floats" \
+    [ "$(wc -c <base.npy)" -eq $((128 + 40 * 30 * 16)) ]
+run 0 "options after the operand, -- before it" \
+    "$TOOL" -q -s 9x9 --dims 8x8x8 -o dash.png -- phantom:cube
+run 0 "an abbreviated option" render -q --azim 10 -o abbreviated.png
+
+raw_cube cube.raw 8
+raw="--dims 8x8x8 --type uint8"
+# shellcheck disable=SC2086
+run 0 "a raw file" "$TOOL" -q cube.raw $raw -s 20x20 -o raw.npy
+# shellcheck disable=SC2086
+check "standard input" bash -c \
+    "'$TOOL' -q - $raw -s 20x20 -o stdin.npy <cube.raw"
+run 0 "gives the same picture" "$TOOL" compare raw.npy stdin.npy
+gzip -k cube.raw
+# shellcheck disable=SC2086
+run 0 "a raw file in gzip" "$TOOL" -q cube.raw.gz $raw -s 20x20 -o gz.npy
+run 0 "gives the same picture" "$TOOL" compare raw.npy gz.npy
+
+# The figures.
+run 0 "figures to standard output" render -q -o f.png --threshold 10 \
+    --encoding rle --stats -
+check "are one line" [ "$(wc -l <"$OUT")" -eq 1 ]
+prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "footprint", "kernel": "bspline", "footprint": 4, "threads": 1, "ranks": 1, "isa": "scalar", "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": 0.0, "combine": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
+check "interesting voxels take bytes" [ "$(number ia)" -gt 0 ]
+run 0 "figures of the original method" render -q -o g.png --method original \
+    --stats -
+prints '"encoding": "none", "method": "original"'
+run 0 "the picture to standard output, figures to a file" \
+    render -q -o - --stats figures.json
+check "PNG and JSON keep apart" grep -q '"checksum"' figures.json
+
+# Interruption: no picture, nothing aside, 130.
+for signal in TERM INT; do
+    run 130 "SIG$signal while rendering" timeout --preserve-status \
+        -s $signal 1 "$TOOL" phantom:head --dims 500x500x500 -s 4000x4000 \
+        --method original --footprint 9 -o late.png
+    check "leaves nothing" [ -z "$(ls -A | grep late)" ]
+done
+finish

@@ -1,0 +1,148 @@
+#!/bin/bash
+# What is unknown, not built or malformed is refused with exit code 2 and the
+# right words, before any file is looked at.
+. "$(dirname "$0")/support_shell.sh"
+
+# Each line: the arguments | a pattern of the message.
+while IFS='|' read -r arguments pattern; do
+    [ -n "$arguments" ] || continue
+    eval "set -- $arguments"
+    refused 2 "$arguments" "$pattern" "$TOOL" "$@"
+done <<'END'
+--azimoth 3 x -o y.png|--azimoth: unknown option; did you mean --azimuth\?
+--thresold=3 x|did you mean --threshold\?
+--flurb x|--flurb: unknown option; see snowglass help render
+-Z x|-Z: unknown option
+--s 3 x|begins several options
+--overwrite=3 x|--overwrite takes no value
+info --roll 3 x|--roll: no option of info; it belongs to render
+x --json|--json: no option of render; it belongs to info
+-q info x|info: the verb comes first; give snowglass info
+rendr x -o y.png|rendr: no verb; did you mean render\?
+x y -o z.png|one word too many for render
+render -o z.png|give snowglass render INPUT -o OUT
+compare a.png|give snowglass compare A B
+phantom:cube|no output is named; add -o OUT.png
+phantom cube|no output is named
+phantom:cube -o x.jpg|x.jpg
+phantom snowman -o x.nrrd|snowman
+phantom cube -o x.txt|x.txt
+turntable x -o y.mp4|turntable is not built yet
+movie x|movie is not built yet
+convert a b|convert is not built yet
+tf list|tf is not built yet
+serve x|serve is not built yet
+help serve|serve is not built yet
+--perspective x -o y.png|--perspective is not built yet; leave it out
+--perspective=30 x|--perspective is not built yet
+--position 1,2,3 x|--position is not built yet
+--target 1,2,3 x|--target is not built yet
+--up 1,2,3 x|--up is not built yet
+--depth d.npy x|--depth is not built yet
+--iso 3 x|--iso is not built yet
+--memory 1G x|--memory is not built yet
+--config f x|--config is not built yet
+--save-config f x|--save-config is not built yet
+--tf f x|--tf is not built yet
+--log x|--log is not built yet
+--legend x|--legend is not built yet
+--labels 1 x|--labels is not built yet
+--mask m x|--mask is not built yet
+--crop 0:1,0:1,0:1 x|--crop is not built yet
+--dataset d x|--dataset is not built yet
+--channel 1 x|--channel is not built yet
+--series 1 x|--series is not built yet
+--quality high x|--quality is not built yet
+--frames 3 x|--frames is not built yet
+--resume x|--resume is not built yet
+-m mip x|'mip' is not built yet; choose from: over
+--mode iso x|'iso' is not built yet
+--mode best x|'best' is unknown
+--method sheared x|'sheared' is not built yet; choose from: auto, original
+--method tested x|'tested' is unknown
+--isa avx2 x|'avx2' is not built yet
+-j 4 x|'4' is not built yet; one thread works
+-j 0 x|whole number
+-j many x|whole number
+--size 512 x|--size: '512' is not a picture size
+-s 0x10 x|is not a picture size
+-s 40000x40000 x|is not a picture size
+-s 8x8x8 x|is not a picture size
+-s ' 8x8' x|is not a picture size
+-s 8.5x8 x|is not a picture size
+--size|--size: its value is missing
+-s|--size: its value is missing
+--bits 12 x|choose from: 8, 16
+--background brick x|is no colour
+--background '#12' x|is no colour
+--background 1,2,3 x|is no colour
+--threshold 256 x|from 0 to 255
+--threshold -1 x|from 0 to 255
+--threshold nan x|from 0 to 255
+--encoding zip x|choose from: auto, crs, bitmap, rle
+--encoding '' x|choose from
+--kernel cube x|choose from: tent, gauss, bspline, box
+--footprint 1 x|from 2 to 9
+--footprint 10 x|from 2 to 9
+--footprint 3.5 x|from 2 to 9
+--azimuth nan x|is not a finite number
+--azimuth inf x|is not a finite number
+--azimuth 1e999 x|is not a finite number
+--azimuth 0x10 x|is not a finite number
+--azimuth 3deg x|is not a finite number
+--azimuth '' x|is not a finite number
+--zoom 0 x|out of range
+--zoom -2 x|out of range
+--opacity 80 x|VALUE:OPACITY
+--opacity 80:2 x|VALUE:OPACITY
+--opacity 80:0.1,70:0.2 x|VALUE:OPACITY
+--opacity 80:0.1, x|VALUE:OPACITY
+--range 3,2 x|is no range
+--range 3,nan x|is no range
+--range p99,p1 x|is no range
+--range p1,99 x|is no range
+--range p1,p101 x|is no range
+--window 0 x|out of range
+--shade flat x|choose from: phong, none
+--light 30 x|is no direction
+--ambient 2 x|from 0 to 1
+--shininess -1 x|out of range
+--dims 8x8 x|are not dimensions
+--dims 8x8x0 x|are not dimensions
+--dims 8x8x-8 x|are not dimensions
+--dims 9999999999999999999x1x1 x|are not dimensions
+--type int7 x|choose from: int8 uint8 int16
+--spacing 1x1x0 x|is not a spacing
+--spacing 1x1xinf x|is not a spacing
+--endian middle x|choose from: little, big
+--offset -1 x|whole number from 0
+--offset 99999999999999999999 x|whole number from 0
+--time -1 x|whole number
+--progress some x|choose from: auto, always, never
+--stats x.png phantom:cube -o x.png|name two places
+phantom --seed -1 cube|whole number from 0
+compare --tolerance 2 a b|is not a difference
+compare --tolerance 1/0 a b|is not a difference
+x -o y.npy --background white|are for PNG files
+x -o y.pfm --bits 16|are for PNG files
+END
+
+# These need a volume to be found wrong.
+while IFS='|' read -r arguments pattern; do
+    [ -n "$arguments" ] || continue
+    eval "set -- $arguments"
+    refused 2 "phantom:cube $arguments" "$pattern" \
+        "$TOOL" phantom:cube --dims 8x8x8 -o z.png "$@"
+done <<'END'
+--window 3|needs --level beside it
+--level 3|needs --window beside it
+--window 3 --level 3 --range 1,2|does not go with --range
+--view upside|upside
+--colormap beige|beige
+--preset toast|toast
+--type uint8|type
+END
+refused 2 "two choices in one" "'crs.rle' is unknown" \
+    "$TOOL" --encoding 'crs|rle' x
+check "nothing was written" [ -z "$(ls)" ]
+finish
