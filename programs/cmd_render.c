@@ -188,8 +188,10 @@ static int tell_figures(work *w, const options *asked) {
     w->times.total = seconds_now() - w->times.begin;
     if (asked->verbosity > 0)
         tell_stats(&report);
-    return asked->stats ? write_json(stats_json(&report), asked->stats)
-                        : SNOW_OK;
+    if (!asked->stats)
+        return SNOW_OK;
+    interrupt_hold();
+    return write_json(stats_json(&report), asked->stats);
 }
 
 /* The stages in their order; the first fault ends them. */
@@ -217,7 +219,6 @@ static int run(work *w, const options *asked) {
 int cmd_render(const options *asked) {
     work w = {.times = {.begin = seconds_now()}};
     int done = run(&w, asked);
-    interrupt_release();
     free_work(&w);
     return done;
 }
