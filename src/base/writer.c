@@ -22,6 +22,7 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #define BUFFER_BYTES 65536
 #define SUFFIX_LETTERS 6
@@ -37,6 +38,7 @@ struct snow_writer {
     int file;           /* -1: closed */
     bool overwrite;     /* may NAME be replaced? */
     snow_status status; /* of the first write that failed */
+    z_stream *packer;   /* NULL: bytes go as they come */
     size_t fill;        /* bytes waiting in the buffer */
     unsigned char buffer[BUFFER_BYTES];
 };
@@ -175,6 +177,7 @@ snow_status snow_writer_open(snow_context *context, const char *path,
         return SNOW_NO_MEMORY;
     writer->context = context;
     writer->path = writer->temporary = NULL;
+    writer->packer = NULL;
     writer->told = "standard output";
     writer->file = STDOUT_FILENO;
     writer->overwrite = overwrite;
@@ -223,10 +226,8 @@ static snow_status flush_buffer(snow_writer *writer) {
     return write_through(writer, writer->buffer, fill);
 }
 
-snow_status snow_writer_write(snow_writer *writer, const void *bytes,
-                              size_t size) {
-    if (writer->status != SNOW_OK)
-        return writer->status;
+/* Appends bytes as they are. */
+static snow_status append(snow_writer *writer, const void *bytes, size_t size) {
     if (size > BUFFER_BYTES - writer->fill)
         SNOW_TRY(flush_buffer(writer));
     if (size >= BUFFER_BYTES)
@@ -235,6 +236,63 @@ snow_status snow_writer_write(snow_writer *writer, const void *bytes,
         memcpy(writer->buffer + writer->fill, bytes, size);
     writer->fill += size;
     return SNOW_OK;
+}
+
+static voidpf allocate_for_zlib(voidpf context, uInt count, uInt size) {
+    return snow_allocate_array(context, count, size);
+}
+
+static void release_for_zlib(voidpf context, voidpf block) {
+    snow_release(context, block);
+}
+
+snow_status snow_writer_pack(snow_writer *writer) {
+    snow_context *context = writer->context;
+    z_stream *packer = snow_allocate_clear(context, sizeof *packer);
+    if (!packer)
+        return SNOW_NO_MEMORY;
+    packer->zalloc = allocate_for_zlib;
+    packer->zfree = release_for_zlib;
+    packer->opaque = context;
+    /* 15: the largest window; + 16: gzip, whose header then has no time and no
+     * name, so that the same bytes give the same file. */
+    if (deflateInit2(packer, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY) !=
+        Z_OK) {
+        snow_release(context, packer);
+        return SNOW_NO_MEMORY; /* snow_allocate left the message */
+    }
+    writer->packer = packer;
+    return SNOW_OK;
+}
+
+/* Packs bytes and appends what comes out, to the stream's end when `last`. */
+static snow_status pack(snow_writer *writer, const unsigned char *bytes,
+                        size_t size, bool last) {
+    z_stream *packer = writer->packer;
+    do {
+        uInt some = size < INT_MAX ? (uInt)size : INT_MAX;
+        int answer = Z_OK;
+        packer->next_in = (unsigned char *)bytes;
+        packer->avail_in = some;
+        size -= some;
+        bytes += some;
+        do {
+            unsigned char packed[4096];
+            packer->next_out = packed;
+            packer->avail_out = sizeof packed;
+            answer = deflate(packer, last && !size ? Z_FINISH : Z_NO_FLUSH);
+            SNOW_TRY(append(writer, packed, sizeof packed - packer->avail_out));
+        } while (packer->avail_out == 0 && answer != Z_STREAM_END);
+    } while (size);
+    return SNOW_OK;
+}
+
+snow_status snow_writer_write(snow_writer *writer, const void *bytes,
+                              size_t size) {
+    if (writer->status != SNOW_OK || !size)
+        return writer->status;
+    return writer->packer ? pack(writer, bytes, size, false)
+                          : append(writer, bytes, size);
 }
 
 /* Closes what was opened here.  Network file systems tell of a full disk only
@@ -303,6 +361,8 @@ static snow_status finish_file(snow_writer *writer) {
 
 snow_status snow_writer_commit(snow_writer *writer) {
     snow_status status = writer->status;
+    if (status == SNOW_OK && writer->packer)
+        status = pack(writer, (const unsigned char *)"", 0, true);
     if (status == SNOW_OK)
         status = flush_buffer(writer);
     if (status == SNOW_OK)
@@ -317,6 +377,9 @@ void snow_writer_abandon(snow_writer *writer) {
     (void)close_file(writer);
     if (writer->temporary)
         unlink(writer->temporary);
+    if (writer->packer)
+        deflateEnd(writer->packer);
+    snow_release(writer->context, writer->packer);
     snow_release(writer->context, writer->temporary);
     snow_release(writer->context, writer->path);
     snow_release(writer->context, writer);

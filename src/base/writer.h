@@ -22,6 +22,10 @@ snow_context *snow_writer_context(const snow_writer *writer);
 snow_status snow_writer_write(snow_writer *writer, const void *bytes,
                               size_t size);
 
+/* Says that the bytes from here on are to be packed with gzip (level 6).  Only
+ * before the first write. */
+snow_status snow_writer_pack(snow_writer *writer);
+
 /* Ends the file: flushes, syncs, renames, frees the writer.  On failure the
  * temporary file is removed, and the writer freed as well. */
 snow_status snow_writer_commit(snow_writer *writer);

@@ -314,7 +314,7 @@ static void begin_reading(png_job *job) {
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     /* -1: all chunks but IHDR, PLTE, tRNS, IDAT and IEND */
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
-    /* A wrong Adler-32 and a colour beyond the palette are errors, too. */
+    /* What libpng would forgive, a wrong Adler-32 above all, is an error. */
     png_set_benign_errors(png, 0);
     png_read_info(png, job->info);
     png_set_expand_16(png);

@@ -2,7 +2,7 @@
  *
  * What the user leaves out is looked for in the file's name, where archives of
  * volumes put it: engine_256x256x110_uint8.raw, head_64x64x93_u16le.raw.gz. */
-#include "volume/volume.h"
+#include "volume/write.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -122,4 +122,5 @@ const snow_format snow_format_raw = {
     .text = "voxels alone, described by options (.raw, .raw.gz, any name)",
     .suffixes = {".raw", ".raw.gz", ".bin", ".bin.gz"},
     .read = read_raw,
+    .write = snow_raw_write,
 };

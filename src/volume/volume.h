@@ -25,7 +25,7 @@ struct snow_volume {
 typedef struct snow_format {
     const char *name;        /* "nrrd" */
     const char *text;        /* one line for people */
-    const char *suffixes[6]; /* ".nrrd", ".nhdr", NULL */
+    const char *suffixes[8]; /* ".nrrd", ".nhdr", NULL */
     bool (*probe)(const unsigned char *bytes, size_t size);
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
                         snow_volume **out);

@@ -1,0 +1,300 @@
+/* volume/metaimage.c - MetaImage volumes: .mha, and .mhd with data elsewhere.
+ *
+ * The voxels lie behind the header (LOCAL), in a file, or in several: LIST and
+ * their names one a line, or a pattern with first number, last and step.  A
+ * file of several holds a part of the axes; the parts follow one another in
+ * memory as the files do in the list. */
+#include "volume/metaimage.h"
+#include "volume/write.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* More files than any folder has, few enough for sums of their numbers. */
+#define MOST_FILES INT64_C(1000000000)
+
+/* A part of the wanted time step, in one file. */
+typedef struct part {
+    uint64_t bytes; /* of voxels in the file, as binary */
+    uint64_t skip;  /* of them before the wanted ones */
+    uint64_t take;  /* wanted */
+} part;
+
+/* A run of files that hold the volume. */
+typedef struct series {
+    int64_t count;      /* files, all time steps */
+    uint64_t bytes;     /* voxels in each */
+    int64_t first, end; /* the files of the wanted time step */
+} series;
+
+/* Puts the source before the voxels and checks that they can be there. */
+static snow_status begin_part(snow_source *source,
+                              const metaimage_header *header,
+                              const part *wanted) {
+    uint64_t skip = (uint64_t)header->header_size;
+    if (header->header_size < 0) {
+        int64_t remaining = snow_source_remaining(source);
+        if (remaining < 0)
+            return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                             "HeaderSize = -1 counts from the end, which a "
+                             "compressed file or pipe does not tell; unpack "
+                             "it");
+        SNOW_TRY(snow_source_expect(source, wanted->bytes, "the voxels"));
+        skip = (uint64_t)remaining - wanted->bytes;
+    }
+    SNOW_TRY(snow_source_skip(source, skip, "what HeaderSize counts"));
+    if (header->compressed)
+        SNOW_TRY(snow_source_unpack(source));
+    uint64_t least = wanted->bytes;
+    if (header->text) /* a digit and a blank for each, but for the last */
+        least = 2 * (least / snow_type_size(header->info.type)) - 1;
+    return snow_source_expect(source, least, "the voxels");
+}
+
+/* Reads the wanted voxels and verifies the rest. */
+static snow_status read_part(snow_source *source,
+                             const metaimage_header *header, const part *wanted,
+                             void *out) {
+    uint64_t rest = wanted->bytes - wanted->skip - wanted->take;
+    if (header->text) {
+        snow_type type = header->info.type;
+        uint64_t size = snow_type_size(type);
+        SNOW_TRY(metaimage_read_text(source, type, NULL, wanted->skip / size));
+        SNOW_TRY(metaimage_read_text(source, type, out, wanted->take / size));
+        SNOW_TRY(metaimage_read_text(source, type, NULL, rest / size));
+    } else {
+        SNOW_TRY(snow_source_skip(source, wanted->skip, "the voxels"));
+        SNOW_TRY(snow_source_read_all(source, out, (size_t)wanted->take,
+                                      "the voxels"));
+        SNOW_TRY(snow_source_skip(source, rest, "the voxels"));
+    }
+    return snow_source_finish(source);
+}
+
+/* One file with all voxels, header or not. */
+static snow_status read_whole(snow_source *source,
+                              const metaimage_header *header,
+                              snow_volume **out) {
+    uint64_t step = header->step_bytes;
+    part all = {step * (uint64_t)header->info.times,
+                step * (uint64_t)header->info.time, step};
+    SNOW_TRY(begin_part(source, header, &all));
+    SNOW_TRY(snow_volume_new(snow_source_context(source), &header->info, out));
+    return read_part(source, header, &all, (*out)->owned);
+}
+
+/* Opens a data file; packed data inside it are the header's business. */
+static snow_status open_data(snow_source *source,
+                             const metaimage_header *header, const char *name,
+                             snow_source **out) {
+    return header->compressed
+               ? snow_source_open_sibling_as_is(source, name, out)
+               : snow_source_open_sibling(source, name, out);
+}
+
+/* One file of a series into its place; the first makes the volume, since only
+ * then it is known that there is one. */
+static snow_status read_member(snow_source *source,
+                               const metaimage_header *header, const char *name,
+                               uint64_t bytes, uint64_t at, snow_volume **out) {
+    snow_source *data;
+    part all = {bytes, 0, bytes};
+    SNOW_TRY(open_data(source, header, name, &data));
+    snow_status status = begin_part(data, header, &all);
+    if (status == SNOW_OK && !*out)
+        status =
+            snow_volume_new(snow_source_context(source), &header->info, out);
+    if (status == SNOW_OK)
+        status =
+            read_part(data, header, &all, (unsigned char *)(*out)->owned + at);
+    snow_source_close(data);
+    return status;
+}
+
+/* Refuses a series whose last file is missing or too small, before memory is
+ * taken for all. */
+static snow_status check_member(snow_source *source,
+                                const metaimage_header *header,
+                                const char *name, uint64_t bytes) {
+    snow_source *data;
+    part all = {bytes, 0, bytes};
+    SNOW_TRY(open_data(source, header, name, &data));
+    snow_status status = begin_part(data, header, &all);
+    snow_source_close(data);
+    return status;
+}
+
+/* Files that each hold the first `axes` axes. */
+static snow_status plan_series(snow_context *context,
+                               const metaimage_header *header, int axes,
+                               series *out) {
+    if (axes < 1 || axes > 3 || axes > header->axes)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "a LIST of files with %d axes each does not make %d "
+                         "axes; correct ElementDataFile",
+                         axes, header->axes);
+    out->bytes = snow_type_size(header->info.type);
+    out->count = 1;
+    int64_t step = 1; /* files a time step */
+    for (int i = 0; i < 4; i++) {
+        if (i < axes)
+            out->bytes *= (uint64_t)header->dims[i];
+        else
+            out->count *= header->dims[i];
+        if (i >= axes && i < 3)
+            step *= header->dims[i];
+    }
+    out->first = header->info.time * step;
+    out->end = out->first + step;
+    return SNOW_OK;
+}
+
+/* "LIST", "LIST 2" or "LIST 2D": the number of axes in each file, by default
+ * all but the last. */
+static snow_status read_list(snow_source *source,
+                             const metaimage_header *header,
+                             snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    int axes = header->axes - 1;
+    series files;
+    sscanf(header->data, "%*s %1d", &axes);
+    SNOW_TRY(plan_series(context, header, axes, &files));
+    /* A name takes a letter and an end of line at least. */
+    SNOW_TRY(snow_source_expect(source, 2 * (uint64_t)files.count - 1,
+                                "the names of the files"));
+    for (int64_t i = 0; i < files.count;) {
+        char line[METAIMAGE_VALUE_BYTES];
+        bool got;
+        SNOW_TRY(snow_source_read_line(source, line, sizeof line, &got));
+        if (!got)
+            return snow_fail(context, SNOW_BAD_INPUT,
+                             "lists %lld of the %lld files that its sizes "
+                             "need; add the others",
+                             (long long)i, (long long)files.count);
+        size_t length = strlen(line);
+        while (length && (line[length - 1] == ' ' || line[length - 1] == '\t'))
+            line[--length] = 0;
+        const char *name = line + strspn(line, " \t");
+        if (!*name)
+            continue;
+        if (i >= files.first && i < files.end)
+            SNOW_TRY(read_member(source, header, name, files.bytes,
+                                 (uint64_t)(i - files.first) * files.bytes,
+                                 out));
+        i++;
+    }
+    return snow_source_finish(source);
+}
+
+/* Writes the name of file `number` of a pattern such as slice%03d.raw.  Only
+ * %d, %i and %u with a width are understood, once: a name in a file must not
+ * become a format of printf.  False for any other pattern. */
+static bool name_of(const char *pattern, int64_t number, char *name,
+                    size_t room) {
+    const char *mark = strchr(pattern, '%');
+    const char *at = mark ? mark + 1 : NULL;
+    if (!mark || strchr(at, '%'))
+        return false;
+    bool zeros = *at == '0';
+    int width = 0;
+    for (; *at >= '0' && *at <= '9' && width < 100; at++)
+        width = 10 * width + (*at - '0');
+    if (width > 32 || !strchr("diu", *at ? *at : 'x'))
+        return false;
+    int used = snprintf(name, room, zeros ? "%.*s%0*lld%s" : "%.*s%*lld%s",
+                        (int)(mark - pattern), pattern, width,
+                        (long long)number, at + 1);
+    return used > 0 && (size_t)used < room;
+}
+
+/* "pattern first last step"; what is left out is 1, what fits, and 1. */
+static snow_status read_pattern(snow_source *source,
+                                const metaimage_header *header,
+                                snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    char pattern[METAIMAGE_VALUE_BYTES], name[METAIMAGE_VALUE_BYTES + 64];
+    long long first = 1, last = 0, step = 1;
+    series files;
+    SNOW_TRY(plan_series(context, header, header->axes - 1, &files));
+    int words = sscanf(header->data, "%1023s %18lld %18lld %18lld", pattern,
+                       &first, &last, &step);
+    bool possible = words >= 1 && files.count <= MOST_FILES;
+    if (possible && words < 3)
+        last = first + files.count - 1;
+    if (!possible || step < 1 || last < first ||
+        (last - first) / step + 1 != files.count ||
+        !name_of(pattern, last, name, sizeof name))
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "\"%.60s\" does not name %lld files; give a pattern "
+                         "like slice%%03d.raw with first number, last and "
+                         "step",
+                         header->data, (long long)files.count);
+    SNOW_TRY(check_member(source, header, name, files.bytes));
+    for (int64_t i = files.first; i < files.end; i++) {
+        if (!name_of(pattern, first + i * step, name, sizeof name))
+            return snow_fail(context, SNOW_BAD_INPUT,
+                             "the names of the files are too long");
+        SNOW_TRY(read_member(source, header, name, files.bytes,
+                             (uint64_t)(i - files.first) * files.bytes, out));
+    }
+    return SNOW_OK;
+}
+
+static snow_status read_detached(snow_source *source,
+                                 const metaimage_header *header,
+                                 snow_volume **out) {
+    snow_source *data;
+    SNOW_TRY(open_data(source, header, header->data, &data));
+    snow_status status = read_whole(data, header, out);
+    snow_source_close(data);
+    return status;
+}
+
+/* True for the word in capitals, as it is or in small letters after it. */
+static bool is_word(const char *text, const char *word, const char *also) {
+    size_t length = strcspn(text, " \t");
+    return (strlen(word) == length && memcmp(text, word, length) == 0) ||
+           strcmp(text, also) == 0;
+}
+
+static snow_status read_data(snow_source *source,
+                             const metaimage_header *header,
+                             snow_volume **out) {
+    const char *data = header->data;
+    if (is_word(data, "LOCAL", "Local") || is_word(data, "local", "local"))
+        return read_whole(source, header, out);
+    if (is_word(data, "LIST", "List"))
+        return read_list(source, header, out);
+    if (strchr(data, '%'))
+        return read_pattern(source, header, out);
+    return read_detached(source, header, out);
+}
+
+static snow_status read_metaimage(snow_source *source,
+                                  const snow_volume_options *options,
+                                  snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    metaimage_header header;
+    SNOW_TRY(metaimage_read_header(source, &header));
+    SNOW_TRY(snow_volume_pick_time(context, options, &header.info));
+    snow_volume *volume = NULL;
+    snow_status status = read_data(source, &header, &volume);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    size_t size = snow_type_size(header.info.type);
+    if (!header.text && header.big_endian != snow_machine_big_endian())
+        snow_swap_bytes(volume->owned, header.step_bytes / size, size);
+    *out = volume;
+    return SNOW_OK;
+}
+
+const snow_format snow_format_metaimage = {
+    .name = "metaimage",
+    .text = "MetaImage (.mha, .mhd with .raw or .zraw)",
+    .suffixes = {".mha", ".mhd", ".mha.gz"},
+    .probe = metaimage_probe,
+    .read = read_metaimage,
+    .write = snow_metaimage_write,
+};

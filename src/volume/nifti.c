@@ -1,0 +1,174 @@
+/* volume/nifti.c - NIfTI-1 and NIfTI-2 volumes: .nii, and .hdr with .img.
+ *
+ * Axes beyond the third are time steps, of which one is read.  Of a pair either
+ * file may be opened.  Analyze 7.5, NIfTI's forerunner of the same header size
+ * without its magic, is refused: it does not tell left from right. */
+#include "volume/nifti.h"
+#include "volume/write.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool probe_nifti(const unsigned char *bytes, size_t size) {
+    return nifti_header_size(bytes, size) != 0;
+}
+
+/* Fills what the header says of the volume, and the bytes of one time step. */
+static snow_status describe(snow_context *context, const nifti_header *header,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, uint64_t *step_bytes) {
+    int64_t voxels;
+    *info = snow_volume_info_default("nifti");
+    memcpy(info->dims, header->dim + 1, sizeof info->dims);
+    info->type = nifti_type(header->datatype);
+    info->slope = header->slope;
+    info->intercept = header->intercept;
+    nifti_geometry(context, header, info);
+    uint64_t times = 1, all;
+    bool fits = snow_volume_count(info->dims, info->type, &voxels, step_bytes);
+    for (int i = 4; i < 8; i++)
+        fits = fits && snow_mul_u64(times, (uint64_t)header->dim[i], &times);
+    fits = fits && snow_mul_u64(times, *step_bytes, &all) &&
+           all <= (uint64_t)INT64_MAX;
+    if (!fits)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "its sizes (dim) are larger than any file; correct "
+                         "the header");
+    info->times = (int64_t)times;
+    return snow_volume_pick_time(context, options, info);
+}
+
+/* Reads the voxels from a source that stands `taken` bytes behind its start. */
+static snow_status read_voxels(snow_source *source, const nifti_header *header,
+                               const snow_volume_options *options,
+                               uint64_t taken, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    snow_volume_info info;
+    uint64_t step, skip;
+    SNOW_TRY(describe(context, header, options, &info, &step));
+    if (!snow_add_u64(header->vox_offset - taken, (uint64_t)info.time * step,
+                      &skip))
+        skip = UINT64_MAX;
+    uint64_t rest = (uint64_t)(info.times - 1 - info.time) * step;
+    return snow_volume_read(source, &info, header->big_endian, skip, rest, out);
+}
+
+/* Takes the header from the front of a source. */
+static snow_status read_header(snow_source *source, nifti_header *header,
+                               uint64_t *taken) {
+    unsigned char bytes[NIFTI2_BYTES];
+    size_t size;
+    SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
+    SNOW_TRY(
+        nifti_header_parse(snow_source_context(source), bytes, size, header));
+    *taken = header->version == 1 ? NIFTI1_BYTES : NIFTI2_BYTES;
+    return snow_source_skip(source, *taken, "the header");
+}
+
+/* The letters "hdr" or "img" in a name, or NULL: "a.hdr", "a.IMG.gz". */
+static char *pair_letters(char *name) {
+    size_t length = strlen(name);
+    if (snow_has_suffix(name, ".gz"))
+        length -= 3;
+    if (length < 4)
+        return NULL;
+    char saved = name[length];
+    name[length] = 0;
+    bool is_pair =
+        snow_has_suffix(name, ".hdr") || snow_has_suffix(name, ".img");
+    name[length] = saved;
+    return is_pair ? name + length - 3 : NULL;
+}
+
+/* Opens the other file of a pair: same name and case of letters, `wanted`
+ * ("hdr" or "img") in place of the other, with .gz or without. */
+static snow_status open_other(const snow_source *source, const char *wanted,
+                              snow_source **out) {
+    snow_context *context = snow_source_context(source);
+    const char *path = snow_source_name(source);
+    const char *slash = strrchr(path, '/');
+    const char *own = slash ? slash + 1 : path;
+    size_t room = strlen(own) + 4;
+    char *name = snow_allocate_clear(context, room);
+    if (!name)
+        return SNOW_NO_MEMORY;
+    memcpy(name, own, strlen(own));
+    char *letters = pair_letters(name);
+    snow_status status = snow_fail(
+        context, SNOW_BAD_INPUT,
+        "is one of a pair of files, but its name does not end in .hdr or "
+        ".img; rename both");
+    if (letters) {
+        bool packed = letters[3] != 0;
+        for (int i = 0; i < 3; i++) {
+            bool upper = letters[i] >= 'A' && letters[i] <= 'Z';
+            letters[i] = (char)(upper ? wanted[i] - 'a' + 'A' : wanted[i]);
+        }
+        for (int attempt = 0; attempt < 2 && status == SNOW_BAD_INPUT;
+             attempt++, packed = !packed) {
+            memcpy(letters + 3, packed ? ".gz" : "", packed ? 4 : 1);
+            status = snow_source_open_sibling(source, name, out);
+        }
+    }
+    snow_release(context, name);
+    return status;
+}
+
+/* The header came first: its voxels are in the .img file. */
+static snow_status read_beside(snow_source *source, const nifti_header *header,
+                               const snow_volume_options *options,
+                               snow_volume **out) {
+    snow_source *image;
+    SNOW_TRY(open_other(source, "img", &image));
+    snow_status status = read_voxels(image, header, options, 0, out);
+    snow_source_close(image);
+    return status;
+}
+
+/* The .img file was opened: its header is beside it. */
+static snow_status read_image(snow_source *image,
+                              const snow_volume_options *options,
+                              snow_volume **out) {
+    snow_source *source;
+    nifti_header header;
+    uint64_t taken;
+    SNOW_TRY(open_other(image, "hdr", &source));
+    snow_status status = read_header(source, &header, &taken);
+    snow_source_close(source);
+    SNOW_TRY(status);
+    if (!header.pair)
+        return snow_fail(snow_source_context(image), SNOW_BAD_INPUT,
+                         "its header says that the voxels are in the .hdr "
+                         "file; open that");
+    return read_voxels(image, &header, options, 0, out);
+}
+
+static bool is_image_name(const char *name) {
+    return snow_has_suffix(name, ".img") || snow_has_suffix(name, ".img.gz");
+}
+
+static snow_status read_nifti(snow_source *source,
+                              const snow_volume_options *options,
+                              snow_volume **out) {
+    unsigned char bytes[NIFTI1_BYTES];
+    size_t size;
+    nifti_header header;
+    uint64_t taken;
+    SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
+    if (is_image_name(snow_source_name(source)) &&
+        !nifti_header_size(bytes, size))
+        return read_image(source, options, out);
+    SNOW_TRY(read_header(source, &header, &taken));
+    if (header.pair)
+        return read_beside(source, &header, options, out);
+    return read_voxels(source, &header, options, taken, out);
+}
+
+const snow_format snow_format_nifti = {
+    .name = "nifti",
+    .text = "NIfTI-1 and NIfTI-2 (.nii, .nii.gz, .hdr with .img)",
+    .suffixes = {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"},
+    .probe = probe_nifti,
+    .read = read_nifti,
+    .write = snow_nifti_write,
+};

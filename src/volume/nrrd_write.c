@@ -1,0 +1,68 @@
+/* volume/nrrd_write.c - NRRD files with header and raw voxels in one.
+ *
+ * Reference: "Definition of NRRD File Format", teem.sourceforge.net/nrrd.
+ * Numbers have 17 digits, enough to bring back every double. */
+#include "volume/write.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* NRRD's own names of our types, which all its readers know. */
+static const char *type_name(snow_type type) {
+    switch (type) {
+    case SNOW_FLOAT32:
+        return "float";
+    case SNOW_FLOAT64:
+        return "double";
+    default:
+        return snow_type_name(type); /* int8, uint8, ... */
+    }
+}
+
+/* Space directions and origin; the caller's room is ample. */
+static int print_geometry(char *text, size_t room,
+                          const snow_volume_info *info) {
+    const double(*m)[4] = info->matrix;
+    const char *unit = info->unit;
+    int used =
+        snprintf(text, room, "space%s\nspace directions:",
+                 info->medical ? ": right-anterior-superior" : " dimension: 3");
+    for (int j = 0; j < 3; j++)
+        used += snprintf(text + used, room - (size_t)used,
+                         " (%.17g,%.17g,%.17g)", m[0][j], m[1][j], m[2][j]);
+    used += snprintf(text + used, room - (size_t)used,
+                     "\nspace origin: (%.17g,%.17g,%.17g)\n", m[0][3], m[1][3],
+                     m[2][3]);
+    if (*unit && !strpbrk(unit, "\"\\\r\n"))
+        used +=
+            snprintf(text + used, room - (size_t)used,
+                     "space units: \"%s\" \"%s\" \"%s\"\n", unit, unit, unit);
+    return used;
+}
+
+snow_status snow_nrrd_write(const snow_volume *volume, const char *path,
+                            snow_writer *writer) {
+    const snow_volume_info *info = &volume->info;
+    char text[2048];
+    if (info->slope != 1 || info->intercept != 0)
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "%s: NRRD cannot say slope %g and intercept %g; write "
+                         ".nii or .mha",
+                         path, info->slope, info->intercept);
+    int used = snprintf(text, sizeof text,
+                        "NRRD0004\n"
+                        "type: %s\n"
+                        "dimension: 3\n"
+                        "sizes: %lld %lld %lld\n",
+                        type_name(info->type), (long long)info->dims[0],
+                        (long long)info->dims[1], (long long)info->dims[2]);
+    used += print_geometry(text + used, sizeof text - (size_t)used, info);
+    used += snprintf(text + used, sizeof text - (size_t)used,
+                     "kinds: domain domain domain\n"
+                     "encoding: raw\n"
+                     "%s"
+                     "\n",
+                     snow_type_size(info->type) > 1 ? "endian: little\n" : "");
+    SNOW_TRY(snow_writer_write(writer, text, (size_t)used));
+    return snow_write_voxels(volume, writer);
+}

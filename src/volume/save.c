@@ -1,0 +1,92 @@
+/* volume/save.c - snow_volume_save: which format a name asks for.
+ *
+ * The format's `write` makes the bytes, the writer packs them where the name
+ * ends in .gz and sees to it that the file is whole or absent. */
+#include "volume/write.h"
+
+#include <string.h>
+
+/* Voxels turned around at a time on machines of the other byte order. */
+#define CHUNK_BYTES 4096
+
+static const struct {
+    const char *suffix;
+    const snow_format *format;
+    bool packed;
+} endings[] = {
+    {".nrrd", &snow_format_nrrd, false},
+    {".nii", &snow_format_nifti, false},
+    {".nii.gz", &snow_format_nifti, true},
+    {".mha", &snow_format_metaimage, false},
+    {".raw", &snow_format_raw, false},
+    {".raw.gz", &snow_format_raw, true},
+};
+#define ENDING_COUNT (sizeof endings / sizeof *endings)
+
+snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
+    int64_t voxels;
+    uint64_t bytes;
+    size_t size = snow_type_size(volume->info.type);
+    snow_volume_count(volume->info.dims, volume->info.type, &voxels, &bytes);
+    if (!snow_machine_big_endian())
+        return snow_writer_write(writer, volume->voxels, (size_t)bytes);
+    const unsigned char *at = volume->voxels;
+    while (bytes) {
+        unsigned char chunk[CHUNK_BYTES];
+        size_t some = bytes < CHUNK_BYTES ? (size_t)bytes : CHUNK_BYTES;
+        memcpy(chunk, at, some);
+        snow_swap_bytes(chunk, some / size, size);
+        SNOW_TRY(snow_writer_write(writer, chunk, some));
+        at += some;
+        bytes -= some;
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_raw_write(const snow_volume *volume, const char *path,
+                           snow_writer *writer) {
+    const snow_volume_info *info = &volume->info;
+    if (info->slope != 1 || info->intercept != 0)
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "%s: raw data cannot say slope %g and intercept %g; "
+                         "write .nii or .mha",
+                         path, info->slope, info->intercept);
+    SNOW_TRY(snow_write_voxels(volume, writer));
+    snow_notify(volume->context,
+                "%s: raw data keep no sizes; open it with --dims "
+                "%lldx%lldx%lld --type %s --spacing %gx%gx%g",
+                path, (long long)info->dims[0], (long long)info->dims[1],
+                (long long)info->dims[2], snow_type_name(info->type),
+                info->spacing[0], info->spacing[1], info->spacing[2]);
+    return SNOW_OK;
+}
+
+/* Fills an open writer. */
+static snow_status fill(const snow_volume *volume, const char *path,
+                        const snow_format *format, bool packed,
+                        snow_writer *writer) {
+    if (packed)
+        SNOW_TRY(snow_writer_pack(writer));
+    return format->write(volume, path, writer);
+}
+
+snow_status snow_volume_save(const snow_volume *volume, const char *path,
+                             bool overwrite) {
+    size_t i = 0;
+    while (i < ENDING_COUNT && !snow_has_suffix(path, endings[i].suffix))
+        i++;
+    if (i == ENDING_COUNT)
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "%s: volumes are written as .nrrd, .nii, .nii.gz, "
+                         ".mha, .raw and .raw.gz; choose one of these endings",
+                         path);
+    snow_writer *writer;
+    SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
+    snow_status status =
+        fill(volume, path, endings[i].format, endings[i].packed, writer);
+    if (status != SNOW_OK) {
+        snow_writer_abandon(writer);
+        return status;
+    }
+    return snow_writer_commit(writer);
+}

@@ -1,0 +1,23 @@
+/* volume/write.h - the `write` members of the formats' records, and what they
+ * share.  All write little-endian, so that a volume gives the same bytes on
+ * every machine. */
+#ifndef SNOW_VOLUME_WRITE_H
+#define SNOW_VOLUME_WRITE_H
+
+#include "volume/volume.h"
+
+/* Appends the voxels, low byte first. */
+snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer);
+
+/* As snow_format's write.  Errors: SNOW_BAD_USAGE when the format cannot say
+ * what the volume is (a scaling of values, say), those of the writer. */
+snow_status snow_raw_write(const snow_volume *volume, const char *path,
+                           snow_writer *writer);
+snow_status snow_nrrd_write(const snow_volume *volume, const char *path,
+                            snow_writer *writer);
+snow_status snow_nifti_write(const snow_volume *volume, const char *path,
+                             snow_writer *writer);
+snow_status snow_metaimage_write(const snow_volume *volume, const char *path,
+                                 snow_writer *writer);
+
+#endif

@@ -1,0 +1,134 @@
+/* tests/test_out_of_memory.c - each allocation of load, render and write is
+ * made to fail once, and from there on: an error, no leak, no half file. */
+#include "support.h"
+
+#include <unistd.h>
+
+/* Fails allocation number `failing` (from 0), or all from it on. */
+typedef struct failing_allocator {
+    long allocations, failing, held;
+    bool for_good;
+} failing_allocator;
+
+static void *allocate_or_fail(void *user, size_t bytes) {
+    failing_allocator *allocator = user;
+    long number = allocator->allocations++;
+    if (allocator->failing >= 0 &&
+        (allocator->for_good ? number >= allocator->failing
+                             : number == allocator->failing))
+        return NULL;
+    allocator->held++;
+    return malloc(bytes);
+}
+
+static void release_counted(void *user, void *block) {
+    ((failing_allocator *)user)->held--;
+    free(block);
+}
+
+typedef struct paths {
+    char input[64], output[64];
+} paths;
+
+/* A picture of a file, as a program would make it. */
+static snow_status make_picture(snow_context *context, const paths *paths,
+                                const snow_settings *settings) {
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_image *image = NULL;
+    snow_look look = {.colormap = "viridis"};
+    snow_view view;
+    snow_status status = snow_volume_open(context, paths->input, NULL, &volume);
+    if (status == SNOW_OK)
+        status = snow_transfer_make(volume, &look, &transfer);
+    if (status == SNOW_OK)
+        status = snow_frame_new(context, &frame);
+    if (status == SNOW_OK) {
+        snow_view_default(volume, &view);
+        view.width = view.height = 32;
+        view.azimuth = 30;
+        status =
+            snow_frame_render(frame, volume, transfer, &view, settings, &image);
+    }
+    if (status == SNOW_OK)
+        status = snow_image_save(image, paths->output, NULL);
+    snow_image_free(image);
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return status;
+}
+
+/* Runs make_picture under an allocator; nothing may stay behind. */
+static snow_status run(failing_allocator *allocator, const paths *paths,
+                       const snow_settings *settings) {
+    snow_allocator functions = {allocate_or_fail, release_counted, allocator};
+    snow_context *context;
+    if (snow_context_new(&functions, &context) != SNOW_OK)
+        return SNOW_NO_MEMORY;
+    snow_status status = make_picture(context, paths, settings);
+    snow_context_free(context);
+    assert_int_equal(allocator->held, 0);
+    return status;
+}
+
+static void write_input(const paths *paths) {
+    snow_context *context = support_context();
+    snow_volume *volume;
+    int64_t dims[3] = {12, 13, 14};
+    assert_int_equal(snow_volume_phantom(context, "shells", dims, 0, &volume),
+                     SNOW_OK);
+    assert_int_equal(snow_volume_save(volume, paths->input, true), SNOW_OK);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* Every allocation fails in turn; only then does the picture come out. */
+static void fail_each(const char *suffix, snow_method method,
+                      snow_encoding encoding, bool for_good) {
+    char folder[] = "/tmp/snow-memory-XXXXXX";
+    assert_non_null(mkdtemp(folder));
+    paths paths;
+    snprintf(paths.input, sizeof paths.input, "%s/in%s", folder, suffix);
+    snprintf(paths.output, sizeof paths.output, "%s/out.png", folder);
+    write_input(&paths);
+    snow_settings settings;
+    snow_settings_init(&settings);
+    settings.method = method;
+    settings.encoding = encoding;
+    failing_allocator whole = {.failing = -1};
+    assert_int_equal(run(&whole, &paths, &settings), SNOW_OK);
+    assert_int_equal(unlink(paths.output), 0);
+    assert_true(whole.allocations > 20);
+    for (long n = 0; n < whole.allocations; n++) {
+        failing_allocator allocator = {.failing = n, .for_good = for_good};
+        assert_int_equal(run(&allocator, &paths, &settings), SNOW_NO_MEMORY);
+        assert_int_equal(access(paths.output, F_OK), -1);
+    }
+    assert_int_equal(unlink(paths.input), 0);
+    /* Temporary files would keep the folder from going. */
+    assert_int_equal(rmdir(folder), 0);
+}
+
+static void a_picture_fails_cleanly_at_every_allocation(void **state) {
+    (void)state;
+    fail_each(".nrrd", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS, false);
+    fail_each(".nii.gz", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE, false);
+    fail_each(".mha", SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO, false);
+}
+
+static void a_picture_fails_cleanly_when_memory_ends_for_good(void **state) {
+    (void)state;
+    fail_each(".nrrd", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_BITMAP, true);
+    fail_each(".nii.gz", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_AUTO, true);
+    fail_each(".mha", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, true);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_picture_fails_cleanly_at_every_allocation),
+        cmocka_unit_test(a_picture_fails_cleanly_when_memory_ends_for_good),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
