@@ -133,6 +133,13 @@ static int read_volume(work *w, const options *asked) {
     return done;
 }
 
+static int choose_look(work *w, const options *asked) {
+    double begin = seconds_now();
+    int done = open_look(w->context, asked, w->volume, &w->transfer);
+    w->times.look = seconds_now() - begin;
+    return done;
+}
+
 /* Calls the pipeline. */
 static int make_picture(work *w, const options *asked) {
     snow_view view;
@@ -204,7 +211,7 @@ static int run(work *w, const options *asked) {
     if (done == GO_ON)
         done = read_volume(w, asked);
     if (done == GO_ON)
-        done = open_look(w->context, asked, w->volume, &w->transfer);
+        done = choose_look(w, asked);
     if (done == GO_ON)
         done = make_picture(w, asked);
     progress(asked, NULL);
