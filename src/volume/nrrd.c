@@ -1,5 +1,6 @@
 /* volume/nrrd.c - the NRRD format, as its parts in volume/nrrd.h read it. */
 #include "volume/nrrd.h"
+#include "volume/write.h"
 
 #include <string.h>
 
@@ -38,4 +39,5 @@ const snow_format snow_format_nrrd = {
     .suffixes = {".nrrd", ".nhdr", ".nrrd.gz"},
     .probe = looks_nrrd,
     .read = read_nrrd,
+    .write = snow_nrrd_write,
 };
