@@ -30,7 +30,7 @@ int support_image_teardown(void **state) {
     return 0;
 }
 
-const char *support_path(image_fixture *fixture, const char *name) {
+const char *support_image_path(image_fixture *fixture, const char *name) {
     if (fixture->path[0])
         unlink(fixture->path);
     snprintf(fixture->path, sizeof fixture->path, "%s/%s", fixture->folder,

@@ -12,7 +12,7 @@
 typedef struct image_fixture {
     snow_context *context;
     char folder[64];
-    char path[128]; /* told by support_path last */
+    char path[128]; /* told by support_image_path last */
     char notice[SNOW_MESSAGE_BYTES];
 } image_fixture;
 
@@ -20,7 +20,7 @@ int support_image_setup(void **state);
 int support_image_teardown(void **state);
 
 /* The path of a file in the fixture's folder. */
-const char *support_path(image_fixture *fixture, const char *name);
+const char *support_image_path(image_fixture *fixture, const char *name);
 
 /* Files in the folder now. */
 int support_count_files(const image_fixture *fixture);

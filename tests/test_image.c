@@ -93,7 +93,7 @@ static void the_name_decides_the_format(void **state) {
     static const char *const names[] = {"a.PNG", "a.Npy", "a.pfm"};
     static const char *const starts[] = {"\x89PNG", "\x93NUM", "PF\n3"};
     for (int i = 0; i < 3; i++) {
-        const char *path = support_path(f, names[i]);
+        const char *path = support_image_path(f, names[i]);
         assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
         support_bytes file = support_read_file(path);
         assert_memory_equal(file.bytes, starts[i], 4);
@@ -131,11 +131,11 @@ static void options_that_cannot_be_heeded_are_refused(void **state) {
         {.flatten = true, .background = {0, 0, NAN}},
     };
     for (int i = 1; i < 3; i++) {
-        const char *path = support_path(f, suffixes[i]);
+        const char *path = support_image_path(f, suffixes[i]);
         assert_int_equal(snow_image_save(image, path, &flat), SNOW_BAD_USAGE);
         assert_int_equal(snow_image_save(image, path, &deep), SNOW_BAD_USAGE);
     }
-    const char *path = support_path(f, "a.png");
+    const char *path = support_image_path(f, "a.png");
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_int_equal(snow_image_save(image, path, &wrong[i]),
                          SNOW_BAD_USAGE);
@@ -147,7 +147,7 @@ static void an_existing_file_is_kept_unless_told(void **state) {
     image_fixture *f = *state;
     snow_image *image = support_picture(f->context, 3, 3, 4, 1);
     for (int i = 0; i < 3; i++) {
-        const char *path = support_path(f, suffixes[i]);
+        const char *path = support_image_path(f, suffixes[i]);
         support_write_file(path, "precious", 8);
         assert_int_equal(snow_image_save(image, path, NULL), SNOW_BAD_OUTPUT);
         assert_int_equal(snow_image_check_path(f->context, path, false),
@@ -195,7 +195,7 @@ static void a_folder_that_takes_no_files_is_bad_output(void **state) {
 
 static void checking_a_path_leaves_nothing(void **state) {
     image_fixture *f = *state;
-    const char *path = support_path(f, "a.png");
+    const char *path = support_image_path(f, "a.png");
     assert_int_equal(snow_image_check_path(f->context, path, false), SNOW_OK);
     assert_int_equal(snow_image_check_path(f->context, "-", false), SNOW_OK);
     assert_int_equal(support_count_files(f), 0);
@@ -218,7 +218,7 @@ static snow_status save_to_stdout(const snow_image *image, const char *path) {
 static void standard_output_gets_a_png(void **state) {
     image_fixture *f = *state;
     snow_image *image = support_picture(f->context, 20, 10, 4, 1);
-    const char *path = support_path(f, "stdout");
+    const char *path = support_image_path(f, "stdout");
     assert_int_equal(save_to_stdout(image, path), SNOW_OK);
     snow_image *again = NULL;
     assert_int_equal(snow_image_load(f->context, path, &again), SNOW_OK);
@@ -286,7 +286,7 @@ static bool survive_failure(image_fixture *f, const char *path, int64_t n,
 static void running_out_of_memory_leaves_nothing(void **state) {
     image_fixture *f = *state;
     for (int i = 0; i < 6; i++) {
-        const char *path = support_path(f, suffixes[i / 2]);
+        const char *path = support_image_path(f, suffixes[i / 2]);
         int64_t n = 1;
         while (survive_failure(f, path, n, i % 2 == 1))
             n++;

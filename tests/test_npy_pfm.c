@@ -92,7 +92,7 @@ static snow_image *grey_picture(snow_context *context) {
 static void npy_bytes_are_as_numpy_writes_them(void **state) {
     image_fixture *f = *state;
     snow_image *image = grey_picture(f->context);
-    const char *path = support_path(f, "a.npy");
+    const char *path = support_image_path(f, "a.npy");
     assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
     snow_image_free(image);
     char header[128];
@@ -119,7 +119,7 @@ static void floats_survive_npy_bit_for_bit(void **state) {
         float *pixels = snow_image_pixels(image);
         pixels[0] = NAN, pixels[1] = -INFINITY, pixels[2] = -0.0f;
         pixels[3] = 1e-44f;
-        const char *path = support_path(f, "a.npy");
+        const char *path = support_image_path(f, "a.npy");
         assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
         snow_image *again = NULL;
         assert_int_equal(snow_image_load(f->context, path, &again), SNOW_OK);
@@ -258,7 +258,7 @@ static void pfm_rows_go_from_the_bottom_up(void **state) {
     assert_int_equal(snow_image_new(f->context, 2, 2, 4, &image), SNOW_OK);
     for (int i = 0; i < 16; i++)
         snow_image_pixels(image)[i] = (float)i;
-    const char *path = support_path(f, "a.pfm");
+    const char *path = support_image_path(f, "a.pfm");
     assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
     file wanted = pfm("PF\n2 2\n-1.0\n");
     put_floats(&wanted, (double[]){8, 9, 10, 12, 13, 14, 0, 1, 2, 4, 5, 6}, 12,
@@ -276,7 +276,7 @@ static void pfm_rows_go_from_the_bottom_up(void **state) {
 static void grey_pictures_become_colour_in_pfm(void **state) {
     image_fixture *f = *state;
     snow_image *image = grey_picture(f->context), *again = NULL;
-    const char *path = support_path(f, "a.pfm");
+    const char *path = support_image_path(f, "a.pfm");
     assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
     assert_int_equal(snow_image_load(f->context, path, &again), SNOW_OK);
     const float wanted[] = {1, 1, 1, 1, 3, 3, 3, 1, 5, 5, 5, 1, 7, 7, 7, 1};
@@ -382,7 +382,7 @@ static void sizes_the_file_cannot_hold_cost_no_memory(void **state) {
 
 static void a_gzipped_picture_is_read(void **state) {
     image_fixture *f = *state;
-    const char *path = support_path(f, "a.npy.gz");
+    const char *path = support_image_path(f, "a.npy.gz");
     file data = npy_of("<f4", "(1, 1)");
     put_floats(&data, (double[]){9}, 1, 4, false);
     gzFile packed = gzopen(path, "wb");

@@ -26,12 +26,12 @@ static void release_counted(void *user, void *block) {
     free(block);
 }
 
-typedef struct paths {
+typedef struct test_paths {
     char input[64], output[64];
-} paths;
+} test_paths;
 
 /* A picture of a file, as a program would make it. */
-static snow_status make_picture(snow_context *context, const paths *paths,
+static snow_status make_picture(snow_context *context, const test_paths *paths,
                                 const snow_settings *settings) {
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
@@ -61,7 +61,7 @@ static snow_status make_picture(snow_context *context, const paths *paths,
 }
 
 /* Runs make_picture under an allocator; nothing may stay behind. */
-static snow_status run(failing_allocator *allocator, const paths *paths,
+static snow_status run(failing_allocator *allocator, const test_paths *paths,
                        const snow_settings *settings) {
     snow_allocator functions = {allocate_or_fail, release_counted, allocator};
     snow_context *context;
@@ -73,7 +73,7 @@ static snow_status run(failing_allocator *allocator, const paths *paths,
     return status;
 }
 
-static void write_input(const paths *paths) {
+static void write_input(const test_paths *paths) {
     snow_context *context = support_context();
     snow_volume *volume;
     int64_t dims[3] = {12, 13, 14};
@@ -89,7 +89,7 @@ static void fail_each(const char *suffix, snow_method method,
                       snow_encoding encoding, bool for_good) {
     char folder[] = "/tmp/snow-memory-XXXXXX";
     assert_non_null(mkdtemp(folder));
-    paths paths;
+    test_paths paths;
     snprintf(paths.input, sizeof paths.input, "%s/in%s", folder, suffix);
     snprintf(paths.output, sizeof paths.output, "%s/out.png", folder);
     write_input(&paths);

@@ -111,7 +111,7 @@ static decoded store_row(image_fixture *f, const float *pixels, int width,
                      SNOW_OK);
     memcpy(snow_image_pixels(image), pixels,
            (size_t)(width * channels) * sizeof(float));
-    const char *path = support_path(f, "row.png");
+    const char *path = support_image_path(f, "row.png");
     assert_int_equal(snow_image_save(image, path, options), SNOW_OK);
     snow_image_free(image);
     return decode_file(path);
@@ -205,7 +205,7 @@ static void row_0_is_the_top(void **state) {
     assert_int_equal(snow_image_new(f->context, 1, 3, 2, &image), SNOW_OK);
     memcpy(snow_image_pixels(image), ((float[]){0.2f, 1, 0.4f, 1, 0.6f, 1}),
            6 * sizeof(float));
-    const char *path = support_path(f, "column.png");
+    const char *path = support_image_path(f, "column.png");
     assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
     snow_image_free(image);
     decoded d = decode_file(path);
@@ -229,7 +229,7 @@ static void stored_levels_survive_a_round_trip(void **state) {
             pixel[2 * i + 1] = alpha;
         }
         const snow_image_options options = {.bits = bits, .overwrite = true};
-        const char *path = support_path(f, "levels.png");
+        const char *path = support_image_path(f, "levels.png");
         assert_int_equal(snow_image_save(image, path, &options), SNOW_OK);
         assert_int_equal(snow_image_load(f->context, path, &again), SNOW_OK);
         for (int i = 0; i < side * side; i++) {
@@ -252,7 +252,7 @@ static void odd_sizes_survive_a_round_trip(void **state) {
             support_picture(f->context, size[0], size[1], i % 2 ? 4 : 2, 5);
         snow_image *again = NULL;
         const snow_image_options deep = {.bits = 16};
-        const char *path = support_path(f, "odd.png");
+        const char *path = support_image_path(f, "odd.png");
         assert_int_equal(snow_image_save(image, path, &deep), SNOW_OK);
         assert_int_equal(snow_image_load(f->context, path, &again), SNOW_OK);
         snow_image_difference difference;
