@@ -105,7 +105,7 @@ static snow_status refuse_library(png_job *job) {
 /* --- from pixels to samples ----------------------------------------------- */
 
 /* Between 0 and 1; NaN becomes 0. */
-static inline float clamp_unit(float x) {
+static inline double clamp_unit(double x) {
     return x > 0 ? (x < 1 ? x : 1) : 0;
 }
 
@@ -119,42 +119,42 @@ static inline bool has_nan(const float *pixel, int channels) {
 /* Divides alpha out of a row; what is transparent, or not a number, becomes
  * 0 in all channels. */
 static inline void straighten_row(const float *row, int width, int channels,
-                                  float *out) {
+                                  double *out) {
     for (int x = 0; x < width; x++, row += channels, out += channels) {
-        float alpha = clamp_unit(row[channels - 1]);
+        double alpha = clamp_unit((double)row[channels - 1]);
         if (has_nan(row, channels))
             alpha = 0;
         for (int c = 0; c < channels - 1; c++)
-            out[c] = alpha > 0 ? clamp_unit(row[c] / alpha) : 0;
+            out[c] = alpha > 0 ? clamp_unit((double)row[c] / alpha) : 0;
         out[channels - 1] = alpha;
     }
 }
 
 /* Lays a row on a background of `kept` channels (1 grey, 3 colour). */
 static void flatten_row(const float *row, int width, int channels,
-                        const double *background, int kept, float *out) {
+                        const double *background, int kept, double *out) {
     int step = channels == 2 ? 0 : 1; /* grey serves for all three */
     for (int x = 0; x < width; x++, row += channels, out += kept) {
         bool missing = has_nan(row, channels);
-        float rest = missing ? 1 : 1 - clamp_unit(row[channels - 1]);
+        double rest = missing ? 1 : 1 - clamp_unit((double)row[channels - 1]);
         for (int c = 0; c < kept; c++)
-            out[c] = clamp_unit((missing ? 0 : row[c * step]) +
-                                rest * (float)background[c]);
+            out[c] = clamp_unit((missing ? 0 : (double)row[c * step]) +
+                                rest * background[c]);
     }
 }
 
 /* round(255 x) */
-static void quantise_8(const float *samples, size_t count,
+static void quantise_8(const double *samples, size_t count,
                        unsigned char *bytes) {
     for (size_t i = 0; i < count; i++)
-        bytes[i] = (unsigned char)(int)(samples[i] * 255.0f + 0.5f);
+        bytes[i] = (unsigned char)(int)(samples[i] * 255 + 0.5);
 }
 
 /* round(65535 x), the high byte first */
-static void quantise_16(const float *samples, size_t count,
+static void quantise_16(const double *samples, size_t count,
                         unsigned char *bytes) {
     for (size_t i = 0; i < count; i++) {
-        int level = (int)(samples[i] * 65535.0f + 0.5f);
+        int level = (int)(samples[i] * 65535 + 0.5);
         bytes[2 * i] = (unsigned char)(level >> 8);
         bytes[2 * i + 1] = (unsigned char)(level & 255);
     }
@@ -168,7 +168,7 @@ typedef struct png_plan {
     const double *background; /* NULL: with alpha */
     int bits;
     int samples; /* a pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
-    float *row;
+    double *row;
     unsigned char *bytes;
 } png_plan;
 
@@ -257,7 +257,7 @@ static snow_status write_png(const snow_image *image,
                    .prefix = "the PNG file cannot be made",
                    .remedy = "write a .npy instead",
                    .writer = writer};
-    plan.row = snow_allocate_array(image->context, count, sizeof(float));
+    plan.row = snow_allocate_array(image->context, count, sizeof(double));
     plan.bytes = snow_allocate_array(image->context, count, 2);
     snow_status status = SNOW_NO_MEMORY;
     if (plan.row && plan.bytes)
