@@ -620,16 +620,19 @@ static void background_is_transparent_and_the_object_is_not(void **state) {
 
 static void sparse_vessels_are_found_in_an_empty_volume(void **state) {
     (void)state;
-    enum { ALL = 100000, VESSEL = 600 };
+    enum { ALL = 100000, VESSEL = 1000 };
     static float values[ALL];
     uint64_t random = 5;
     memset(values, 0, sizeof values);
-    scatter(values, VESSEL, 200, 50, &random);
+    scatter(values, VESSEL, 150, 100, &random);
     snow_context *context = support_context();
     snow_volume *volume = share(context, SNOW_FLOAT32, values, ALL);
     snow_transfer *transfer = look_at(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 0) == 0);
-    assert_true(opacity_at(transfer, 200) > 0.3);
+    assert_true(opacity_at(transfer, 180) > 0.3);
+    /* Their brightest half is not cut off. */
+    assert_true(opacity_at(transfer, 180) < 0.6);
+    assert_true(opacity_at(transfer, 249) > 0.75);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     snow_context_free(context);

@@ -50,9 +50,9 @@ typedef struct split {
 double snow_between(double low, double high, double share) {
     if (share >= 1)
         return high;
-    if (isfinite(high - low))
-        return low + share * (high - low);
-    return low * (1 - share) + high * share;
+    double value = isfinite(high - low) ? low + share * (high - low)
+                                        : low * (1 - share) + high * share;
+    return value < high ? value : high;
 }
 
 /* Otsu's threshold in bins first..last-1: the greatest variance between the

@@ -88,7 +88,8 @@ int snow_colormap_find(const char *name);
 void snow_draft_colormap(snow_draft *draft, int colormap, double low,
                          double high);
 
-/* low + share * (high - low), for any finite ends. */
+/* low + share * (high - low), for any finite ends: high itself from share 1 on,
+ * and never falling as share grows, whatever the rounding. */
 double snow_between(double low, double high, double share);
 
 #endif

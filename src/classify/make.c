@@ -87,17 +87,6 @@ static double stretched(const snow_draft *draft, double value, double low,
     return snow_between(low, high, share);
 }
 
-/* Values that rounding put in the wrong order (a range of few last bits, as in
- * 64-bit integers) are made equal. */
-static void settle(snow_draft *draft) {
-    for (size_t i = 1; i < draft->color_count; i++)
-        if (draft->colors[i].value < draft->colors[i - 1].value)
-            draft->colors[i].value = draft->colors[i - 1].value;
-    for (size_t i = 1; i < draft->opacity_count; i++)
-        if (draft->opacities[i].value < draft->opacities[i - 1].value)
-            draft->opacities[i].value = draft->opacities[i - 1].value;
-}
-
 static void stretch(snow_draft *draft, double low, double high) {
     for (size_t i = 0; i < draft->color_count; i++)
         draft->colors[i].value =
@@ -135,7 +124,6 @@ static snow_status draft_look(const snow_census *census, const snow_look *look,
     if (look->colormap)
         snow_draft_colormap(draft, snow_colormap_find(look->colormap),
                             draft->low, draft->high);
-    settle(draft);
     return SNOW_OK;
 }
 
