@@ -9,7 +9,6 @@ static int save(snow_context *context, const options *asked,
     interrupt_hold();
     snow_status status =
         snow_volume_save(volume, asked->output, asked->overwrite);
-    interrupt_release();
     if (status != SNOW_OK)
         return fail_status(context, status);
     describe_volume(volume, text, sizeof text);

@@ -133,6 +133,13 @@ static int read_volume(work *w, const options *asked) {
     return done;
 }
 
+static int choose_look(work *w, const options *asked) {
+    double begin = seconds_now();
+    int done = open_look(w->context, asked, w->volume, &w->transfer);
+    w->times.look = seconds_now() - begin;
+    return done;
+}
+
 /* Calls the pipeline. */
 static int make_picture(work *w, const options *asked) {
     snow_view view;
@@ -188,8 +195,10 @@ static int tell_figures(work *w, const options *asked) {
     w->times.total = seconds_now() - w->times.begin;
     if (asked->verbosity > 0)
         tell_stats(&report);
-    return asked->stats ? write_json(stats_json(&report), asked->stats)
-                        : SNOW_OK;
+    if (!asked->stats)
+        return SNOW_OK;
+    interrupt_hold();
+    return write_json(stats_json(&report), asked->stats);
 }
 
 /* The stages in their order; the first fault ends them. */
@@ -202,7 +211,7 @@ static int run(work *w, const options *asked) {
     if (done == GO_ON)
         done = read_volume(w, asked);
     if (done == GO_ON)
-        done = open_look(w->context, asked, w->volume, &w->transfer);
+        done = choose_look(w, asked);
     if (done == GO_ON)
         done = make_picture(w, asked);
     progress(asked, NULL);
@@ -217,7 +226,6 @@ static int run(work *w, const options *asked) {
 int cmd_render(const options *asked) {
     work w = {.times = {.begin = seconds_now()}};
     int done = run(&w, asked);
-    interrupt_release();
     free_work(&w);
     return done;
 }

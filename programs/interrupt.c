@@ -38,7 +38,3 @@ void interrupt_install(void) {
 void interrupt_hold(void) {
     held = 1;
 }
-
-void interrupt_release(void) {
-    held = 0;
-}

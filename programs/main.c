@@ -63,7 +63,11 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
     if (asked.help)
         return help_print(asked.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
-    return run_verb(verb, &asked);
+    double begin = seconds_now();
+    done = run_verb(verb, &asked);
+    if (asked.verbosity > 0 && verb->bit != VERB_RENDER) /* it tells more */
+        say("seconds: total %.3f", seconds_now() - begin);
+    return done;
 }
 
 int main(int argc, char **argv) {

@@ -156,7 +156,7 @@ const option_row option_table[] = {
      "write figures of the run as JSON; - is standard output; a file that "
      "exists needs --overwrite"},
     {"verbose", 'v', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), 1,
-     0, "", "tell seconds and bytes of every stage"},
+     0, "", "tell seconds, of render also those of every stage and bytes"},
     {"quiet", 'q', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), -1,
      0, "", "tell nothing but errors"},
     LATER("memory", 0, "SIZE", TOPIC_RUN,

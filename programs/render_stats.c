@@ -105,9 +105,10 @@ json_t *stats_json(const render_report *report) {
 void tell_stats(const render_report *report) {
     const snow_stats *stats = snow_frame_stats(report->frame);
     const render_times *times = report->times;
-    say("seconds: read %.3f, classify %.3f, shade %.3f, encode %.3f, splat "
+    say("seconds: read %.3f, look %.3f, classify %.3f, shade %.3f, encode "
+        "%.3f, splat "
         "%.3f, composite %.3f, frame %.3f, write %.3f, total %.3f",
-        times->read, stats->seconds_classify, stats->seconds_shade,
+        times->read, times->look, stats->seconds_classify, stats->seconds_shade,
         stats->seconds_encode, stats->seconds_splat, stats->seconds_composite,
         stats->seconds_frame, times->write, times->total);
     say("bytes: volume %" PRIu64 ", EA %" PRIu64 ", IA %" PRIu64 ", PA %" PRIu64

@@ -5,10 +5,11 @@
 #include <jansson.h>
 #include <snowglass/snowglass.h>
 
-/* Seconds that the tool itself measures, beside those of the frame. */
+/* Seconds that the tool itself measures, beside those of the frame: `begin` of
+ * the steady clock, `look` for making the transfer function. */
 typedef struct render_times {
-    double begin; /* of the steady clock */
-    double read, write, total;
+    double begin;
+    double read, look, write, total;
 } render_times;
 
 typedef struct render_report {

@@ -19,6 +19,15 @@
 /* One line; digits that bring every double back. */
 #define JSON_FORM JSON_REAL_PRECISION(17)
 
+/* Whether the terminal's last line names a stage, to be wiped before talk. */
+static bool stage_shown;
+
+static void wipe_stage(void) {
+    if (stage_shown)
+        fputs("\r\033[K", stderr);
+    stage_shown = false;
+}
+
 static void say_list(const char *format, va_list arguments) {
     char line[LINE_BYTES];
     vsnprintf(line, sizeof line, format, arguments);
@@ -26,6 +35,7 @@ static void say_list(const char *format, va_list arguments) {
         if ((unsigned char)*at < ' ' || *at == 127)
             *at = '?';
     }
+    wipe_stage();
     fprintf(stderr, "snowglass: %s\n", line);
 }
 
@@ -87,10 +97,13 @@ void progress(const options *asked, const char *stage) {
     if (asked->verbosity < 0 || strcmp(asked->progress, "never") == 0)
         return;
     bool always = strcmp(asked->progress, "always") == 0;
-    if (is_terminal())
-        fprintf(stderr, "\r\033[K%s", stage ? stage : "");
-    else if (always && stage)
+    wipe_stage();
+    if (is_terminal()) {
+        fputs(stage ? stage : "", stderr);
+        stage_shown = stage != NULL;
+    } else if (always && stage) {
         say("%s", stage);
+    }
     fflush(stderr);
 }
 

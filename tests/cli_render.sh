@@ -145,4 +145,22 @@ for signal in TERM INT; do
         --method original --footprint 9 -o late.png
     check "leaves nothing" [ -z "$(ls -A | grep late)" ]
 done
+
+# At any moment: 130 and no picture, or 0 and a whole one.
+broken=0 early=0
+for delay in 0.01 0.02 0.04 0.06 0.08 0.1 0.13 0.16 0.2 0.3 0.5; do
+    rm -f late.png
+    timeout --preserve-status -s TERM $delay "$TOOL" -q phantom:engine \
+        --dims 64x64x64 -s 700x700 --bits 16 -o late.png 2>/dev/null
+    case $? in
+    130) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
+    143) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
+    0) is_png late.png && "$TOOL" compare late.png late.png >"$OUT" ||
+        broken=1 ;;
+    *) broken=1 ;;
+    esac
+done
+check "interrupted at 11 moments, $early of them early: whole or absent" \
+    [ "$broken" -eq 0 ]
+check "and nothing is left aside" [ -z "$(ls -A | grep snow-)" ]
 finish

@@ -26,12 +26,15 @@ static bool are_equal(double a, double b) {
     return a == b || (isnan(a) && isnan(b));
 }
 
+/* In double, where the difference of two floats cannot overflow. */
 static double absolute_difference(float a, float b) {
     if (are_equal(a, b))
         return 0;
     return isfinite(a) && isfinite(b) ? fabs((double)a - (double)b) : INFINITY;
 }
 
+/* Adds row y.  Each row has sums of its own first, which keeps the rounding of
+ * large pictures small. */
 static void add_row(const snow_image *a, const snow_image *b, int y,
                     difference_sums *sums) {
     size_t first = (size_t)y * (size_t)a->width;
@@ -114,9 +117,14 @@ static double window_similarity(const moments *sum, double n) {
     double variance_a = sum->aa / n - mean_a * mean_a;
     double variance_b = sum->bb / n - mean_b * mean_b;
     double covariance = sum->ab / n - mean_a * mean_b;
-    /* Rounding can leave a little below 0, at most. */
+    /* Rounding, which is large where values are, must not break what holds
+     * of all numbers: no negative variance, and Cauchy and Schwarz. */
     variance_a = variance_a < 0 ? 0 : variance_a;
     variance_b = variance_b < 0 ? 0 : variance_b;
+    double most = sqrt(variance_a * variance_b);
+    covariance = covariance > most    ? most
+                 : covariance < -most ? -most
+                                      : covariance;
     double likeness = (2 * mean_a * mean_b + c1) * (2 * covariance + c2);
     double spread = (mean_a * mean_a + mean_b * mean_b + c1) *
                     (variance_a + variance_b + c2);
@@ -126,7 +134,8 @@ static double window_similarity(const moments *sum, double n) {
     return score > 1 ? 1 : score < -1 ? -1 : score;
 }
 
-/* Adds up the similarities of a row of windows. */
+/* Adds up the similarities of a row of windows, `side` columns wide and of that
+ * many pixels in all. */
 static double add_windows(const moments *columns, int width, int side,
                           double pixels) {
     double total = 0;
