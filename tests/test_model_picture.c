@@ -210,6 +210,35 @@ static void volumes_thin_along_some_axes(void **state) {
     model_close(&stage);
 }
 
+/* Slices of more than 16384 voxels are classified in parts, rows longer than
+ * that one by one. */
+static void slices_and_rows_that_are_large(void **state) {
+    (void)state;
+    static const int64_t large[][3] = {
+        {210, 150, 3}, {4, 190, 170}, {200, 5, 160}, {17000, 3, 2}};
+    static const double oblique[] = {0, 25};
+    model_stage stage = model_open();
+    model_tally tally = {0};
+    for (size_t n = 0; n < COUNT(large) * COUNT(oblique); n++) {
+        reference_scene scene =
+            model_scene(large[n / 2], SNOW_UINT16, n == 3, MODEL_PLAIN, n);
+        scene.view.width = scene.view.height = 40;
+        /* From along the shortest side. */
+        model_look(&scene,
+                   n / 2 == 1 ? (double[]){-1, 0, 0} : (double[]){0, -1, 0},
+                   (double[]){0, 0, 1});
+        if (n / 2 == 0)
+            model_look(&scene, (double[]){0, 0, 1}, (double[]){0, 1, 0});
+        model_turn(&scene, oblique[n % 2], -oblique[n % 2], 0, 1);
+        scene.settings.method =
+            n % 3 == 0 ? SNOW_METHOD_TESTED : SNOW_METHOD_FOOTPRINT;
+        model_check(&stage, &scene, BOUND, &tally);
+        model_free(&scene);
+    }
+    model_report(&tally);
+    model_close(&stage);
+}
+
 /* Puts NaN and infinities among the voxels of a real type. */
 static void spoil(reference_scene *scene, uint64_t *random) {
     static const double odd[] = {(double)NAN, (double)INFINITY,
@@ -328,6 +357,7 @@ int main(void) {
         cmocka_unit_test(every_type_matrix_threshold_and_shading),
         cmocka_unit_test(every_size_of_picture),
         cmocka_unit_test(volumes_thin_along_some_axes),
+        cmocka_unit_test(slices_and_rows_that_are_large),
         cmocka_unit_test(voxels_that_are_no_numbers_or_infinite),
         cmocka_unit_test(lights_from_all_sides_and_every_coefficient),
         cmocka_unit_test(opacities_of_other_lengths_than_a_voxel),
