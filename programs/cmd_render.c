@@ -173,7 +173,8 @@ static void tell_choices(const work *w, const options *asked) {
         encoded ? snow_encoding_name(stats->encoding) : "");
 }
 
-/* A stream is written through, so there an interruption need not wait. */
+/* A pipe is written through and may block, so there an interruption does not
+ * wait. */
 static int write_picture(work *w, const options *asked) {
     snow_image_options form = {
         .flatten = asked->background.given,
@@ -182,7 +183,7 @@ static int write_picture(work *w, const options *asked) {
     memcpy(form.background, asked->background.rgb, sizeof form.background);
     double begin = seconds_now();
     progress(asked, "writing");
-    if (!is_stream(asked->output))
+    if (!is_special(asked->output))
         interrupt_hold();
     snow_status status = snow_image_save(w->image, asked->output, &form);
     w->times.write = seconds_now() - begin;
@@ -197,7 +198,8 @@ static int tell_figures(work *w, const options *asked) {
         tell_stats(&report);
     if (!asked->stats)
         return SNOW_OK;
-    interrupt_hold();
+    if (!is_special(asked->stats))
+        interrupt_hold();
     return write_json(stats_json(&report), asked->stats);
 }
 

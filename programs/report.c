@@ -140,9 +140,10 @@ int print_json(json_t *object) {
     return finish_stdout();
 }
 
-/* A pipe, a device: nothing that a rename may replace. */
-static bool is_special(const char *path) {
+bool is_special(const char *path) {
     struct stat what;
+    if (strcmp(path, "-") == 0)
+        return true;
     return stat(path, &what) == 0 && !S_ISREG(what.st_mode) &&
            !S_ISDIR(what.st_mode);
 }
@@ -159,7 +160,7 @@ static void folder_of(const char *path, char *out, size_t size) {
 
 int check_stats_path(const char *path, bool overwrite) {
     struct stat what;
-    if (strcmp(path, "-") == 0 || is_special(path))
+    if (is_special(path))
         return GO_ON;
     if (stat(path, &what) == 0 && S_ISDIR(what.st_mode))
         return fail_output("%s: is a folder; name a file", path);

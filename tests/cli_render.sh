@@ -72,7 +72,7 @@ changes --light 60,30
 changes --ambient 0.6
 changes --diffuse 0.1
 changes --specular 0.9
-changes --specular 0.5 --shininess 3
+changes --shininess 3
 changes --spacing 1x1x3
 same -m over
 same -j 1
@@ -145,6 +145,23 @@ for signal in TERM INT; do
         --method original --footprint 9 -o late.png
     check "leaves nothing" [ -z "$(ls -A | grep late)" ]
 done
+
+# While the file is written the signal is let go: the picture becomes whole.
+"$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
+    -o large.png 2>stages &
+job=$!
+for _ in $(seq 600); do
+    grep -q writing stages && break
+    sleep 0.05
+done
+kill -TERM $job
+wait $job
+check "SIGTERM while writing ends as usual" [ $? -eq 0 ]
+check "with a whole picture" is_png large.png
+mkfifo pipe.png
+run 130 "SIGTERM while a pipe waits for its reader" timeout \
+    --preserve-status -s TERM 3 "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 \
+    -o pipe.png
 
 # At any moment: 130 and no picture, or 0 and a whole one.
 broken=0 early=0
