@@ -54,6 +54,7 @@ typedef struct bench_time {
     double encode; /* classification and writing of EA, IA, PA; 0 without */
     double splat;  /* footprints and compositing */
     double frame;  /* all */
+    double cpu;    /* all, in processor time: beside other work it tells more */
 } bench_time;
 
 typedef struct bench_row {
@@ -84,6 +85,7 @@ typedef struct bench_paper_row {
     int footprint;
     double paper_sr;            /* percent; 0 when the table does not give it */
     double seconds[BENCH_WAYS]; /* 0 where the paper gives none */
+    double gain[BENCH_WAYS];    /* percent, as printed there */
 } bench_paper_row;
 
 /* Measures and prints lines of table 2 or 3. */

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #define IMAGE_SIDE 256
 #define RUNS_MOST 99
@@ -28,6 +29,7 @@ typedef struct bench_run {
     snow_frame *frame;
     snow_view view;
     snow_settings settings;
+    double cpu; /* processor seconds of the last picture */
 } bench_run;
 
 static snow_status begin_run(snow_context *context, const bench_volume *volume,
@@ -49,6 +51,13 @@ static snow_status begin_run(snow_context *context, const bench_volume *volume,
     return snow_frame_new(context, &run->frame);
 }
 
+/* Processor seconds of this process so far. */
+static double cpu_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 /* Renders one way; the picture's check sum goes to *checksum. */
 static snow_status render(bench_run *run, bench_way way, double threshold,
                           uint64_t *checksum) {
@@ -56,9 +65,11 @@ static snow_status render(bench_run *run, bench_way way, double threshold,
     run->settings.method = ways[way].method;
     run->settings.encoding = ways[way].encoding;
     run->settings.threshold = threshold;
+    double start = cpu_seconds();
     snow_status status = snow_frame_render(run->frame, run->volume->volume,
                                            run->volume->transfer, &run->view,
                                            &run->settings, &image);
+    run->cpu = cpu_seconds() - start;
     if (status == SNOW_OK) {
         *checksum = snow_image_checksum(image);
         snow_image_free(image);
@@ -100,19 +111,20 @@ static double median(double *values, int count) {
 }
 
 /* The times of the picture just made, in milliseconds. */
-static bench_time times_of(const snow_stats *stats) {
+static bench_time times_of(const bench_run *run) {
+    const snow_stats *stats = snow_frame_stats(run->frame);
     bool encoded = stats->method == SNOW_METHOD_FOOTPRINT;
     double encode =
         encoded ? stats->seconds_classify + stats->seconds_encode : 0;
     return (bench_time){1e3 * encode, 1e3 * (stats->seconds_frame - encode),
-                        1e3 * stats->seconds_frame};
+                        1e3 * stats->seconds_frame, 1e3 * run->cpu};
 }
 
 static snow_status time_ways(bench_run *run, double threshold, int runs,
                              bench_row *out) {
-    static const size_t fields[] = {offsetof(bench_time, encode),
-                                    offsetof(bench_time, splat),
-                                    offsetof(bench_time, frame)};
+    static const size_t fields[] = {
+        offsetof(bench_time, encode), offsetof(bench_time, splat),
+        offsetof(bench_time, frame), offsetof(bench_time, cpu)};
     bench_time times[RUNS_MOST][BENCH_WAYS];
     for (int i = 0; i < runs; i++)
         for (int way = 0; way < BENCH_WAYS; way++) {
@@ -121,12 +133,12 @@ static snow_status time_ways(bench_run *run, double threshold, int runs,
             if (status != SNOW_OK)
                 return status;
             const snow_stats *stats = snow_frame_stats(run->frame);
-            times[i][way] = times_of(stats);
+            times[i][way] = times_of(run);
             out->ea_bytes[way] = stats->ea_bytes;
             out->sparse_ratio = stats->sparse_ratio;
         }
     for (int way = 0; way < BENCH_WAYS; way++)
-        for (int f = 0; f < 3; f++) {
+        for (int f = 0; f < 4; f++) {
             double values[RUNS_MOST];
             for (int i = 0; i < runs; i++)
                 memcpy(&values[i], (char *)&times[i][way] + fields[f],

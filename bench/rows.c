@@ -27,18 +27,12 @@ int bench_print_json(json_t *object) {
     return failed ? SNOW_BAD_OUTPUT : SNOW_OK;
 }
 
-/* The paper's gain in percent, or 0 when it gives no figure. */
-static double paper_gain(const bench_paper_row *paper, int way) {
-    double original = paper->seconds[BENCH_ORIGINAL];
-    double seconds = paper->seconds[way];
-    return seconds > 0 ? 100 * (original - seconds) / original : 0;
-}
-
 static json_t *way_json(const bench_paper_row *paper, const bench_row *row,
                         int way) {
     const bench_time *time = &row->times[way];
-    json_t *json = json_pack("{s:f, s:f, s:f}", "encode_ms", time->encode,
-                             "splat_ms", time->splat, "total_ms", time->frame);
+    json_t *json = json_pack("{s:f, s:f, s:f, s:f}", "encode_ms", time->encode,
+                             "splat_ms", time->splat, "total_ms", time->frame,
+                             "total_cpu_ms", time->cpu);
     if (way != BENCH_ORIGINAL)
         json_object_set_new(json, "gain_percent",
                             json_real(bench_gain(row, (bench_way)way)));
@@ -50,7 +44,7 @@ static json_t *way_json(const bench_paper_row *paper, const bench_row *row,
                             json_real(paper->seconds[way]));
         if (way != BENCH_ORIGINAL)
             json_object_set_new(json, "paper_gain_percent",
-                                json_real(paper_gain(paper, way)));
+                                json_real(paper->gain[way]));
     }
     return json;
 }
@@ -92,7 +86,7 @@ static void print_row(const bench_paper_row *paper, const bench_row *row) {
         printf(" | %6.1f (%4.1f + %5.1f) %3.0f%% ", time->frame, time->encode,
                time->splat, bench_gain(row, (bench_way)way));
         if (paper->seconds[way] > 0)
-            printf("(%2.0f%%)", paper_gain(paper, way));
+            printf("(%2.0f%%)", paper->gain[way]);
         else
             printf("( - )");
     }

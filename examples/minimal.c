@@ -11,9 +11,9 @@ int main(int argc, char **argv) {
         return SNOW_BAD_USAGE;
 
     snow_volume *volume = NULL;
-    snow_transfer *transfer = NULL;        /* data value to colour, opacity */
-    snow_look look = {.preset = "linear"}; /* a zeroed look is automatic */
-    snow_frame *frame = NULL;              /* the pipeline with its buffers */
+    snow_transfer *transfer = NULL; /* data value to colour and opacity */
+    snow_look look = {0};           /* chosen from the histogram */
+    snow_frame *frame = NULL;       /* the pipeline with its buffers */
     snow_settings settings;
     snow_settings_init(&settings);
     snow_view view;

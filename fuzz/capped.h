@@ -39,8 +39,8 @@ static void ignore_notice(void *user, const char *text) {
 
 /* Opens and measures the bytes as a volume.  Stops the program when a failure
  * comes without a message of one line, or memory stays behind. */
-static void look_at(const char *name, const uint8_t *bytes, size_t size,
-                    const snow_volume_options *options) {
+static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
+                           const snow_volume_options *options) {
     size_t held = 0;
     snow_allocator allocator = {capped_allocate, capped_release, &held};
     snow_context *context;

@@ -38,7 +38,7 @@ const char *support_image_path(image_fixture *fixture, const char *name) {
     return fixture->path;
 }
 
-int support_count_files(const image_fixture *fixture) {
+int support_image_files(const image_fixture *fixture) {
     DIR *listing = opendir(fixture->folder);
     assert_non_null(listing);
     int count = -2; /* . and .. */

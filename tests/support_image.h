@@ -23,7 +23,7 @@ int support_image_teardown(void **state);
 const char *support_image_path(image_fixture *fixture, const char *name);
 
 /* Files in the folder now. */
-int support_count_files(const image_fixture *fixture);
+int support_image_files(const image_fixture *fixture);
 
 typedef struct support_bytes {
     unsigned char *bytes;

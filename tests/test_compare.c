@@ -183,6 +183,19 @@ static void a_bright_spot_spoils_its_own_windows_only(void **state) {
     free_both(a, b);
 }
 
+static void rounding_of_huge_values_makes_no_difference(void **state) {
+    image_fixture *f = *state;
+    uint64_t seed = 5;
+    for (int round = 0; round < 500; round++) {
+        snow_image *a = picture(f, 1, 35, 2);
+        float value = (float)(support_uniform(&seed) * 1e16);
+        for (int i = 0; i < 35; i++)
+            snow_image_pixels(a)[2 * i] = value;
+        assert_true(compare(a, a).ssim == 1);
+        snow_image_free(a);
+    }
+}
+
 static void opposite_pictures_have_a_negative_similarity(void **state) {
     image_fixture *f = *state;
     snow_image *a = picture(f, 16, 16, 2), *b = picture(f, 16, 16, 2);
@@ -210,6 +223,7 @@ int main(void) {
         TEST(others_are_infinitely_far_apart),
         TEST(similarity_is_as_defined),
         TEST(a_bright_spot_spoils_its_own_windows_only),
+        TEST(rounding_of_huge_values_makes_no_difference),
         TEST(opposite_pictures_have_a_negative_similarity),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

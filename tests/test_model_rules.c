@@ -274,8 +274,7 @@ static void axes_after(const int quarters[3], int axes[3][3]) {
 
 /* The scene with its data turned: what lay along row n of `axes` lies along
  * index axis n. */
-static reference_scene turn_data(const reference_scene *from,
-                                 const int axes[3][3]) {
+static reference_scene turn_data(const reference_scene *from, int axes[3][3]) {
     const int64_t *dims = from->info.dims;
     reference_scene to = *from;
     int source[3];

@@ -4,6 +4,7 @@
 
 #include "base/source.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -292,6 +293,40 @@ static void folders_devices_and_missing_files_are_refused(void **state) {
     support_files_end(&files);
 }
 
+/* Puts a descriptor in the place of standard input and reads "-" from it. */
+static void read_standard_input(support_files *files, int descriptor,
+                                int64_t size) {
+    int kept = dup(STDIN_FILENO);
+    dup2(descriptor, STDIN_FILENO);
+    close(descriptor);
+    snow_source *source = opened(files, "-");
+    char back[8];
+    size_t got;
+    assert_int_equal(snow_source_remaining(source), size);
+    assert_int_equal(snow_source_read(source, back, 8, &got), SNOW_OK);
+    assert_int_equal(got, 3);
+    assert_memory_equal(back, "abc", 3);
+    snow_source_close(source);
+    dup2(kept, STDIN_FILENO);
+    close(kept);
+}
+
+static void a_dash_is_standard_input(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(write(ends[1], "abc", 3), 3);
+    close(ends[1]);
+    read_standard_input(&files, ends[0], -1);
+    /* A file from which something was read already. */
+    int descriptor = open(support_write(&files, "a", "12abc", 5), O_RDONLY);
+    assert_int_equal(lseek(descriptor, 2, SEEK_SET), 2);
+    read_standard_input(&files, descriptor, 3);
+    support_files_end(&files);
+}
+
 static void siblings_lie_beside_the_header(void **state) {
     (void)state;
     support_files files;
@@ -380,6 +415,7 @@ int main(void) {
         cmocka_unit_test(long_lines_and_nul_bytes_are_refused),
         cmocka_unit_test(what_cannot_be_there_is_not_expected),
         cmocka_unit_test(folders_devices_and_missing_files_are_refused),
+        cmocka_unit_test(a_dash_is_standard_input),
         cmocka_unit_test(siblings_lie_beside_the_header),
         cmocka_unit_test(siblings_are_regular_files_only),
         cmocka_unit_test(bytes_in_memory_have_no_siblings),

@@ -272,10 +272,45 @@ static void a_missing_file_is_refused_by_name(void **state) {
     support_files_end(&files);
 }
 
-/* A volume of 1000 float64 voxels cannot be had; nothing stays behind. */
-static void *refuse_large(void *user, size_t bytes) {
-    (void)user;
-    return bytes > 7000 && bytes < 60000 ? NULL : malloc(bytes);
+static void a_phantom_has_its_own_type(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume = NULL;
+    const snow_volume_options options = {.type = SNOW_UINT8};
+    assert_int_equal(
+        snow_volume_open(context, "phantom:cube", &options, &volume),
+        SNOW_BAD_USAGE);
+    assert_int_equal(snow_volume_open(context, "phantom:nobody", NULL, &volume),
+                     SNOW_BAD_USAGE);
+    assert_null(volume);
+    snow_context_free(context);
+}
+
+static void a_spacing_that_makes_no_space_is_refused(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume = NULL;
+    const snow_volume_options options = {
+        .dims = {1, 1, 1}, .type = SNOW_UINT8, .spacing = {1, 1, 1e-320}};
+    assert_int_equal(
+        snow_volume_open_memory(context, "a", "x", 1, &options, &volume),
+        SNOW_BAD_INPUT);
+    assert_null(volume);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+/* Gives memory `left` times more, then, unless `once`, never again. */
+typedef struct failing {
+    int left;
+    bool once;
+} failing;
+
+static void *allocate_or_fail(void *user, size_t bytes) {
+    failing *state = user;
+    if (state->left-- > 0 || (state->once && state->left < -1))
+        return malloc(bytes);
+    return NULL;
 }
 
 static void release(void *user, void *block) {
@@ -283,20 +318,54 @@ static void release(void *user, void *block) {
     free(block);
 }
 
-static void no_memory_for_the_voxels_leaves_nothing(void **state) {
+/* Opens with the n-th allocation failing, for all n until it succeeds; returns
+ * how many there are. */
+static int fail_each_allocation(const char *path, bool once) {
+    for (int n = 1;; n++) {
+        failing failing_state = {n, once};
+        snow_allocator allocator = {allocate_or_fail, release, &failing_state};
+        snow_context *context = NULL;
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+        snow_status status = snow_volume_open(context, path, NULL, &volume);
+        if (status == SNOW_OK) {
+            snow_volume_close(volume);
+        } else {
+            assert_int_equal(status, SNOW_NO_MEMORY);
+            assert_null(volume);
+            assert_non_null(strstr(snow_context_message(context), "no memory"));
+        }
+        assert_int_equal(snow_context_bytes(context), 0);
+        snow_context_free(context);
+        if (status == SNOW_OK)
+            return n - 1;
+    }
+}
+
+static void each_allocation_may_fail(void **state) {
     (void)state;
-    snow_allocator allocator = {refuse_large, release, NULL};
-    snow_context *context = NULL;
-    static const double voxels[1000];
-    snow_volume *volume = NULL;
-    assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
-    assert_int_equal(snow_volume_open_memory(context, "x_10x10x10_f64.raw",
-                                             voxels, sizeof voxels, NULL,
-                                             &volume),
-                     SNOW_NO_MEMORY);
-    assert_null(volume);
-    assert_int_equal(snow_context_bytes(context), 0);
-    snow_context_free(context);
+    support_files files;
+    support_files_begin(&files);
+    static const char voxels[48] = "some voxels";
+    unsigned char packed[300];
+    size_t size = support_gzip(voxels, 48, packed, sizeof packed);
+    support_write(&files, "s1", packed, size);
+    const char *paths[] = {
+        support_write(&files, "a_4x3x2_u16.raw.gz", packed, size),
+        support_write_text(&files, "a.nhdr",
+                           "NRRD0005\ntype: double\ndimension: 4\n"
+                           "sizes: 1 1 3 2\nendian: big\nencoding: gzip\n"
+                           "kinds: space space space time\nbyte skip: -1\n"
+                           "data file: LIST 4\ns1"),
+        support_write_text(&files, "b.nhdr",
+                           "NRRD0005\ntype: float\ndimension: 1\n"
+                           "sizes: 12\nendian: big\nencoding: gzip\n"
+                           "data file: s1"),
+    };
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        for (int once = 0; once < 2; once++)
+            assert_true(fail_each_allocation(paths[i], once) >= 5);
+    support_files_end(&files);
 }
 
 int main(void) {
@@ -316,7 +385,9 @@ int main(void) {
         cmocka_unit_test(formats_are_listed),
         cmocka_unit_test(an_empty_file_is_refused_by_name),
         cmocka_unit_test(a_missing_file_is_refused_by_name),
-        cmocka_unit_test(no_memory_for_the_voxels_leaves_nothing),
+        cmocka_unit_test(a_phantom_has_its_own_type),
+        cmocka_unit_test(a_spacing_that_makes_no_space_is_refused),
+        cmocka_unit_test(each_allocation_may_fail),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

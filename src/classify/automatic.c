@@ -39,6 +39,9 @@
 #define VEIL_OBJECT 0.4
 #define VEIL_MOST 0.2
 
+/* Grey where opacity starts: below it shading would make skin look black. */
+#define DARKEST 0.65
+
 typedef struct split {
     double at;           /* the threshold, in bins */
     double below, above; /* mean bin on each side */
@@ -169,13 +172,12 @@ static void add_opacity(snow_draft *draft, double value, double opacity) {
     draft->opacities[n] = (snow_opacity_point){value, opacity};
 }
 
-static void draft_grey(snow_draft *draft, double low, double high,
-                       double darkest) {
+static void draft_grey(snow_draft *draft, double low, double high) {
     draft->name = "grey";
     draft->low = low;
     draft->high = high;
     draft->color_count = 2;
-    draft->colors[0] = (snow_color_point){low, darkest, darkest, darkest};
+    draft->colors[0] = (snow_color_point){low, DARKEST, DARKEST, DARKEST};
     draft->colors[1] = (snow_color_point){high, 1, 1, 1};
 }
 
@@ -187,7 +189,7 @@ snow_status snow_draft_automatic(const snow_volume *volume,
     if (p.constant) {
         double low, high;
         snow_full_range(census, &low, &high);
-        draft_grey(&draft, low, high, 0.5);
+        draft_grey(&draft, low, high);
         add_opacity(&draft, low, 0);
         add_opacity(&draft, high, 0.8);
         draft.reason = "one value only";
@@ -202,8 +204,7 @@ snow_status snow_draft_automatic(const snow_volume *volume,
     add_opacity(&draft, snow_between(p.threshold, p.object, 0.15), 0.25);
     add_opacity(&draft, p.object, 0.4);
     add_opacity(&draft, p.top, 0.8);
-    draft_grey(&draft, start, draft.opacities[draft.opacity_count - 1].value,
-               0.5);
+    draft_grey(&draft, start, draft.opacities[draft.opacity_count - 1].value);
     *out = draft;
     return SNOW_OK;
 }

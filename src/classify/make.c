@@ -76,9 +76,12 @@ static snow_status resolve_range(const snow_volume *volume,
     return SNOW_OK;
 }
 
-/* Where `value` of the draft comes to lie when it is spread over low..high. */
+/* Where `value` of the draft comes to lie when it is spread over low..high.  A
+ * draft that rounding has left without width becomes a step. */
 static double stretched(const snow_draft *draft, double value, double low,
                         double high) {
+    if (!(draft->low < draft->high))
+        return low;
     double scale = isfinite(draft->high - draft->low) ? 1 : 0.5;
     double share = (scale * value - scale * draft->low) /
                    (scale * draft->high - scale * draft->low);

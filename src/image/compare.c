@@ -114,9 +114,14 @@ static double window_similarity(const moments *sum, double n) {
     double variance_a = sum->aa / n - mean_a * mean_a;
     double variance_b = sum->bb / n - mean_b * mean_b;
     double covariance = sum->ab / n - mean_a * mean_b;
-    /* Rounding can leave a little below 0, at most. */
+    /* Rounding, which is large where values are, must not break what holds
+     * of all numbers: no negative variance, and Cauchy and Schwarz. */
     variance_a = variance_a < 0 ? 0 : variance_a;
     variance_b = variance_b < 0 ? 0 : variance_b;
+    double most = sqrt(variance_a * variance_b);
+    covariance = covariance > most    ? most
+                 : covariance < -most ? -most
+                                      : covariance;
     double likeness = (2 * mean_a * mean_b + c1) * (2 * covariance + c2);
     double spread = (mean_a * mean_a + mean_b * mean_b + c1) *
                     (variance_a + variance_b + c2);

@@ -223,7 +223,7 @@ static snow_status read_pattern(snow_source *source,
         last = first + files.count - 1;
     if (!possible || step < 1 || last < first ||
         (last - first) / step + 1 != files.count ||
-        !name_of(pattern, last, name, sizeof name))
+        !name_of(pattern, first + (files.count - 1) * step, name, sizeof name))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "\"%.60s\" does not name %lld files; give a pattern "
                          "like slice%%03d.raw with first number, last and "

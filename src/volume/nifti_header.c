@@ -120,7 +120,8 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
     if (size >= 12 && has_size(bytes, NIFTI2_BYTES, &big) &&
         (memcmp(bytes + 4, "n+2", 4) == 0 || memcmp(bytes + 4, "ni2", 4) == 0))
         return NIFTI2_BYTES;
-    if (has_magic1(bytes, size) && order_of_dim(bytes, &big))
+    if (has_magic1(bytes, size) &&
+        (has_size(bytes, NIFTI1_BYTES, &big) || order_of_dim(bytes, &big)))
         return NIFTI1_BYTES;
     return 0;
 }

@@ -9,7 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WORD_BYTES 64
+/* Longer than the exact decimal form of most doubles; nobody writes longer
+ * ones. */
+#define WORD_BYTES 512
 
 typedef struct word_reader {
     snow_source *source;
@@ -49,8 +51,10 @@ static snow_status next_word(word_reader *reader, bool *got) {
         SNOW_TRY(look_ahead(reader));
         if (reader->at == reader->end || separates(reader->bytes[reader->at]))
             break;
-        if (used == WORD_BYTES - 1)
-            break; /* no number is that long: the rest makes it fail */
+        if (used == WORD_BYTES - 1) {
+            reader->word[used - 1] = '?'; /* too long: no number any more */
+            break;
+        }
         reader->word[used++] = reader->bytes[reader->at];
     }
     reader->word[used] = 0;
@@ -124,12 +128,12 @@ static snow_status read_words(word_reader *reader, snow_type type,
                              (unsigned long long)i, (unsigned long long)all);
         if (i >= skip && i - skip < count &&
             !store(type, reader->word, voxels, i - skip))
-            return snow_fail(context, SNOW_BAD_INPUT,
-                             "%s: its number %llu, \"%s\", is no %s; correct "
-                             "it or the type",
-                             snow_source_name(reader->source),
-                             (unsigned long long)i, reader->word,
-                             snow_type_name(type));
+            return snow_fail(
+                context, SNOW_BAD_INPUT,
+                "%s: its number %llu, \"%.40s\", is no %s; correct "
+                "it or the type",
+                snow_source_name(reader->source), (unsigned long long)i,
+                reader->word, snow_type_name(type));
     }
     SNOW_TRY(skip_blanks(reader, &got));
     if (got)

@@ -147,7 +147,7 @@ static void engine_row(const snow_phantom_grid *grid, int64_t j, int64_t k,
         double value = air_value(bits);
         snow_shape_paint(grid, &value, 112 + 3 * grain,
                          snow_shape_distance(&soft, x));
-        snow_shape_paint(grid, &value, 222 + 4 * grain,
+        snow_shape_paint(grid, &value, 246 + 9 * grain,
                          snow_shape_distance(&dense, x));
         bytes[i] = snow_phantom_byte(value);
     }

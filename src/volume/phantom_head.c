@@ -326,7 +326,7 @@ static double brain_value(const head_row *row, double x, double depth) {
     double value = 42 + 2 * grain;
     snow_shape_paint(grid, &value, 92 + 3 * grain, surface);
     double wave = 5 * (snow_noise_at(&row->fine, x) - 0.5);
-    snow_shape_paint(grid, &value, 116 + 3 * grain, surface + 5 + wave);
+    snow_shape_paint(grid, &value, 113 + 3 * grain, surface + 5 + wave);
     snow_shape_paint(grid, &value, 44, gap);
     return value;
 }
@@ -351,8 +351,8 @@ static double outer_value(const head_row *row, double x, double air,
                           double shell, double depth) {
     const snow_phantom_grid *grid = row->grid;
     double value = air, grain = row->grain;
-    snow_shape_paint(grid, &value, 56 + 2 * grain, shell);
-    snow_shape_paint(grid, &value, 74 + 4 * grain, shell + 4.5);
+    snow_shape_paint(grid, &value, 64 + 2 * grain, shell);
+    snow_shape_paint(grid, &value, 82 + 4 * grain, shell + 4.5);
     double bone = snow_shape_distance(&row->skull, x), below = shell + 4.5;
     bone = bone > below ? bone : below;
     snow_shape_paint(grid, &value, 205 + 5 * grain, bone);
@@ -360,8 +360,8 @@ static double outer_value(const head_row *row, double x, double air,
     snow_shape_paint(grid, &value, 160 + 10 * grain,
                      spongy > table ? spongy : table);
     snow_shape_paint(grid, &value, 84, snow_shape_distance(&row->eyes, x));
-    snow_shape_paint(grid, &value, 248, snow_shape_distance(&row->teeth, x));
-    snow_shape_paint(grid, &value, 6 + 3 * grain,
+    snow_shape_paint(grid, &value, 255, snow_shape_distance(&row->teeth, x));
+    snow_shape_paint(grid, &value, 3 + 3 * grain,
                      snow_shape_distance(&row->airways, x));
     snow_shape_paint(grid, &value, 230, snow_shape_distance(&row->capsule, x));
     return value;
@@ -415,7 +415,7 @@ static void head_fill(const snow_phantom_grid *grid, int64_t j, int64_t k,
     for (int64_t i = 0; i < grid->dims[0]; i++) {
         double x = snow_phantom_place(grid, 0, i) / GROWTH;
         double value = head_value(&row, i, x);
-        bytes[i] = snow_phantom_byte(value > 1 ? value : 1);
+        bytes[i] = snow_phantom_byte(value);
     }
 }
 

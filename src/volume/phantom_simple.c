@@ -65,7 +65,7 @@ static void shells_row(const snow_phantom_grid *grid, int64_t j, int64_t k,
                        void *out) {
     static const struct {
         double radius, value;
-    } shells[] = {{24, 250}, {48, 200}, {72, 150}, {96, 100}, {118, 60}};
+    } shells[] = {{24, 255}, {48, 200}, {72, 150}, {96, 100}, {118, 60}};
     double y = snow_phantom_place(grid, 1, j);
     double z = snow_phantom_place(grid, 2, k);
     uint8_t *bytes = out;

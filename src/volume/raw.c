@@ -20,11 +20,14 @@ static bool parse_dims(const char *word, size_t length, int64_t dims[3]) {
     for (int i = 0; i < 3; i++) {
         if (i && (at == end || *at++ != 'x'))
             return false;
-        const char *digits = at;
-        for (found[i] = 0; at < end && isdigit((unsigned char)*at); at++)
-            found[i] = found[i] * 10 + (*at - '0');
         /* Nine digits cannot overflow; no volume has longer sides. */
-        if (at == digits || at - digits > 9 || !found[i])
+        int digits = 0;
+        for (found[i] = 0; digits < 9 && at < end; digits++, at++) {
+            if (!isdigit((unsigned char)*at))
+                break;
+            found[i] = found[i] * 10 + (*at - '0');
+        }
+        if (!found[i])
             return false;
     }
     if (at != end)
