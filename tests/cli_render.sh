@@ -101,6 +101,8 @@ run 0 "8 bits are near the floats" \
     "$TOOL" compare base.npy stream.png --tolerance 1/255
 run 0 "a background" render -q -o ground.png --background '#ff8000'
 run 6 "a background shows" "$TOOL" compare stream.png ground.png
+run 0 "another background" render -q -o night.png --background navy
+run 6 "differs from the first" "$TOOL" compare night.png ground.png
 run 0 "the same background in words of numbers" \
     render -q -o ground2.png --background 1,0.50196,0
 run 0 "gives the same picture" "$TOOL" compare ground.png ground2.png
