@@ -9,6 +9,9 @@ static void *allocate_recorded(void *user, size_t bytes) {
     support_place *place = user;
     if (bytes > place->largest)
         place->largest = bytes;
+    place->allocations++;
+    if (place->fail_at && place->allocations >= place->fail_at)
+        return NULL;
     return malloc(bytes);
 }
 

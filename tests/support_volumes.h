@@ -7,9 +7,11 @@
 
 typedef struct support_place {
     snow_context *context;
-    size_t largest;     /* bytes of the largest allocation since it was set 0 */
-    char notices[4096]; /* all remarks, one a line */
-    char folder[64];    /* an empty folder, removed with its files at the end */
+    size_t largest;  /* bytes of the largest allocation since it was set 0 */
+    int64_t fail_at; /* this allocation and all later ones fail; 0: none */
+    int64_t allocations; /* so far */
+    char notices[4096];  /* all remarks, one a line */
+    char folder[64]; /* an empty folder, removed with its files at the end */
 } support_place;
 
 /* cmocka set-up and tear-down; *state is the place.  The tear-down fails when

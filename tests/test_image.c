@@ -233,7 +233,7 @@ static void a_full_disk_is_bad_output(void **state) {
     image_fixture *f = *state;
     if (access("/dev/full", W_OK) != 0)
         skip();
-    snow_image *image = support_picture(f->context, 200, 100, 4, 1);
+    snow_image *image = support_picture(f->context, 700, 500, 4, 1);
     assert_int_equal(save_to_stdout(image, "/dev/full"), SNOW_BAD_OUTPUT);
     assert_non_null(strstr(snow_context_message(f->context), "space"));
     snow_image_free(image);

@@ -370,6 +370,26 @@ static void wide_whole_numbers_in_text_keep_all_digits(void **state) {
     }
 }
 
+static void real_numbers_in_text_are_read(void **state) {
+    support_place *place = *state;
+    static const char *const types[] = {"MET_FLOAT", "MET_DOUBLE"};
+    for (int i = 0; i < 2; i++) {
+        char header[256];
+        const char *text = "-1.5e-3 nan";
+        snprintf(header, sizeof header,
+                 "NDims = 1\nDimSize = 2\nBinaryData = False\n"
+                 "ElementType = %s\nElementDataFile = LOCAL\n",
+                 types[i]);
+        file f = make_file(header, text, strlen(text));
+        snow_volume *volume = open_file(place, &f);
+        snow_volume_measures m;
+        snow_volume_measure(volume, &m);
+        assert_int_equal(m.finite, 1);
+        assert_true(m.min == (i ? -1.5e-3 : (double)-1.5e-3f));
+        snow_volume_close(volume);
+    }
+}
+
 static void cut_files_are_refused_at_every_length(void **state) {
     support_place *place = *state;
     file f = make_file(header_with("", NULL, NULL), sample_voxels(), 24);
@@ -425,6 +445,9 @@ static void contradictions_and_omissions_are_refused(void **state) {
         {"no key here\n", NULL, "without \"=\""},
         {"", "CompressedData = False", "CompressedData = perhaps"},
         {"DistanceUnits = parsec\n", NULL, "DistanceUnits"},
+        {"ElementToIntensityFunctionOffset = x\n", NULL, "one number"},
+        {"ElementNumberOfChannels = x\n", NULL, "whole number"},
+        {"BinaryData = False\n", "BinaryData = True\nBinary", "Binary"},
         {"", "ObjectType = Image", "ObjectType = Tube"},
         {"", "NDims = 3\n", ""},
         {"", "DimSize = 3 2 2\n", ""},
@@ -482,6 +505,8 @@ static void voxels_may_lie_in_many_files(void **state) {
     const unsigned char *voxels = sample_voxels();
     support_place_put(place, "s3.raw", voxels, 12);
     support_place_put(place, "s5.raw", voxels + 12, 12);
+    support_place_put(place, "q1.raw", voxels, 12);
+    support_place_put(place, "q2.raw", voxels + 12, 12);
     for (int i = 0; i < 4; i++) {
         char name[16];
         snprintf(name, sizeof name, "r%03d.raw", i);
@@ -493,6 +518,8 @@ static void voxels_may_lie_in_many_files(void **state) {
         "LIST 1\nr000.raw\nr001.raw\nr002.raw\nr003.raw",
         "s%d.raw 3 5 2",
         "s%01d.raw 3 6 2",
+        "q%d.raw",
+        "q%d.raw 1",
     };
     for (size_t i = 0; i < sizeof data / sizeof *data; i++) {
         remove_and_put(place, "a.mhd", header_with("", "LOCAL", data[i]));
@@ -634,6 +661,7 @@ int main(void) {
         UNIT(a_compressed_stream_of_another_size_is_noticed),
         UNIT(voxels_may_be_written_as_text),
         UNIT(wide_whole_numbers_in_text_keep_all_digits),
+        UNIT(real_numbers_in_text_are_read),
         UNIT(cut_files_are_refused_at_every_length),
         UNIT(sizes_that_lie_are_refused_before_memory_is_taken),
         UNIT(contradictions_and_omissions_are_refused),

@@ -395,6 +395,21 @@ static void a_gzipped_picture_is_read(void **state) {
     snow_image_free(image);
 }
 
+static void a_gzip_stream_with_a_wrong_sum_is_refused(void **state) {
+    image_fixture *f = *state;
+    const char *path = support_image_path(f, "a.pfm.gz");
+    file data = pfm("Pf\n1 1\n-1\n1234");
+    gzFile packed = gzopen(path, "wb");
+    assert_int_equal(gzwrite(packed, data.bytes, (unsigned)data.size),
+                     data.size);
+    gzclose(packed);
+    support_bytes bytes = support_read_file(path);
+    snow_image_free(support_load(f->context, bytes.bytes, bytes.size));
+    bytes.bytes[bytes.size - 8] ^= 1; /* CRC-32, then the length */
+    support_assert_refused(f->context, bytes.bytes, bytes.size);
+    free(bytes.bytes);
+}
+
 #define TEST(name)                                             \
     cmocka_unit_test_setup_teardown(name, support_image_setup, \
                                     support_image_teardown)
@@ -417,6 +432,7 @@ int main(void) {
         TEST(files_cut_anywhere_are_refused),
         TEST(sizes_the_file_cannot_hold_cost_no_memory),
         TEST(a_gzipped_picture_is_read),
+        TEST(a_gzip_stream_with_a_wrong_sum_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

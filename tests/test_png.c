@@ -199,6 +199,35 @@ static void values_out_of_range_are_limited(void **state) {
     assert_memory_equal(d.bytes, wanted, sizeof wanted);
 }
 
+/* The stored level nearest to a value, halves going up. */
+static int nearest_level(double value, int top) {
+    return (int)floor((value > 1 ? 1 : value) * top + 0.5);
+}
+
+static void every_level_is_the_nearest(void **state) {
+    uint64_t seed = 4;
+    enum { WIDTH = 500 };
+    for (int round = 0; round < 40; round++) {
+        float pixels[2 * WIDTH];
+        for (int x = 0; x < WIDTH; x++) {
+            /* multiples of a power of two often lie half-way */
+            pixels[2 * x + 1] = (float)(1 + support_random(&seed) % 256) / 256;
+            pixels[2 * x] =
+                pixels[2 * x + 1] * (float)(support_random(&seed) % 511) / 510;
+        }
+        const snow_image_options options = {.bits = 8 + round % 2 * 8};
+        decoded d = store_row(*state, pixels, WIDTH, 2, &options);
+        for (int x = 0; x < 2 * WIDTH; x++) {
+            double value = (double)pixels[x];
+            if (x % 2 == 0)
+                value /= (double)pixels[x + 1];
+            int stored = d.bits == 8 ? d.bytes[x]
+                                     : d.bytes[2 * x] << 8 | d.bytes[2 * x + 1];
+            assert_int_equal(stored, nearest_level(value, (1 << d.bits) - 1));
+        }
+    }
+}
+
 static void row_0_is_the_top(void **state) {
     image_fixture *f = *state;
     snow_image *image = NULL;
@@ -544,6 +573,7 @@ int main(void) {
         TEST(grey_on_grey_stays_grey),
         TEST(not_a_number_is_transparent),
         TEST(values_out_of_range_are_limited),
+        TEST(every_level_is_the_nearest),
         TEST(row_0_is_the_top),
         TEST(stored_levels_survive_a_round_trip),
         TEST(odd_sizes_survive_a_round_trip),

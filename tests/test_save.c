@@ -216,6 +216,45 @@ static void a_volume_of_many_buffers_is_packed_whole(void **state) {
     free(voxels);
 }
 
+/* Makes each allocation of a save or an open fail, with all after it, until
+ * one succeeds; returns how many allocations that took. */
+static int64_t starve(support_place *place, const snow_volume *volume,
+                      const char *path, bool saving) {
+    const snow_volume_options raw = {.dims = {5, 3, 4}, .type = SNOW_INT16};
+    const snow_volume_options *options = strstr(path, ".raw") ? &raw : NULL;
+    for (int64_t n = 1;; n++) {
+        snow_volume *back = NULL;
+        place->allocations = 0;
+        place->fail_at = n;
+        uint64_t held = snow_context_bytes(place->context);
+        snow_status status =
+            saving ? snow_volume_save(volume, path, false)
+                   : snow_volume_open(place->context, path, options, &back);
+        place->fail_at = 0;
+        snow_volume_close(back);
+        assert_int_equal(snow_context_bytes(place->context), held);
+        if (status == SNOW_OK)
+            return n - 1;
+        assert_int_equal(status, SNOW_NO_MEMORY);
+        assert_null(back);
+        if (saving)
+            assert_int_not_equal(access(path, F_OK), 0);
+    }
+}
+
+static void every_failing_allocation_is_survived(void **state) {
+    support_place *place = *state;
+    static const char *const names[] = {"a.nrrd", "a.nii", "a.nii.gz",
+                                        "a.mha",  "a.raw", "a.raw.gz"};
+    snow_volume *volume = make_volume(place, SNOW_INT16, true, oblique);
+    for (size_t i = 0; i < 6; i++) {
+        const char *path = support_place_path(place, names[i]);
+        assert_true(starve(place, volume, path, true) > 1);
+        assert_true(starve(place, volume, path, false) > 2);
+    }
+    snow_volume_close(volume);
+}
+
 #define UNIT(test)                                             \
     cmocka_unit_test_setup_teardown(test, support_place_begin, \
                                     support_place_end)
@@ -229,6 +268,7 @@ int main(void) {
         UNIT(what_nifti_1_cannot_hold_becomes_nifti_2),
         UNIT(the_same_volume_gives_the_same_bytes),
         UNIT(existing_files_and_unknown_endings_are_refused),
+        UNIT(every_failing_allocation_is_survived),
         UNIT(a_volume_of_many_buffers_is_packed_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -26,12 +26,15 @@ static bool are_equal(double a, double b) {
     return a == b || (isnan(a) && isnan(b));
 }
 
+/* In double, where the difference of two floats cannot overflow. */
 static double absolute_difference(float a, float b) {
     if (are_equal(a, b))
         return 0;
     return isfinite(a) && isfinite(b) ? fabs((double)a - (double)b) : INFINITY;
 }
 
+/* Adds row y.  Each row has sums of its own first, which keeps the rounding of
+ * large pictures small. */
 static void add_row(const snow_image *a, const snow_image *b, int y,
                     difference_sums *sums) {
     size_t first = (size_t)y * (size_t)a->width;
@@ -131,7 +134,8 @@ static double window_similarity(const moments *sum, double n) {
     return score > 1 ? 1 : score < -1 ? -1 : score;
 }
 
-/* Adds up the similarities of a row of windows. */
+/* Adds up the similarities of a row of windows, `side` columns wide and of that
+ * many pixels in all. */
 static double add_windows(const moments *columns, int width, int side,
                           double pixels) {
     double total = 0;

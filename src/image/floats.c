@@ -25,7 +25,11 @@ static float decode_sample(const unsigned char *bytes, int size,
     return sample;
 }
 
-/* Spreads what a file has for a pixel over red, green, blue and alpha. */
+/* Spreads what a file has for a pixel over red, green, blue and alpha:
+ *
+ *   g        -> g g g 1        r g b    -> r g b 1
+ *   g a      -> g g g a        r g b a  -> r g b a
+ */
 static void spread_pixel(const float *samples, int channels, float *pixel) {
     bool grey = channels < 3;
     pixel[0] = samples[0];
@@ -34,6 +38,7 @@ static void spread_pixel(const float *samples, int channels, float *pixel) {
     pixel[3] = channels % 2 == 0 ? samples[channels - 1] : 1;
 }
 
+/* Turns a row of the file into `width` pixels of four floats. */
 static void decode_row(const unsigned char *bytes, int width,
                        const snow_float_layout *layout, float *row) {
     for (int x = 0; x < width; x++) {
@@ -68,6 +73,8 @@ static snow_status read_rows(snow_source *source,
     return status;
 }
 
+/* The order matters: the sides bound the product, the product is held against
+ * the bytes that there are, and only then memory is asked for. */
 snow_status snow_image_read_floats(snow_source *source, int64_t width,
                                    int64_t height,
                                    const snow_float_layout *layout,
@@ -90,6 +97,7 @@ snow_status snow_image_read_floats(snow_source *source, int64_t width,
     return SNOW_OK;
 }
 
+/* Puts row y into `bytes`; 3 channels leave alpha out. */
 static void encode_row(const snow_image *image, int y, int channels,
                        unsigned char *bytes) {
     size_t first = (size_t)y * (size_t)image->width;

@@ -18,7 +18,8 @@ static const snow_image_format *const formats[] = {
 /* The bytes that formats are told apart by. */
 #define PROBE_BYTES 16
 
-/* Finds the format that a path is to be written in. */
+/* Finds the format that a path is to be written in.  There is no default for
+ * other names: a picture in a format that nobody asked for would surprise. */
 static snow_status choose_format(snow_context *context, const char *path,
                                  const snow_image_format **out) {
     if (strcmp(path, "-") == 0) {
@@ -67,6 +68,8 @@ static snow_status name_file(snow_context *context, snow_status status,
     return status;
 }
 
+/* Refusals come first, before there is a file; then the writer sees to it that
+ * there is a whole one or none. */
 snow_status snow_image_save(const snow_image *image, const char *path,
                             const snow_image_options *options) {
     static const snow_image_options standard = {0};
@@ -86,7 +89,8 @@ snow_status snow_image_save(const snow_image *image, const char *path,
     return snow_writer_commit(writer);
 }
 
-/* A writer knows best what it can write: one is begun and given up. */
+/* A writer knows best what it can write: one is begun and given up.  Standard
+ * output would be written to, and is always there. */
 snow_status snow_image_check_path(snow_context *context, const char *path,
                                   bool overwrite) {
     const snow_image_format *format = NULL;
@@ -129,7 +133,8 @@ static snow_status probe_source(snow_source *source,
                          : "is empty; give a PNG, NPY or PFM file");
 }
 
-/* Reads the picture that an open source holds, to its end. */
+/* Reads the picture that an open source holds, to its end: a gzip stream is
+ * right only when its trailer is, which comes after the last pixel. */
 static snow_status read_picture(snow_source *source, snow_image **out) {
     const snow_image_format *format = NULL;
     SNOW_TRY(probe_source(source, &format));
@@ -156,6 +161,7 @@ snow_status snow_image_load(snow_context *context, const char *path,
     return status;
 }
 
+/* The fuzzers' door: no file is touched. */
 snow_status snow_image_load_memory(snow_context *context, const char *name,
                                    const void *bytes, size_t size,
                                    snow_image **out) {

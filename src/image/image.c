@@ -95,6 +95,8 @@ static uint32_t canonical_bits(float sample) {
     return bits;
 }
 
+/* Byte by byte, as FNV-1a is defined: anybody can compute it from a .npy file
+ * and its shape. */
 uint64_t snow_image_checksum(const snow_image *image) {
     uint64_t hash = UINT64_C(0xcbf29ce484222325);
     hash = hash_number(hash, (uint32_t)image->width);

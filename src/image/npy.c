@@ -24,6 +24,8 @@ static const unsigned char magic[6] = {0x93, 'N', 'U', 'M', 'P', 'Y'};
 
 #define MAX_DIMS 3
 
+/* The text is shorter than the room for any sides: the file is the same, byte
+ * for byte, as numpy.save makes. */
 static snow_status write_npy(const snow_image *image,
                              const snow_image_options *options,
                              snow_writer *writer) {
@@ -90,6 +92,7 @@ static bool take_string(const char **at, char *out, size_t size) {
     return true;
 }
 
+/* Takes a Python truth value; 0 and 1 are not written by NumPy. */
 static bool take_bool(const char **at, bool *out) {
     skip_blanks(at);
     *out = strncmp(*at, "True", 4) == 0;
@@ -148,6 +151,8 @@ static bool take_entry(const char **at, npy_header *header) {
     return strcmp(key, "shape") == 0 && take_shape(at, header);
 }
 
+/* Reads the literal; false unless it is whole, nothing follows it and all three
+ * keys are there.  A key told twice counts as Python has it: the last one. */
 static bool parse_header(const char *text, npy_header *header) {
     if (!take(&text, '{'))
         return false;
@@ -193,7 +198,8 @@ static snow_status read_header(snow_source *source, npy_header *header) {
     return SNOW_OK;
 }
 
-/* Takes apart a type such as <f4. */
+/* Takes apart a type such as <f4.  NumPy writes the byte order of the machine
+ * as < or >, never as =. */
 static bool parse_type(const char *type, snow_float_layout *layout) {
     bool known = (type[0] == '<' || type[0] == '>') && type[1] == 'f' &&
                  (type[2] == '4' || type[2] == '8') && type[3] == '\0';
@@ -202,6 +208,7 @@ static bool parse_type(const char *type, snow_float_layout *layout) {
     return known;
 }
 
+/* Each refusal tells the NumPy call that makes a readable file. */
 static snow_status read_npy(snow_source *source, snow_image **out) {
     npy_header header;
     snow_float_layout layout = {.channels = 1};

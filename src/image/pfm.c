@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Alpha has no place in the format: what is written is the picture on black. */
 static snow_status write_pfm(const snow_image *image,
                              const snow_image_options *options,
                              snow_writer *writer) {
@@ -61,7 +62,9 @@ static snow_status read_word(snow_source *source, char *word, size_t size) {
     return refuse_header(source);
 }
 
-/* Takes the header up to the first pixel. */
+/* Takes the header up to the first pixel.  The scale's sign is the byte order;
+ * its size relates samples to watts a square metre and steradian, which readers
+ * commonly leave alone. */
 static snow_status read_header(snow_source *source, int64_t *width,
                                int64_t *height, snow_float_layout *layout) {
     char kind[4], word[3][32];

@@ -36,6 +36,8 @@ typedef struct png_job {
 
 /* --- between libpng and the library --------------------------------------- */
 
+/* Stands for malloc, for zlib's state as well.  libpng may go on without the
+ * block, or complain of it; the status is kept for that case. */
 static void *allocate_block(png_structp png, png_alloc_size_t bytes) {
     png_job *job = png_get_mem_ptr(png);
     void *block = snow_allocate(job->context, bytes);
@@ -71,6 +73,7 @@ static void hear_warning(png_structp png, png_const_charp text) {
     (void)text;
 }
 
+/* Sources and writers hand out or take all, or fail with a message. */
 static void read_bytes(png_structp png, png_bytep bytes, size_t size) {
     png_job *job = png_get_io_ptr(png);
     snow_status status =
@@ -105,10 +108,12 @@ static snow_status refuse_library(png_job *job) {
 /* --- from pixels to samples ----------------------------------------------- */
 
 /* Between 0 and 1; NaN becomes 0. */
-static inline float clamp_unit(float x) {
+static inline double clamp_unit(double x) {
     return x > 0 ? (x < 1 ? x : 1) : 0;
 }
 
+/* One sample that is not a number makes the pixel unknown: what the others say
+ * was computed beside it. */
 static inline bool has_nan(const float *pixel, int channels) {
     bool found = false;
     for (int c = 0; c < channels; c++)
@@ -119,42 +124,45 @@ static inline bool has_nan(const float *pixel, int channels) {
 /* Divides alpha out of a row; what is transparent, or not a number, becomes
  * 0 in all channels. */
 static inline void straighten_row(const float *row, int width, int channels,
-                                  float *out) {
+                                  double *out) {
     for (int x = 0; x < width; x++, row += channels, out += channels) {
-        float alpha = clamp_unit(row[channels - 1]);
+        double alpha = clamp_unit((double)row[channels - 1]);
         if (has_nan(row, channels))
             alpha = 0;
         for (int c = 0; c < channels - 1; c++)
-            out[c] = alpha > 0 ? clamp_unit(row[c] / alpha) : 0;
+            out[c] = alpha > 0 ? clamp_unit((double)row[c] / alpha) : 0;
         out[channels - 1] = alpha;
     }
 }
 
-/* Lays a row on a background of `kept` channels (1 grey, 3 colour). */
+/* Lays a row on a background of `kept` channels (1 grey, 3 colour), by Porter
+ * and Duff's "over" on premultiplied samples; what is not a number shows the
+ * background alone. */
 static void flatten_row(const float *row, int width, int channels,
-                        const double *background, int kept, float *out) {
+                        const double *background, int kept, double *out) {
     int step = channels == 2 ? 0 : 1; /* grey serves for all three */
     for (int x = 0; x < width; x++, row += channels, out += kept) {
         bool missing = has_nan(row, channels);
-        float rest = missing ? 1 : 1 - clamp_unit(row[channels - 1]);
+        double rest = missing ? 1 : 1 - clamp_unit((double)row[channels - 1]);
         for (int c = 0; c < kept; c++)
-            out[c] = clamp_unit((missing ? 0 : row[c * step]) +
-                                rest * (float)background[c]);
+            out[c] = clamp_unit((missing ? 0 : (double)row[c * step]) +
+                                rest * background[c]);
     }
 }
 
-/* round(255 x) */
-static void quantise_8(const float *samples, size_t count,
+/* round(255 x), halves up.  In double precision, where the product of a float
+ * and 255 is exact, so that the nearest level is taken always. */
+static void quantise_8(const double *samples, size_t count,
                        unsigned char *bytes) {
     for (size_t i = 0; i < count; i++)
-        bytes[i] = (unsigned char)(int)(samples[i] * 255.0f + 0.5f);
+        bytes[i] = (unsigned char)(int)(samples[i] * 255 + 0.5);
 }
 
 /* round(65535 x), the high byte first */
-static void quantise_16(const float *samples, size_t count,
+static void quantise_16(const double *samples, size_t count,
                         unsigned char *bytes) {
     for (size_t i = 0; i < count; i++) {
-        int level = (int)(samples[i] * 65535.0f + 0.5f);
+        int level = (int)(samples[i] * 65535 + 0.5);
         bytes[2 * i] = (unsigned char)(level >> 8);
         bytes[2 * i + 1] = (unsigned char)(level & 255);
     }
@@ -168,7 +176,7 @@ typedef struct png_plan {
     const double *background; /* NULL: with alpha */
     int bits;
     int samples; /* a pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
-    float *row;
+    double *row;
     unsigned char *bytes;
 } png_plan;
 
@@ -188,6 +196,7 @@ static png_plan make_plan(const snow_image *image,
     };
 }
 
+/* Fills plan->bytes with row y as the file stores it, before filtering. */
 static void encode_row(const png_plan *plan, int y) {
     const snow_image *image = plan->image;
     int width = image->width, channels = image->channels;
@@ -257,7 +266,7 @@ static snow_status write_png(const snow_image *image,
                    .prefix = "the PNG file cannot be made",
                    .remedy = "write a .npy instead",
                    .writer = writer};
-    plan.row = snow_allocate_array(image->context, count, sizeof(float));
+    plan.row = snow_allocate_array(image->context, count, sizeof(double));
     plan.bytes = snow_allocate_array(image->context, count, 2);
     snow_status status = SNOW_NO_MEMORY;
     if (plan.row && plan.bytes)
@@ -323,7 +332,12 @@ static void begin_reading(png_job *job) {
 }
 
 /* A row of `width` float pixels is twice as long as one of 16-bit pixels; the
- * latter is put into its second half. */
+ * latter is put into its second half.  Interlaced files need all rows until
+ * the last pass, and this way no other memory than the picture's:
+ *
+ *   while libpng reads   |  undefined  | R0 R1 R2 R3 |   8 bytes a pixel
+ *   afterwards           |  F0  |  F1  |  F2  |  F3  |  16 bytes a pixel
+ */
 static unsigned char *raw_row(const snow_image *image, int y) {
     size_t width = (size_t)image->width;
     float *row = image->pixels + 4 * width * (size_t)y;
@@ -343,8 +357,11 @@ static void read_rows(png_job *job, const snow_image *image) {
     png_read_end(job->png, NULL);
 }
 
-/* Turns the 16-bit pixels of a row into premultiplied floats, in place: the
- * float pixel x ends before or where the raw pixel x does. */
+/* Turns the 16-bit pixels of a row into premultiplied floats, in place, from
+ * the left: with w pixels in a row, float pixel x ends at byte 16 x + 16, not
+ * beyond the end of raw pixel x at 8 w + 8 x + 8, so that it covers none that
+ * is still to come.  Levels of 8 bits came as 257 times themselves, which makes
+ * their quotient by 65535 the one by 255. */
 static void widen_row(const snow_image *image, int y) {
     const unsigned char *raw = raw_row(image, y);
     float *out = image->pixels + 4 * (size_t)image->width * (size_t)y;

@@ -1,49 +1,53 @@
 /* volume/metaimage_write.c - MetaImage files with header and voxels in one.
  *
  * The world is turned from RAS+ to MetaImage's LPS.  Numbers have 17 digits,
- * enough to bring back every double. */
+ * enough to bring back every double; directions and spacings are kept apart, so
+ * that their products come back to the last bit or the one before. */
 #include "volume/metaimage.h"
 #include "volume/write.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* One direction per index axis, of length 1; the lengths are the spacings.
- * Where rounding would change the product, the whole column is kept as the
- * direction, with a spacing of 1. */
-static void split_column(const snow_volume_info *info, int column,
-                         double direction[3], double *spacing) {
-    double length = info->spacing[column];
-    bool same = true;
-    for (int i = 0; i < 3; i++) {
-        double value = (i < 2 ? -1 : 1) * info->matrix[i][column] + 0.0;
-        direction[i] = value / length;
-        same = same && direction[i] * length == value;
-    }
-    *spacing = same ? length : 1;
-    for (int i = 0; i < 3 && !same; i++)
-        direction[i] = (i < 2 ? -1 : 1) * info->matrix[i][column] + 0.0;
+/* "key = numbers" and the end of the line. */
+static int print_line(char *text, size_t room, const char *key,
+                      const double *values, int count) {
+    int used = snprintf(text, room, "%s = ", key);
+    used += snow_print_numbers(text + used, room - (size_t)used, values, count,
+                               " ");
+    return used + snprintf(text + used, room - (size_t)used, "\n");
 }
 
 static int print_geometry(char *text, size_t room,
                           const snow_volume_info *info) {
-    double direction[3][3], spacing[3];
-    int used = snprintf(text, room, "TransformMatrix =");
-    for (int j = 0; j < 3; j++) {
-        split_column(info, j, direction[j], &spacing[j]);
-        used += snprintf(text + used, room - (size_t)used, " %.17g %.17g %.17g",
-                         direction[j][0], direction[j][1], direction[j][2]);
-    }
+    const double(*m)[4] = info->matrix;
+    const double origin[3] = {-m[0][3], -m[1][3], m[2][3]};
+    double directions[9]; /* of length 1, one for each index axis */
+    for (int k = 0; k < 9; k++)
+        directions[k] =
+            (k % 3 < 2 ? -1 : 1) * m[k % 3][k / 3] / info->spacing[k / 3];
+    int used = print_line(text, room, "TransformMatrix", directions, 9);
+    used += print_line(text + used, room - (size_t)used, "Offset", origin, 3);
+    used += print_line(text + used, room - (size_t)used, "ElementSpacing",
+                       info->spacing, 3);
+    /* Units that MetaImage has a word for; others count as mm. */
+    if (strcmp(info->unit, "um") == 0 || strcmp(info->unit, "cm") == 0)
+        used += snprintf(text + used, room - (size_t)used,
+                         "DistanceUnits = %s\n", info->unit);
     /* Without the key the directions would make it a patient. */
-    return used + snprintf(text + used, room - (size_t)used,
-                           "\n%s"
-                           "Offset = %.17g %.17g %.17g\n"
-                           "ElementSpacing = %.17g %.17g %.17g\n",
-                           info->medical ? "" : "AnatomicalOrientation = ???\n",
-                           -info->matrix[0][3] + 0.0, -info->matrix[1][3] + 0.0,
-                           info->matrix[2][3], spacing[0], spacing[1],
-                           spacing[2]);
+    if (!info->medical)
+        used += snprintf(text + used, room - (size_t)used,
+                         "AnatomicalOrientation = ???\n");
+    return used;
+}
+
+static int print_scaling(char *text, size_t room,
+                         const snow_volume_info *info) {
+    int used = print_line(text, room, "ElementToIntensityFunctionSlope",
+                          &info->slope, 1);
+    return used + print_line(text + used, room - (size_t)used,
+                             "ElementToIntensityFunctionOffset",
+                             &info->intercept, 1);
 }
 
 snow_status snow_metaimage_write(const snow_volume *volume, const char *path,
@@ -59,10 +63,7 @@ snow_status snow_metaimage_write(const snow_volume *volume, const char *path,
                         "CompressedData = False\n");
     used += print_geometry(text + used, sizeof text - (size_t)used, info);
     if (info->slope != 1 || info->intercept != 0)
-        used += snprintf(text + used, sizeof text - (size_t)used,
-                         "ElementToIntensityFunctionSlope = %.17g\n"
-                         "ElementToIntensityFunctionOffset = %.17g\n",
-                         info->slope, info->intercept);
+        used += print_scaling(text + used, sizeof text - (size_t)used, info);
     used += snprintf(text + used, sizeof text - (size_t)used,
                      "DimSize = %lld %lld %lld\n"
                      "ElementType = %s\n"

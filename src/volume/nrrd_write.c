@@ -19,20 +19,28 @@ static const char *type_name(snow_type type) {
     }
 }
 
+/* "(x,y,z)" of one column of the matrix. */
+static int print_vector(char *text, size_t room, const double m[4][4],
+                        int column) {
+    const double vector[3] = {m[0][column], m[1][column], m[2][column]};
+    text[0] = '(';
+    int used = 1 + snow_print_numbers(text + 1, room - 1, vector, 3, ",");
+    return used + snprintf(text + used, room - (size_t)used, ")");
+}
+
 /* Space directions and origin; the caller's room is ample. */
 static int print_geometry(char *text, size_t room,
                           const snow_volume_info *info) {
-    const double(*m)[4] = info->matrix;
     const char *unit = info->unit;
     int used =
         snprintf(text, room, "space%s\nspace directions:",
                  info->medical ? ": right-anterior-superior" : " dimension: 3");
-    for (int j = 0; j < 3; j++)
-        used += snprintf(text + used, room - (size_t)used,
-                         " (%.17g,%.17g,%.17g)", m[0][j], m[1][j], m[2][j]);
-    used += snprintf(text + used, room - (size_t)used,
-                     "\nspace origin: (%.17g,%.17g,%.17g)\n", m[0][3], m[1][3],
-                     m[2][3]);
+    for (int j = 0; j < 4; j++) {
+        used += snprintf(text + used, room - (size_t)used, "%s",
+                         j < 3 ? " " : "\nspace origin: ");
+        used += print_vector(text + used, room - (size_t)used, info->matrix, j);
+    }
+    used += snprintf(text + used, room - (size_t)used, "\n");
     if (*unit && !strpbrk(unit, "\"\\\r\n"))
         used +=
             snprintf(text + used, room - (size_t)used,

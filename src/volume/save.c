@@ -4,6 +4,7 @@
  * ends in .gz and sees to it that the file is whole or absent. */
 #include "volume/write.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Voxels turned around at a time on machines of the other byte order. */
@@ -41,6 +42,22 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
         bytes -= some;
     }
     return SNOW_OK;
+}
+
+int snow_print_numbers(char *text, size_t room, const double *values, int count,
+                       const char *between) {
+    int used = 0;
+    for (int i = 0; i < count; i++) {
+        if (i)
+            used += snprintf(text + used, room - (size_t)used, "%s", between);
+        char *number = text + used;
+        /* Adding 0 makes -0, of which files need not tell, 0. */
+        used += snprintf(number, room - (size_t)used, "%.17g", values[i] + 0.0);
+        char *comma = strchr(number, ',');
+        if (comma)
+            *comma = '.';
+    }
+    return used;
 }
 
 snow_status snow_raw_write(const snow_volume *volume, const char *path,

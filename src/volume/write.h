@@ -9,6 +9,12 @@
 /* Appends the voxels, low byte first. */
 snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer);
 
+/* Prints `count` numbers with 17 digits and `between` between them, with a
+ * decimal point in every locale.  Returns the letters written; the room must
+ * suffice for 25 each. */
+int snow_print_numbers(char *text, size_t room, const double *values, int count,
+                       const char *between);
+
 /* As snow_format's write.  Errors: SNOW_BAD_USAGE when the format cannot say
  * what the volume is (a scaling of values, say), those of the writer. */
 snow_status snow_raw_write(const snow_volume *volume, const char *path,
