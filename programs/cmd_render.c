@@ -31,6 +31,10 @@ static int check_combination(const options *asked) {
         return fail_usage("%s: --background and --bits are for PNG files; "
                           "leave them out or name a .png",
                           asked->output);
+    if (strcmp(asked->method, "original") == 0 &&
+        strcmp(asked->encoding, "auto") != 0)
+        return fail_usage("--encoding: method original encodes nothing; leave "
+                          "one of the two out");
     if (asked->stats && strcmp(asked->stats, asked->output) == 0)
         return fail_usage("--stats: goes where --output goes; name two places");
     if (is_stream(asked->output) && isatty(STDOUT_FILENO))

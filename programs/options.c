@@ -202,6 +202,20 @@ static int check_count(const options *out, const verb_row *verb) {
                       verb->name, verb->name, verb->usage);
 }
 
+/* The long option just read as it was written, NULL for a letter. */
+static const char *long_word(char **argv) {
+    const char *word = argv[optind - 1];
+    if (optarg && optarg == word)
+        word = argv[optind - 2];
+    return strncmp(word, "--", 2) == 0 ? word + 2 : NULL;
+}
+
+/* getopt_long takes any beginning of a name for the name: --foo would be
+ * --footprint, and something else once another option begins so. */
+static bool in_full(const char *word, const option_row *row) {
+    return !word || strcspn(word, "=") == strlen(row->name);
+}
+
 int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
     struct option longs[ROWS_MAX + 1];
     char letters[2 * ROWS_MAX + 2];
@@ -213,6 +227,10 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
         if (code == '?')
             return refuse_unknown(verb, argv[optind - 1], optopt);
         const option_row *row = row_of(code == ':' ? optopt : code);
+        const char *word = long_word(argv);
+        if (!in_full(word, row))
+            return fail_usage("--%s: unknown option; did you mean --%s?", word,
+                              row->name);
         if (code == ':')
             return fail_usage("--%s: its value is missing; give --%s %s",
                               row->name, row->name, row->argument);

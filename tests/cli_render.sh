@@ -112,8 +112,6 @@ check "NPY has its floats" \
     [ "$(wc -c <base.npy)" -eq $((128 + 40 * 30 * 16)) ]
 run 0 "options after the operand, -- before it" \
     "$TOOL" -q -s 9x9 --dims 8x8x8 -o dash.png -- phantom:cube
-run 0 "an abbreviated option" render -q --azim 10 -o abbreviated.png
-
 raw_cube cube.raw 8
 raw="--dims 8x8x8 --type uint8"
 # shellcheck disable=SC2086

@@ -100,6 +100,34 @@ static void opacity_does_not_depend_on_the_angle_of_view(void **state) {
     model_close(&stage);
 }
 
+/* --- what is near hides what is far -------------------------------------- */
+
+static void the_nearest_slice_hides_those_behind(void **state) {
+    (void)state;
+    static const snow_color_point colors[] = {{1, 1, 0, 0}, {2, 0, 1, 0}};
+    model_stage stage = model_open();
+    reference_scene scene = model_blank((int64_t[]){9, 9, 9}, 1);
+    scene.colors = colors;
+    scene.color_count = 2;
+    scene.view.width = scene.view.height = 20;
+    for (size_t s = 0; s < 6; s++) {
+        /* Green where the camera stands, red elsewhere. */
+        double side = sides[s].back[0] + sides[s].back[1] + sides[s].back[2];
+        for (int n = 0; n < 9 * 9 * 9; n++) {
+            int at[3] = {n % 9, n / 9 % 9, n / 81};
+            bool near = at[sides[s].axis] == (side > 0 ? 8 : 0);
+            model_voxels(&scene)[n] = near ? 2 : 1;
+        }
+        model_look(&scene, sides[s].back, sides[s].up);
+        float *middle = model_picture(&stage, &scene);
+        assert_near((double)middle[4 * (20 * 10 + 10)], 0, 1e-6);
+        assert_near((double)middle[4 * (20 * 10 + 10) + 1], 1, 1e-6);
+        free(middle);
+    }
+    model_free(&scene);
+    model_close(&stage);
+}
+
 /* --- one voxel leaves exactly its footprint ------------------------------- */
 
 /* What a single voxel leaves in a pixel: its weights along both axes of the
@@ -394,6 +422,7 @@ int main(void) {
         cmocka_unit_test(a_constant_volume_has_the_opacity_of_its_slices),
         cmocka_unit_test(opacity_does_not_depend_on_how_finely_slices_lie),
         cmocka_unit_test(opacity_does_not_depend_on_the_angle_of_view),
+        cmocka_unit_test(the_nearest_slice_hides_those_behind),
         cmocka_unit_test(one_voxel_leaves_exactly_its_footprint),
         cmocka_unit_test(weights_add_up_to_the_projected_area_of_a_voxel),
         cmocka_unit_test(oblique_footprints_keep_their_area),
