@@ -76,14 +76,32 @@ double model_distance(const reference_scene *scene, const float *picture,
     return largest;
 }
 
-double model_check(const model_stage *stage, const reference_scene *scene,
-                   double bound) {
+static double strongest_opacity(const reference_scene *scene,
+                                const double *picture) {
+    double strongest = 0;
+    for (int n = 0; n < scene->view.width * scene->view.height; n++)
+        strongest = fmax(strongest, picture[4 * n + 3]);
+    return strongest;
+}
+
+void model_check(const model_stage *stage, const reference_scene *scene,
+                 double bound, model_tally *tally) {
     float *picture = model_picture(stage, scene);
     double *reference = reference_render(scene);
     double distance = model_distance(scene, picture, reference);
     if (!(distance < bound))
         fail_msg("differs by %g: %s", distance, model_words(scene));
+    tally->pictures++;
+    tally->largest = fmax(tally->largest, distance);
+    tally->opacity += strongest_opacity(scene, reference);
     free(picture);
     free(reference);
-    return distance;
+}
+
+void model_report(const model_tally *tally) {
+    double opacity = tally->opacity / tally->pictures;
+    print_message("             %d pictures differ by up to %.2g; their "
+                  "strongest opacity is %.2f in the mean\n",
+                  tally->pictures, tally->largest, opacity);
+    assert_true(opacity > 0.4);
 }

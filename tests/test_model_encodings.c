@@ -160,6 +160,22 @@ static void runs_that_pass_from_row_to_row(void **state) {
     model_close(&stage);
 }
 
+static void slices_larger_than_what_is_classified_at_once(void **state) {
+    (void)state;
+    static const int64_t large[][3] = {{210, 150, 3}, {17000, 3, 2}};
+    model_stage stage = model_open();
+    uint64_t random = 24;
+    for (int n = 0; n < 2; n++) {
+        reference_scene scene = small_scene(large[n], n == 0);
+        scene.settings.kernel = SNOW_KERNEL_BOX;
+        for (size_t at = 0; at < voxel_count(&scene); at++)
+            model_voxels(&scene)[at] = support_uniform(&random) < 0.2;
+        assert_true(check_sides(&stage, &scene));
+        model_free(&scene);
+    }
+    model_close(&stage);
+}
+
 static void one_voxel_anywhere(void **state) {
     (void)state;
     model_stage stage = model_open();
@@ -255,6 +271,7 @@ int main(void) {
         cmocka_unit_test(random_voxels_of_every_density_and_width),
         cmocka_unit_test(runs_around_the_longest_that_a_byte_holds),
         cmocka_unit_test(runs_that_pass_from_row_to_row),
+        cmocka_unit_test(slices_larger_than_what_is_classified_at_once),
         cmocka_unit_test(one_voxel_anywhere),
         cmocka_unit_test(every_kernel_footprint_threshold_and_view),
         cmocka_unit_test(a_frame_gives_the_same_bits_again_and_a_new_one_too),

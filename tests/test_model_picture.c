@@ -78,17 +78,11 @@ static reference_scene drawn_scene(uint64_t *state) {
     return scene;
 }
 
-static void say(double largest, int pictures) {
-    print_message("             %d pictures differ by up to %.2g\n", pictures,
-                  largest);
-}
-
 static void every_kernel_and_footprint_from_every_side(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 1;
-    double largest = 0;
-    int pictures = 0;
+    model_tally tally = {0};
     for (size_t k = 0; k < COUNT(kernels); k++)
         for (int footprint = 2; footprint <= 9; footprint++)
             for (size_t n = 0; n < COUNT(stands) * COUNT(zooms); n++) {
@@ -96,11 +90,10 @@ static void every_kernel_and_footprint_from_every_side(void **state) {
                 scene.settings.kernel = kernels[k];
                 scene.settings.footprint = footprint;
                 stand_at(&scene, n, zooms[n / COUNT(stands)]);
-                largest = fmax(largest, model_check(&stage, &scene, BOUND));
-                pictures++;
+                model_check(&stage, &scene, BOUND, &tally);
                 model_free(&scene);
             }
-    say(largest, pictures);
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -120,7 +113,7 @@ static void pixels_that_lie_on_the_grid(void **state) {
     static const double lengths[] = {1, 0.5, 2, 0.25, 4};
     model_stage stage = model_open();
     uint64_t random = 7;
-    double largest = 0;
+    model_tally tally = {0};
     size_t pictures = COUNT(kernels) * 8 * COUNT(lengths) * 9;
     for (size_t n = 0; n < pictures; n++) {
         reference_scene scene = drawn_scene(&random);
@@ -137,10 +130,10 @@ static void pixels_that_lie_on_the_grid(void **state) {
                 scene.info.matrix[r][c] *= r == c;
         double length = lengths[rest / COUNT(kernels) / 8];
         stand_at(&scene, n % 9, zoom_for(&scene, length));
-        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        model_check(&stage, &scene, BOUND, &tally);
         model_free(&scene);
     }
-    say(largest, (int)pictures);
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -148,7 +141,7 @@ static void every_type_matrix_threshold_and_shading(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 2;
-    double largest = 0;
+    model_tally tally = {0};
     size_t n = 0;
     for (; n < COUNT(types) * MODEL_MATRICES * 12; n++) {
         reference_scene drawn = drawn_scene(&random);
@@ -160,11 +153,11 @@ static void every_type_matrix_threshold_and_shading(void **state) {
         scene.settings.shade =
             rest / 2 % 2 == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
         scene.settings.threshold = thresholds[rest / 4];
-        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        model_check(&stage, &scene, BOUND, &tally);
         model_free(&scene);
         model_free(&drawn);
     }
-    say(largest, (int)n);
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -174,8 +167,7 @@ static void every_size_of_picture(void **state) {
                                    {30, 1}, {2, 2}, {17, 33}, {100, 3}, {8, 8}};
     model_stage stage = model_open();
     uint64_t random = 3;
-    double largest = 0;
-    int pictures = 0;
+    model_tally tally = {0};
     for (size_t s = 0; s < COUNT(sizes); s++)
         for (size_t n = 0; n < COUNT(stands); n++) {
             reference_scene scene = drawn_scene(&random);
@@ -183,11 +175,10 @@ static void every_size_of_picture(void **state) {
             scene.view.width = sizes[s][0];
             scene.view.height = sizes[s][1];
             scene.settings.kernel = kernels[draw(&random, COUNT(kernels))];
-            largest = fmax(largest, model_check(&stage, &scene, BOUND));
-            pictures++;
+            model_check(&stage, &scene, BOUND, &tally);
             model_free(&scene);
         }
-    say(largest, pictures);
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -198,8 +189,7 @@ static void volumes_thin_along_some_axes(void **state) {
         {1, 7, 5}, {2, 2, 2}, {300, 2, 3}, {3, 270, 2}, {2, 3, 260}};
     model_stage stage = model_open();
     uint64_t random = 4;
-    double largest = 0;
-    int pictures = 0;
+    model_tally tally = {0};
     for (size_t t = 0; t < COUNT(thin); t++)
         for (size_t n = 0; n < COUNT(stands); n++) {
             model_matrix matrix = (model_matrix)draw(&random, MODEL_MATRICES);
@@ -213,11 +203,39 @@ static void volumes_thin_along_some_axes(void **state) {
             scene.view.height = 18;
             stand_at(&scene, n, zooms[draw(&random, COUNT(zooms))]);
             scene.settings.kernel = kernels[draw(&random, COUNT(kernels))];
-            largest = fmax(largest, model_check(&stage, &scene, BOUND));
-            pictures++;
+            model_check(&stage, &scene, BOUND, &tally);
             free((void *)(uintptr_t)scene.voxels);
         }
-    say(largest, pictures);
+    model_report(&tally);
+    model_close(&stage);
+}
+
+/* Slices of more than 16384 voxels are classified in parts, rows longer than
+ * that one by one. */
+static void slices_and_rows_that_are_large(void **state) {
+    (void)state;
+    static const int64_t large[][3] = {
+        {210, 150, 3}, {4, 190, 170}, {200, 5, 160}, {17000, 3, 2}};
+    static const double oblique[] = {0, 25};
+    model_stage stage = model_open();
+    model_tally tally = {0};
+    for (size_t n = 0; n < COUNT(large) * COUNT(oblique); n++) {
+        reference_scene scene =
+            model_scene(large[n / 2], SNOW_UINT16, n == 3, MODEL_PLAIN, n);
+        scene.view.width = scene.view.height = 40;
+        /* From along the shortest side. */
+        model_look(&scene,
+                   n / 2 == 1 ? (double[]){-1, 0, 0} : (double[]){0, -1, 0},
+                   (double[]){0, 0, 1});
+        if (n / 2 == 0)
+            model_look(&scene, (double[]){0, 0, 1}, (double[]){0, 1, 0});
+        model_turn(&scene, oblique[n % 2], -oblique[n % 2], 0, 1);
+        scene.settings.method =
+            n % 3 == 0 ? SNOW_METHOD_TESTED : SNOW_METHOD_FOOTPRINT;
+        model_check(&stage, &scene, BOUND, &tally);
+        model_free(&scene);
+    }
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -240,8 +258,7 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 5;
-    double largest = 0;
-    int pictures = 0;
+    model_tally tally = {0};
     for (size_t n = 0; n < 2 * COUNT(stands); n++) {
         reference_scene scene =
             model_scene(dims, n % 2 == 0 ? SNOW_FLOAT32 : SNOW_FLOAT64,
@@ -251,11 +268,10 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
         scene.view.height = 18;
         stand_at(&scene, n, 1);
         scene.settings.method = (snow_method)(n % 4);
-        largest = fmax(largest, model_check(&stage, &scene, BOUND));
-        pictures++;
+        model_check(&stage, &scene, BOUND, &tally);
         model_free(&scene);
     }
-    say(largest, pictures);
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -263,8 +279,7 @@ static void lights_from_all_sides_and_every_coefficient(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 6;
-    double largest = 0;
-    int pictures = 0;
+    model_tally tally = {0};
     /* Real numbers with noise: no gradient is square to the line of sight, so
      * that rounding does not decide which way it is turned. */
     for (size_t n = 0; n < 60; n++) {
@@ -280,11 +295,10 @@ static void lights_from_all_sides_and_every_coefficient(void **state) {
         settings->diffuse = support_uniform(&random);
         settings->specular = support_uniform(&random);
         settings->shininess = n % 5 == 0 ? 0 : 100 * support_uniform(&random);
-        largest = fmax(largest, model_check(&stage, &scene, BOUND));
-        pictures++;
+        model_check(&stage, &scene, BOUND, &tally);
         model_free(&scene);
     }
-    say(largest, pictures);
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -292,7 +306,7 @@ static void opacities_of_other_lengths_than_a_voxel(void **state) {
     (void)state;
     model_stage stage = model_open();
     static const double lengths[] = {0.1, 0.9, 3, 40};
-    double largest = 0;
+    model_tally tally = {0};
     for (size_t n = 0; n < 2 * COUNT(stands); n++) {
         reference_scene scene = model_scene(
             dims, SNOW_UINT8, true, (model_matrix)(n % MODEL_MATRICES), n);
@@ -301,10 +315,10 @@ static void opacities_of_other_lengths_than_a_voxel(void **state) {
         scene.view.height = 18;
         scene.settings.opacity_length = lengths[n % COUNT(lengths)];
         scene.settings.threshold = thresholds[n % COUNT(thresholds)];
-        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        model_check(&stage, &scene, BOUND, &tally);
         model_free(&scene);
     }
-    say(largest, 2 * COUNT(stands));
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -318,7 +332,7 @@ static void transfer_functions_of_any_shape(void **state) {
     static const snow_color_point steps[] = {
         {30, 1, 0, 0}, {30, 0, 1, 0}, {60, 0, 0, 1}, {60, 1, 1, 1}};
     model_stage stage = model_open();
-    double largest = 0;
+    model_tally tally = {0};
     for (size_t n = 0; n < 4 * COUNT(types); n++) {
         reference_scene scene = model_scene(
             dims, types[n / 4], false, (model_matrix)(n % MODEL_MATRICES), n);
@@ -329,10 +343,10 @@ static void transfer_functions_of_any_shape(void **state) {
         scene.view.width = 24;
         scene.view.height = 18;
         stand_at(&scene, n, 1);
-        largest = fmax(largest, model_check(&stage, &scene, BOUND));
+        model_check(&stage, &scene, BOUND, &tally);
         free((void *)(uintptr_t)scene.voxels);
     }
-    say(largest, 4 * COUNT(types));
+    model_report(&tally);
     model_close(&stage);
 }
 
@@ -343,6 +357,7 @@ int main(void) {
         cmocka_unit_test(every_type_matrix_threshold_and_shading),
         cmocka_unit_test(every_size_of_picture),
         cmocka_unit_test(volumes_thin_along_some_axes),
+        cmocka_unit_test(slices_and_rows_that_are_large),
         cmocka_unit_test(voxels_that_are_no_numbers_or_infinite),
         cmocka_unit_test(lights_from_all_sides_and_every_coefficient),
         cmocka_unit_test(opacities_of_other_lengths_than_a_voxel),

@@ -100,6 +100,8 @@ static void read_name(snow_context *context, const char *path,
             options->endian == SNOW_ENDIAN_BIG ? "big" : "little");
 }
 
+/* All that can be wrong with the bytes themselves is that there are too few of
+ * them; snow_volume_read sees to that, and tells of too many. */
 static snow_status read_raw(snow_source *source,
                             const snow_volume_options *options,
                             snow_volume **out) {
