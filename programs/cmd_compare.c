@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* So that a picture can come from a pipe: render -o - | compare - b.png. */
 static int load_stream(snow_context *context, snow_image **out) {
     char *bytes;
     size_t size;
@@ -25,6 +26,7 @@ static int load(snow_context *context, const char *path, snow_image **out) {
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
+/* psnr is null for equal pictures, where it is infinite. */
 static int tell_json(const snow_image_difference *d, double tolerance,
                      bool within) {
     json_t *object = json_object();

@@ -62,6 +62,7 @@ static uint64_t memory_bytes(void) {
     return limit;
 }
 
+/* "a b c" as a list. */
 static json_t *words_json(const char *words) {
     json_t *list = json_array();
     while (*words) {

@@ -25,6 +25,8 @@ typedef struct facts {
     size_t threshold_count;
 } facts;
 
+/* Every figure is taken before the first one is printed, so that a failure
+ * prints nothing. */
 static snow_status gather(const options *asked, facts *f) {
     f->info = snow_volume_describe(f->volume);
     f->thresholds[0] = asked->threshold;
@@ -77,6 +79,7 @@ static void axis_letters(const snow_volume_info *info, char letters[4]) {
 /* --- text ------------------------------------------------------------------
  */
 
+/* What the file says of its place; scale and times only when they matter. */
 static void print_geometry(const facts *f) {
     const snow_volume_info *info = f->info;
     char letters[4];
@@ -150,6 +153,8 @@ static void print_histogram(const facts *f) {
 /* --- JSON ------------------------------------------------------------------
  */
 
+/* Keys are a promise to scripts: dims x first, matrix from index to world, row
+ * by row. */
 static void set_geometry(json_t *object, const snow_volume_info *info) {
     json_t *matrix = json_array();
     for (int i = 0; i < 4; i++)
@@ -173,6 +178,7 @@ static void set_geometry(json_t *object, const snow_volume_info *info) {
     json_object_set_new(object, "time", json_integer(info->time));
 }
 
+/* min and max are null when no voxel is finite. */
 static void set_values(json_t *object, const snow_volume_measures *m) {
     json_object_set_new(object, "voxels", json_integer(m->voxels));
     json_object_set_new(object, "finite", json_integer(m->finite));
@@ -182,6 +188,7 @@ static void set_values(json_t *object, const snow_volume_measures *m) {
     json_object_set_new(object, "wsum", json_number(m->wsum));
 }
 
+/* Null for one value or none: there is no width to divide. */
 static json_t *histogram_json(const facts *f) {
     uint64_t counts[BINS];
     if (!count_values(f, BINS, counts))

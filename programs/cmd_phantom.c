@@ -6,7 +6,8 @@
 static int save(snow_context *context, const options *asked,
                 const snow_volume *volume) {
     char text[256];
-    interrupt_hold();
+    if (!is_special(asked->output))
+        interrupt_hold();
     snow_status status =
         snow_volume_save(volume, asked->output, asked->overwrite);
     if (status != SNOW_OK)

@@ -23,6 +23,7 @@ static bool is_png(const char *path) {
            (length >= 4 && strcmp(path + length - 4, ".PNG") == 0);
 }
 
+/* Needs no file, so it comes before everything else. */
 static int check_combination(const options *asked) {
     if (!asked->output)
         return fail_usage("no output is named; add -o OUT.png");
@@ -30,6 +31,10 @@ static int check_combination(const options *asked) {
         return fail_usage("%s: --background and --bits are for PNG files; "
                           "leave them out or name a .png",
                           asked->output);
+    if (strcmp(asked->method, "original") == 0 &&
+        strcmp(asked->encoding, "auto") != 0)
+        return fail_usage("--encoding: method original encodes nothing; leave "
+                          "one of the two out");
     if (asked->stats && strcmp(asked->stats, asked->output) == 0)
         return fail_usage("--stats: goes where --output goes; name two places");
     if (is_stream(asked->output) && isatty(STDOUT_FILENO))
@@ -38,6 +43,8 @@ static int check_combination(const options *asked) {
     return check_look(asked);
 }
 
+/* A long rendering must not end in an output that could have been refused at
+ * once. */
 static int check_paths(snow_context *context, const options *asked) {
     snow_status status =
         snow_image_check_path(context, asked->output, asked->overwrite);
@@ -69,6 +76,8 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
                       info->unit);
 }
 
+/* The texts were checked against the choices of the table, so that every name
+ * is known to the library. */
 static int make_settings(const options *asked, const snow_volume *volume,
                          snow_settings *out) {
     snow_settings_init(out);
@@ -89,6 +98,7 @@ static int make_settings(const options *asked, const snow_volume *volume,
                           &out->opacity_length);
 }
 
+/* A named view sets size and angles too, hence it comes before them. */
 static int make_view(snow_context *context, const options *asked,
                      const snow_volume *volume, snow_view *out) {
     snow_view_default(volume, out);
@@ -117,6 +127,7 @@ typedef struct work {
     render_times times;
 } work;
 
+/* In any order but the context last; all of them accept NULL. */
 static void free_work(work *w) {
     snow_image_free(w->image);
     snow_frame_free(w->frame);
@@ -173,7 +184,8 @@ static void tell_choices(const work *w, const options *asked) {
         encoded ? snow_encoding_name(stats->encoding) : "");
 }
 
-/* A stream is written through, so there an interruption need not wait. */
+/* A pipe is written through and may block, so there an interruption does not
+ * wait. */
 static int write_picture(work *w, const options *asked) {
     snow_image_options form = {
         .flatten = asked->background.given,
@@ -182,13 +194,14 @@ static int write_picture(work *w, const options *asked) {
     memcpy(form.background, asked->background.rgb, sizeof form.background);
     double begin = seconds_now();
     progress(asked, "writing");
-    if (!is_stream(asked->output))
+    if (!is_special(asked->output))
         interrupt_hold();
     snow_status status = snow_image_save(w->image, asked->output, &form);
     w->times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->context, status);
 }
 
+/* After the picture is safe: its writing is part of the figures. */
 static int tell_figures(work *w, const options *asked) {
     render_report report = {w->context,   w->volume, w->frame,
                             &w->settings, w->image,  &w->times};
@@ -197,7 +210,8 @@ static int tell_figures(work *w, const options *asked) {
         tell_stats(&report);
     if (!asked->stats)
         return SNOW_OK;
-    interrupt_hold();
+    if (!is_special(asked->stats))
+        interrupt_hold();
     return write_json(stats_json(&report), asked->stats);
 }
 

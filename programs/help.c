@@ -48,6 +48,8 @@ static void print_wrapped(const char *text, int at, int indent) {
     printf("\n");
 }
 
+/* One option: names on the left, text on the right, on its own line when the
+ * names are long. */
 static void print_option(const option_row *row) {
     char left[WIDTH];
     char letter[5] = "    ";
@@ -73,6 +75,7 @@ static void print_heading(topic which) {
     printf("%s: %s\n", topic_table[which].name, topic_table[which].text);
 }
 
+/* Of a verb's page, which leaves out the topics that are empty for it. */
 static bool has_options(topic which, unsigned verbs) {
     const option_row *row = option_table;
     while (row->name && !(row->read && belongs(row, which, verbs)))
@@ -87,6 +90,7 @@ static void print_options(topic which, unsigned verbs) {
     }
 }
 
+/* Told on the topic's page, so that nobody looks for them in vain. */
 static void print_later(topic which) {
     char line[512] = "";
     size_t used = 0;
@@ -117,6 +121,7 @@ static void print_names(const char *title, const char *(*name)(size_t),
         printf("\n");
 }
 
+/* The options of all verbs, then the names that they take. */
 static int print_topic_page(topic which) {
     print_heading(which);
     print_options(which, ~0U);
@@ -134,6 +139,7 @@ static int print_topic_page(topic which) {
     return finish_stdout();
 }
 
+/* Only what the verb takes. */
 static int print_verb_page(const verb_row *row) {
     if (!row->bit)
         return fail_usage("%s is not built yet; %s", row->name, row->text);

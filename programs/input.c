@@ -12,6 +12,8 @@
 /* First room for standard input; it doubles from there. */
 #define STREAM_BYTES ((size_t)1 << 20)
 
+/* What was not told stays 0: the library refuses what does not fit a format,
+ * and must see the difference between told and default. */
 static snow_volume_options data_options(const options *asked) {
     snow_volume_options data = {
         .type = asked->type, .offset = asked->offset, .time = asked->time};
@@ -51,6 +53,8 @@ int read_standard_input(char **out, size_t *size) {
     return code;
 }
 
+/* The library reads bytes in memory, so a stream is gathered first; it cannot
+ * be detached data, which lies beside its header. */
 static int open_stream(snow_context *context, const snow_volume_options *data,
                        snow_volume **out) {
     char *bytes;

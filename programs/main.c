@@ -27,6 +27,7 @@ static int print_version(void) {
     return finish_stdout();
 }
 
+/* `help` takes a word where other verbs take files. */
 static int run_help(const options *asked) {
     if (asked->operand_count > 1)
         return fail_usage("%s: one word too many for help; give one topic",
@@ -77,6 +78,7 @@ int main(int argc, char **argv) {
         help_hint();
         return SNOW_BAD_USAGE;
     }
+    /* Only the first word can be a verb: a file of that name is ./NAME. */
     const verb_row *verb = verb_named(argv[1]);
     if (!verb)
         return run(verb_of(VERB_RENDER), false, argc, argv);

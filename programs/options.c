@@ -16,6 +16,8 @@
 /* Beyond all characters, so that long options do not collide with letters. */
 #define FIRST_LONG 256
 
+/* The numbers of the shading come from the library, so that the tool cannot
+ * disagree with it. */
 void options_init(options *out) {
     snow_settings settings;
     snow_settings_init(&settings);
@@ -49,6 +51,7 @@ const verb_row *verb_named(const char *name) {
     return NULL;
 }
 
+/* The row of a verb that is built; the rows of others have no bit. */
 const verb_row *verb_of(unsigned bit) {
     const verb_row *row = verb_table;
     while (row->name && row->bit != bit)
@@ -81,6 +84,7 @@ static void fill_getopt(struct option longs[ROWS_MAX + 1],
     letters[used] = '\0';
 }
 
+/* From what getopt answers, a letter or a number of ours, back to the row. */
 static const option_row *row_of(int code) {
     if (code >= FIRST_LONG)
         return &option_table[code - FIRST_LONG];
@@ -104,6 +108,8 @@ static const char *nearest_option(const char *name, unsigned verb) {
     return best;
 }
 
+/* getopt answers an unknown and an ambiguous abbreviation alike; people need
+ * different advice. */
 static bool is_ambiguous(const char *name, size_t length) {
     int hits = 0;
     for (const option_row *row = option_table; row->name; row++)
@@ -144,6 +150,7 @@ static int refuse_foreign(const option_row *row, const verb_row *verb) {
     return fail_usage("--%s: no option of %s", row->name, verb->name);
 }
 
+/* Not built comes before foreign: what no verb can do belongs to none. */
 static int take(options *out, const option_row *row, const verb_row *verb,
                 const char *text) {
     if (!row->read)
@@ -184,6 +191,8 @@ static int refuse_words(const options *out, const verb_row *verb) {
                       verb->usage);
 }
 
+/* Too few or too many operands: a file that is forgotten, or an unquoted
+ * name with blanks. */
 static int check_count(const options *out, const verb_row *verb) {
     if (verb->operands < 0 || out->operand_count == verb->operands)
         return GO_ON;
@@ -191,6 +200,20 @@ static int check_count(const options *out, const verb_row *verb) {
         return refuse_words(out, verb);
     return fail_usage("%s: something is missing; give snowglass %s %s",
                       verb->name, verb->name, verb->usage);
+}
+
+/* The long option just read as it was written, NULL for a letter. */
+static const char *long_word(char **argv) {
+    const char *word = argv[optind - 1];
+    if (optarg && optarg == word)
+        word = argv[optind - 2];
+    return strncmp(word, "--", 2) == 0 ? word + 2 : NULL;
+}
+
+/* getopt_long takes any beginning of a name for the name: --foo would be
+ * --footprint, and something else once another option begins so. */
+static bool in_full(const char *word, const option_row *row) {
+    return !word || strcspn(word, "=") == strlen(row->name);
 }
 
 int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
@@ -204,6 +227,10 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
         if (code == '?')
             return refuse_unknown(verb, argv[optind - 1], optopt);
         const option_row *row = row_of(code == ':' ? optopt : code);
+        const char *word = long_word(argv);
+        if (!in_full(word, row))
+            return fail_usage("--%s: unknown option; did you mean --%s?", word,
+                              row->name);
         if (code == ':')
             return fail_usage("--%s: its value is missing; give --%s %s",
                               row->name, row->name, row->argument);

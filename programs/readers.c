@@ -6,8 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
+/* As snow_image_new allows: told here before any volume is read. */
 #define IMAGE_SIDE_MAX 32768
 
+/* Every reader ends with this when it cannot take the text. */
 static bool refuse(char wrong[WRONG_BYTES], const char *text) {
     snprintf(wrong, WRONG_BYTES, "%s", text);
     return false;
@@ -22,6 +24,7 @@ bool read_text(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* Flags have no text; getopt has refused --flag=text already. */
 bool read_flag(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;
@@ -31,6 +34,7 @@ bool read_flag(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* For pairs such as -v and -q, which write one field. */
 bool read_constant(const option_row *row, const char *text, void *field,
                    char wrong[WRONG_BYTES]) {
     (void)text;
@@ -64,11 +68,13 @@ bool read_choice(const option_row *row, const char *text, void *field,
     return false;
 }
 
+/* A row with both limits 0 has none; written so that NaN is never within. */
 static bool is_within(const option_row *row, double value) {
     bool any = row->low == 0 && row->high == 0;
     return any || (value >= row->low && value <= row->high);
 }
 
+/* Says the limits, so that the second try is right. */
 static bool refuse_number(const option_row *row, const char *kind,
                           char wrong[WRONG_BYTES]) {
     if (row->low == 0 && row->high == 0)
@@ -90,6 +96,7 @@ bool read_real(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* Differences are of values 0 to 1; people think of them in steps of 255. */
 bool read_tolerance(const option_row *row, const char *text, void *field,
                     char wrong[WRONG_BYTES]) {
     double value;
@@ -117,6 +124,7 @@ bool read_count(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* More than one thread is refused, not quietly made one. */
 bool read_threads(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {
     if (!read_integer(row, text, field, wrong))
@@ -150,6 +158,7 @@ bool read_dims(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* NaN and inf do not pass value_reals, so above 0 is all that is left. */
 bool read_spacing(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {
     (void)row;
@@ -162,6 +171,7 @@ bool read_spacing(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* The names come from the library's one list of types. */
 bool read_type(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;
@@ -208,6 +218,7 @@ bool read_points(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* Any angle: what is beyond a turn means the same as within it. */
 bool read_directions(const option_row *row, const char *text, void *field,
                      char wrong[WRONG_BYTES]) {
     (void)row;

@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+/* Room for a message of the library (1 KiB) and what is said around it. */
 #define LINE_BYTES 2048
 
 /* One line; digits that bring every double back. */
@@ -28,6 +29,8 @@ static void wipe_stage(void) {
     stage_shown = false;
 }
 
+/* File names come from outside: their control characters could forge lines or
+ * drive the terminal. */
 static void say_list(const char *format, va_list arguments) {
     char line[LINE_BYTES];
     vsnprintf(line, sizeof line, format, arguments);
@@ -62,6 +65,7 @@ int fail_output(const char *format, ...) {
     return SNOW_BAD_OUTPUT;
 }
 
+/* The message is complete already: file, fault, remedy. */
 int fail_status(const snow_context *context, snow_status status) {
     const char *message = context ? snow_context_message(context) : "";
     say("%s", *message ? message : snow_status_text(status));
@@ -88,6 +92,7 @@ double seconds_now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+/* "dumb" terminals (editors, logs) cannot wipe a line. */
 static bool is_terminal(void) {
     const char *term = getenv("TERM");
     return isatty(STDERR_FILENO) && term && strcmp(term, "dumb") != 0;
@@ -107,6 +112,8 @@ void progress(const options *asked, const char *stage) {
     fflush(stderr);
 }
 
+/* printf only fills a buffer: a full disk or a reader that went away shows
+ * when it is flushed, and must not end in exit code 0. */
 int finish_stdout(void) {
     errno = 0;
     if (fflush(stdout) == 0 && !ferror(stdout))
@@ -115,6 +122,7 @@ int finish_stdout(void) {
                        errno ? strerror(errno) : "cannot be written");
 }
 
+/* JSON knows no NaN and no infinity; jansson would drop the key silently. */
 json_t *json_number(double value) {
     return isfinite(value) ? json_real(value) : json_null();
 }
@@ -140,9 +148,10 @@ int print_json(json_t *object) {
     return finish_stdout();
 }
 
-/* A pipe, a device: nothing that a rename may replace. */
-static bool is_special(const char *path) {
+bool is_special(const char *path) {
     struct stat what;
+    if (strcmp(path, "-") == 0)
+        return true;
     return stat(path, &what) == 0 && !S_ISREG(what.st_mode) &&
            !S_ISDIR(what.st_mode);
 }
@@ -157,9 +166,10 @@ static void folder_of(const char *path, char *out, size_t size) {
                  path);
 }
 
+/* The same rules as for pictures: figures of an earlier run are results too. */
 int check_stats_path(const char *path, bool overwrite) {
     struct stat what;
-    if (strcmp(path, "-") == 0 || is_special(path))
+    if (is_special(path))
         return GO_ON;
     if (stat(path, &what) == 0 && S_ISDIR(what.st_mode))
         return fail_output("%s: is a folder; name a file", path);
@@ -174,6 +184,7 @@ int check_stats_path(const char *path, bool overwrite) {
     return GO_ON;
 }
 
+/* Flushes too, so that an error shows here and not in fclose. */
 static int dump_json(json_t *object, FILE *file) {
     bool good = json_dumpf(object, file, JSON_FORM) == 0;
     good = good && fputc('\n', file) != EOF && fflush(file) == 0;
@@ -196,6 +207,7 @@ static FILE *open_aside(const char *path, char *aside, size_t size) {
     return fdopen(handle, "w");
 }
 
+/* As the library does for pictures: whole under its name, or absent. */
 static int write_aside(json_t *object, const char *path) {
     char aside[LINE_BYTES];
     FILE *file = open_aside(path, aside, sizeof aside);
@@ -213,6 +225,7 @@ static int write_aside(json_t *object, const char *path) {
     return 0;
 }
 
+/* For pipes and devices, which a rename would replace by a plain file. */
 static int write_through(json_t *object, const char *path) {
     FILE *file = fopen(path, "w");
     if (!file)

@@ -38,6 +38,10 @@ json_t *json_sizes(const int64_t *values, size_t count);
 /* Writes an object to standard output and frees it.  Answers an exit code. */
 int print_json(json_t *object);
 
+/* Whether a path is standard output, a pipe or a device: what a rename may not
+ * replace, and what may wait for its reader for ever. */
+bool is_special(const char *path);
+
 /* Whether --stats can go where it shall: asked before rendering. */
 int check_stats_path(const char *path, bool overwrite);
 

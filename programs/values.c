@@ -12,8 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The longest number or word that is looked at; a double needs 24 characters,
+ * so what is longer is no sensible input. */
 #define NUMBER_BYTES 64
 
+/* At least one character, and none but the given ones: keeps blanks, hex
+ * digits, nan and inf away from the C library's generous readers. */
 static bool has_only(const char *text, const char *characters) {
     return *text && text[strspn(text, characters)] == '\0';
 }
@@ -41,6 +45,7 @@ bool value_integer(const char *text, int64_t *out) {
     return true;
 }
 
+/* A minus sign is refused here because strtoumax would wrap it around. */
 bool value_count(const char *text, uint64_t *out) {
     if (!has_only(text, "0123456789"))
         return false;
@@ -77,6 +82,7 @@ bool value_quotient(const char *text, double *out) {
     return true;
 }
 
+/* Three is the most that an option takes: sizes, spacings, colours. */
 bool value_reals(const char *text, char separator, int count, double *out) {
     char part[NUMBER_BYTES];
     double values[3];
@@ -126,6 +132,7 @@ static void set_color(color_value *out, unsigned rgb) {
     out->rgb[2] = (rgb & 255) / 255.0;
 }
 
+/* As in CSS, so that colours can be copied from a web page. */
 static bool hex_color(const char *digits, color_value *out) {
     size_t length = strlen(digits);
     if (!has_only(digits, "0123456789abcdefABCDEF") ||
@@ -173,6 +180,8 @@ void value_color_names(char *out, size_t size) {
     }
 }
 
+/* Both ends carry the p: "p1,99" could mean a percentile and a value, and is
+ * refused rather than guessed. */
 static bool percentiles(const char *text, range_value *out) {
     char part[NUMBER_BYTES];
     double values[2];
@@ -202,6 +211,7 @@ bool value_range(const char *text, range_value *out) {
     return true;
 }
 
+/* The library checks the points again; here the user is told the form. */
 bool value_points(const char *text, point_list *out) {
     point_list list = {.count = 0};
     bool more = true;
@@ -220,6 +230,7 @@ bool value_points(const char *text, point_list *out) {
     return true;
 }
 
+/* Compares whole words: "crs|rle" and "" are no choices though they occur. */
 bool value_is_choice(const char *choices, const char *text) {
     size_t length = strlen(text);
     if (!choices || length == 0 || strchr(text, '|'))

@@ -72,7 +72,7 @@ changes --light 60,30
 changes --ambient 0.6
 changes --diffuse 0.1
 changes --specular 0.9
-changes --specular 0.5 --shininess 3
+changes --shininess 3
 changes --spacing 1x1x3
 same -m over
 same -j 1
@@ -101,6 +101,8 @@ run 0 "8 bits are near the floats" \
     "$TOOL" compare base.npy stream.png --tolerance 1/255
 run 0 "a background" render -q -o ground.png --background '#ff8000'
 run 6 "a background shows" "$TOOL" compare stream.png ground.png
+run 0 "another background" render -q -o night.png --background navy
+run 6 "differs from the first" "$TOOL" compare night.png ground.png
 run 0 "the same background in words of numbers" \
     render -q -o ground2.png --background 1,0.50196,0
 run 0 "gives the same picture" "$TOOL" compare ground.png ground2.png
@@ -110,8 +112,6 @@ check "NPY has its floats" \
     [ "$(wc -c <base.npy)" -eq $((128 + 40 * 30 * 16)) ]
 run 0 "options after the operand, -- before it" \
     "$TOOL" -q -s 9x9 --dims 8x8x8 -o dash.png -- phantom:cube
-run 0 "an abbreviated option" render -q --azim 10 -o abbreviated.png
-
 raw_cube cube.raw 8
 raw="--dims 8x8x8 --type uint8"
 # shellcheck disable=SC2086
@@ -145,6 +145,23 @@ for signal in TERM INT; do
         --method original --footprint 9 -o late.png
     check "leaves nothing" [ -z "$(ls -A | grep late)" ]
 done
+
+# While the file is written the signal is let go: the picture becomes whole.
+"$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
+    -o large.png 2>stages &
+job=$!
+for _ in $(seq 600); do
+    grep -q writing stages && break
+    sleep 0.05
+done
+kill -TERM $job
+wait $job
+check "SIGTERM while writing ends as usual" [ $? -eq 0 ]
+check "with a whole picture" is_png large.png
+mkfifo pipe.png
+run 130 "SIGTERM while a pipe waits for its reader" timeout \
+    --preserve-status -s TERM 3 "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 \
+    -o pipe.png
 
 # At any moment: 130 and no picture, or 0 and a whole one.
 broken=0 early=0

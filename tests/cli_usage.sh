@@ -48,6 +48,8 @@ help serve|serve is not built yet
 --legend x|--legend is not built yet
 --labels 1 x|--labels is not built yet
 --mask m x|--mask is not built yet
+--azim 10 x|--azim: unknown option; did you mean --azimuth
+--foo x|--foo: unknown option; did you mean --footprint
 --crop 0:1,0:1,0:1 x|--crop is not built yet
 --dataset d x|--dataset is not built yet
 --channel 1 x|--channel is not built yet

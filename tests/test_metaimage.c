@@ -461,8 +461,8 @@ static void contradictions_and_omissions_are_refused(void **state) {
     }
 }
 
-static void remove_and_put(support_place *place, const char *name,
-                           const char *header) {
+static void put_text(support_place *place, const char *name,
+                     const char *header) {
     support_place_put(place, name, header, strlen(header));
 }
 
@@ -482,13 +482,13 @@ static void voxels_may_lie_in_another_file(void **state) {
             i < 2 ? header_with("", NULL, NULL) : packed_header();
         snprintf(header, sizeof header, "%.*s%s\n",
                  (int)(strstr(usual, "LOCAL") - usual), usual, names[i]);
-        remove_and_put(place, "a.mhd", header);
+        put_text(place, "a.mhd", header);
         snow_volume *volume =
             support_place_open(place, support_place_path(place, "a.mhd"));
         assert_sample(volume);
         snow_volume_close(volume);
     }
-    remove_and_put(place, "a.mhd", header_with("", "LOCAL", "missing.raw"));
+    put_text(place, "a.mhd", header_with("", "LOCAL", "missing.raw"));
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(place->context,
                                       support_place_path(place, "a.mhd"), NULL,
@@ -522,7 +522,7 @@ static void voxels_may_lie_in_many_files(void **state) {
         "q%d.raw 1",
     };
     for (size_t i = 0; i < sizeof data / sizeof *data; i++) {
-        remove_and_put(place, "a.mhd", header_with("", "LOCAL", data[i]));
+        put_text(place, "a.mhd", header_with("", "LOCAL", data[i]));
         snow_volume *volume =
             support_place_open(place, support_place_path(place, "a.mhd"));
         assert_sample(volume);
@@ -546,12 +546,34 @@ static void voxels_may_lie_in_many_files(void **state) {
         "LIST\n/dev/zero\n/dev/zero",
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        remove_and_put(place, "a.mhd", header_with("", "LOCAL", bad[i]));
+        put_text(place, "a.mhd", header_with("", "LOCAL", bad[i]));
         snow_volume *volume = NULL;
         if (snow_volume_open(place->context, support_place_path(place, "a.mhd"),
                              NULL, &volume) != SNOW_BAD_INPUT)
             fail_msg("%s was not refused", bad[i]);
         assert_null(volume);
+    }
+}
+
+static void a_series_that_lies_costs_no_memory(void **state) {
+    support_place *place = *state;
+    static const unsigned char slice[200000];
+    support_place_put(place, "s1.raw", slice, sizeof slice);
+    static const char *const data[] = {"LIST\ns1.raw", "s%d.raw 1 1000 1"};
+    for (int i = 0; i < 2; i++) {
+        char header[256];
+        snprintf(header, sizeof header,
+                 "NDims = 3\nDimSize = 1000 100 1000\n"
+                 "ElementType = MET_SHORT\nElementDataFile = %s\n",
+                 data[i]);
+        put_text(place, "a.mhd", header);
+        snow_volume *volume = NULL;
+        place->largest = 0;
+        assert_int_equal(snow_volume_open(place->context,
+                                          support_place_path(place, "a.mhd"),
+                                          NULL, &volume),
+                         SNOW_BAD_INPUT);
+        assert_true(place->largest < LITTLE);
     }
 }
 
@@ -569,7 +591,7 @@ static void a_time_step_is_found_among_files(void **state) {
                  "NDims = 4\nDimSize = 2 1 2 3\nElementType = MET_SHORT\n"
                  "ElementDataFile = %s\n",
                  data[i / 3]);
-        remove_and_put(place, "a.mhd", header);
+        put_text(place, "a.mhd", header);
         const snow_volume_options options = {.time = i % 3};
         snow_volume *volume = NULL;
         if (snow_volume_open(place->context, support_place_path(place, "a.mhd"),
@@ -667,6 +689,7 @@ int main(void) {
         UNIT(contradictions_and_omissions_are_refused),
         UNIT(voxels_may_lie_in_another_file),
         UNIT(voxels_may_lie_in_many_files),
+        UNIT(a_series_that_lies_costs_no_memory),
         UNIT(a_time_step_is_found_among_files),
         UNIT(long_lines_are_read_and_endless_ones_refused),
         UNIT(real_files_have_their_known_figures),

@@ -67,8 +67,8 @@ SNOW_API snow_status snow_transfer_make(const snow_volume *volume,
                                         const snow_look *look,
                                         snow_transfer **out);
 
-/* One line that says what was chosen: "grey 72..213, opacity 0 at 72 to 0.4
- * at 213 (from the histogram)".  Owned by the transfer function. */
+/* One line that says what was chosen: "grey 72..213; opacity 0 at 72, 0.4 at
+ * 213 (from the histogram)".  Owned by the transfer function. */
 SNOW_API const char *snow_transfer_text(const snow_transfer *transfer);
 
 /* Colour and opacity at a data value, straight; NaN gives zeros. */

@@ -159,8 +159,10 @@ SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
 /* Writes a volume with its geometry, in the format of the path's suffix:
  * .nrrd, .nii, .nii.gz, .mha, .raw, .raw.gz.  The file is written aside and
  * renamed, so that it is whole or absent; an existing one is kept, and an
- * error, unless `overwrite`.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown
- * suffix, a type that the format lacks), SNOW_NO_MEMORY. */
+ * error, unless `overwrite`.  .nii keeps geometry in single precision where
+ * that holds it; .raw keeps none, and a remark tells how to open it again.
+ * Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; slope and intercept,
+ * which .nrrd and .raw cannot say), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_volume_save(const snow_volume *volume,
                                       const char *path, bool overwrite);
 

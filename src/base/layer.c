@@ -8,6 +8,8 @@
 #include <string.h>
 #include <unistd.h>
 
+/* Each kind of layer begins with the common record, so that a pointer to one
+ * is a pointer to the other. */
 typedef struct file_layer {
     snow_layer layer;
     int descriptor;
@@ -19,6 +21,8 @@ typedef struct memory_layer {
     size_t left;
 } memory_layer;
 
+/* Record and buffer are one block: a layer is made and freed in one step. The
+ * buffer needs no clearing. */
 void *snow_layer_allocate(snow_context *context, size_t bytes) {
     snow_layer *layer = snow_allocate(context, bytes + SNOW_LAYER_BYTES);
     if (!layer)
@@ -29,6 +33,7 @@ void *snow_layer_allocate(snow_context *context, size_t bytes) {
     return layer;
 }
 
+/* From the top down: an upper layer may hold on to the buffer below. */
 void snow_layer_close(snow_layer *layer) {
     while (layer) {
         snow_layer *below = layer->below;
@@ -39,6 +44,9 @@ void snow_layer_close(snow_layer *layer) {
     }
 }
 
+/* What is buffered moves to the front first, so that the room behind it is one
+ * piece. Callers ask for little more than a header's line, so that little is
+ * moved. */
 snow_status snow_layer_fill(snow_layer *layer, size_t size) {
     if (layer->end - layer->begin >= size)
         return SNOW_OK;
@@ -102,11 +110,13 @@ int64_t snow_layer_remaining(const snow_layer *layer) {
     return layer->taken < size ? (int64_t)(size - layer->taken) : 0;
 }
 
+/* Seeking leaves the buffer alone; the caller has emptied it. */
 static bool jump_in_file(snow_layer *layer, uint64_t count) {
     return lseek(((file_layer *)layer)->descriptor, (off_t)count, SEEK_CUR) >=
            0;
 }
 
+/* A read may bring less than was asked for, which is no end; 0 bytes are. */
 static snow_status pull_file(snow_layer *layer, void *bytes, size_t size,
                              size_t *got) {
     ssize_t count;
@@ -145,6 +155,8 @@ snow_status snow_layer_open_file(snow_context *context, const char *name,
     return SNOW_OK;
 }
 
+/* Copies as a file would, although the bytes are at hand: the readers above
+ * see no difference, and what is large passes the buffer by. */
 static snow_status pull_memory(snow_layer *layer, void *bytes, size_t size,
                                size_t *got) {
     memory_layer *memory = (memory_layer *)layer;

@@ -28,6 +28,8 @@ bool snow_looks_gzip(const unsigned char *bytes, size_t size) {
            !(bytes[3] & 0xe0);
 }
 
+/* zlib's memory comes from the context as well, so that it is counted, limited
+ * and made to fail in tests like all other. */
 static voidpf allocate_for_zlib(voidpf context, uInt count, uInt size) {
     return snow_allocate_array(context, count, size);
 }
@@ -54,6 +56,8 @@ static snow_status next_member(inflate_layer *inflater) {
     return SNOW_OK;
 }
 
+/* What inflate answers, as a status with a message. Z_BUF_ERROR is an error
+ * too: it is only called with bytes to take and room to fill. */
 static snow_status check(const inflate_layer *inflater, int answer) {
     const snow_layer *layer = &inflater->layer;
     if (answer == Z_OK || answer == Z_STREAM_END)
@@ -86,6 +90,8 @@ static snow_status inflate_some(inflate_layer *inflater) {
     return answer == Z_STREAM_END ? next_member(inflater) : SNOW_OK;
 }
 
+/* zlib counts in 32 bits; a larger wish is served in parts, which the layer's
+ * reader asks for. */
 static snow_status pull_inflated(snow_layer *layer, void *bytes, size_t size,
                                  size_t *got) {
     inflate_layer *inflater = (inflate_layer *)layer;
@@ -130,6 +136,8 @@ snow_status snow_layer_open_inflate(snow_layer *below, snow_layer **out) {
     return SNOW_OK;
 }
 
+/* Recursive over the layers: a packed file within a packed file multiplies the
+ * limits, and still is bounded by the bytes on the disk. */
 uint64_t snow_layer_limit(const snow_layer *layer) {
     if (layer->size >= 0)
         return (uint64_t)snow_layer_remaining(layer);

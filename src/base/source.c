@@ -29,6 +29,7 @@ const char *snow_source_name(const snow_source *source) {
     return source->name;
 }
 
+/* On failure the source keeps its layers and is closed as usual. */
 snow_status snow_source_unpack(snow_source *source) {
     return snow_layer_open_inflate(source->top, &source->top);
 }
@@ -51,6 +52,8 @@ snow_status snow_source_read(snow_source *source, void *bytes, size_t size,
     return snow_layer_read(source->top, bytes, size, got);
 }
 
+/* Says how much is missing, which tells a wrong type (half the bytes) from a
+ * cut transfer. */
 static snow_status fail_short(const snow_source *source, const char *what,
                               uint64_t missing) {
     return snow_fail(source->context, SNOW_BAD_INPUT,
@@ -116,6 +119,8 @@ static snow_status append_to_line(snow_source *source, char *line, size_t size,
     return SNOW_OK;
 }
 
+/* The line's end may lie in any later buffer; each buffer's part is taken
+ * before the next is filled. A CR is dropped at the line's end only. */
 snow_status snow_source_read_line(snow_source *source, char *line, size_t size,
                                   bool *got) {
     snow_layer *top = source->top;
@@ -161,7 +166,9 @@ snow_status snow_source_expect(const snow_source *source, uint64_t size,
                      (unsigned long long)size);
 }
 
-/* Takes all that is left of a layer whose size is not known. */
+/* Takes all that is left of a layer whose size is not known.  An inflating
+ * layer verifies its check sum when it comes to its end, which is
+ * all that this reading is for. */
 static snow_status drain(snow_layer *layer, uint64_t *count) {
     for (*count = 0;;) {
         SNOW_TRY(snow_layer_fill(layer, 1));

@@ -28,6 +28,7 @@ static snow_status new_source(snow_context *context, const char *name,
     return SNOW_OK;
 }
 
+/* By the first bytes, since names lie and pipes have none. */
 static snow_status unpack_gzip(snow_source *source) {
     snow_layer *top = source->top;
     SNOW_TRY(snow_layer_fill(top, 4));
@@ -36,6 +37,7 @@ static snow_status unpack_gzip(snow_source *source) {
     return SNOW_OK;
 }
 
+/* strerror_r, not strerror, whose buffer threads share. */
 static snow_status fail_by_errno(snow_source *source) {
     char why[128] = "";
     strerror_r(errno, why, sizeof why);
@@ -140,6 +142,9 @@ snow_status snow_source_open_memory(snow_context *context, const char *name,
     return SNOW_OK;
 }
 
+/* The path is the header's folder and the name, as a shell would join them; an
+ * absolute name stands for itself. Names that climb out of the folder are
+ * allowed: who may read what is the caller's matter. */
 static snow_status open_beside(const snow_source *source, const char *name,
                                bool unpack, snow_source **out) {
     snow_context *context = source->context;

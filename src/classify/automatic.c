@@ -50,9 +50,9 @@ typedef struct split {
 double snow_between(double low, double high, double share) {
     if (share >= 1)
         return high;
-    if (isfinite(high - low))
-        return low + share * (high - low);
-    return low * (1 - share) + high * share;
+    double value = isfinite(high - low) ? low + share * (high - low)
+                                        : low * (1 - share) + high * share;
+    return value < high ? value : high;
 }
 
 /* Otsu's threshold in bins first..last-1: the greatest variance between the
@@ -93,7 +93,7 @@ static double share_of(const uint64_t *counts, int first, int last,
     return sum / (double)all;
 }
 
-static void read_counts(const uint64_t *counts, uint64_t finite, double low,
+static void read_counts(const uint64_t *counts, uint64_t all, double low,
                         double high, snow_parting *out) {
     split s = {0}, veil = {0};
     out->top = high;
@@ -103,7 +103,7 @@ static void read_counts(const uint64_t *counts, uint64_t finite, double low,
     }
     for (int tries = 0; tries < 3; tries++) {
         split upper = {0};
-        if (share_of(counts, (int)s.at, BINS, finite) < MOST_OBJECT ||
+        if (share_of(counts, (int)s.at, BINS, all) < MOST_OBJECT ||
             !part_bins(counts, (int)s.at, BINS, &upper))
             break;
         s = upper;
@@ -111,17 +111,16 @@ static void read_counts(const uint64_t *counts, uint64_t finite, double low,
     out->background = snow_between(low, high, s.below / BINS);
     out->threshold = snow_between(low, high, s.at / BINS);
     out->object = snow_between(low, high, s.above / BINS);
-    if (share_of(counts, (int)s.at, BINS, finite) > VEIL_OBJECT ||
+    if (share_of(counts, (int)s.at, BINS, all) > VEIL_OBJECT ||
         !part_bins(counts, 0, (int)s.at, &veil))
         return;
     out->faint = snow_between(low, high, veil.at / BINS);
     out->with_faint =
-        share_of(counts, (int)veil.at, (int)s.at, finite) <= VEIL_MOST &&
+        share_of(counts, (int)veil.at, (int)s.at, all) <= VEIL_MOST &&
         out->faint < out->threshold;
 }
 
-snow_status snow_part_histogram(const snow_volume *volume,
-                                const snow_census *census, snow_parting *out) {
+snow_status snow_part_histogram(const snow_census *census, snow_parting *out) {
     snow_parting parting = {0};
     if (!(census->min < census->max)) {
         parting.constant = true;
@@ -133,23 +132,16 @@ snow_status snow_part_histogram(const snow_volume *volume,
         padding = 0;
     const double shares[2] = {CUT_LOW, 1 - CUT_HIGH * (1 - padding)};
     double ends[2];
-    SNOW_TRY(snow_quantiles(volume, census->finite, shares, 2, ends));
+    SNOW_TRY(snow_quantiles(census, SNOW_SAMPLED, shares, 2, ends));
     if (!(ends[0] < ends[1])) {
         ends[0] = census->min;
         ends[1] = census->max;
     }
-    uint64_t *counts =
-        snow_allocate_array(volume->context, BINS, sizeof *counts);
-    if (!counts)
-        return SNOW_NO_MEMORY;
-    snow_status status =
-        snow_volume_histogram(volume, ends[0], ends[1], BINS, counts);
-    if (status == SNOW_OK) {
-        read_counts(counts, census->finite, ends[0], ends[1], &parting);
-        *out = parting;
-    }
-    snow_release(volume->context, counts);
-    return status;
+    uint64_t counts[BINS];
+    uint64_t all = snow_count_bins(census, ends[0], ends[1], BINS, counts);
+    read_counts(counts, all, ends[0], ends[1], &parting);
+    *out = parting;
+    return SNOW_OK;
 }
 
 void snow_full_range(const snow_census *census, double *low, double *high) {
@@ -181,10 +173,9 @@ static void draft_grey(snow_draft *draft, double low, double high) {
     draft->colors[1] = (snow_color_point){high, 1, 1, 1};
 }
 
-snow_status snow_draft_automatic(const snow_volume *volume,
-                                 const snow_census *census, snow_draft *out) {
+snow_status snow_draft_automatic(const snow_census *census, snow_draft *out) {
     snow_parting p;
-    SNOW_TRY(snow_part_histogram(volume, census, &p));
+    SNOW_TRY(snow_part_histogram(census, &p));
     snow_draft draft = {.reason = "from the histogram"};
     if (p.constant) {
         double low, high;

@@ -19,23 +19,37 @@ typedef struct snow_draft {
     size_t opacity_count;
 } snow_draft;
 
-/* What a volume's values are like at a glance. */
+/* How often a volume's values occur: range, order statistics, histogram. */
 typedef struct snow_census {
+    const snow_volume *volume;
+    uint64_t *counts; /* of each native value of 8 and 16 bit types, from the
+                         type's smallest on; NULL for other types */
     uint64_t finite;
     double min, max; /* of finite data values; NaN when there is none */
     uint64_t at_min; /* how many have the smallest value */
 } snow_census;
 
-void snow_take_census(const snow_volume *volume, snow_census *out);
+/* Errors: SNOW_NO_MEMORY.  Free with snow_census_free. */
+snow_status snow_census_new(const snow_volume *volume, snow_census *out);
+
+void snow_census_free(snow_census *census);
 
 #define SNOW_QUANTILES_MOST 4
 
+/* All voxels, or so many that the picture of a histogram stays the same: at
+ * least 2^24, spread over the volume. */
+typedef enum snow_effort { SNOW_EXACT, SNOW_SAMPLED } snow_effort;
+
 /* The data value that is not exceeded by the share `fractions[n]` of the finite
  * voxels (an existing value, no interpolation), for up to SNOW_QUANTILES_MOST
- * shares of 0 to 1.  The volume has at least one finite voxel.
- * Errors: SNOW_NO_MEMORY. */
-snow_status snow_quantiles(const snow_volume *volume, uint64_t finite,
+ * shares of 0 to 1.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_quantiles(const snow_census *census, snow_effort effort,
                            const double *fractions, size_t count, double *out);
+
+/* A histogram in `bins` equal bins of low..high; what lies outside is left
+ * out.  low < high.  Returns how many values there were, outside included. */
+uint64_t snow_count_bins(const snow_census *census, double low, double high,
+                         int bins, uint64_t *counts);
 
 /* Where the histogram parts background from object. */
 typedef struct snow_parting {
@@ -49,12 +63,10 @@ typedef struct snow_parting {
 } snow_parting;
 
 /* Reads the histogram.  Errors: SNOW_NO_MEMORY. */
-snow_status snow_part_histogram(const snow_volume *volume,
-                                const snow_census *census, snow_parting *out);
+snow_status snow_part_histogram(const snow_census *census, snow_parting *out);
 
 /* The look without any wish.  Errors: SNOW_NO_MEMORY. */
-snow_status snow_draft_automatic(const snow_volume *volume,
-                                 const snow_census *census, snow_draft *out);
+snow_status snow_draft_automatic(const snow_census *census, snow_draft *out);
 
 /* A preset by its name; its index, or -1. */
 int snow_preset_find(const char *name);
@@ -63,8 +75,8 @@ int snow_preset_find(const char *name);
 bool snow_preset_is_hounsfield(int preset);
 
 /* The draft of a preset.  Errors: SNOW_NO_MEMORY. */
-snow_status snow_draft_preset(int preset, const snow_volume *volume,
-                              const snow_census *census, snow_draft *out);
+snow_status snow_draft_preset(int preset, const snow_census *census,
+                              snow_draft *out);
 
 /* Smallest to largest finite value, made apart when they are one. */
 void snow_full_range(const snow_census *census, double *low, double *high);
@@ -76,7 +88,8 @@ int snow_colormap_find(const char *name);
 void snow_draft_colormap(snow_draft *draft, int colormap, double low,
                          double high);
 
-/* low + share * (high - low), for any finite ends. */
+/* low + share * (high - low), for any finite ends: high itself from share 1 on,
+ * and never falling as share grows, whatever the rounding. */
 double snow_between(double low, double high, double share);
 
 #endif

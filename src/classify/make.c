@@ -51,8 +51,7 @@ static snow_status check_look(snow_context *context, const snow_look *look) {
 }
 
 /* The data values of a range that was asked for. */
-static snow_status resolve_range(const snow_volume *volume,
-                                 const snow_census *census,
+static snow_status resolve_range(const snow_census *census,
                                  const snow_look *look, double *low,
                                  double *high) {
     snow_full_range(census, low, high);
@@ -64,13 +63,13 @@ static snow_status resolve_range(const snow_volume *volume,
         return SNOW_OK;
     const double shares[2] = {look->low / 100, look->high / 100};
     double ends[2];
-    SNOW_TRY(snow_quantiles(volume, census->finite, shares, 2, ends));
+    SNOW_TRY(snow_quantiles(census, SNOW_EXACT, shares, 2, ends));
     if (ends[0] < ends[1]) {
         *low = ends[0];
         *high = ends[1];
         return SNOW_OK;
     }
-    snow_notify(volume->context,
+    snow_notify(census->volume->context,
                 "percentiles %g and %g are both %g; the whole range is taken",
                 look->low, look->high, ends[0]);
     return SNOW_OK;
@@ -88,17 +87,6 @@ static double stretched(const snow_draft *draft, double value, double low,
     return snow_between(low, high, share);
 }
 
-/* Values that rounding put in the wrong order (a range of few last bits, as in
- * 64-bit integers) are made equal. */
-static void settle(snow_draft *draft) {
-    for (size_t i = 1; i < draft->color_count; i++)
-        if (draft->colors[i].value < draft->colors[i - 1].value)
-            draft->colors[i].value = draft->colors[i - 1].value;
-    for (size_t i = 1; i < draft->opacity_count; i++)
-        if (draft->opacities[i].value < draft->opacities[i - 1].value)
-            draft->opacities[i].value = draft->opacities[i - 1].value;
-}
-
 static void stretch(snow_draft *draft, double low, double high) {
     for (size_t i = 0; i < draft->color_count; i++)
         draft->colors[i].value =
@@ -110,31 +98,32 @@ static void stretch(snow_draft *draft, double low, double high) {
     draft->high = high;
 }
 
-static snow_status draft_look(const snow_volume *volume, const snow_look *look,
+/* The preset's own draft, or the histogram's. */
+static snow_status begin_draft(const snow_census *census, const snow_look *look,
+                               snow_draft *draft) {
+    if (!look->preset)
+        return snow_draft_automatic(census, draft);
+    int preset = snow_preset_find(look->preset);
+    if (snow_preset_is_hounsfield(preset) && census->min >= 0 &&
+        look->range == SNOW_RANGE_AUTO)
+        snow_notify(census->volume->context,
+                    "%s is for Hounsfield units, but the smallest value is %g: "
+                    "if the values have an offset, give a range",
+                    look->preset, census->min);
+    return snow_draft_preset(preset, census, draft);
+}
+
+static snow_status draft_look(const snow_census *census, const snow_look *look,
                               snow_draft *draft) {
-    snow_census census;
-    snow_take_census(volume, &census);
-    if (look->preset) {
-        int preset = snow_preset_find(look->preset);
-        SNOW_TRY(snow_draft_preset(preset, volume, &census, draft));
-        if (snow_preset_is_hounsfield(preset) && census.min >= 0 &&
-            look->range == SNOW_RANGE_AUTO)
-            snow_notify(volume->context,
-                        "%s is for Hounsfield units, but the smallest value is "
-                        "%g: if the values have an offset, give a range",
-                        look->preset, census.min);
-    } else {
-        SNOW_TRY(snow_draft_automatic(volume, &census, draft));
-    }
+    SNOW_TRY(begin_draft(census, look, draft));
     if (look->range != SNOW_RANGE_AUTO) {
         double low, high;
-        SNOW_TRY(resolve_range(volume, &census, look, &low, &high));
+        SNOW_TRY(resolve_range(census, look, &low, &high));
         stretch(draft, low, high);
     }
     if (look->colormap)
         snow_draft_colormap(draft, snow_colormap_find(look->colormap),
                             draft->low, draft->high);
-    settle(draft);
     return SNOW_OK;
 }
 
@@ -162,11 +151,16 @@ snow_status snow_transfer_make(const snow_volume *volume, const snow_look *look,
                                snow_transfer **out) {
     static const snow_look automatic;
     snow_draft draft;
+    snow_census census;
     snow_transfer *transfer;
     if (!look)
         look = &automatic;
     SNOW_TRY(check_look(volume->context, look));
-    SNOW_TRY(draft_look(volume, look, &draft));
+    SNOW_TRY(snow_census_new(volume, &census));
+    snow_status status = draft_look(&census, look, &draft);
+    snow_census_free(&census);
+    if (status != SNOW_OK)
+        return status;
     const snow_opacity_point *opacities =
         look->opacities ? look->opacities : draft.opacities;
     size_t opacity_count =

@@ -89,11 +89,10 @@ bool snow_preset_is_hounsfield(int preset) {
 }
 
 /* From the end of the background to the brightest of the object. */
-static snow_status object_range(const snow_volume *volume,
-                                const snow_census *census, double *low,
+static snow_status object_range(const snow_census *census, double *low,
                                 double *high) {
     snow_parting p;
-    SNOW_TRY(snow_part_histogram(volume, census, &p));
+    SNOW_TRY(snow_part_histogram(census, &p));
     snow_full_range(census, low, high);
     if (!p.constant) {
         *low = snow_between(p.background, p.threshold, 0.6);
@@ -102,8 +101,8 @@ static snow_status object_range(const snow_volume *volume,
     return SNOW_OK;
 }
 
-snow_status snow_draft_preset(int preset, const snow_volume *volume,
-                              const snow_census *census, snow_draft *out) {
+snow_status snow_draft_preset(int preset, const snow_census *census,
+                              snow_draft *out) {
     snow_draft draft = {.name = presets[preset].colors_name,
                         .reason = presets[preset].name,
                         .color_count = presets[preset].color_count,
@@ -113,7 +112,7 @@ snow_status snow_draft_preset(int preset, const snow_volume *volume,
     if (presets[preset].spread == FULL_RANGE)
         snow_full_range(census, &low, &high);
     else if (presets[preset].spread == OBJECT_RANGE)
-        SNOW_TRY(object_range(volume, census, &low, &high));
+        SNOW_TRY(object_range(census, &low, &high));
     for (size_t i = 0; i < draft.color_count; i++) {
         draft.colors[i] = presets[preset].colors[i];
         if (relative)

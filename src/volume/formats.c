@@ -43,6 +43,8 @@ const snow_format *snow_format_of_name(const char *name) {
     return NULL;
 }
 
+/* A suffix counts only while the user has not described the bytes: .img and
+ * .bin mean many things. */
 static const snow_format *choose(const char *name, const void *bytes,
                                  size_t size,
                                  const snow_volume_options *options) {
@@ -94,6 +96,8 @@ static snow_status replace_spacing(snow_volume *volume,
     return SNOW_OK;
 }
 
+/* Options that describe raw data are refused with other formats rather than
+ * ignored: they would contradict the header. */
 static snow_status read_with(const snow_format *format, snow_source *source,
                              const snow_volume_options *options,
                              snow_volume **out) {
@@ -143,6 +147,8 @@ static snow_status name_failure(snow_context *context, snow_status status,
     return status;
 }
 
+/* Owns the source from here on: every way out closes it after the message has
+ * taken its name. */
 static snow_status open_source(snow_source *source,
                                const snow_volume_options *options,
                                snow_volume **out) {
@@ -159,6 +165,8 @@ static snow_status open_source(snow_source *source,
     return status;
 }
 
+/* A phantom is no file; of the options its sizes and spacing make sense. The
+ * seed is not among the options and is 0 here. */
 static snow_status open_phantom(snow_context *context, const char *name,
                                 const snow_volume_options *options,
                                 snow_volume **out) {
@@ -181,6 +189,8 @@ static snow_status open_phantom(snow_context *context, const char *name,
     return SNOW_OK;
 }
 
+/* The prefix comes before any file of that name: "./phantom:x" still reaches
+ * one. */
 snow_status snow_volume_open(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_volume **out) {

@@ -8,6 +8,7 @@
  * leaves of a plane is smaller. */
 #define FLATTEST 1e-6
 
+/* hypot, because squares of tiny spacings vanish. */
 static double column_length(const double m[4][4], int column) {
     return hypot(hypot(m[0][column], m[1][column]), m[2][column]);
 }

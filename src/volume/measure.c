@@ -32,12 +32,14 @@ void snow_volume_natives(const snow_volume *volume, int64_t first, size_t count,
     }
 }
 
+/* For single looks; loops take snow_volume_natives a block at a time. */
 double snow_volume_native(const snow_volume *volume, int64_t index) {
     double value = NAN;
     snow_volume_natives(volume, index, 1, &value);
     return value;
 }
 
+/* The product was checked when the volume was made. */
 static int64_t voxel_count(const snow_volume *volume) {
     const int64_t *dims = volume->info.dims;
     return dims[0] * dims[1] * dims[2];
@@ -69,6 +71,8 @@ static void measure_value(snow_volume_measures *m, double value,
     m->wsum += value * (double)(index % WEIGHT_PERIOD + 1);
 }
 
+/* One thread and one order: the sums are compared to the last bit with those
+ * of other readers. */
 void snow_volume_measure(const snow_volume *volume, snow_volume_measures *out) {
     snow_volume_measures m = {
         .voxels = voxel_count(volume), .min = NAN, .max = NAN};

@@ -9,6 +9,8 @@
 
 #define MOST_NAME_BYTES 4096
 
+/* Binary data may follow on what is called a line; no limit on its length
+ * holds here. */
 static snow_status skip_lines(snow_source *source, uint64_t lines) {
     char bytes[SNOW_PEEK_BYTES];
     size_t got;
@@ -103,6 +105,8 @@ static snow_status read_into_ring(snow_source *source, unsigned char *ring,
     return SNOW_OK;
 }
 
+/* A time step among the last bytes: where it lies is known only when all have
+ * passed, so that all steps are kept for a moment. */
 static snow_status read_last_bytes(snow_source *source,
                                    const nrrd_window *window, void *to) {
     if (window->count == window->all)
@@ -197,6 +201,8 @@ static snow_status walk_files(snow_source *source, const nrrd_header *header,
     return SNOW_OK;
 }
 
+/* A file may be gone or cut between the two walks; the second then fails like
+ * the first. */
 static snow_status read_files(snow_source *source, const nrrd_header *header,
                               const nrrd_files *files,
                               const snow_volume_info *info,

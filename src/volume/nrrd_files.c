@@ -129,6 +129,8 @@ snow_status snow_nrrd_find_files(snow_context *context, const nrrd_text *text,
     return SNOW_OK;
 }
 
+/* The header's pattern is never handed to printf as a format: its parts are
+ * put together here. */
 snow_status snow_nrrd_file_name(snow_context *context, const nrrd_files *files,
                                 uint64_t index, const char **at, char *name,
                                 size_t size) {

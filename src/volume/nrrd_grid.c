@@ -19,6 +19,8 @@ typedef struct axis_choice {
     int time; /* -1: none */
 } axis_choice;
 
+/* A direction in space says more than a kind: files call axes "list" or
+ * nothing at all that have one. */
 static nrrd_role role_of(const nrrd_header *header, const nrrd_axis *axis) {
     if (axis->directed) {
         const double *step = axis->direction;
@@ -44,6 +46,8 @@ static void drop_flat_axes(const nrrd_header *header, axis_choice *choice) {
     }
 }
 
+/* One step in time must be one run of bytes, so that time comes last;
+ * components between or before the voxels would have to be picked apart. */
 static snow_status choose_axes(snow_context *context, const nrrd_header *header,
                                axis_choice *out) {
     *out = (axis_choice){.time = -1};
@@ -104,6 +108,8 @@ static void complete_columns(double m[4][4], int given) {
         m[i][2] /= length;
 }
 
+/* Axis j of the volume is the j-th axis of space in the file's order; without
+ * directions it runs along world axis j. */
 static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
                         double m[4][4]) {
     for (int j = 0; j < choice->spaces; j++) {

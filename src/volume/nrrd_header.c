@@ -15,6 +15,8 @@ typedef struct name_value {
     int value;
 } name_value;
 
+/* "char" alone is missing on purpose: the format has no such type, since C
+ * does not say whether it has a sign. */
 static const name_value type_names[] = {
     {"signedchar", SNOW_INT8},
     {"int8", SNOW_INT8},
@@ -60,6 +62,8 @@ static const name_value type_names[] = {
     {NULL, 0},
 };
 
+/* Missing: bzip2 (a library more for a rare case), hex and zrl (hardly ever
+ * seen). */
 static const name_value encoding_names[] = {
     {"raw", NRRD_RAW},
     {"gzip", NRRD_GZIP},
@@ -100,6 +104,7 @@ static const struct world {
     {{"3dlefthandedtime", ""}, 4, {1, 1, -1}, false},
 };
 
+/* The value is cut in messages: a line may be 256 KiB long. */
 static snow_status fail_field(snow_context *context, const nrrd_text *text,
                               nrrd_field field, const char *wrong) {
     const char *value = snow_nrrd_value(text, field);
@@ -162,6 +167,8 @@ static bool next_vector(const char **at, int count, double *out) {
     return true;
 }
 
+/* "block" is a type too, of samples with a meaning of their own, and cannot be
+ * shown. */
 static snow_status parse_type(snow_context *context, const nrrd_text *text,
                               nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_TYPE);
@@ -189,6 +196,8 @@ static snow_status parse_encoding(snow_context *context, const nrrd_text *text,
     return SNOW_OK;
 }
 
+/* Where the order of bytes matters and is not told, guessing would show noise
+ * as data. */
 static snow_status parse_endian(snow_context *context, const nrrd_text *text,
                                 nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_ENDIAN);
@@ -207,6 +216,7 @@ static snow_status parse_endian(snow_context *context, const nrrd_text *text,
     return SNOW_OK;
 }
 
+/* Sixteen axes are the format's own limit. */
 static snow_status parse_dimension(snow_context *context, const nrrd_text *text,
                                    nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_DIMENSION);
@@ -237,6 +247,8 @@ static snow_status parse_sizes(snow_context *context, const nrrd_text *text,
     return SNOW_OK;
 }
 
+/* NaN passes here: it is right for an axis that is not space, and is refused
+ * for one that is when the grid is laid out. */
 static snow_status parse_spacings(snow_context *context, const nrrd_text *text,
                                   nrrd_header *out) {
     const char *at = snow_nrrd_value(text, NRRD_SPACINGS);
@@ -254,6 +266,7 @@ static snow_status parse_spacings(snow_context *context, const nrrd_text *text,
     return SNOW_OK;
 }
 
+/* A kind that is not in the table names some sort of components. */
 static snow_status parse_kinds(snow_context *context, const nrrd_text *text,
                                nrrd_header *out) {
     const char *at = snow_nrrd_value(text, NRRD_KINDS);
@@ -363,6 +376,8 @@ static void copy_unit(const char *value, char unit[16]) {
     unit[used] = 0;
 }
 
+/* The space's unit comes before the axes', as directions come before spacings.
+ * Medical spaces are in millimetres unless told. */
 static void parse_unit(const nrrd_text *text, nrrd_header *out) {
     const char *value = snow_nrrd_value(text, NRRD_SPACE_UNITS);
     if (!value)
@@ -373,6 +388,8 @@ static void parse_unit(const nrrd_text *text, nrrd_header *out) {
         strcpy(out->unit, "mm");
 }
 
+/* -1 cannot be counted back over numbers in text. Teem knows no other negative
+ * skip. */
 static snow_status parse_skips(snow_context *context, const nrrd_text *text,
                                nrrd_header *out) {
     const char *lines = snow_nrrd_value(text, NRRD_LINE_SKIP);
@@ -392,6 +409,8 @@ static snow_status parse_skips(snow_context *context, const nrrd_text *text,
     return SNOW_OK;
 }
 
+/* In an order of dependence, whatever the order in the file: the dimension
+ * before what has one entry for each axis, the world before its vectors. */
 snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
                                    nrrd_header *out) {
     int dimension = 3;

@@ -61,6 +61,7 @@ static snow_status next_word(word_reader *reader, bool *got) {
     return SNOW_OK;
 }
 
+/* The full range of 64 bits; strtoull by itself would take "-1". */
 static bool store_unsigned(const char *word, uint64_t *to) {
     char *end;
     errno = 0;
@@ -71,6 +72,8 @@ static bool store_unsigned(const char *word, uint64_t *to) {
     return true;
 }
 
+/* Stored first and compared after: what does not survive the type was out of
+ * its range. */
 static bool store_integer(snow_type type, const char *word, void *voxels,
                           uint64_t index) {
     int64_t value;

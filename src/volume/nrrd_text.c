@@ -26,6 +26,7 @@ const char *snow_nrrd_value(const nrrd_text *text, nrrd_field field) {
     return text->value[field] ? text->block + text->value[field] : NULL;
 }
 
+/* Spellings in the table are lower case. */
 static bool spelled(const char *name, size_t length, const char *spelling) {
     if (!length || strlen(spelling) != length)
         return false;
@@ -66,6 +67,8 @@ static void trim_end(char *line) {
     line[length] = 0;
 }
 
+/* A second field of one name contradicts the first or is useless; which one
+ * other readers believe differs, so neither is. */
 static snow_status take_field(snow_context *context, nrrd_text *text,
                               nrrd_field field, const char *value) {
     if (text->value[field])
@@ -94,6 +97,8 @@ static snow_status take_line(snow_context *context, nrrd_text *text,
                      line);
 }
 
+/* Versions differ in which fields they may have; a field is understood
+ * wherever it is. */
 static snow_status check_magic(snow_context *context, const char *line) {
     if (!strcmp(line, "NRRD00.01") ||
         (!strncmp(line, "NRRD000", 7) && line[7] >= '1' && line[7] <= '5' &&
@@ -116,6 +121,8 @@ static bool lists_files(const nrrd_text *text) {
            (!value[4] || isspace((unsigned char)value[4]));
 }
 
+/* The names lie one after the other in the block, because nothing else is
+ * appended from the list's first line on. */
 static snow_status take_listed(snow_context *context, nrrd_text *text,
                                const char *line) {
     size_t offset = 0;
@@ -125,6 +132,8 @@ static snow_status take_listed(snow_context *context, nrrd_text *text,
     return SNOW_OK;
 }
 
+/* An empty line ends the header, and with it a list of files. Without one the
+ * file's end does, but only when the data are elsewhere. */
 static snow_status read_lines(snow_source *source, char *line,
                               nrrd_text *text) {
     snow_context *context = snow_source_context(source);

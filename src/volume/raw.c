@@ -100,6 +100,20 @@ static void read_name(snow_context *context, const char *path,
             options->endian == SNOW_ENDIAN_BIG ? "big" : "little");
 }
 
+/* All that can be wrong with the bytes themselves is that there are too few of
+ * them; snow_volume_read sees to that, and tells of too many. */
+/* Sizes or the type are missing: the user's omission where the file is meant
+ * as raw data; else a file that no reader knows. */
+static snow_status refuse_untold(snow_context *context, const char *name,
+                                 const snow_volume_options *options) {
+    bool meant = options->dims[0] || options->type || options->endian ||
+                 options->offset || snow_has_suffix(name, ".raw") ||
+                 snow_has_suffix(name, ".raw.gz");
+    return snow_fail(context, meant ? SNOW_BAD_USAGE : SNOW_BAD_INPUT,
+                     "is of no known format; if it is raw data, give "
+                     "--dims XxYxZ and --type (uint8, int16, float32, ...)");
+}
+
 static snow_status read_raw(snow_source *source,
                             const snow_volume_options *options,
                             snow_volume **out) {
@@ -108,10 +122,7 @@ static snow_status read_raw(snow_source *source,
     if (!all.dims[0] || !all.type)
         read_name(context, snow_source_name(source), &all);
     if (!all.dims[0] || !all.dims[1] || !all.dims[2] || !all.type)
-        return snow_fail(
-            context, SNOW_BAD_USAGE,
-            "is of no known format; if it is raw data, give "
-            "--dims XxYxZ and --type (uint8, int16, float32, ...)");
+        return refuse_untold(context, snow_source_name(source), &all);
     snow_volume_info info = snow_volume_info_default("raw");
     memcpy(info.dims, all.dims, sizeof info.dims);
     info.type = all.type;

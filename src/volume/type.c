@@ -7,6 +7,7 @@
 _Static_assert(CHAR_BIT == 8 && sizeof(float) == 4 && sizeof(double) == 8,
                "the scalar types of files are the machine's");
 
+/* A switch without default: the compiler names the type that is forgotten. */
 size_t snow_type_size(snow_type type) {
     switch (type) {
 #define TYPE_SIZE(name, c_type, text) \
@@ -75,6 +76,7 @@ static void swap_4(unsigned char *at, uint64_t count) {
     }
 }
 
+/* Written as a loop over bytes, which compilers turn into one instruction. */
 static void swap_8(unsigned char *at, uint64_t count) {
     for (uint64_t i = 0; i < count; i++, at += 8) {
         unsigned char turned[8];

@@ -35,6 +35,7 @@ bool snow_volume_count(const int64_t dims[3], snow_type type, int64_t *voxels,
     return true;
 }
 
+/* The last row is checked too: every later stage takes it for 0 0 0 1. */
 static bool matrix_is_finite(const double m[4][4]) {
     for (int i = 0; i < 16; i++)
         if (!isfinite(m[i / 4][i % 4]))
@@ -93,6 +94,8 @@ static snow_status wrap(snow_context *context, const snow_volume_info *info,
     return SNOW_OK;
 }
 
+/* The voxels come first and the record second, because the voxels are what is
+ * likely to fail. */
 snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
                             snow_volume **out) {
     int64_t count;
@@ -150,6 +153,7 @@ snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
     uint64_t bytes, all;
     SNOW_TRY(snow_volume_info_check(context, info));
     snow_volume_count(info->dims, info->type, &count, &bytes);
+    /* More than 64 bits can count: expect refuses it with its usual words. */
     if (!add_up(skip, bytes, rest, &all))
         all = UINT64_MAX;
     SNOW_TRY(snow_source_expect(source, all, "the voxels"));
@@ -174,6 +178,8 @@ snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
     return SNOW_OK;
 }
 
+/* Told even for step 0: a picture of one of many steps must not pass for all
+ * there is. */
 snow_status snow_volume_pick_time(snow_context *context,
                                   const snow_volume_options *options,
                                   snow_volume_info *info) {
