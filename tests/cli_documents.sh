@@ -1,0 +1,51 @@
+# tests/cli_documents.sh - every command that README and guides show works as
+# it stands: `script TOOL DATA`.  Stand-ins of the files that they name are made
+# from phantoms; the bench is left out, since it takes long.
+set -uo pipefail
+tool=$(realpath "$1")
+root=$(realpath "$(dirname "$0")/..")
+place=$(mktemp -d)
+trap 'rm -rf "$place"' EXIT
+mkdir "$place/files"
+cd "$place/files" || exit 1
+
+for name in head.nii.gz ct.nii.gz ct.nrrd sim.nrrd volume.mha; do
+    "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
+done
+"$tool" phantom engine -q -o engine.raw.gz || exit 1
+head -c $((2 * 256 * 256 * 113)) /dev/zero | gzip -1 >CThead.raw.gz
+"$tool" phantom:shells -q -s 64x64 --dims 32x32x32 -o a.png || exit 1
+for suffix in png npy; do
+    for name in a b fig again; do
+        [ -e "$name.$suffix" ] || "$tool" phantom:shells --dims 32x32x32 -q \
+            -s 64x64 -o "$name.$suffix" || exit 1
+    done
+done
+
+# The indented lines that begin with the tool's name, continued lines joined.
+commands() {
+    sed -e ':a' -e '/\\$/N; s/\\\n *//; ta' "$root/README.md" \
+        "$root"/docs/*.md | sed -n 's/^    \(snowglass .*\)/\1/p' |
+        grep -v 'snowglass bench' | sort -u
+}
+
+ran=0 failed=0 words=()
+while read -r line; do
+    rm -rf "$place/run"
+    cp -rl "$place/files" "$place/run"
+    cd "$place/run" || exit 1
+    eval "words=(${line#snowglass})"
+    # What a command writes must not be there yet.
+    for i in "${!words[@]}"; do
+        [ "${words[i]}" != -o ] || rm -f "${words[i + 1]}"
+    done
+    "$tool" "${words[@]}" >out 2>err </dev/null
+    status=$?
+    ran=$((ran + 1))
+    if [ $status -ne 0 ]; then
+        failed=$((failed + 1))
+        echo "FAILED $line: exit status $status: $(tail -1 err)"
+    fi
+done < <(commands)
+echo "$ran commands, $failed failed"
+[ "$ran" -gt 10 ] && [ "$failed" -eq 0 ]
