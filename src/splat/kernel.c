@@ -7,7 +7,8 @@
 
 #define EDGE 1e-5 /* distances that count as on an edge, voxels */
 #define CELLS_PER_VOXEL 256
-#define MARGIN_CELLS 2 /* empty cells on either side of a table */
+#define CELLS_PER_VOXEL_KINKED 1024 /* supports of 2: see below */
+#define MARGIN_CELLS 2              /* empty cells on either side of a table */
 
 /* The centred B-spline of order K (degree K - 1), by de Boor's recursion over
  * the K+1 knots -K/2 .. K/2. */
@@ -122,8 +123,11 @@ float snow_taper_box(const snow_taper *taper, double t) {
 snow_status snow_taper_table_make(snow_context *context,
                                   const snow_taper *taper,
                                   snow_taper_table *out) {
-    /* A wide kernel is smooth: fewer cells per voxel serve it as well. */
-    double fine = fmax(CELLS_PER_VOXEL / taper->wide, 32);
+    /* A wide kernel is smooth: fewer cells per voxel serve it as well.  A
+     * widened one of support 2 has steep kinks within cells, where the number
+     * of voxels in reach changes. */
+    int most = taper->support == 2 ? CELLS_PER_VOXEL_KINKED : CELLS_PER_VOXEL;
+    double fine = fmax(most / taper->wide, 32);
     size_t cells = 2 * (size_t)ceil(taper->half * fine);
     double scale = (double)cells / (2 * taper->half);
     size_t all = cells + 2 * MARGIN_CELLS;

@@ -78,7 +78,8 @@ static void shells_row(const snow_phantom_grid *grid, int64_t j, int64_t k,
             double distance = fabs(radius - shells[n].radius) - 2.5;
             if (n > 0)
                 distance = distance > octant ? distance : octant;
-            snow_shape_paint(grid, &value, shells[n].value, distance);
+            if (distance < grid->edge)
+                snow_shape_paint(grid, &value, shells[n].value, distance);
         }
         double bx = x + 104, by = y - 88, bz = z - 60;
         snow_shape_paint(grid, &value, 220,
@@ -100,6 +101,11 @@ const snow_phantom snow_phantom_shells = {
  * t^22, whose next term is below 1e-18 there.  (Plain arithmetic, so that
  * every machine rounds alike: see phantom.h.) */
 static double cosine(double turns) {
+#define TERM(n) (1.0 / ((n) * ((n)-1.0)))
+    static const double terms[] = {TERM(22), TERM(20), TERM(18), TERM(16),
+                                   TERM(14), TERM(12), TERM(10), TERM(8),
+                                   TERM(6),  TERM(4),  TERM(2)};
+#undef TERM
     const double tau = 6.283185307179586;
     double fraction = turns - floor(turns), sign = 1;
     if (fraction > 0.5)
@@ -109,8 +115,8 @@ static double cosine(double turns) {
         sign = -1;
     }
     double square = fraction * tau * (fraction * tau), sum = 1;
-    for (int n = 22; n >= 2; n -= 2)
-        sum = 1 - square / (n * (n - 1.0)) * sum;
+    for (size_t n = 0; n < sizeof terms / sizeof *terms; n++)
+        sum = 1 - square * terms[n] * sum;
     return sign * sum;
 }
 
