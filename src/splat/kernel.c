@@ -127,7 +127,7 @@ snow_status snow_taper_table_make(snow_context *context,
      * widened one of support 2 has steep kinks within cells, where the number
      * of voxels in reach changes. */
     int most = taper->support == 2 ? CELLS_PER_VOXEL_KINKED : CELLS_PER_VOXEL;
-    double fine = fmax(most / taper->wide, 32);
+    double fine = fmax(most / taper->wide, 4);
     size_t cells = 2 * (size_t)ceil(taper->half * fine);
     double scale = (double)cells / (2 * taper->half);
     size_t all = cells + 2 * MARGIN_CELLS;
