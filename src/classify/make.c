@@ -127,8 +127,18 @@ static snow_status draft_look(const snow_census *census, const snow_look *look,
     return SNOW_OK;
 }
 
+/* Where the look comes from: only what was not asked for was chosen. */
+static void tell_reason(const snow_draft *draft, const snow_look *look,
+                        char *text, size_t room) {
+    bool all_asked =
+        look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
+    snprintf(text, room, " (%s%s)", all_asked ? "as asked" : draft->reason,
+             look->opacities && !all_asked ? "; opacities as asked" : "");
+}
+
 /* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)" */
-static void describe(snow_transfer *transfer, const snow_draft *draft) {
+static void describe(snow_transfer *transfer, const snow_draft *draft,
+                     const snow_look *look) {
     char *text = transfer->text;
     size_t room = sizeof transfer->text, used;
     snprintf(text, room, "%s %.5g..%.5g; opacity", draft->name, draft->low,
@@ -144,7 +154,7 @@ static void describe(snow_transfer *transfer, const snow_draft *draft) {
                  transfer->opacities[i].opacity, transfer->opacities[i].value);
     }
     used = strlen(text);
-    snprintf(text + used, room - used, " (%s)", draft->reason);
+    tell_reason(draft, look, text + used, room - used);
 }
 
 snow_status snow_transfer_make(const snow_volume *volume, const snow_look *look,
@@ -167,7 +177,7 @@ snow_status snow_transfer_make(const snow_volume *volume, const snow_look *look,
         look->opacities ? look->opacity_count : draft.opacity_count;
     SNOW_TRY(snow_transfer_new(volume->context, draft.colors, draft.color_count,
                                opacities, opacity_count, &transfer));
-    describe(transfer, &draft);
+    describe(transfer, &draft, look);
     *out = transfer;
     return SNOW_OK;
 }
