@@ -5,10 +5,15 @@
 #include <math.h>
 #include <string.h>
 
+#define PI 3.14159265358979323846
 #define EDGE 1e-5 /* distances that count as on an edge, voxels */
 #define CELLS_PER_VOXEL 256
 #define CELLS_PER_VOXEL_KINKED 1024 /* supports of 2: see below */
-#define MARGIN_CELLS 2              /* empty cells on either side of a table */
+/* Half a support, in voxels, from which on the sum over the copies of a kernel
+ * is taken for its integral: a tent's then differ by 1e-6, others by less. */
+#define SUMMED_HALF 512
+#define MOST_CELLS 65536.0 /* of a table: a float tells them apart */
+#define MARGIN_CELLS 2     /* empty cells on either side of a table */
 
 /* The centred B-spline of order K (degree K - 1), by de Boor's recursion over
  * the K+1 knots -K/2 .. K/2. */
@@ -101,10 +106,27 @@ static double value_at(const snow_taper *taper, double t) {
     return kernels[taper->kernel].value(taper->support, t / taper->wide);
 }
 
+/* The integral of the widened kernel; a Gauss is cut at 4 sigma. */
+static double integral_of(const snow_taper *taper) {
+    switch (taper->kernel) {
+    case SNOW_KERNEL_TENT:
+        return taper->half;
+    case SNOW_KERNEL_GAUSS:
+        return taper->half / 4 * sqrt(2 * PI) * erf(4 / sqrt(2));
+    default:
+        return taper->wide;
+    }
+}
+
+/* A spacing of 1e-29, which a file may say, would otherwise make a sum that
+ * never ends. */
 double snow_taper_weight(const snow_taper *taper, double t) {
     double value = value_at(taper, t), sum = 0;
     if (value <= 0)
         return 0;
+    if (taper->half > SUMMED_HALF)
+        return taper->kernel == SNOW_KERNEL_BOX ? snow_taper_box(taper, t)
+                                                : value / integral_of(taper);
     double first = ceil(-taper->half - EDGE - t);
     for (double n = first; t + n < taper->half - EDGE; n++)
         sum += value_at(taper, t + n);
@@ -128,7 +150,7 @@ snow_status snow_taper_table_make(snow_context *context,
      * of voxels in reach changes. */
     int most = taper->support == 2 ? CELLS_PER_VOXEL_KINKED : CELLS_PER_VOXEL;
     double fine = fmax(most / taper->wide, 4);
-    size_t cells = 2 * (size_t)ceil(taper->half * fine);
+    size_t cells = (size_t)fmin(2 * ceil(taper->half * fine), MOST_CELLS);
     double scale = (double)cells / (2 * taper->half);
     size_t all = cells + 2 * MARGIN_CELLS;
     snow_taper_cell *table = snow_allocate_array(context, all, sizeof *table);

@@ -9,6 +9,10 @@
 /* Two axes whose cosines differ by less are equally good. */
 #define AXIS_TIE 1e-6
 
+/* The most voxels across a pixel: beyond, single precision in the splatter's
+ * loops tells nothing apart, and no real volume is so flat. */
+#define MOST_VOXELS_A_PIXEL 1e9
+
 /* Column `axis` of the matrix: the world step from one voxel to the next. */
 static void step_of(const snow_volume_info *info, int axis, double step[3]) {
     for (int i = 0; i < 3; i++)
@@ -107,6 +111,9 @@ static bool invert_slice_map(snow_placement *p) {
     p->inverse[0][1] = -p->step_v[0] / determinant;
     p->inverse[1][0] = -p->step_u[1] / determinant;
     p->inverse[1][1] = p->step_u[0] / determinant;
+    for (int i = 0; i < 2; i++)
+        if (!(hypot(p->inverse[i][0], p->inverse[i][1]) < MOST_VOXELS_A_PIXEL))
+            return false;
     return true;
 }
 
@@ -148,9 +155,10 @@ snow_status snow_placement_make(snow_context *context,
     place_slices(info, view, &p);
     if (!isfinite(p.path) || !isfinite(p.origin[0]) || !isfinite(p.origin[1]) ||
         !invert_slice_map(&p))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "the volume's geometry is too flat or too large to be "
-                         "seen at zoom %g",
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "voxels of %gx%gx%g cannot be seen at zoom %g: they "
+                         "are too flat or too large; give --spacing",
+                         info->spacing[0], info->spacing[1], info->spacing[2],
                          view->zoom);
     *out = p;
     return SNOW_OK;

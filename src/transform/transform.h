@@ -33,7 +33,8 @@ typedef struct snow_placement {
 
 /* Places a volume before a camera (model, points 2, 5 and 6).  The slice axis
  * is the one whose slice normal is most parallel to the line of sight; within
- * 1e-6, z before y before x.  Errors: SNOW_BAD_USAGE. */
+ * 1e-6, z before y before x.  Errors: SNOW_BAD_USAGE (the view), SNOW_BAD_INPUT
+ * (a geometry that no float can hold). */
 snow_status snow_placement_make(snow_context *context,
                                 const snow_volume_info *info,
                                 const snow_view *view, snow_placement *out);
