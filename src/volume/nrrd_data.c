@@ -171,7 +171,11 @@ static bool cut_window(const nrrd_window *window, uint64_t piece,
     return from < to;
 }
 
-/* Opens each file that is needed and measures it; with `voxels` reads it too.
+/* Only the files that hold a part of the window are looked at: a pattern may
+ * stand for 2^60 of them.  Names in a list follow one another, so that there
+ * the walk begins with the first.
+ *
+ * Opens each file that is needed and measures it; with `voxels` reads it too.
  * Two passes over the files make sure that all are there before any memory is
  * taken. */
 static snow_status walk_files(snow_source *source, const nrrd_header *header,
@@ -181,7 +185,9 @@ static snow_status walk_files(snow_source *source, const nrrd_header *header,
     char name[MOST_NAME_BYTES];
     const char *at = NULL;
     uint64_t piece = window->all / files->count;
-    for (uint64_t i = 0; i < files->count; i++) {
+    uint64_t first = files->place == NRRD_LIST ? 0 : window->skip / piece;
+    uint64_t last = (window->skip + window->count - 1) / piece;
+    for (uint64_t i = first; i <= last; i++) {
         nrrd_window part;
         SNOW_TRY(snow_nrrd_file_name(snow_source_context(source), files, i, &at,
                                      name, sizeof name));
