@@ -35,7 +35,8 @@ static int check_combination(const options *asked) {
         strcmp(asked->encoding, "auto") != 0)
         return fail_usage("--encoding: method original encodes nothing; leave "
                           "one of the two out");
-    if (asked->stats && strcmp(asked->stats, asked->output) == 0)
+    if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
+                         same_place(asked->stats, asked->output)))
         return fail_usage("--stats: goes where --output goes; name two places");
     if (is_stream(asked->output) && isatty(STDOUT_FILENO))
         return fail_usage("--output: '-' is a terminal; send it to a pipe or a "

@@ -42,6 +42,9 @@ int print_json(json_t *object);
  * replace, and what may wait for its reader for ever. */
 bool is_special(const char *path);
 
+/* Whether two paths name one file, also one that is not there yet. */
+bool same_place(const char *a, const char *b);
+
 /* Whether --stats can go where it shall: asked before rendering. */
 int check_stats_path(const char *path, bool overwrite);
 

@@ -16,7 +16,7 @@
             return snow_try_status;           \
     } while (0)
 
-#define SNOW_MESSAGE_BYTES 1024
+#define SNOW_MESSAGE_BYTES 10240
 
 struct snow_context {
     snow_allocator allocator;
