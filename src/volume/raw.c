@@ -90,9 +90,12 @@ static void read_name(snow_context *context, const char *path,
         memcpy(options->dims, found.dims, sizeof found.dims);
     if (type)
         options->type = found.type;
-    if (type && !options->endian)
+    /* "u16be" tells the order also when the type is told, if it is the same. */
+    bool endian =
+        !options->endian && found.endian && options->type == found.type;
+    if (endian)
         options->endian = found.endian;
-    if (dims || type)
+    if (dims || type || endian)
         snow_notify(
             context, "%s: read as %lldx%lldx%lld %s, %s endian, by its name",
             path, (long long)options->dims[0], (long long)options->dims[1],
@@ -100,8 +103,6 @@ static void read_name(snow_context *context, const char *path,
             options->endian == SNOW_ENDIAN_BIG ? "big" : "little");
 }
 
-/* All that can be wrong with the bytes themselves is that there are too few of
- * them; snow_volume_read sees to that, and tells of too many. */
 /* Sizes or the type are missing: the user's omission where the file is meant
  * as raw data; else a file that no reader knows. */
 static snow_status refuse_untold(snow_context *context, const char *name,
@@ -114,12 +115,14 @@ static snow_status refuse_untold(snow_context *context, const char *name,
                      "--dims XxYxZ and --type (uint8, int16, float32, ...)");
 }
 
+/* All that can be wrong with the bytes themselves is that there are too few of
+ * them; snow_volume_read sees to that, and tells of too many. */
 static snow_status read_raw(snow_source *source,
                             const snow_volume_options *options,
                             snow_volume **out) {
     snow_context *context = snow_source_context(source);
     snow_volume_options all = *options;
-    if (!all.dims[0] || !all.type)
+    if (!all.dims[0] || !all.type || !all.endian)
         read_name(context, snow_source_name(source), &all);
     if (!all.dims[0] || !all.dims[1] || !all.dims[2] || !all.type)
         return refuse_untold(context, snow_source_name(source), &all);
