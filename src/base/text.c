@@ -28,8 +28,11 @@ bool snow_parse_int64(const char *text, int64_t *out) {
  * it never changes a value. */
 bool snow_parse_double(const char *text, double *out) {
     char *end;
+    errno = 0;
     double value = strtod(text, &end);
-    if (end == text || !at_end(end))
+    /* 1e999 is no infinity; a number too small for a double is 0. */
+    bool overflow = errno == ERANGE && (value > 1 || value < -1);
+    if (end == text || overflow || !at_end(end))
         return false;
     *out = value;
     return true;

@@ -62,6 +62,7 @@ static snow_status read_part(snow_source *source,
         SNOW_TRY(metaimage_read_text(source, type, NULL, wanted->skip / size));
         SNOW_TRY(metaimage_read_text(source, type, out, wanted->take / size));
         SNOW_TRY(metaimage_read_text(source, type, NULL, rest / size));
+        SNOW_TRY(metaimage_skip_blanks(source)); /* the last line's end */
     } else {
         SNOW_TRY(snow_source_skip(source, wanted->skip, "the voxels"));
         SNOW_TRY(snow_source_read_all(source, out, (size_t)wanted->take,

@@ -35,4 +35,7 @@ const char *metaimage_type_name(snow_type type);
 snow_status metaimage_read_text(snow_source *source, snow_type type, void *out,
                                 uint64_t count);
 
+/* Takes what white space follows, so that it does not count as left over. */
+snow_status metaimage_skip_blanks(snow_source *source);
+
 #endif

@@ -4,6 +4,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,6 +58,8 @@ static bool store_word(const char *word, snow_type type, void *at) {
         NARROW_MAP(STORE)
 #undef STORE
     case SNOW_FLOAT32: {
+        if (isfinite(value) && fabs(value) > FLT_MAX)
+            return false;
         float stored = (float)value;
         memcpy(at, &stored, sizeof stored);
         return true;
@@ -67,16 +70,23 @@ static bool store_word(const char *word, snow_type type, void *at) {
     }
 }
 
-/* Takes the next word; empty at the end of the data. */
-static snow_status next_word(snow_source *source, char word[WORD_BYTES]) {
+snow_status metaimage_skip_blanks(snow_source *source) {
     unsigned char bytes[WORD_BYTES];
-    size_t got, start, length = 0;
+    size_t got, start;
     do {
         SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
         for (start = 0; start < got && isspace(bytes[start]);)
             start++;
         SNOW_TRY(snow_source_skip(source, start, "the voxels"));
     } while (got && start == got);
+    return SNOW_OK;
+}
+
+/* Takes the next word; empty at the end of the data. */
+static snow_status next_word(snow_source *source, char word[WORD_BYTES]) {
+    unsigned char bytes[WORD_BYTES];
+    size_t got, length = 0;
+    SNOW_TRY(metaimage_skip_blanks(source));
     SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
     while (length < got && !isspace(bytes[length]))
         length++;
@@ -85,7 +95,8 @@ static snow_status next_word(snow_source *source, char word[WORD_BYTES]) {
                          "the voxels contain a word of more than %d letters, "
                          "which is no number; check BinaryData",
                          WORD_BYTES - 1);
-    memcpy(word, bytes, length);
+    for (size_t i = 0; i < length; i++) /* a NUL would end the number */
+        word[i] = bytes[i] ? (char)bytes[i] : '?';
     word[length] = 0;
     return snow_source_skip(source, length, "the voxels");
 }

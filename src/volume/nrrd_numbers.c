@@ -6,6 +6,8 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,7 +57,8 @@ static snow_status next_word(word_reader *reader, bool *got) {
             reader->word[used - 1] = '?'; /* too long: no number any more */
             break;
         }
-        reader->word[used++] = reader->bytes[reader->at];
+        char c = reader->bytes[reader->at];
+        reader->word[used++] = c ? c : '?'; /* a NUL would end the number */
     }
     reader->word[used] = 0;
     return SNOW_OK;
@@ -106,6 +109,8 @@ static bool store(snow_type type, const char *word, void *voxels,
     if (type != SNOW_FLOAT32 && type != SNOW_FLOAT64)
         return store_integer(type, word, voxels, index);
     if (!snow_parse_double(word, &value))
+        return false;
+    if (type == SNOW_FLOAT32 && isfinite(value) && fabs(value) > FLT_MAX)
         return false;
     if (type == SNOW_FLOAT32)
         ((float *)voxels)[index] = (float)value;
