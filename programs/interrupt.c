@@ -31,8 +31,12 @@ static void listen_to(int signal_number) {
 void interrupt_install(void) {
     listen_to(SIGINT);
     listen_to(SIGTERM);
+    listen_to(SIGHUP);
     /* A reader that went away is an error of the write, exit code 4. */
     signal(SIGPIPE, SIG_IGN);
+    /* So is a file that grows beyond a limit (ulimit -f): the writer removes
+     * what it has begun. */
+    signal(SIGXFSZ, SIG_IGN);
 }
 
 void interrupt_hold(void) {
