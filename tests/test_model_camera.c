@@ -3,6 +3,7 @@
 #include "support_model.h"
 
 #include <math.h>
+#include <string.h>
 
 #define THIRD 0.57735026918962576
 #define SIXTH 0.40824829046386302
@@ -267,9 +268,13 @@ static void one_voxel_per_pixel_is_the_zoom_for_voxels(void **state) {
     reference_scene scene = model_scene((int64_t[]){13, 7, 10}, SNOW_UINT8,
                                         true, MODEL_ANISOTROPIC, 1);
     snow_volume *volume = NULL;
+    scene.info.matrix[0][0] = 1.1;
+    scene.info.matrix[1][1] = 0.7;
     assert_int_equal(
         snow_volume_share(context, &scene.info, scene.voxels, &volume),
         SNOW_OK);
+    /* The smallest spacing is not the first one. */
+    assert_true(scene.info.matrix[1][1] < scene.info.matrix[0][0]);
     scene.view.zoom =
         snow_view_zoom_for_voxels(volume, scene.view.width, scene.view.height);
     reference_camera camera;
@@ -326,6 +331,81 @@ static void of_equally_parallel_axes_the_last_is_taken(void **state) {
     model_close(&stage);
 }
 
+static void settings_and_views_out_of_range_are_refused(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    reference_scene scene = model_blank((int64_t[]){2, 2, 2}, 0.5);
+    const snow_settings fine = scene.settings;
+    const snow_view view = scene.view;
+    snow_settings bad[14];
+    snow_view blind[8];
+    for (int i = 0; i < 14; i++)
+        bad[i] = fine;
+    for (int i = 0; i < 8; i++)
+        blind[i] = view;
+    bad[0].threshold = 255.5, bad[1].threshold = -1;
+    bad[2].threshold = (double)NAN, bad[3].footprint = 1;
+    bad[4].footprint = 10, bad[5].ambient = 1.5, bad[6].diffuse = -0.1;
+    bad[7].specular = (double)INFINITY, bad[8].shininess = -1;
+    bad[9].opacity_length = -1, bad[10].light_azimuth = (double)NAN;
+    bad[11].method = (snow_method)9, bad[12].kernel = (snow_kernel)4;
+    bad[13].encoding = (snow_encoding)4;
+    blind[0].width = 0, blind[1].height = 32769, blind[2].zoom = 0;
+    blind[3].zoom = (double)NAN, blind[4].roll = (double)INFINITY;
+    blind[5].back[0] = (double)NAN, blind[6].up[1] = 2;
+    memcpy(blind[7].up, blind[7].back, sizeof blind[7].up);
+    for (int i = 0; i < 14 + 8; i++) {
+        snow_volume *volume = NULL;
+        snow_transfer *transfer = NULL;
+        snow_image *image = NULL;
+        assert_int_equal(snow_volume_share(stage.context, &scene.info,
+                                           scene.voxels, &volume),
+                         SNOW_OK);
+        assert_int_equal(snow_transfer_make(volume, NULL, &transfer), SNOW_OK);
+        assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
+                                           i < 14 ? &view : &blind[i - 14],
+                                           i < 14 ? &bad[i] : &fine, &image),
+                         SNOW_BAD_USAGE);
+        assert_null(image);
+        snow_transfer_free(transfer);
+        snow_volume_close(volume);
+    }
+    model_free(&scene);
+    model_close(&stage);
+}
+
+/* Magnified without end the picture is its middle; diminished without end it
+ * has next to nothing, at no cost.  Tables are not read past their ends: the
+ * sanitizers see that. */
+static void any_zoom_is_safe_and_quick(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    reference_scene scene = model_blank((int64_t[]){16, 16, 16}, 0.5);
+    float *voxels = model_voxels(&scene);
+    for (int i = 0; i < 16 * 16 * 16; i++)
+        voxels[i] = 1;
+    scene.view.width = scene.view.height = 16;
+    for (int kernel = 0; kernel <= SNOW_KERNEL_BOX; kernel++)
+        for (int exponent = -8; exponent <= 150; exponent += 1 + exponent / 9) {
+            scene.settings.kernel = (snow_kernel)kernel;
+            scene.settings.shade = SNOW_SHADE_NONE;
+            model_turn(&scene, 30, 20, 10, pow(10, exponent));
+            snow_image *image = model_image(&stage, &scene);
+            int channels = snow_image_channels(image);
+            const float *pixels = snow_image_pixels(image);
+            for (int i = 0; i < 16 * 16; i++) {
+                double alpha = (double)pixels[(i + 1) * channels - 1];
+                if (exponent >= 2)
+                    assert_true(alpha > 0.9999 && alpha < 1.0001);
+                if (exponent <= -3)
+                    assert_true(alpha >= 0 && alpha < 1e-3);
+            }
+            snow_image_free(image);
+        }
+    model_free(&scene);
+    model_close(&stage);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_view_stands_where_its_name_says),
@@ -342,6 +422,8 @@ int main(void) {
         cmocka_unit_test(one_voxel_per_pixel_is_the_zoom_for_voxels),
         cmocka_unit_test(slices_are_taken_along_the_most_parallel_normal),
         cmocka_unit_test(of_equally_parallel_axes_the_last_is_taken),
+        cmocka_unit_test(any_zoom_is_safe_and_quick),
+        cmocka_unit_test(settings_and_views_out_of_range_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

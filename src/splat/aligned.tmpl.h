@@ -16,6 +16,8 @@ static inline void SPLAT_STAMP(snow_sheet *sheet, const snow_taps *taps_x,
     const float *weights_x = taps_x->weights + taps_x->offset[x];
     const float *weights_y = taps_y->weights + taps_y->offset[y];
     int columns = taps_x->count[x], lines = taps_y->count[y];
+    if (!columns || !lines) /* out of view: `first` may be past the end */
+        return;
     size_t stride = (size_t)sheet->width * SPLAT_CHANNELS;
     float *line = sheet->pixels + (size_t)taps_y->first[y] * stride +
                   (size_t)taps_x->first[x] * SPLAT_CHANNELS;

@@ -5,15 +5,20 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
 #define EDGE 1e-5 /* distances that count as on an edge, voxels */
 #define CELLS_PER_VOXEL 256
 #define CELLS_PER_VOXEL_KINKED 1024 /* supports of 2: see below */
-/* Half a support, in voxels, from which on the sum over the copies of a kernel
- * is taken for its integral: a tent's then differ by 1e-6, others by less. */
-#define SUMMED_HALF 512
-#define MOST_CELLS 65536.0 /* of a table: a float tells them apart */
-#define MARGIN_CELLS 2     /* empty cells on either side of a table */
+#define MARGIN_CELLS 2              /* empty cells on either side of a table */
+
+/* No table has more cells on either side of its middle: a kernel that is wide
+ * enough to need them is smooth at this pitch, and places in the table stay far
+ * below 2^24, where a float would miss a cell. */
+#define HALF_CELLS_MOST 32768
+
+/* From this width on the sum over all integer shifts is the integral: what
+ * Poisson's formula adds is 2 / (pi w)^2 of it for the linear B-spline, 5e-5,
+ * and less for the others.  The sum itself would cost w K terms. */
+#define WIDE_ENOUGH 64
 
 /* The centred B-spline of order K (degree K - 1), by de Boor's recursion over
  * the K+1 knots -K/2 .. K/2. */
@@ -44,15 +49,31 @@ static double box(int support, double t) {
     return 1;
 }
 
+/* Integrals over the support. */
+static double bspline_area(int order) {
+    (void)order;
+    return 1;
+}
+
+static double tent_area(int support) {
+    return support / 2.0;
+}
+
+static double gauss_area(int support) {
+    const double root = 2.5066282746310005024;    /* sqrt(2 pi) */
+    return root * support / 8 * erf(4 / sqrt(2)); /* cut at 4 sigma */
+}
+
 static const struct kernel_entry {
     const char *name;
     double (*value)(int support, double t); /* inside the support */
+    double (*area)(int support);            /* NULL: weights in closed form */
     int default_support;
 } kernels[] = {
-    [SNOW_KERNEL_BSPLINE] = {"bspline", bspline, 4},
-    [SNOW_KERNEL_TENT] = {"tent", tent, 2},
-    [SNOW_KERNEL_GAUSS] = {"gauss", gauss, 4},
-    [SNOW_KERNEL_BOX] = {"box", box, 2},
+    [SNOW_KERNEL_BSPLINE] = {"bspline", bspline, bspline_area, 4},
+    [SNOW_KERNEL_TENT] = {"tent", tent, tent_area, 2},
+    [SNOW_KERNEL_GAUSS] = {"gauss", gauss, gauss_area, 4},
+    [SNOW_KERNEL_BOX] = {"box", box, NULL, 2},
 };
 
 #define KERNEL_COUNT (int)(sizeof kernels / sizeof kernels[0])
@@ -106,27 +127,15 @@ static double value_at(const snow_taper *taper, double t) {
     return kernels[taper->kernel].value(taper->support, t / taper->wide);
 }
 
-/* The integral of the widened kernel; a Gauss is cut at 4 sigma. */
-static double integral_of(const snow_taper *taper) {
-    switch (taper->kernel) {
-    case SNOW_KERNEL_TENT:
-        return taper->half;
-    case SNOW_KERNEL_GAUSS:
-        return taper->half / 4 * sqrt(2 * PI) * erf(4 / sqrt(2));
-    default:
-        return taper->wide;
-    }
-}
-
-/* A spacing of 1e-29, which a file may say, would otherwise make a sum that
- * never ends. */
 double snow_taper_weight(const snow_taper *taper, double t) {
     double value = value_at(taper, t), sum = 0;
     if (value <= 0)
         return 0;
-    if (taper->half > SUMMED_HALF)
-        return taper->kernel == SNOW_KERNEL_BOX ? snow_taper_box(taper, t)
-                                                : value / integral_of(taper);
+    if (taper->kernel == SNOW_KERNEL_BOX)
+        return snow_taper_box(taper, t);
+    if (taper->wide >= WIDE_ENOUGH)
+        return value /
+               (taper->wide * kernels[taper->kernel].area(taper->support));
     double first = ceil(-taper->half - EDGE - t);
     for (double n = first; t + n < taper->half - EDGE; n++)
         sum += value_at(taper, t + n);
@@ -150,7 +159,7 @@ snow_status snow_taper_table_make(snow_context *context,
      * of voxels in reach changes. */
     int most = taper->support == 2 ? CELLS_PER_VOXEL_KINKED : CELLS_PER_VOXEL;
     double fine = fmax(most / taper->wide, 4);
-    size_t cells = (size_t)fmin(2 * ceil(taper->half * fine), MOST_CELLS);
+    size_t cells = 2 * (size_t)fmin(ceil(taper->half * fine), HALF_CELLS_MOST);
     double scale = (double)cells / (2 * taper->half);
     size_t all = cells + 2 * MARGIN_CELLS;
     snow_taper_cell *table = snow_allocate_array(context, all, sizeof *table);

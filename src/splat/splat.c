@@ -64,21 +64,24 @@ static inline double larger(double a, double b) {
  * that counts as aligned. */
 #define ALIGNED 1e-6
 
-/* Pixels to the right per voxel below which an axis counts as upright. */
-#define UPRIGHT 1e-9
+/* An axis counts as upright where going right moves along it this many times
+ * less than going down. */
+#define UPRIGHT 1e-12
 
 /* Whether steps along u move along one image axis only, and along v along the
- * other: u along `axis` (0 x, 1 y). */
+ * other: u along `axis` (0 x, 1 y).  Where voxels are smaller than pixels the
+ * tolerance shrinks with them, for a table divides by their steps. */
 static bool lies_along(const snow_placement *p, int axis) {
+    double step = fmin(fabs(p->step_u[axis]), fabs(p->step_v[1 - axis]));
     return fabs(p->step_u[1 - axis]) * (double)p->columns +
                fabs(p->step_v[axis]) * (double)p->rows <
-           ALIGNED;
+           ALIGNED * fmin(1, step);
 }
 
 static snow_oblique_axis oblique_axis(const double inverse[2],
                                       const snow_taper *taper) {
     snow_oblique_axis axis = {inverse[0], inverse[1], 0, INFINITY};
-    if (fabs(axis.step) > UPRIGHT) {
+    if (fabs(axis.step) > UPRIGHT * fabs(axis.rise)) {
         axis.lean = -axis.rise / axis.step;
         axis.extent = snow_taper_reach(taper) / fabs(axis.step);
     }

@@ -8,18 +8,18 @@
 
 snow_status snow_taps_init(snow_context *context, const snow_taper *taper,
                            int64_t voxels, int pixels, snow_taps *out) {
-    /* A pixel is reached by at most this many voxels; compared as doubles, in
-     * which a half support from a file's spacing cannot overflow. */
-    uint64_t reached, weights, count = (uint64_t)voxels;
-    double most = fmin(ceil(2 * taper->half) + 1, (double)voxels);
-    reached = (uint64_t)most;
-    snow_taps taps = {.origin = NAN};
+    uint64_t count = (uint64_t)voxels;
+    /* A pixel is reached by at most this many voxels. */
+    uint64_t reached =
+        (uint64_t)fmin(ceil(2 * taper->half) + 1, (double)voxels);
+    uint64_t weights;
     if (!snow_mul_u64((uint64_t)pixels, reached, &weights) ||
-        weights > UINT32_MAX) /* what taps.offset holds */
+        weights > UINT32_MAX) /* what `offset` holds */
         return snow_fail(context, SNOW_NO_MEMORY,
                          "the footprints of %lld voxels on %d pixels are too "
                          "many; take a smaller picture",
                          (long long)voxels, pixels);
+    snow_taps taps = {.origin = NAN};
     taps.first = snow_allocate_array(context, count, sizeof *taps.first);
     taps.count = snow_allocate_array(context, count, sizeof *taps.count);
     taps.offset = snow_allocate_array(context, count, sizeof *taps.offset);

@@ -6,12 +6,12 @@
 #include <math.h>
 #include <string.h>
 
+/* A pixel wider than this many voxels along an axis is refused: distances in
+ * voxels are floats in the inner loops. */
+#define WIDEST_PIXEL 1e9
+
 /* Two axes whose cosines differ by less are equally good. */
 #define AXIS_TIE 1e-6
-
-/* The most voxels across a pixel: beyond, single precision in the splatter's
- * loops tells nothing apart, and no real volume is so flat. */
-#define MOST_VOXELS_A_PIXEL 1e9
 
 /* Column `axis` of the matrix: the world step from one voxel to the next. */
 static void step_of(const snow_volume_info *info, int axis, double step[3]) {
@@ -105,14 +105,15 @@ static void place_slices(const snow_volume_info *info, const snow_view *view,
 static bool invert_slice_map(snow_placement *p) {
     double determinant =
         p->step_u[0] * p->step_v[1] - p->step_v[0] * p->step_u[1];
-    if (!(fabs(determinant) > 0) || !isfinite(1 / determinant))
+    if (!(fabs(determinant) > 0) || !isfinite(determinant) ||
+        !isfinite(1 / determinant))
         return false;
     p->inverse[0][0] = p->step_v[1] / determinant;
     p->inverse[0][1] = -p->step_v[0] / determinant;
     p->inverse[1][0] = -p->step_u[1] / determinant;
     p->inverse[1][1] = p->step_u[0] / determinant;
-    for (int i = 0; i < 2; i++)
-        if (!(hypot(p->inverse[i][0], p->inverse[i][1]) < MOST_VOXELS_A_PIXEL))
+    for (int axis = 0; axis < 2; axis++)
+        if (!(hypot(p->inverse[axis][0], p->inverse[axis][1]) < WIDEST_PIXEL))
             return false;
     return true;
 }
@@ -131,9 +132,9 @@ static snow_status check_view(snow_context *context, const snow_view *view) {
         !isfinite(view->roll))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "a camera angle is not a finite number");
-    if (fabs(snow_length(view->back) - 1) > 1e-6 ||
-        fabs(snow_length(view->up) - 1) > 1e-6 ||
-        fabs(snow_dot(view->back, view->up)) > 1e-6)
+    if (!(fabs(snow_length(view->back) - 1) <= 1e-6) ||
+        !(fabs(snow_length(view->up) - 1) <= 1e-6) ||
+        !(fabs(snow_dot(view->back, view->up)) <= 1e-6))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "back and up must be unit vectors at right angles; "
                          "begin with snow_view_named");
