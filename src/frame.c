@@ -36,6 +36,7 @@ typedef struct snow_job {
     snow_splatter splatter;
     int channels;
     float *pixels; /* the local image */
+    int64_t kept;  /* voxels splatted out of strips */
 } snow_job;
 
 snow_status snow_frame_new(snow_context *context, snow_frame **out) {
@@ -131,6 +132,7 @@ static void splat_classified_slice(snow_job *job, int64_t slice) {
     for (int64_t row = 0; row < job->placement.rows; row += strip->room_rows) {
         classify_and_shade(job, slice, row);
         double mark = snow_seconds();
+        job->kept += (int64_t)strip->count;
         size_t begin = 0;
         for (int64_t n = 0; n < strip->rows; n++) {
             size_t end = strip->row_end[n];
@@ -223,8 +225,9 @@ static void finish(snow_job *job) {
     snow_classifier_fini(context, &job->classifier);
 }
 
-/* What is known at the end beside the times.  Without a sparse matrix nothing
- * holds the number of interesting voxels, and they are counted here. */
+/* What is known at the end beside the times.  Original splatting keeps every
+ * voxel, so nothing holds the number of interesting ones, and they are counted
+ * here: over the whole volume, and outside of seconds_frame. */
 static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
                               const snow_transfer *transfer,
                               snow_stats *stats) {
@@ -235,7 +238,12 @@ static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
     stats->slice_axis = p->slice_axis;
     stats->voxels = p->columns * p->rows * job->slab.count;
     double voxels = (double)stats->voxels;
-    if (stats->method != SNOW_METHOD_FOOTPRINT) {
+    if (stats->method == SNOW_METHOD_TESTED) {
+        stats->interesting = job->kept;
+        stats->sparse_ratio = voxels > 0 ? 1 - (double)job->kept / voxels : 1;
+        return SNOW_OK;
+    }
+    if (stats->method == SNOW_METHOD_ORIGINAL) {
         SNOW_TRY(snow_transfer_sparse_ratio(
             transfer, volume, job->settings.threshold, &stats->sparse_ratio));
         stats->interesting = llround(voxels * (1 - stats->sparse_ratio));

@@ -7,7 +7,6 @@
 #include "classify/classify.h"
 
 #include <math.h>
-#include <string.h>
 
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define THRESHOLD_MARGIN 0.0001
@@ -70,19 +69,23 @@ bool snow_classify_value(const snow_classifier *c, double native,
     const snow_volume_info *info = &c->volume->info;
     double value = info->slope * native + info->intercept;
     double opacity = snow_transfer_opacity(c->transfer, value);
-    memset(sample, 0, (size_t)c->channels * sizeof *sample);
+    sample[0] = sample[1] = 0; /* a call of memset costs more than the rest */
+    if (c->channels == 4)
+        sample[2] = sample[3] = 0;
     if (!(opacity > 0))
         return false;
     bool interesting =
         !(c->threshold > 0) || 255 * opacity > c->threshold + THRESHOLD_MARGIN;
     if (!interesting && !c->keep_all)
         return false;
-    double rgba[4];
-    snow_transfer_at(c->transfer, value, rgba);
-    double corrected = 1 - pow(1 - opacity, c->exponent);
+    double rgb[3];
+    snow_transfer_color(c->transfer, value, rgb);
+    /* pow(x, 1) is x: along an axis of a cubic grid the call can be spared. */
+    double clear = 1 - opacity;
+    double corrected = 1 - (c->exponent == 1 ? clear : pow(clear, c->exponent));
     double weight = c->premultiply ? corrected : 1;
     for (int i = 0; i < c->channels - 1; i++)
-        sample[i] = (float)(rgba[i] * weight);
+        sample[i] = (float)(rgb[i] * weight);
     sample[c->channels - 1] = (float)corrected;
     return interesting;
 }

@@ -99,6 +99,7 @@ typedef struct snow_shader {
     const snow_volume *volume;
     const snow_placement *placement;
     double ambient, diffuse, specular, shininess;
+    int whole; /* shininess when it is a whole number up to 1024, else -1 */
     double light[3], half[3], viewer[3]; /* W^T times the world vector */
     double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
 } snow_shader;

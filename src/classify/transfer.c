@@ -155,12 +155,17 @@ double snow_transfer_opacity(const snow_transfer *transfer, double value) {
 
 void snow_transfer_at(const snow_transfer *transfer, double value,
                       double rgba[4]) {
+    memset(rgba, 0, 4 * sizeof *rgba);
+    if (isnan(value))
+        return;
+    snow_transfer_color(transfer, value, rgba);
+    rgba[3] = snow_transfer_opacity(transfer, value);
+}
+
+void snow_transfer_color(const snow_transfer *transfer, double value,
+                         double rgb[3]) {
     const snow_color_point *points = transfer->colors;
     size_t low = 0, high = transfer->color_count; /* first one beyond */
-    if (isnan(value)) {
-        rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
-        return;
-    }
     while (low < high) {
         size_t middle = low + (high - low) / 2;
         if (points[middle].value > value)
@@ -174,8 +179,7 @@ void snow_transfer_at(const snow_transfer *transfer, double value,
         b = a + 1;
         t = part_of_way(value, a->value, b->value);
     }
-    rgba[0] = mix(a->red, b->red, t);
-    rgba[1] = mix(a->green, b->green, t);
-    rgba[2] = mix(a->blue, b->blue, t);
-    rgba[3] = snow_transfer_opacity(transfer, value);
+    rgb[0] = mix(a->red, b->red, t);
+    rgb[1] = mix(a->green, b->green, t);
+    rgb[2] = mix(a->blue, b->blue, t);
 }

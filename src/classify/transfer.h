@@ -18,7 +18,10 @@ struct snow_transfer {
     char text[SNOW_TRANSFER_TEXT_BYTES]; /* what was chosen, for people */
 };
 
-/* Opacity alone: most voxels need no more. */
+/* Opacity alone: most voxels need no more; and colour alone, of a value that
+ * is not NaN. */
 double snow_transfer_opacity(const snow_transfer *transfer, double value);
+void snow_transfer_color(const snow_transfer *transfer, double value,
+                         double rgb[3]);
 
 #endif
