@@ -1,6 +1,6 @@
 /* frame.c - one picture, from voxels to pixels: figure 8 of the paper, whose
- * line numbers stand in the margin of snow_frame_render.  Each line calls one
- * stage of figure 7; how a stage works is told in its folder. */
+ * line numbers stand in the margins of render_slab and its callers.  Each line
+ * calls one stage of figure 7; how a stage works is told in its folder. */
 #include "frame.h"
 #include "base/base.h"
 #include "classify/classify.h"
@@ -199,8 +199,10 @@ static snow_status prepare(snow_job *job, const snow_volume *volume,
     SNOW_TRY(snow_splatter_init(context, p, settings->kernel,
                                 settings->footprint, job->channels,
                                 &job->splatter));
+    double mark = snow_seconds();
     SNOW_TRY(snow_sheet_begin(context, p->width, p->height, job->channels,
                               &frame->sheet));
+    lap(&mark, &frame->stats.seconds_composite);
     return snow_reserve(context, &frame->spans, &frame->spans_capacity, 0,
                         ((size_t)p->columns / 2 + 1) * sizeof *frame->spans);
 }
@@ -274,8 +276,8 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
                                    const snow_view *view,
                                    const snow_settings *settings, int parts,
                                    int part, snow_image **out) {
-    double start = snow_seconds();
-    snow_job job = {.frame = frame, .settings = *settings};
+    double start = snow_seconds(), cpu = snow_cpu_seconds();
+    snow_job job = {.frame = frame, .settings = snow_settings_known(settings)};
     snow_image *image = NULL;
     frame->stats = (snow_stats){0};
     /* 02 - 03 */ snow_status status = prepare(&job, volume, transfer, view);
@@ -286,6 +288,7 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
         job.pixels = snow_image_pixels(image);
         status = render_slab(&job, parts, part);
         frame->stats.seconds_frame = snow_seconds() - start;
+        frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
     }
     if (status == SNOW_OK)
         status = fill_stats(&job, volume, transfer, &frame->stats);

@@ -7,6 +7,10 @@
 
 #include <snowglass/render.h>
 
+/* The settings as far as the caller's record reaches (its `size`), defaults
+ * beyond. */
+snow_settings snow_settings_known(const snow_settings *asked);
+
 /* Checks every setting and replaces what is 0 or AUTO by what is meant for
  * this volume, but for the encoding, which is measured later.
  * Errors: SNOW_BAD_USAGE with the setting's name and range. */

@@ -31,11 +31,11 @@ static int find_name(const char *const *names, int count, const char *name) {
 }
 
 const char *snow_method_name(snow_method method) {
-    return methods[method];
+    return (int)method < COUNT(methods) ? methods[method] : NULL;
 }
 
 const char *snow_encoding_name(snow_encoding encoding) {
-    return encodings[encoding];
+    return (int)encoding < COUNT(encodings) ? encodings[encoding] : NULL;
 }
 
 int snow_method_named(const char *name) {
@@ -46,14 +46,24 @@ int snow_encoding_named(const char *name) {
     return find_name(encodings, COUNT(encodings), name);
 }
 
-void snow_settings_init(snow_settings *settings) {
-    *settings = (snow_settings){
-        .size = sizeof *settings,
-        .ambient = 0.2,
-        .diffuse = 0.7,
-        .specular = 0.2,
-        .shininess = 20,
-    };
+static const snow_settings defaults = {
+    .ambient = 0.2,
+    .diffuse = 0.7,
+    .specular = 0.2,
+    .shininess = 20,
+};
+
+void snow_settings_init_sized(snow_settings *settings, size_t size) {
+    memcpy(settings, &defaults,
+           size < sizeof defaults ? size : sizeof defaults);
+    settings->size = size;
+}
+
+snow_settings snow_settings_known(const snow_settings *asked) {
+    snow_settings known = defaults;
+    memcpy(&known, asked,
+           asked->size < sizeof known ? asked->size : sizeof known);
+    return known;
 }
 
 /* Refuses a number outside of [low, high], or not a number. */
@@ -99,10 +109,11 @@ static snow_status check_numbers(snow_context *context,
 
 snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume *volume, snow_settings *s) {
-    if (s->size != sizeof *s)
+    if (s->size < sizeof s->size)
         return snow_fail(context, SNOW_BAD_USAGE,
-                         "settings are of another version; fill them with "
-                         "snow_settings_init");
+                         "settings of %zu bytes are none; fill them with "
+                         "snow_settings_init",
+                         s->size);
     SNOW_TRY(check_choice(context, "method", (int)s->method, COUNT(methods)));
     SNOW_TRY(
         check_choice(context, "encoding", (int)s->encoding, COUNT(encodings)));

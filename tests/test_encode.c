@@ -52,7 +52,7 @@ static void assert_walks_like(const snow_sparse *sparse,
     int64_t rows = sparse->rows, columns = sparse->columns;
     snow_span *spans = malloc(((size_t)columns / 2 + 1) * sizeof *spans);
     assert_non_null(spans);
-    for (int64_t slice = sparse->slices - 1; slice >= 0; slice--) {
+    for (int64_t slice = sparse->filled - 1; slice >= 0; slice--) {
         snow_walk walk;
         snow_walk_begin(&walk, sparse, slice);
         float number = (float)sparse->pa[slice].ia + 1;

@@ -374,6 +374,39 @@ static void settings_and_views_out_of_range_are_refused(void **state) {
     model_close(&stage);
 }
 
+/* A record of an older header ends before the light; one of a newer header goes
+ * on behind what this library knows. */
+static void settings_of_other_versions_are_read_as_far_as_known(void **state) {
+    (void)state;
+    struct {
+        snow_settings settings;
+        double beyond[4];
+    } newer;
+    snow_settings older;
+    memset(&newer, 7, sizeof newer);
+    memset(&older, 7, sizeof older);
+    size_t known = offsetof(snow_settings, light_azimuth);
+    snow_settings_init_sized(&newer.settings, sizeof newer);
+    snow_settings_init_sized(&older, known);
+    const unsigned char *bytes = (const unsigned char *)&older;
+    for (size_t i = known; i < sizeof older; i++)
+        assert_int_equal(bytes[i], 7);
+    model_stage stage = model_open();
+    reference_scene scene =
+        model_scene((int64_t[]){9, 8, 7}, SNOW_UINT8, true, MODEL_PLAIN, 1);
+    float *plain = model_picture(&stage, &scene);
+    snow_settings *versions[] = {&older, &newer.settings};
+    for (int n = 0; n < 2; n++) {
+        memcpy(&scene.settings, versions[n], sizeof scene.settings);
+        float *picture = model_picture(&stage, &scene);
+        assert_memory_equal(picture, plain, 64 * 48 * 4 * sizeof *plain);
+        free(picture);
+    }
+    free(plain);
+    model_free(&scene);
+    model_close(&stage);
+}
+
 /* Magnified without end the picture is its middle; diminished without end it
  * has next to nothing, at no cost.  Tables are not read past their ends: the
  * sanitizers see that. */
@@ -423,6 +456,7 @@ int main(void) {
         cmocka_unit_test(slices_are_taken_along_the_most_parallel_normal),
         cmocka_unit_test(of_equally_parallel_axes_the_last_is_taken),
         cmocka_unit_test(any_zoom_is_safe_and_quick),
+        cmocka_unit_test(settings_of_other_versions_are_read_as_far_as_known),
         cmocka_unit_test(settings_and_views_out_of_range_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

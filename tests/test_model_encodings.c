@@ -259,6 +259,7 @@ static void figures_count_the_interesting_voxels(void **state) {
             assert_int_equal(stats->method, ways[w].method);
         if (ways[w].encoding != SNOW_ENCODING_AUTO) {
             assert_int_equal(stats->encoding, ways[w].encoding);
+            assert_int_equal(stats->pa_bytes, (7 + 1) * 16);
             assert_true(stats->ia_bytes >= (uint64_t)interesting * 8);
         }
     }

@@ -348,6 +348,59 @@ static void opacities_of_other_lengths_than_a_voxel(void **state) {
     model_close(&stage);
 }
 
+/* Less shear than a pixel over all slices, yet more than the footprint tables
+ * may leave out of account from one slice to the next. */
+static void slices_that_are_shifted_a_little(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    model_tally tally = {0};
+    for (size_t n = 0; n < COUNT(kernels); n++) {
+        reference_scene scene = model_scene((int64_t[]){9, 8, 64}, SNOW_UINT8,
+                                            true, MODEL_PLAIN, n);
+        scene.info.matrix[0][2] = 0.003;
+        scene.settings.kernel = kernels[n];
+        scene.settings.footprint = 3;
+        model_turn(&scene, 0, 0, 0, 3);
+        model_check(&stage, &scene, 1e-5, &tally);
+        model_free(&scene);
+    }
+    model_report(&tally);
+    model_close(&stage);
+}
+
+/* Only the direction of a gradient counts, however small or large it is. */
+static void values_of_any_magnitude_are_shaded_alike(void **state) {
+    (void)state;
+    static const double scales[] = {1, 0x1p-560, 0x1p900};
+    model_stage stage = model_open();
+    float *first = NULL;
+    for (size_t n = 0; n < COUNT(scales); n++) {
+        reference_scene scene =
+            model_scene(dims, SNOW_FLOAT64, true, MODEL_OBLIQUE, 5);
+        size_t voxels = (size_t)(dims[0] * dims[1] * dims[2]);
+        double *scaled = malloc(voxels * sizeof *scaled);
+        assert_non_null(scaled);
+        for (size_t i = 0; i < voxels; i++)
+            scaled[i] = ((const double *)scene.voxels)[i] * scales[n];
+        const void *own = scene.voxels;
+        scene.voxels = scaled;
+        scene.info.slope /= scales[n];
+        model_turn(&scene, 30, 20, 0, 1);
+        float *picture = model_picture(&stage, &scene);
+        for (int i = 0; first && i < 64 * 48 * 4; i++)
+            assert_near((double)picture[i], (double)first[i], 1e-6);
+        if (first)
+            free(picture);
+        else
+            first = picture;
+        free(scaled);
+        scene.voxels = own;
+        model_free(&scene);
+    }
+    free(first);
+    model_close(&stage);
+}
+
 static void transfer_functions_of_any_shape(void **state) {
     (void)state;
     static const snow_opacity_point one[] = {{50, 0.4}};
@@ -388,6 +441,8 @@ int main(void) {
         cmocka_unit_test(voxels_that_are_no_numbers_or_infinite),
         cmocka_unit_test(lights_from_all_sides_and_every_coefficient),
         cmocka_unit_test(opacities_of_other_lengths_than_a_voxel),
+        cmocka_unit_test(slices_that_are_shifted_a_little),
+        cmocka_unit_test(values_of_any_magnitude_are_shaded_alike),
         cmocka_unit_test(transfer_functions_of_any_shape),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,7 +18,8 @@ typedef struct snow_frame snow_frame;
 /* How voxels reach the picture. */
 typedef enum snow_method {
     SNOW_METHOD_AUTO = 0,
-    SNOW_METHOD_ORIGINAL, /* every voxel, no sparse matrix: the baseline */
+    SNOW_METHOD_ORIGINAL, /* every voxel, no sparse matrix, whatever the
+                              threshold: the baseline */
     SNOW_METHOD_TESTED,   /* as original, but each voxel's opacity is tested
                              against the threshold first: the honest one */
     SNOW_METHOD_FOOTPRINT /* interesting voxels only, through an encoding */
@@ -42,7 +43,9 @@ typedef enum snow_kernel {
 
 typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 
-/* What a picture is made with.  Fill with snow_settings_init, then change. */
+/* What a picture is made with.  Fill with snow_settings_init, then change.
+ * The record may grow: `size` tells the library which fields the caller knows;
+ * the others keep their defaults. */
 typedef struct snow_settings {
     size_t size;            /* bytes of this record, set by the initialiser */
     double threshold;       /* opacity 0 to 255; greater is interesting (0) */
@@ -62,7 +65,12 @@ typedef struct snow_settings {
     double light_elevation; /* degrees up (0) */
 } snow_settings;
 
-SNOW_API void snow_settings_init(snow_settings *settings);
+/* The defaults, as far as a record of `size` bytes reaches. */
+SNOW_API void snow_settings_init_sized(snow_settings *settings, size_t size);
+
+static inline void snow_settings_init(snow_settings *settings) {
+    snow_settings_init_sized(settings, sizeof *settings);
+}
 
 /* What the last picture took.  Seconds are wall time. */
 typedef struct snow_stats {
@@ -82,6 +90,7 @@ typedef struct snow_stats {
     double seconds_splat;     /* footprints into sheets */
     double seconds_composite; /* sheets into the image */
     double seconds_frame;     /* the whole picture */
+    double cpu_frame;         /* the same in processor time of the process */
 } snow_stats;
 
 /* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */
@@ -97,11 +106,12 @@ SNOW_API snow_status snow_frame_render(
     snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
-/* Figures of the last picture; owned by the frame. */
+/* Figures of the last picture; owned by the frame.  Zeros before the first one;
+ * after a failure what was counted until then. */
 SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
 
-/* Names as the command line writes them, and back; a name that is unknown
- * gives -1.  SNOW_METHOD_TESTED is "tested". */
+/* Names as the command line writes them (NULL past the last value), and back;
+ * a name that is unknown gives -1.  SNOW_METHOD_TESTED is "tested". */
 SNOW_API const char *snow_method_name(snow_method method);
 SNOW_API const char *snow_encoding_name(snow_encoding encoding);
 SNOW_API const char *snow_kernel_name(snow_kernel kernel);

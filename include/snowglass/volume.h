@@ -136,7 +136,9 @@ SNOW_API const snow_volume_info *snow_volume_describe(const snow_volume *);
 SNOW_API const void *snow_volume_voxels(const snow_volume *volume);
 
 /* Figures over the finite data values, after slope and intercept, summed in
- * double in storage order.  min and max are NaN when no voxel is finite. */
+ * double in storage order.  64-bit integers beyond 2^53 are rounded to double
+ * first, here and wherever values are looked at.  min and max are NaN when no
+ * voxel is finite. */
 typedef struct snow_volume_measures {
     int64_t voxels; /* all */
     int64_t finite; /* finite ones */

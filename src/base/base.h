@@ -69,8 +69,10 @@ bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out);
 /* --- time ------------------------------------------------------------------
  */
 
-/* Seconds of a steady clock; only differences mean something. */
+/* Seconds of a steady clock, and of this process' processor time; only
+ * differences mean something. */
 double snow_seconds(void);
+double snow_cpu_seconds(void);
 
 /* --- text ------------------------------------------------------------------
  */

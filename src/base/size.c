@@ -1,4 +1,4 @@
-/* base/size.c - sizes that cannot overflow unseen, and the steady clock. */
+/* base/size.c - sizes that cannot overflow unseen, and the clocks. */
 #include "base/base.h"
 
 #include <time.h>
@@ -17,8 +17,16 @@ bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out) {
     return true;
 }
 
-double snow_seconds(void) {
+static double seconds_of(clockid_t clock) {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+double snow_seconds(void) {
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+double snow_cpu_seconds(void) {
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }

@@ -24,12 +24,12 @@ typedef struct snow_strip {
     size_t *row_end;   /* per row: the entries up to its end */
     uint32_t *columns; /* per entry */
     float *samples;    /* per entry: (grey, a) or (r, g, b, a) */
-    /* What the buffers have room for, set by snow_strip_init. */
-    int64_t room_rows, room_columns;
+    int64_t room_rows; /* that the buffers hold, set by snow_strip_init */
 } snow_strip;
 
 /* Makes room for strips of slices placed so.  The strip's buffers belong to
- * the context; free with snow_strip_free.  Errors: SNOW_NO_MEMORY. */
+ * the context; free with snow_strip_free.  Errors: SNOW_BAD_USAGE (a row of
+ * 2^32 voxels or more), SNOW_NO_MEMORY. */
 snow_status snow_strip_init(snow_context *context,
                             const snow_placement *placement, int channels,
                             snow_strip *strip);

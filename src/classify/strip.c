@@ -8,14 +8,18 @@
 snow_status snow_strip_init(snow_context *context,
                             const snow_placement *placement, int channels,
                             snow_strip *strip) {
+    if (placement->columns > UINT32_MAX)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "rows of %lld voxels are too long to render; take a "
+                         "part of the volume",
+                         (long long)placement->columns);
     int64_t rows = STRIP_VOXELS / placement->columns;
     if (rows > placement->rows)
         rows = placement->rows;
     if (rows < 1)
         rows = 1;
     uint64_t voxels = (uint64_t)rows * (uint64_t)placement->columns;
-    *strip =
-        (snow_strip){.room_rows = rows, .room_columns = placement->columns};
+    *strip = (snow_strip){.room_rows = rows};
     strip->row_end =
         snow_allocate_array(context, (uint64_t)rows, sizeof *strip->row_end);
     strip->columns =

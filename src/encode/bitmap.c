@@ -58,6 +58,5 @@ static size_t bitmap_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-const snow_scheme snow_scheme_bitmap = {"bitmap", bitmap_begin_slice,
-                                        bitmap_add_row, bitmap_end_slice,
-                                        bitmap_next_row};
+const snow_scheme snow_scheme_bitmap = {bitmap_begin_slice, bitmap_add_row,
+                                        bitmap_end_slice, bitmap_next_row};

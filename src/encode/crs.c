@@ -79,5 +79,5 @@ static size_t crs_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-const snow_scheme snow_scheme_crs = {"crs", crs_begin_slice, crs_add_row,
+const snow_scheme snow_scheme_crs = {crs_begin_slice, crs_add_row,
                                      crs_end_slice, crs_next_row};

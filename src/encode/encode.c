@@ -46,7 +46,7 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
     s->channels = channels;
     s->columns = placement->columns;
     s->rows = placement->rows;
-    s->slices = placement->slices;
+
     s->filled = 0;
     s->ea_bytes = s->ia_voxels = 0;
     s->pa[0] = (snow_slice_pointer){0, 0};

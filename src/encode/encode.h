@@ -35,13 +35,13 @@ typedef struct snow_sparse {
     const snow_scheme *scheme;
     int channels;          /* floats of a sample: 2 or 4 */
     int64_t columns, rows; /* of a slice */
-    int64_t slices;        /* of the whole */
-    int64_t filled;        /* slices ended so far */
-    unsigned char *ea;     /* with 8 bytes beyond its end, to be read past */
+
+    int64_t filled;    /* slices ended so far */
+    unsigned char *ea; /* with 8 bytes beyond its end, to be read past */
     size_t ea_bytes, ea_capacity;
     float *ia;
     size_t ia_voxels, ia_capacity; /* capacity in bytes */
-    snow_slice_pointer *pa;        /* slices + 1 */
+    snow_slice_pointer *pa;        /* one more than slices */
     size_t pa_capacity;
     int64_t row; /* next row of the slice being encoded */
     /* RLE, while encoding: the run that is still growing. */
@@ -62,7 +62,6 @@ typedef struct snow_walk {
 
 /* A way to write EA (section 3.2). */
 struct snow_scheme {
-    const char *name;
     /* Begins a slice, appends its rows (columns of the interesting voxels,
      * rising), ends it.  Errors: SNOW_NO_MEMORY. */
     snow_status (*begin_slice)(snow_sparse *sparse);

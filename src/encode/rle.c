@@ -77,5 +77,5 @@ static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-const snow_scheme snow_scheme_rle = {"rle", rle_begin_slice, rle_add_row,
+const snow_scheme snow_scheme_rle = {rle_begin_slice, rle_add_row,
                                      rle_end_slice, rle_next_row};

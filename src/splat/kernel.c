@@ -79,7 +79,7 @@ static const struct kernel_entry {
 #define KERNEL_COUNT (int)(sizeof kernels / sizeof kernels[0])
 
 const char *snow_kernel_name(snow_kernel kernel) {
-    return kernels[kernel].name;
+    return (int)kernel < KERNEL_COUNT ? kernels[kernel].name : NULL;
 }
 
 int snow_kernel_named(const char *name) {
