@@ -102,9 +102,10 @@ snow_status snow_fail_within(snow_context *context, snow_status status,
         vsnprintf(context->message, sizeof context->message, format, arguments);
     va_end(arguments);
     size_t at = used < 0 ? 0 : (size_t)used;
-    if (at < sizeof context->message)
-        snprintf(context->message + at, sizeof context->message - at, ": %s",
-                 below);
+    /* What does not fit any more is cut off at the end. */
+    if (at + 3 < sizeof context->message)
+        snprintf(context->message + at, sizeof context->message - at, ": %.*s",
+                 (int)(sizeof context->message - at - 3), below);
     return status;
 }
 
