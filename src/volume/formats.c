@@ -139,7 +139,8 @@ static snow_status name_failure(snow_context *context, snow_status status,
                                 const char *name) {
     char *message = context->message;
     size_t length = strlen(name);
-    if (strncmp(message, name, length) != 0 || message[length] != ':')
+    if (length &&
+        (strncmp(message, name, length) != 0 || message[length] != ':'))
         snow_fail_within(context, status, "%s", name);
     for (char *at = message; *at; at++)
         if ((unsigned char)*at < ' ' || *at == 127)
@@ -199,7 +200,8 @@ snow_status snow_volume_open(snow_context *context, const char *path,
     snow_source *source;
     snow_status status = snow_source_open(context, path, &source);
     if (status != SNOW_OK)
-        return name_failure(context, status, path);
+        return name_failure(context, status,
+                            strcmp(path, "-") ? path : "standard input");
     return open_source(source, options, out);
 }
 
