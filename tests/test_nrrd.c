@@ -2,6 +2,7 @@
  * same place in space, or a refusal. */
 #include "support_files.h"
 
+#include <float.h>
 #include <math.h>
 
 /* Room for a header and 48 bytes of data, packed at worst. */
@@ -289,6 +290,14 @@ static void numbers_in_text_are_read(void **state) {
         NULL);
     assert_true(*(const uint32_t *)snow_volume_voxels(volume) == UINT32_MAX);
     snow_volume_close(volume);
+    volume = support_opened(
+        &files,
+        support_write_text(&files, "e.nrrd",
+                           MAGIC "type: float\ndimension: 1\nsizes: 1\n"
+                                 "encoding: ascii\n\n3.4028235e38"),
+        NULL);
+    assert_true(*(const float *)snow_volume_voxels(volume) == FLT_MAX);
+    snow_volume_close(volume);
     support_files_end(&files);
 }
 
@@ -297,9 +306,11 @@ static void text_that_is_no_number_of_the_type_is_refused(void **state) {
     support_files files;
     support_files_begin(&files);
     static const char *const texts[][2] = {
-        {"uint8", "1 256"}, {"uint8", "1 -1"},    {"int8", "1 128"},
-        {"short", "1 2.5"}, {"uint64", "1 -1"},   {"int", "1 x"},
-        {"double", "1 1e"}, {"int64", "1 1e999"}, {"uint", "1 -1"},
+        {"uint8", "1 256"},    {"uint8", "1 -1"},    {"int8", "1 128"},
+        {"short", "1 2.5"},    {"uint64", "1 -1"},   {"int", "1 x"},
+        {"double", "1 1e"},    {"int64", "1 1e999"}, {"uint", "1 -1"},
+        {"short", "1 0x10"},   {"short", "1 1e1"},   {"double", "1 0x10"},
+        {"float", "1 3.5e38"}, {"uint64", "1 +-1"},  {"uint64", "1 1."},
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char text[200];

@@ -6,6 +6,8 @@
  *   nrrd_files.c   data file  -> nrrd_files   which files hold the voxels
  *   nrrd_data.c    files      -> voxels       through the encoding
  *
+ * numbers.c beside them reads the encoding "ascii".
+ *
  * After "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html
  * (versions 1 to 5). */
 #ifndef SNOW_NRRD_H
@@ -152,10 +154,5 @@ snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,
                                 const nrrd_window *window, snow_volume **out);
-
-/* Takes `window->all` bytes worth of numbers in text, and keeps those in the
- * window. */
-snow_status snow_nrrd_read_numbers(snow_source *source, snow_type type,
-                                   const nrrd_window *window, void *voxels);
 
 #endif
