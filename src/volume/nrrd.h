@@ -18,7 +18,10 @@
 #define NRRD_MOST_AXES 16
 
 /* X(NAME, spelling, other spelling); the format ignores case.  Fields that say
- * nothing about where a voxel lies or what it is worth are known but unused. */
+ * nothing about where a voxel lies or what it is worth are known but unused.
+ * The axes' ends ("axis mins" and "axis maxs", with "centers") are heeded where
+ * neither spacings nor directions are told, which come before them; min and max
+ * are of the values, which are measured, not believed. */
 #define NRRD_FIELD_MAP(X)                         \
     X(TYPE, "type", "")                           \
     X(DIMENSION, "dimension", "")                 \
@@ -80,7 +83,8 @@ typedef enum nrrd_role {
 
 typedef struct nrrd_axis {
     int64_t size;
-    double spacing;      /* 1 when not told */
+    double spacing;      /* 1 when not told; below 0: runs backwards */
+    double first;        /* where sample 0 lies along it; 0 when not told */
     double direction[4]; /* world step; the 4th is time */
     bool directed;       /* has a direction */
     nrrd_role role;

@@ -124,6 +124,8 @@ static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
         complete_columns(m, choice->spaces);
     for (int i = 0; i < 3; i++) {
         m[i][3] = header->origin[i];
+        if (i < choice->spaces) /* 0 where directions or an origin are told */
+            m[i][3] += header->axes[choice->space[i]].first;
         for (int j = 0; j < 4; j++)
             /* + 0: no negative zeros to puzzle over. */
             m[i][j] = m[i][j] * header->turn[i] + 0.0;
