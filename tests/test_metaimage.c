@@ -401,6 +401,9 @@ static void cut_files_are_refused_at_every_length(void **state) {
     for (f.size = 1; f.size < whole; f.size++)
         support_place_refuse(place, "a.mha", f.bytes, f.size, "", LITTLE);
     support_place_refuse(place, "a.mha", "", 0, "empty", LITTLE);
+    const char *cut = header_with("", "LOCAL\n", "LOC");
+    support_place_refuse(place, "a.mha", cut, strlen(cut), "may be cut",
+                         LITTLE);
 }
 
 static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
@@ -419,6 +422,9 @@ static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
     };
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         refuse_header(place, header_with("", "3 2 2", sizes[i]), "DimSize");
+    refuse_header(place, header_with("", "3 2 2", "3 4 99999999999999999999"),
+                  "too large");
+    refuse_header(place, header_with("", "3 2 2", "3 0 2"), "at least 1");
     refuse_header(place, header_with("", "3 2 2", "3000 2000 2000"),
                   "bytes left");
     refuse_header(place, header_with("", "3 2 2", "30000 20000 20000"), "");

@@ -245,8 +245,16 @@ static snow_status read_detached(snow_source *source,
                                  const metaimage_header *header,
                                  snow_volume **out) {
     snow_source *data;
-    SNOW_TRY(open_data(source, header, header->data, &data));
-    snow_status status = read_whole(data, header, out);
+    snow_status status = open_data(source, header, header->data, &data);
+    /* The name of a file, as far as the header goes. */
+    if (status == SNOW_BAD_INPUT && *header->data &&
+        !strncmp("LOCAL", header->data, strlen(header->data)))
+        return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                         "its data file \"%s\" cannot be opened; the header "
+                         "may be cut within LOCAL",
+                         header->data);
+    SNOW_TRY(status);
+    status = read_whole(data, header, out);
     snow_source_close(data);
     return status;
 }
@@ -277,7 +285,8 @@ static snow_status read_metaimage(snow_source *source,
     snow_context *context = snow_source_context(source);
     metaimage_header header;
     SNOW_TRY(metaimage_read_header(source, &header));
-    SNOW_TRY(snow_volume_pick_time(context, options, &header.info));
+    SNOW_TRY(
+        snow_volume_pick_time(context, "time step", options, &header.info));
     snow_volume *volume = NULL;
     snow_status status = read_data(source, &header, &volume);
     if (status != SNOW_OK) {

@@ -146,7 +146,7 @@ snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
         info->times = header->axes[choice.time].size;
     fill_matrix(header, &choice, info->matrix);
     SNOW_TRY(snow_volume_info_check(context, info));
-    SNOW_TRY(snow_volume_pick_time(context, options, info));
+    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     int64_t voxels;
     snow_volume_count(info->dims, info->type, &voxels, &window->count);
     if (!snow_mul_u64(window->count, (uint64_t)info->times, &window->all) ||
