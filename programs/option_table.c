@@ -61,10 +61,11 @@ const option_row option_table[] = {
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "", "its support in voxels, 2 to 9 (2 for tent and box, else 4)"},
 
-    {"preset", 0, "NAME", TOPIC_LOOK, INPUT, read_text, FIELD(preset), 0, 0, "",
+    {"preset", 0, "NAME", TOPIC_LOOK, INPUT, read_preset, FIELD(preset), 0, 0,
+     "",
      "a transfer function by name (chosen from the histogram)"},
-    {"colormap", 'c', "NAME", TOPIC_LOOK, INPUT, read_text, FIELD(colormap), 0,
-     0, "", "colours along the range (grey, or the preset's)"},
+    {"colormap", 'c', "NAME", TOPIC_LOOK, INPUT, read_colormap, FIELD(colormap),
+     0, 0, "", "colours along the range (grey, or the preset's)"},
     {"opacity", 0, "V:O,V:O", TOPIC_LOOK, INPUT, read_points, FIELD(opacities),
      0, 0, "", "opacities 0 to 1 at data values, linear between them"},
     {"window", 'w', "W", TOPIC_LOOK, INPUT, read_real, FIELD(window), 1e-300,
@@ -99,7 +100,7 @@ const option_row option_table[] = {
     LATER("quality", 0, "draft|normal|high", TOPIC_QUALITY,
           "--kernel and --footprint set the quality"),
 
-    {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_text, FIELD(view), 0, 0, "",
+    {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_view, FIELD(view), 0, 0, "",
      "the side the camera is on (anterior when the file has a medical "
      "orientation, else +z)"},
     {"azimuth", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(azimuth),

@@ -185,6 +185,48 @@ bool read_type(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* The end of a sentence that lists the library's names. */
+static bool refuse_name(const char *(*name)(size_t), char wrong[WRONG_BYTES]) {
+    size_t used = (size_t)snprintf(wrong, WRONG_BYTES,
+                                   "is unknown; choose from: %s", name(0));
+    for (size_t i = 1; name(i) && used < WRONG_BYTES; i++)
+        used +=
+            (size_t)snprintf(wrong + used, WRONG_BYTES - used, ", %s", name(i));
+    return false;
+}
+
+/* The library would refuse wrong names too, but only when it has read the
+ * volume that the look is for. */
+bool read_preset(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    if (snow_preset_named(text) < 0)
+        return refuse_name(snow_preset_name, wrong);
+    return read_text(row, text, field, wrong);
+}
+
+bool read_colormap(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    if (snow_colormap_named(text) < 0)
+        return refuse_name(snow_colormap_name, wrong);
+    return read_text(row, text, field, wrong);
+}
+
+/* Only the library knows which spellings are one view, and it wants a context
+ * for its message.  Without memory for one the name is believed: the command
+ * will fail for the same reason. */
+bool read_view(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    snow_context *context = NULL;
+    snow_view view;
+    snow_status status = snow_context_new(NULL, &context);
+    if (status == SNOW_OK)
+        status = snow_view_named(context, text, &view);
+    snow_context_free(context);
+    if (status == SNOW_BAD_USAGE)
+        return refuse_name(snow_view_name, wrong);
+    return read_text(row, text, field, wrong);
+}
+
 bool read_color(const option_row *row, const char *text, void *field,
                 char wrong[WRONG_BYTES]) {
     (void)row;
