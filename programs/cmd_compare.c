@@ -3,25 +3,10 @@
 #include "report.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-/* So that a picture can come from a pipe: render -o - | compare - b.png. */
-static int load_stream(snow_context *context, snow_image **out) {
-    char *bytes;
-    size_t size;
-    int done = read_standard_input(&bytes, &size);
-    if (done != GO_ON)
-        return done;
-    snow_status status =
-        snow_image_load_memory(context, "standard input", bytes, size, out);
-    free(bytes);
-    return status == SNOW_OK ? GO_ON : fail_status(context, status);
-}
-
+/* "-" is standard input, so that a picture can come from a pipe:
+ * render -o - | compare - b.png. */
 static int load(snow_context *context, const char *path, snow_image **out) {
-    if (strcmp(path, "-") == 0)
-        return load_stream(context, out);
     snow_status status = snow_image_load(context, path, out);
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }

@@ -179,9 +179,9 @@ static void tell_choices(const work *w, const options *asked) {
     bool encoded = stats->encoding != SNOW_ENCODING_AUTO;
     char volume[256];
     describe_volume(w->volume, volume, sizeof volume);
-    say("%s: %s; %s; view %s; method %s%s%s", asked->operands[0], volume,
-        snow_transfer_text(w->transfer), view, snow_method_name(stats->method),
-        encoded ? ", encoding " : "",
+    say("%s: %s; %s; view %s; method %s%s%s", name_of_input(asked->operands[0]),
+        volume, snow_transfer_text(w->transfer), view,
+        snow_method_name(stats->method), encoded ? ", encoding " : "",
         encoded ? snow_encoding_name(stats->encoding) : "");
 }
 
