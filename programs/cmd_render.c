@@ -165,7 +165,9 @@ static int make_picture(work *w, const options *asked) {
     if (status == SNOW_OK)
         status = snow_frame_render(w->frame, w->volume, w->transfer, &view,
                                    &w->settings, &w->image);
-    return status == SNOW_OK ? GO_ON : fail_status(w->context, status);
+    return status == SNOW_OK ? GO_ON
+                             : fail_volume(w->context, status,
+                                           name_of_input(asked->operands[0]));
 }
 
 /* The one line that says what was chosen where nothing was told. */

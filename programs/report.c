@@ -72,6 +72,14 @@ int fail_status(const snow_context *context, snow_status status) {
     return (int)status;
 }
 
+int fail_volume(const snow_context *context, snow_status status,
+                const char *input) {
+    if (status != SNOW_BAD_INPUT)
+        return fail_status(context, status);
+    say("%s: %s", input, snow_context_message(context));
+    return (int)status;
+}
+
 static void hear_notice(void *user, const char *text) {
     (void)user;
     say("note: %s", text);

@@ -16,6 +16,11 @@ int fail_usage(const char *format, ...) SNOW_PRINTF(1, 2);
 int fail_output(const char *format, ...) SNOW_PRINTF(1, 2);
 int fail_status(const snow_context *context, snow_status status);
 
+/* The same for a stage that was given a volume in memory: it can find fault
+ * with the input, but not say which file that came from. */
+int fail_volume(const snow_context *context, snow_status status,
+                const char *input);
+
 /* Makes a context whose remarks go to standard error, unless quiet.
  * Answers GO_ON or an exit code. */
 int open_context(const options *asked, snow_context **out);

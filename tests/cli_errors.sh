@@ -23,6 +23,25 @@ for verb in info render; do
     refused 3 "$verb of dimensions beyond all memory" "short.raw" "$TOOL" \
         $verb short.raw --dims 4000000000x4000000000x8 --type uint8 $output
 done
+raw_cube eight.raw 8
+raw="--dims 8x8x8 --type uint8"
+# shellcheck disable=SC2086
+refused 3 "voxels that no picture can show" \
+    "^snowglass: eight.raw: voxels of .* cannot be seen at zoom" "$TOOL" \
+    eight.raw $raw --spacing 1e-30x1e30x1e30 -o z.png
+given() {
+    local file=$1
+    shift
+    cat "$file" | "$TOOL" "$@"
+}
+# shellcheck disable=SC2086
+refused 3 "the same from standard input" \
+    "^snowglass: standard input: voxels of" given eight.raw \
+    - $raw --spacing 1e-30x1e30x1e30 -o z.png
+refused 3 "an empty standard input" "^snowglass: standard input: [^:]*empty" \
+    given empty.raw info -
+refused 3 "a device as standard input" "^snowglass: standard input: is a dev" \
+    "$TOOL" compare - -
 printf 'a\nb\033[2J' >"$(printf 'odd\nname\033[2J.nrrd')"
 run 3 "a name with line ends and escapes" "$TOOL" info \
     "$(printf 'odd\nname\033[2J.nrrd')"
