@@ -1,6 +1,7 @@
 /* cmd_phantom.c - writes a built-in test volume to a file. */
 #include "commands.h"
 #include "interrupt.h"
+#include "outputs.h"
 #include "report.h"
 
 static int save(snow_context *context, const options *asked,

@@ -4,6 +4,7 @@
  * options that contradict each other, and outputs that cannot be written. */
 #include "commands.h"
 #include "interrupt.h"
+#include "outputs.h"
 #include "render_stats.h"
 #include "report.h"
 
@@ -215,7 +216,7 @@ static int tell_figures(work *w, const options *asked) {
         return SNOW_OK;
     if (!is_special(asked->stats))
         interrupt_hold();
-    return write_json(stats_json(&report), asked->stats);
+    return write_json(stats_json(&report), asked->stats, asked->overwrite);
 }
 
 /* The stages in their order; the first fault ends them. */

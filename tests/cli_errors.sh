@@ -74,6 +74,36 @@ check "and no picture is written" absent a.png
 run 0 "with -y they are replaced" render -o a.png --stats stats.json -y
 check "by JSON" grep -q '^{"version"' stats.json
 
+mkdir figures
+echo old >figures/target.json
+ln -s figures/target.json link.json
+refused 4 "a link to figures" "link.json" render -o l.png --stats link.json
+run 0 "with -y figures follow a link" render -o l.png --stats link.json -y
+check "the link is still one" [ -L link.json ]
+check "and its target is new" grep -q '^{"version"' figures/target.json
+ln -s nowhere.json dangling.json
+refused 4 "figures at a link to nowhere" "dangling.json: exists" \
+    render -o d.png --stats dangling.json
+check "no picture is made" absent d.png
+long=$(printf 'n%.0s' $(seq 255))
+run 0 "figures of the longest name" render -o n.png --stats "$long"
+check "are figures" grep -q '^{"version"' "$long"
+check "nothing is left aside" [ -z "$(find . -name '*.snow-*')" ]
+
+# What comes into being while the picture is made is kept: the picture goes to
+# a pipe, and the figures' place is taken before the pipe is read.
+mkfifo slow.png
+render -q -o slow.png --stats raced.json 2>"$ERR" &
+job=$!
+sleep 0.5
+echo precious >raced.json
+timeout 60 cat slow.png >"$OUT"
+wait $job
+check "figures whose place was taken meanwhile are refused" [ $? -eq 4 ]
+NAME="they"
+says "raced.json: exists"
+check "what took it is kept" [ "$(cat raced.json)" = precious ]
+
 echo precious >there.nrrd
 cp there.nrrd kept
 refused 4 "an existing phantom" "there.nrrd" \
