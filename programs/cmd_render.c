@@ -197,9 +197,9 @@ static int write_picture(work *w, const options *asked) {
         .overwrite = asked->overwrite};
     memcpy(form.background, asked->background.rgb, sizeof form.background);
     double begin = seconds_now();
-    progress(asked, "writing");
     if (!is_special(asked->output))
-        interrupt_hold();
+        interrupt_hold(); /* before the word, so that who reads it may rely */
+    progress(asked, "writing");
     snow_status status = snow_image_save(w->image, asked->output, &form);
     w->times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->context, status);

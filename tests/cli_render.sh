@@ -158,6 +158,19 @@ kill -TERM $job
 wait $job
 check "SIGTERM while writing ends as usual" [ $? -eq 0 ]
 check "with a whole picture" is_png large.png
+"$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
+    -o second.png 2>stages &
+job=$!
+for _ in $(seq 600); do
+    grep -q writing stages && break
+    sleep 0.05
+done
+kill -TERM $job
+kill -HUP $job
+wait $job
+check "a second signal ends the writing at once" [ $? -eq 130 ]
+check "and leaves no picture" absent second.png
+rm -f .second.png.snow-*
 mkfifo pipe.png
 run 130 "SIGTERM while a pipe waits for its reader" timeout \
     --preserve-status -s TERM 3 "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 \
