@@ -88,6 +88,20 @@ static bool take_option(int option, const char *value, bench_options *out) {
     }
 }
 
+/* getopt_long takes any beginning of a name for the name; as in all verbs only
+ * the name in full counts, so that a later option cannot change what a script
+ * means. */
+static bool in_full(const char *word, const char *name) {
+    return strncmp(word, "--", 2) != 0 ||
+           strcspn(word + 2, "=") == strlen(name);
+}
+
+/* The word of the option just read: its value may stand behind it. */
+static const char *option_word(char **argv) {
+    bool apart = optarg && optarg == argv[optind - 1];
+    return argv[optind - (apart ? 2 : 1)];
+}
+
 /* Parses the command line into options and `*name`; an exit code, or -1 to go
  * on. */
 static int parse(int argc, char **argv, bench_options *options,
@@ -104,15 +118,16 @@ static int parse(int argc, char **argv, bench_options *options,
     };
     opterr = 0;
     optind = 0;
-    for (int option;
-         (option = getopt_long(argc, argv, "h", longs, NULL)) >= 0;) {
+    for (int option, index = 0;
+         (option = getopt_long(argc, argv, "h", longs, &index)) >= 0;) {
+        bool known = option != '?' && option != ':';
+        if (!known || !in_full(option_word(argv), longs[index].name))
+            return usage_error("unknown option or missing value",
+                               option_word(argv));
         if (option == 'h') {
             fputs(help, stdout);
             return SNOW_OK;
         }
-        if (option == '?' || option == ':')
-            return usage_error("unknown option or missing value",
-                               argv[optind - 1]);
         if (!take_option(option, optarg, options))
             return usage_error("this value is not possible:", optarg);
     }
@@ -132,6 +147,8 @@ int bench_main(int argc, char **argv) {
     for (size_t i = 0; i < ENTRY_COUNT; i++) {
         if (strcmp(name, entries[i].name) != 0)
             continue;
+        if (!bench_data_found(&options))
+            return SNOW_BAD_INPUT;
         snow_context *context;
         if (snow_context_new(NULL, &context) != SNOW_OK)
             return SNOW_NO_MEMORY;

@@ -7,10 +7,13 @@
  * sparse ratios. */
 #include "bench.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define PATH_BYTES 4096
 
 #define HEAD_OFFSET 88
 #define HEAD_SCALE 0.0825
@@ -32,6 +35,33 @@ static const struct bench_source {
                       "classic/engine_256x256x110_u8.raw.gz",
                       {.dims = {256, 256, 110}, .type = SNOW_UINT8}},
 };
+
+static void spell_path(const bench_options *options, const char *file,
+                       char *path, size_t size) {
+    snprintf(path, size, "%s/%s", options->data, file);
+}
+
+bool bench_data_found(const bench_options *options) {
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) {
+        char path[PATH_BYTES];
+        if (!options->data || !sources[i].file)
+            continue;
+        spell_path(options, sources[i].file, path, sizeof path);
+        FILE *file = fopen(path, "rb");
+        bool found = file && fgetc(file) != EOF; /* folders open, too */
+        const char *reason = file ? "cannot be read" : strerror(errno);
+        if (!found)
+            fprintf(stderr,
+                    "snowglass: bench: %s: %s; --data takes the folder that "
+                    "holds classic/\n",
+                    path, reason);
+        if (file)
+            fclose(file);
+        if (!found)
+            return false;
+    }
+    return true;
+}
 
 /* Puts the 16-bit head's voxels on 8 bits. */
 static snow_status map_head(snow_context *context, bench_volume *out) {
@@ -61,8 +91,8 @@ static snow_status open_file(snow_context *context, bench_set set,
         snprintf(out->source, sizeof out->source, "%s", source->phantom);
         return snow_volume_open(context, source->phantom, NULL, &out->file);
     }
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", options->data, source->file);
+    char path[PATH_BYTES];
+    spell_path(options, source->file, path, sizeof path);
     snprintf(out->source, sizeof out->source, "%s", source->file);
     return snow_volume_open(context, path, &source->options, &out->file);
 }

@@ -146,6 +146,30 @@ done <<'END'
 --window 3 --level 3 --range 1,2|does not go with --range
 --type uint8|type
 END
+# The bench reads its own options.
+while IFS='|' read -r arguments pattern; do
+    [ -n "$arguments" ] || continue
+    eval "set -- $arguments"
+    refused 2 "bench $arguments" "$pattern" "$TOOL" bench "$@"
+done <<'END'
+table1 --dat x|unknown option or missing value '--dat'
+table1 --dat=x|unknown option or missing value '--dat=x'
+table1 --he|unknown option or missing value '--he'
+table1 --foo|unknown option or missing value '--foo'
+table1 --runs|unknown option or missing value '--runs'
+table1 --runs 4|this value is not possible: '4'
+table1 --kernel cube|this value is not possible: 'cube'
+table4|there is no benchmark 'table4'
+table1 table2|give one table
+--json|give one table
+END
+for table in table1 table2 table3; do
+    refused 3 "bench $table without its files" \
+        "nowhere/classic/CThead.*: No such file" \
+        "$TOOL" bench $table --data nowhere
+done
+run 0 "bench -h" "$TOOL" bench -h
+
 for name in "--preset CT_Bone" "-c gray" "-c CoolWarm" "--view Left"; do
     # shellcheck disable=SC2086
     refused 3 "$name is a name" "nope.nii" \
