@@ -124,6 +124,8 @@ static void print_names(const char *title, const char *(*name)(size_t),
 /* The options of all verbs, then the names that they take. */
 static int print_topic_page(topic which) {
     print_heading(which);
+    if (topic_table[which].built)
+        printf("  built: %s\n", topic_table[which].built);
     print_options(which, ~0U);
     print_later(which);
     if (which == TOPIC_LOOK) {

@@ -110,7 +110,7 @@ const option_row option_table[] = {
     {"roll", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(roll), 0, 0,
      "", "then turns it clockwise (0)"},
     {"zoom", 0, "Z", TOPIC_CAMERA, RENDER, read_real, FIELD(zoom), 1e-6, 1e6,
-     "", "magnifies; at 1 the whole volume is in view (1)"},
+     "", "magnifies, 1e-6 to 1e6; at 1 the whole volume is in view (1)"},
     LATER("perspective", 0, "FOV", TOPIC_CAMERA,
           "leave it out for a parallel projection"),
     LATER("position", 0, "X,Y,Z", TOPIC_CAMERA,
@@ -152,7 +152,8 @@ const option_row option_table[] = {
      "avx2|avx512|neon", "instruction set of the kernels (scalar)"},
     {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
      FIELD(progress), 0, 0, "",
-     "names each stage on stderr as it begins (auto: on a terminal)"},
+     "only names each stage on stderr as it begins, without a bar (auto: on a "
+     "terminal)"},
     {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
      "write figures of the run as JSON; - is standard output; a file that "
      "exists needs --overwrite"},
@@ -201,17 +202,20 @@ const verb_row verb_table[] = {
 };
 
 const topic_row topic_table[] = {
-    {"output", "the picture file: size, background, bits"},
-    {"mode", "how samples make a pixel"},
-    {"sparse", "interesting voxels, encodings, methods"},
-    {"kernel", "the reconstruction kernel and its footprint"},
-    {"look", "transfer function, colours, shading"},
-    {"quality", "one word for speed or beauty"},
-    {"camera", "where the picture is taken from"},
-    {"labels", "letters and bars in the picture"},
-    {"data", "raw files, time steps"},
-    {"run", "threads, figures, talk"},
-    {"more", "options of single verbs"},
-    {NULL, NULL},
+    {"output", "the picture file: size, background, bits", NULL},
+    {"mode", "how samples make a pixel",
+     "over, as in the paper; not mip, minip, mean, sum, iso"},
+    {"sparse", "interesting voxels, encodings, methods", NULL},
+    {"kernel", "the reconstruction kernel and its footprint", NULL},
+    {"look", "transfer function, colours, shading", NULL},
+    {"quality", "one word for speed or beauty",
+     "one quality, set by --kernel and --footprint"},
+    {"camera", "where the picture is taken from", NULL},
+    {"labels", "letters and bars in the picture",
+     "none yet: the picture shows the volume alone"},
+    {"data", "raw files, time steps", NULL},
+    {"run", "threads, figures, talk", NULL},
+    {"more", "options of single verbs", NULL},
+    {NULL, NULL, NULL},
 };
 /* clang-format on */
