@@ -13,11 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A longer --data is cut, not found, and told with the name that was tried. */
 #define PATH_BYTES 4096
 
 #define HEAD_OFFSET 88
 #define HEAD_SCALE 0.0825
 
+/* Raw files say nothing of themselves, so their form stands here, as the
+ * collections that they come from give it. */
 static const struct bench_source {
     const char *name, *phantom;
     const char *file; /* NULL: always the phantom */
@@ -63,7 +66,8 @@ bool bench_data_found(const bench_options *options) {
     return true;
 }
 
-/* Puts the 16-bit head's voxels on 8 bits. */
+/* Puts the 16-bit head's voxels on 8 bits.  The new volume shares them: they
+ * live as long as `out`. */
 static snow_status map_head(snow_context *context, bench_volume *out) {
     snow_volume_info info = *snow_volume_describe(out->file);
     size_t voxels = (size_t)(info.dims[0] * info.dims[1] * info.dims[2]);
@@ -84,6 +88,8 @@ static snow_status map_head(snow_context *context, bench_volume *out) {
     return snow_volume_share(context, &info, out->mapped, &out->volume);
 }
 
+/* What was opened is kept in words for the table: figures of a phantom are no
+ * figures of the paper's volume. */
 static snow_status open_file(snow_context *context, bench_set set,
                              const bench_options *options, bench_volume *out) {
     const struct bench_source *source = &sources[set];
@@ -97,6 +103,8 @@ static snow_status open_file(snow_context *context, bench_set set,
     return snow_volume_open(context, path, &source->options, &out->file);
 }
 
+/* The look is the paper's: the opacity of a voxel is its value of 0 to 255,
+ * whatever values the volume happens to have. */
 snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out) {
     static const snow_look linear = {

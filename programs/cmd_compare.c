@@ -26,6 +26,7 @@ static int tell_json(const snow_image_difference *d, double tolerance,
     return print_json(object);
 }
 
+/* Nine digits tell any two floats apart. */
 static int tell_text(const snow_image_difference *d, double tolerance,
                      bool within) {
     printf("largest  %.9g at pixel %d,%d\n", d->largest, d->x, d->y);
@@ -37,7 +38,9 @@ static int tell_text(const snow_image_difference *d, double tolerance,
     return finish_stdout();
 }
 
-/* A largest difference of NaN is beyond every tolerance. */
+/* Differences are told also when they are too large: whoever sees exit code 6
+ * wants to know by how much.  A largest difference of NaN is beyond every
+ * tolerance. */
 static int judge(const options *asked, const snow_image_difference *d) {
     bool within = d->largest <= asked->tolerance;
     int done = asked->json ? tell_json(d, asked->tolerance, within)
@@ -47,6 +50,8 @@ static int judge(const options *asked, const snow_image_difference *d) {
     return done;
 }
 
+/* One context for both pictures: the message of a failed comparison is left
+ * there. */
 int cmd_compare(const options *asked) {
     snow_context *context = NULL;
     snow_image *images[2] = {NULL, NULL};

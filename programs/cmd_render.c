@@ -12,6 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
+/* "-" as in most tools; a file of that name is ./-. */
 static bool is_stream(const char *path) {
     return path && strcmp(path, "-") == 0;
 }
@@ -138,6 +139,7 @@ static void free_work(work *w) {
     snow_context_free(w->context);
 }
 
+/* Decompression and conversion are part of the reading. */
 static int read_volume(work *w, const options *asked) {
     double begin = seconds_now();
     progress(asked, "reading");
@@ -146,6 +148,7 @@ static int read_volume(work *w, const options *asked) {
     return done;
 }
 
+/* Timed apart from the reading: the histogram takes a pass over all voxels. */
 static int choose_look(work *w, const options *asked) {
     double begin = seconds_now();
     int done = open_look(w->context, asked, w->volume, &w->transfer);
@@ -153,7 +156,8 @@ static int choose_look(work *w, const options *asked) {
     return done;
 }
 
-/* Calls the pipeline. */
+/* Calls the pipeline.  The view comes first: what is wrong with it costs no
+ * buffers. */
 static int make_picture(work *w, const options *asked) {
     snow_view view;
     int done = make_view(w->context, asked, w->volume, &view);
@@ -241,6 +245,7 @@ static int run(work *w, const options *asked) {
     return done == GO_ON ? tell_figures(w, asked) : done;
 }
 
+/* One way out, so that whatever was made is freed at every fault. */
 int cmd_render(const options *asked) {
     work w = {.times = {.begin = seconds_now()}};
     int done = run(&w, asked);

@@ -34,6 +34,8 @@ int open_input(snow_context *context, const options *asked, const char *path,
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
+/* --window and --level are the radiologists' way to give a range, and mean
+ * nothing alone. */
 int check_look(const options *asked) {
     bool window = !isnan(asked->window), level = !isnan(asked->level);
     if (window != level)
@@ -66,6 +68,7 @@ int open_look(snow_context *context, const options *asked,
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
+/* Short enough for the one line that render prints. */
 void describe_volume(const snow_volume *volume, char *out, size_t size) {
     const snow_volume_info *info = snow_volume_describe(volume);
     snprintf(out, size, "%s %lldx%lldx%lld %s, spacing %gx%gx%g%s%s",

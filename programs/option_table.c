@@ -2,7 +2,11 @@
  *
  * A row is one option: name, letter, argument, topic, verbs, reader, field,
  * range, choices that are not built yet, help.  A row made with LATER is known
- * but not built: it is refused by name, with its text as the advice. */
+ * but not built: it is refused by name, with its text as the advice, so that a
+ * script for a later version fails here at once and says why.
+ *
+ * Names of rows are the user's; a row's place decides where its help stands.
+ * Verbs and topics that are not built are rows as well. */
 #include "readers.h"
 
 #include <stddef.h>
@@ -11,6 +15,7 @@
 #define LATER(name, letter, argument, topic, advice) \
     { name, letter, argument, topic, RENDER, NULL, 0, 0, 0, "", advice }
 
+/* Shorter names for sets of verbs: the rows are dense enough. */
 enum {
     RENDER = VERB_RENDER,
     INFO = VERB_INFO,
@@ -182,6 +187,7 @@ const option_row option_table[] = {
     {.name = NULL},
 };
 
+/* A verb without a bit is not built; its last text is then the advice. */
 const verb_row verb_table[] = {
     {"render", VERB_RENDER, 1, "INPUT -o OUT", "one picture; the default verb"},
     {"info", VERB_INFO, 1, "INPUT [--json]",
@@ -201,6 +207,7 @@ const verb_row verb_table[] = {
     {.name = NULL},
 };
 
+/* The words of `snowglass help TOPIC`. */
 const topic_row topic_table[] = {
     {"output", "the picture file: size, background, bits", NULL},
     {"mode", "how samples make a pixel",

@@ -88,7 +88,9 @@ static int dump_json(json_t *object, FILE *file) {
     return good ? 0 : -1;
 }
 
-/* Opens a new file beside `path` and leaves its name in `aside`. */
+/* Opens a new file beside `path`, where a rename stays within one file system,
+ * and leaves its name in `aside`.  mkstemp's mode 0600 is for secrets: it gets
+ * the mode of the file that it will replace, or that of any new file. */
 static FILE *open_aside(const char *path, char *aside, size_t size) {
     size_t folder = folder_length(path);
     int length = snprintf(aside, size, "%.*s.%.*s.snow-XXXXXX", (int)folder,
@@ -100,9 +102,10 @@ static FILE *open_aside(const char *path, char *aside, size_t size) {
     int handle = mkstemp(aside);
     if (handle < 0)
         return NULL;
-    mode_t mask = umask(0);
+    struct stat old;
+    mode_t mask = umask(0); /* the only way to ask for it */
     umask(mask);
-    fchmod(handle, 0666 & ~mask); /* mkstemp's 0600 is for secrets */
+    fchmod(handle, stat(path, &old) == 0 ? old.st_mode & 0777 : 0666 & ~mask);
     FILE *file = fdopen(handle, "w");
     if (!file) {
         close(handle);

@@ -1,5 +1,8 @@
 /* readers.c - from an option's argument to its field, or to the end of a
- * sentence that says what would have been right. */
+ * sentence that says what would have been right.
+ *
+ * All that can be wrong with a word alone is refused here, before anything is
+ * opened; what needs the volume or another option comes later. */
 #include "readers.h"
 
 #include <math.h>
@@ -15,6 +18,7 @@ static bool refuse(char wrong[WRONG_BYTES], const char *text) {
     return false;
 }
 
+/* An empty word is mostly a shell variable that was never set. */
 bool read_text(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;
@@ -54,6 +58,8 @@ static void spell_choices(const char *choices, char *out, size_t size) {
     out[used] = '\0';
 }
 
+/* What is only planned is not unknown: who asks for it has read a manual, and
+ * shall not look for a misspelling. */
 bool read_choice(const option_row *row, const char *text, void *field,
                  char wrong[WRONG_BYTES]) {
     if (value_is_choice(row->argument, text)) {
@@ -107,6 +113,8 @@ bool read_tolerance(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* Limits of rows are doubles; all of them are far below 2^53, where whole
+ * numbers are exact. */
 bool read_integer(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {
     int64_t value;
@@ -146,6 +154,7 @@ bool read_size(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* No upper limit here: the library checks the product, and the memory. */
 bool read_dims(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;

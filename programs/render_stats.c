@@ -5,6 +5,8 @@
 #include <inttypes.h>
 #include <stdio.h>
 
+/* As stored in memory, in the native type: what the encodings are compared
+ * with. */
 static uint64_t volume_bytes(const snow_volume_info *info) {
     return (uint64_t)(info->dims[0] * info->dims[1] * info->dims[2]) *
            snow_type_size(info->type);
@@ -30,6 +32,8 @@ static void set_bytes(json_t *object, const char *key, uint64_t bytes) {
     json_object_set_new(object, key, json_integer((json_int_t)bytes));
 }
 
+/* EA, IA and PA are the paper's three arrays (section 3.1); 0 for methods
+ * without. */
 static json_t *bytes_json(const render_report *report) {
     const snow_stats *stats = snow_frame_stats(report->frame);
     json_t *object = json_object();
@@ -75,6 +79,8 @@ static json_t *seconds_json(const render_report *report) {
     return object;
 }
 
+/* The check sum is text, since JSON readers may keep numbers as doubles, which
+ * cannot hold 64 bits. */
 static json_t *image_json(const snow_image *image) {
     char checksum[17];
     snprintf(checksum, sizeof checksum, "%016" PRIx64,
@@ -87,6 +93,8 @@ static json_t *image_json(const snow_image *image) {
     return object;
 }
 
+/* Threads and ranks are 1 until there can be more: the keys are there, so that
+ * tables made now and later have the same columns. */
 json_t *stats_json(const render_report *report) {
     const snow_stats *stats = snow_frame_stats(report->frame);
     const snow_settings *settings = report->settings;

@@ -76,11 +76,14 @@ check "by JSON" grep -q '^{"version"' stats.json
 
 mkdir figures
 echo old >figures/target.json
+chmod 640 figures/target.json
 ln -s figures/target.json link.json
 refused 4 "a link to figures" "link.json" render -o l.png --stats link.json
 run 0 "with -y figures follow a link" render -o l.png --stats link.json -y
 check "the link is still one" [ -L link.json ]
-check "and its target is new" grep -q '^{"version"' figures/target.json
+check "its target keeps its permissions" \
+    [ "$(stat -c %a figures/target.json)" = 640 ]
+check "and is new" grep -q '^{"version"' figures/target.json
 ln -s nowhere.json dangling.json
 refused 4 "figures at a link to nowhere" "dangling.json: exists" \
     render -o d.png --stats dangling.json
