@@ -1,6 +1,8 @@
 /* tests/test_base.c - contexts, memory and numbers keep their promises. */
 #include "support.h"
 
+#include <locale.h>
+
 static void
 a_failed_allocation_tells_its_size_and_changes_nothing(void **state) {
     (void)state;
@@ -61,6 +63,41 @@ static void numbers_are_whole_or_refused(void **state) {
     assert_false(snow_parse_double("1.5,", &d));
     assert_true(snow_parse_double("1.5e3", &d));
     assert_true(d == 1500);
+    assert_false(snow_parse_double("0x10", &d));
+    assert_true(d == 1500);
+}
+
+static void a_number_gets_the_sign_of_the_locale(void **state) {
+    (void)state;
+    char out[8];
+    assert_true(snow_localize_number("-1.5", ",", out, sizeof out));
+    assert_string_equal(out, "-1,5");
+    assert_true(snow_localize_number("1.5", "\xd9\xab", out, sizeof out));
+    assert_string_equal(out, "1\xd9\xab"
+                             "5");
+    assert_true(snow_localize_number("1.5", ".", out, sizeof out));
+    assert_string_equal(out, "1.5");
+    assert_false(snow_localize_number("1,5", ",", out, sizeof out));
+    assert_true(snow_localize_number("1234567", ",", out, sizeof out));
+    assert_false(snow_localize_number("12345678", ",", out, sizeof out));
+}
+
+static void a_host_with_a_comma_reads_the_same_numbers(void **state) {
+    (void)state;
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE",
+                                        "fr_FR.UTF-8", "fr_FR"};
+    bool found = false;
+    for (size_t i = 0; i < sizeof names / sizeof *names && !found; i++)
+        found = setlocale(LC_NUMERIC, names[i]) != NULL;
+    if (!found)
+        skip();
+    double value = 7;
+    bool point = snow_parse_double("0.25", &value);
+    bool comma = snow_parse_double("0,5", &value);
+    setlocale(LC_NUMERIC, "C");
+    assert_true(point);
+    assert_false(comma);
+    assert_true(value == 0.25);
 }
 
 static void layers_add_what_they_know_to_a_message(void **state) {
@@ -82,6 +119,8 @@ int main(void) {
         cmocka_unit_test(products_that_overflow_are_refused),
         cmocka_unit_test(a_reserved_block_keeps_its_bytes),
         cmocka_unit_test(numbers_are_whole_or_refused),
+        cmocka_unit_test(a_number_gets_the_sign_of_the_locale),
+        cmocka_unit_test(a_host_with_a_comma_reads_the_same_numbers),
         cmocka_unit_test(layers_add_what_they_know_to_a_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

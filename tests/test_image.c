@@ -229,6 +229,36 @@ static void standard_output_gets_a_png(void **state) {
     snow_image_free(again);
 }
 
+/* From a pipe, of whose size nothing is known, into the context's memory. */
+static void standard_input_is_a_picture(void **state) {
+    image_fixture *f = *state;
+    static const char *const names[] = {"a.png", "a.npy", "a.pfm"};
+    snow_image *image = support_picture(f->context, 20, 10, 4, 1);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *path = support_image_path(f, names[i]);
+        assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
+        static char bytes[20000]; /* less than a pipe holds */
+        FILE *file = fopen(path, "rb");
+        assert_non_null(file);
+        size_t size = fread(bytes, 1, sizeof bytes, file);
+        fclose(file);
+        int ends[2], kept = dup(STDIN_FILENO);
+        assert_int_equal(pipe(ends), 0);
+        assert_int_equal(write(ends[1], bytes, size), size);
+        close(ends[1]);
+        dup2(ends[0], STDIN_FILENO);
+        close(ends[0]);
+        snow_image *again = NULL;
+        snow_status status = snow_image_load(f->context, "-", &again);
+        dup2(kept, STDIN_FILENO);
+        close(kept);
+        assert_int_equal(status, SNOW_OK);
+        assert_int_equal(snow_image_width(again), 20);
+        snow_image_free(again);
+    }
+    snow_image_free(image);
+}
+
 static void a_full_disk_is_bad_output(void **state) {
     image_fixture *f = *state;
     if (access("/dev/full", W_OK) != 0)
@@ -314,6 +344,7 @@ int main(void) {
         TEST(a_folder_that_takes_no_files_is_bad_output),
         TEST(checking_a_path_leaves_nothing),
         TEST(standard_output_gets_a_png),
+        TEST(standard_input_is_a_picture),
         TEST(a_full_disk_is_bad_output),
         TEST(what_is_no_picture_is_refused),
         TEST(running_out_of_memory_leaves_nothing),

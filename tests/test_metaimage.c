@@ -328,7 +328,7 @@ static void a_compressed_stream_of_another_size_is_noticed(void **state) {
 
 static void voxels_may_be_written_as_text(void **state) {
     support_place *place = *state;
-    const char *text = "100 101\n102\r\n\t103 104.0 105 106 107 1.08e2 109 110 "
+    const char *text = "100 101\n102\r\n\t103 +104 105 106 107 108 109 110 "
                        "111";
     const char *header =
         header_with("", "BinaryData = True", "BinaryData = False");
@@ -337,11 +337,15 @@ static void voxels_may_be_written_as_text(void **state) {
     assert_sample(volume);
     snow_volume_close(volume);
     static const char *const bad[][2] = {
-        {"1 2 3 4 5 6 7 8 9 10 11", "1 numbers too early"},
+        {"1 2 3 4 5 6 7 8 9 10 11", "11 of 12"},
         {"1 2 3 4 5 6 7 8 9 10 11 x", "\"x\""},
         {"1 2 3 4 5 6 7 8 9 10 11 40000", "\"40000\""},
         {"1 2 3 4 5 6 7 8 9 10 11 1.5", "\"1.5\""},
         {"1 2 3 4 5 6 7 8 9 10 11 nan", "\"nan\""},
+        {"1 2 3 4 5 6 7 8 9 10 11 0x10", "\"0x10\""},
+        {"1 2 3 4 5 6 7 8 9 10 11 1e1", "\"1e1\""},
+        {"1 2 3 4 5 6 7 8 9 10 11 2.0", "\"2.0\""},
+        {"1,2,3,4,5,6,7,8,9,10,11,12", "\"1,2,"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         f = make_file(header, bad[i][0], strlen(bad[i][0]));
@@ -397,6 +401,9 @@ static void cut_files_are_refused_at_every_length(void **state) {
     for (f.size = 1; f.size < whole; f.size++)
         support_place_refuse(place, "a.mha", f.bytes, f.size, "", LITTLE);
     support_place_refuse(place, "a.mha", "", 0, "empty", LITTLE);
+    const char *cut = header_with("", "LOCAL\n", "LOC");
+    support_place_refuse(place, "a.mha", cut, strlen(cut), "may be cut",
+                         LITTLE);
 }
 
 static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
@@ -415,6 +422,9 @@ static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
     };
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         refuse_header(place, header_with("", "3 2 2", sizes[i]), "DimSize");
+    refuse_header(place, header_with("", "3 2 2", "3 4 99999999999999999999"),
+                  "too large");
+    refuse_header(place, header_with("", "3 2 2", "3 0 2"), "at least 1");
     refuse_header(place, header_with("", "3 2 2", "3000 2000 2000"),
                   "bytes left");
     refuse_header(place, header_with("", "3 2 2", "30000 20000 20000"), "");

@@ -305,13 +305,23 @@ static void the_time_step_that_is_asked_for_is_read(void **state) {
                          100 + 2 * time);
         snow_volume_close(volume);
     }
-    assert_non_null(strstr(place->notices, "of 6"));
+    assert_non_null(strstr(place->notices, "volume 0 of 6"));
     const snow_volume_options beyond = {.time = 6};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open_memory(place->context, "a.nii", f.bytes,
                                              f.size, &beyond, &volume),
                      SNOW_BAD_USAGE);
     assert_null(volume);
+}
+
+static void only_the_fourth_axis_is_called_time(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    const int64_t dim[8] = {4, 2, 1, 1, 6, 99, 99, 99};
+    for (size_t i = 0; i < 8; i++)
+        put_dim(&f, i, dim[i]);
+    snow_volume_close(open_file(place, &f));
+    assert_non_null(strstr(place->notices, "time step 0 of 6"));
 }
 
 static void few_axes_and_extensions_are_read(void **state) {
@@ -340,6 +350,15 @@ static void cut_files_are_refused_at_every_length(void **state) {
         for (f.size = 1; f.size < whole; f.size++)
             refuse(place, &f, "a.nii");
     }
+}
+
+static void a_cut_header_is_counted(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    f.size = 1;
+    refuse(place, &f, "1 byte is no whole NIfTI header");
+    f.size = 347;
+    refuse(place, &f, "347 bytes are no whole NIfTI header");
 }
 
 static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
@@ -678,8 +697,10 @@ int main(void) {
         UNIT(an_impossible_spacing_becomes_1_with_a_warning),
         UNIT(units_of_length_become_millimetres),
         UNIT(the_time_step_that_is_asked_for_is_read),
+        UNIT(only_the_fourth_axis_is_called_time),
         UNIT(few_axes_and_extensions_are_read),
         UNIT(cut_files_are_refused_at_every_length),
+        UNIT(a_cut_header_is_counted),
         UNIT(sizes_that_lie_are_refused_before_memory_is_taken),
         UNIT(contradictions_are_refused),
         UNIT(an_offset_of_0_means_right_after_the_header),

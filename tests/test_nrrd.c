@@ -2,6 +2,7 @@
  * same place in space, or a refusal. */
 #include "support_files.h"
 
+#include <float.h>
 #include <math.h>
 
 /* Room for a header and 48 bytes of data, packed at worst. */
@@ -289,6 +290,14 @@ static void numbers_in_text_are_read(void **state) {
         NULL);
     assert_true(*(const uint32_t *)snow_volume_voxels(volume) == UINT32_MAX);
     snow_volume_close(volume);
+    volume = support_opened(
+        &files,
+        support_write_text(&files, "e.nrrd",
+                           MAGIC "type: float\ndimension: 1\nsizes: 1\n"
+                                 "encoding: ascii\n\n3.4028235e38"),
+        NULL);
+    assert_true(*(const float *)snow_volume_voxels(volume) == FLT_MAX);
+    snow_volume_close(volume);
     support_files_end(&files);
 }
 
@@ -297,9 +306,11 @@ static void text_that_is_no_number_of_the_type_is_refused(void **state) {
     support_files files;
     support_files_begin(&files);
     static const char *const texts[][2] = {
-        {"uint8", "1 256"}, {"uint8", "1 -1"},    {"int8", "1 128"},
-        {"short", "1 2.5"}, {"uint64", "1 -1"},   {"int", "1 x"},
-        {"double", "1 1e"}, {"int64", "1 1e999"}, {"uint", "1 -1"},
+        {"uint8", "1 256"},    {"uint8", "1 -1"},    {"int8", "1 128"},
+        {"short", "1 2.5"},    {"uint64", "1 -1"},   {"int", "1 x"},
+        {"double", "1 1e"},    {"int64", "1 1e999"}, {"uint", "1 -1"},
+        {"short", "1 0x10"},   {"short", "1 1e1"},   {"double", "1 0x10"},
+        {"float", "1 3.5e38"}, {"uint64", "1 +-1"},  {"uint64", "1 1."},
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char text[200];
@@ -491,6 +502,63 @@ static void vectors_colours_and_unknown_axes_are_refused(void **state) {
     refused(&files, TIMES "\n", "nothing says what the 4th is");
     refused(&files, TIMES "kinds: time domain domain domain\n\n",
             "not the last");
+    support_files_end(&files);
+}
+
+/* 4 x 3 x 2 samples: cells unless told, nodes, NaN, ends in either order. */
+static void axes_may_be_told_by_their_ends(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+#define RAW SHORTS "encoding: raw\n"
+    static const struct {
+        const char *header;
+        double matrix[3][4];
+    } cases[] = {
+        {RAW "axis mins: 0 -3 10\naxis maxs: 8 0 14\n\n",
+         {{2, 0, 0, 1}, {0, 1, 0, -2.5}, {0, 0, 2, 11}}},
+        {RAW "axismins: 0 -3 10\naxismaxs: 6 1 14\ncenterings: node node cell"
+             "\n\n",
+         {{2, 0, 0, 0}, {0, 2, 0, -3}, {0, 0, 2, 11}}},
+        {RAW "axis mins: nan 0 5\naxis maxs: 8 nan 1\ncenters: none ??? cell"
+             "\n\n",
+         {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -2, 4}}},
+        {RAW "axis mins: 0 0 0\naxis maxs: 8 6 4\nspacings: 1 1 3\n\n",
+         {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 3, 0}}},
+        {RAW "axis mins: 0 0 0\n\n",
+         {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
+        {RAW "space: LPS\nspace origin: (1,2,3)\naxis mins: 0 0 0\n"
+             "axis maxs: 8 6 4\n\n",
+         {{-2, 0, 0, -1}, {0, -2, 0, -2}, {0, 0, 2, 3}}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        snow_volume *volume = opened(&files, cases[i].header);
+        expect_matrix(volume, cases[i].matrix);
+        expect_counting(volume);
+    }
+    refused(&files, RAW "axis mins: 0 0 0\naxis maxs: 0 1 1\n\n", "zero");
+    refused(&files, RAW "axis mins: 0 0\naxis maxs: 1 1 1\n\n", "axis mins");
+    refused(&files, RAW "axis mins: 0 0 0\naxis maxs: 1 1 1 1\n\n", "more");
+#undef RAW
+    support_files_end(&files);
+}
+
+static void long_words_are_not_cut(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    char header[500];
+    /* The 63 first letters would be a good size. */
+    snprintf(header, sizeof header,
+             MAGIC "type: uint8\ndimension: 3\nsizes: 4 3 %062d21\n"
+                   "encoding: raw\n\n",
+             0);
+    refused(&files, header, "sizes");
+    snprintf(header, sizeof header,
+             MAGIC "type: uint8\ndimension: 3\nsizes: 4 3 2 %090d\n"
+                   "encoding: raw\n\n",
+             0);
+    refused(&files, header, "more numbers");
     support_files_end(&files);
 }
 
@@ -970,6 +1038,8 @@ int main(void) {
         cmocka_unit_test(a_last_axis_of_time_or_list_has_steps),
         cmocka_unit_test(axes_of_one_sample_are_left_out),
         cmocka_unit_test(vectors_colours_and_unknown_axes_are_refused),
+        cmocka_unit_test(axes_may_be_told_by_their_ends),
+        cmocka_unit_test(long_words_are_not_cut),
         cmocka_unit_test(contradictions_are_refused),
         cmocka_unit_test(headers_alone_that_promise_no_data_are_refused),
         cmocka_unit_test(spacings_that_are_none_are_refused),

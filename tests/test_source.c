@@ -5,7 +5,9 @@
 #include "base/source.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 /* Some bytes that do not pack well, and room for them packed. */
@@ -327,6 +329,27 @@ static void a_dash_is_standard_input(void **state) {
     support_files_end(&files);
 }
 
+static void standard_input_has_no_siblings(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    int kept = dup(STDIN_FILENO);
+    int file = open(support_write(&files, "h", "x", 1), O_RDONLY);
+    dup2(file, STDIN_FILENO);
+    close(file);
+    snow_source *header = opened(&files, "-"), *data = NULL;
+    dup2(kept, STDIN_FILENO);
+    close(kept);
+    assert_int_equal(
+        snow_source_open_sibling(header, support_path(&files, "h"), &data),
+        SNOW_BAD_INPUT);
+    assert_null(data);
+    assert_non_null(
+        strstr(snow_context_message(files.context), "another file"));
+    snow_source_close(header);
+    support_files_end(&files);
+}
+
 static void siblings_lie_beside_the_header(void **state) {
     (void)state;
     support_files files;
@@ -362,6 +385,63 @@ static void siblings_are_regular_files_only(void **state) {
         assert_null(data);
     }
     snow_source_close(header);
+    support_files_end(&files);
+}
+
+/* Makes "swapped" a file and a pipe in turn until killed. */
+static pid_t keep_swapping(const support_files *files) {
+    char data[128], pipe[128], swapped[128], aside[128];
+    snprintf(data, sizeof data, "%s/data", files->folder);
+    snprintf(pipe, sizeof pipe, "%s/pipe", files->folder);
+    snprintf(swapped, sizeof swapped, "%s/swapped", files->folder);
+    snprintf(aside, sizeof aside, "%s/aside", files->folder);
+    pid_t child = fork();
+    alarm(child == 0 ? 60 : 0); /* should the test die, it does as well */
+    while (child == 0) {
+        unlink(aside);
+        if (link(data, aside) || rename(aside, swapped) || link(pipe, aside) ||
+            rename(aside, swapped))
+            _exit(1);
+    }
+    return child;
+}
+
+/* An open that waits for a writer at the pipe would never end. */
+static void a_pipe_swapped_in_for_a_sibling_is_not_waited_at(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    support_write(&files, "data", "abc", 3);
+    support_write(&files, "swapped", "abc", 3);
+    assert_int_equal(mkfifo(support_path(&files, "pipe"), 0600), 0);
+    snow_source *header = opened(&files, support_write(&files, "h", "x", 1));
+    pid_t child = keep_swapping(&files);
+    assert_true(child > 0);
+    alarm(60);
+    for (int i = 0; i < 5000; i++) {
+        snow_source *data = NULL;
+        if (snow_source_open_sibling(header, "swapped", &data) == SNOW_OK)
+            assert_int_equal(snow_source_remaining(data), 3);
+        snow_source_close(data);
+    }
+    alarm(0);
+    kill(child, SIGKILL);
+    waitpid(child, NULL, 0);
+    snow_source_close(header);
+    support_files_end(&files);
+}
+
+static void an_empty_name_is_called_empty(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    snow_source *source = NULL;
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_source_open(files.context, "", &source),
+                     SNOW_BAD_INPUT);
+    assert_int_equal(snow_volume_open(files.context, "", NULL, &volume),
+                     SNOW_BAD_INPUT);
+    assert_memory_equal(snow_context_message(files.context), "the name", 8);
     support_files_end(&files);
 }
 
@@ -418,6 +498,9 @@ int main(void) {
         cmocka_unit_test(a_dash_is_standard_input),
         cmocka_unit_test(siblings_lie_beside_the_header),
         cmocka_unit_test(siblings_are_regular_files_only),
+        cmocka_unit_test(standard_input_has_no_siblings),
+        cmocka_unit_test(a_pipe_swapped_in_for_a_sibling_is_not_waited_at),
+        cmocka_unit_test(an_empty_name_is_called_empty),
         cmocka_unit_test(bytes_in_memory_have_no_siblings),
         cmocka_unit_test(unpacking_can_begin_in_the_middle),
     };

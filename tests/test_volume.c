@@ -294,7 +294,8 @@ static void a_spacing_that_makes_no_space_is_refused(void **state) {
         .dims = {1, 1, 1}, .type = SNOW_UINT8, .spacing = {1, 1, 1e-320}};
     assert_int_equal(
         snow_volume_open_memory(context, "a", "x", 1, &options, &volume),
-        SNOW_BAD_INPUT);
+        SNOW_BAD_USAGE);
+    assert_non_null(strstr(snow_context_message(context), "--spacing"));
     assert_null(volume);
     assert_int_equal(snow_context_bytes(context), 0);
     snow_context_free(context);

@@ -124,11 +124,27 @@ static void the_mode_is_what_the_umask_says(void **state) {
     assert_int_equal(here.st_mode & 0777, 0640);
 }
 
+static void a_replaced_file_keeps_its_permissions(void **state) {
+    fixture *f = *state;
+    static const mode_t modes[] = {0600, 0664, 0444};
+    for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
+        struct stat here;
+        unlink(f->path);
+        put_text(f->path, "old");
+        assert_int_equal(chmod(f->path, modes[i]), 0);
+        assert_int_equal(write_text(f, f->path, true, "new"), SNOW_OK);
+        assert_int_equal(stat(f->path, &here), 0);
+        assert_int_equal(here.st_mode & 0777, modes[i]);
+        assert_text(f->path, "new");
+    }
+}
+
 static void an_existing_file_is_kept_unless_overwriting(void **state) {
     fixture *f = *state;
     put_text(f->path, "old");
     assert_int_equal(write_text(f, f->path, false, "new"), SNOW_BAD_OUTPUT);
     assert_message(f, "exists");
+    assert_message(f, "(-y)");
     assert_text(f->path, "old");
     assert_int_equal(write_text(f, f->path, true, "new"), SNOW_OK);
     assert_text(f->path, "new");
@@ -301,6 +317,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         UNIT(a_committed_file_has_its_bytes_and_leaves_no_other),
         UNIT(the_mode_is_what_the_umask_says),
+        UNIT(a_replaced_file_keeps_its_permissions),
         UNIT(an_existing_file_is_kept_unless_overwriting),
         UNIT(a_file_that_appears_meanwhile_is_kept),
         UNIT(an_abandoned_file_leaves_nothing),

@@ -77,9 +77,16 @@ double snow_seconds(void);
 
 /* Numbers of untrusted text: the whole of `text` must be one number in range
  * (blanks around it are accepted).  False otherwise, with *out untouched.
- * parse_double takes nan and inf too. */
+ * parse_double takes nan and inf too, no hexadecimal numbers, and has a point
+ * before the decimals in every locale. */
 bool snow_parse_int64(const char *text, int64_t *out);
 bool snow_parse_double(const char *text, double *out);
+
+/* Copies a number with `point`, the locale's sign, in place of its point.
+ * False where it does not fit into `room` bytes, has that sign already, or is
+ * hexadecimal. */
+bool snow_localize_number(const char *text, const char *point, char *out,
+                          size_t room);
 
 /* True when `text` ends with `suffix`, letters of either case. */
 bool snow_has_suffix(const char *text, const char *suffix);

@@ -155,7 +155,8 @@ void *snow_allocate_array(snow_context *context, uint64_t count, size_t size) {
     uint64_t bytes;
     if (!snow_mul_u64(count, size, &bytes) || bytes > SIZE_MAX) {
         snow_fail(context, SNOW_NO_MEMORY,
-                  "%llu times %zu bytes are more than an address can reach",
+                  "%llu times %zu bytes are more than an address can reach; "
+                  "take a smaller volume or picture",
                   (unsigned long long)count, size);
         return NULL;
     }

@@ -15,7 +15,7 @@ typedef struct snow_source snow_source;
 
 /* A regular file (or a pipe, "-" for standard input; never a folder or a
  * device).  A gzip stream is unpacked in passing, its check sums verified,
- * whatever its name.
+ * whatever its name.  Standard input lies in no folder and has no siblings.
  * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
 snow_status snow_source_open(snow_context *context, const char *path,
                              snow_source **out);
@@ -27,7 +27,7 @@ snow_status snow_source_open_memory(snow_context *context, const char *name,
                                     snow_source **out);
 
 /* The file `name` as told by the header that `source` is: relative to its
- * folder, or absolute.  Refused for sources in memory, and for a name that is
+ * folder, or absolute.  Refused for sources without siblings, and for a name that is
  * no regular file.  "as_is" leaves gzip packed, for headers that tell whether
  * their data are. */
 snow_status snow_source_open_sibling(const snow_source *source,

@@ -60,36 +60,54 @@ static snow_status check_mode(snow_source *source, const struct stat *about,
                                                 : "a device");
 }
 
-/* Opens the path, or standard input for NULL. */
+/* Looks before opening, since to open a device can have effects of its own, and
+ * again after it, when the path can no longer change its meaning.  A file that
+ * is swapped for a pipe in between must not make the open wait for a writer,
+ * hence O_NONBLOCK, of which regular files know nothing. */
+static snow_status open_at_path(snow_source *source, const char *path,
+                                bool pipes, int *out, struct stat *about) {
+    if (!*path)
+        return snow_fail(source->context, SNOW_BAD_INPUT,
+                         "the name of the file is empty; give its name");
+    if (stat(path, about))
+        return fail_by_errno(source);
+    SNOW_TRY(check_mode(source, about, pipes));
+    bool is_pipe = !S_ISREG(about->st_mode);
+    int descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY |
+                                    (is_pipe ? 0 : O_NONBLOCK));
+    if (descriptor < 0)
+        return fail_by_errno(source);
+    snow_status status = fstat(descriptor, about)
+                             ? fail_by_errno(source)
+                             : check_mode(source, about, is_pipe);
+    if (status != SNOW_OK)
+        close(descriptor);
+    else
+        *out = descriptor;
+    return status;
+}
+
+static snow_status open_standard_input(snow_source *source, int *out,
+                                       struct stat *about) {
+    if (fstat(STDIN_FILENO, about))
+        return fail_by_errno(source);
+    SNOW_TRY(check_mode(source, about, true));
+    /* A copy, so that closing the source leaves the program its own. */
+    *out = dup(STDIN_FILENO);
+    return *out < 0 ? fail_by_errno(source) : SNOW_OK;
+}
+
+/* Opens the path, or standard input for NULL; *size is -1 for a pipe. */
 static snow_status open_descriptor(snow_source *source, const char *path,
                                    bool pipes, int *out, int64_t *size) {
     struct stat about;
-    /* Before opening, since to open a device can have effects of its own, and
-     * again after it, when the path can no longer change its meaning. */
-    if (path) {
-        if (stat(path, &about))
-            return fail_by_errno(source);
-        SNOW_TRY(check_mode(source, &about, pipes));
-    }
-    int descriptor =
-        path ? open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY) : dup(STDIN_FILENO);
-    if (descriptor < 0)
-        return fail_by_errno(source);
-    snow_status status = SNOW_OK;
-    if (fstat(descriptor, &about))
-        status = fail_by_errno(source);
-    else
-        status = check_mode(source, &about, pipes);
-    if (status != SNOW_OK) {
-        close(descriptor);
-        return status;
-    }
+    SNOW_TRY(path ? open_at_path(source, path, pipes, out, &about)
+                  : open_standard_input(source, out, &about));
     /* Standard input may have been read from already. */
-    off_t at = path ? 0 : lseek(descriptor, 0, SEEK_CUR);
+    off_t at = path ? 0 : lseek(*out, 0, SEEK_CUR);
     *size = -1;
     if (S_ISREG(about.st_mode) && at >= 0 && at <= about.st_size)
         *size = about.st_size - at;
-    *out = descriptor;
     return SNOW_OK;
 }
 
@@ -99,7 +117,7 @@ static snow_status open_path(snow_context *context, const char *path,
     snow_source *source;
     const char *name = path ? path : "standard input";
     SNOW_TRY(new_source(context, name, strlen(name), &source));
-    source->siblings = true;
+    source->siblings = path != NULL; /* standard input lies in no folder */
     int descriptor = -1;
     int64_t size = -1;
     snow_status status =

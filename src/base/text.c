@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <langinfo.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,16 +24,45 @@ bool snow_parse_int64(const char *text, int64_t *out) {
     return true;
 }
 
-/* The C library reads numbers by the program's locale, which only a program
- * that calls setlocale changes; a comma as decimal point then fails the parse,
- * it never changes a value. */
+/* Longer than any double's exact decimal form, of which the smallest number has
+ * the longest: 1077 letters. */
+#define NUMBER_BYTES 1200
+
+/* A hexadecimal number is refused along the way: no format has them, and
+ * strtod would take them. */
+bool snow_localize_number(const char *text, const char *point, char *out,
+                          size_t room) {
+    size_t length = strlen(point), used = 0;
+    for (; *text; text++) {
+        bool is_point = *text == '.';
+        /* "1,5" is no number in a file, whatever it is to the user. */
+        if (*text == 'x' || *text == 'X' ||
+            (!is_point && length && !strncmp(text, point, length)))
+            return false;
+        size_t wanted = is_point ? length : 1;
+        if (wanted >= room - used)
+            return false;
+        memcpy(out + used, is_point ? point : text, wanted);
+        used += wanted;
+    }
+    out[used] = 0;
+    return true;
+}
+
+/* strtod goes by the locale of the program around the library, which the
+ * library must neither trust nor change: files have a point, and get the
+ * locale's sign for it here.  nl_langinfo, because localeconv's answer is
+ * shared by all threads. */
 bool snow_parse_double(const char *text, double *out) {
-    char *end;
+    char *end, number[NUMBER_BYTES];
+    if (!snow_localize_number(text, nl_langinfo(RADIXCHAR), number,
+                              sizeof number))
+        return false;
     errno = 0;
-    double value = strtod(text, &end);
+    double value = strtod(number, &end);
     /* 1e999 is no infinity; a number too small for a double is 0. */
     bool overflow = errno == ERANGE && (value > 1 || value < -1);
-    if (end == text || overflow || !at_end(end))
+    if (end == number || overflow || !at_end(end))
         return false;
     *out = value;
     return true;

@@ -125,8 +125,18 @@ static snow_status open_temporary(snow_writer *writer) {
 static snow_status fail_existing(const snow_writer *writer) {
     return snow_fail(writer->context, SNOW_BAD_OUTPUT,
                      "%s: the file exists; choose another name or allow "
-                     "overwriting",
+                     "overwriting (-y)",
                      writer->told);
+}
+
+/* For a file that replaces another: whom that one was closed to, or open to,
+ * its successor is as well, from before its first byte.  File systems without
+ * permissions refuse, and lose nothing by it.  The set-user and set-group bits
+ * are not for new contents. */
+static snow_status open_successor(snow_writer *writer, mode_t mode) {
+    SNOW_TRY(open_temporary(writer));
+    (void)fchmod(writer->file, mode & (S_IRWXU | S_IRWXG | S_IRWXO));
+    return SNOW_OK;
 }
 
 /* Opens the way to the path, whatever stands there now. */
@@ -147,7 +157,7 @@ static snow_status open_target(snow_writer *writer) {
         return snow_fail(context, SNOW_BAD_OUTPUT,
                          "%s: is a folder; name a file in it", writer->told);
     if (S_ISREG(here.st_mode))
-        return writer->overwrite ? open_temporary(writer)
+        return writer->overwrite ? open_successor(writer, here.st_mode)
                                  : fail_existing(writer);
     writer->file = open(path, O_WRONLY | O_NOCTTY | O_CLOEXEC);
     return writer->file >= 0

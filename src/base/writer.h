@@ -1,7 +1,8 @@
 /* base/writer.h - bytes out: the one way in which files come into being.
  *
  * A writer fills a file of a temporary name beside the final one; commit
- * syncs it and renames it into place.  Whatever happens before, nothing stands
+ * syncs it and renames it into place.  A file that is replaced hands on its
+ * permissions.  Whatever happens before, nothing stands
  * under the final name that is not whole. */
 #ifndef SNOW_WRITER_H
 #define SNOW_WRITER_H

@@ -67,13 +67,13 @@ static snow_status check_options(snow_context *context,
         double spacing = options->spacing[i];
         if (!(spacing >= 0) || !isfinite(spacing))
             return snow_fail(context, SNOW_BAD_USAGE,
-                             "a spacing of %g is none; give three lengths "
+                             "--spacing: %g is no length; give three lengths "
                              "above 0",
                              spacing);
         if (options->dims[i] < 0)
             return snow_fail(context, SNOW_BAD_USAGE,
-                             "a size of %lld voxels is none; give three sizes "
-                             "of at least 1",
+                             "--dims: %lld is no number of voxels; give three "
+                             "sizes of at least 1",
                              (long long)options->dims[i]);
     }
     if (options->time < 0)
@@ -90,7 +90,14 @@ static snow_status replace_spacing(snow_volume *volume,
     for (int j = 0; j < 3; j++)
         for (int i = 0; i < 3 && options->spacing[j] > 0; i++)
             info.matrix[i][j] *= options->spacing[j] / info.spacing[j];
-    SNOW_TRY(snow_volume_info_check(volume->context, &info));
+    /* The file's own matrix was checked: the option alone can be at fault. */
+    if (snow_volume_info_check(volume->context, &info) != SNOW_OK)
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "--spacing %gx%gx%g makes voxels too small, too large "
+                         "or too flat to compute with; give lengths in "
+                         "another unit",
+                         options->spacing[0], options->spacing[1],
+                         options->spacing[2]);
     snow_volume_info_measure(&info);
     volume->info = info;
     return SNOW_OK;
@@ -139,7 +146,8 @@ static snow_status name_failure(snow_context *context, snow_status status,
                                 const char *name) {
     char *message = context->message;
     size_t length = strlen(name);
-    if (strncmp(message, name, length) != 0 || message[length] != ':')
+    if (length &&
+        (strncmp(message, name, length) != 0 || message[length] != ':'))
         snow_fail_within(context, status, "%s", name);
     for (char *at = message; *at; at++)
         if ((unsigned char)*at < ' ' || *at == 127)
@@ -199,7 +207,8 @@ snow_status snow_volume_open(snow_context *context, const char *path,
     snow_source *source;
     snow_status status = snow_source_open(context, path, &source);
     if (status != SNOW_OK)
-        return name_failure(context, status, path);
+        return name_failure(context, status,
+                            strcmp(path, "-") ? path : "standard input");
     return open_source(source, options, out);
 }
 

@@ -5,6 +5,7 @@
  * file of several holds a part of the axes; the parts follow one another in
  * memory as the files do in the list. */
 #include "volume/metaimage.h"
+#include "volume/numbers.h"
 #include "volume/write.h"
 
 #include <stdio.h>
@@ -55,19 +56,18 @@ static snow_status begin_part(snow_source *source,
 static snow_status read_part(snow_source *source,
                              const metaimage_header *header, const part *wanted,
                              void *out) {
-    uint64_t rest = wanted->bytes - wanted->skip - wanted->take;
     if (header->text) {
-        snow_type type = header->info.type;
-        uint64_t size = snow_type_size(type);
-        SNOW_TRY(metaimage_read_text(source, type, NULL, wanted->skip / size));
-        SNOW_TRY(metaimage_read_text(source, type, out, wanted->take / size));
-        SNOW_TRY(metaimage_read_text(source, type, NULL, rest / size));
-        SNOW_TRY(metaimage_skip_blanks(source)); /* the last line's end */
+        size_t size = snow_type_size(header->info.type);
+        const snow_number_window numbers = {
+            wanted->skip / size, wanted->take / size, wanted->bytes / size};
+        SNOW_TRY(
+            snow_read_numbers(source, header->info.type, false, &numbers, out));
     } else {
         SNOW_TRY(snow_source_skip(source, wanted->skip, "the voxels"));
         SNOW_TRY(snow_source_read_all(source, out, (size_t)wanted->take,
                                       "the voxels"));
-        SNOW_TRY(snow_source_skip(source, rest, "the voxels"));
+        SNOW_TRY(snow_source_skip(
+            source, wanted->bytes - wanted->skip - wanted->take, "the voxels"));
     }
     return snow_source_finish(source);
 }
@@ -245,8 +245,16 @@ static snow_status read_detached(snow_source *source,
                                  const metaimage_header *header,
                                  snow_volume **out) {
     snow_source *data;
-    SNOW_TRY(open_data(source, header, header->data, &data));
-    snow_status status = read_whole(data, header, out);
+    snow_status status = open_data(source, header, header->data, &data);
+    /* The name of a file, as far as the header goes. */
+    if (status == SNOW_BAD_INPUT && *header->data &&
+        !strncmp("LOCAL", header->data, strlen(header->data)))
+        return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                         "its data file \"%s\" cannot be opened; the header "
+                         "may be cut within LOCAL",
+                         header->data);
+    SNOW_TRY(status);
+    status = read_whole(data, header, out);
     snow_source_close(data);
     return status;
 }
@@ -277,7 +285,8 @@ static snow_status read_metaimage(snow_source *source,
     snow_context *context = snow_source_context(source);
     metaimage_header header;
     SNOW_TRY(metaimage_read_header(source, &header));
-    SNOW_TRY(snow_volume_pick_time(context, options, &header.info));
+    SNOW_TRY(
+        snow_volume_pick_time(context, "time step", options, &header.info));
     snow_volume *volume = NULL;
     snow_status status = read_data(source, &header, &volume);
     if (status != SNOW_OK) {

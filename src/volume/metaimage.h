@@ -29,13 +29,4 @@ snow_status metaimage_read_header(snow_source *source, metaimage_header *out);
 /* Name of a scalar type in MetaImage ("MET_SHORT"), NULL when there is none. */
 const char *metaimage_type_name(snow_type type);
 
-/* Takes `count` decimal numbers between blanks from a source into `out`, in
- * the given type; a NULL `out` drops them.  Errors: SNOW_BAD_INPUT (no number,
- * or one outside of the type's range, or too few). */
-snow_status metaimage_read_text(snow_source *source, snow_type type, void *out,
-                                uint64_t count);
-
-/* Takes what white space follows, so that it does not count as left over. */
-snow_status metaimage_skip_blanks(snow_source *source);
-
 #endif

@@ -233,6 +233,8 @@ static bool parse_numbers(const char *text, int count, double *out) {
     return !text[strspn(text, " \t")];
 }
 
+/* A size beyond 64 bits becomes the largest that they hold, which is too large
+ * as well and is refused for that. */
 static bool parse_dims(const char *text, int count, int64_t *out) {
     for (int i = 0; i < count; i++) {
         char word[64];
@@ -242,8 +244,11 @@ static bool parse_dims(const char *text, int count, int64_t *out) {
             return false;
         memcpy(word, text, length);
         word[length] = 0;
-        if (!snow_parse_int64(word, &out[i]))
-            return false;
+        if (!snow_parse_int64(word, &out[i])) {
+            if (strspn(word, "0123456789") != length)
+                return false;
+            out[i] = INT64_MAX;
+        }
         text += length;
     }
     return !text[strspn(text, " \t")];
@@ -309,15 +314,19 @@ static snow_status read_sizes(snow_context *context, const fields *f,
     if (!parse_dims(f->value[DIMS], header->axes, header->dims))
         return fail_value(context, f, DIMS,
                           "one whole number for each of the NDims axes");
+    for (int i = 0; i < 4; i++)
+        if (header->dims[i] < 1)
+            return fail_value(context, f, DIMS, "sizes of at least 1");
     uint64_t all;
     memcpy(header->info.dims, header->dims, sizeof header->info.dims);
-    if (header->dims[3] < 1 ||
-        !snow_volume_count(header->dims, header->info.type, &voxels,
+    if (!snow_volume_count(header->dims, header->info.type, &voxels,
                            &header->step_bytes) ||
         !snow_mul_u64(header->step_bytes, (uint64_t)header->dims[3], &all) ||
         all > (uint64_t)INT64_MAX)
-        return fail_value(context, f, DIMS,
-                          "sizes of at least 1 that fit in a file");
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "%s is \"%.60s\", too large for any file; correct "
+                         "the header",
+                         f->key[DIMS], f->value[DIMS]);
     header->info.times = header->dims[3];
     return SNOW_OK;
 }

@@ -35,7 +35,10 @@ static snow_status describe(snow_context *context, const nifti_header *header,
                          "its sizes (dim) are larger than any file; correct "
                          "the header");
     info->times = (int64_t)times;
-    return snow_volume_pick_time(context, options, info);
+    /* Axes 5 to 7 run over directions, components, anything but time. */
+    bool time_alone = header->dim[5] * header->dim[6] * header->dim[7] == 1;
+    return snow_volume_pick_time(context, time_alone ? "time step" : "volume",
+                                 options, info);
 }
 
 /* Reads the voxels from a source that stands `taken` bytes behind its start. */

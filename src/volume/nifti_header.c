@@ -256,13 +256,15 @@ snow_status nifti_header_parse(snow_context *context,
                                nifti_header *out) {
     nifti_header header = {0};
     size_t whole = nifti_header_size(bytes, size);
-    if (!whole || size < whole)
+    if (size < NIFTI1_BYTES || (whole && size < whole))
         return snow_fail(context, SNOW_BAD_INPUT,
-                         size < NIFTI1_BYTES
-                             ? "%zu bytes are no whole NIfTI header; fetch the "
-                               "file again"
-                             : "the first %zu bytes are no NIfTI header; check "
-                               "the file, convert Analyze files to NIfTI",
+                         "%zu byte%s no whole NIfTI header; fetch the file "
+                         "again",
+                         size, size == 1 ? " is" : "s are");
+    if (!whole)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "the first %zu bytes are no NIfTI header; check the "
+                         "file, convert Analyze files to NIfTI",
                          size);
     header.version = whole == NIFTI1_BYTES ? 1 : 2;
     if (!has_size(bytes, whole, &header.big_endian))

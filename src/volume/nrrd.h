@@ -6,6 +6,8 @@
  *   nrrd_files.c   data file  -> nrrd_files   which files hold the voxels
  *   nrrd_data.c    files      -> voxels       through the encoding
  *
+ * numbers.c beside them reads the encoding "ascii".
+ *
  * After "Definition of NRRD File Format", teem.sourceforge.net/nrrd/format.html
  * (versions 1 to 5). */
 #ifndef SNOW_NRRD_H
@@ -16,7 +18,10 @@
 #define NRRD_MOST_AXES 16
 
 /* X(NAME, spelling, other spelling); the format ignores case.  Fields that say
- * nothing about where a voxel lies or what it is worth are known but unused. */
+ * nothing about where a voxel lies or what it is worth are known but unused.
+ * The axes' ends ("axis mins" and "axis maxs", with "centers") are heeded where
+ * neither spacings nor directions are told, which come before them; min and max
+ * are of the values, which are measured, not believed. */
 #define NRRD_FIELD_MAP(X)                         \
     X(TYPE, "type", "")                           \
     X(DIMENSION, "dimension", "")                 \
@@ -78,7 +83,8 @@ typedef enum nrrd_role {
 
 typedef struct nrrd_axis {
     int64_t size;
-    double spacing;      /* 1 when not told */
+    double spacing;      /* 1 when not told; below 0: runs backwards */
+    double first;        /* where sample 0 lies along it; 0 when not told */
     double direction[4]; /* world step; the 4th is time */
     bool directed;       /* has a direction */
     nrrd_role role;
@@ -152,10 +158,5 @@ snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,
                                 const nrrd_window *window, snow_volume **out);
-
-/* Takes `window->all` bytes worth of numbers in text, and keeps those in the
- * window. */
-snow_status snow_nrrd_read_numbers(snow_source *source, snow_type type,
-                                   const nrrd_window *window, void *voxels);
 
 #endif

@@ -4,6 +4,7 @@
  * of -1 means that the data are the last bytes.  Every file is measured before
  * the voxels get their memory, and read whole. */
 #include "volume/nrrd.h"
+#include "volume/numbers.h"
 
 #include <string.h>
 
@@ -122,12 +123,20 @@ static snow_status read_last_bytes(snow_source *source,
     return status;
 }
 
+static snow_status read_ascii(snow_source *source, const nrrd_header *header,
+                              const nrrd_window *window, void *to) {
+    size_t size = snow_type_size(header->type);
+    const snow_number_window numbers = {
+        window->skip / size, window->count / size, window->all / size};
+    return snow_read_numbers(source, header->type, true, &numbers, to);
+}
+
 /* Reads one file's part of the window from where go_to_data left it. */
 static snow_status read_window(snow_source *source, const nrrd_header *header,
                                const nrrd_window *window, bool at_end,
                                void *to) {
     if (header->encoding == NRRD_ASCII)
-        SNOW_TRY(snow_nrrd_read_numbers(source, header->type, window, to));
+        SNOW_TRY(read_ascii(source, header, window, to));
     else if (at_end)
         SNOW_TRY(read_last_bytes(source, window, to));
     else {

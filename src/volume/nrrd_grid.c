@@ -124,6 +124,8 @@ static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
         complete_columns(m, choice->spaces);
     for (int i = 0; i < 3; i++) {
         m[i][3] = header->origin[i];
+        if (i < choice->spaces) /* 0 where directions or an origin are told */
+            m[i][3] += header->axes[choice->space[i]].first;
         for (int j = 0; j < 4; j++)
             /* + 0: no negative zeros to puzzle over. */
             m[i][j] = m[i][j] * header->turn[i] + 0.0;
@@ -144,7 +146,7 @@ snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
         info->times = header->axes[choice.time].size;
     fill_matrix(header, &choice, info->matrix);
     SNOW_TRY(snow_volume_info_check(context, info));
-    SNOW_TRY(snow_volume_pick_time(context, options, info));
+    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     int64_t voxels;
     snow_volume_count(info->dims, info->type, &voxels, &window->count);
     if (!snow_mul_u64(window->count, (uint64_t)info->times, &window->all) ||

@@ -117,7 +117,8 @@ static snow_status fail_field(snow_context *context, const nrrd_text *text,
                      snow_nrrd_field_name(field), value, wrong);
 }
 
-/* The value in the form of the name tables. */
+/* The value in the form of the name tables.  Cutting is safe: all names in
+ * them are shorter than what is left. */
 static void plain_name(const char *value, char name[WORD_BYTES]) {
     size_t used = 0;
     for (; *value && used + 1 < WORD_BYTES; value++)
@@ -135,15 +136,22 @@ static const name_value *look_up(const name_value *table, const char *value) {
     return table;
 }
 
-/* Takes the next word, cut to its room; false at the end. */
+/* Takes the next word; false at the end, and for a word longer than anything
+ * that a field may hold, which cut could pass for another. */
 static bool next_word(const char **at, char word[WORD_BYTES]) {
-    *at += strspn(*at, " \t");
-    size_t length = strcspn(*at, " \t");
-    size_t kept = length < WORD_BYTES ? length : WORD_BYTES - 1;
-    memcpy(word, *at, kept);
-    word[kept] = 0;
-    *at += length;
-    return length > 0;
+    const char *from = *at + strspn(*at, " \t");
+    size_t length = strcspn(from, " \t");
+    if (!length || length >= WORD_BYTES)
+        return false;
+    memcpy(word, from, length);
+    word[length] = 0;
+    *at = from + length;
+    return true;
+}
+
+/* True when something follows, be it a word or too long for one. */
+static bool has_more(const char *at) {
+    return at[strspn(at, " \t")] != 0;
 }
 
 /* Takes "(1,0,0.5)" with `count` numbers. */
@@ -241,9 +249,70 @@ static snow_status parse_sizes(snow_context *context, const nrrd_text *text,
             out->axes[i].size < 1)
             return fail_field(context, text, NRRD_SIZES,
                               "has not one whole number above 0 for each axis");
-    if (next_word(&at, word))
+    if (has_more(at))
         return fail_field(context, text, NRRD_SIZES,
                           "has more numbers than there are axes");
+    return SNOW_OK;
+}
+
+/* One number for each axis; the field is there. */
+static snow_status parse_axis_numbers(snow_context *context,
+                                      const nrrd_text *text, nrrd_field field,
+                                      int dimension,
+                                      double out[NRRD_MOST_AXES]) {
+    const char *at = snow_nrrd_value(text, field);
+    char word[WORD_BYTES];
+    for (int i = 0; i < dimension; i++)
+        if (!next_word(&at, word) || !snow_parse_double(word, &out[i]))
+            return fail_field(context, text, field,
+                              "has not one number for each axis");
+    if (has_more(at))
+        return fail_field(context, text, field,
+                          "has more numbers than there are axes");
+    return SNOW_OK;
+}
+
+/* Which axes have samples at their ends.  "cell", "???", "none" and nothing at
+ * all are one here: the format leaves what is not told to the reader, and
+ * voxels are cells. */
+static snow_status parse_nodes(snow_context *context, const nrrd_text *text,
+                               int dimension, bool nodes[NRRD_MOST_AXES]) {
+    const char *at = snow_nrrd_value(text, NRRD_CENTERS);
+    char word[WORD_BYTES], name[WORD_BYTES];
+    for (int i = 0; at && i < dimension; i++) {
+        if (!next_word(&at, word))
+            return fail_field(context, text, NRRD_CENTERS,
+                              "has not one centering for each axis");
+        plain_name(word, name);
+        nodes[i] = !strcmp(name, "node");
+    }
+    return SNOW_OK;
+}
+
+/* The older way to say where samples lie, by the ends of each axis: those of
+ * the first and last cell, or the first and last sample ("node").  The ends
+ * may come in either order; NaN is the format's word for "not known".  The
+ * field "space origin" says the same better. */
+static snow_status parse_ends(snow_context *context, const nrrd_text *text,
+                              nrrd_header *out) {
+    double from[NRRD_MOST_AXES], to[NRRD_MOST_AXES];
+    bool nodes[NRRD_MOST_AXES] = {false};
+    int dimension = out->dimension;
+    SNOW_TRY(
+        parse_axis_numbers(context, text, NRRD_AXIS_MINS, dimension, from));
+    SNOW_TRY(parse_axis_numbers(context, text, NRRD_AXIS_MAXS, dimension, to));
+    SNOW_TRY(parse_nodes(context, text, dimension, nodes));
+    bool placed = snow_nrrd_value(text, NRRD_ORIGIN) != NULL;
+    for (int i = 0; i < dimension; i++) {
+        nrrd_axis *axis = &out->axes[i];
+        int64_t steps = axis->size - nodes[i];
+        if (isnan(from[i]) || isnan(to[i]))
+            continue;
+        if (steps > 0) /* one node has no length to tell */
+            axis->spacing = (to[i] - from[i]) / (double)steps;
+        if (!placed)
+            axis->first = from[i] + (nodes[i] ? 0 : axis->spacing / 2);
+    }
     return SNOW_OK;
 }
 
@@ -251,18 +320,17 @@ static snow_status parse_sizes(snow_context *context, const nrrd_text *text,
  * for one that is when the grid is laid out. */
 static snow_status parse_spacings(snow_context *context, const nrrd_text *text,
                                   nrrd_header *out) {
-    const char *at = snow_nrrd_value(text, NRRD_SPACINGS);
-    char word[WORD_BYTES];
-    for (int i = 0; i < out->dimension; i++) {
-        out->axes[i].spacing = 1;
-        if (at && (!next_word(&at, word) ||
-                   !snow_parse_double(word, &out->axes[i].spacing)))
-            return fail_field(context, text, NRRD_SPACINGS,
-                              "has not one number for each axis");
-    }
-    if (at && next_word(&at, word))
-        return fail_field(context, text, NRRD_SPACINGS,
-                          "has more numbers than there are axes");
+    double spacings[NRRD_MOST_AXES];
+    bool told = snow_nrrd_value(text, NRRD_SPACINGS) != NULL;
+    if (told)
+        SNOW_TRY(parse_axis_numbers(context, text, NRRD_SPACINGS,
+                                    out->dimension, spacings));
+    for (int i = 0; i < out->dimension; i++)
+        out->axes[i].spacing = told ? spacings[i] : 1;
+    if (!told && !snow_nrrd_value(text, NRRD_DIRECTIONS) &&
+        snow_nrrd_value(text, NRRD_AXIS_MINS) &&
+        snow_nrrd_value(text, NRRD_AXIS_MAXS))
+        return parse_ends(context, text, out);
     return SNOW_OK;
 }
 
@@ -277,7 +345,7 @@ static snow_status parse_kinds(snow_context *context, const nrrd_text *text,
                               "has not one kind for each axis");
         out->axes[i].role = (nrrd_role)look_up(role_names, word)->value;
     }
-    if (at && next_word(&at, word))
+    if (at && has_more(at))
         return fail_field(context, text, NRRD_KINDS,
                           "has more kinds than there are axes");
     return SNOW_OK;
@@ -340,12 +408,11 @@ static snow_status parse_directions(snow_context *context,
         if (!next_direction(&at, dimension, &out->axes[i]))
             return fail_field(context, text, NRRD_DIRECTIONS,
                               "has not one vector or \"none\" for each axis");
-    if (at && at[strspn(at, " \t")])
+    if (at && has_more(at))
         return fail_field(context, text, NRRD_DIRECTIONS,
                           "has more vectors than there are axes");
     at = snow_nrrd_value(text, NRRD_ORIGIN);
-    if (at &&
-        (!next_vector(&at, dimension, out->origin) || at[strspn(at, " \t")]))
+    if (at && (!next_vector(&at, dimension, out->origin) || has_more(at)))
         return fail_field(context, text, NRRD_ORIGIN,
                           "is no vector of the space");
     return SNOW_OK;

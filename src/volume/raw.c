@@ -129,7 +129,7 @@ static snow_status read_raw(snow_source *source,
     snow_volume_info info = snow_volume_info_default("raw");
     memcpy(info.dims, all.dims, sizeof info.dims);
     info.type = all.type;
-    SNOW_TRY(snow_volume_pick_time(context, &all, &info));
+    SNOW_TRY(snow_volume_pick_time(context, "time step", &all, &info));
     return snow_volume_read(source, &info, all.endian == SNOW_ENDIAN_BIG,
                             all.offset, 0, out);
 }

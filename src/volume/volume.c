@@ -180,20 +180,21 @@ snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
 
 /* Told even for step 0: a picture of one of many steps must not pass for all
  * there is. */
-snow_status snow_volume_pick_time(snow_context *context,
+snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info) {
     if (options->time < 0 || options->time >= info->times)
         return snow_fail(context, SNOW_BAD_USAGE,
-                         "there is no time step %lld; the file has %lld, "
-                         "counted from 0",
-                         (long long)options->time, (long long)info->times);
+                         "there is no %s %lld; the file has %lld, counted from "
+                         "0",
+                         what, (long long)options->time,
+                         (long long)info->times);
     info->time = options->time;
     if (info->times > 1)
         snow_notify(context,
-                    "time step %lld of %lld (counted from 0) is taken; "
-                    "--time N takes another",
-                    (long long)info->time, (long long)info->times);
+                    "%s %lld of %lld (counted from 0) is taken; --time N takes "
+                    "another",
+                    what, (long long)info->time, (long long)info->times);
     return SNOW_OK;
 }
 

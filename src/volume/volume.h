@@ -72,9 +72,10 @@ snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
                              snow_volume **out);
 
 /* For a reader that has set info->times: takes the time step of the options
- * into info->time and tells the listener when there are several.
+ * into info->time and tells the listener when there are several.  `what` the
+ * format calls one: "time step", or "volume" where it need not be time.
  * Errors: SNOW_BAD_USAGE when there is no such step. */
-snow_status snow_volume_pick_time(snow_context *context,
+snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info);
 

@@ -1,0 +1,179 @@
+/* volume/numbers.c - voxels written as decimal numbers in text: NRRD's encoding
+ * "ascii" and MetaImage's BinaryData = False.
+ *
+ * Numbers stand apart by white space, in NRRD also by commas.  One that does
+ * not fit the scalar type is refused, "1e1" and "2.0" for whole numbers
+ * included; none is rounded or clipped. */
+#include "volume/numbers.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Longer than the exact decimal form of most doubles; nobody writes longer
+ * ones. */
+#define WORD_BYTES 512
+
+/* Half a step beyond the largest float: from here on rounding gives infinity,
+ * while "3.4028235e38", the usual way to write that float, lies below. */
+#define FLOAT_END 0x1.ffffffp127
+
+/* A piece of the source's bytes, which stay in the source until they are
+ * dropped: what follows the last number is still there for who comes next. */
+typedef struct word_reader {
+    snow_source *source;
+    bool commas;
+    char bytes[SNOW_PEEK_BYTES];
+    size_t at, end;
+    char word[WORD_BYTES];
+} word_reader;
+
+/* The full range of 64 bits; strtoull by itself would take "-1". */
+static bool store_unsigned(const char *word, void *at) {
+    char *end;
+    errno = 0;
+    unsigned long long value = strtoull(word, &end, 10);
+    if (!isdigit((unsigned char)word[*word == '+']) || errno || *end)
+        return false;
+    const uint64_t stored = value;
+    memcpy(at, &stored, sizeof stored);
+    return true;
+}
+
+static bool store_real(snow_type type, const char *word, void *at) {
+    double value;
+    if (!snow_parse_double(word, &value))
+        return false;
+    if (type == SNOW_FLOAT64) {
+        memcpy(at, &value, sizeof value);
+        return true;
+    }
+    /* Infinity is a number of the file; a finite one must not become it. */
+    if (isfinite(value) && fabs(value) >= FLOAT_END)
+        return false;
+    const float narrow = (float)value;
+    memcpy(at, &narrow, sizeof narrow);
+    return true;
+}
+
+/* Converted first and compared after: what does not survive the type was out
+ * of its range. */
+bool snow_store_number(snow_type type, const char *word, void *at) {
+    int64_t value;
+    if (type == SNOW_UINT64)
+        return store_unsigned(word, at);
+    if (type == SNOW_FLOAT32 || type == SNOW_FLOAT64)
+        return store_real(type, word, at);
+    if (!snow_parse_int64(word, &value))
+        return false;
+    switch (type) {
+#define STORE(name, c_type)                  \
+    case SNOW_##name: {                      \
+        const c_type stored = (c_type)value; \
+        if ((int64_t)stored != value)        \
+            return false;                    \
+        memcpy(at, &stored, sizeof stored);  \
+        return true;                         \
+    }
+        STORE(INT8, int8_t)
+        STORE(UINT8, uint8_t)
+        STORE(INT16, int16_t)
+        STORE(UINT16, uint16_t)
+        STORE(INT32, int32_t)
+        STORE(UINT32, uint32_t)
+        STORE(INT64, int64_t)
+#undef STORE
+    default:
+        return false;
+    }
+}
+
+static bool separates(const word_reader *reader, char c) {
+    return isspace((unsigned char)c) || (c == ',' && reader->commas);
+}
+
+/* Takes what was gone through out of the source. */
+static snow_status drop_read(word_reader *reader) {
+    SNOW_TRY(snow_source_skip(reader->source, reader->at, "the voxels"));
+    reader->at = reader->end = 0;
+    return SNOW_OK;
+}
+
+/* Makes sure of one more byte, if there is one. */
+static snow_status look_ahead(word_reader *reader) {
+    if (reader->at < reader->end)
+        return SNOW_OK;
+    SNOW_TRY(drop_read(reader));
+    return snow_source_peek(reader->source, reader->bytes, sizeof reader->bytes,
+                            &reader->end);
+}
+
+/* Goes to the next word; *got is false at the end. */
+static snow_status skip_blanks(word_reader *reader, bool *got) {
+    for (;; reader->at++) {
+        SNOW_TRY(look_ahead(reader));
+        *got = reader->at < reader->end;
+        if (!*got || !separates(reader, reader->bytes[reader->at]))
+            return SNOW_OK;
+    }
+}
+
+/* Takes the next word into reader->word. */
+static snow_status next_word(word_reader *reader, bool *got) {
+    size_t used = 0;
+    SNOW_TRY(skip_blanks(reader, got));
+    for (;; reader->at++) {
+        SNOW_TRY(look_ahead(reader));
+        if (reader->at == reader->end ||
+            separates(reader, reader->bytes[reader->at]))
+            break;
+        if (used == WORD_BYTES - 1) {
+            reader->word[used - 1] = '?'; /* too long: no number any more */
+            break;
+        }
+        char c = reader->bytes[reader->at];
+        reader->word[used++] = c ? c : '?'; /* a NUL would end the number */
+    }
+    reader->word[used] = 0;
+    return SNOW_OK;
+}
+
+/* The numbers outside the window must be numbers too: a fault there says that
+ * those inside are not where they should be. */
+static snow_status read_words(word_reader *reader, snow_type type,
+                              const snow_number_window *window,
+                              unsigned char *out) {
+    snow_context *context = snow_source_context(reader->source);
+    const char *name = snow_source_name(reader->source);
+    bool got;
+    for (uint64_t i = 0; i < window->all; i++) {
+        uint64_t unwanted; /* room for one of any type */
+        void *at = &unwanted;
+        if (i >= window->skip && i - window->skip < window->count)
+            at = out + (i - window->skip) * snow_type_size(type);
+        SNOW_TRY(next_word(reader, &got));
+        if (!got)
+            return snow_fail(context, SNOW_BAD_INPUT,
+                             "%s: ends after %llu of %llu numbers; the file is "
+                             "cut, or its sizes are wrong",
+                             name, (unsigned long long)i,
+                             (unsigned long long)window->all);
+        if (!snow_store_number(type, reader->word, at))
+            return snow_fail(context, SNOW_BAD_INPUT,
+                             "%s: its number %llu, \"%.40s\", is no %s; "
+                             "correct it or the type",
+                             name, (unsigned long long)i, reader->word,
+                             snow_type_name(type));
+    }
+    /* The last line's end is nothing left over. */
+    SNOW_TRY(skip_blanks(reader, &got));
+    return drop_read(reader);
+}
+
+snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
+                              const snow_number_window *window, void *out) {
+    word_reader reader = {.source = source, .commas = commas};
+    return read_words(&reader, type, window, out);
+}
