@@ -113,7 +113,7 @@ bool read_tolerance(const option_row *row, const char *text, void *field,
     return true;
 }
 
-/* Limits of rows are doubles; all of them are far below 2^53, where whole
+/* Limits of rows are doubles; all of them are below 2^53, where whole
  * numbers are exact. */
 bool read_integer(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {

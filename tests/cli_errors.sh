@@ -38,6 +38,14 @@ given() {
 refused 3 "the same from standard input" \
     "^snowglass: standard input: voxels of" given eight.raw \
     - $raw --spacing 1e-30x1e30x1e30 -o z.png
+printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw
+data file: eight.raw\n\n' >eight.nhdr
+run 0 "a header and its data" "$TOOL" info eight.nhdr
+refused 3 "a header from standard input, whose data are elsewhere" \
+    "^snowglass: standard input: .*eight.raw" given eight.nhdr info -
+refused 3 "an empty name" "^snowglass: [^:]" "$TOOL" info ""
+refused 3 "an empty name of a picture" "^snowglass: [^:]" \
+    "$TOOL" compare "" eight.raw
 refused 3 "an empty standard input" "^snowglass: standard input: [^:]*empty" \
     given empty.raw info -
 refused 3 "a device as standard input" "^snowglass: standard input: is a dev" \
