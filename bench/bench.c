@@ -1,4 +1,7 @@
-/* bench/bench.c - the verb `bench`: which table, with what. */
+/* bench/bench.c - the verb `bench`: which table, with what.
+ *
+ * It reads its own options, since they mean nothing to other verbs, and the
+ * help of the tool shows its text as it stands. */
 #include "bench.h"
 
 #include <errno.h>
@@ -27,6 +30,7 @@ static const char help[] =
     "  --elevation DEG  (0)\n"
     "  --help           this text\n";
 
+/* The tables by name: a new measurement is a file and a line here. */
 static const struct bench_entry {
     const char *name;
     int (*run)(snow_context *context, const bench_options *options);
@@ -38,6 +42,7 @@ static const struct bench_entry {
 
 #define ENTRY_COUNT (sizeof entries / sizeof entries[0])
 
+/* The library's message is complete: what is wrong; what to try. */
 int bench_fail(snow_context *context, snow_status status) {
     fprintf(stderr, "snowglass: bench: %s\n", snow_context_message(context));
     return (int)status;
@@ -49,7 +54,7 @@ static int usage_error(const char *what, const char *value) {
     return SNOW_BAD_USAGE;
 }
 
-/* A finite number in range, the whole of the text. */
+/* A finite number in range, the whole of the text.  NaN is in no range. */
 static bool parse_number(const char *text, double low, double high,
                          double *out) {
     char *end;
@@ -60,7 +65,8 @@ static bool parse_number(const char *text, double low, double high,
     return true;
 }
 
-/* Takes one option; false when its value is bad. */
+/* Takes one option; false when its value is bad.  Fewer than five runs give no
+ * median that can be trusted; bench/measure.c has room for 99. */
 static bool take_option(int option, const char *value, bench_options *out) {
     double number;
     int kernel;
@@ -88,6 +94,20 @@ static bool take_option(int option, const char *value, bench_options *out) {
     }
 }
 
+/* getopt_long takes any beginning of a name for the name; as in all verbs only
+ * the name in full counts, so that a later option cannot change what a script
+ * means. */
+static bool in_full(const char *word, const char *name) {
+    return strncmp(word, "--", 2) != 0 ||
+           strcspn(word + 2, "=") == strlen(name);
+}
+
+/* The word of the option just read: its value may stand behind it. */
+static const char *option_word(char **argv) {
+    bool apart = optarg && optarg == argv[optind - 1];
+    return argv[optind - (apart ? 2 : 1)];
+}
+
 /* Parses the command line into options and `*name`; an exit code, or -1 to go
  * on. */
 static int parse(int argc, char **argv, bench_options *options,
@@ -102,20 +122,22 @@ static int parse(int argc, char **argv, bench_options *options,
         {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0},
     };
-    opterr = 0;
-    optind = 0;
-    for (int option;
-         (option = getopt_long(argc, argv, "h", longs, NULL)) >= 0;) {
+    opterr = 0; /* we tell faults ourselves, in the tool's form */
+    optind = 0; /* the tool's own parser may have run getopt before */
+    for (int option, index = 0;
+         (option = getopt_long(argc, argv, "h", longs, &index)) >= 0;) {
+        bool known = option != '?' && option != ':';
+        if (!known || !in_full(option_word(argv), longs[index].name))
+            return usage_error("unknown option or missing value",
+                               option_word(argv));
         if (option == 'h') {
             fputs(help, stdout);
             return SNOW_OK;
         }
-        if (option == '?' || option == ':')
-            return usage_error("unknown option or missing value",
-                               argv[optind - 1]);
         if (!take_option(option, optarg, options))
             return usage_error("this value is not possible:", optarg);
     }
+    /* getopt has moved the words that are no options behind the others. */
     if (optind + 1 != argc)
         return usage_error("give one table to measure, not",
                            optind < argc ? argv[optind + 1] : "none");
@@ -132,6 +154,8 @@ int bench_main(int argc, char **argv) {
     for (size_t i = 0; i < ENTRY_COUNT; i++) {
         if (strcmp(name, entries[i].name) != 0)
             continue;
+        if (!bench_data_found(&options))
+            return SNOW_BAD_INPUT;
         snow_context *context;
         if (snow_context_new(NULL, &context) != SNOW_OK)
             return SNOW_NO_MEMORY;

@@ -34,6 +34,10 @@ typedef struct bench_volume {
     snow_transfer *transfer;
 } bench_volume;
 
+/* Whether the files of --data can be read; if not, stderr was told.  Asked
+ * before the first line of a table, since rows are printed as they come. */
+bool bench_data_found(const bench_options *options);
+
 /* Opens a test volume.  Errors as those of the library, told on stderr. */
 snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out);

@@ -8,9 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define IMAGE_SIDE 256
-#define RUNS_MOST 99
+#define IMAGE_SIDE 256 /* of the paper's pictures, section 5.2 */
+#define RUNS_MOST 99   /* --runs is held to it */
 
+/* "Tested" is the fair rival: it too skips uninteresting voxels, but has to
+ * touch each one to know.  What is left of the gain is the encoding's. */
 static const struct {
     snow_method method;
     snow_encoding encoding;
@@ -30,6 +32,9 @@ typedef struct bench_run {
     snow_settings settings;
 } bench_run;
 
+/* One voxel per pixel, so that a footprint of K voxels is K x K pixels as in
+ * the paper's tables.  Without shading, which every way would pay alike: what
+ * is compared is the splatting. */
 static snow_status begin_run(snow_context *context, const bench_volume *volume,
                              const bench_options *options, int footprint,
                              bench_run *run) {
@@ -66,7 +71,9 @@ static snow_status render(bench_run *run, bench_way way, double threshold,
     return status;
 }
 
-/* All ways from `first` on give one picture at this threshold. */
+/* All ways from `first` on give one picture at this threshold.  The original
+ * splats every voxel, so it can only agree at threshold 0; the others agree at
+ * any. */
 static snow_status verify(bench_run *run, bench_way first, double threshold) {
     uint64_t expected = 0, sum;
     for (int way = (int)first; way < BENCH_WAYS; way++) {
@@ -93,6 +100,7 @@ static int compare_doubles(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+/* The median, since a machine with other work has outliers on one side only. */
 static double median(double *values, int count) {
     qsort(values, (size_t)count, sizeof *values, compare_doubles);
     return count % 2 ? values[count / 2]
@@ -108,6 +116,9 @@ static bench_time times_of(const snow_stats *stats) {
                         1e3 * stats->seconds_frame, 1e3 * stats->cpu_frame};
 }
 
+/* Each figure has its own median: a run that was disturbed while encoding may
+ * well have splatted undisturbed.  The fields are reached by their offsets, so
+ * that the four need one loop. */
 static snow_status time_ways(bench_run *run, double threshold, int runs,
                              bench_row *out) {
     static const size_t fields[] = {
@@ -138,6 +149,8 @@ static snow_status time_ways(bench_run *run, double threshold, int runs,
     return SNOW_OK;
 }
 
+/* Verified first, at both thresholds: a time of a wrong picture is worth
+ * nothing.  It warms caches and buffers as well. */
 snow_status bench_measure(snow_context *context, const bench_volume *volume,
                           const bench_options *options, double threshold,
                           int footprint, bench_row *out) {
@@ -154,6 +167,7 @@ snow_status bench_measure(snow_context *context, const bench_volume *volume,
     return status;
 }
 
+/* Of wall time, encoding included, as the paper counts. */
 double bench_gain(const bench_row *row, bench_way way) {
     double original = row->times[BENCH_ORIGINAL].frame;
     return 100 * (original - row->times[way].frame) / original;

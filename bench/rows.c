@@ -1,12 +1,19 @@
-/* bench/rows.c - tables 2 and 3 as text and as JSON. */
+/* bench/rows.c - tables 2 and 3 as text and as JSON.
+ *
+ * Our milliseconds and the paper's seconds are of machines decades apart: the
+ * times cannot be compared, the gains can.  So text puts the paper's gain
+ * beside each of ours and its seconds below; JSON gives all. */
 #include "bench.h"
 
 #include <stdio.h>
 #include <string.h>
 
+/* Keys of JSON, in the order of the enum: a promise to scripts. */
 static const char *const way_names[BENCH_WAYS] = {"original", "tested", "crs",
                                                   "bitmap", "rle"};
 
+/* A time without its machine means nothing.  Where there is no /proc the
+ * processor is "unknown", which is no reason to fail. */
 json_t *bench_machine(void) {
     char line[256], cpu[256] = "unknown";
     FILE *file = fopen("/proc/cpuinfo", "r");
@@ -20,6 +27,7 @@ json_t *bench_machine(void) {
                      snow_isa_used(), "threads", 1);
 }
 
+/* Flushed here, so that a full disk ends in exit code 4. */
 int bench_print_json(json_t *object) {
     int failed = json_dumpf(object, stdout, JSON_INDENT(2)) ||
                  putchar('\n') < 0 || fflush(stdout);
@@ -27,6 +35,8 @@ int bench_print_json(json_t *object) {
     return failed ? SNOW_BAD_OUTPUT : SNOW_OK;
 }
 
+/* What a way has no figure for is left out: the original has no gain over
+ * itself and no encoded array, and the paper does not give every line. */
 static json_t *way_json(const bench_paper_row *paper, const bench_row *row,
                         int way) {
     const bench_time *time = &row->times[way];
@@ -49,6 +59,8 @@ static json_t *way_json(const bench_paper_row *paper, const bench_row *row,
     return json;
 }
 
+/* "verified" is always true: a row that fails is not printed.  The key lets a
+ * script see that it was asked. */
 static json_t *row_json(const bench_paper_row *paper, const bench_row *row,
                         const char *source) {
     json_t *json = json_pack(
@@ -61,6 +73,8 @@ static json_t *row_json(const bench_paper_row *paper, const bench_row *row,
     return json;
 }
 
+/* All that is needed to understand the columns, above them: tables are copied
+ * into mails without their manual. */
 static void print_head(int table, const bench_options *options) {
     printf("Table %d: milliseconds for a 256x256 grey picture, encoding "
            "included; medians of %d alternated runs\n"
@@ -76,6 +90,7 @@ static void print_head(int table, const bench_options *options) {
            table, options->runs, snow_kernel_name(options->kernel));
 }
 
+/* Flushed line by line: a table takes minutes, and who waits wants to see. */
 static void print_row(const bench_paper_row *paper, const bench_row *row) {
     printf("%-7s %-3g %dx%d  %5.1f %8.1f  %6.1f %3.0f%%", paper->label,
            paper->threshold, paper->footprint, paper->footprint,
@@ -106,7 +121,9 @@ static void print_paper(const bench_paper_row *rows, size_t count) {
                    rows[i].seconds[BENCH_BITMAP], rows[i].seconds[BENCH_RLE]);
 }
 
-/* Measures one line; it is printed, or appended to the list. */
+/* Measures one line; it is printed, or appended to the list.  The volume is
+ * opened anew for each: reading is not timed, and one at a time is in memory.
+ */
 static snow_status do_row(snow_context *context, const bench_options *options,
                           const bench_paper_row *paper, json_t *list) {
     bench_volume volume;
@@ -125,6 +142,8 @@ static snow_status do_row(snow_context *context, const bench_options *options,
     return status;
 }
 
+/* SNOW_DIFFERENT was told where it was found, and is no "comparison differs" of
+ * the user's pictures (exit code 6) but a fault of ours. */
 int bench_print_rows(snow_context *context, const bench_options *options,
                      int table, const bench_paper_row *rows, size_t count) {
     json_t *list = options->json ? json_array() : NULL;

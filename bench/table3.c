@@ -1,6 +1,7 @@
 /* bench/table3.c - Table 3 of the paper: the gain grows with the footprint.
  * The table prints Head at threshold 30; its text speaks of Head and Engine,
- * for which it gives no figures; Engine's 2x2 line is that of Table 2. */
+ * for which it gives no figures; Engine's 2x2 line is that of Table 2.  Lines
+ * are read as in bench/table2.c. */
 #include "bench.h"
 
 int bench_table3(snow_context *context, const bench_options *options) {

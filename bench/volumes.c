@@ -7,14 +7,20 @@
  * sparse ratios. */
 #include "bench.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* A longer --data is cut, not found, and told with the name that was tried. */
+#define PATH_BYTES 4096
+
 #define HEAD_OFFSET 88
 #define HEAD_SCALE 0.0825
 
+/* Raw files say nothing of themselves, so their form stands here, as the
+ * collections that they come from give it. */
 static const struct bench_source {
     const char *name, *phantom;
     const char *file; /* NULL: always the phantom */
@@ -33,7 +39,35 @@ static const struct bench_source {
                       {.dims = {256, 256, 110}, .type = SNOW_UINT8}},
 };
 
-/* Puts the 16-bit head's voxels on 8 bits. */
+static void spell_path(const bench_options *options, const char *file,
+                       char *path, size_t size) {
+    snprintf(path, size, "%s/%s", options->data, file);
+}
+
+bool bench_data_found(const bench_options *options) {
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) {
+        char path[PATH_BYTES];
+        if (!options->data || !sources[i].file)
+            continue;
+        spell_path(options, sources[i].file, path, sizeof path);
+        FILE *file = fopen(path, "rb");
+        bool found = file && fgetc(file) != EOF; /* folders open, too */
+        const char *reason = file ? "cannot be read" : strerror(errno);
+        if (!found)
+            fprintf(stderr,
+                    "snowglass: bench: %s: %s; --data takes the folder that "
+                    "holds classic/\n",
+                    path, reason);
+        if (file)
+            fclose(file);
+        if (!found)
+            return false;
+    }
+    return true;
+}
+
+/* Puts the 16-bit head's voxels on 8 bits.  The new volume shares them: they
+ * live as long as `out`. */
 static snow_status map_head(snow_context *context, bench_volume *out) {
     snow_volume_info info = *snow_volume_describe(out->file);
     size_t voxels = (size_t)(info.dims[0] * info.dims[1] * info.dims[2]);
@@ -54,6 +88,8 @@ static snow_status map_head(snow_context *context, bench_volume *out) {
     return snow_volume_share(context, &info, out->mapped, &out->volume);
 }
 
+/* What was opened is kept in words for the table: figures of a phantom are no
+ * figures of the paper's volume. */
 static snow_status open_file(snow_context *context, bench_set set,
                              const bench_options *options, bench_volume *out) {
     const struct bench_source *source = &sources[set];
@@ -61,12 +97,14 @@ static snow_status open_file(snow_context *context, bench_set set,
         snprintf(out->source, sizeof out->source, "%s", source->phantom);
         return snow_volume_open(context, source->phantom, NULL, &out->file);
     }
-    char path[4096];
-    snprintf(path, sizeof path, "%s/%s", options->data, source->file);
+    char path[PATH_BYTES];
+    spell_path(options, source->file, path, sizeof path);
     snprintf(out->source, sizeof out->source, "%s", source->file);
     return snow_volume_open(context, path, &source->options, &out->file);
 }
 
+/* The look is the paper's: the opacity of a voxel is its value of 0 to 255,
+ * whatever values the volume happens to have. */
 snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out) {
     static const snow_look linear = {

@@ -3,25 +3,10 @@
 #include "report.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-/* So that a picture can come from a pipe: render -o - | compare - b.png. */
-static int load_stream(snow_context *context, snow_image **out) {
-    char *bytes;
-    size_t size;
-    int done = read_standard_input(&bytes, &size);
-    if (done != GO_ON)
-        return done;
-    snow_status status =
-        snow_image_load_memory(context, "standard input", bytes, size, out);
-    free(bytes);
-    return status == SNOW_OK ? GO_ON : fail_status(context, status);
-}
-
+/* "-" is standard input, so that a picture can come from a pipe:
+ * render -o - | compare - b.png. */
 static int load(snow_context *context, const char *path, snow_image **out) {
-    if (strcmp(path, "-") == 0)
-        return load_stream(context, out);
     snow_status status = snow_image_load(context, path, out);
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
@@ -41,6 +26,7 @@ static int tell_json(const snow_image_difference *d, double tolerance,
     return print_json(object);
 }
 
+/* Nine digits tell any two floats apart. */
 static int tell_text(const snow_image_difference *d, double tolerance,
                      bool within) {
     printf("largest  %.9g at pixel %d,%d\n", d->largest, d->x, d->y);
@@ -52,7 +38,9 @@ static int tell_text(const snow_image_difference *d, double tolerance,
     return finish_stdout();
 }
 
-/* A largest difference of NaN is beyond every tolerance. */
+/* Differences are told also when they are too large: whoever sees exit code 6
+ * wants to know by how much.  A largest difference of NaN is beyond every
+ * tolerance. */
 static int judge(const options *asked, const snow_image_difference *d) {
     bool within = d->largest <= asked->tolerance;
     int done = asked->json ? tell_json(d, asked->tolerance, within)
@@ -62,6 +50,8 @@ static int judge(const options *asked, const snow_image_difference *d) {
     return done;
 }
 
+/* One context for both pictures: the message of a failed comparison is left
+ * there. */
 int cmd_compare(const options *asked) {
     snow_context *context = NULL;
     snow_image *images[2] = {NULL, NULL};

@@ -30,6 +30,7 @@ static const char *method_at(size_t i) {
     return i < 2 ? snow_method_name(methods[i]) : NULL;
 }
 
+/* Keys of JSON and first words of lines alike. */
 static const struct {
     const char *key;
     const char *(*at)(size_t index);
@@ -73,6 +74,7 @@ static json_t *words_json(const char *words) {
     return list;
 }
 
+/* Asks for names until there is none: the end is the library's to know. */
 static json_t *list_json(const char *(*at)(size_t)) {
     json_t *list = json_array();
     for (size_t i = 0; at(i); i++)
@@ -80,6 +82,8 @@ static json_t *list_json(const char *(*at)(size_t)) {
     return list;
 }
 
+/* What is not built is told too, as false or 1, so that a script that asks need
+ * not change when it is. */
 static int tell_json(void) {
     json_t *o = json_object();
     json_object_set_new(o, "version", json_string(snow_version()));
@@ -123,6 +127,8 @@ static int tell_text(void) {
     return finish_stdout();
 }
 
+/* Needs no context, no memory to speak of and no file: it answers where nothing
+ * else does. */
 int cmd_doctor(const options *asked) {
     return asked->json ? tell_json() : tell_text();
 }

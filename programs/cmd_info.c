@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define ROWS 16
-#define BINS 256
-#define BAR 40
+#define ROWS 16  /* of the histogram as text: half a screen */
+#define BINS 256 /* of the one in JSON */
+#define BAR 40   /* columns of the longest bar */
 
 /* The paper's thresholds, asked of any look; --threshold asks for one. */
 static const double paper_thresholds[] = {0, 10, 30};
@@ -46,7 +46,9 @@ static snow_status gather(const options *asked, facts *f) {
 /* --- orientation -----------------------------------------------------------
  */
 
-/* The cosine between index axis `axis` and world axis `row`. */
+/* The matrix maps indices to the world, so its column is the direction of an
+ * index axis, as long as the spacing.  The cosine between index axis `axis` and
+ * world axis `row`. */
 static double cosine(const snow_volume_info *info, int row, int axis) {
     return info->matrix[row][axis] / info->spacing[axis];
 }
@@ -110,6 +112,8 @@ static void print_geometry(const facts *f) {
                info->intercept);
 }
 
+/* The look and the sparse ratios are those that render would have with the same
+ * options: info answers whether that will do. */
 static void print_values(const facts *f) {
     const snow_volume_measures *m = &f->measures;
     printf("%-14s%" PRId64 " of %" PRId64 " voxels\n", "finite", m->finite,
@@ -203,6 +207,7 @@ static json_t *histogram_json(const facts *f) {
     return object;
 }
 
+/* Ratios are of 0 to 1 here, percent in the text. */
 static json_t *sparse_json(const facts *f) {
     json_t *list = json_array();
     for (size_t i = 0; i < f->threshold_count; i++) {
@@ -232,6 +237,7 @@ static int tell_text(const facts *f) {
     return finish_stdout();
 }
 
+/* The look is made although no picture is: the sparse ratio depends on it. */
 int cmd_info(const options *asked) {
     snow_context *context = NULL;
     snow_volume *volume = NULL;

@@ -1,8 +1,11 @@
 /* cmd_phantom.c - writes a built-in test volume to a file. */
 #include "commands.h"
 #include "interrupt.h"
+#include "outputs.h"
 #include "report.h"
 
+/* The name decides the format; a pipe may block, so there an interruption does
+ * not wait for the write to end. */
 static int save(snow_context *context, const options *asked,
                 const snow_volume *volume) {
     char text[256];
@@ -18,6 +21,7 @@ static int save(snow_context *context, const options *asked,
     return SNOW_OK;
 }
 
+/* Without an output nothing is made: there is no sensible default place. */
 int cmd_phantom(const options *asked) {
     snow_context *context = NULL;
     snow_volume *volume = NULL;

@@ -4,6 +4,7 @@
  * options that contradict each other, and outputs that cannot be written. */
 #include "commands.h"
 #include "interrupt.h"
+#include "outputs.h"
 #include "render_stats.h"
 #include "report.h"
 
@@ -11,6 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
+/* "-" as in most tools; a file of that name is ./-. */
 static bool is_stream(const char *path) {
     return path && strcmp(path, "-") == 0;
 }
@@ -137,6 +139,7 @@ static void free_work(work *w) {
     snow_context_free(w->context);
 }
 
+/* Decompression and conversion are part of the reading. */
 static int read_volume(work *w, const options *asked) {
     double begin = seconds_now();
     progress(asked, "reading");
@@ -145,6 +148,7 @@ static int read_volume(work *w, const options *asked) {
     return done;
 }
 
+/* Timed apart from the reading: the histogram takes a pass over all voxels. */
 static int choose_look(work *w, const options *asked) {
     double begin = seconds_now();
     int done = open_look(w->context, asked, w->volume, &w->transfer);
@@ -152,7 +156,8 @@ static int choose_look(work *w, const options *asked) {
     return done;
 }
 
-/* Calls the pipeline. */
+/* Calls the pipeline.  The view comes first: what is wrong with it costs no
+ * buffers. */
 static int make_picture(work *w, const options *asked) {
     snow_view view;
     int done = make_view(w->context, asked, w->volume, &view);
@@ -165,7 +170,9 @@ static int make_picture(work *w, const options *asked) {
     if (status == SNOW_OK)
         status = snow_frame_render(w->frame, w->volume, w->transfer, &view,
                                    &w->settings, &w->image);
-    return status == SNOW_OK ? GO_ON : fail_status(w->context, status);
+    return status == SNOW_OK ? GO_ON
+                             : fail_volume(w->context, status,
+                                           name_of_input(asked->operands[0]));
 }
 
 /* The one line that says what was chosen where nothing was told. */
@@ -179,9 +186,9 @@ static void tell_choices(const work *w, const options *asked) {
     bool encoded = stats->encoding != SNOW_ENCODING_AUTO;
     char volume[256];
     describe_volume(w->volume, volume, sizeof volume);
-    say("%s: %s; %s; view %s; method %s%s%s", asked->operands[0], volume,
-        snow_transfer_text(w->transfer), view, snow_method_name(stats->method),
-        encoded ? ", encoding " : "",
+    say("%s: %s; %s; view %s; method %s%s%s", name_of_input(asked->operands[0]),
+        volume, snow_transfer_text(w->transfer), view,
+        snow_method_name(stats->method), encoded ? ", encoding " : "",
         encoded ? snow_encoding_name(stats->encoding) : "");
 }
 
@@ -194,9 +201,9 @@ static int write_picture(work *w, const options *asked) {
         .overwrite = asked->overwrite};
     memcpy(form.background, asked->background.rgb, sizeof form.background);
     double begin = seconds_now();
-    progress(asked, "writing");
     if (!is_special(asked->output))
-        interrupt_hold();
+        interrupt_hold(); /* before the word, so that who reads it may rely */
+    progress(asked, "writing");
     snow_status status = snow_image_save(w->image, asked->output, &form);
     w->times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->context, status);
@@ -213,7 +220,7 @@ static int tell_figures(work *w, const options *asked) {
         return SNOW_OK;
     if (!is_special(asked->stats))
         interrupt_hold();
-    return write_json(stats_json(&report), asked->stats);
+    return write_json(stats_json(&report), asked->stats, asked->overwrite);
 }
 
 /* The stages in their order; the first fault ends them. */
@@ -238,6 +245,7 @@ static int run(work *w, const options *asked) {
     return done == GO_ON ? tell_figures(w, asked) : done;
 }
 
+/* One way out, so that whatever was made is freed at every fault. */
 int cmd_render(const options *asked) {
     work w = {.times = {.begin = seconds_now()}};
     int done = run(&w, asked);

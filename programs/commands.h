@@ -11,9 +11,9 @@ int cmd_phantom(const options *asked);
 int cmd_compare(const options *asked);
 int cmd_doctor(const options *asked);
 
-/* All of standard input, for the caller to free().  Answers GO_ON or an exit
- * code. */
-int read_standard_input(char **out, size_t *size);
+/* What an input is called when it is spoken of: its path, or "standard input"
+ * for "-". */
+const char *name_of_input(const char *path);
 
 /* Opens the volume that the options name: a file, phantom:NAME, or "-" for
  * standard input.  Answers GO_ON or an exit code. */

@@ -67,6 +67,7 @@ static void print_option(const option_row *row) {
     print_wrapped(row->text, COLUMN, COLUMN);
 }
 
+/* A row stands under one topic and may serve several verbs. */
 static bool belongs(const option_row *row, topic which, unsigned verbs) {
     return row->topic == which && (row->verbs & verbs) != 0;
 }
@@ -83,6 +84,7 @@ static bool has_options(topic which, unsigned verbs) {
     return row->name != NULL;
 }
 
+/* What is not built has no reader, and is left out of every list of options. */
 static void print_options(topic which, unsigned verbs) {
     for (const option_row *row = option_table; row->name; row++) {
         if (row->read && belongs(row, which, verbs))
@@ -124,6 +126,8 @@ static void print_names(const char *title, const char *(*name)(size_t),
 /* The options of all verbs, then the names that they take. */
 static int print_topic_page(topic which) {
     print_heading(which);
+    if (topic_table[which].built)
+        printf("  built: %s\n", topic_table[which].built);
     print_options(which, ~0U);
     print_later(which);
     if (which == TOPIC_LOOK) {
@@ -161,6 +165,8 @@ static int print_verb_page(const verb_row *row) {
     return finish_stdout();
 }
 
+/* Verbs that are not built are left out: the overview is an offer.  help VERB
+ * names them. */
 static int print_overview(void) {
     printf("%s\nverbs:\n", overview);
     for (const verb_row *row = verb_table; row->name; row++) {
@@ -174,6 +180,7 @@ static int print_overview(void) {
     return finish_stdout();
 }
 
+/* Lists the topics, since who mistypes one does not know them by heart. */
 static int refuse_word(const char *word) {
     char names[256] = "";
     size_t used = 0;
@@ -184,6 +191,7 @@ static int refuse_word(const char *word) {
     return fail_usage("%s: no topic and no verb; topics are:%s", word, names);
 }
 
+/* No topic has a verb's name, so the order of the two searches is free. */
 int help_print(const char *word, const verb_row *verb) {
     if (!word)
         return verb ? print_verb_page(verb) : print_overview();
@@ -195,6 +203,8 @@ int help_print(const char *word, const verb_row *verb) {
     return named ? print_verb_page(named) : refuse_word(word);
 }
 
+/* To standard error: a call without arguments is a mistake, and what it prints
+ * must not be taken for data. */
 void help_hint(void) {
     fputs("usage: snowglass INPUT -o OUT.png [OPTIONS]\n"
           "       snowglass VERB ... [OPTIONS]\n"

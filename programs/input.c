@@ -3,14 +3,9 @@
 #include "commands.h"
 #include "report.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* First room for standard input; it doubles from there. */
-#define STREAM_BYTES ((size_t)1 << 20)
 
 /* What was not told stays 0: the library refuses what does not fit a format,
  * and must see the difference between told and default. */
@@ -27,56 +22,20 @@ static snow_volume_options data_options(const options *asked) {
     return data;
 }
 
-int read_standard_input(char **out, size_t *size) {
-    size_t room = STREAM_BYTES, used = 0;
-    char *bytes = malloc(room);
-    errno = 0;
-    while (bytes) {
-        used += fread(bytes + used, 1, room - used, stdin);
-        if (used < room)
-            break;
-        char *grown = room <= SIZE_MAX / 2 ? realloc(bytes, room * 2) : NULL;
-        if (!grown)
-            free(bytes);
-        bytes = grown;
-        room *= 2;
-    }
-    if (bytes && !ferror(stdin)) {
-        *out = bytes;
-        *size = used;
-        return GO_ON;
-    }
-    say("standard input: %s; give a file",
-        bytes && errno ? strerror(errno) : "too large for the memory");
-    int code = bytes ? SNOW_BAD_INPUT : SNOW_NO_MEMORY;
-    free(bytes);
-    return code;
-}
-
-/* The library reads bytes in memory, so a stream is gathered first; it cannot
- * be detached data, which lies beside its header. */
-static int open_stream(snow_context *context, const snow_volume_options *data,
-                       snow_volume **out) {
-    char *bytes;
-    size_t size;
-    int done = read_standard_input(&bytes, &size);
-    if (done != GO_ON)
-        return done;
-    snow_status status = snow_volume_open_memory(context, "standard input",
-                                                 bytes, size, data, out);
-    free(bytes);
-    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+/* As the library names it in its own messages. */
+const char *name_of_input(const char *path) {
+    return strcmp(path, "-") == 0 ? "standard input" : path;
 }
 
 int open_input(snow_context *context, const options *asked, const char *path,
                snow_volume **out) {
     snow_volume_options data = data_options(asked);
-    if (strcmp(path, "-") == 0)
-        return open_stream(context, &data, out);
     snow_status status = snow_volume_open(context, path, &data, out);
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
+/* --window and --level are the radiologists' way to give a range, and mean
+ * nothing alone. */
 int check_look(const options *asked) {
     bool window = !isnan(asked->window), level = !isnan(asked->level);
     if (window != level)
@@ -109,6 +68,7 @@ int open_look(snow_context *context, const options *asked,
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
+/* Short enough for the one line that render prints. */
 void describe_volume(const snow_volume *volume, char *out, size_t size) {
     const snow_volume_info *info = snow_volume_describe(volume);
     snprintf(out, size, "%s %lldx%lldx%lld %s, spacing %gx%gx%g%s%s",

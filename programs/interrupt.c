@@ -5,8 +5,11 @@
 #include <signal.h>
 #include <unistd.h>
 
+/* Whether a file is being written, and whether a signal has come since. */
 static volatile sig_atomic_t held, pending;
 
+/* Only write and _exit here: printf and exit could meet a lock or a buffer that
+ * the interrupted code has in hand. */
 static void leave(int signal_number) {
     static const char text[] = "snowglass: interrupted\n";
     (void)signal_number;

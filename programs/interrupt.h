@@ -1,15 +1,20 @@
-/* interrupt.h - what SIGINT and SIGTERM do.
+/* interrupt.h - what SIGINT, SIGTERM and SIGHUP do.
  *
  * While a picture is computed nothing has been written, and the tool leaves at
  * once with exit code 130.  While a file is written aside and renamed, the
- * signal is let go: the file becomes whole and the run ends as usual.  So 130
- * means that no output was left.  A second signal ends the run at once. */
+ * first signal is let go: the file becomes whole and the run ends as usual,
+ * with exit code 0 when all went well.  So after one signal 130 means that no
+ * output was left, and 0 that all of it was.
+ *
+ * A second signal ends even the writing at once, with 130; then the hidden
+ * file .NAME.snow-XXXXXX beside the output may be left.  Its name is the
+ * library's secret, so the handler cannot remove it. */
 #ifndef INTERRUPT_H
 #define INTERRUPT_H
 
 void interrupt_install(void);
 
-/* From here to the end of the program a file comes into being. */
+/* From here to the end of the program files come into being. */
 void interrupt_hold(void);
 
 #endif

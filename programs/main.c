@@ -35,6 +35,7 @@ static int run_help(const options *asked) {
     return help_print(asked->operand_count ? asked->operands[0] : NULL, NULL);
 }
 
+/* bench is not among them: it reads its own arguments. */
 static int run_verb(const verb_row *verb, const options *asked) {
     switch (verb->bit) {
     case VERB_RENDER:

@@ -2,7 +2,11 @@
  *
  * A row is one option: name, letter, argument, topic, verbs, reader, field,
  * range, choices that are not built yet, help.  A row made with LATER is known
- * but not built: it is refused by name, with its text as the advice. */
+ * but not built: it is refused by name, with its text as the advice, so that a
+ * script for a later version fails here at once and says why.
+ *
+ * Names of rows are the user's; a row's place decides where its help stands.
+ * Verbs and topics that are not built are rows as well. */
 #include "readers.h"
 
 #include <stddef.h>
@@ -11,6 +15,7 @@
 #define LATER(name, letter, argument, topic, advice) \
     { name, letter, argument, topic, RENDER, NULL, 0, 0, 0, "", advice }
 
+/* Shorter names for sets of verbs: the rows are dense enough. */
 enum {
     RENDER = VERB_RENDER,
     INFO = VERB_INFO,
@@ -61,10 +66,11 @@ const option_row option_table[] = {
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "", "its support in voxels, 2 to 9 (2 for tent and box, else 4)"},
 
-    {"preset", 0, "NAME", TOPIC_LOOK, INPUT, read_text, FIELD(preset), 0, 0, "",
+    {"preset", 0, "NAME", TOPIC_LOOK, INPUT, read_preset, FIELD(preset), 0, 0,
+     "",
      "a transfer function by name (chosen from the histogram)"},
-    {"colormap", 'c', "NAME", TOPIC_LOOK, INPUT, read_text, FIELD(colormap), 0,
-     0, "", "colours along the range (grey, or the preset's)"},
+    {"colormap", 'c', "NAME", TOPIC_LOOK, INPUT, read_colormap, FIELD(colormap),
+     0, 0, "", "colours along the range (grey, or the preset's)"},
     {"opacity", 0, "V:O,V:O", TOPIC_LOOK, INPUT, read_points, FIELD(opacities),
      0, 0, "", "opacities 0 to 1 at data values, linear between them"},
     {"window", 'w', "W", TOPIC_LOOK, INPUT, read_real, FIELD(window), 1e-300,
@@ -99,7 +105,7 @@ const option_row option_table[] = {
     LATER("quality", 0, "draft|normal|high", TOPIC_QUALITY,
           "--kernel and --footprint set the quality"),
 
-    {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_text, FIELD(view), 0, 0, "",
+    {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_view, FIELD(view), 0, 0, "",
      "the side the camera is on (anterior when the file has a medical "
      "orientation, else +z)"},
     {"azimuth", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(azimuth),
@@ -109,7 +115,7 @@ const option_row option_table[] = {
     {"roll", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(roll), 0, 0,
      "", "then turns it clockwise (0)"},
     {"zoom", 0, "Z", TOPIC_CAMERA, RENDER, read_real, FIELD(zoom), 1e-6, 1e6,
-     "", "magnifies; at 1 the whole volume is in view (1)"},
+     "", "magnifies, 1e-6 to 1e6; at 1 the whole volume is in view (1)"},
     LATER("perspective", 0, "FOV", TOPIC_CAMERA,
           "leave it out for a parallel projection"),
     LATER("position", 0, "X,Y,Z", TOPIC_CAMERA,
@@ -151,7 +157,8 @@ const option_row option_table[] = {
      "avx2|avx512|neon", "instruction set of the kernels (scalar)"},
     {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
      FIELD(progress), 0, 0, "",
-     "names each stage on stderr as it begins (auto: on a terminal)"},
+     "only names each stage on stderr as it begins, without a bar (auto: on a "
+     "terminal)"},
     {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
      "write figures of the run as JSON; - is standard output; a file that "
      "exists needs --overwrite"},
@@ -180,6 +187,7 @@ const option_row option_table[] = {
     {.name = NULL},
 };
 
+/* A verb without a bit is not built; its last text is then the advice. */
 const verb_row verb_table[] = {
     {"render", VERB_RENDER, 1, "INPUT -o OUT", "one picture; the default verb"},
     {"info", VERB_INFO, 1, "INPUT [--json]",
@@ -199,18 +207,22 @@ const verb_row verb_table[] = {
     {.name = NULL},
 };
 
+/* The words of `snowglass help TOPIC`. */
 const topic_row topic_table[] = {
-    {"output", "the picture file: size, background, bits"},
-    {"mode", "how samples make a pixel"},
-    {"sparse", "interesting voxels, encodings, methods"},
-    {"kernel", "the reconstruction kernel and its footprint"},
-    {"look", "transfer function, colours, shading"},
-    {"quality", "one word for speed or beauty"},
-    {"camera", "where the picture is taken from"},
-    {"labels", "letters and bars in the picture"},
-    {"data", "raw files, time steps"},
-    {"run", "threads, figures, talk"},
-    {"more", "options of single verbs"},
-    {NULL, NULL},
+    {"output", "the picture file: size, background, bits", NULL},
+    {"mode", "how samples make a pixel",
+     "over, as in the paper; not mip, minip, mean, sum, iso"},
+    {"sparse", "interesting voxels, encodings, methods", NULL},
+    {"kernel", "the reconstruction kernel and its footprint", NULL},
+    {"look", "transfer function, colours, shading", NULL},
+    {"quality", "one word for speed or beauty",
+     "one quality, set by --kernel and --footprint"},
+    {"camera", "where the picture is taken from", NULL},
+    {"labels", "letters and bars in the picture",
+     "none yet: the picture shows the volume alone"},
+    {"data", "raw files, time steps", NULL},
+    {"run", "threads, figures, talk", NULL},
+    {"more", "options of single verbs", NULL},
+    {NULL, NULL, NULL},
 };
 /* clang-format on */

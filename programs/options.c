@@ -11,7 +11,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#define ROWS_MAX 96
+#define ROWS_MAX                                                \
+    96 /* more than option_table has: rows beyond would be lost \
+        */
 
 /* Beyond all characters, so that long options do not collide with letters. */
 #define FIRST_LONG 256
@@ -43,6 +45,7 @@ void options_init(options *out) {
     };
 }
 
+/* Verbs count in full only, as options do. */
 const verb_row *verb_named(const char *name) {
     for (const verb_row *row = verb_table; row->name; row++) {
         if (strcmp(row->name, name) == 0)
@@ -94,7 +97,8 @@ static const option_row *row_of(int code) {
     return row->name ? row : NULL;
 }
 
-/* The option whose name is nearest to the given one, when it is near. */
+/* The option whose name is nearest to the given one, when it is near: a third
+ * of the letters may be wrong, and one more in short names. */
 static const char *nearest_option(const char *name, unsigned verb) {
     const char *best = NULL;
     int least = (int)strlen(name) / 3 + 2;
@@ -202,7 +206,8 @@ static int check_count(const options *out, const verb_row *verb) {
                       verb->name, verb->name, verb->usage);
 }
 
-/* The long option just read as it was written, NULL for a letter. */
+/* The long option just read as it was written, NULL for a letter.  A value in a
+ * word of its own stands between it and getopt's place. */
 static const char *long_word(char **argv) {
     const char *word = argv[optind - 1];
     if (optarg && optarg == word)
@@ -220,7 +225,7 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
     struct option longs[ROWS_MAX + 1];
     char letters[2 * ROWS_MAX + 2];
     fill_getopt(longs, letters);
-    opterr = 0;
+    opterr = 0; /* faults are told here, in our own words */
     optind = 1;
     int code;
     while ((code = getopt_long(argc, argv, letters, longs, NULL)) != -1) {

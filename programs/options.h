@@ -124,10 +124,12 @@ typedef struct verb_row {
 extern const verb_row verb_table[];
 
 /* Names of the topics and a line on each, in the order of the enum; ends with
- * a NULL name. */
+ * a NULL name.  `built` says what there is where the options offer no choice
+ * yet, NULL elsewhere. */
 typedef struct topic_row {
     const char *name;
     const char *text;
+    const char *built;
 } topic_row;
 extern const topic_row topic_table[];
 

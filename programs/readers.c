@@ -1,5 +1,8 @@
 /* readers.c - from an option's argument to its field, or to the end of a
- * sentence that says what would have been right. */
+ * sentence that says what would have been right.
+ *
+ * All that can be wrong with a word alone is refused here, before anything is
+ * opened; what needs the volume or another option comes later. */
 #include "readers.h"
 
 #include <math.h>
@@ -15,6 +18,7 @@ static bool refuse(char wrong[WRONG_BYTES], const char *text) {
     return false;
 }
 
+/* An empty word is mostly a shell variable that was never set. */
 bool read_text(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;
@@ -54,6 +58,8 @@ static void spell_choices(const char *choices, char *out, size_t size) {
     out[used] = '\0';
 }
 
+/* What is only planned is not unknown: who asks for it has read a manual, and
+ * shall not look for a misspelling. */
 bool read_choice(const option_row *row, const char *text, void *field,
                  char wrong[WRONG_BYTES]) {
     if (value_is_choice(row->argument, text)) {
@@ -107,6 +113,8 @@ bool read_tolerance(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* Limits of rows are doubles; all of them are below 2^53, where whole
+ * numbers are exact. */
 bool read_integer(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {
     int64_t value;
@@ -146,6 +154,7 @@ bool read_size(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* No upper limit here: the library checks the product, and the memory. */
 bool read_dims(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;
@@ -183,6 +192,48 @@ bool read_type(const option_row *row, const char *text, void *field,
 #undef TYPE_NAME
     *(snow_type *)field = type;
     return true;
+}
+
+/* The end of a sentence that lists the library's names. */
+static bool refuse_name(const char *(*name)(size_t), char wrong[WRONG_BYTES]) {
+    size_t used = (size_t)snprintf(wrong, WRONG_BYTES,
+                                   "is unknown; choose from: %s", name(0));
+    for (size_t i = 1; name(i) && used < WRONG_BYTES; i++)
+        used +=
+            (size_t)snprintf(wrong + used, WRONG_BYTES - used, ", %s", name(i));
+    return false;
+}
+
+/* The library would refuse wrong names too, but only when it has read the
+ * volume that the look is for. */
+bool read_preset(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    if (snow_preset_named(text) < 0)
+        return refuse_name(snow_preset_name, wrong);
+    return read_text(row, text, field, wrong);
+}
+
+bool read_colormap(const option_row *row, const char *text, void *field,
+                   char wrong[WRONG_BYTES]) {
+    if (snow_colormap_named(text) < 0)
+        return refuse_name(snow_colormap_name, wrong);
+    return read_text(row, text, field, wrong);
+}
+
+/* Only the library knows which spellings are one view, and it wants a context
+ * for its message.  Without memory for one the name is believed: the command
+ * will fail for the same reason. */
+bool read_view(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    snow_context *context = NULL;
+    snow_view view;
+    snow_status status = snow_context_new(NULL, &context);
+    if (status == SNOW_OK)
+        status = snow_view_named(context, text, &view);
+    snow_context_free(context);
+    if (status == SNOW_BAD_USAGE)
+        return refuse_name(snow_view_name, wrong);
+    return read_text(row, text, field, wrong);
 }
 
 bool read_color(const option_row *row, const char *text, void *field,

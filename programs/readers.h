@@ -18,6 +18,9 @@ option_read read_size;       /* int64_t[2] */
 option_read read_dims;       /* int64_t[3] */
 option_read read_spacing;    /* double[3] */
 option_read read_type;       /* snow_type */
+option_read read_preset;     /* const char * */
+option_read read_colormap;   /* const char * */
+option_read read_view;       /* const char * */
 option_read read_color;      /* color_value */
 option_read read_range;      /* range_value */
 option_read read_points;     /* point_list */

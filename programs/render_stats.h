@@ -6,7 +6,8 @@
 #include <snowglass/snowglass.h>
 
 /* Seconds that the tool itself measures, beside those of the frame: `begin` of
- * the steady clock, `look` for making the transfer function. */
+ * the steady clock, `look` for making the transfer function, which the figures
+ * count as classification. */
 typedef struct render_times {
     double begin;
     double read, look, write, total;

@@ -16,6 +16,11 @@ int fail_usage(const char *format, ...) SNOW_PRINTF(1, 2);
 int fail_output(const char *format, ...) SNOW_PRINTF(1, 2);
 int fail_status(const snow_context *context, snow_status status);
 
+/* The same for a stage that was given a volume in memory: it can find fault
+ * with the input, but not say which file that came from. */
+int fail_volume(const snow_context *context, snow_status status,
+                const char *input);
+
 /* Makes a context whose remarks go to standard error, unless quiet.
  * Answers GO_ON or an exit code. */
 int open_context(const options *asked, snow_context **out);
@@ -35,21 +40,10 @@ json_t *json_number(double value);
 json_t *json_vector(const double *values, size_t count);
 json_t *json_sizes(const int64_t *values, size_t count);
 
+/* One line; digits that bring every double back. */
+#define JSON_FORM JSON_REAL_PRECISION(17)
+
 /* Writes an object to standard output and frees it.  Answers an exit code. */
 int print_json(json_t *object);
-
-/* Whether a path is standard output, a pipe or a device: what a rename may not
- * replace, and what may wait for its reader for ever. */
-bool is_special(const char *path);
-
-/* Whether two paths name one file, also one that is not there yet. */
-bool same_place(const char *a, const char *b);
-
-/* Whether --stats can go where it shall: asked before rendering. */
-int check_stats_path(const char *path, bool overwrite);
-
-/* Writes an object to a file, aside and renamed, or through to what is no
- * plain file; "-" is standard output.  Frees it.  Answers an exit code. */
-int write_json(json_t *object, const char *path);
 
 #endif

@@ -71,6 +71,7 @@ static const char *next_part(const char *text, char separator,
     return end ? end + 1 : text + length;
 }
 
+/* "1/0" is no number, whatever C makes of it. */
 bool value_quotient(const char *text, double *out) {
     const char *slash = strchr(text, '/');
     if (!slash)
@@ -146,6 +147,8 @@ static bool hex_color(const char *digits, color_value *out) {
     return true;
 }
 
+/* Everything that CSS and people call a colour, but no transparency: a
+ * background that shines through is none. */
 bool value_color(const char *text, color_value *out) {
     if (strcmp(text, "none") == 0) {
         *out = (color_value){.given = false};
@@ -197,6 +200,8 @@ static bool percentiles(const char *text, range_value *out) {
     return true;
 }
 
+/* An empty range is refused with the turned one: neither has a width to spread
+ * colours over. */
 bool value_range(const char *text, range_value *out) {
     if (strcmp(text, "full") == 0) {
         *out = (range_value){SNOW_RANGE_FULL, 0, 0};

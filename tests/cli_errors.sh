@@ -23,6 +23,33 @@ for verb in info render; do
     refused 3 "$verb of dimensions beyond all memory" "short.raw" "$TOOL" \
         $verb short.raw --dims 4000000000x4000000000x8 --type uint8 $output
 done
+raw_cube eight.raw 8
+raw="--dims 8x8x8 --type uint8"
+# shellcheck disable=SC2086
+refused 3 "voxels that no picture can show" \
+    "^snowglass: eight.raw: voxels of .* cannot be seen at zoom" "$TOOL" \
+    eight.raw $raw --spacing 1e-30x1e30x1e30 -o z.png
+given() {
+    local file=$1
+    shift
+    cat "$file" | "$TOOL" "$@"
+}
+# shellcheck disable=SC2086
+refused 3 "the same from standard input" \
+    "^snowglass: standard input: voxels of" given eight.raw \
+    - $raw --spacing 1e-30x1e30x1e30 -o z.png
+printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw
+data file: eight.raw\n\n' >eight.nhdr
+run 0 "a header and its data" "$TOOL" info eight.nhdr
+refused 3 "a header from standard input, whose data are elsewhere" \
+    "^snowglass: standard input: .*eight.raw" given eight.nhdr info -
+refused 3 "an empty name" "^snowglass: [^:]" "$TOOL" info ""
+refused 3 "an empty name of a picture" "^snowglass: [^:]" \
+    "$TOOL" compare "" eight.raw
+refused 3 "an empty standard input" "^snowglass: standard input: [^:]*empty" \
+    given empty.raw info -
+refused 3 "a device as standard input" "^snowglass: standard input: is a dev" \
+    "$TOOL" compare - -
 printf 'a\nb\033[2J' >"$(printf 'odd\nname\033[2J.nrrd')"
 run 3 "a name with line ends and escapes" "$TOOL" info \
     "$(printf 'odd\nname\033[2J.nrrd')"
@@ -54,6 +81,39 @@ check "they are kept byte for byte" cmp -s stats.json kept
 check "and no picture is written" absent a.png
 run 0 "with -y they are replaced" render -o a.png --stats stats.json -y
 check "by JSON" grep -q '^{"version"' stats.json
+
+mkdir figures
+echo old >figures/target.json
+chmod 640 figures/target.json
+ln -s figures/target.json link.json
+refused 4 "a link to figures" "link.json" render -o l.png --stats link.json
+run 0 "with -y figures follow a link" render -o l.png --stats link.json -y
+check "the link is still one" [ -L link.json ]
+check "its target keeps its permissions" \
+    [ "$(stat -c %a figures/target.json)" = 640 ]
+check "and is new" grep -q '^{"version"' figures/target.json
+ln -s nowhere.json dangling.json
+refused 4 "figures at a link to nowhere" "dangling.json: exists" \
+    render -o d.png --stats dangling.json
+check "no picture is made" absent d.png
+long=$(printf 'n%.0s' $(seq 255))
+run 0 "figures of the longest name" render -o n.png --stats "$long"
+check "are figures" grep -q '^{"version"' "$long"
+check "nothing is left aside" [ -z "$(find . -name '*.snow-*')" ]
+
+# What comes into being while the picture is made is kept: the picture goes to
+# a pipe, and the figures' place is taken before the pipe is read.
+mkfifo slow.png
+render -q -o slow.png --stats raced.json 2>"$ERR" &
+job=$!
+sleep 0.5
+echo precious >raced.json
+timeout 60 cat slow.png >"$OUT"
+wait $job
+check "figures whose place was taken meanwhile are refused" [ $? -eq 4 ]
+NAME="they"
+says "raced.json: exists"
+check "what took it is kept" [ "$(cat raced.json)" = precious ]
 
 echo precious >there.nrrd
 cp there.nrrd kept

@@ -131,6 +131,12 @@ run 0 "figures to standard output" render -q -o f.png --threshold 10 \
 check "are one line" [ "$(wc -l <"$OUT")" -eq 1 ]
 prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "footprint", "kernel": "bspline", "footprint": 4, "threads": 1, "ranks": 1, "isa": "scalar", "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": 0.0, "combine": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
 check "interesting voxels take bytes" [ "$(number ia)" -gt 0 ]
+run 0 "figures in words and as JSON" "$TOOL" -v phantom:shells \
+    --dims 96x96x96 -s 40x30 -o w.png --stats -
+look=$(sed -n 's/.*(look \([0-9.]*\)).*/\1/p' "$ERR")
+check "classify counts the choice of the look" awk -v look="${look:-none}" \
+    -v both="$(number classify)" \
+    'BEGIN { exit !(look + 0 > 0 && both + 0.0005 >= look) }'
 run 0 "figures of the original method" render -q -o g.png --method original \
     --stats -
 prints '"encoding": "none", "method": "original"'
@@ -158,6 +164,19 @@ kill -TERM $job
 wait $job
 check "SIGTERM while writing ends as usual" [ $? -eq 0 ]
 check "with a whole picture" is_png large.png
+"$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
+    -o second.png 2>stages &
+job=$!
+for _ in $(seq 600); do
+    grep -q writing stages && break
+    sleep 0.05
+done
+kill -TERM $job
+kill -HUP $job
+wait $job
+check "a second signal ends the writing at once" [ $? -eq 130 ]
+check "and leaves no picture" absent second.png
+rm -f .second.png.snow-*
 mkfifo pipe.png
 run 130 "SIGTERM while a pipe waits for its reader" timeout \
     --preserve-status -s TERM 3 "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 \

@@ -120,6 +120,11 @@ help serve|serve is not built yet
 --offset -1 x|whole number from 0
 --offset 99999999999999999999 x|whole number from 0
 --time -1 x|whole number
+--preset toast x|--preset: 'toast' is unknown; choose from: linear, ct-bone
+--colormap beige x|--colormap: 'beige' is unknown; choose from: grey, viridis
+--view upside x|--view: 'upside' is unknown; choose from: anterior, .*-z
+--view '' x|--view: '' is unknown
+info nope.nii --preset foo|--preset: 'foo' is unknown
 --progress some x|choose from: auto, always, never
 --stats x.png phantom:cube -o x.png|name two places
 phantom --seed -1 cube|whole number from 0
@@ -139,11 +144,37 @@ done <<'END'
 --window 3|needs --level beside it
 --level 3|needs --window beside it
 --window 3 --level 3 --range 1,2|does not go with --range
---view upside|upside
---colormap beige|beige
---preset toast|toast
 --type uint8|type
 END
+# The bench reads its own options.
+while IFS='|' read -r arguments pattern; do
+    [ -n "$arguments" ] || continue
+    eval "set -- $arguments"
+    refused 2 "bench $arguments" "$pattern" "$TOOL" bench "$@"
+done <<'END'
+table1 --dat x|unknown option or missing value '--dat'
+table1 --dat=x|unknown option or missing value '--dat=x'
+table1 --he|unknown option or missing value '--he'
+table1 --foo|unknown option or missing value '--foo'
+table1 --runs|unknown option or missing value '--runs'
+table1 --runs 4|this value is not possible: '4'
+table1 --kernel cube|this value is not possible: 'cube'
+table4|there is no benchmark 'table4'
+table1 table2|give one table
+--json|give one table
+END
+for table in table1 table2 table3; do
+    refused 3 "bench $table without its files" \
+        "nowhere/classic/CThead.*: No such file" \
+        "$TOOL" bench $table --data nowhere
+done
+run 0 "bench -h" "$TOOL" bench -h
+
+for name in "--preset CT_Bone" "-c gray" "-c CoolWarm" "--view Left"; do
+    # shellcheck disable=SC2086
+    refused 3 "$name is a name" "nope.nii" \
+        "$TOOL" render nope.nii -o z.png $name
+done
 refused 2 "two choices in one" "'crs.rle' is unknown" \
     "$TOOL" --encoding 'crs|rle' x
 check "nothing was written" [ -z "$(ls)" ]

@@ -581,8 +581,39 @@ static void colour_maps_are_the_published_ones(void **state) {
 
 static void gray_is_grey(void **state) {
     (void)state;
-    assert_int_equal(snow_colormap_find("gray"), snow_colormap_find("grey"));
-    assert_int_equal(snow_colormap_find("Grey"), -1);
+    assert_int_equal(snow_colormap_named("gray"), snow_colormap_named("grey"));
+    assert_true(snow_colormap_named("grey") >= 0);
+}
+
+static void names_are_free_in_case_and_dashes(void **state) {
+    (void)state;
+    for (size_t i = 0; snow_colormap_name(i); i++)
+        assert_int_equal(snow_colormap_named(snow_colormap_name(i)), i);
+    for (size_t i = 0; snow_preset_name(i); i++)
+        assert_int_equal(snow_preset_named(snow_preset_name(i)), i);
+    assert_int_equal(snow_colormap_named("CoolWarm"),
+                     snow_colormap_named("cool-warm"));
+    assert_int_equal(snow_preset_named("CT_Bone"),
+                     snow_preset_named("ct-bone"));
+    assert_int_equal(snow_preset_named("ctbone"), snow_preset_named("ct-bone"));
+    assert_int_equal(snow_preset_named("ct-bon"), -1);
+    assert_int_equal(snow_preset_named("ct-bones"), -1);
+    assert_int_equal(snow_preset_named("ct bone"), -1);
+    assert_int_equal(snow_colormap_named(""), -1);
+    assert_int_equal(snow_colormap_named("-grey"), -1);
+}
+
+static void a_view_keeps_its_sign(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_view a, b;
+    assert_int_equal(snow_view_named(context, "Anterior", &a), SNOW_OK);
+    assert_int_equal(snow_view_named(context, "+y", &b), SNOW_OK);
+    assert_memory_equal(a.back, b.back, sizeof a.back);
+    assert_int_equal(snow_view_named(context, "-X", &a), SNOW_OK);
+    assert_true(a.back[0] < 0);
+    assert_int_equal(snow_view_named(context, "x", &a), SNOW_BAD_USAGE);
+    snow_context_free(context);
 }
 
 /* --- the automatic look --------------------------------------------------- */
@@ -764,6 +795,8 @@ int main(void) {
         cmocka_unit_test(given_opacities_replace_the_presets),
         cmocka_unit_test(colour_maps_are_the_published_ones),
         cmocka_unit_test(gray_is_grey),
+        cmocka_unit_test(names_are_free_in_case_and_dashes),
+        cmocka_unit_test(a_view_keeps_its_sign),
         cmocka_unit_test(background_is_transparent_and_the_object_is_not),
         cmocka_unit_test(sparse_vessels_are_found_in_an_empty_volume),
         cmocka_unit_test(a_few_wild_values_do_not_blank_the_picture),

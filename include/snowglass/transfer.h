@@ -92,6 +92,12 @@ SNOW_API const char *snow_preset_name(size_t index);
 SNOW_API const char *snow_preset_text(size_t index);
 SNOW_API const char *snow_colormap_name(size_t index);
 
+/* The index of a name, -1 when there is none, to be asked before a volume is
+ * read.  Wherever a look is named, letters may be of either case, and dashes
+ * and underscores be missing ("CT_Bone" is "ct-bone"); "gray" is "grey". */
+SNOW_API int snow_preset_named(const char *name);
+SNOW_API int snow_colormap_named(const char *name);
+
 #ifdef __cplusplus
 }
 #endif

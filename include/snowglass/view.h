@@ -27,7 +27,8 @@ typedef struct snow_view {
 /* The view by name: anterior posterior left right superior inferior iso +x -x
  * +y -y +z -z, at 512x512, angles 0, zoom 1.  +z: the camera sits on the +z
  * side, +y is up; for x and y sides +z is up; anterior is +y, left -x, superior
- * +z; iso looks from (1, 1, 1), +z up.  Errors: SNOW_BAD_USAGE. */
+ * +z; iso looks from (1, 1, 1), +z up.  Letters may be of either case.  Errors:
+ * SNOW_BAD_USAGE. */
 SNOW_API snow_status snow_view_named(snow_context *context, const char *name,
                                      snow_view *out);
 

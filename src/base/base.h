@@ -93,4 +93,9 @@ bool snow_localize_number(const char *text, const char *point, char *out,
 /* True when `text` ends with `suffix`, letters of either case. */
 bool snow_has_suffix(const char *text, const char *suffix);
 
+/* True when two names are one for people: letters of either case, dashes and
+ * underscores left out ("CT_Bone" is "ct-bone"), but for a sign in front ("-x"
+ * is not "x"). */
+bool snow_same_name(const char *a, const char *b);
+
 #endif

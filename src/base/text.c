@@ -78,3 +78,23 @@ bool snow_has_suffix(const char *text, const char *suffix) {
             return false;
     return true;
 }
+
+/* What of a name counts: the sign in front, then all but dashes and
+ * underscores.  ASCII only, so that no locale changes what a name means. */
+static int next_letter(const char *name, size_t *at) {
+    while (*at > 0 && (name[*at] == '-' || name[*at] == '_'))
+        ++*at;
+    char letter = name[*at];
+    *at += letter != '\0';
+    return letter >= 'A' && letter <= 'Z' ? letter - 'A' + 'a' : letter;
+}
+
+bool snow_same_name(const char *a, const char *b) {
+    size_t i = 0, j = 0;
+    int left, right;
+    do {
+        left = next_letter(a, &i);
+        right = next_letter(b, &j);
+    } while (left == right && left);
+    return left == right;
+}

@@ -14,8 +14,6 @@
  * A new map is a table here and a line in `maps`. */
 #include "classify/look.h"
 
-#include <string.h>
-
 /* A colour at `at` / 510 of the map (entry n of 256 lies at 2 n). */
 typedef struct map_point {
     uint16_t at;
@@ -95,11 +93,11 @@ const char *snow_colormap_name(size_t index) {
     return index < map_count ? maps[index].name : NULL;
 }
 
-int snow_colormap_find(const char *name) {
-    if (strcmp(name, "gray") == 0)
+int snow_colormap_named(const char *name) {
+    if (snow_same_name(name, "gray"))
         name = "grey";
     for (size_t i = 0; i < map_count; i++)
-        if (strcmp(name, maps[i].name) == 0)
+        if (snow_same_name(name, maps[i].name))
             return (int)i;
     return -1;
 }

@@ -68,9 +68,6 @@ snow_status snow_part_histogram(const snow_census *census, snow_parting *out);
 /* The look without any wish.  Errors: SNOW_NO_MEMORY. */
 snow_status snow_draft_automatic(const snow_census *census, snow_draft *out);
 
-/* A preset by its name; its index, or -1. */
-int snow_preset_find(const char *name);
-
 /* True when a preset's values are Hounsfield units. */
 bool snow_preset_is_hounsfield(int preset);
 
@@ -80,9 +77,6 @@ snow_status snow_draft_preset(int preset, const snow_census *census,
 
 /* Smallest to largest finite value, made apart when they are one. */
 void snow_full_range(const snow_census *census, double *low, double *high);
-
-/* A colour map by its name, also "gray"; its index, or -1. */
-int snow_colormap_find(const char *name);
 
 /* Replaces a draft's colours by a map over low..high. */
 void snow_draft_colormap(snow_draft *draft, int colormap, double low,

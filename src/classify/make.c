@@ -24,9 +24,9 @@ static snow_status refuse_name(snow_context *context, const char *what,
 }
 
 static snow_status check_look(snow_context *context, const snow_look *look) {
-    if (look->preset && snow_preset_find(look->preset) < 0)
+    if (look->preset && snow_preset_named(look->preset) < 0)
         return refuse_name(context, "preset", look->preset, snow_preset_name);
-    if (look->colormap && snow_colormap_find(look->colormap) < 0)
+    if (look->colormap && snow_colormap_named(look->colormap) < 0)
         return refuse_name(context, "colour map", look->colormap,
                            snow_colormap_name);
     if (look->opacities && !look->opacity_count)
@@ -103,7 +103,7 @@ static snow_status begin_draft(const snow_census *census, const snow_look *look,
                                snow_draft *draft) {
     if (!look->preset)
         return snow_draft_automatic(census, draft);
-    int preset = snow_preset_find(look->preset);
+    int preset = snow_preset_named(look->preset);
     if (snow_preset_is_hounsfield(preset) && census->min >= 0 &&
         look->range == SNOW_RANGE_AUTO)
         snow_notify(census->volume->context,
@@ -122,7 +122,7 @@ static snow_status draft_look(const snow_census *census, const snow_look *look,
         stretch(draft, low, high);
     }
     if (look->colormap)
-        snow_draft_colormap(draft, snow_colormap_find(look->colormap),
+        snow_draft_colormap(draft, snow_colormap_named(look->colormap),
                             draft->low, draft->high);
     return SNOW_OK;
 }

@@ -9,8 +9,6 @@
  * to be the object. */
 #include "classify/look.h"
 
-#include <string.h>
-
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 static const snow_color_point bone_colors[] = {
@@ -77,9 +75,9 @@ const char *snow_preset_text(size_t index) {
     return index < COUNT(presets) ? presets[index].text : NULL;
 }
 
-int snow_preset_find(const char *name) {
+int snow_preset_named(const char *name) {
     for (size_t i = 0; i < COUNT(presets); i++)
-        if (strcmp(name, presets[i].name) == 0)
+        if (snow_same_name(name, presets[i].name))
             return (int)i;
     return -1;
 }

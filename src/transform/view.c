@@ -45,7 +45,7 @@ static void set_view(const struct named_view *named, snow_view *out) {
 snow_status snow_view_named(snow_context *context, const char *name,
                             snow_view *out) {
     for (size_t i = 0; i < VIEW_COUNT; i++)
-        if (strcmp(name, views[i].name) == 0) {
+        if (snow_same_name(name, views[i].name)) {
             set_view(&views[i], out);
             return SNOW_OK;
         }

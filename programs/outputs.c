@@ -1,0 +1,192 @@
+/* outputs.c - the rules for files that are written: nothing is replaced without
+ * being asked, and what stands under its name is whole.
+ *
+ * Pictures and volumes are written by the library.  Figures come into being
+ * after them and are the tool's own, so the library's rules (src/base/writer.c)
+ * are kept here for one small text: a hidden .NAME.snow-XXXXXX beside the final
+ * file, fsync, then link or rename. */
+#define _XOPEN_SOURCE 700 /* realpath */
+#include "outputs.h"
+#include "report.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* As much of the final name as the hidden one repeats: names end at 255 bytes,
+ * and ".", ".snow-" and six letters come around it. */
+#define NAME_PART 200
+
+bool is_special(const char *path) {
+    struct stat what;
+    if (strcmp(path, "-") == 0)
+        return true;
+    return stat(path, &what) == 0 && !S_ISREG(what.st_mode) &&
+           !S_ISDIR(what.st_mode);
+}
+
+/* Where the last part of a path begins. */
+static size_t folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* The folder of a path, "." when it has none. */
+static void folder_of(const char *path, char *out, size_t size) {
+    size_t length = folder_length(path);
+    snprintf(out, size, "%.*s", length ? (int)length : 1, length ? path : ".");
+}
+
+/* Files that exist are compared by what they are, so that links and "./" do not
+ * deceive; of one that will come into being the folder and the name count.  A
+ * device may well take two streams. */
+bool same_place(const char *a, const char *b) {
+    struct stat of_a, of_b;
+    if (stat(a, &of_a) == 0 && stat(b, &of_b) == 0)
+        return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev &&
+               of_a.st_ino == of_b.st_ino;
+    if (strcmp(a + folder_length(a), b + folder_length(b)) != 0)
+        return false;
+    char folder_a[PATH_MAX], folder_b[PATH_MAX];
+    folder_of(a, folder_a, sizeof folder_a);
+    folder_of(b, folder_b, sizeof folder_b);
+    return stat(folder_a, &of_a) == 0 && stat(folder_b, &of_b) == 0 &&
+           of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+}
+
+static int fail_existing(const char *path) {
+    return fail_output("%s: exists; give --overwrite or another name", path);
+}
+
+/* The same rules as for pictures: figures of an earlier run are results too.
+ * lstat sees a link to nowhere, which counts as a file. */
+int check_stats_path(const char *path, bool overwrite) {
+    struct stat what;
+    if (is_special(path))
+        return GO_ON;
+    if (stat(path, &what) == 0 && S_ISDIR(what.st_mode))
+        return fail_output("%s: is a folder; name a file", path);
+    if (!overwrite && lstat(path, &what) == 0)
+        return fail_existing(path);
+    char folder[PATH_MAX];
+    folder_of(path, folder, sizeof folder);
+    if (access(folder, W_OK | X_OK) != 0)
+        return fail_output("%s: %s; choose a folder that can be written", path,
+                           strerror(errno));
+    return GO_ON;
+}
+
+/* Flushes too, so that an error shows here and not in fclose. */
+static int dump_json(json_t *object, FILE *file) {
+    bool good = json_dumpf(object, file, JSON_FORM) == 0;
+    good = good && fputc('\n', file) != EOF && fflush(file) == 0;
+    return good ? 0 : -1;
+}
+
+/* Opens a new file beside `path`, where a rename stays within one file system,
+ * and leaves its name in `aside`.  mkstemp's mode 0600 is for secrets: it gets
+ * the mode of the file that it will replace, or that of any new file. */
+static FILE *open_aside(const char *path, char *aside, size_t size) {
+    size_t folder = folder_length(path);
+    int length = snprintf(aside, size, "%.*s.%.*s.snow-XXXXXX", (int)folder,
+                          path, NAME_PART, path + folder);
+    if (length < 0 || (size_t)length >= size) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    int handle = mkstemp(aside);
+    if (handle < 0)
+        return NULL;
+    struct stat old;
+    mode_t mask = umask(0); /* the only way to ask for it */
+    umask(mask);
+    fchmod(handle, stat(path, &old) == 0 ? old.st_mode & 0777 : 0666 & ~mask);
+    FILE *file = fdopen(handle, "w");
+    if (!file) {
+        close(handle);
+        unlink(aside);
+    }
+    return file;
+}
+
+/* Gives the finished file its name.  link fails where a file has come into
+ * being since it was looked for, rename would destroy it. */
+static int place(const char *aside, const char *path, bool overwrite) {
+    struct stat here;
+    if (!overwrite) {
+        if (link(aside, path) == 0)
+            return unlink(aside);
+        if (errno == EEXIST)
+            return -1;
+        if (lstat(path, &here) == 0) { /* no hard links here: look instead */
+            errno = EEXIST;
+            return -1;
+        }
+    }
+    return rename(aside, path);
+}
+
+/* Makes the new name last through a power cut, where the file system can. */
+static void sync_folder(const char *path) {
+    char name[PATH_MAX];
+    folder_of(path, name, sizeof name);
+    int folder = open(name, O_RDONLY | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    (void)fsync(folder);
+    close(folder);
+}
+
+/* A link stays one: what it points to is replaced. */
+static int write_aside(json_t *object, const char *told, bool overwrite) {
+    char resolved[PATH_MAX], aside[PATH_MAX];
+    const char *path = realpath(told, resolved) ? resolved : told;
+    FILE *file = open_aside(path, aside, sizeof aside);
+    if (!file)
+        return -1;
+    int done = dump_json(object, file);
+    if (done == 0 && fsync(fileno(file)) != 0 && errno != EINVAL)
+        done = -1;
+    if (fclose(file) != 0 || done != 0 || place(aside, path, overwrite) != 0) {
+        int reason = errno;
+        unlink(aside);
+        errno = reason;
+        return -1;
+    }
+    sync_folder(path);
+    return 0;
+}
+
+/* For pipes and devices, which a rename would replace by a plain file. */
+static int write_through(json_t *object, const char *path) {
+    FILE *file = fopen(path, "w");
+    if (!file)
+        return -1;
+    int done = dump_json(object, file);
+    int reason = errno;
+    if (fclose(file) != 0)
+        return -1;
+    errno = reason;
+    return done;
+}
+
+int write_json(json_t *object, const char *path, bool overwrite) {
+    if (strcmp(path, "-") == 0)
+        return print_json(object);
+    bool special = is_special(path);
+    errno = 0;
+    int done = special ? write_through(object, path)
+                       : write_aside(object, path, overwrite);
+    json_decref(object);
+    if (done == 0)
+        return SNOW_OK;
+    if (errno == EEXIST)
+        return fail_existing(path);
+    return fail_output("%s: %s; choose a place that can be written", path,
+                       errno ? strerror(errno) : "cannot be written");
+}

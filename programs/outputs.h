@@ -1,0 +1,24 @@
+/* outputs.h - where outputs go, and the one file that the tool writes itself:
+ * the figures of --stats. */
+#ifndef OUTPUTS_H
+#define OUTPUTS_H
+
+#include <jansson.h>
+#include <stdbool.h>
+
+/* Whether a path is standard output, a pipe or a device: what a rename may not
+ * replace, and what may wait for its reader for ever. */
+bool is_special(const char *path);
+
+/* Whether two paths name one file, also one that is not there yet. */
+bool same_place(const char *a, const char *b);
+
+/* Whether --stats can go where it shall: asked before rendering.  Answers GO_ON
+ * or an exit code. */
+int check_stats_path(const char *path, bool overwrite);
+
+/* Writes an object to a file, aside and renamed, or through to what is no
+ * plain file; "-" is standard output.  Frees it.  Answers an exit code. */
+int write_json(json_t *object, const char *path, bool overwrite);
+
+#endif
