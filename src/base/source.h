@@ -27,9 +27,9 @@ snow_status snow_source_open_memory(snow_context *context, const char *name,
                                     snow_source **out);
 
 /* The file `name` as told by the header that `source` is: relative to its
- * folder, or absolute.  Refused for sources without siblings, and for a name that is
- * no regular file.  "as_is" leaves gzip packed, for headers that tell whether
- * their data are. */
+ * folder, or absolute.  Refused for sources without siblings, and for a name
+ * that is no regular file.  "as_is" leaves gzip packed, for headers that tell
+ * whether their data are. */
 snow_status snow_source_open_sibling(const snow_source *source,
                                      const char *name, snow_source **out);
 snow_status snow_source_open_sibling_as_is(const snow_source *source,

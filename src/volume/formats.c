@@ -27,6 +27,7 @@ const char *snow_format_text(size_t index) {
     return index < FORMAT_COUNT ? formats[index]->text : NULL;
 }
 
+/* The first in the order of the table that claims them. */
 const snow_format *snow_format_of_bytes(const void *bytes, size_t size) {
     for (size_t i = 0; i < FORMAT_COUNT; i++)
         if (formats[i]->probe && formats[i]->probe(bytes, size))
@@ -34,6 +35,8 @@ const snow_format *snow_format_of_bytes(const void *bytes, size_t size) {
     return NULL;
 }
 
+/* For bytes that no probe knows: a damaged file is refused by the reader that
+ * its name asks for, which says more than "unknown". */
 const snow_format *snow_format_of_name(const char *name) {
     for (size_t i = 0; i < FORMAT_COUNT; i++)
         for (const char *const *suffix = formats[i]->suffixes; *suffix;
@@ -126,6 +129,7 @@ static snow_status read_with(const snow_format *format, snow_source *source,
     return SNOW_OK;
 }
 
+/* An empty file has its own words: each format would miss something else. */
 static snow_status read_source(snow_source *source,
                                const snow_volume_options *options,
                                snow_volume **out) {

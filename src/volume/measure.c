@@ -57,6 +57,8 @@ static size_t next_block(const snow_volume *volume, int64_t first,
     return count;
 }
 
+/* The index in storage order gives the weight, so that wsum notices voxels that
+ * are right but in the wrong place. */
 static void measure_value(snow_volume_measures *m, double value,
                           int64_t index) {
     if (!isfinite(value))
@@ -86,6 +88,8 @@ void snow_volume_measure(const snow_volume *volume, snow_volume_measures *out) {
     *out = m;
 }
 
+/* The bin of a value is that of snowglass/volume.h to the last bit: floor of
+ * the scaled distance, with the upper end in the last bin. */
 snow_status snow_volume_histogram(const snow_volume *volume, double lo,
                                   double hi, size_t bins, uint64_t *counts) {
     if (!isfinite(lo) || !isfinite(hi) || !(lo < hi) || !bins)

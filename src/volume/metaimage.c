@@ -241,6 +241,7 @@ static snow_status read_pattern(snow_source *source,
     return SNOW_OK;
 }
 
+/* A name in the header: a path from the header's folder, or an absolute one. */
 static snow_status read_detached(snow_source *source,
                                  const metaimage_header *header,
                                  snow_volume **out) {
@@ -266,6 +267,8 @@ static bool is_word(const char *text, const char *word, const char *also) {
            strcmp(text, also) == 0;
 }
 
+/* ElementDataFile's special words, which stand before any file of that
+ * name ("./LOCAL" still reaches one). */
 static snow_status read_data(snow_source *source,
                              const metaimage_header *header,
                              snow_volume **out) {
@@ -279,6 +282,7 @@ static snow_status read_data(snow_source *source,
     return read_detached(source, header, out);
 }
 
+/* Bytes are swapped once at the end, whichever way the voxels came in. */
 static snow_status read_metaimage(snow_source *source,
                                   const snow_volume_options *options,
                                   snow_volume **out) {

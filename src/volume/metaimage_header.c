@@ -108,6 +108,8 @@ typedef struct fields {
     char value[SLOT_COUNT][METAIMAGE_VALUE_BYTES];
 } fields;
 
+/* The first of the names is the one to write: MET_LONG reads as MET_INT does.
+ */
 const char *metaimage_type_name(snow_type type) {
     for (size_t i = 0; i < TYPE_COUNT; i++)
         if (types[i].type == type)
@@ -124,10 +126,14 @@ static size_t find_key(const char *name, size_t length) {
     return KEY_COUNT;
 }
 
+/* The format's separators within a line; CR is one, for files from Windows. */
 static bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r';
 }
 
+/* The format has no magic: any of its keys may come first, after comments and
+ * empty lines.  A known key with "=" or ":" behind it is what a text that is
+ * something else hardly begins with. */
 bool metaimage_probe(const unsigned char *bytes, size_t size) {
     const char *at = (const char *)bytes, *end = at + size;
     while (at < end) {
@@ -159,6 +165,8 @@ static char *trim(char *text) {
     return text;
 }
 
+/* Files that tell a thing by two synonyms (Offset and Position) are common, and
+ * harmless while both say the same; else no choice would be right for all. */
 static snow_status keep_value(snow_context *context, fields *f, size_t key,
                               const char *value) {
     slot where = keys[key].slot;
@@ -178,7 +186,9 @@ static snow_status keep_value(snow_context *context, fields *f, size_t key,
     return SNOW_OK;
 }
 
-/* Reads lines until the one that names the data. */
+/* Reads lines until the one that names the data: ElementDataFile ends the
+ * header wherever it stands: with LOCAL the very next byte is a voxel.  Unknown
+ * keys are other programs' own and are passed by. */
 static snow_status read_fields(snow_source *source, fields *f) {
     snow_context *context = snow_source_context(source);
     while (!f->key[DATA]) {
@@ -209,6 +219,7 @@ static snow_status read_fields(snow_source *source, fields *f) {
     return SNOW_OK;
 }
 
+/* The value is cut in messages: it may have a thousand letters. */
 static snow_status fail_value(snow_context *context, const fields *f,
                               slot where, const char *wanted) {
     return snow_fail(context, SNOW_BAD_INPUT,
@@ -272,6 +283,7 @@ static snow_status read_number(snow_context *context, const fields *f,
     return SNOW_OK;
 }
 
+/* A whole number that may be absent: then *out keeps its value. */
 static snow_status read_int(snow_context *context, const fields *f, slot where,
                             int64_t *out) {
     if (f->key[where] && !snow_parse_int64(f->value[where], out))
@@ -279,6 +291,8 @@ static snow_status read_int(snow_context *context, const fields *f, slot where,
     return SNOW_OK;
 }
 
+/* Exact names only: a guess at another would be a guess at the size of a
+ * voxel. */
 static snow_status read_type(snow_context *context, const fields *f,
                              metaimage_header *header) {
     for (size_t i = 0; i < TYPE_COUNT; i++)
@@ -292,6 +306,8 @@ static snow_status read_type(snow_context *context, const fields *f,
     return SNOW_OK;
 }
 
+/* Sizes and their products are checked in 64 bits before any use; what of it
+ * the file really holds is asked when the data are opened. */
 static snow_status read_sizes(snow_context *context, const fields *f,
                               metaimage_header *header) {
     int64_t axes = 0, channels = 1, voxels;
@@ -331,6 +347,10 @@ static snow_status read_sizes(snow_context *context, const fields *f,
     return SNOW_OK;
 }
 
+/* ElementSize, the size of a voxel, stands for the distance between voxels
+ * where that is not told.  A length that is none is refused, not replaced by 1
+ * as in NIfTI, where such files are common.  The fourth, of time, means nothing
+ * here and may be anything. */
 static snow_status read_spacing(snow_context *context, const fields *f,
                                 int axes, double spacing[4]) {
     slot where = f->key[SPACING] ? SPACING : SIZE;
@@ -358,6 +378,8 @@ static snow_status read_unit(snow_context *context, const fields *f,
     return SNOW_OK;
 }
 
+/* Two turns at once: from directions in rows to the columns of a matrix, and
+ * from LPS to RAS.  Axes beyond NDims get a direction of their own. */
 static snow_status read_geometry(snow_context *context, const fields *f,
                                  metaimage_header *header) {
     int axes = header->axes;
@@ -389,6 +411,8 @@ static snow_status read_geometry(snow_context *context, const fields *f,
     return SNOW_OK;
 }
 
+/* Combinations that contradict themselves are refused before the data are
+ * looked for: read one way or the other they would be noise. */
 static snow_status read_layout(snow_context *context, const fields *f,
                                metaimage_header *header) {
     bool binary = true;
@@ -411,6 +435,7 @@ static snow_status read_layout(snow_context *context, const fields *f,
     return SNOW_OK;
 }
 
+/* The type before the sizes, whose product in bytes needs it. */
 static snow_status interpret(snow_context *context, const fields *f,
                              metaimage_header *header) {
     if (f->key[OBJECT_TYPE] && strcmp(f->value[OBJECT_TYPE], "Image") != 0)
@@ -426,6 +451,7 @@ static snow_status interpret(snow_context *context, const fields *f,
     return snow_volume_info_check(context, &header->info);
 }
 
+/* The fields are some 80 KiB, too many for the stack of a caller's thread. */
 snow_status metaimage_read_header(snow_source *source, metaimage_header *out) {
     snow_context *context = snow_source_context(source);
     fields *f = snow_allocate_clear(context, sizeof *f);

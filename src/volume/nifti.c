@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* By size field and magic together: 348 alone begins Analyze files as well. */
 static bool probe_nifti(const unsigned char *bytes, size_t size) {
     return nifti_header_size(bytes, size) != 0;
 }
@@ -25,6 +26,7 @@ static snow_status describe(snow_context *context, const nifti_header *header,
     info->intercept = header->intercept;
     nifti_geometry(context, header, info);
     uint64_t times = 1, all;
+    /* Five products of numbers that a header of 348 bytes makes up. */
     bool fits = snow_volume_count(info->dims, info->type, &voxels, step_bytes);
     for (int i = 4; i < 8; i++)
         fits = fits && snow_mul_u64(times, (uint64_t)header->dim[i], &times);
@@ -41,7 +43,9 @@ static snow_status describe(snow_context *context, const nifti_header *header,
                                  options, info);
 }
 
-/* Reads the voxels from a source that stands `taken` bytes behind its start. */
+/* Reads the voxels from a source that stands `taken` bytes behind its start.
+ * An offset and sizes may overflow together; UINT64_MAX is then refused as
+ * more than the file holds. */
 static snow_status read_voxels(snow_source *source, const nifti_header *header,
                                const snow_volume_options *options,
                                uint64_t taken, snow_volume **out) {
@@ -102,6 +106,7 @@ static snow_status open_other(const snow_source *source, const char *wanted,
         "is one of a pair of files, but its name does not end in .hdr or "
         ".img; rename both");
     if (letters) {
+        /* The likelier first: of a packed file the other is packed too. */
         bool packed = letters[3] != 0;
         for (int i = 0; i < 3; i++) {
             bool upper = letters[i] >= 'A' && letters[i] <= 'Z';
@@ -146,10 +151,13 @@ static snow_status read_image(snow_source *image,
     return read_voxels(image, &header, options, 0, out);
 }
 
+/* The voxels of a pair have no magic: only the name tells. */
 static bool is_image_name(const char *name) {
     return snow_has_suffix(name, ".img") || snow_has_suffix(name, ".img.gz");
 }
 
+/* Bytes before names: an .img file that begins with a header is what that says.
+ */
 static snow_status read_nifti(snow_source *source,
                               const snow_volume_options *options,
                               snow_volume **out) {

@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <string.h>
 
+/* A matrix that flattens space would draw nothing, and its inverse is needed.
+ */
 static bool is_usable(const double m[4][4]) {
     double inverse[3][3];
     for (int i = 0; i < 12; i++)
@@ -61,6 +63,7 @@ static void rotate_by_quaternion(const double quatern[3], double r[3][3]) {
     memcpy(r, rotation, sizeof rotation);
 }
 
+/* nifti1.h, method 2: the third column takes the sign that mirrors. */
 static void fill_from_qform(const nifti_header *header, const double spacing[3],
                             double m[4][4]) {
     double r[3][3];
@@ -86,6 +89,7 @@ static double millimetres(int units) {
     }
 }
 
+/* nifti1.h, method 3; code 0 means that its fields hold nothing. */
 static bool try_sform(snow_context *context, const nifti_header *header,
                       double m[4][4]) {
     if (header->sform_code <= 0)
@@ -99,6 +103,7 @@ static bool try_sform(snow_context *context, const nifti_header *header,
     return false;
 }
 
+/* nifti1.h, method 2, likewise. */
 static bool try_qform(snow_context *context, const nifti_header *header,
                       const double spacing[3], double m[4][4]) {
     if (header->qform_code <= 0)
@@ -111,6 +116,8 @@ static bool try_qform(snow_context *context, const nifti_header *header,
     return false;
 }
 
+/* Spacings alone (method 1) place nothing: left and right are not known, and
+ * the volume is then no patient's. */
 void nifti_geometry(snow_context *context, const nifti_header *header,
                     snow_volume_info *info) {
     double m[4][4] = {{0}};

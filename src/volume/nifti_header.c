@@ -42,6 +42,7 @@ int nifti_code(snow_type type) {
     return 0;
 }
 
+/* Codes of nifti1.h that are not read; named in refusals. */
 const char *nifti_type_name(int datatype) {
     switch (datatype) {
     case 1:
@@ -92,11 +93,15 @@ static double float_at(const unsigned char *at, size_t size, bool big) {
     return value;
 }
 
+/* True when the first field is this size in either byte order; *big is which.
+ */
 static bool has_size(const unsigned char *bytes, uint64_t size, bool *big) {
     *big = number_at(bytes, 4, true) == size;
     return *big || number_at(bytes, 4, false) == size;
 }
 
+/* Version 1 has its magic at the header's end, with its NUL; Analyze has not.
+ */
 static bool has_magic1(const unsigned char *bytes, size_t size) {
     return size >= NIFTI1_BYTES && (memcmp(bytes + 344, "n+1", 4) == 0 ||
                                     memcmp(bytes + 344, "ni1", 4) == 0);
@@ -115,6 +120,8 @@ static bool order_of_dim(const unsigned char *bytes, bool *big) {
     return false;
 }
 
+/* Version 2 first, whose magic stands at the front.  A wrong size field is
+ * forgiven in version 1 alone, where magic and dim[0] still tell. */
 size_t nifti_header_size(const unsigned char *bytes, size_t size) {
     bool big;
     if (size >= 12 && has_size(bytes, NIFTI2_BYTES, &big) &&
@@ -133,6 +140,8 @@ typedef struct nifti_layout {
     size_t qform_code, sform_code, quatern, qoffset, srow;
 } nifti_layout;
 
+/* In the order of the members above, from the comments of nifti1.h and
+ * nifti2.h; version 2 widens most fields and moves all. */
 static const nifti_layout layouts[] = {
     {4, 2, 2, 70, 72, 40, 76, 112, 116, 123, 1, 252, 254, 256, 268, 280},
     {8, 8, 4, 12, 14, 16, 104, 176, 184, 500, 4, 344, 348, 352, 376, 400},
@@ -145,6 +154,7 @@ static void read_floats(const unsigned char *at, size_t count,
             float_at(at + i * layout->float_bytes, layout->float_bytes, big);
 }
 
+/* xyzt_units holds two units: bits 0 to 2 are that of length. */
 static void read_fields(const unsigned char *bytes, nifti_header *header) {
     const nifti_layout *l = &layouts[header->version - 1];
     bool big = header->big_endian;
@@ -187,6 +197,7 @@ static snow_status read_offset(snow_context *context,
     return SNOW_OK;
 }
 
+/* Each axis by itself; the products are checked where the bytes are counted. */
 static snow_status check_dims(snow_context *context, nifti_header *header) {
     if (header->dim[0] < 1 || header->dim[0] > 7)
         return snow_fail(context, SNOW_BAD_INPUT,
@@ -205,6 +216,8 @@ static snow_status check_dims(snow_context *context, nifti_header *header) {
     return SNOW_OK;
 }
 
+/* bitpix repeats the type; 0 is what careless programs leave there.  Another
+ * number contradicts the type, and either could be wrong. */
 static snow_status check_type(snow_context *context,
                               const nifti_header *header) {
     snow_type type = nifti_type(header->datatype);
@@ -251,6 +264,8 @@ static snow_status check_transfer(snow_context *context,
                      "binary mode");
 }
 
+/* A pure function on bytes: a fuzzer needs no file.  The checks follow the
+ * fields' dependence; nothing is kept of a header that fails one. */
 snow_status nifti_header_parse(snow_context *context,
                                const unsigned char *bytes, size_t size,
                                nifti_header *out) {

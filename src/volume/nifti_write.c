@@ -18,11 +18,13 @@ typedef struct header {
     size_t float_bytes;
 } header;
 
+/* Low byte first, as volume/write.h promises of all formats. */
 static void put_int(header *h, size_t at, size_t size, uint64_t value) {
     for (size_t i = 0; i < size; i++)
         h->bytes[at + i] = (unsigned char)(value >> (8 * i));
 }
 
+/* In the width of the version: 4 bytes in NIfTI-1, 8 in NIfTI-2. */
 static void put_float(header *h, size_t at, double value) {
     uint64_t bits;
     if (h->float_bytes == sizeof(double)) {
@@ -41,6 +43,7 @@ static bool fits_float(double value) {
     return value == 0 || (fabs(value) <= FLT_MAX && fabs(value) >= FLT_MIN);
 }
 
+/* dim has 16 bits with a sign there, and all other numbers are floats. */
 static bool fits_version1(const snow_volume_info *info) {
     bool fits = fits_float(info->slope) && fits_float(info->intercept);
     for (int i = 0; i < 3; i++)
@@ -77,6 +80,8 @@ typedef struct places {
     size_t code_bytes, srow;
 } places;
 
+/* Offsets of pixdim and dim count from entry 0, which is qfac and the number
+ * of axes. */
 static void put_fields(header *h, const places *p,
                        const snow_volume_info *info) {
     put_int(h, p->dim, p->dim_bytes, 3);

@@ -4,10 +4,14 @@
 
 #include <string.h>
 
+/* Any version, so that a newer one is refused as such and not taken for raw
+ * data. */
 static bool looks_nrrd(const unsigned char *bytes, size_t size) {
     return size >= 6 && !memcmp(bytes, "NRRD00", 6);
 }
 
+/* All of the header is understood and checked before a data file is opened or
+ * the voxels get their memory: a header costs nothing that it does not back. */
 static snow_status read_parsed(snow_source *source, const nrrd_text *text,
                                const snow_volume_options *options,
                                snow_volume **out) {
@@ -22,6 +26,7 @@ static snow_status read_parsed(snow_source *source, const nrrd_text *text,
     return snow_nrrd_read_data(source, &header, &files, &info, &window, out);
 }
 
+/* Owns the text, so that each early return below leaves nothing behind. */
 static snow_status read_nrrd(snow_source *source,
                              const snow_volume_options *options,
                              snow_volume **out) {

@@ -123,6 +123,8 @@ static snow_status read_last_bytes(snow_source *source,
     return status;
 }
 
+/* The window counts bytes of the array as it is in memory; a text has numbers.
+ */
 static snow_status read_ascii(snow_source *source, const nrrd_header *header,
                               const nrrd_window *window, void *to) {
     size_t size = snow_type_size(header->type);
@@ -235,6 +237,8 @@ static snow_status read_files(snow_source *source, const nrrd_header *header,
     return SNOW_OK;
 }
 
+/* As it is: the header's encoding says whether the file is packed, not its
+ * first bytes, which may be voxels. */
 static snow_status read_sibling(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,
@@ -246,6 +250,7 @@ static snow_status read_sibling(snow_source *source, const nrrd_header *header,
     return status;
 }
 
+/* Bytes are swapped once at the end, however many files they came from. */
 snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,

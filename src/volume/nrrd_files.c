@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The value is cut in messages: a name may be as long as a line. */
 static snow_status fail_data_file(snow_context *context, const nrrd_text *text,
                                   const char *wrong) {
     return snow_fail(context, SNOW_BAD_INPUT,
@@ -93,6 +94,8 @@ static bool count_fits(const nrrd_header *header, int64_t subdimension,
     return pieces == count;
 }
 
+/* A list, a pattern, a name, in this order: a file may be called "LIST" only
+ * with a folder before it. */
 snow_status snow_nrrd_find_files(snow_context *context, const nrrd_text *text,
                                  const nrrd_header *header, nrrd_files *out) {
     const char *value = snow_nrrd_value(text, NRRD_DATA_FILE);

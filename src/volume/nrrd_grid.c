@@ -132,6 +132,8 @@ static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
     }
 }
 
+/* The matrix is checked before the time step: a fault of the file comes before
+ * one of the options. */
 snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
                               const snow_volume_options *options,
                               snow_volume_info *info, nrrd_window *window) {

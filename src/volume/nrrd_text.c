@@ -12,6 +12,7 @@
 #define MOST_LINE_BYTES ((size_t)256 * 1024)
 #define MOST_HEADER_BYTES ((size_t)16 * 1024 * 1024)
 
+/* From the same table as the enumeration, so that they cannot drift apart. */
 static const char *const spellings[NRRD_FIELD_COUNT][2] = {
 #define SPELLINGS(name, text, other) {text, other},
     NRRD_FIELD_MAP(SPELLINGS)
@@ -60,6 +61,8 @@ static snow_status append(snow_context *context, nrrd_text *text,
     return SNOW_OK;
 }
 
+/* Blanks at a line's end mean nothing in the format, and a CR is one of them.
+ */
 static void trim_end(char *line) {
     size_t length = strlen(line);
     while (length && isspace((unsigned char)line[length - 1]))
@@ -161,6 +164,7 @@ static snow_status read_lines(snow_source *source, char *line,
     return SNOW_OK;
 }
 
+/* The line has a block of its own for the time: it may be 256 KiB long. */
 snow_status snow_nrrd_read_text(snow_source *source, nrrd_text *text) {
     snow_context *context = snow_source_context(source);
     *text = (nrrd_text){0};

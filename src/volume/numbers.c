@@ -90,6 +90,8 @@ bool snow_store_number(snow_type type, const char *word, void *at) {
     }
 }
 
+/* White space of the C library: NRRD's numbers may stand in lines of any form.
+ */
 static bool separates(const word_reader *reader, char c) {
     return isspace((unsigned char)c) || (c == ',' && reader->commas);
 }
@@ -172,6 +174,7 @@ static snow_status read_words(word_reader *reader, snow_type type,
     return drop_read(reader);
 }
 
+/* The reader lives on the stack: some 5 KB, and nothing to free. */
 snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
                               const snow_number_window *window, void *out) {
     word_reader reader = {.source = source, .commas = commas};

@@ -15,11 +15,13 @@ static const snow_phantom *const phantoms[] = {
 
 static const size_t phantom_count = sizeof phantoms / sizeof *phantoms;
 
+/* One product and one sum, so that all machines round alike. */
 double snow_phantom_place(const snow_phantom_grid *grid, int axis,
                           int64_t index) {
     return grid->origin[axis] + grid->step[axis] * (double)index;
 }
 
+/* To the nearest, halves up; noise may reach past either end. */
 uint8_t snow_phantom_byte(double value) {
     if (value <= 0)
         return 0;
@@ -75,6 +77,8 @@ static snow_status lay_grid(snow_context *context, const snow_phantom *phantom,
     return SNOW_OK;
 }
 
+/* Voxel centres lie half a step inside the extent, which is centred on the
+ * origin at every size. */
 static snow_volume_info describe(const snow_phantom *phantom,
                                  const snow_phantom_grid *grid) {
     snow_volume_info info = snow_volume_info_default("phantom");
@@ -90,6 +94,7 @@ static snow_volume_info describe(const snow_phantom *phantom,
     return info;
 }
 
+/* A size that is too large is the caller's wish, no file's fault: usage. */
 snow_status snow_volume_phantom(snow_context *context, const char *name,
                                 const int64_t dims[3], uint64_t seed,
                                 snow_volume **out) {
@@ -105,6 +110,7 @@ snow_status snow_volume_phantom(snow_context *context, const char *name,
         return snow_fail_within(
             context, status == SNOW_BAD_INPUT ? SNOW_BAD_USAGE : status,
             "phantom %s", phantom->name);
+    /* Row by row: what the row's y and z decide is decided once. */
     char *row = volume->owned;
     size_t pitch = (size_t)grid.dims[0] * snow_type_size(phantom->type);
     for (int64_t k = 0; k < grid.dims[2]; k++)

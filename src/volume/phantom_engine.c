@@ -9,6 +9,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
+/* The four bores along x; what belongs to each is listed once by a macro. */
 #define BORES(X) \
     X(-72)       \
     X(-24)       \
@@ -131,6 +132,8 @@ static double air_value(uint32_t bits) {
     return 9.2 * (a + b) - 7.3 + tail;
 }
 
+/* Steel goes over the casting, and both over the air; the grain is of the metal
+ * and not of the shape, so that surfaces stay smooth. */
 static void engine_row(const snow_phantom_grid *grid, int64_t j, int64_t k,
                        void *out) {
     double y = snow_phantom_place(grid, 1, j);

@@ -22,82 +22,100 @@
 #define GROWTH 1.06
 
 static const snow_solid skin[] = {
+    /* the vault */
     {.kind = SNOW_ELLIPSOID, .at = {0, -12, 32}, .size = {77, 96, 75}},
+    /* the face */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 34, -16},
      .size = {60, 60, 66},
      .blend = 24},
+    /* the jaw */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 44, -60},
      .size = {48, 46, 34},
      .blend = 22},
+    /* the chin */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 84, -82},
      .size = {17, 13, 13},
      .blend = 14},
+    /* the neck */
     {.kind = SNOW_CYLINDER_Z,
      .at = {0, -18, -110},
      .size = {55, 80},
      .blend = 22},
+    /* brows */
     {.kind = SNOW_ELLIPSOID,
      .at = {24, 80, 23},
      .size = {23, 13, 8},
      .blend = 12,
      .twin = true},
+    /* cheeks */
     {.kind = SNOW_ELLIPSOID,
      .at = {38, 64, -24},
      .size = {22, 24, 22},
      .blend = 14,
      .twin = true},
+    /* hollows of the eyes */
     {.kind = SNOW_ELLIPSOID,
      .at = {32, 103, 6},
      .size = {15, 19, 11},
      .blend = 12,
      .carve = true,
      .twin = true},
+    /* lids */
     {.kind = SNOW_ELLIPSOID,
      .at = {31, 77, 6},
      .size = {13, 13, 12},
      .blend = 4,
      .twin = true},
+    /* the ridge of the nose */
     {.kind = SNOW_CAPSULE,
      .at = {0, 88, 12},
      .size = {0, 109, -20},
      .round = 7.5,
      .blend = 12},
+    /* its tip */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 110, -24},
      .size = {10, 10, 9},
      .blend = 8},
+    /* its wings */
     {.kind = SNOW_ELLIPSOID,
      .at = {10, 101, -27},
      .size = {7, 9, 7},
      .blend = 6,
      .twin = true},
+    /* nostrils */
     {.kind = SNOW_ELLIPSOID,
      .at = {6, 107, -34},
      .size = {3.5, 6, 5},
      .blend = 2,
      .carve = true,
      .twin = true},
+    /* the upper lip */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 91, -48},
      .size = {21, 9, 5},
      .blend = 7},
+    /* the lower lip */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 89, -58},
      .size = {18, 9, 5.5},
      .blend = 7},
+    /* the gap between them */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 101, -53},
      .size = {22, 7, 2},
      .blend = 3,
      .carve = true},
+    /* ears */
     {.kind = SNOW_ELLIPSOID,
      .at = {81, -14, -2},
      .size = {8, 19, 31},
      .blend = 6,
      .twin = true},
+    /* hollows of the ears */
     {.kind = SNOW_ELLIPSOID,
      .at = {90, -8, 0},
      .size = {7, 11, 20},
@@ -107,57 +125,68 @@ static const snow_solid skin[] = {
 };
 
 static const snow_solid skull[] = {
+    /* the vault */
     {.kind = SNOW_ELLIPSOID, .at = {0, -12, 32}, .size = {70, 89, 69}},
+    /* the upper jaw */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 56, -22},
      .size = {36, 31, 30},
      .blend = 10},
+    /* cheekbones */
     {.kind = SNOW_CAPSULE,
      .at = {24, 84, -14},
      .size = {60, 48, -10},
      .round = 6.5,
      .blend = 8,
      .twin = true},
+    /* the arches behind them */
     {.kind = SNOW_CAPSULE,
      .at = {60, 48, -10},
      .size = {69, 2, -8},
      .round = 4,
      .blend = 5,
      .twin = true},
+    /* ridges above the eyes */
     {.kind = SNOW_CAPSULE,
      .at = {10, 81, 22},
      .size = {48, 66, 18},
      .round = 6,
      .blend = 8,
      .twin = true},
+    /* orbits */
     {.kind = SNOW_ELLIPSOID,
      .at = {31, 80, 5},
      .size = {17, 30, 15},
      .blend = 5,
      .carve = true,
      .twin = true},
+    /* the bone of the nose */
     {.kind = SNOW_CAPSULE,
      .at = {0, 82, 20},
      .size = {0, 96, 0},
      .round = 4.5,
      .blend = 5},
+    /* its opening */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 88, -17},
      .size = {11, 20, 15},
      .blend = 4,
      .carve = true},
+    /* the lower jaw */
     {.kind = SNOW_CAPSULE,
      .at = {2, 80, -82},
      .size = {40, 40, -72},
      .round = 8,
      .blend = 5,
      .twin = true},
+    /* its branches up to the ears */
     {.kind = SNOW_CAPSULE,
      .at = {42, 36, -70},
      .size = {57, 8, -20},
      .round = 7,
      .blend = 8,
      .twin = true},
+    /* four vertebrae */
     {.kind = SNOW_CYLINDER_Z, .at = {0, -34, -48}, .size = {17, 9}, .round = 4},
     {.kind = SNOW_CYLINDER_Z, .at = {0, -33, -69}, .size = {17, 8}, .round = 4},
     {.kind = SNOW_CYLINDER_Z, .at = {0, -32, -89}, .size = {17, 8}, .round = 4},
@@ -165,6 +194,7 @@ static const snow_solid skull[] = {
      .at = {0, -32, -110},
      .size = {17, 9},
      .round = 4},
+    /* spines of two of them */
     {.kind = SNOW_CAPSULE,
      .at = {0, -50, -50},
      .size = {0, -72, -56},
@@ -175,6 +205,7 @@ static const snow_solid skull[] = {
      .size = {0, -70, -98},
      .round = 5,
      .blend = 6},
+    /* the canal of the spinal cord */
     {.kind = SNOW_CYLINDER_Z,
      .at = {0, -40, -75},
      .size = {8, 70},
@@ -198,31 +229,38 @@ static const snow_solid teeth[] = {
 };
 
 static const snow_solid airways[] = {
+    /* sinuses above the eyes */
     {.kind = SNOW_ELLIPSOID,
      .at = {10, 75, 27},
      .size = {9, 4, 8},
      .twin = true},
+    /* sinuses in the upper jaw */
     {.kind = SNOW_ELLIPSOID,
      .at = {24, 62, -18},
      .size = {9, 14, 12},
      .twin = true},
+    /* the nose */
     {.kind = SNOW_ELLIPSOID,
      .at = {5.5, 76, -20},
      .size = {3.8, 34, 13},
      .twin = true},
+    /* the throat behind it */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 24, -34},
      .size = {10, 9, 30},
      .blend = 8},
+    /* the mouth */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, 50, -50},
      .size = {20, 26, 4},
      .blend = 8},
+    /* the windpipe */
     {.kind = SNOW_CAPSULE,
      .at = {0, 16, -56},
      .size = {0, 10, -130},
      .round = 8,
      .blend = 8},
+    /* ear canals */
     {.kind = SNOW_CAPSULE,
      .at = {58, -8, -2},
      .size = {86, -8, -2},
@@ -231,11 +269,14 @@ static const snow_solid airways[] = {
 };
 
 static const snow_solid cavity[] = {
+    /* the brain's room */
     {.kind = SNOW_ELLIPSOID, .at = {0, -12, 32}, .size = {63, 82, 62}},
+    /* that of the cerebellum */
     {.kind = SNOW_ELLIPSOID,
      .at = {0, -44, -6},
      .size = {48, 34, 28},
      .blend = 12},
+    /* that of the cord */
     {.kind = SNOW_CAPSULE,
      .at = {0, -34, -10},
      .size = {0, -40, -130},
@@ -244,6 +285,7 @@ static const snow_solid cavity[] = {
 };
 
 static const snow_solid cerebellum[] = {
+    /* the cerebellum, and below it the stem */
     {.kind = SNOW_ELLIPSOID, .at = {0, -50, -10}, .size = {44, 28, 20}},
     {.kind = SNOW_CAPSULE,
      .at = {0, -20, 10},
@@ -253,23 +295,27 @@ static const snow_solid cerebellum[] = {
 };
 
 static const snow_solid ventricles[] = {
+    /* front horns */
     {.kind = SNOW_CAPSULE,
      .at = {9, 24, 40},
      .size = {10, -22, 48},
      .round = 6,
      .twin = true},
+    /* bends */
     {.kind = SNOW_CAPSULE,
      .at = {10, -22, 48},
      .size = {19, -46, 36},
      .round = 6.5,
      .blend = 5,
      .twin = true},
+    /* lower horns */
     {.kind = SNOW_CAPSULE,
      .at = {19, -46, 36},
      .size = {33, -14, 14},
      .round = 3.5,
      .blend = 5,
      .twin = true},
+    /* the third ventricle, in the middle */
     {.kind = SNOW_ELLIPSOID, .at = {0, -6, 30}, .size = {2.5, 14, 10}},
 };
 
@@ -331,6 +377,7 @@ static double brain_value(const head_row *row, double x, double depth) {
     return value;
 }
 
+/* What lies within the skull.  The cerebellum's leaves are layers of z. */
 static double inner_value(const head_row *row, double x, double depth) {
     const snow_phantom_grid *grid = row->grid;
     double value = brain_value(row, x, depth), grain = row->grain;
@@ -367,6 +414,8 @@ static double outer_value(const head_row *row, double x, double air,
     return value;
 }
 
+/* World coordinates become those of the small head; each noise has a seed of
+ * its own, so that no pattern repeats another. */
 static void begin_row(head_row *row, const snow_phantom_grid *grid, int64_t j,
                       int64_t k) {
     double y = (snow_phantom_place(grid, 1, j) + 6) / GROWTH;

@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+/* Not fmax and fmin, which have to mind NaN: none comes here. */
 static double larger(double a, double b) {
     return a > b ? a : b;
 }
@@ -16,6 +17,9 @@ static double smaller(double a, double b) {
     return a < b ? a : b;
 }
 
+/* length (length - 1) / slope: the value of the implicit surface over its
+ * gradient.  In the very middle the gradient is 0, and the least half-axis is
+ * the distance. */
 static double ellipsoid(const double size[3], double x, double y, double z) {
     double qx = x / size[0], qy = y / size[1], qz = z / size[2];
     double rx = qx / size[0], ry = qy / size[1], rz = qz / size[2];
@@ -26,6 +30,8 @@ static double ellipsoid(const double size[3], double x, double y, double z) {
     return length * (length - 1) / slope;
 }
 
+/* A box smaller by the rounding, swollen by it; the inside is negative by the
+ * nearest face. */
 static double box(const snow_solid *solid, double x, double y, double z) {
     double qx = fabs(x) - solid->size[0] + solid->round;
     double qy = fabs(y) - solid->size[1] + solid->round;
@@ -45,6 +51,7 @@ static double cylinder(const snow_solid *solid, double along, double a,
            solid->round;
 }
 
+/* Distance to the nearest point of the segment, less the radius. */
 static double capsule(const snow_solid *solid, double x, double y, double z) {
     double ex = solid->size[0] - solid->at[0];
     double ey = solid->size[1] - solid->at[1];
@@ -55,6 +62,7 @@ static double capsule(const snow_solid *solid, double x, double y, double z) {
     return sqrt(dx * dx + dy * dy + dz * dz) - solid->round;
 }
 
+/* From world coordinates to those of the solid. */
 static double solid_distance(const snow_solid *solid, double x, double y,
                              double z) {
     x -= solid->at[0], y -= solid->at[1], z -= solid->at[2];
@@ -90,10 +98,12 @@ static void solid_bounds(const snow_solid *solid, int axis, double *low,
     *high = at + reach;
 }
 
+/* How far a value lies outside an interval; 0 within it. */
 static double outside(double value, double low, double high) {
     return larger(larger(low - value, value - high), 0);
 }
 
+/* A twin stands on both sides of x = 0, and its bounds are those of |x|. */
 void snow_shape_row_begin(snow_shape_row *row, const snow_solid *solids,
                           size_t count, double y, double z) {
     *row = (snow_shape_row){.y = y, .z = z, .first = 1, .last = 0};
@@ -127,6 +137,8 @@ static double join(double a, double b, double width) {
     return least - h * h * width * 0.25;
 }
 
+/* A solid that carves joins the outside: the complement's distance is the
+ * negative one. */
 double snow_shape_distance(const snow_shape_row *row, double x) {
     double distance = SNOW_SHAPE_FAR;
     if (x < row->first || x > row->last)
@@ -143,6 +155,7 @@ double snow_shape_distance(const snow_shape_row *row, double x) {
     return distance;
 }
 
+/* Linear across the edge: the share of a voxel cut by a plane, about. */
 double snow_shape_cover(const snow_phantom_grid *grid, double distance) {
     double share = 0.5 - distance / grid->edge;
     return smaller(larger(share, 0), 1);
@@ -161,6 +174,7 @@ static uint64_t scramble(uint64_t key) {
     return key ^ key >> 31;
 }
 
+/* By place and seed alone, so that rows can be made in any order. */
 uint64_t snow_noise_key(uint64_t seed, int64_t y, int64_t z) {
     uint64_t key = scramble(seed * UINT64_C(0x9E3779B97F4A7C15) + (uint64_t)z);
     return scramble(key + (uint64_t)y);
@@ -170,10 +184,13 @@ uint32_t snow_noise_bits(uint64_t key, int64_t x) {
     return (uint32_t)(scramble(key + (uint64_t)x) >> 32);
 }
 
+/* Slope 0 at both ends: lattice cells meet without a crease. */
 static double ease(double t) {
     return t * t * (3 - 2 * t);
 }
 
+/* y and z are constant along a row: of the eight corners of a cell only two
+ * columns remain to be joined at each voxel. */
 void snow_noise_row_begin(snow_noise_row *row, uint64_t seed, double cell,
                           double half, double y, double z) {
     double v = floor(y / cell), w = floor(z / cell);
@@ -194,6 +211,7 @@ void snow_noise_row_begin(snow_noise_row *row, uint64_t seed, double cell,
     }
 }
 
+/* The lattice place of x, and how far x is on the way to the next. */
 double snow_noise_at(const snow_noise_row *row, double x) {
     double u = x / row->cell, whole = floor(u);
     int64_t i = (int64_t)whole - row->base;

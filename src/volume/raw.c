@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Folders are named for other reasons than their files. */
 static const char *base_name(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? slash + 1 : path;
@@ -134,6 +135,7 @@ static snow_status read_raw(snow_source *source,
                             all.offset, 0, out);
 }
 
+/* No probe: any bytes can be raw data, so that it is never found, only left. */
 const snow_format snow_format_raw = {
     .name = "raw",
     .text = "voxels alone, described by options (.raw, .raw.gz, any name)",

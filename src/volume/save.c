@@ -24,6 +24,8 @@ static const struct {
 };
 #define ENDING_COUNT (sizeof endings / sizeof *endings)
 
+/* Straight from the volume on little-endian machines: no copy of what may be
+ * gigabytes. */
 snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
     int64_t voxels;
     uint64_t bytes;
@@ -44,6 +46,7 @@ snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
     return SNOW_OK;
 }
 
+/* printf goes by the locale of the program around the library; files do not. */
 int snow_print_numbers(char *text, size_t room, const double *values, int count,
                        const char *between) {
     int used = 0;
@@ -60,6 +63,8 @@ int snow_print_numbers(char *text, size_t room, const double *values, int count,
     return used;
 }
 
+/* A name alone cannot bring the voxels back: the remark gives the options that
+ * do.  A scaling is refused, since dropped it would change every value. */
 snow_status snow_raw_write(const snow_volume *volume, const char *path,
                            snow_writer *writer) {
     const snow_volume_info *info = &volume->info;
@@ -87,6 +92,8 @@ static snow_status fill(const snow_volume *volume, const char *path,
     return format->write(volume, path, writer);
 }
 
+/* The name is checked first, so that a wrong one never creates a file; a file
+ * that fails half-way is given up, never committed. */
 snow_status snow_volume_save(const snow_volume *volume, const char *path,
                              bool overwrite) {
     size_t i = 0;

@@ -21,6 +21,8 @@ size_t snow_type_size(snow_type type) {
     return 0;
 }
 
+/* "none" for what is no type: messages may quote a type before it is checked.
+ */
 const char *snow_type_name(snow_type type) {
     switch (type) {
 #define TYPE_NAME(name, c_type, text) \
@@ -34,6 +36,7 @@ const char *snow_type_name(snow_type type) {
     return "none";
 }
 
+/* Exact: the many spellings of NRRD and raw names are those readers' matter. */
 snow_type snow_type_named(const char *name) {
     static const struct {
         const char *name;
@@ -51,6 +54,7 @@ snow_type snow_type_named(const char *name) {
     return SNOW_TYPE_NONE;
 }
 
+/* Asked at run time, which compilers fold to a constant; C11 has no macro. */
 bool snow_machine_big_endian(void) {
     const uint16_t one = 1;
     unsigned char first;
@@ -86,6 +90,7 @@ static void swap_8(unsigned char *at, uint64_t count) {
     }
 }
 
+/* Sizes 1 and 0 have nothing to swap. */
 void snow_swap_bytes(void *values, uint64_t count, size_t size) {
     if (size == 2)
         swap_2(values, count);

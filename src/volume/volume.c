@@ -10,6 +10,8 @@
 /* The largest count of bytes that an int64_t can address. */
 #define MOST_BYTES ((uint64_t)INT64_MAX)
 
+/* What a file that says nothing means: unit voxels at the origin, values as
+ * they are. */
 snow_volume_info snow_volume_info_default(const char *format) {
     snow_volume_info info = {.dims = {1, 1, 1},
                              .spacing = {1, 1, 1},
@@ -21,6 +23,8 @@ snow_volume_info snow_volume_info_default(const char *format) {
     return info;
 }
 
+/* Voxels before bytes: each product is checked by itself, for three sizes of
+ * 2^31 overflow 64 bits long before the type counts. */
 bool snow_volume_count(const int64_t dims[3], snow_type type, int64_t *voxels,
                        uint64_t *bytes) {
     uint64_t count = 1, size;
@@ -43,6 +47,8 @@ static bool matrix_is_finite(const double m[4][4]) {
     return m[3][0] == 0 && m[3][1] == 0 && m[3][2] == 0 && m[3][3] == 1;
 }
 
+/* In the order of dependence: the type has a size before bytes are counted.
+ * Spacings are not looked at here, they are the columns of the matrix. */
 snow_status snow_volume_info_check(snow_context *context,
                                    const snow_volume_info *info) {
     int64_t voxels;
@@ -116,6 +122,8 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
     return SNOW_OK;
 }
 
+/* Voxels of the caller come without a file: no source is checked against the
+ * sizes, whose truth is the caller's word. */
 snow_status snow_volume_share(snow_context *context,
                               const snow_volume_info *info, const void *voxels,
                               snow_volume **out) {
@@ -145,6 +153,8 @@ static bool add_up(uint64_t skip, uint64_t bytes, uint64_t rest,
     return snow_add_u64(skip, bytes, out) && snow_add_u64(*out, rest, out);
 }
 
+/* The bytes are held against the source before the voxels get their memory: a
+ * header of 400 bytes must not cost gigabytes. */
 snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
                              bool big_endian, uint64_t skip, uint64_t rest,
                              snow_volume **out) {
@@ -198,6 +208,7 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
     return SNOW_OK;
 }
 
+/* Shared voxels are not owned and stay. */
 void snow_volume_close(snow_volume *volume) {
     if (volume) {
         snow_release(volume->context, volume->owned);
