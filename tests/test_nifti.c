@@ -389,7 +389,8 @@ static void contradictions_are_refused(void **state) {
     file f = make_file(1, false);
     put_datatype(&f, 4, 4);
     refuse(place, &f, "32 bits a voxel");
-    static const double offsets[] = {-1, 100, 352.5, NAN, INFINITY, 1e30};
+    static const double offsets[] = {-1,    100, 349,      351,
+                                     352.5, NAN, INFINITY, 1e30};
     for (size_t i = 0; i < sizeof offsets / sizeof *offsets; i++) {
         f = make_file(1, false);
         put_real(&f, 108, 0, offsets[i]);

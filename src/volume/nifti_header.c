@@ -183,8 +183,13 @@ static snow_status read_offset(snow_context *context,
     uint64_t least = first ? NIFTI1_BYTES : NIFTI2_BYTES;
     double told = first ? float_at(bytes + 108, 4, header->big_endian)
                         : (double)int_at(bytes + 168, 8, header->big_endian);
+    /* In a single file that tells a place the voxels lie behind the extender,
+     * or right behind the header where a writer left that out; within it they
+     * would be shifted by a few bytes, unseen. */
+    bool inside = told > 0 && told < (double)(least + NIFTI_EXTENDER_BYTES) &&
+                  told != (double)least;
     if (!(told >= 0 && told < 0x1p62) || told != floor(told) ||
-        (!header->pair && told > 0 && told < (double)least))
+        (!header->pair && inside))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "the voxels cannot start at byte %g (vox_offset); "
                          "write the file again",
