@@ -135,6 +135,10 @@ static void a_cut_or_damaged_gzip_is_refused(void **state) {
     packed[size - 6] ^= 16;
     path = support_write(&files, "sum.raw.gz", packed, size);
     support_refused(&files, path, &told, SNOW_BAD_INPUT, "damaged", 70000);
+    packed[0] ^= 1; /* no gzip any more: bytes like any others */
+    path = support_write(&files, "magic.raw.gz", packed, size);
+    snow_volume_options tiny = {.dims = {2, 2, 2}, .type = SNOW_UINT8};
+    support_refused(&files, path, &tiny, SNOW_BAD_INPUT, "is not gzip", 70000);
     support_files_end(&files);
 }
 

@@ -127,6 +127,13 @@ static snow_status read_raw(snow_source *source,
         read_name(context, snow_source_name(source), &all);
     if (!all.dims[0] || !all.dims[1] || !all.dims[2] || !all.type)
         return refuse_untold(context, snow_source_name(source), &all);
+    /* Whatever was gzip is unpacked by now, and of unknown length.  A packed
+     * file whose first bytes are damaged would be shown as noise. */
+    if (snow_has_suffix(snow_source_name(source), ".gz") &&
+        snow_source_remaining(source) >= 0)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "is not gzip, as its name says; fetch it again, or "
+                         "rename it if the voxels are not packed");
     snow_volume_info info = snow_volume_info_default("raw");
     memcpy(info.dims, all.dims, sizeof info.dims);
     info.type = all.type;
