@@ -37,16 +37,32 @@ static void ignore_notice(void *user, const char *text) {
     (void)text;
 }
 
+/* A context over this allocator, and its end: stops the program when memory
+ * stays behind. */
+static inline snow_context *capped_context(size_t *held) {
+    snow_allocator allocator = {capped_allocate, capped_release, held};
+    snow_context *context;
+    *held = 0;
+    if (snow_context_new(&allocator, &context) != SNOW_OK)
+        abort();
+    snow_context_set_notice(context, ignore_notice, NULL);
+    return context;
+}
+
+static inline void capped_end(snow_context *context, const size_t *held) {
+    if (snow_context_bytes(context))
+        abort();
+    snow_context_free(context);
+    if (*held)
+        abort();
+}
+
 /* Opens and measures the bytes as a volume.  Stops the program when a failure
  * comes without a message of one line, or memory stays behind. */
 static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
                            const snow_volume_options *options) {
-    size_t held = 0;
-    snow_allocator allocator = {capped_allocate, capped_release, &held};
-    snow_context *context;
-    if (snow_context_new(&allocator, &context) != SNOW_OK)
-        abort();
-    snow_context_set_notice(context, ignore_notice, NULL);
+    size_t held;
+    snow_context *context = capped_context(&held);
     snow_volume *volume = NULL;
     snow_status status =
         snow_volume_open_memory(context, name, bytes, size, options, &volume);
@@ -63,11 +79,7 @@ static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
     for (const char *at = snow_context_message(context); *at; at++)
         if (*at == '\n')
             abort();
-    if (snow_context_bytes(context))
-        abort();
-    snow_context_free(context);
-    if (held)
-        abort();
+    capped_end(context, &held);
 }
 
 #endif

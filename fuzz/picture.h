@@ -22,12 +22,8 @@ static void check_picture(snow_image *image) {
 /* Loads the bytes as a picture.  Stops the program when a failure comes
  * without a message of one line, or memory stays behind. */
 static void look_at_picture(const uint8_t *bytes, size_t size) {
-    size_t held = 0;
-    snow_allocator allocator = {capped_allocate, capped_release, &held};
-    snow_context *context;
-    if (snow_context_new(&allocator, &context) != SNOW_OK)
-        abort();
-    snow_context_set_notice(context, ignore_notice, NULL);
+    size_t held;
+    snow_context *context = capped_context(&held);
     snow_image *image = NULL;
     snow_status status =
         snow_image_load_memory(context, "input", bytes, size, &image);
@@ -38,11 +34,7 @@ static void look_at_picture(const uint8_t *bytes, size_t size) {
              (status != SNOW_BAD_INPUT && status != SNOW_NO_MEMORY))
         abort();
     snow_image_free(image);
-    if (snow_context_bytes(context))
-        abort();
-    snow_context_free(context);
-    if (held)
-        abort();
+    capped_end(context, &held);
 }
 
 #endif

@@ -1,7 +1,6 @@
 /* tests/support_files.c - temporary files, and a context that takes notes. */
 #include "support_files.h"
 
-#include <dirent.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -28,37 +27,23 @@ void support_files_begin(support_files *files) {
     snow_allocator allocator = {noting_allocate, noting_release, files};
     assert_int_equal(snow_context_new(&allocator, &files->context), SNOW_OK);
     snow_context_set_notice(files->context, note, files);
-    strcpy(files->folder, "/tmp/snowglass-test-XXXXXX");
-    assert_non_null(mkdtemp(files->folder));
+    support_folder_make(files->folder);
 }
 
 void support_files_end(support_files *files) {
-    DIR *folder = opendir(files->folder);
-    for (struct dirent *entry; (entry = readdir(folder));)
-        if (entry->d_name[0] != '.')
-            unlink(support_path(files, entry->d_name));
-    closedir(folder);
-    rmdir(files->folder);
+    support_folder_remove(files->folder);
     assert_int_equal(snow_context_bytes(files->context), 0);
     snow_context_free(files->context);
 }
 
 const char *support_path(const support_files *files, const char *name) {
-    static char paths[4][512];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", files->folder, name);
-    return path;
+    return support_folder_path(files->folder, name);
 }
 
 const char *support_write(const support_files *files, const char *name,
                           const void *bytes, size_t size) {
     const char *path = support_path(files, name);
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    if (size)
-        assert_int_equal(fwrite(bytes, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
+    support_write_file(path, bytes, size);
     return path;
 }
 

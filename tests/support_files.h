@@ -4,13 +4,14 @@
 #define SNOW_TEST_SUPPORT_FILES_H
 
 #include "support.h"
+#include "support_folder.h"
 
 typedef struct support_files {
     snow_context *context;
-    char folder[64];   /* of temporary files */
-    size_t largest;    /* request for memory so far */
-    int notices;       /* heard so far */
-    char notice[1024]; /* the last one */
+    char folder[SUPPORT_FOLDER_BYTES]; /* of temporary files */
+    size_t largest;                    /* request for memory so far */
+    int notices;                       /* heard so far */
+    char notice[1024];                 /* the last one */
 } support_files;
 
 /* Group fixtures are not needed: a test begins and ends its own.  The end

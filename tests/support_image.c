@@ -13,8 +13,7 @@ int support_image_setup(void **state) {
     image_fixture *fixture = calloc(1, sizeof *fixture);
     fixture->context = support_context();
     snow_context_set_notice(fixture->context, hear_notice, fixture);
-    snprintf(fixture->folder, sizeof fixture->folder, "/tmp/snow-image-XXXXXX");
-    assert_non_null(mkdtemp(fixture->folder));
+    support_folder_make(fixture->folder);
     *state = fixture;
     return 0;
 }
@@ -58,13 +57,6 @@ support_bytes support_read_file(const char *path) {
     assert_int_equal(fread(data.bytes, 1, data.size, file), data.size);
     fclose(file);
     return data;
-}
-
-void support_write_file(const char *path, const void *bytes, size_t size) {
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
 }
 
 snow_image *support_picture(snow_context *context, int width, int height,

@@ -4,6 +4,7 @@
 #define SNOW_TEST_SUPPORT_IMAGE_H
 
 #include "support.h"
+#include "support_folder.h"
 
 #include "image/image.h"
 
@@ -11,7 +12,7 @@
  * fails the test when memory or files other than `path` are left. */
 typedef struct image_fixture {
     snow_context *context;
-    char folder[64];
+    char folder[SUPPORT_FOLDER_BYTES];
     char path[128]; /* told by support_image_path last */
     char notice[SNOW_MESSAGE_BYTES];
 } image_fixture;
@@ -32,7 +33,6 @@ typedef struct support_bytes {
 
 /* A whole file; free the bytes. */
 support_bytes support_read_file(const char *path);
-void support_write_file(const char *path, const void *bytes, size_t size);
 
 /* A picture of smooth and random premultiplied pixels with transparent ones. */
 snow_image *support_picture(snow_context *context, int width, int height,

@@ -1,7 +1,6 @@
 /* tests/support_volumes.c - see support_volumes.h. */
 #include "support_volumes.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <unistd.h>
 
@@ -33,23 +32,14 @@ int support_place_begin(void **state) {
                                       place};
     assert_int_equal(snow_context_new(&allocator, &place->context), SNOW_OK);
     snow_context_set_notice(place->context, hear, place);
-    snprintf(place->folder, sizeof place->folder, "/tmp/snow-test-XXXXXX");
-    assert_non_null(mkdtemp(place->folder));
+    support_folder_make(place->folder);
     *state = place;
     return 0;
 }
 
 int support_place_end(void **state) {
     support_place *place = *state;
-    DIR *listing = opendir(place->folder);
-    assert_non_null(listing);
-    for (struct dirent *entry; (entry = readdir(listing));) {
-        char path[512];
-        snprintf(path, sizeof path, "%s/%s", place->folder, entry->d_name);
-        unlink(path);
-    }
-    closedir(listing);
-    assert_int_equal(rmdir(place->folder), 0);
+    support_folder_remove(place->folder);
     assert_int_equal(snow_context_bytes(place->context), 0);
     snow_context_free(place->context);
     free(place);
@@ -57,20 +47,13 @@ int support_place_end(void **state) {
 }
 
 const char *support_place_path(const support_place *place, const char *name) {
-    static char paths[4][512];
-    static int next;
-    char *path = paths[next++ % 4];
-    snprintf(path, sizeof paths[0], "%s/%s", place->folder, name);
-    return path;
+    return support_folder_path(place->folder, name);
 }
 
 const char *support_place_put(const support_place *place, const char *name,
                               const void *bytes, size_t size) {
     const char *path = support_place_path(place, name);
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
+    support_write_file(path, bytes, size);
     return path;
 }
 

@@ -4,14 +4,16 @@
 #define SNOW_TEST_SUPPORT_VOLUMES_H
 
 #include "support.h"
+#include "support_folder.h"
 
 typedef struct support_place {
     snow_context *context;
     size_t largest;  /* bytes of the largest allocation since it was set 0 */
     int64_t fail_at; /* this allocation and all later ones fail; 0: none */
-    int64_t allocations; /* so far */
-    char notices[4096];  /* all remarks, one a line */
-    char folder[64]; /* an empty folder, removed with its files at the end */
+    int64_t allocations;               /* so far */
+    char notices[4096];                /* all remarks, one a line */
+    char folder[SUPPORT_FOLDER_BYTES]; /* an empty folder, removed with its
+                                          files at the end */
 } support_place;
 
 /* cmocka set-up and tear-down; *state is the place.  The tear-down fails when
