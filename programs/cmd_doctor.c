@@ -93,7 +93,7 @@ static int tell_json(void) {
     json_object_set_new(o, "picture_outputs", words_json(picture_suffixes));
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
     json_object_set_new(o, "isa", json_string(snow_isa_used()));
-    json_object_set_new(o, "threads", json_integer(1));
+    json_object_set_new(o, "threads", json_integer(snow_processors()));
     json_object_set_new(o, "mpi", json_false());
     json_object_set_new(o, "display", json_false());
     json_object_set_new(o, "memory_bytes",
@@ -118,7 +118,7 @@ static int tell_text(void) {
     print_row("picture outputs", picture_suffixes);
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
-    print_row("threads", "1 (more are not built yet)");
+    printf("%-16s%d\n", "threads", snow_processors());
     print_row("mpi", "no (not built yet)");
     print_row("display", "not needed");
     printf("%-16s%.1f GiB\n", "memory",

@@ -97,6 +97,10 @@ static int make_settings(const options *asked, const snow_volume *volume,
     out->shininess = asked->shininess;
     out->light_azimuth = asked->light[0];
     out->light_elevation = asked->light[1];
+    out->quality = (snow_quality)snow_quality_named(asked->quality);
+    out->isa = (snow_isa)snow_isa_named(asked->isa);
+    out->threads = (int)asked->threads;
+    out->deterministic = asked->deterministic;
     return opacity_length(asked, snow_volume_describe(volume),
                           &out->opacity_length);
 }

@@ -57,9 +57,11 @@ const option_row option_table[] = {
     {"encoding", 0, "auto|crs|bitmap|rle", TOPIC_SPARSE, RENDER, read_choice,
      FIELD(encoding), 0, 0, "",
      "how the places of interesting voxels are kept (auto)"},
-    {"method", 0, "auto|original|footprint", TOPIC_SPARSE, RENDER, read_choice,
-     FIELD(method), 0, 0, "sheared",
-     "original splats every voxel, footprint the interesting ones (auto)"},
+    {"method", 0, "auto|original|footprint|sheared", TOPIC_SPARSE, RENDER,
+     read_choice, FIELD(method), 0, 0, "",
+     "original splats every voxel, footprint the interesting ones, sheared "
+     "those in sheared slices with one warp at the end: the fast one (auto: "
+     "sheared)"},
 
     {"kernel", 0, "tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
      FIELD(kernel), 0, 0, "", "the reconstruction kernel (bspline)"},
@@ -102,8 +104,10 @@ const option_row option_table[] = {
     LATER("log", 0, NULL, TOPIC_LOOK, "give --range or --opacity over the low "
           "values"),
 
-    LATER("quality", 0, "draft|normal|high", TOPIC_QUALITY,
-          "--kernel and --footprint set the quality"),
+    {"quality", 0, "draft|normal|high", TOPIC_QUALITY, RENDER, read_choice,
+     FIELD(quality), 0, 0, "", "of the sheared method: one intermediate pixel "
+     "a voxel and the tent kernel, two and cubic ones, or that with "
+     "interpolated slices between (normal)"},
 
     {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_view, FIELD(view), 0, 0, "",
      "the side the camera is on (anterior when the file has a medical "
@@ -148,13 +152,16 @@ const option_row option_table[] = {
     LATER("mask", 0, "FILE", TOPIC_DATA, "give a masked file"),
     LATER("labels", 0, "LIST", TOPIC_DATA, "give a masked file"),
 
-    {"threads", 'j', "1", TOPIC_RUN, RENDER, read_threads, FIELD(threads), 1,
-     4096, "", "threads that render; more than one is not built yet (1)"},
+    {"threads", 'j', "N", TOPIC_RUN, RENDER, read_integer, FIELD(threads), 1,
+     4096, "", "threads that render; the picture is the same for any number "
+     "(all processors that the process may use)"},
     {"deterministic", 0, NULL, TOPIC_RUN, RENDER, read_flag,
      FIELD(deterministic), 0, 0, "",
-     "the same bits on every run and machine (always so with one thread)"},
-    {"isa", 0, "scalar", TOPIC_RUN, RENDER, read_choice, FIELD(isa), 0, 0,
-     "avx2|avx512|neon", "instruction set of the kernels (scalar)"},
+     "the same bits on every machine, by the scalar kernels (the same for any "
+     "number of threads always)"},
+    {"isa", 0, "auto|scalar|avx2|avx512|neon", TOPIC_RUN, RENDER, read_choice,
+     FIELD(isa), 0, 0, "", "instruction set of the kernels (auto: the best of "
+     "this machine)"},
     {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
      FIELD(progress), 0, 0, "",
      "only names each stage on stderr as it begins, without a bar (auto: on a "

@@ -40,8 +40,8 @@ void options_init(options *out) {
         .shininess = settings.shininess,
         .zoom = 1,
         .progress = "auto",
-        .isa = snow_isa_used(),
-        .threads = 1,
+        .isa = "auto",
+        .quality = "normal",
     };
 }
 

@@ -75,8 +75,8 @@ typedef struct options {
     double tolerance;
     bool json;
     const char *stats; /* NULL: none */
-    const char *progress, *isa;
-    int64_t threads;
+    const char *progress, *isa, *quality;
+    int64_t threads; /* 0: not told */
     bool deterministic, no_labels;
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 

@@ -132,16 +132,6 @@ bool read_count(const option_row *row, const char *text, void *field,
     return true;
 }
 
-/* More than one thread is refused, not quietly made one. */
-bool read_threads(const option_row *row, const char *text, void *field,
-                  char wrong[WRONG_BYTES]) {
-    if (!read_integer(row, text, field, wrong))
-        return false;
-    if (*(int64_t *)field != 1)
-        return refuse(wrong, "is not built yet; one thread works: give 1");
-    return true;
-}
-
 bool read_size(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     (void)row;

@@ -13,7 +13,6 @@ option_read read_real;       /* double within low..high */
 option_read read_tolerance;  /* double, also as a quotient */
 option_read read_integer;    /* int64_t within low..high */
 option_read read_count;      /* uint64_t */
-option_read read_threads;    /* int64_t */
 option_read read_size;       /* int64_t[2] */
 option_read read_dims;       /* int64_t[3] */
 option_read read_spacing;    /* double[3] */

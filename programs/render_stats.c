@@ -55,8 +55,7 @@ static double classify_seconds(const render_report *report) {
            snow_frame_stats(report->frame)->seconds_classify;
 }
 
-/* warp and combine are stages of other methods and of several processors;
- * their time is 0 here. */
+/* combine is a stage of several processors; its time is 0 here. */
 static json_t *seconds_json(const render_report *report) {
     const snow_stats *stats = snow_frame_stats(report->frame);
     const struct {
@@ -68,7 +67,7 @@ static json_t *seconds_json(const render_report *report) {
                 {"encode", stats->seconds_encode},
                 {"splat", stats->seconds_splat},
                 {"composite", stats->seconds_composite},
-                {"warp", 0},
+                {"warp", stats->seconds_warp},
                 {"combine", 0},
                 {"write", report->times->write},
                 {"frame", stats->seconds_frame},
@@ -93,8 +92,8 @@ static json_t *image_json(const snow_image *image) {
     return object;
 }
 
-/* Threads and ranks are 1 until there can be more: the keys are there, so that
- * tables made now and later have the same columns. */
+/* Ranks are 1 until there can be more: the key is there, so that tables made
+ * now and later have the same columns. */
 json_t *stats_json(const render_report *report) {
     const snow_stats *stats = snow_frame_stats(report->frame);
     const snow_settings *settings = report->settings;
@@ -110,9 +109,11 @@ json_t *stats_json(const render_report *report) {
     json_object_set_new(o, "kernel",
                         json_string(snow_kernel_name(settings->kernel)));
     json_object_set_new(o, "footprint", json_integer(stats->footprint));
-    json_object_set_new(o, "threads", json_integer(1));
+    json_object_set_new(o, "threads", json_integer(stats->threads));
     json_object_set_new(o, "ranks", json_integer(1));
-    json_object_set_new(o, "isa", json_string(snow_isa_used()));
+    json_object_set_new(o, "isa", json_string(snow_isa_name(stats->isa)));
+    json_object_set_new(o, "quality",
+                        json_string(snow_quality_name(stats->quality)));
     json_object_set_new(o, "bytes", bytes_json(report));
     json_object_set_new(o, "seconds", seconds_json(report));
     json_object_set_new(o, "image", image_json(report->image));

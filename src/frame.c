@@ -118,10 +118,11 @@ static void splat_encoded_slice(snow_job *job, int64_t slice) {
     snow_walk walk;
     snow_walk_begin(&walk, &job->frame->sparse, slice - job->slab.first);
     for (int64_t row = 0; row < job->placement.rows; row++) {
-        const float *samples;
-        size_t count = snow_walk_row(&walk, job->frame->spans, &samples);
+        size_t voxel;
+        size_t count = snow_walk_row(&walk, job->frame->spans, &voxel);
         snow_splat_row(&job->splatter, &job->frame->sheet, row,
-                       job->frame->spans, count, samples);
+                       job->frame->spans, count,
+                       job->frame->sparse.ia + voxel * (size_t)job->channels);
     }
 }
 
@@ -238,6 +239,9 @@ static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
     stats->method = job->settings.method;
     stats->footprint = job->settings.footprint;
     stats->slice_axis = p->slice_axis;
+    stats->threads = job->settings.threads;
+    stats->isa = job->settings.isa;
+    stats->quality = job->settings.quality;
     stats->voxels = p->columns * p->rows * job->slab.count;
     double voxels = (double)stats->voxels;
     if (stats->method == SNOW_METHOD_TESTED) {

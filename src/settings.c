@@ -1,9 +1,12 @@
 /* settings.c - the settings of a picture: defaults, names, ranges. */
+#include "base/parallel.h"
 #include "frame.h"
+#include "simd/isa.h"
 #include "splat/kernel.h"
 #include "volume/volume.h"
 
 #include <math.h>
+#include <snowglass/snowglass.h>
 #include <string.h>
 
 static const char *const methods[] = {
@@ -11,6 +14,7 @@ static const char *const methods[] = {
     [SNOW_METHOD_ORIGINAL] = "original",
     [SNOW_METHOD_TESTED] = "tested",
     [SNOW_METHOD_FOOTPRINT] = "footprint",
+    [SNOW_METHOD_SHEARED] = "sheared",
 };
 
 static const char *const encodings[] = {
@@ -18,6 +22,12 @@ static const char *const encodings[] = {
     [SNOW_ENCODING_CRS] = "crs",
     [SNOW_ENCODING_BITMAP] = "bitmap",
     [SNOW_ENCODING_RLE] = "rle",
+};
+
+static const char *const qualities[] = {
+    [SNOW_QUALITY_NORMAL] = "normal",
+    [SNOW_QUALITY_DRAFT] = "draft",
+    [SNOW_QUALITY_HIGH] = "high",
 };
 
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
@@ -44,6 +54,14 @@ int snow_method_named(const char *name) {
 
 int snow_encoding_named(const char *name) {
     return find_name(encodings, COUNT(encodings), name);
+}
+
+const char *snow_quality_name(snow_quality quality) {
+    return (int)quality < COUNT(qualities) ? qualities[quality] : NULL;
+}
+
+int snow_quality_named(const char *name) {
+    return find_name(qualities, COUNT(qualities), name);
 }
 
 static const snow_settings defaults = {
@@ -100,10 +118,25 @@ static snow_status check_numbers(snow_context *context,
         {"light azimuth", s->light_azimuth, -1e6, 1e6},
         {"light elevation", s->light_elevation, -1e6, 1e6},
         {"opacity length", s->opacity_length, 0, 1e300},
+        {"threads", s->threads, 0, SNOW_THREADS_MOST},
     };
     for (int i = 0; i < COUNT(numbers); i++)
         SNOW_TRY(check_range(context, numbers[i].name, numbers[i].value,
                              numbers[i].low, numbers[i].high));
+    return SNOW_OK;
+}
+
+/* Threads and instruction set, as this machine has them. */
+static snow_status resolve_machine(snow_context *context, snow_settings *s) {
+    if (s->threads == 0)
+        s->threads = snow_processors();
+    if (s->deterministic)
+        s->isa = SNOW_ISA_SCALAR;
+    if (!snow_isa_runs(s->isa))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "this machine does not run %s; it has %s",
+                         snow_isa_name(s->isa), snow_isa_found());
+    s->isa = snow_isa_resolve(s->isa);
     return SNOW_OK;
 }
 
@@ -121,7 +154,11 @@ snow_status snow_settings_resolve(snow_context *context,
         check_choice(context, "kernel", (int)s->kernel, SNOW_KERNEL_BOX + 1));
     SNOW_TRY(
         check_choice(context, "shade", (int)s->shade, SNOW_SHADE_NONE + 1));
+    SNOW_TRY(
+        check_choice(context, "quality", (int)s->quality, COUNT(qualities)));
+    SNOW_TRY(check_choice(context, "isa", (int)s->isa, SNOW_ISA_NEON + 1));
     SNOW_TRY(check_numbers(context, s));
+    SNOW_TRY(resolve_machine(context, s));
     if (s->method == SNOW_METHOD_AUTO)
         s->method = SNOW_METHOD_FOOTPRINT;
     if (s->footprint == 0)

@@ -58,8 +58,9 @@ static void assert_walks_like(const snow_sparse *sparse,
         float number = (float)sparse->pa[slice].ia + 1;
         for (int64_t row = 0; row < rows; row++) {
             const unsigned char *line = mask + (slice * rows + row) * columns;
-            const float *samples;
-            size_t count = snow_walk_row(&walk, spans, &samples), span = 0;
+            size_t voxel;
+            size_t count = snow_walk_row(&walk, spans, &voxel), span = 0;
+            const float *samples = sparse->ia + 2 * voxel;
             for (int64_t column = 0; column < columns; span++) {
                 while (column < columns && !line[column])
                     column++;

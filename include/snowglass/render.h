@@ -22,7 +22,11 @@ typedef enum snow_method {
                               threshold: the baseline */
     SNOW_METHOD_TESTED,   /* as original, but each voxel's opacity is tested
                              against the threshold first: the honest one */
-    SNOW_METHOD_FOOTPRINT /* interesting voxels only, through an encoding */
+    SNOW_METHOD_FOOTPRINT, /* interesting voxels only, through an encoding;
+                              each onto the image itself: the exact one */
+    SNOW_METHOD_SHEARED    /* interesting voxels only; slices are splatted and
+                              composited on their own grid, sheared, and the
+                              result is warped to the image once: the fast one */
 } snow_method;
 
 /* How the places of interesting voxels are written: section 3.2. */
@@ -40,6 +44,24 @@ typedef enum snow_kernel {
     SNOW_KERNEL_GAUSS,
     SNOW_KERNEL_BOX
 } snow_kernel;
+
+/* How much work the sheared method puts into a picture. */
+typedef enum snow_quality {
+    SNOW_QUALITY_NORMAL = 0, /* two intermediate pixels a voxel */
+    SNOW_QUALITY_DRAFT,      /* one, tent kernel: while a view is turned */
+    SNOW_QUALITY_HIGH        /* as normal, with a slice between each two, and
+                                both axes where the slice axis switches */
+} snow_quality;
+
+/* The instruction set of the kernels.  avx2 and avx512 give the same bits;
+ * scalar and neon differ from them by rounding. */
+typedef enum snow_isa {
+    SNOW_ISA_AUTO = 0, /* the best that this machine runs */
+    SNOW_ISA_SCALAR,
+    SNOW_ISA_AVX2,
+    SNOW_ISA_AVX512,
+    SNOW_ISA_NEON
+} snow_isa;
 
 typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 
@@ -63,6 +85,12 @@ typedef struct snow_settings {
     double shininess;       /* exponent, at least 0 (20) */
     double light_azimuth;   /* degrees to the camera's right (0: head light) */
     double light_elevation; /* degrees up (0) */
+    snow_quality quality;   /* (normal) */
+    snow_isa isa;           /* (auto) */
+    int threads;            /* 1 to 4096; 0: as many as this process may use;
+                               the picture is the same for any number (0) */
+    int deterministic;      /* not 0: the same bits on every machine, by the
+                               scalar kernels (0) */
 } snow_settings;
 
 /* The defaults, as far as a record of `size` bytes reaches. */
@@ -78,6 +106,12 @@ typedef struct snow_stats {
     snow_encoding encoding;   /* as chosen; AUTO when none was used */
     int footprint;            /* as chosen */
     int slice_axis;           /* 0 x, 1 y, 2 z */
+    int threads;              /* as chosen */
+    snow_isa isa;             /* as chosen */
+    snow_quality quality;     /* as chosen; it matters to sheared only */
+    int encoded;              /* 1: the volume was encoded for this picture, 0:
+                                 the encoding of an earlier one was used, or
+                                 none */
     int64_t voxels;           /* all voxels */
     int64_t interesting;      /* those above the threshold */
     double sparse_ratio;      /* share of uninteresting voxels, 0 to 1 */
@@ -89,6 +123,7 @@ typedef struct snow_stats {
     double seconds_encode;    /* EA, IA, PA written */
     double seconds_splat;     /* footprints into sheets */
     double seconds_composite; /* sheets into the image */
+    double seconds_warp;      /* the intermediate image into the picture */
     double seconds_frame;     /* the whole picture */
     double cpu_frame;         /* the same in processor time of the process */
 } snow_stats;
@@ -118,6 +153,10 @@ SNOW_API const char *snow_kernel_name(snow_kernel kernel);
 SNOW_API int snow_method_named(const char *name);
 SNOW_API int snow_encoding_named(const char *name);
 SNOW_API int snow_kernel_named(const char *name);
+SNOW_API const char *snow_quality_name(snow_quality quality);
+SNOW_API int snow_quality_named(const char *name);
+SNOW_API const char *snow_isa_name(snow_isa isa);
+SNOW_API int snow_isa_named(const char *name);
 
 #ifdef __cplusplus
 }

@@ -30,6 +30,10 @@ SNOW_API const char *snow_version(void);
 SNOW_API const char *snow_isa_found(void);
 SNOW_API const char *snow_isa_used(void);
 
+/* Processors that this process may use: its affinity, and the quota of its
+ * control group rounded up.  At least 1. */
+SNOW_API int snow_processors(void);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,6 +3,7 @@
 #ifndef SNOW_BASE_H
 #define SNOW_BASE_H
 
+#include <pthread.h>
 #include <snowglass/context.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -20,6 +21,8 @@
 
 struct snow_context {
     snow_allocator allocator;
+    pthread_mutex_t lock; /* of bytes, peak and message: the threads of one
+                             picture allocate */
     snow_notice_fn *notice; /* NULL: nobody listens */
     void *notice_user;
     uint64_t bytes, peak; /* held now; the most ever held */

@@ -43,6 +43,10 @@ snow_status snow_context_new(const snow_allocator *allocator,
     if (!context)
         return SNOW_NO_MEMORY;
     *context = (snow_context){.allocator = *allocator};
+    if (pthread_mutex_init(&context->lock, NULL)) {
+        allocator->release(allocator->user, context);
+        return SNOW_NO_MEMORY;
+    }
     *out = context;
     return SNOW_OK;
 }
@@ -50,6 +54,7 @@ snow_status snow_context_new(const snow_allocator *allocator,
 void snow_context_free(snow_context *context) {
     if (context) {
         snow_allocator allocator = context->allocator;
+        pthread_mutex_destroy(&context->lock);
         allocator.release(allocator.user, context);
     }
 }
@@ -87,7 +92,9 @@ snow_status snow_fail(snow_context *context, snow_status status,
                       const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
+    pthread_mutex_lock(&context->lock);
     vsnprintf(context->message, sizeof context->message, format, arguments);
+    pthread_mutex_unlock(&context->lock);
     va_end(arguments);
     return status;
 }
@@ -124,12 +131,25 @@ static block_header *header_of(void *block) {
     return (block_header *)(void *)((char *)block - ALIGNMENT);
 }
 
+/* A block from the caller's allocator, which need not be safe for threads. */
+static void *allocate_counted(snow_context *context, size_t bytes,
+                              size_t with_header) {
+    pthread_mutex_lock(&context->lock);
+    void *raw =
+        context->allocator.allocate(context->allocator.user, with_header);
+    if (raw)
+        context->bytes += bytes;
+    if (context->bytes > context->peak)
+        context->peak = context->bytes;
+    pthread_mutex_unlock(&context->lock);
+    return raw;
+}
+
 void *snow_allocate(snow_context *context, size_t bytes) {
     size_t extra = 2 * ALIGNMENT;
     char *raw = NULL;
     if (bytes <= SIZE_MAX - extra)
-        raw =
-            context->allocator.allocate(context->allocator.user, bytes + extra);
+        raw = allocate_counted(context, bytes, bytes + extra);
     if (!raw) {
         snow_fail(context, SNOW_NO_MEMORY,
                   "no memory for %zu bytes more (%llu are held); close other "
@@ -139,9 +159,6 @@ void *snow_allocate(snow_context *context, size_t bytes) {
     }
     char *block = raw + extra - (uintptr_t)raw % ALIGNMENT;
     *header_of(block) = (block_header){raw, bytes};
-    context->bytes += bytes;
-    if (context->bytes > context->peak)
-        context->peak = context->bytes;
     return block;
 }
 
@@ -188,6 +205,8 @@ void snow_release(snow_context *context, void *block) {
     if (!block)
         return;
     block_header header = *header_of(block);
+    pthread_mutex_lock(&context->lock);
     context->bytes -= header.bytes;
     context->allocator.release(context->allocator.user, header.raw);
+    pthread_mutex_unlock(&context->lock);
 }

@@ -110,15 +110,15 @@ void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];
     *walk = (snow_walk){.sparse = s,
                         .ea = s->ea + pointer.ea,
-                        .samples = s->ia + pointer.ia * (size_t)s->channels};
+                        .voxel = (size_t)pointer.ia};
 }
 
-size_t snow_walk_row(snow_walk *walk, snow_span *spans, const float **samples) {
+size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel) {
     size_t count = walk->sparse->scheme->next_row(walk, spans), voxels = 0;
     for (size_t i = 0; i < count; i++)
         voxels += spans[i].length;
-    *samples = walk->samples;
-    walk->samples += voxels * (size_t)walk->sparse->channels;
+    *voxel = walk->voxel;
+    walk->voxel += voxels;
     walk->row++;
     return count;
 }

@@ -39,8 +39,13 @@ typedef struct snow_sparse {
     int64_t filled;    /* slices ended so far */
     unsigned char *ea; /* with 8 bytes beyond its end, to be read past */
     size_t ea_bytes, ea_capacity;
+    /* IA holds samples (footprint), or codes and normals (encode/bands.h). */
     float *ia;
     size_t ia_voxels, ia_capacity; /* capacity in bytes */
+    unsigned char *codes;
+    uint16_t *normals;
+    size_t codes_capacity, normals_capacity; /* bytes */
+    int code_bytes;
     snow_slice_pointer *pa;        /* one more than slices */
     size_t pa_capacity;
     int64_t row; /* next row of the slice being encoded */
@@ -53,7 +58,7 @@ typedef struct snow_sparse {
 typedef struct snow_walk {
     const snow_sparse *sparse;
     const unsigned char *ea; /* the slice's first byte, or the next run */
-    const float *samples;    /* the next row's first sample */
+    size_t voxel;            /* the next row's first voxel in IA */
     int64_t row;             /* the next row */
     /* RLE: voxels left in the current run, its kind, whether there is one. */
     uint32_t run;
@@ -104,8 +109,12 @@ void snow_sparse_fini(snow_sparse *sparse);
 /* Sets a walk to the beginning of a slice, in constant time. */
 void snow_walk_begin(snow_walk *walk, const snow_sparse *sparse, int64_t slice);
 
-/* The next row: its spans and its samples; returns the number of spans. */
-size_t snow_walk_row(snow_walk *walk, snow_span *spans, const float **samples);
+/* Passes over rows without telling their spans. */
+void snow_walk_skip(snow_walk *walk, int64_t rows);
+
+/* The next row: its spans, and the place of its first voxel in IA; returns the
+ * number of spans. */
+size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel);
 
 /* Appends `size` bytes to EA, cleared, for the schemes. */
 snow_status snow_sparse_grow_ea(snow_sparse *sparse, size_t size);

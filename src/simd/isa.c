@@ -1,26 +1,96 @@
-/* simd/isa.c - which instruction sets the machine offers, and which one the
- * kernels of this build use.  Kernels per instruction set will lie beside
- * this file's vocabulary; today every kernel is plain C. */
+/* simd/isa.c - which instruction sets the machine offers, and which one a
+ * picture uses when none is asked for. */
+#include "simd/isa.h"
+
 #include <snowglass/snowglass.h>
+#include <string.h>
+
+static const char *const names[] = {
+    [SNOW_ISA_AUTO] = "auto",     [SNOW_ISA_SCALAR] = "scalar",
+    [SNOW_ISA_AVX2] = "avx2",     [SNOW_ISA_AVX512] = "avx512",
+    [SNOW_ISA_NEON] = "neon",
+};
+
+#define LEVELS (int)(sizeof names / sizeof names[0])
 
 const char *snow_version(void) {
     return SNOW_VERSION;
 }
 
-const char *snow_isa_found(void) {
-#if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw"))
-        return "scalar sse2 avx2 avx512";
-    if (__builtin_cpu_supports("avx2"))
-        return "scalar sse2 avx2";
-    return "scalar sse2";
-#elif defined(__aarch64__)
-    return "scalar neon";
+const char *snow_isa_name(snow_isa isa) {
+    return (int)isa < LEVELS ? names[isa] : NULL;
+}
+
+int snow_isa_named(const char *name) {
+    for (int i = 0; i < LEVELS; i++)
+        if (strcmp(name, names[i]) == 0)
+            return i;
+    return -1;
+}
+
+#if SNOW_HAS_AVX
+static bool has_avx2(void) {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+}
+
+static bool has_avx512(void) {
+    return has_avx2() && __builtin_cpu_supports("avx512f") &&
+           __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vbmi") &&
+           __builtin_cpu_supports("avx512vbmi2");
+}
 #else
-    return "scalar";
+static bool has_avx2(void) {
+    return false;
+}
+
+static bool has_avx512(void) {
+    return false;
+}
+#endif
+
+/* NEON is part of every 64-bit ARM, and what the scalar twin becomes there. */
+static bool has_neon(void) {
+#if defined(__aarch64__)
+    return true;
+#else
+    return false;
 #endif
 }
 
+bool snow_isa_runs(snow_isa isa) {
+    switch (isa) {
+    case SNOW_ISA_AVX2:
+        return has_avx2();
+    case SNOW_ISA_AVX512:
+        return has_avx512();
+    case SNOW_ISA_NEON:
+        return has_neon();
+    default:
+        return true;
+    }
+}
+
+snow_isa snow_isa_resolve(snow_isa isa) {
+    if (isa != SNOW_ISA_AUTO)
+        return isa;
+    if (has_avx512())
+        return SNOW_ISA_AVX512;
+    if (has_avx2())
+        return SNOW_ISA_AVX2;
+    return has_neon() ? SNOW_ISA_NEON : SNOW_ISA_SCALAR;
+}
+
+const char *snow_isa_found(void) {
+    if (has_avx512())
+        return "scalar avx2 avx512";
+    if (has_avx2())
+        return "scalar avx2";
+    return has_neon() ? "scalar neon" : "scalar";
+}
+
 const char *snow_isa_used(void) {
-    return "scalar";
+    return snow_isa_name(snow_isa_resolve(SNOW_ISA_AUTO));
 }

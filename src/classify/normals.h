@@ -1,0 +1,51 @@
+/* classify/normals.h - normals of 16 bits, and the shading table of a view.
+ *
+ * Shading turns a normal to the viewer, so n and -n are one normal, and half a
+ * sphere is enough.  It is unfolded onto a square (an octahedron's upper half:
+ * Meyer et al. 2010, Cigolle et al. 2014) of 255 x 255 places; one more code
+ * says that there is no gradient.  A stored normal is off by at most
+ * SNOW_NORMAL_ERROR degrees. */
+#ifndef SNOW_NORMALS_H
+#define SNOW_NORMALS_H
+
+#include "classify/classify.h"
+
+#define SNOW_NORMALS 65536
+#define SNOW_NO_NORMAL 0 /* the code of a voxel without a gradient */
+
+/* What a normal makes of a colour c: min(1, c * factor + white). */
+typedef struct snow_gloss {
+    float factor, white;
+} snow_gloss;
+
+/* The code of a direction (not 0, any length), and the unit vector that a code
+ * stands for (one of the two). */
+uint16_t snow_normal_code(const double direction[3]);
+void snow_normal_of(uint16_t code, double normal[3]);
+
+/* How a volume's index gradients are carried to the world, for encoding. */
+typedef struct snow_normal_maker {
+    const snow_volume *volume;
+    float carry[3][3]; /* the inverse transpose of the matrix' linear part */
+} snow_normal_maker;
+
+/* Errors: SNOW_BAD_USAGE (a singular matrix). */
+snow_status snow_normal_maker_init(snow_context *context,
+                                   const snow_volume *volume,
+                                   snow_normal_maker *out);
+
+/* Normals of the voxels of one row (model, point 4: central differences of
+ * native values, one-sided at borders and beside values that are not finite).
+ * The row is that of `placement`'s slice; `columns` are rising. */
+void snow_normals_of_row(const snow_normal_maker *maker,
+                         const snow_placement *placement, int64_t slice,
+                         int64_t row, const uint32_t *columns, size_t count,
+                         uint16_t *normals);
+
+/* The shading table of a view and light (model, point 4): SNOW_NORMALS entries
+ * into `table`.  `threads` as in base/parallel.h. */
+void snow_gloss_table(const snow_settings *settings,
+                      const snow_placement *placement, int threads,
+                      snow_gloss *table);
+
+#endif

@@ -1,0 +1,52 @@
+/* simd/select.h - gives a template the vector vocabulary of one level.  Define
+ * one of these before including; it is undefined again:
+ *
+ *   SELECT_SCALAR, SELECT_AVX2, SELECT_AVX512
+ *
+ * A template then writes
+ *
+ *   LANES         floats of a vector: 4, 8 or 16
+ *   TARGET        what stands before each function of the template
+ *   NAME(word)    word with the level's name behind it: splat_avx2
+ *   V(vec)        the vector type
+ *   V(load)(p), V(store)(p, v)       anywhere, no alignment asked for
+ *   V(set1)(x), V(add)(a, b), V(sub)(a, b), V(mul)(a, b)
+ *   V(min)(a, b), V(max)(a, b)       b where one is not a number
+ *   V(fma)(a, b, c)                  a b + c; one rounding, two for scalar
+ *   V(alpha2)(v), V(alpha4)(v)       the last channel of each pixel of 2 or 4
+ *                                    floats, in all of its lanes
+ *   V(any_less)(a, b)                whether a < b in any lane
+ *
+ * The template's own file includes the three vec_*.h headers and this one once
+ * per level; no file needs special compiler flags. */
+#include "simd/isa.h"
+#include "simd/vec_scalar.h"
+#if SNOW_HAS_AVX
+#include "simd/vec_avx2.h"
+#include "simd/vec_avx512.h"
+#endif
+
+#undef LANES
+#undef TARGET
+#undef NAME
+#undef V
+
+#if defined(SELECT_SCALAR)
+#undef SELECT_SCALAR
+#define LANES SNOW_SCALAR_LANES
+#define TARGET SNOW_SCALAR_TARGET
+#define NAME(word) word##_scalar
+#define V(word) snow_scalar_##word
+#elif defined(SELECT_AVX2)
+#undef SELECT_AVX2
+#define LANES SNOW_AVX2_LANES
+#define TARGET SNOW_AVX2_TARGET
+#define NAME(word) word##_avx2
+#define V(word) snow_avx2_##word
+#elif defined(SELECT_AVX512)
+#undef SELECT_AVX512
+#define LANES SNOW_AVX512_LANES
+#define TARGET SNOW_AVX512_TARGET
+#define NAME(word) word##_avx512
+#define V(word) snow_avx512_##word
+#endif

@@ -1,0 +1,63 @@
+/* simd/vec_avx2.h - the vector vocabulary for AVX2 with FMA.
+ * simd/select.h says what the words mean. */
+#ifndef SNOW_VEC_AVX2_H
+#define SNOW_VEC_AVX2_H
+
+#include <immintrin.h>
+
+#define SNOW_AVX2_LANES 8
+#define SNOW_AVX2_TARGET __attribute__((target("avx2,fma")))
+#define SNOW_AVX2_INLINE \
+    static inline __attribute__((always_inline, target("avx2,fma")))
+
+typedef __m256 snow_avx2_vec;
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_load(const float *p) {
+    return _mm256_loadu_ps(p);
+}
+
+SNOW_AVX2_INLINE void snow_avx2_store(float *p, snow_avx2_vec v) {
+    _mm256_storeu_ps(p, v);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_set1(float x) {
+    return _mm256_set1_ps(x);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_add(snow_avx2_vec a, snow_avx2_vec b) {
+    return _mm256_add_ps(a, b);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sub(snow_avx2_vec a, snow_avx2_vec b) {
+    return _mm256_sub_ps(a, b);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_mul(snow_avx2_vec a, snow_avx2_vec b) {
+    return _mm256_mul_ps(a, b);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_min(snow_avx2_vec a, snow_avx2_vec b) {
+    return _mm256_min_ps(a, b);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_max(snow_avx2_vec a, snow_avx2_vec b) {
+    return _mm256_max_ps(a, b);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fma(snow_avx2_vec a, snow_avx2_vec b, snow_avx2_vec c) {
+    return _mm256_fmadd_ps(a, b, c);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha2(snow_avx2_vec v) {
+    return _mm256_permute_ps(v, 0xF5);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha4(snow_avx2_vec v) {
+    return _mm256_permute_ps(v, 0xFF);
+}
+
+SNOW_AVX2_INLINE int snow_avx2_any_less(snow_avx2_vec a, snow_avx2_vec b) {
+    return _mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)) != 0;
+}
+
+#endif

@@ -1,0 +1,81 @@
+/* simd/vec_scalar.h - the vector vocabulary for machines of any kind: vectors of
+ * 4 floats that the compiler carries to SSE2, NEON or plain instructions.
+ * simd/select.h says what the words mean. */
+#ifndef SNOW_VEC_SCALAR_H
+#define SNOW_VEC_SCALAR_H
+
+#include <string.h>
+
+#define SNOW_SCALAR_LANES 4
+#define SNOW_SCALAR_TARGET
+
+typedef float snow_scalar_vec __attribute__((vector_size(16)));
+typedef int snow_scalar_mask __attribute__((vector_size(16)));
+
+static inline snow_scalar_vec snow_scalar_load(const float *p) {
+    snow_scalar_vec v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+static inline void snow_scalar_store(float *p, snow_scalar_vec v) {
+    memcpy(p, &v, sizeof v);
+}
+
+static inline snow_scalar_vec snow_scalar_set1(float x) {
+    return (snow_scalar_vec){x, x, x, x};
+}
+
+static inline snow_scalar_vec snow_scalar_add(snow_scalar_vec a,
+                                              snow_scalar_vec b) {
+    return a + b;
+}
+
+static inline snow_scalar_vec snow_scalar_sub(snow_scalar_vec a,
+                                              snow_scalar_vec b) {
+    return a - b;
+}
+
+static inline snow_scalar_vec snow_scalar_mul(snow_scalar_vec a,
+                                              snow_scalar_vec b) {
+    return a * b;
+}
+
+static inline snow_scalar_vec snow_scalar_fma(snow_scalar_vec a,
+                                              snow_scalar_vec b,
+                                              snow_scalar_vec c) {
+    return a * b + c;
+}
+
+/* Picks a's bits where the mask is set, else b's. */
+static inline snow_scalar_vec snow_scalar_pick(snow_scalar_mask mask,
+                                               snow_scalar_vec a,
+                                               snow_scalar_vec b) {
+    return (snow_scalar_vec)(((snow_scalar_mask)a & mask) |
+                             ((snow_scalar_mask)b & ~mask));
+}
+
+static inline snow_scalar_vec snow_scalar_min(snow_scalar_vec a,
+                                              snow_scalar_vec b) {
+    return snow_scalar_pick((snow_scalar_mask)(a < b), a, b);
+}
+
+static inline snow_scalar_vec snow_scalar_max(snow_scalar_vec a,
+                                              snow_scalar_vec b) {
+    return snow_scalar_pick((snow_scalar_mask)(a > b), a, b);
+}
+
+static inline snow_scalar_vec snow_scalar_alpha2(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[1], v[1], v[3], v[3]};
+}
+
+static inline snow_scalar_vec snow_scalar_alpha4(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[3], v[3], v[3], v[3]};
+}
+
+static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {
+    snow_scalar_mask less = (snow_scalar_mask)(a < b);
+    return (less[0] | less[1] | less[2] | less[3]) != 0;
+}
+
+#endif
