@@ -43,6 +43,10 @@ typedef struct snow_bands_order {
     snow_encoding encoding;         /* AUTO: by measured density and runs */
     int64_t first_slice, slice_count; /* the slab; slice 0 of the bands is
                                          first_slice of the volume */
+    bool between; /* with a slice half-way between each two: slice n of the
+                     bands is slice n/2 of the slab, or for odd n the mean of
+                     slices (n-1)/2 and (n+1)/2, of native values as of
+                     gradients; 2 slice_count - 1 slices in all */
     snow_isa isa;                   /* resolved */
     int threads;
 } snow_bands_order;
