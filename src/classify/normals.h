@@ -18,7 +18,7 @@
 
 #define SNOW_NORMALS 65536
 #define SNOW_NO_NORMAL 0       /* the code of a voxel without a gradient */
-#define SNOW_NORMAL_ERROR 0.55 /* degrees; places are 1.1 apart at most */
+#define SNOW_NORMAL_ERROR 0.56 /* degrees */
 
 /* What a normal makes of a colour c: min(1, c * factor + white). */
 typedef struct snow_gloss {
