@@ -185,7 +185,7 @@ static snow_status place(snow_job *job, const snow_volume *volume,
     SNOW_TRY(
         snow_placement_make(context, &volume->info, view, &job->placement));
     if (job->settings.method == SNOW_METHOD_SHEARED &&
-        !snow_sheared_fits(&job->placement))
+        !snow_sheared_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
     job->slab = snow_slab_equal(job->placement.slices, parts, part);
     return SNOW_OK;

@@ -8,9 +8,9 @@
 #include <immintrin.h>
 
 #define SNOW_AVX2_LANES 8
-#define SNOW_AVX2_TARGET __attribute__((target("avx2,fma")))
+#define SNOW_AVX2_TARGET __attribute__((target("avx2,fma,popcnt,bmi,bmi2")))
 #define SNOW_AVX2_INLINE \
-    static inline __attribute__((always_inline, target("avx2,fma")))
+    static inline __attribute__((always_inline, target("avx2,fma,popcnt,bmi,bmi2")))
 
 typedef __m256 snow_avx2_vec;
 
@@ -50,6 +50,10 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fma(snow_avx2_vec a, snow_avx2_vec b, s
     return _mm256_fmadd_ps(a, b, c);
 }
 
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fnma(snow_avx2_vec a, snow_avx2_vec b, snow_avx2_vec c) {
+    return _mm256_fnmadd_ps(a, b, c);
+}
+
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha2(snow_avx2_vec v) {
     return _mm256_permute_ps(v, 0xF5);
 }
@@ -83,6 +87,10 @@ SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_fold4(snow_avx2_vec v) {
 SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_fold2(snow_avx2_vec v) {
     __m128 sum = (__m128)snow_avx2_fold4(v);
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
+}
+
+SNOW_AVX2_INLINE int snow_avx2_popcount(uint64_t x) {
+    return __builtin_popcountll(x);
 }
 
 SNOW_AVX2_INLINE int snow_avx2_any_less(snow_avx2_vec a, snow_avx2_vec b) {

@@ -8,9 +8,9 @@
 #include <immintrin.h>
 
 #define SNOW_AVX512_LANES 16
-#define SNOW_AVX512_TARGET __attribute__((target("avx2,fma,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
+#define SNOW_AVX512_TARGET __attribute__((target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
 #define SNOW_AVX512_INLINE \
-    static inline __attribute__((always_inline, target("avx2,fma,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
+    static inline __attribute__((always_inline, target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
 
 typedef __m512 snow_avx512_vec;
 
@@ -48,6 +48,10 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_max(snow_avx512_vec a, snow_avx51
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fma(snow_avx512_vec a, snow_avx512_vec b, snow_avx512_vec c) {
     return _mm512_fmadd_ps(a, b, c);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fnma(snow_avx512_vec a, snow_avx512_vec b, snow_avx512_vec c) {
+    return _mm512_fnmadd_ps(a, b, c);
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha2(snow_avx512_vec v) {
@@ -90,6 +94,10 @@ SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold4(snow_avx512_vec v) {
 SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
     __m128 sum = (__m128)snow_avx512_fold4(v);
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
+}
+
+SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {
+    return __builtin_popcountll(x);
 }
 
 SNOW_AVX512_INLINE int snow_avx512_any_less(snow_avx512_vec a,

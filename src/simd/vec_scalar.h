@@ -4,6 +4,7 @@
 #ifndef SNOW_VEC_SCALAR_H
 #define SNOW_VEC_SCALAR_H
 
+#include <stdint.h>
 #include <string.h>
 
 #define SNOW_SCALAR_LANES 4
@@ -45,6 +46,12 @@ static inline snow_scalar_vec snow_scalar_fma(snow_scalar_vec a,
                                               snow_scalar_vec b,
                                               snow_scalar_vec c) {
     return a * b + c;
+}
+
+static inline snow_scalar_vec snow_scalar_fnma(snow_scalar_vec a,
+                                               snow_scalar_vec b,
+                                               snow_scalar_vec c) {
+    return c - a * b;
 }
 
 /* Picks a's bits where the mask is set, else b's. */
@@ -91,6 +98,15 @@ static inline snow_scalar_vec snow_scalar_fold2(snow_scalar_vec v) {
 
 static inline snow_scalar_vec snow_scalar_fold4(snow_scalar_vec v) {
     return v;
+}
+
+/* By adding neighbouring groups of bits (Wilkes, Wheeler and Gill 1957). */
+static inline int snow_scalar_popcount(uint64_t x) {
+    x -= x >> 1 & UINT64_C(0x5555555555555555);
+    x = (x & UINT64_C(0x3333333333333333)) +
+        (x >> 2 & UINT64_C(0x3333333333333333));
+    x = (x + (x >> 4)) & UINT64_C(0x0F0F0F0F0F0F0F0F);
+    return (int)(x * UINT64_C(0x0101010101010101) >> 56);
 }
 
 static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {
