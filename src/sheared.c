@@ -442,7 +442,7 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     pass->gloss = shaded ? s->gloss : NULL;
     pass->channels = pass->order->channels;
     pass->sample =
-        snow_sample_of(s->coder.bytes, pass->channels, shaded);
+        snow_sample_of(settings->isa, s->coder.bytes, pass->channels, shaded);
     pass->code_bytes = (size_t)s->coder.bytes;
     pass->tile = snow_tile_of(settings->isa, pass->channels);
     pass->windows = snow_window_fns_of(settings->isa);

@@ -145,9 +145,12 @@ static void make_samples(void *user, int64_t item, int worker) {
 
 static snow_status make_room(snow_context *context, size_t codes,
                              snow_palette *palette) {
-    size_t bytes = codes * (size_t)palette->channels * sizeof(float);
-    SNOW_TRY(
-        snow_reserve(context, &palette->samples, &palette->capacity, 0, bytes));
+    size_t entry = (size_t)palette->channels;
+    size_t bytes = codes * entry * sizeof(float);
+    SNOW_TRY(snow_reserve(context, &palette->block, &palette->capacity, 0,
+                          bytes + entry * sizeof(float)));
+    memset(palette->block, 0, entry * sizeof(float));
+    palette->samples = palette->block + entry;
     SNOW_TRY(snow_reserve(context, &palette->looks, &palette->looks_capacity, 0,
                           bytes));
     return snow_reserve(context, &palette->clarities,
@@ -176,7 +179,7 @@ snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
 }
 
 void snow_palette_fini(snow_context *context, snow_palette *palette) {
-    snow_release(context, palette->samples);
+    snow_release(context, palette->block);
     snow_release(context, palette->looks);
     snow_release(context, palette->clarities);
     snow_release(context, palette->key);

@@ -17,6 +17,10 @@
  *   V(alpha2)(v), V(alpha4)(v)       the last channel of each pixel of 2 or 4
  *                                    floats, in all of its lanes
  *   V(any_less)(a, b)                whether a < b in any lane
+ *   V(expand8)(p, bits, out), V(expand16)
+ *                                    16 places: the next of the numbers at p,
+ *                                    and 1 more, where a bit is set, else 0;
+ *                                    may read 16 numbers beyond the last
  *   V(popcount)(x)                   bits that are set in a uint64_t
  *   V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4 floats) of a
  *                                    and b in turns: a0 b0 a1 b1 ...

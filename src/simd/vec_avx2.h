@@ -89,6 +89,24 @@ SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_fold2(snow_avx2_vec v) {
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
+SNOW_AVX2_INLINE void snow_avx2_expand8(const uint8_t *p,
+                                        uint32_t bits, uint32_t *out) {
+    for (int i = 0; i < 16; i++, bits >>= 1) {
+        uint32_t here = bits & 1;
+        out[i] = ((uint32_t)*p + 1) & (0 - here);
+        p += here;
+    }
+}
+
+SNOW_AVX2_INLINE void snow_avx2_expand16(const uint16_t *p,
+                                        uint32_t bits, uint32_t *out) {
+    for (int i = 0; i < 16; i++, bits >>= 1) {
+        uint32_t here = bits & 1;
+        out[i] = ((uint32_t)*p + 1) & (0 - here);
+        p += here;
+    }
+}
+
 SNOW_AVX2_INLINE int snow_avx2_popcount(uint64_t x) {
     return __builtin_popcountll(x);
 }

@@ -96,6 +96,26 @@ SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
+SNOW_AVX512_INLINE void snow_avx512_expand8(const uint8_t *p, uint32_t bits,
+                                            uint32_t *out) {
+    __mmask16 here = (__mmask16)bits;
+    __m128i codes = _mm_maskz_expand_epi8(
+        here, _mm_loadu_si128((const __m128i *)(const void *)p));
+    _mm512_storeu_si512(
+        out, _mm512_maskz_add_epi32(here, _mm512_cvtepu8_epi32(codes),
+                                    _mm512_set1_epi32(1)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_expand16(const uint16_t *p, uint32_t bits,
+                                             uint32_t *out) {
+    __mmask16 here = (__mmask16)bits;
+    __m256i codes = _mm256_maskz_expand_epi16(
+        here, _mm256_loadu_si256((const __m256i *)(const void *)p));
+    _mm512_storeu_si512(
+        out, _mm512_maskz_add_epi32(here, _mm512_cvtepu16_epi32(codes),
+                                    _mm512_set1_epi32(1)));
+}
+
 SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {
     return __builtin_popcountll(x);
 }

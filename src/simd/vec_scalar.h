@@ -100,6 +100,24 @@ static inline snow_scalar_vec snow_scalar_fold4(snow_scalar_vec v) {
     return v;
 }
 
+static inline void snow_scalar_expand8(const uint8_t *p,
+                                        uint32_t bits, uint32_t *out) {
+    for (int i = 0; i < 16; i++, bits >>= 1) {
+        uint32_t here = bits & 1;
+        out[i] = ((uint32_t)*p + 1) & (0 - here);
+        p += here;
+    }
+}
+
+static inline void snow_scalar_expand16(const uint16_t *p,
+                                        uint32_t bits, uint32_t *out) {
+    for (int i = 0; i < 16; i++, bits >>= 1) {
+        uint32_t here = bits & 1;
+        out[i] = ((uint32_t)*p + 1) & (0 - here);
+        p += here;
+    }
+}
+
 /* By adding neighbouring groups of bits (Wilkes, Wheeler and Gill 1957). */
 static inline int snow_scalar_popcount(uint64_t x) {
     x -= x >> 1 & UINT64_C(0x5555555555555555);
