@@ -40,7 +40,7 @@ struct snow_sheared {
     snow_bands bands;
     encoded_key key;
     snow_palette palette;
-    snow_gloss *gloss; /* SNOW_NORMALS entries */
+    snow_gloss *gloss; /* an entry of zeros, and SNOW_NORMALS */
     snow_comb *combs;  /* of all slices, along u and v */
     float *plane;      /* the intermediate image */
     char *scratch;     /* of all workers */
@@ -432,14 +432,15 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     double classified = snow_seconds();
     if (shaded) {
         SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
-                              SNOW_NORMALS * sizeof *s->gloss));
+                              (SNOW_NORMALS + 1) * sizeof *s->gloss));
+        s->gloss[0] = (snow_gloss){0, 0};
         snow_gloss_table(settings, pass->order->placement, settings->threads,
-                         s->gloss);
+                         s->gloss + 1);
     }
     stats->seconds_classify += classified - mark;
     stats->seconds_shade += snow_seconds() - classified;
     pass->palette = s->palette.samples;
-    pass->gloss = shaded ? s->gloss : NULL;
+    pass->gloss = shaded ? s->gloss + 1 : NULL;
     pass->channels = pass->order->channels;
     pass->sample =
         snow_sample_of(settings->isa, s->coder.bytes, pass->channels, shaded);

@@ -14,8 +14,8 @@
 
 /* Samples of a window of `count` places, premultiplied, 2 or 4 floats each: the
  * next voxel of IA where `bits` has a 1 (lowest first), zeros elsewhere.  The
- * palette is that of classify/codes.h, with its zeros before it; `samples` has
- * room for SNOW_WINDOW_MOST + 1 of them.
+ * palette is that of classify/codes.h, with its zeros before it; before `gloss`
+ * lies an entry that is a number at least; `samples` has room for 8 more.
  * Shaded, the palette holds straight colours, `normals` the voxels' normals and
  * `gloss` the shading table; unshaded, the palette is premultiplied and both
  * are NULL. */

@@ -4,6 +4,10 @@
  *   SAMPLE_CODE      C type of a code: uint8_t or uint16_t
  *   SAMPLE_EXPAND    V(expand8) or V(expand16), as the code
  *   SAMPLE_CHANNELS  floats of a sample: 2 or 4
+ *   SAMPLE_GATHER, SAMPLE_SHINE, SAMPLE_ALPHA, SAMPLE_WITH_ALPHA
+ *                    V(gather2), V(gather2), V(alpha2), V(with_alpha2), or
+ *                    V(gather4), V(double2), V(alpha4), V(with_alpha4), as the
+ *                    channels
  *   SAMPLE_NAME      name of the functions: SAMPLE_NAME(plain), (shaded)
  *
  * All are undefined at the end.  Which places hold a voxel decides no branch,
@@ -31,33 +35,14 @@ TARGET static void SAMPLE_NAME(plain)(const void *codes,
                SAMPLE_CHANNELS * sizeof *samples);
 }
 
-TARGET static inline __attribute__((always_inline)) void
-SAMPLE_NAME(shade)(const float *straight, const snow_gloss *shine,
-                   float *sample) {
-#if SAMPLE_CHANNELS == 4
-    snow_scalar_vec color = snow_scalar_load(straight);
-    snow_scalar_vec alpha = snow_scalar_alpha4(color);
-    snow_scalar_vec factor = snow_scalar_set1(shine->factor);
-    snow_scalar_vec white = snow_scalar_set1(shine->white);
-    color = snow_scalar_add(snow_scalar_mul(color, factor), white);
-    color = snow_scalar_min(color, snow_scalar_set1(1));
-    color = snow_scalar_mul(color, alpha);
-    color[3] = alpha[3];
-    snow_scalar_store(sample, color);
-#else
-    float grey = straight[0] * shine->factor + shine->white;
-    sample[0] = (grey < 1 ? grey : 1) * straight[1];
-    sample[1] = straight[1];
-#endif
-}
-
 TARGET static void SAMPLE_NAME(shaded)(const void *codes,
                                        const uint16_t *normals, uint64_t bits,
                                        int count, const float *palette,
                                        const snow_gloss *gloss,
                                        float *samples) {
     const float *entries = palette - SAMPLE_CHANNELS;
-    uint32_t entry[SNOW_WINDOW_MOST + 1], normal[SNOW_WINDOW_MOST + 1];
+    const float *shines = &gloss[-1].factor;
+    uint32_t entry[SNOW_WINDOW_MOST + 17], normal[SNOW_WINDOW_MOST + 17];
     const SAMPLE_CODE *code = codes;
     for (int at = 0; at < count; at += 16) {
         uint32_t here = (uint32_t)(bits >> at) & 0xFFFF;
@@ -66,15 +51,21 @@ TARGET static void SAMPLE_NAME(shaded)(const void *codes,
         code += V(popcount)(here);
         normals += V(popcount)(here);
     }
-    /* An expanded number is one more than the code, and 0 for none. */
-    for (int i = 0; i < count; i++)
-        SAMPLE_NAME(shade)
-        (entries + (size_t)entry[i] * SAMPLE_CHANNELS,
-         gloss + (normal[i] ? normal[i] - 1 : 0),
-         samples + i * SAMPLE_CHANNELS);
+    for (int i = 0; i < count; i += LANES / SAMPLE_CHANNELS) {
+        V(vec) straight = SAMPLE_GATHER(entries, entry + i);
+        V(vec) shine = SAMPLE_SHINE(shines, normal + i);
+        V(vec) color = V(fma)(straight, V(even)(shine), V(odd)(shine));
+        color = V(mul)(V(min)(color, V(set1)(1)), SAMPLE_ALPHA(straight));
+        V(store)(samples + i * SAMPLE_CHANNELS,
+                 SAMPLE_WITH_ALPHA(color, straight));
+    }
 }
 
 #undef SAMPLE_CODE
 #undef SAMPLE_EXPAND
 #undef SAMPLE_CHANNELS
 #undef SAMPLE_NAME
+#undef SAMPLE_GATHER
+#undef SAMPLE_SHINE
+#undef SAMPLE_ALPHA
+#undef SAMPLE_WITH_ALPHA

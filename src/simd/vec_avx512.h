@@ -96,6 +96,61 @@ SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
+/* Puts what is at p + n floats into the places of the mask, or of 16 bytes. */
+#define SNOW_AVX512_PAIR(v, mask, p, n) \
+    _mm512_mask_broadcastsd_pd(         \
+        v, mask, _mm_load_sd((const double *)(const void *)((p) + 2 * (size_t)(n))))
+#define SNOW_AVX512_FOUR(v, place, p, n) \
+    _mm512_insertf32x4(v, _mm_loadu_ps((p) + 4 * (size_t)(n)), place)
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather4(const float *p,
+                                                       const uint32_t *n) {
+    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(p + 4 * (size_t)n[0]));
+    v = SNOW_AVX512_FOUR(v, 1, p, n[1]);
+    v = SNOW_AVX512_FOUR(v, 2, p, n[2]);
+    return SNOW_AVX512_FOUR(v, 3, p, n[3]);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather2(const float *p,
+                                                       const uint32_t *n) {
+    __m512d v = _mm512_setzero_pd();
+    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
+    v = SNOW_AVX512_PAIR(v, 0x02, p, n[1]);
+    v = SNOW_AVX512_PAIR(v, 0x04, p, n[2]);
+    v = SNOW_AVX512_PAIR(v, 0x08, p, n[3]);
+    v = SNOW_AVX512_PAIR(v, 0x10, p, n[4]);
+    v = SNOW_AVX512_PAIR(v, 0x20, p, n[5]);
+    v = SNOW_AVX512_PAIR(v, 0x40, p, n[6]);
+    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0x80, p, n[7]));
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_double2(const float *p,
+                                                       const uint32_t *n) {
+    __m512d v = _mm512_setzero_pd();
+    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
+    v = SNOW_AVX512_PAIR(v, 0x0C, p, n[1]);
+    v = SNOW_AVX512_PAIR(v, 0x30, p, n[2]);
+    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0xC0, p, n[3]));
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_even(snow_avx512_vec v) {
+    return _mm512_moveldup_ps(v);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_odd(snow_avx512_vec v) {
+    return _mm512_movehdup_ps(v);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_with_alpha2(snow_avx512_vec a,
+                                                           snow_avx512_vec b) {
+    return _mm512_mask_blend_ps(0xAAAA, a, b);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_with_alpha4(snow_avx512_vec a,
+                                                           snow_avx512_vec b) {
+    return _mm512_mask_blend_ps(0x8888, a, b);
+}
+
 SNOW_AVX512_INLINE void snow_avx512_expand8(const uint8_t *p, uint32_t bits,
                                             uint32_t *out) {
     __mmask16 here = (__mmask16)bits;

@@ -100,6 +100,41 @@ static inline snow_scalar_vec snow_scalar_fold4(snow_scalar_vec v) {
     return v;
 }
 
+static inline snow_scalar_vec snow_scalar_gather4(const float *p,
+                                                  const uint32_t *n) {
+    return snow_scalar_load(p + (size_t)n[0] * 4);
+}
+
+static inline snow_scalar_vec snow_scalar_gather2(const float *p,
+                                                  const uint32_t *n) {
+    const float *a = p + (size_t)n[0] * 2, *b = p + (size_t)n[1] * 2;
+    return (snow_scalar_vec){a[0], a[1], b[0], b[1]};
+}
+
+static inline snow_scalar_vec snow_scalar_double2(const float *p,
+                                                  const uint32_t *n) {
+    const float *a = p + (size_t)n[0] * 2;
+    return (snow_scalar_vec){a[0], a[1], a[0], a[1]};
+}
+
+static inline snow_scalar_vec snow_scalar_even(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[0], v[0], v[2], v[2]};
+}
+
+static inline snow_scalar_vec snow_scalar_odd(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[1], v[1], v[3], v[3]};
+}
+
+static inline snow_scalar_vec snow_scalar_with_alpha2(snow_scalar_vec a,
+                                                      snow_scalar_vec b) {
+    return (snow_scalar_vec){a[0], b[1], a[2], b[3]};
+}
+
+static inline snow_scalar_vec snow_scalar_with_alpha4(snow_scalar_vec a,
+                                                      snow_scalar_vec b) {
+    return (snow_scalar_vec){a[0], a[1], a[2], b[3]};
+}
+
 static inline void snow_scalar_expand8(const uint8_t *p,
                                         uint32_t bits, uint32_t *out) {
     for (int i = 0; i < 16; i++, bits >>= 1) {
