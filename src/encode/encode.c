@@ -96,12 +96,14 @@ snow_status snow_sparse_end_slice(snow_sparse *s) {
 
 snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
                                    int64_t columns, int64_t rows,
-                                   int64_t slices, int code_bytes) {
+                                   int64_t slices, int code_bytes,
+                                   snow_isa isa) {
     SNOW_TRY(snow_reserve(s->context, &s->pa, &s->pa_capacity, 0,
                           ((size_t)slices + 1) * sizeof *s->pa));
     s->scheme = scheme;
     s->channels = 0;
     s->code_bytes = code_bytes;
+    s->places = snow_places_of(isa);
     s->columns = columns;
     s->rows = rows;
     s->filled = 0;

@@ -45,8 +45,7 @@ TILE(part)(const unsigned char *in, size_t stride, unsigned char *out,
 #endif
     for (int n = 0; n < TILE_LINES; n++)
         NAME(wide_spread)
-        (TILE_SIZE == 1 ? a[n] : b[n], out + (size_t)n * pitch,
-         TILE_LINES * pitch);
+    (TILE_SIZE == 1 ? a[n] : b[n], out + (size_t)n * pitch, TILE_LINES * pitch);
 }
 
 TARGET static void TILE(transpose)(const unsigned char *in, size_t stride,
@@ -54,8 +53,8 @@ TARGET static void TILE(transpose)(const unsigned char *in, size_t stride,
     for (size_t line = 0; line < SNOW_TILE_LINES; line += TILE_LINES)
         for (size_t at = 0; at < SNOW_TILE_BYTES; at += WIDE_BYTES)
             TILE(part)
-            (in + line * stride + at, stride,
-             out + at / TILE_SIZE * pitch + line * TILE_SIZE, pitch);
+    (in + line * stride + at, stride,
+     out + at / TILE_SIZE * pitch + line * TILE_SIZE, pitch);
 }
 
 #undef TILE_LINES
