@@ -5,7 +5,7 @@
 #define SNOW_BLOCKS_AVX2_H
 
 #include "encode/blocks_scalar.h"
-#include "encode/places.h"
+#include "encode/masks.h"
 #include "simd/vec_avx2.h"
 
 SNOW_AVX2_INLINE __m256i load_256(const void *at) {

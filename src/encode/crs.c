@@ -128,7 +128,7 @@ static unsigned char *write_row(const snow_sparse *s, const uint64_t *masks,
         size_t some = words - w < CELL_WORDS ? words - w : CELL_WORDS;
         if (!any_set(masks + w, some))
             continue;
-        unsigned char *end = s->places(masks + w, some, 0, at + 1);
+        unsigned char *end = s->loops->places(masks + w, some, 0, at + 1);
         *at = (unsigned char)(end - at - 2);
         summary[cell / 8] |= (unsigned char)(1u << cell % 8);
         at = end;

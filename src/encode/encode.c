@@ -103,7 +103,7 @@ snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
     s->scheme = scheme;
     s->channels = 0;
     s->code_bytes = code_bytes;
-    s->places = snow_places_of(isa);
+    s->loops = snow_mask_loops_of(isa);
     s->columns = columns;
     s->rows = rows;
     s->filled = 0;

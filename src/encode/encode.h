@@ -15,7 +15,7 @@
 #define SNOW_ENCODE_H
 
 #include "classify/classify.h"
-#include "encode/places.h"
+#include "encode/masks.h"
 
 #include <string.h>
 
@@ -54,9 +54,9 @@ typedef struct snow_sparse {
     unsigned char *codes;
     uint16_t *normals;
     size_t codes_capacity, normals_capacity; /* bytes */
-    int code_bytes;         /* 1 or 2: this is a band; 0: a whole volume */
-    snow_places_fn *places; /* bands, while encoding */
-    snow_slice_pointer *pa; /* one more than slices */
+    int code_bytes; /* 1 or 2: this is a band; 0: a whole volume */
+    const snow_mask_loops *loops; /* bands, while encoding */
+    snow_slice_pointer *pa;       /* one more than slices */
     size_t pa_capacity;
     int64_t row; /* next row of the slice being encoded */
     /* RLE, while encoding: the run that is still growing. */

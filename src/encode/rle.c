@@ -149,8 +149,8 @@ static void put_changes(const snow_sparse *s, const uint64_t *changes,
     if (first == SIZE_MAX)
         return;
     split_run(p, column + first);
-    p->at =
-        s->places(changes, STEP, (unsigned)(p->origin + column) % 256, p->at);
+    p->at = s->loops->places(changes, STEP,
+                             (unsigned)(p->origin + column) % 256, p->at);
     p->told = column + last;
 }
 

@@ -1,7 +1,7 @@
-/* encode/places.c - places of set bits, a byte of the mask at a time. */
-#include "encode/places.h"
+/* encode/masks.c - see masks.h: plain loops, which take a mask a byte at a
+ * time, and AVX-512, which compresses. */
+#include "encode/masks.h"
 
-/* For each byte, the numbers of its set bits, a byte each, lowest first. */
 const uint64_t snow_places_of_byte[256] = {
     UINT64_C(0x0),
     UINT64_C(0x0),
@@ -282,6 +282,30 @@ static unsigned char *places_scalar(const uint64_t *masks, size_t words,
     return out;
 }
 
+static size_t count_words_scalar(const uint64_t *masks, size_t words) {
+    size_t full = 0;
+    for (size_t w = 0; w < words; w++)
+        full += masks[w] != 0;
+    return full;
+}
+
+static unsigned char *pack_words_scalar(const uint64_t *masks, size_t words,
+                                        unsigned char *summary,
+                                        unsigned char *out) {
+    for (size_t first = 0; first < words; first += 8) {
+        size_t end = words - first < 8 ? words : first + 8;
+        unsigned bits = 0;
+        for (size_t w = first; w < end; w++) {
+            unsigned full = masks[w] != 0;
+            snow_store_word(out, masks[w]);
+            out += 8 * full;
+            bits |= full << (w - first);
+        }
+        summary[first / 8] = (unsigned char)bits;
+    }
+    return out;
+}
+
 #if SNOW_HAS_AVX
 #include "simd/vec_avx512.h"
 
@@ -303,13 +327,47 @@ SNOW_AVX512_TARGET static unsigned char *places_avx512(const uint64_t *masks,
     }
     return out;
 }
+/* Up to eight words from `w` on; beyond the last, zeros. */
+SNOW_AVX512_INLINE __m512i load_words(const uint64_t *masks, size_t w,
+                                      size_t words) {
+    __mmask8 some = words - w < 8 ? (__mmask8)((1u << (words - w)) - 1) : 255;
+    return _mm512_maskz_loadu_epi64(some, masks + w);
+}
+
+SNOW_AVX512_TARGET static size_t count_words_avx512(const uint64_t *masks,
+                                                    size_t words) {
+    size_t full = 0;
+    for (size_t w = 0; w < words; w += 8) {
+        __m512i eight = load_words(masks, w, words);
+        full +=
+            (size_t)__builtin_popcount(_mm512_test_epi64_mask(eight, eight));
+    }
+    return full;
+}
+
+SNOW_AVX512_TARGET static unsigned char *
+pack_words_avx512(const uint64_t *masks, size_t words, unsigned char *summary,
+                  unsigned char *out) {
+    for (size_t w = 0; w < words; w += 8) {
+        __m512i eight = load_words(masks, w, words);
+        __mmask8 full = _mm512_test_epi64_mask(eight, eight);
+        _mm512_storeu_si512(out, _mm512_maskz_compress_epi64(full, eight));
+        out += 8 * __builtin_popcount(full);
+        summary[w / 8] = full;
+    }
+    return out;
+}
 #endif
 
-snow_places_fn *snow_places_of(snow_isa isa) {
+const snow_mask_loops *snow_mask_loops_of(snow_isa isa) {
+    static const snow_mask_loops scalar = {places_scalar, count_words_scalar,
+                                           pack_words_scalar};
 #if SNOW_HAS_AVX
+    static const snow_mask_loops avx512 = {places_avx512, count_words_avx512,
+                                           pack_words_avx512};
     if (isa == SNOW_ISA_AVX512)
-        return places_avx512;
+        return &avx512;
 #endif
     (void)isa;
-    return places_scalar;
+    return &scalar;
 }
