@@ -15,10 +15,10 @@ const snow_scheme *snow_scheme_of(snow_encoding encoding) {
 
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs) {
+    if (interesting && interesting >= 16 * runs)
+        return SNOW_ENCODING_RLE;
     if ((double)interesting < 0.05 * (double)voxels)
         return SNOW_ENCODING_CRS;
-    if (interesting >= 16 * runs)
-        return SNOW_ENCODING_RLE;
     return SNOW_ENCODING_BITMAP;
 }
 
