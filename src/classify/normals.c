@@ -32,7 +32,6 @@
 #define GROUP 16     /* blocks are made up to multiples of this */
 #define SPARSE 6     /* columns per voxel from which on a row is sparse */
 
-/* |x|+|y|+|z| of gradients that single precision tells the direction of. */
 #define SUM_LEAST 1e-30F
 #define SUM_MOST 1e30F
 
@@ -44,7 +43,7 @@ typedef struct normal_kernels {
     differences_fn *differences[SNOW_FLOAT64 + 1];
     void (*add)(const float *more, size_t count, float *out);
     bool (*encode)(const float carry[9], float gradients[3][BLOCK],
-                   size_t count, uint16_t *codes);
+                   size_t count, uint32_t *codes);
 } normal_kernels;
 
 /* --- differences of two values as floats ---------------------------------- */
@@ -57,18 +56,22 @@ static inline float wide(double high, double low) {
     return (float)(high - low);
 }
 
+/* Single precision tells the direction of a gradient only where |x|+|y|+|z| is
+ * within SUM_LEAST and SUM_MOST.  A difference that is not 0 is made large
+ * enough that it cannot vanish on the way there. */
 static inline float single(float high, float low) {
-    return high - low;
+    float d = high - low, size = fabsf(d);
+    float least = size > 0 ? 1e-35F : 0;
+    return copysignf(size < least ? least : size, d);
 }
 
-/* Of two doubles, within what a float holds: beyond SUM_MOST where it is too
- * large or not a number, and below SUM_LEAST, but not 0, where it is too small;
- * both are then found to be unsure. */
+/* And one that a float cannot hold, or none at all, is made one above
+ * SUM_MOST. */
 static inline float twice(double high, double low) {
     double d = high - low, size = fabs(d);
     double bounded = size < 1e37 ? size : 1e37;
-    double least = bounded > 0 ? 1e-37 : 0;
-    return (float)copysign(bounded > least ? bounded : least, d);
+    double least = bounded > 0 ? 1e-35 : 0;
+    return (float)copysign(bounded < least ? least : bounded, d);
 }
 
 /* The order matters, so a blank line keeps the two from being sorted. */
@@ -314,7 +317,7 @@ static size_t whole_groups(size_t count) {
 static void encode_apart(const row_job *job, const uint32_t *columns,
                          size_t count, uint16_t *normals) {
     float gradients[3][BLOCK] = {{0}}, more[BLOCK];
-    uint16_t codes[BLOCK];
+    uint32_t codes[BLOCK];
     for (int n = 0; n < job->layer_count; n++)
         for (int axis = 0; axis < 3; axis++) {
             const layer *l = &job->layers[n];
@@ -326,7 +329,8 @@ static void encode_apart(const row_job *job, const uint32_t *columns,
         }
     bool unsure =
         job->kernels->encode(job->carry, gradients, whole_groups(count), codes);
-    memcpy(normals, codes, count * sizeof *codes);
+    for (size_t n = 0; n < count; n++)
+        normals[n] = (uint16_t)codes[n];
     for (size_t n = 0; unsure && n < count; n++)
         if (normals[n] == UNSURE)
             normals[n] = exact_code(job, columns[n]);
@@ -334,7 +338,7 @@ static void encode_apart(const row_job *job, const uint32_t *columns,
 
 /* Codes of `count` neighbouring columns from `first` on; whole groups. */
 static bool encode_together(const row_job *job, int64_t first, size_t count,
-                            uint16_t *codes) {
+                            uint32_t *codes) {
     const normal_kernels *kernels = job->kernels;
     float gradients[3][BLOCK], more[BLOCK];
     for (int n = 0; n < job->layer_count; n++)
@@ -354,7 +358,7 @@ static bool encode_together(const row_job *job, int64_t first, size_t count,
  * lie within the row.  Returns how many there were. */
 static size_t encode_block(const row_job *job, const uint32_t *columns,
                            size_t count, uint16_t *normals) {
-    uint16_t codes[BLOCK];
+    uint32_t codes[BLOCK];
     size_t some = 1;
     while (some < count && columns[some] - columns[0] < BLOCK)
         some++;
@@ -369,7 +373,7 @@ static size_t encode_block(const row_job *job, const uint32_t *columns,
     }
     bool unsure = encode_together(job, first, width, codes);
     for (size_t n = 0; n < some; n++)
-        normals[n] = codes[columns[n] - first];
+        normals[n] = (uint16_t)codes[columns[n] - first];
     for (size_t n = 0; unsure && n < some; n++)
         if (normals[n] == UNSURE)
             normals[n] = exact_code(job, columns[n]);

@@ -47,7 +47,7 @@ TARGET static void NAME(add)(const float *more, size_t count,
 }
 
 TARGET static bool NAME(encode)(const float carry[9], float gradients[3][BLOCK],
-                                size_t count, uint16_t *restrict codes) {
+                                size_t count, uint32_t *restrict codes) {
     const float *gu = gradients[0], *gv = gradients[1], *gw = gradients[2];
     int any_unsure = 0;
     for (size_t n = 0; n < count; n += GROUP)
@@ -57,17 +57,15 @@ TARGET static bool NAME(encode)(const float carry[9], float gradients[3][BLOCK],
             float y = carry[3] * u + carry[4] * v + carry[5] * w;
             float z = carry[6] * u + carry[7] * v + carry[8] * w;
             float sum = fabsf(x) + fabsf(y) + fabsf(z);
-            int none = fabsf(u) + fabsf(v) + fabsf(w) == 0;
             int sure = (sum > SUM_LEAST) & (sum < SUM_MOST);
             float scale = copysignf(MIDDLE, z) / (sure ? sum : 1);
             float across = sure ? (x + y) * scale : 0;
             float down = sure ? (x - y) * scale : 0;
             int place = (int)(down + (MIDDLE + 0.5F)) * SIDE +
                         (int)(across + (MIDDLE + 0.5F)) + 1;
-            any_unsure |= !(sure | none);
-            codes[n + i] = (uint16_t)(none   ? SNOW_NO_NORMAL
-                                      : sure ? place
-                                             : UNSURE);
+            any_unsure |= !(sure | (sum == 0));
+            int other = sum == 0 ? SNOW_NO_NORMAL : UNSURE;
+            codes[n + i] = (uint32_t)(sure ? place : other);
         }
     return any_unsure != 0;
 }
