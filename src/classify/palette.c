@@ -8,12 +8,42 @@
 #include "base/parallel.h"
 #include "base/power.h"
 #include "classify/codes.h"
+#include "simd/isa.h"
 
 #include <string.h>
 
 /* Codes of one item of work: few enough that it stays in the first-level
  * cache, and that 256 codes are one item. */
 #define BLOCK 1024
+
+/* The order matters, so a blank line keeps the two from being sorted. */
+#define SELECT_SCALAR
+#include "simd/select.h"
+
+#include "classify/palette.tmpl.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "classify/palette.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "classify/palette.tmpl.h"
+#endif
+
+typedef void correct_fn(const double *clarities, size_t count, double exponent,
+                        float *opacities);
+
+static correct_fn *best_correct(void) {
+#if SNOW_HAS_AVX
+    if (snow_isa_runs(SNOW_ISA_AVX512))
+        return correct_avx512;
+    if (snow_isa_runs(SNOW_ISA_AVX2))
+        return correct_avx2;
+#endif
+    return correct_scalar;
+}
 
 /* What making looks or samples needs, for the threads. */
 typedef struct palette_job {
@@ -22,6 +52,7 @@ typedef struct palette_job {
     snow_palette *palette;
     double exponent;
     bool premultiply;
+    correct_fn *correct;
 } palette_job;
 
 static size_t block_end(const palette_job *job, size_t first) {
@@ -92,8 +123,8 @@ static snow_status take_key(snow_context *context, const snow_coder *coder,
 
 /* The opacities of a block for the exponent; looks of exponent 1 are taken as
  * they are. */
-static void correct(const palette_job *job, size_t first, size_t count,
-                    float *opacities) {
+static void opacities_of(const palette_job *job, size_t first, size_t count,
+                         float *opacities) {
     const snow_palette *palette = job->palette;
     const double *clarities = palette->clarities + first;
     size_t channels = (size_t)palette->channels;
@@ -102,8 +133,7 @@ static void correct(const palette_job *job, size_t first, size_t count,
         for (size_t i = 0; i < count; i++)
             opacities[i] = palette->looks[(first + i + 1) * channels - 1];
     else
-        for (size_t i = 0; i < count; i++)
-            opacities[i] = (float)snow_opacity_of(clarities[i], exponent);
+        job->correct(clarities, count, exponent, opacities);
 }
 
 static void fill_grey(const float *looks, const float *opacities, size_t count,
@@ -134,7 +164,7 @@ static void make_samples(void *user, int64_t item, int worker) {
     size_t count = block_end(job, first) - first;
     size_t place = first * (size_t)palette->channels;
     float opacities[BLOCK];
-    correct(job, first, count, opacities);
+    opacities_of(job, first, count, opacities);
     if (palette->channels == 2)
         fill_grey(palette->looks + place, opacities, count, job->premultiply,
                   palette->samples + place);
@@ -159,7 +189,8 @@ snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
                               const snow_transfer *transfer, double exponent,
                               bool premultiply, int threads,
                               snow_palette *palette) {
-    palette_job job = {coder, transfer, palette, exponent, premultiply};
+    palette_job job = {coder,    transfer,    palette,
+                       exponent, premultiply, best_correct()};
     int64_t items = (int64_t)((coder->codes + BLOCK - 1) / BLOCK);
     bool changed;
     SNOW_TRY(take_key(context, coder, transfer, palette, &changed));
