@@ -135,17 +135,21 @@ typedef struct gradient_tally {
  * there is none, or so little of it that rounding has its say. */
 static bool normal_between(const snow_volume *volume, const int64_t at[3],
                            int axis, double normal[3]) {
-    double inverse[3][3], g[3], most = 0, parts = 0;
+    double inverse[3][3], a[3], b[3], g[3], most = 0, parts = 0;
     int64_t next[3] = {at[0], at[1], at[2]};
     next[axis]++;
     assert_true(snow_matrix_invert3(volume->info.matrix, inverse));
     for (int i = 0; i < 3; i++) {
-        double a = slope_along(volume, at, i), b = slope_along(volume, next, i);
-        g[i] = a / 2 + b / 2;
-        most = fmax(most, fabs(g[i]));
-        parts = fmax(parts, fmax(fabs(a), fabs(b)));
+        a[i] = slope_along(volume, at, i);
+        b[i] = slope_along(volume, next, i);
+        parts = fmax(parts, fmax(fabs(a[i]), fabs(b[i])));
     }
-    if (!(most > 1e-3 * parts) || !isfinite(most))
+    double scale = parts > 1e300 ? 0.25 : 1;
+    for (int i = 0; i < 3; i++) {
+        g[i] = a[i] * scale + b[i] * scale;
+        most = fmax(most, fabs(g[i]));
+    }
+    if (!(most > 2e-3 * parts) || !isfinite(most))
         return false;
     for (int j = 0; j < 3; j++)
         normal[j] = (inverse[0][j] * g[0] + inverse[1][j] * g[1] +

@@ -34,6 +34,7 @@
 
 #define SUM_LEAST 1e-30F
 #define SUM_MOST 1e30F
+#define LEAST 1e-35F /* of a difference that is not 0 */
 
 typedef void differences_fn(const void *low, const void *high, size_t count,
                             float weight, float *out);
@@ -61,16 +62,15 @@ static inline float wide(double high, double low) {
  * enough that it cannot vanish on the way there. */
 static inline float single(float high, float low) {
     float d = high - low, size = fabsf(d);
-    float least = size > 0 ? 1e-35F : 0;
+    float least = size > 0 ? LEAST : 0;
     return copysignf(size < least ? least : size, d);
 }
 
-/* And one that a float cannot hold, or none at all, is made one above
- * SUM_MOST. */
+/* And one that a float cannot hold, or that is no number, is made infinite. */
 static inline float twice(double high, double low) {
     double d = high - low, size = fabs(d);
-    double bounded = size < 1e37 ? size : 1e37;
-    double least = bounded > 0 ? 1e-35 : 0;
+    double bounded = size < 1e37 ? size : (double)INFINITY;
+    double least = bounded > 0 ? (double)LEAST : 0;
     return (float)copysign(bounded < least ? least : bounded, d);
 }
 
@@ -250,11 +250,13 @@ static uint16_t code_of_gradient(const snow_normal_maker *maker,
     return snow_normal_code(world);
 }
 
-static uint16_t exact_code(const row_job *job, int64_t column) {
+/* The gradients of all layers added up, times `scale`. */
+static void sum_gradients(const row_job *job, int64_t column, double scale,
+                          double sum[3]) {
     const snow_placement *p = job->placement;
     const snow_volume *volume = job->maker->volume;
-    double sum[3] = {0, 0, 0};
     int64_t at[3];
+    sum[0] = sum[1] = sum[2] = 0;
     at[p->v_axis] = job->row;
     at[p->u_axis] = column;
     for (int n = 0; n < job->layer_count; n++) {
@@ -263,8 +265,16 @@ static uint16_t exact_code(const row_job *job, int64_t column) {
         snow_gradient_of(job->type)(volume->voxels, volume->info.dims, at,
                                     gradient);
         for (int i = 0; i < 3; i++)
-            sum[i] += gradient[i] / job->layer_count;
+            sum[i] += gradient[i] * scale;
     }
+}
+
+static uint16_t exact_code(const row_job *job, int64_t column) {
+    double sum[3];
+    sum_gradients(job, column, 1, sum);
+    /* Two that are finite may add up to more than a double holds. */
+    if (!isfinite(sum[0] + sum[1] + sum[2]))
+        sum_gradients(job, column, 0.25, sum);
     return code_of_gradient(job->maker, sum);
 }
 
@@ -316,7 +326,7 @@ static size_t whole_groups(size_t count) {
 /* Codes of up to BLOCK columns within the row that may lie apart. */
 static void encode_apart(const row_job *job, const uint32_t *columns,
                          size_t count, uint16_t *normals) {
-    float gradients[3][BLOCK] = {{0}}, more[BLOCK];
+    float gradients[3][BLOCK] = {{0}}, more[BLOCK] = {0};
     uint32_t codes[BLOCK];
     for (int n = 0; n < job->layer_count; n++)
         for (int axis = 0; axis < 3; axis++) {
@@ -324,8 +334,8 @@ static void encode_apart(const row_job *job, const uint32_t *columns,
             collectors[job->type](l->first, job->step, columns, count,
                                   l->low[axis], l->high[axis], l->weight[axis],
                                   n ? more : gradients[axis]);
-            for (size_t i = 0; n && i < count; i++)
-                gradients[axis][i] += more[i];
+            if (n)
+                job->kernels->add(more, whole_groups(count), gradients[axis]);
         }
     bool unsure =
         job->kernels->encode(job->carry, gradients, whole_groups(count), codes);

@@ -39,11 +39,16 @@ DIFFERENCES(float64, double, double, twice)
 
 #undef DIFFERENCES
 
+/* What cancels out is left as the least, because differences that were made up
+ * to it would vanish too. */
 TARGET static void NAME(add)(const float *more, size_t count,
                              float *restrict out) {
     for (size_t n = 0; n < count; n += GROUP)
-        for (size_t i = 0; i < GROUP; i++)
-            out[n + i] += more[n + i];
+        for (size_t i = 0; i < GROUP; i++) {
+            float sum = out[n + i] + more[n + i];
+            float least = more[n + i] == 0 ? 0 : LEAST;
+            out[n + i] = sum == 0 ? least : sum;
+        }
 }
 
 TARGET static bool NAME(encode)(const float carry[9], float gradients[3][BLOCK],
