@@ -1,6 +1,6 @@
 /* tests/test_codes.c - codes and palettes against plain computations in double:
  * which voxels are interesting, what a code stands for, what it looks like. */
-#include "support.h"
+#include "support_volumes.h"
 
 #include "base/power.h"
 #include "classify/codes.h"
@@ -352,6 +352,62 @@ static void a_palette_follows_the_transfer_function(void **state) {
     scene_end(&fifth);
 }
 
+static void no_memory_leaves_nothing_behind(void **state) {
+    support_place *place = *state;
+    const snow_type types[] = {SNOW_UINT8, SNOW_FLOAT32};
+    for (int t = 0; t < 2; t++) {
+        scene s = scene_of(types[t], 1, 0, colorful, 5, rough, ROUGH);
+        snow_status status = SNOW_NO_MEMORY;
+        int64_t failures = 0;
+        for (; status != SNOW_OK; failures++) {
+            snow_coder coder = {.bytes = 77};
+            snow_palette palette = {0};
+            place->allocations = 0;
+            place->fail_at = failures + 1;
+            status = snow_coder_init(place->context, s.volume, s.transfer, 0,
+                                     &coder);
+            if (status == SNOW_OK) {
+                status = snow_palette_make(place->context, &coder, s.transfer,
+                                           1.5, true, 1, &palette);
+                snow_coder_fini(place->context, &coder);
+            } else {
+                assert_int_equal(coder.bytes, 77);
+            }
+            snow_palette_fini(place->context, &palette);
+            place->fail_at = 0;
+        }
+        assert_true(failures > 6);
+        scene_end(&s);
+    }
+}
+
+static void a_palette_survives_a_lack_of_memory(void **state) {
+    support_place *place = *state;
+    scene small = scene_of(SNOW_UINT8, 1, 0, black, 1, rough, ROUGH);
+    scene large = scene_of(SNOW_INT16, 1, 0, colorful, 5, rough, ROUGH);
+    snow_coder first = coder_of(&small, 0), second = coder_of(&large, 0);
+    snow_palette palette = {0};
+    small.context = large.context = place->context;
+    for (int64_t n = 1; n < 5; n++) {
+        check_palette(&small, &first, 1.5, false, 1, &palette);
+        place->allocations = 0;
+        place->fail_at = n;
+        assert_int_equal(snow_palette_make(place->context, &second,
+                                           large.transfer, 2, true, 1,
+                                           &palette),
+                         SNOW_NO_MEMORY);
+        place->fail_at = 0;
+        check_palette(&large, &second, 2, true, 1, &palette);
+        snow_palette_fini(place->context, &palette);
+    }
+    small.context = small.volume->context;
+    large.context = large.volume->context;
+    snow_coder_fini(small.context, &first);
+    snow_coder_fini(large.context, &second);
+    scene_end(&small);
+    scene_end(&large);
+}
+
 static void own_powers_agree_with_the_library(void **state) {
     (void)state;
     uint64_t seed = 3;
@@ -380,6 +436,10 @@ int main(void) {
         cmocka_unit_test(new_colours_keep_the_codes),
         cmocka_unit_test(palettes_are_corrected_for_the_path),
         cmocka_unit_test(a_palette_follows_the_transfer_function),
+        cmocka_unit_test_setup_teardown(no_memory_leaves_nothing_behind,
+                                        support_place_begin, support_place_end),
+        cmocka_unit_test_setup_teardown(a_palette_survives_a_lack_of_memory,
+                                        support_place_begin, support_place_end),
         cmocka_unit_test(own_powers_agree_with_the_library),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
