@@ -147,6 +147,23 @@ static void check_wide_value(const scene *s, const snow_coder *coder,
                      code, coded[i], exact[i]);
 }
 
+/* Holds what each code stands for against the stretch it is dealt out to. */
+static void check_wide_codes(const snow_coder *coder) {
+    size_t inside = (coder->stop_count - 1) * coder->stretch_codes;
+    assert_true(inside + 2 <= coder->codes);
+    assert_true(snow_coder_value(coder, 0) < coder->stops[0]);
+    for (size_t code = 1; code < coder->codes; code++) {
+        double value = snow_coder_value(coder, code);
+        if (code > inside) {
+            assert_true(value == coder->stops[coder->stop_count - 1]);
+            continue;
+        }
+        size_t stretch = (code - 1) / coder->stretch_codes;
+        assert_true(value >= coder->stops[stretch]);
+        assert_true(value < coder->stops[stretch + 1]);
+    }
+}
+
 /* Values all over, at each control value and beside it, and no numbers. */
 static void check_wide(snow_type type, double slope, double intercept,
                        const snow_color_point *colors, size_t color_count,
@@ -161,6 +178,7 @@ static void check_wide(snow_type type, double slope, double intercept,
         uint64_t seed = 11;
         assert_int_equal(coder.bytes, 2);
         assert_null(coder.keep);
+        check_wide_codes(&coder);
         for (int n = 0; n < 20000; n++) {
             double part = 1.2 * support_uniform(&seed) - 0.1;
             double data = low * (1 - part) + high * part;
@@ -330,9 +348,9 @@ static void a_palette_follows_the_transfer_function(void **state) {
     const snow_color_point grey[] = {{0, 0, 0, 0}, {100, 1, 1, 1}};
     scene first = scene_of(SNOW_UINT8, 1, 0, grey, 2, rough, ROUGH);
     scene second = scene_of(SNOW_UINT8, 1, 0, colorful, 5, rough, ROUGH);
-    scene third = scene_of(SNOW_UINT8, 1, 0, colorful, 5, rough, ROUGH - 1);
+    scene third = scene_of(SNOW_UINT8, 0.5, 0, colorful, 5, rough, ROUGH);
     scene fourth = scene_of(SNOW_FLOAT64, 1, 0, colorful, 5, rough, ROUGH);
-    scene fifth = scene_of(SNOW_FLOAT64, 1, 2, colorful, 4, rough, ROUGH);
+    scene fifth = scene_of(SNOW_FLOAT64, 1, 2, colorful, 4, rough, ROUGH - 1);
     const scene *scenes[] = {&first,  &second, &second, &third,
                              &fourth, &fifth,  &first};
     snow_palette palette = {0};
