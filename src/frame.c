@@ -9,6 +9,7 @@
 #include "decompose/slab.h"
 #include "encode/encode.h"
 #include "image/image.h"
+#include "perspective.h"
 #include "sheared.h"
 #include "splat/splat.h"
 #include "transform/transform.h"
@@ -262,6 +263,8 @@ static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
     stats->quality = job->settings.quality;
     stats->voxels = p->columns * p->rows * job->slab.count;
     double voxels = (double)stats->voxels;
+    if (p->perspective && stats->method != SNOW_METHOD_SHEARED)
+        return SNOW_OK; /* snow_perspective_render has */
     if (stats->method == SNOW_METHOD_TESTED) {
         stats->interesting = job->kept;
         stats->sparse_ratio = voxels > 0 ? 1 - (double)job->kept / voxels : 1;
@@ -302,14 +305,23 @@ static snow_status render_footprints(snow_job *job, const snow_volume *volume,
     return status;
 }
 
+/* The same lines for an eye that is not far away. */
+static snow_status render_perspective(snow_job *job, const snow_volume *volume,
+                                      const snow_transfer *transfer) {
+    snow_perspective_order order = {volume,          transfer,  &job->settings,
+                                    &job->placement, job->slab, job->channels};
+    return snow_perspective_render(job->frame->context, &order, job->pixels,
+                                   &job->frame->stats);
+}
+
 /* The same lines by the sheared method, with slices as `placement` says. */
 static snow_status render_sheared(snow_job *job, const snow_volume *volume,
                                   const snow_transfer *transfer,
                                   const snow_view *view,
                                   const snow_placement *placement,
                                   snow_sheared **sheared, float *pixels) {
-    snow_sheared_order order = {volume,         transfer,      view,
-                                &job->settings, placement,     job->slab,
+    snow_sheared_order order = {volume,         transfer,  view,
+                                &job->settings, placement, job->slab,
                                 job->channels};
     if (!*sheared)
         SNOW_TRY(snow_sheared_new(job->frame->context, sheared));
@@ -329,8 +341,8 @@ static snow_status render_blended(snow_job *job, const snow_volume *volume,
                                   const snow_transfer *transfer,
                                   const snow_view *view) {
     snow_frame *frame = job->frame;
-    size_t floats = (size_t)view->width * (size_t)view->height *
-                    (size_t)job->channels;
+    size_t floats =
+        (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     double shares[3];
     snow_placement_shares(&volume->info, &job->placement, shares);
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
@@ -351,6 +363,9 @@ static snow_status render_blended(snow_job *job, const snow_volume *volume,
 static snow_status render_slab(snow_job *job, const snow_volume *volume,
                                const snow_transfer *transfer,
                                const snow_view *view) {
+    if (job->settings.method != SNOW_METHOD_SHEARED &&
+        job->placement.perspective)
+        return render_perspective(job, volume, transfer);
     if (job->settings.method != SNOW_METHOD_SHEARED)
         return render_footprints(job, volume, transfer);
     if (job->settings.quality == SNOW_QUALITY_HIGH)

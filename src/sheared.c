@@ -128,6 +128,8 @@ static double pixel_width(const snow_placement *p, int axis) {
 }
 
 bool snow_sheared_fits(const snow_placement *p, const snow_settings *settings) {
+    if (p->perspective)
+        return false;
     for (int axis = 0; axis < 2; axis++) {
         snow_taper taper = snow_taper_make(
             settings->kernel, settings->footprint, pixel_width(p, axis));
