@@ -34,6 +34,13 @@
  *                                    in the first 2 or 4 floats of a scalar
  *                                    vector
  *
+ *   V(sqrt)(v)                       the square root, rounded correctly
+ *   V(power2)(v)                     2^k, where v is 1.5 * 2^23 + k for a whole
+ *                                    number k of -126 to 127
+ *   V(lanes), V(lanes_of)(p)         LANES numbers below LANES, as int32_t at p
+ *   V(pick)(p, n)                    p[n0], p[n1] ...; all LANES floats at p
+ *                                    may be read
+ *
  * The template's own file includes the three vec_*.h headers and this one once
  * per level; no file needs special compiler flags. */
 #include "simd/isa.h"
