@@ -2,6 +2,7 @@
  * including, with simd/select.h's words in force:
  *
  *   RAY_CHANNELS  floats of a pixel: 2 or 4
+ *   RAY_GATHER    V(gather2) or V(gather4)
  *   RAY_ALPHA     V(alpha2) or V(alpha4)
  *   RAY_NAME      names of the functions
  *
@@ -13,17 +14,21 @@
 
 /* A vector of pixels in all held rows.  Where pixels are at most a voxel apart,
  * what a tap reads of RAY_PIXELS of them lies within as many voxels: one vector,
- * out of which lanes are picked. */
+ * out of which lanes are picked.  Else it is gathered. */
 TARGET static inline __attribute__((always_inline)) void
-RAY_NAME(_group)(const snow_ray_tile *t, const int n, const int taps) {
+RAY_NAME(_group)(const snow_ray_tile *t, const int n, const int taps,
+                 const bool dense) {
     const int32_t *first = t->u.first + n;
     const size_t row_floats = (size_t)t->columns * RAY_CHANNELS;
     int32_t from[LANES], spread[LANES];
+    uint32_t voxel[LANES];
     V(vec) weights[SNOW_TAPS_MOST];
     for (int lane = 0; lane < LANES; lane++) {
         int pixel = lane / RAY_CHANNELS;
-        from[lane] = (first[pixel] - first[0]) * RAY_CHANNELS +
-                     lane % RAY_CHANNELS;
+        voxel[pixel] = (uint32_t)(first[pixel] - first[0]);
+        from[lane] = dense ? (first[pixel] - first[0]) * RAY_CHANNELS +
+                                 lane % RAY_CHANNELS
+                           : 0;
         spread[lane] = pixel;
     }
     const V(lanes) pick = V(lanes_of)(from), repeat = V(lanes_of)(spread);
@@ -35,29 +40,14 @@ RAY_NAME(_group)(const snow_ray_tile *t, const int n, const int taps) {
     for (uint64_t left = t->held; left; left &= left - 1) {
         size_t row = (size_t)__builtin_ctzll(left);
         const float *sample = samples + row * t->window;
-        V(vec) sum = V(mul)(weights[0], V(pick)(sample, pick));
-        for (int m = 1; m < taps; m++)
-            sum = V(fma)(weights[m],
-                         V(pick)(sample + m * RAY_CHANNELS, pick), sum);
-        V(store)(t->ring + row * row_floats + (size_t)n * RAY_CHANNELS, sum);
-    }
-}
-
-/* Pixels that are several voxels apart, of one row. */
-TARGET static void RAY_NAME(_sparse)(const snow_ray_tile *t, size_t row) {
-    float *filtered = t->ring + row * (size_t)t->columns * RAY_CHANNELS;
-    for (int n = 0; n < t->columns; n++) {
-        const float *sample =
-            t->samples + row * t->window +
-            (size_t)(t->u.first[n] - t->u.first[0]) * RAY_CHANNELS;
-        const float *weight = t->u.weights + n;
-        for (int c = 0; c < RAY_CHANNELS; c++) {
-            float sum = 0;
-            for (int m = 0; m < t->u.taps; m++)
-                sum += weight[(size_t)m * t->u.stride] *
-                       sample[m * RAY_CHANNELS + c];
-            filtered[n * RAY_CHANNELS + c] = sum;
+        V(vec) sum = V(set1)(0);
+        for (int m = 0; m < taps; m++, sample += RAY_CHANNELS) {
+            V(vec) tap = dense ? V(pick)(sample, pick)
+                               : RAY_GATHER(sample, voxel);
+            sum = m == 0 ? V(mul)(weights[0], tap)
+                         : V(fma)(weights[m], tap, sum);
         }
+        V(store)(t->ring + row * row_floats + (size_t)n * RAY_CHANNELS, sum);
     }
 }
 
@@ -96,10 +86,10 @@ RAY_NAME(_lines)(const snow_ray_tile *t, const int taps_u, const int taps_v) {
         rows[i] = t->held >> i & 1 ? t->ring + i * row_floats : t->zero;
     if (t->dense)
         for (int n = 0; n < t->columns; n += RAY_PIXELS)
-            RAY_NAME(_group)(t, n, taps_u);
+            RAY_NAME(_group)(t, n, taps_u, true);
     else
-        for (uint64_t left = t->held; left; left &= left - 1)
-            RAY_NAME(_sparse)(t, (size_t)__builtin_ctzll(left));
+        for (int n = 0; n < t->columns; n += RAY_PIXELS)
+            RAY_NAME(_group)(t, n, taps_u, false);
     for (uint64_t lines = t->wanted; lines; lines &= lines - 1) {
         int n = __builtin_ctzll(lines);
         if (!RAY_NAME(_line)(t, rows + (t->v.first[n] - t->row), n, taps_v))
@@ -123,4 +113,5 @@ TARGET static uint64_t RAY_NAME()(const snow_ray_tile *t) {
 #undef RAY_PIXELS
 #undef RAY_CHANNELS
 #undef RAY_ALPHA
+#undef RAY_GATHER
 #undef RAY_NAME
