@@ -335,6 +335,27 @@ static void blend(float *pixels, const float *layer, float share,
         pixels[i] += share * layer[i];
 }
 
+/* The axes' shares; one that the method cannot draw leaves its to the others. */
+static snow_status share_axes(const snow_job *job, const snow_volume *volume,
+                              const snow_view *view, double shares[3]) {
+    double left = 1;
+    snow_placement_shares(&volume->info, &job->placement, shares);
+    for (int axis = 0; axis < 3; axis++) {
+        snow_placement placement;
+        if (shares[axis] == 0 || axis == job->placement.slice_axis)
+            continue;
+        SNOW_TRY(snow_placement_make_along(job->frame->context, &volume->info,
+                                           view, axis, &placement));
+        if (!snow_sheared_fits(&placement, &job->settings)) {
+            left -= shares[axis];
+            shares[axis] = 0;
+        }
+    }
+    for (int axis = 0; axis < 3; axis++)
+        shares[axis] /= left;
+    return SNOW_OK;
+}
+
 /* High quality: where two or three axes are nearly as good, the picture is a
  * blend of theirs, so that a turning one does not jump. */
 static snow_status render_blended(snow_job *job, const snow_volume *volume,
@@ -344,7 +365,7 @@ static snow_status render_blended(snow_job *job, const snow_volume *volume,
     size_t floats =
         (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     double shares[3];
-    snow_placement_shares(&volume->info, &job->placement, shares);
+    SNOW_TRY(share_axes(job, volume, view, shares));
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
                           0, floats * sizeof *frame->layer));
     for (int axis = 0; axis < 3; axis++) {
