@@ -284,12 +284,11 @@ static void draw_slice(snow_stroke *stroke, int64_t slice) {
     stroke->reach = stroke->v->lead[1] + pass->taps[1];
     int64_t first = (v->first / v->phases + stroke->first_cell) * v->stride +
                     stroke->v->offset;
-    snow_mask_rows_read(&pass->sheared->bands, slice, first,
+    pass->windows->read(&pass->sheared->bands, slice, first,
                         (stroke->cells - 1) * v->stride + stroke->reach,
                         stroke->scratch.spans, &stroke->rows);
     if (!stroke->rows.held)
         return;
-    pass->windows->rank(&stroke->rows);
     /* Tiles whose window overlaps the columns. */
     int64_t step = SNOW_TILE_COLUMNS * u->stride;
     int64_t start = u->first / u->phases * u->stride + stroke->u->offset;

@@ -157,7 +157,7 @@ static size_t nothing_skip(snow_walk *walk, int64_t rows) {
 }
 
 /* A slice of no bytes. */
-static const snow_reader nothing = {nothing_next_row, nothing_skip};
+static const snow_reader nothing = {nothing_next_row, NULL, nothing_skip};
 
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];

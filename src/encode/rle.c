@@ -250,8 +250,8 @@ static size_t rows_skip(snow_walk *walk, int64_t rows) {
     return voxels;
 }
 
-static const snow_reader whole_reader = {rle_next_row, rle_skip};
-static const snow_reader rows_reader = {rows_next_row, rows_skip};
+static const snow_reader whole_reader = {rle_next_row, NULL, rle_skip};
+static const snow_reader rows_reader = {rows_next_row, NULL, rows_skip};
 
 static void rle_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;
