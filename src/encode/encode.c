@@ -15,11 +15,11 @@ const snow_scheme *snow_scheme_of(snow_encoding encoding) {
 
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs) {
+    if ((double)interesting >= 0.05 * (double)voxels)
+        return SNOW_ENCODING_BITMAP;
     if (interesting && interesting >= 16 * runs)
         return SNOW_ENCODING_RLE;
-    if ((double)interesting < 0.05 * (double)voxels)
-        return SNOW_ENCODING_CRS;
-    return SNOW_ENCODING_BITMAP;
+    return SNOW_ENCODING_CRS;
 }
 
 snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
