@@ -375,11 +375,11 @@ static void warp_lines(void *job, int64_t item, int worker) {
 
 /* Pixels a voxel, or voxels a pixel, along one axis.  A kernel that is widened
  * needs fewer of them: Engine and CThead, warped from a pixel a voxel, are 52
- * dB and more from the exact picture at their own width, 56 dB and more from a
- * widening of 1.14 on. */
+ * dB and more from the exact picture at their own width, 57 dB and more from a
+ * widening of 1.22 on. */
 static void choose_pitch(const snow_taper *taper, bool draft, int *phases,
                          int *stride) {
-    *phases = !draft && taper->wide < 1.1 ? 2 : 1;
+    *phases = !draft && taper->wide < 1.2 ? 2 : 1;
     *stride = taper->wide >= (draft ? 2 : 2.5) ? 2 : 1;
 }
 

@@ -596,8 +596,8 @@ static void auto_is_chosen_by_density_and_runs(void **state) {
     } cases[] = {{NOTHING, SNOW_ENCODING_CRS},
                  {TINY, SNOW_ENCODING_CRS},
                  {SOME, SNOW_ENCODING_BITMAP},
-                 {ALL, SNOW_ENCODING_RLE},
-                 {STREAKS, SNOW_ENCODING_RLE}};
+                 {ALL, SNOW_ENCODING_BITMAP},
+                 {STREAKS, SNOW_ENCODING_BITMAP}};
     snow_context *context = support_context();
     snow_bands bands = {.context = context};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
