@@ -1,0 +1,186 @@
+/* bench/speed_ways.c - the ways to make a picture that are compared, as data:
+ * a new one is a line here. */
+#include "speed.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Bounds: what scatters the exact sum may differ from it by rounding only.
+ * What samples it on the slices' own grid and warps has to stay near it, nearer
+ * where the look is translucent: an opaque surface turns a small error of place
+ * into one of colour.  High puts a slice between each two, so it makes another
+ * picture than the exact one, a smoother one, and its bound only shows faults.
+ *
+ * Draft has the tent kernel, and the exact picture and the baselines that it is
+ * compared with have it too. */
+#define EXACT {60, 60}, 1e-3
+#define CUBIC SNOW_KERNEL_BSPLINE, 4
+#define TENT SNOW_KERNEL_TENT, 2
+
+const speed_way speed_ways[] = {
+    {"original", SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
+     CUBIC, EXACT, "original"},
+    {"tested", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
+     CUBIC, EXACT, "tested"},
+    {"footprint crs", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS,
+     SNOW_QUALITY_NORMAL, CUBIC, EXACT, "footprint, CRS"},
+    {"footprint bitmap", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_BITMAP,
+     SNOW_QUALITY_NORMAL, CUBIC, EXACT, "footprint, bit-map"},
+    {"footprint rle", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE,
+     SNOW_QUALITY_NORMAL, CUBIC, EXACT, "footprint, RLE"},
+    {"sheared normal",
+     SNOW_METHOD_SHEARED,
+     SNOW_ENCODING_AUTO,
+     SNOW_QUALITY_NORMAL,
+     CUBIC,
+     {55, 45},
+     1,
+     "sheared, normal"},
+    {"sheared normal crs",
+     SNOW_METHOD_SHEARED,
+     SNOW_ENCODING_CRS,
+     SNOW_QUALITY_NORMAL,
+     CUBIC,
+     {55, 45},
+     1,
+     NULL},
+    {"sheared normal bitmap",
+     SNOW_METHOD_SHEARED,
+     SNOW_ENCODING_BITMAP,
+     SNOW_QUALITY_NORMAL,
+     CUBIC,
+     {55, 45},
+     1,
+     NULL},
+    {"sheared normal rle",
+     SNOW_METHOD_SHEARED,
+     SNOW_ENCODING_RLE,
+     SNOW_QUALITY_NORMAL,
+     CUBIC,
+     {55, 45},
+     1,
+     NULL},
+    {"sheared high",
+     SNOW_METHOD_SHEARED,
+     SNOW_ENCODING_AUTO,
+     SNOW_QUALITY_HIGH,
+     CUBIC,
+     {35, 25},
+     1,
+     NULL},
+    {"original", SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
+     TENT, EXACT, NULL},
+    {"tested", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
+     TENT, EXACT, NULL},
+    {"sheared draft",
+     SNOW_METHOD_SHEARED,
+     SNOW_ENCODING_AUTO,
+     SNOW_QUALITY_DRAFT,
+     TENT,
+     {36, 26},
+     1,
+     "sheared, draft (tent)"},
+};
+
+#define WAYS (int)(sizeof speed_ways / sizeof speed_ways[0])
+
+const int speed_way_count = WAYS;
+
+_Static_assert(WAYS <= SPEED_WAYS_MOST, "a session has room for all ways");
+
+bool speed_is_baseline(const speed_way *way) {
+    return way->method == SNOW_METHOD_ORIGINAL ||
+           way->method == SNOW_METHOD_TESTED;
+}
+
+/* --- the words of --only ---------------------------------------------------
+ */
+
+static const struct {
+    const char *word;
+    speed_kind kind;
+    int value;
+} words[] = {
+    {"translucent", SPEED_LOOK, SPEED_TRANSLUCENT},
+    {"opaque", SPEED_LOOK, SPEED_OPAQUE},
+    {"grey", SPEED_COLOR, false},
+    {"rgba", SPEED_COLOR, true},
+    {"unshaded", SPEED_SHADE, SNOW_SHADE_NONE},
+    {"phong", SPEED_SHADE, SNOW_SHADE_PHONG},
+    {"original", SPEED_METHOD, SNOW_METHOD_ORIGINAL},
+    {"tested", SPEED_METHOD, SNOW_METHOD_TESTED},
+    {"footprint", SPEED_METHOD, SNOW_METHOD_FOOTPRINT},
+    {"sheared", SPEED_METHOD, SNOW_METHOD_SHEARED},
+    {"auto", SPEED_ENCODING, SNOW_ENCODING_AUTO},
+    {"crs", SPEED_ENCODING, SNOW_ENCODING_CRS},
+    {"bitmap", SPEED_ENCODING, SNOW_ENCODING_BITMAP},
+    {"rle", SPEED_ENCODING, SNOW_ENCODING_RLE},
+    {"draft", SPEED_QUALITY, SNOW_QUALITY_DRAFT},
+    {"normal", SPEED_QUALITY, SNOW_QUALITY_NORMAL},
+    {"high", SPEED_QUALITY, SNOW_QUALITY_HIGH},
+    {"bspline", SPEED_KERNEL, SNOW_KERNEL_BSPLINE},
+    {"tent", SPEED_KERNEL, SNOW_KERNEL_TENT},
+};
+
+#define WORDS (sizeof words / sizeof words[0])
+
+static bool take_word(const char *word, size_t length, speed_filter *out) {
+    for (size_t i = 0; i < WORDS; i++)
+        if (strlen(words[i].word) == length &&
+            strncmp(words[i].word, word, length) == 0) {
+            out->taken[words[i].kind] |= 1u << words[i].value;
+            return true;
+        }
+    fprintf(stderr, "snowglass: bench: --only knows no '%.*s'; choose from:",
+            (int)length, word);
+    for (size_t i = 0; i < WORDS; i++)
+        fprintf(stderr, " %s", words[i].word);
+    fprintf(stderr, "\n");
+    return false;
+}
+
+bool speed_filter_read(const char *text, speed_filter *out) {
+    *out = (speed_filter){{0}};
+    while (text) {
+        size_t length = strcspn(text, ",");
+        if (!take_word(text, length, out))
+            return false;
+        text = text[length] ? text + length + 1 : NULL;
+    }
+    return true;
+}
+
+bool speed_filter_takes(const speed_filter *filter, speed_kind kind,
+                        int value) {
+    unsigned taken = filter->taken[kind];
+    return !taken || taken >> value & 1;
+}
+
+/* A kind that a way does not have (the quality of a footprint) restricts it
+ * not. */
+static bool passes(const speed_filter *filter, bool sweep,
+                   const speed_way *way) {
+    if (sweep && !way->charted)
+        return false;
+    return speed_filter_takes(filter, SPEED_METHOD, (int)way->method) &&
+           speed_filter_takes(filter, SPEED_KERNEL, (int)way->kernel) &&
+           (speed_is_baseline(way) ||
+            speed_filter_takes(filter, SPEED_ENCODING, (int)way->encoding)) &&
+           (way->method != SNOW_METHOD_SHEARED ||
+            speed_filter_takes(filter, SPEED_QUALITY, (int)way->quality));
+}
+
+bool speed_way_taken(const speed_filter *filter, bool sweep, int index) {
+    const speed_way *way = &speed_ways[index];
+    bool others = false, kin = false;
+    if (!passes(filter, sweep, way))
+        return false;
+    for (int i = 0; i < WAYS; i++) {
+        const speed_way *other = &speed_ways[i];
+        if (speed_is_baseline(other) || !passes(filter, sweep, other))
+            continue;
+        others = true;
+        kin = kin || other->kernel == way->kernel;
+    }
+    return !speed_is_baseline(way) || kin || !others;
+}
