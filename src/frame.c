@@ -9,6 +9,7 @@
 #include "decompose/slab.h"
 #include "encode/encode.h"
 #include "image/image.h"
+#include "sheared.h"
 #include "splat/splat.h"
 #include "transform/transform.h"
 
@@ -22,6 +23,7 @@ struct snow_frame {
     snow_sheet sheet;
     snow_span *spans; /* of one row */
     size_t spans_capacity;
+    snow_sheared *sheared; /* made when the method is first used */
 };
 
 /* What one picture is made from; lives as long as the call. */
@@ -54,6 +56,7 @@ void snow_frame_free(snow_frame *frame) {
     snow_sparse_fini(&frame->sparse);
     snow_release(frame->context, frame->sheet.pixels);
     snow_release(frame->context, frame->spans);
+    snow_sheared_free(frame->sheared);
     snow_release(frame->context, frame);
 }
 
@@ -174,24 +177,33 @@ static void splat_and_composite(snow_job *job) {
     }
 }
 
+/* Lines 01 and 02 for every method: settings, camera, slab. */
+static snow_status place(snow_job *job, const snow_volume *volume,
+                         const snow_view *view, int parts, int part) {
+    snow_context *context = job->frame->context;
+    SNOW_TRY(snow_settings_resolve(context, volume, &job->settings));
+    SNOW_TRY(
+        snow_placement_make(context, &volume->info, view, &job->placement));
+    if (job->settings.method == SNOW_METHOD_SHEARED &&
+        !snow_sheared_fits(&job->placement))
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    job->slab = snow_slab_equal(job->placement.slices, parts, part);
+    return SNOW_OK;
+}
+
 /* Classifier, shader, splatter and buffers for this volume, look and view. */
 static snow_status prepare(snow_job *job, const snow_volume *volume,
-                           const snow_transfer *transfer,
-                           const snow_view *view) {
+                           const snow_transfer *transfer) {
     snow_frame *frame = job->frame;
     snow_context *context = frame->context;
     snow_settings *settings = &job->settings;
     const snow_placement *p = &job->placement;
-    SNOW_TRY(snow_settings_resolve(context, volume, settings));
-    SNOW_TRY(
-        snow_placement_make(context, &volume->info, view, &job->placement));
     snow_classify_options options = {
         .threshold = settings->threshold,
         .opacity_exponent = p->path / settings->opacity_length,
         .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
         .premultiply = settings->shade == SNOW_SHADE_NONE,
     };
-    job->channels = transfer->grey ? 2 : 4;
     SNOW_TRY(snow_classifier_init(context, volume, transfer, &options,
                                   &job->classifier));
     /* Lines 02 and 03; normals are made for the voxels that are kept. */
@@ -255,6 +267,11 @@ static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
         stats->interesting = llround(voxels * (1 - stats->sparse_ratio));
         return SNOW_OK;
     }
+    if (stats->method == SNOW_METHOD_SHEARED) {
+        if (voxels > 0)
+            stats->sparse_ratio = 1 - (double)stats->interesting / voxels;
+        return SNOW_OK;
+    }
     stats->encoding = job->settings.encoding;
     stats->interesting = (int64_t)sparse->ia_voxels;
     stats->sparse_ratio =
@@ -266,13 +283,40 @@ static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
     return SNOW_OK;
 }
 
-/* Figure 8, lines 01 to 13, for a job whose stages are ready. */
-static snow_status render_slab(snow_job *job, int parts, int part) {
-    /* 01 */ job->slab = snow_slab_equal(job->placement.slices, parts, part);
-    if (job->settings.method == SNOW_METHOD_FOOTPRINT)
-        /* 04 - 06 */ SNOW_TRY(encode_slab(job));
-    /* 07 - 13 */ splat_and_composite(job);
-    return SNOW_OK;
+/* Figure 8, lines 02 to 13, by the methods that throw footprints onto the
+ * picture itself. */
+static snow_status render_footprints(snow_job *job, const snow_volume *volume,
+                                     const snow_transfer *transfer) {
+    /* 02 - 03 */ snow_status status = prepare(job, volume, transfer);
+    if (status == SNOW_OK && job->settings.method == SNOW_METHOD_FOOTPRINT)
+        /* 04 - 06 */ status = encode_slab(job);
+    if (status == SNOW_OK)
+        /* 07 - 13 */ splat_and_composite(job);
+    finish(job);
+    return status;
+}
+
+/* The same lines by the sheared method. */
+static snow_status render_sheared(snow_job *job, const snow_volume *volume,
+                                  const snow_transfer *transfer,
+                                  const snow_view *view) {
+    snow_frame *frame = job->frame;
+    snow_sheared_order order = {volume,          transfer,
+                                view,            &job->settings,
+                                &job->placement, job->slab,
+                                job->channels};
+    if (!frame->sheared)
+        SNOW_TRY(snow_sheared_new(frame->context, &frame->sheared));
+    return snow_sheared_render(frame->sheared, &order, job->pixels,
+                               &frame->stats);
+}
+
+static snow_status render_slab(snow_job *job, const snow_volume *volume,
+                               const snow_transfer *transfer,
+                               const snow_view *view) {
+    return job->settings.method == SNOW_METHOD_SHEARED
+               ? render_sheared(job, volume, transfer, view)
+               : render_footprints(job, volume, transfer);
 }
 
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
@@ -283,20 +327,20 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
     double start = snow_seconds(), cpu = snow_cpu_seconds();
     snow_job job = {.frame = frame, .settings = snow_settings_known(settings)};
     snow_image *image = NULL;
+    job.channels = transfer->grey ? 2 : 4;
     frame->stats = (snow_stats){0};
-    /* 02 - 03 */ snow_status status = prepare(&job, volume, transfer, view);
+    /* 01 */ snow_status status = place(&job, volume, view, parts, part);
     if (status == SNOW_OK)
         status = snow_image_new(frame->context, view->width, view->height,
                                 job.channels, &image);
     if (status == SNOW_OK) {
         job.pixels = snow_image_pixels(image);
-        status = render_slab(&job, parts, part);
+        status = render_slab(&job, volume, transfer, view);
         frame->stats.seconds_frame = snow_seconds() - start;
         frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
     }
     if (status == SNOW_OK)
         status = fill_stats(&job, volume, transfer, &frame->stats);
-    finish(&job);
     if (status == SNOW_OK)
         *out = image;
     else

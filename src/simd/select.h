@@ -16,6 +16,11 @@
  *   V(alpha2)(v), V(alpha4)(v)       the last channel of each pixel of 2 or 4
  *                                    floats, in all of its lanes
  *   V(any_less)(a, b)                whether a < b in any lane
+ *   V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4 floats) of a
+ *                                    and b in turns: a0 b0 a1 b1 ...
+ *   V(fold2)(v), V(fold4)(v)         the sum of the vector's pixels, by halves,
+ *                                    in the first 2 or 4 floats of a scalar
+ *                                    vector
  *
  * The template's own file includes the three vec_*.h headers and this one once
  * per level; no file needs special compiler flags. */

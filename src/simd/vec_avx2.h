@@ -3,6 +3,8 @@
 #ifndef SNOW_VEC_AVX2_H
 #define SNOW_VEC_AVX2_H
 
+#include "simd/vec_scalar.h"
+
 #include <immintrin.h>
 
 #define SNOW_AVX2_LANES 8
@@ -54,6 +56,33 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha2(snow_avx2_vec v) {
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha4(snow_avx2_vec v) {
     return _mm256_permute_ps(v, 0xFF);
+}
+
+SNOW_AVX2_INLINE void snow_avx2_weave2(snow_avx2_vec a, snow_avx2_vec b,
+                                       float *p) {
+    __m256d low = _mm256_unpacklo_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
+    __m256d high =
+        _mm256_unpackhi_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
+    _mm256_storeu_ps(
+        p, _mm256_castpd_ps(_mm256_permute2f128_pd(low, high, 0x20)));
+    _mm256_storeu_ps(
+        p + 8, _mm256_castpd_ps(_mm256_permute2f128_pd(low, high, 0x31)));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_weave4(snow_avx2_vec a, snow_avx2_vec b,
+                                       float *p) {
+    _mm256_storeu_ps(p, _mm256_permute2f128_ps(a, b, 0x20));
+    _mm256_storeu_ps(p + 8, _mm256_permute2f128_ps(a, b, 0x31));
+}
+
+SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_fold4(snow_avx2_vec v) {
+    return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(v),
+                                       _mm256_extractf128_ps(v, 1));
+}
+
+SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_fold2(snow_avx2_vec v) {
+    __m128 sum = (__m128)snow_avx2_fold4(v);
+    return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
 SNOW_AVX2_INLINE int snow_avx2_any_less(snow_avx2_vec a, snow_avx2_vec b) {

@@ -3,6 +3,8 @@
 #ifndef SNOW_VEC_AVX512_H
 #define SNOW_VEC_AVX512_H
 
+#include "simd/vec_scalar.h"
+
 #include <immintrin.h>
 
 #define SNOW_AVX512_LANES 16
@@ -54,6 +56,40 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha2(snow_avx512_vec v) {
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha4(snow_avx512_vec v) {
     return _mm512_permute_ps(v, 0xFF);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_interleave(snow_avx512_vec a,
+                                               snow_avx512_vec b, __m512i low,
+                                               __m512i high, float *p) {
+    __m512d x = _mm512_castps_pd(a), y = _mm512_castps_pd(b);
+    _mm512_storeu_ps(p,
+                     _mm512_castpd_ps(_mm512_permutex2var_pd(x, low, y)));
+    _mm512_storeu_ps(p + 16,
+                     _mm512_castpd_ps(_mm512_permutex2var_pd(x, high, y)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_weave2(snow_avx512_vec a, snow_avx512_vec b,
+                                           float *p) {
+    snow_avx512_interleave(a, b, _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11),
+                           _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15), p);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_weave4(snow_avx512_vec a, snow_avx512_vec b,
+                                           float *p) {
+    snow_avx512_interleave(a, b, _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
+                           _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15), p);
+}
+
+SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold4(snow_avx512_vec v) {
+    __m256 half = _mm256_add_ps(_mm512_castps512_ps256(v),
+                                _mm512_extractf32x8_ps(v, 1));
+    return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(half),
+                                       _mm256_extractf128_ps(half, 1));
+}
+
+SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
+    __m128 sum = (__m128)snow_avx512_fold4(v);
+    return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
 SNOW_AVX512_INLINE int snow_avx512_any_less(snow_avx512_vec a,

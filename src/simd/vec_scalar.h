@@ -73,6 +73,26 @@ static inline snow_scalar_vec snow_scalar_alpha4(snow_scalar_vec v) {
     return (snow_scalar_vec){v[3], v[3], v[3], v[3]};
 }
 
+static inline void snow_scalar_weave2(snow_scalar_vec a, snow_scalar_vec b,
+                                      float *p) {
+    snow_scalar_store(p, (snow_scalar_vec){a[0], a[1], b[0], b[1]});
+    snow_scalar_store(p + 4, (snow_scalar_vec){a[2], a[3], b[2], b[3]});
+}
+
+static inline void snow_scalar_weave4(snow_scalar_vec a, snow_scalar_vec b,
+                                      float *p) {
+    snow_scalar_store(p, a);
+    snow_scalar_store(p + 4, b);
+}
+
+static inline snow_scalar_vec snow_scalar_fold2(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[0] + v[2], v[1] + v[3], 0, 0};
+}
+
+static inline snow_scalar_vec snow_scalar_fold4(snow_scalar_vec v) {
+    return v;
+}
+
 static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {
     snow_scalar_mask less = (snow_scalar_mask)(a < b);
     return (less[0] | less[1] | less[2] | less[3]) != 0;

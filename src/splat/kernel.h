@@ -48,6 +48,12 @@ double snow_taper_reach(const snow_taper *taper);
 /* The weight of a voxel at distance t, in double: the definition. */
 double snow_taper_weight(const snow_taper *taper, double t);
 
+/* Weights of the voxels at first, first + 1 ... for a point at `t`, all in one:
+ * what snow_taper_weight gives, but for rounding.  None but these may be in
+ * reach. */
+void snow_taper_spread(const snow_taper *taper, double t, int first, int count,
+                       float *weights);
+
 /* The weight as a table: cell c spans the distances from c / scale - shift and
  * holds the weight at its beginning and the rise to its end.  Smooth kernels
  * are met to about 1e-5 of their peak, and kinks at 0 and at the ends fall
