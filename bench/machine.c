@@ -222,6 +222,14 @@ const char *machine_processor(void) {
     return name;
 }
 
+const char *machine_compiler(void) {
+#if defined(__clang__)
+    return __VERSION__; /* says "Clang" itself */
+#else
+    return "gcc " __VERSION__;
+#endif
+}
+
 double machine_load(void) {
     double load = -1;
     FILE *file = fopen("/proc/loadavg", "r");

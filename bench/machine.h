@@ -22,6 +22,9 @@ const char *machine_vectors(void);
 /* The processor's name ("unknown" without /proc), to be copied at once. */
 const char *machine_processor(void);
 
+/* "gcc 12.2.0", "clang ...": what this program was compiled with. */
+const char *machine_compiler(void);
+
 /* The load average of the last minute, -1 when it cannot be told.  Our own
  * work counts in it. */
 double machine_load(void);

@@ -17,8 +17,8 @@ static const char *const way_names[BENCH_WAYS] = {"original", "tested", "crs",
  * processor is "unknown", which is no reason to fail. */
 json_t *bench_machine(void) {
     return json_pack("{s:s, s:s, s:s, s:s, s:i}", "cpu", machine_processor(),
-                     "version", snow_version(), "compiler", __VERSION__, "isa",
-                     snow_isa_used(), "threads", 1);
+                     "version", snow_version(), "compiler", machine_compiler(),
+                     "isa", snow_isa_used(), "threads", 1);
 }
 
 /* Flushed here, so that a full disk ends in exit code 4. */

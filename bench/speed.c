@@ -55,6 +55,9 @@ snow_status speed_measure(snow_context *context, const bench_options *options,
     out->interesting = llround((double)(dims[0] * dims[1] * dims[2]) *
                                (1 - out->sparse_ratio));
     if (status == SNOW_OK)
+        status = speed_other_threshold(job, out->sparse_ratio,
+                                       &session.other_threshold);
+    if (status == SNOW_OK)
         status = speed_verify(&session, out);
     machine_mark mark = machine_mark_now();
     if (status == SNOW_OK)
@@ -165,8 +168,7 @@ static snow_status open_phantom(speed_run *run, const char *name, int64_t x,
 }
 
 /* The threshold that makes exactly the voxels of values above `value`
- * interesting: between two voxels' opacities, a quarter of the way, so that
- * speed_time.c has room for its other threshold. */
+ * interesting: between the opacities of two values. */
 static double threshold_above(int value) {
     return 255 * speed_slope(SPEED_TRANSLUCENT) * (value + 0.25);
 }
@@ -212,8 +214,9 @@ static snow_status sweep_volume(speed_run *run, int panel,
         if (status != SNOW_OK || value == last || sparse_ratio > 0.9985 ||
             (i + 1 < count && sparse_ratio > targets[i + 1] - 0.002))
             continue;
-        last = value;
+        job.original_known = last >= 0;
         job.threshold = threshold_above(value);
+        last = value;
         status = do_case(run, &job, &result);
         if (status == SNOW_OK)
             add_points(run, panel, 100 * sparse_ratio, &result);
@@ -302,7 +305,7 @@ static snow_status do_sweep(speed_run *run, chart_plot *chart) {
              "translucent, RGBA, unshaded, %dx%d pixels, cubic B-spline 4x4; "
              "original and tested: 1 thread, others: %d; %s, %s; %s",
              run->options->sides.values[0], run->options->sides.values[0],
-             threads, snow_isa_used(), machine_processor(), __VERSION__);
+             threads, snow_isa_used(), machine_processor(), machine_compiler());
     chart->note = note;
     if (status == SNOW_OK && run->options->chart)
         status = chart_write(chart, run->options->chart);

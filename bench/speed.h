@@ -29,8 +29,9 @@ typedef struct speed_way {
     snow_kernel kernel;
     int footprint;
     /* Beyond these, against the exact picture with the same kernel, nothing is
-     * timed: PSNR in dB at least, by look; largest difference at most. */
-    double psnr[2], largest;
+     * timed: PSNR in dB at least, unshaded and with Phong's model, for each
+     * look; largest difference at most. */
+    double psnr[2][2], largest;
     const char *charted; /* its line in charts, NULL for none */
 } speed_way;
 
@@ -76,6 +77,7 @@ typedef struct speed_case {
     int side; /* of the picture, in pixels */
     double threshold;
     bool sweep;
+    bool original_known; /* verified before: it knows no threshold */
 } speed_case;
 
 /* A way's figures for a number of threads.  Milliseconds; a figure that there
@@ -106,6 +108,7 @@ typedef struct speed_session {
     const speed_case *job;
     const bench_options *options;
     snow_view view;
+    double other_threshold;              /* makes other voxels interesting */
     snow_frame *frames[SPEED_WAYS_MOST]; /* each way keeps its encoding */
 } speed_session;
 
@@ -119,9 +122,14 @@ snow_status speed_render(speed_session *session, int way, snow_isa isa,
                          snow_image **image);
 
 /* Verifies the ways of the result's rows, fills in psnr and largest, and takes
- * out the rows of what this library does not build.  Errors: of the library;
- * SNOW_DIFFERENT when a picture is wrong, told on stderr. */
+ * out the rows that this library draws by another method.  Errors: of the
+ * library; SNOW_DIFFERENT when a picture is wrong, told on stderr. */
 snow_status speed_verify(speed_session *session, speed_result *result);
+
+/* The next threshold above the case's that fewer voxels pass; an encoding may
+ * be kept where the same ones do.  Errors: SNOW_NO_MEMORY. */
+snow_status speed_other_threshold(const speed_case *job, double sparse_ratio,
+                                  double *out);
 
 /* Times the rows.  Errors: those of the library. */
 snow_status speed_time(speed_session *session, speed_result *result);

@@ -78,6 +78,7 @@ typedef struct figures {
     double per_second, read_share, flop_share, bytes_per_voxel;
     double encode_rate; /* bytes of the volume in a second */
     double against_original, against_tested;
+    double cpu_against_original; /* in processor time, of all threads */
 } figures;
 
 /* The row of a baseline with the same kernel; NULL when not measured. */
@@ -108,6 +109,8 @@ static figures figures_of(const speed_machine *machine, const speed_case *job,
                        ratio(baseline(result, row, SNOW_METHOD_ORIGINAL), row),
                    .against_tested =
                        ratio(baseline(result, row, SNOW_METHOD_TESTED), row)};
+    const speed_row *original = baseline(result, row, SNOW_METHOD_ORIGINAL);
+    out.cpu_against_original = original ? original->cpu / row->cpu : NAN;
     for (int i = 0; i < machine->count; i++) {
         const machine_power *power = &machine->power[i];
         if (power->threads != row->threads)
@@ -136,7 +139,7 @@ static void print_cell(int width, int digits, double value) {
 
 void speed_print_machine(const speed_machine *machine) {
     printf("machine: %s, %d processors; %s\n", machine_processor(),
-           snow_processors(), __VERSION__);
+           snow_processors(), machine_compiler());
     printf("flags: %s; isa %s of %s; load average %.2f\n", SNOW_BUILD_FLAGS,
            snow_isa_used(), snow_isa_found(), machine_load());
     for (int i = 0; i < machine->count; i++)
@@ -286,6 +289,7 @@ static json_t *row_json(const speed_machine *machine, const speed_case *job,
         {"new_threshold_ms", row->new_threshold},
         {"times_original", f.against_original},
         {"times_tested", f.against_tested},
+        {"cpu_times_original", f.cpu_against_original},
         {"psnr", row->psnr},
         {"largest_difference", row->largest},
     };

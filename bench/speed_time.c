@@ -23,10 +23,6 @@
 #define RUNS_MOST 99
 #define FRAMES_MOST (RUNS_MOST * BURST_MOST)
 
-/* A threshold that no voxel of 8 bits lies between and the case's own: the
- * volume is encoded anew, to the same arrays. */
-#define OTHER_THRESHOLD 0.1
-
 /* Milliseconds of all pictures of one row. */
 typedef struct row_samples {
     int count, encodes;
@@ -80,9 +76,30 @@ static int way_of(const speed_row *row) {
     return (int)(row->way - speed_ways);
 }
 
-/* The library may tell that it encoded, or only how long that took. */
+/* What keeps no encoding tells how long it took; what keeps it, whether it
+ * did. */
 static bool has_encoded(const snow_stats *stats) {
-    return stats->encoded || stats->seconds_encode > 0;
+    return stats->encoded || (stats->method == SNOW_METHOD_FOOTPRINT &&
+                              stats->seconds_encode > 0);
+}
+
+/* Of footprint with the classification, which sheared does as it encodes. */
+static double encode_seconds(const snow_stats *stats) {
+    bool sheared = stats->method == SNOW_METHOD_SHEARED;
+    return stats->seconds_encode + (sheared ? 0 : stats->seconds_classify);
+}
+
+snow_status speed_other_threshold(const speed_case *job, double sparse_ratio,
+                                  double *out) {
+    double step = 255 * speed_slope(job->look), other = sparse_ratio;
+    snow_status status = SNOW_OK;
+    *out = job->threshold;
+    while (status == SNOW_OK && !(other > sparse_ratio) && *out + step < 255) {
+        *out += step;
+        status = snow_transfer_sparse_ratio(job->volume->transfer,
+                                            job->volume->volume, *out, &other);
+    }
+    return status;
 }
 
 /* One picture, whose figures are kept unless it warms up. */
@@ -130,11 +147,13 @@ static snow_status draw_burst(speed_session *session, speed_row *row,
     return status;
 }
 
-/* The threshold there and back: twice the volume is encoded. */
+/* The threshold there and back, by one voxel value or a few: twice the volume
+ * is encoded, to arrays of almost one size. */
 static snow_status draw_anew(speed_session *session, speed_row *row,
                              row_samples *samples) {
     for (int i = 0; i < 2; i++) {
-        double threshold = session->job->threshold + (i ? 0 : OTHER_THRESHOLD);
+        double threshold =
+            i ? session->job->threshold : session->other_threshold;
         snow_status status = speed_render(session, way_of(row), SNOW_ISA_AUTO,
                                           row->threads, threshold, 0, NULL);
         if (status != SNOW_OK)
@@ -143,8 +162,7 @@ static snow_status draw_anew(speed_session *session, speed_row *row,
             snow_frame_stats(session->frames[way_of(row)]);
         if (!has_encoded(stats) || samples->encodes == RUNS_MOST)
             continue;
-        samples->encode[samples->encodes] =
-            1e3 * (stats->seconds_classify + stats->seconds_encode);
+        samples->encode[samples->encodes] = 1e3 * encode_seconds(stats);
         samples->anew[samples->encodes++] = 1e3 * stats->seconds_frame;
     }
     return SNOW_OK;
