@@ -20,9 +20,9 @@
 #define TOP 92
 #define PANEL_WIDTH 330
 #define PANEL_HEIGHT 400
-#define GAP 26
+#define GAP 44
 #define LEGEND_WIDTH 230
-#define BELOW 98
+#define BELOW 106
 #define LEGEND_LINE 27
 #define PATH_BYTES 4096
 
@@ -232,8 +232,9 @@ static void put_chart(FILE *file, const chart_plot *chart) {
     put_label(file, 0, 0, "text-anchor=\"middle\"", chart->y_label);
     fputs("</g>\n", file);
     put_legend(file, chart);
-    put_label(file, LEFT, height - 18, "font-size=\"12\" fill=\"#606060\"",
-              chart->note);
+    for (int i = 0; i < 2; i++)
+        put_label(file, LEFT, height - 30 + 18 * i,
+                  "font-size=\"12\" fill=\"#606060\"", chart->notes[i]);
     fputs("</svg>\n", file);
 }
 

@@ -24,7 +24,8 @@ typedef struct chart_panel {
 /* Panels side by side over one y axis, which is logarithmic, with one legend.
  * Text is UTF-8; what XML does not like in it is escaped. */
 typedef struct chart_plot {
-    const char *title, *note; /* above; small, below */
+    const char *title;    /* above */
+    const char *notes[2]; /* small, below */
     const char *x_label, *y_label;
     bool x_log;
     int tick_count; /* of x; the first and the last bound the axis */

@@ -291,7 +291,7 @@ static snow_status sweep_size(speed_run *run) {
 
 /* The sweep, and its chart when one was asked for. */
 static snow_status do_sweep(speed_run *run, chart_plot *chart) {
-    char note[320];
+    char how[160], where[512];
     int threads = run->options->threads.values[0];
     run->chart = chart;
     chart->y_label = "milliseconds per frame (median)";
@@ -301,12 +301,16 @@ static snow_status do_sweep(speed_run *run, chart_plot *chart) {
     snow_status status = strcmp(run->options->sweep, "size") == 0
                              ? sweep_size(run)
                              : sweep_sparse(run);
-    snprintf(note, sizeof note,
+    snprintf(how, sizeof how,
              "translucent, RGBA, unshaded, %dx%d pixels, cubic B-spline 4x4; "
-             "original and tested: 1 thread, others: %d; %s, %s; %s",
+             "original and tested on 1 thread, others on %d",
              run->options->sides.values[0], run->options->sides.values[0],
-             threads, snow_isa_used(), machine_processor(), machine_compiler());
-    chart->note = note;
+             threads);
+    snprintf(where, sizeof where, "%s; isa %s; %s; load average %.2f",
+             machine_processor(), snow_isa_used(), machine_compiler(),
+             machine_load());
+    chart->notes[0] = how;
+    chart->notes[1] = where;
     if (status == SNOW_OK && run->options->chart)
         status = chart_write(chart, run->options->chart);
     return status;

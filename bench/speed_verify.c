@@ -302,12 +302,10 @@ static void remove_rows(const verification *verifier, speed_result *result,
                         int first, int count) {
     int way = (int)(result->rows[first].way - speed_ways);
     const snow_stats *stats = snow_frame_stats(verifier->session->frames[way]);
-    fprintf(stderr,
-            "snowglass: bench: %s %dx%d: %s is drawn by %s; left out
-            ",
-            verifier->session->job->volume->name,
-            verifier->session->job->side, verifier->session->job->side,
-            result->rows[first].way->name, snow_method_name(stats->method));
+    fprintf(stderr, "snowglass: bench: %s %dx%d: %s is drawn by %s; left out\n",
+            verifier->session->job->volume->name, verifier->session->job->side,
+            verifier->session->job->side, result->rows[first].way->name,
+            snow_method_name(stats->method));
     result->count -= count;
     memmove(&result->rows[first], &result->rows[first + count],
             (size_t)(result->count - first) * sizeof result->rows[0]);

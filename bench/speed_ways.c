@@ -17,73 +17,37 @@
  * compared with have it too. */
 #define EXACT {{60, 60}, {60, 60}}, 1e-3
 #define NORMAL {{55, 45}, {55, 45}}, 1
+#define HIGH {{55, 45}, {45, 38}}, 1
+#define DRAFT {{36, 30}, {36, 30}}, 1
+
 #define CUBIC SNOW_KERNEL_BSPLINE, 4
 #define TENT SNOW_KERNEL_TENT, 2
+#define WAY(method, encoding, quality) \
+    SNOW_METHOD_##method, SNOW_ENCODING_##encoding, SNOW_QUALITY_##quality
 
+/* clang-format off */
 const speed_way speed_ways[] = {
-    {"original", SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
-     CUBIC, EXACT, "original"},
-    {"tested", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
-     CUBIC, EXACT, "tested"},
-    {"footprint crs", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS,
-     SNOW_QUALITY_NORMAL, CUBIC, EXACT, "footprint, CRS"},
-    {"footprint bitmap", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_BITMAP,
-     SNOW_QUALITY_NORMAL, CUBIC, EXACT, "footprint, bit-map"},
-    {"footprint rle", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE,
-     SNOW_QUALITY_NORMAL, CUBIC, EXACT, "footprint, RLE"},
-    {"sheared normal",
-     SNOW_METHOD_SHEARED,
-     SNOW_ENCODING_AUTO,
-     SNOW_QUALITY_NORMAL,
-     CUBIC,
-     {55, 45},
-     1,
+    {"original", WAY(ORIGINAL, AUTO, NORMAL), CUBIC, EXACT, "original"},
+    {"tested", WAY(TESTED, AUTO, NORMAL), CUBIC, EXACT, "tested"},
+    {"footprint crs", WAY(FOOTPRINT, CRS, NORMAL), CUBIC, EXACT,
+     "footprint, CRS"},
+    {"footprint bitmap", WAY(FOOTPRINT, BITMAP, NORMAL), CUBIC, EXACT,
+     "footprint, bit-map"},
+    {"footprint rle", WAY(FOOTPRINT, RLE, NORMAL), CUBIC, EXACT,
+     "footprint, RLE"},
+    {"sheared normal", WAY(SHEARED, AUTO, NORMAL), CUBIC, NORMAL,
      "sheared, normal"},
-    {"sheared normal crs",
-     SNOW_METHOD_SHEARED,
-     SNOW_ENCODING_CRS,
-     SNOW_QUALITY_NORMAL,
-     CUBIC,
-     {55, 45},
-     1,
+    {"sheared normal crs", WAY(SHEARED, CRS, NORMAL), CUBIC, NORMAL, NULL},
+    {"sheared normal bitmap", WAY(SHEARED, BITMAP, NORMAL), CUBIC, NORMAL,
      NULL},
-    {"sheared normal bitmap",
-     SNOW_METHOD_SHEARED,
-     SNOW_ENCODING_BITMAP,
-     SNOW_QUALITY_NORMAL,
-     CUBIC,
-     {55, 45},
-     1,
-     NULL},
-    {"sheared normal rle",
-     SNOW_METHOD_SHEARED,
-     SNOW_ENCODING_RLE,
-     SNOW_QUALITY_NORMAL,
-     CUBIC,
-     {55, 45},
-     1,
-     NULL},
-    {"sheared high",
-     SNOW_METHOD_SHEARED,
-     SNOW_ENCODING_AUTO,
-     SNOW_QUALITY_HIGH,
-     CUBIC,
-     {35, 25},
-     1,
-     NULL},
-    {"original", SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
-     TENT, EXACT, NULL},
-    {"tested", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, SNOW_QUALITY_NORMAL,
-     TENT, EXACT, NULL},
-    {"sheared draft",
-     SNOW_METHOD_SHEARED,
-     SNOW_ENCODING_AUTO,
-     SNOW_QUALITY_DRAFT,
-     TENT,
-     {36, 26},
-     1,
+    {"sheared normal rle", WAY(SHEARED, RLE, NORMAL), CUBIC, NORMAL, NULL},
+    {"sheared high", WAY(SHEARED, AUTO, HIGH), CUBIC, HIGH, NULL},
+    {"original", WAY(ORIGINAL, AUTO, NORMAL), TENT, EXACT, NULL},
+    {"tested", WAY(TESTED, AUTO, NORMAL), TENT, EXACT, NULL},
+    {"sheared draft", WAY(SHEARED, AUTO, DRAFT), TENT, DRAFT,
      "sheared, draft (tent)"},
 };
+/* clang-format on */
 
 #define WAYS (int)(sizeof speed_ways / sizeof speed_ways[0])
 

@@ -123,7 +123,9 @@ snow_status bench_source_open(snow_context *context, const bench_source *source,
         if (snow_volume_describe(out->file)->type != SNOW_UINT8)
             status = map_head(context, out);
     }
-    if (status != SNOW_OK)
+    if (status == SNOW_OK)
+        snow_volume_freeze(out->volume); /* nobody changes what we share */
+    else
         bench_volume_close(out);
     return status;
 }
