@@ -13,21 +13,14 @@
 
 #include "base/parallel.h"
 #include "classify/sample.h"
-#include "composite/down.h"
-#include "encode/bands.h"
+#include "composite/tile.h"
+#include "encode/windows.h"
 #include "image/image.h"
-#include "splat/across.h"
 #include "volume/volume.h"
 #include "warp/warp.h"
 
 #include <math.h>
 #include <string.h>
-
-/* A band's part of the intermediate image stays in the second-level cache while
- * all slices pass over it. */
-#define BAND_BYTES (512 * 1024)
-#define BAND_LINES_LEAST 8
-#define BAND_LINES_MOST 64
 
 /* Lines of the picture that are warped as one item of work. */
 #define WARP_LINES 16
@@ -47,12 +40,11 @@ struct snow_sheared {
     snow_bands bands;
     encoded_key key;
     snow_palette palette;
-    snow_gloss *gloss; /* SNOW_NORMALS entries */
-    float *weights;    /* of all slices, along u and v */
-    snow_across *places;
-    float *plane;     /* the intermediate image */
-    char *scratch;    /* of all workers */
-    size_t gloss_capacity, weights_capacity, places_capacity, plane_capacity,
+    snow_gloss *gloss; /* an entry of zeros, and SNOW_NORMALS */
+    snow_comb *combs;  /* of all slices, along u and v */
+    float *plane;      /* the intermediate image */
+    char *scratch;     /* of all workers */
+    size_t gloss_capacity, combs_capacity, plane_capacity,
         scratch_capacity; /* bytes */
 };
 
@@ -61,50 +53,51 @@ typedef struct snow_pass {
     const snow_sheared_order *order;
     snow_sheared *sheared;
     snow_shear shear;
-    snow_taper taper[2];        /* along u and v */
-    const snow_across *places;  /* [2 * slice + axis] */
-    int64_t slices;             /* of the bands */
+    snow_taper taper[2];    /* along u and v */
+    int taps[2];            /* of the tapers */
+    const snow_comb *combs; /* [2 * slice + axis] */
+    int64_t columns, slices; /* of the bands */
     bool nearest_first;
     int channels;
+    size_t code_bytes;
     const float *palette;
     const snow_gloss *gloss; /* NULL: unshaded */
+    const snow_window_fns *windows;
     snow_sample_fn *sample;
-    snow_across_fn *across;
-    snow_down_fn *down;
+    snow_tile_fn *tile;
     snow_warp_fn *warp;
     snow_filter filter;
-    size_t ring;     /* rows that the ring has room for: a power of 2 */
-    size_t words;    /* of a chunk mask */
-    int band_lines;
-    size_t stride;   /* floats of a line of the plane */
-    int64_t pad;     /* voxels before and after a row of samples */
+    int cells;     /* of a band */
+    int64_t tiles; /* of a band */
+    int window;    /* voxels that a tile can need of a row */
+    size_t window_floats;
+    size_t stride; /* floats of a line of the plane */
     size_t scratch_bytes;
     float *pixels;
 } snow_pass;
 
 /* A worker's own memory, laid out in snow_sheared.scratch. */
 typedef struct snow_scratch {
-    float *row;        /* voxel 0 of the samples of one row */
-    float *ring;       /* taps filtered rows */
-    const float **rows; /* pointers into the ring, in the order of the taps */
-    uint64_t *dirty;   /* per row of the ring: chunks that are not zero */
-    uint64_t *held;    /* per row of the ring: chunks of the row it holds */
-    uint64_t *alive;   /* per line of the band */
-    uint64_t *wanted, *mask;
+    uint64_t *bits; /* of the rows of a slice */
+    uint32_t *rank;
+    float *samples; /* windows of a tile */
+    float *ring;    /* filtered rows of a tile */
+    float *zero;
+    uint64_t *alive; /* per tile: cells that something shines through */
     snow_span *spans;
 } snow_scratch;
 
-/* A band on its way through one slice. */
+/* A band on its way through the slices. */
 typedef struct snow_stroke {
     const snow_pass *pass;
     snow_scratch scratch;
-    int first_line, lines;
-    bool some_dead; /* chunks of the band */
-    int64_t slice;  /* of the bands */
-    const snow_across *u, *v;
-    snow_walk walk;
-    const snow_sparse *band; /* of rows, where the walk is */
-    int64_t next_row;
+    snow_mask_rows rows;
+    int64_t first_cell;
+    int cells;
+    bool finished; /* a cell is not alive any more */
+    float *pixels; /* of the plane */
+    const snow_comb *u, *v; /* of the slice */
+    int reach; /* rows that a cell needs */
 } snow_stroke;
 
 snow_status snow_sheared_new(snow_context *context, snow_sheared **out) {
@@ -123,8 +116,7 @@ void snow_sheared_free(snow_sheared *s) {
     snow_coder_fini(s->context, &s->coder);
     snow_palette_fini(s->context, &s->palette);
     snow_release(s->context, s->gloss);
-    snow_release(s->context, s->weights);
-    snow_release(s->context, s->places);
+    snow_release(s->context, s->combs);
     snow_release(s->context, s->plane);
     snow_release(s->context, s->scratch);
     snow_release(s->context, s);
@@ -135,9 +127,14 @@ static double pixel_width(const snow_placement *p, int axis) {
     return hypot(p->inverse[axis][0], p->inverse[axis][1]);
 }
 
-bool snow_sheared_fits(const snow_placement *p) {
-    return pixel_width(p, 0) <= SNOW_SHEARED_WIDEST &&
-           pixel_width(p, 1) <= SNOW_SHEARED_WIDEST;
+bool snow_sheared_fits(const snow_placement *p, const snow_settings *settings) {
+    for (int axis = 0; axis < 2; axis++) {
+        snow_taper taper = snow_taper_make(
+            settings->kernel, settings->footprint, pixel_width(p, axis));
+        if (snow_comb_taps(&taper) > SNOW_TAPS_MOST)
+            return false;
+    }
+    return true;
 }
 
 /* --- encoding -------------------------------------------------------------- */
@@ -200,213 +197,102 @@ static snow_status encode(snow_sheared *s, const snow_sheared_order *order,
 
 /* --- one band of lines ----------------------------------------------------- */
 
-/* Sets the bits of the chunks low .. high of a mask. */
-static void mark_chunks(uint64_t *mask, int64_t low, int64_t high) {
-    for (int64_t word = low / 64; word <= high / 64; word++) {
-        int64_t from = word * 64 < low ? low % 64 : 0;
-        int64_t to = word * 64 + 63 > high ? high % 64 : 63;
-        mask[word] |= (~UINT64_C(0) >> (63 - (to - from))) << from;
+/* Cells of `wanted`, in terms of the rows that they need: cell i needs rows
+ * i * stride to i * stride + reach - 1.  Where stride is 1 both are shifts. */
+static uint64_t cells_of_rows(uint64_t rows, int cells, int stride, int reach) {
+    uint64_t found = 0;
+    if (stride == 1) {
+        for (int m = 0; m < reach; m++)
+            found |= rows >> m;
+        return found & (~UINT64_C(0) >> (64 - cells));
     }
+    uint64_t needed = ~UINT64_C(0) >> (64 - reach);
+    for (int i = 0; i < cells; i++)
+        found |= (uint64_t)((rows >> i * stride & needed) != 0) << i;
+    return found;
 }
 
-/* The chunks that the spans of a row reach. */
-static void chunks_of_spans(const snow_stroke *stroke, const snow_span *spans,
-                            size_t count, uint64_t *mask) {
-    int64_t width = stroke->pass->shear.u.count;
-    memset(mask, 0, stroke->pass->words * sizeof *mask);
-    for (size_t i = 0; i < count; i++) {
-        int64_t low, high;
-        int64_t last = (int64_t)spans[i].column + spans[i].length - 1;
-        snow_across_reach(stroke->u, spans[i].column, last, &low, &high);
-        if (high < 0 || low >= width)
-            continue;
-        mark_chunks(mask, (low < 0 ? 0 : low) / SNOW_CHUNK,
-                    (high >= width ? width - 1 : high) / SNOW_CHUNK);
+static uint64_t rows_of_cells(uint64_t cells, int stride, int reach) {
+    uint64_t rows = 0, needed = ~UINT64_C(0) >> (64 - reach);
+    if (stride == 1) {
+        for (int m = 0; m < reach; m++)
+            rows |= cells << m;
+        return rows;
     }
+    for (; cells; cells &= cells - 1)
+        rows |= needed << __builtin_ctzll(cells) * stride;
+    return rows;
 }
 
-/* The first row of voxels that a line sums. */
-static int64_t first_row_of(const snow_stroke *stroke, int line) {
-    const snow_across *v = stroke->v;
-    int64_t pixel = v->first + stroke->first_line + line;
-    if (v->phases == 2)
-        return (pixel >> 1) + v->offset[pixel & 1];
-    return pixel * v->stride + v->offset[0];
-}
-
-/* Leaves of a mask the chunks that are alive in a line that the row is for:
- * `line` and those after it.  False when nothing is left. */
-static bool keep_alive(const snow_stroke *stroke, int64_t row, int line,
-                       uint64_t *mask) {
-    size_t words = stroke->pass->words;
-    uint64_t *wanted = stroke->scratch.wanted, any = 0;
-    if (!stroke->some_dead)
-        return true;
-    memset(wanted, 0, words * sizeof *wanted);
-    for (; line < stroke->lines && first_row_of(stroke, line) <= row; line++)
-        for (size_t w = 0; w < words; w++)
-            wanted[w] |= stroke->scratch.alive[(size_t)line * words + w];
-    for (size_t w = 0; w < words; w++)
-        any |= mask[w] &= wanted[w];
-    return any != 0;
-}
-
-/* The next row's spans; the walk goes from band of rows to band of rows. */
-static size_t walk_row(snow_stroke *stroke, int64_t row, size_t *voxel) {
-    const snow_bands *bands = &stroke->pass->sheared->bands;
-    if (!stroke->band || row % SNOW_BAND_ROWS == 0) {
-        stroke->band = &bands->bands[row / SNOW_BAND_ROWS];
-        snow_walk_begin(&stroke->walk, stroke->band, stroke->slice);
-        if (row % SNOW_BAND_ROWS)
-            snow_walk_skip(&stroke->walk, row % SNOW_BAND_ROWS);
-    }
-    return snow_walk_row(&stroke->walk, stroke->scratch.spans, voxel);
-}
-
-/* Classifies a row's voxels into the row of samples, or clears them again. */
-static void sample_spans(const snow_stroke *stroke, size_t count,
-                         size_t voxel) {
-    const snow_pass *pass = stroke->pass;
-    const snow_span *span = stroke->scratch.spans;
-    for (; count; count--, span++) {
-        pass->sample(snow_bands_codes(stroke->band, voxel),
-                     pass->gloss ? snow_bands_normals(stroke->band, voxel)
-                                 : NULL,
-                     span->length, pass->palette, pass->gloss,
-                     stroke->scratch.row +
-                         (int64_t)span->column * pass->channels);
-        voxel += span->length;
-    }
-}
-
-static void clear_spans(const snow_stroke *stroke, size_t count) {
-    size_t pixel = (size_t)stroke->pass->channels;
-    const snow_span *span = stroke->scratch.spans;
-    for (; count; count--, span++) {
-        float *sample = stroke->scratch.row + span->column * pixel;
-        for (size_t n = 0; n < span->length * pixel; n++)
-            sample[n] = 0;
-    }
-}
-
-/* Makes a row of the ring zero where it held something else. */
-static void wipe_chunks(const snow_pass *pass, float *line, uint64_t *dirty,
-                        const uint64_t *mask) {
-    size_t floats = SNOW_CHUNK * (size_t)pass->channels;
-    for (size_t w = 0; w < pass->words; w++) {
-        for (uint64_t bits = dirty[w] & ~mask[w]; bits; bits &= bits - 1) {
-            size_t chunk = w * 64 + (size_t)__builtin_ctzll(bits);
-            memset(line + chunk * floats, 0, floats * sizeof *line);
-        }
-        dirty[w] = mask[w];
-    }
-}
-
-/* Lines 08 to 12: one row of voxels, filtered along u, into the ring. */
-static void load_row(snow_stroke *stroke, int64_t row, int line) {
+/* Lines 08 to 13 for one tile of the slice: the cells that can be seen and
+ * have a voxel in reach. */
+static void draw_tile(snow_stroke *stroke, int64_t index) {
     const snow_pass *pass = stroke->pass;
     const snow_scratch *scratch = &stroke->scratch;
-    size_t slot = (size_t)row & (pass->ring - 1);
-    uint64_t *held = scratch->held + slot * pass->words;
-    float *filtered = scratch->ring + slot * pass->stride;
-    size_t voxel = 0, count = 0;
-    if (row < pass->order->placement->rows)
-        count = walk_row(stroke, row, &voxel);
-    chunks_of_spans(stroke, scratch->spans, count, held);
-    bool seen = count && keep_alive(stroke, row, line, held);
-    wipe_chunks(pass, filtered, scratch->dirty + slot * pass->words, held);
-    if (!seen)
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
+    int64_t column = (u->first / u->phases + index * SNOW_TILE_COLUMNS) *
+                         u->stride + stroke->u->offset;
+    uint64_t bits[SNOW_WINDOW_ROWS], held;
+    uint32_t before[SNOW_WINDOW_ROWS];
+    held = pass->windows->windows(&stroke->rows, column, pass->window, bits,
+                                  before);
+    uint64_t cells = cells_of_rows(held, stroke->cells, v->stride,
+                                   stroke->reach) & scratch->alive[index];
+    if (!cells)
         return;
-    sample_spans(stroke, count, voxel);
-    pass->across(stroke->u, scratch->row, held, pass->words, filtered);
-    clear_spans(stroke, count);
+    held &= rows_of_cells(cells, v->stride, stroke->reach);
+    size_t pixel = (size_t)pass->channels, floats = pass->window_floats;
+    for (uint64_t left = held; left; left &= left - 1) {
+        int row = __builtin_ctzll(left);
+        const uint16_t *normals = stroke->rows.normals[row];
+        pass->sample(stroke->rows.codes[row] + before[row] * pass->code_bytes,
+                     normals ? normals + before[row] : NULL, bits[row],
+                     pass->window, pass->palette, pass->gloss,
+                     scratch->samples + (size_t)row * floats);
+    }
+    snow_tile tile = {
+        u, v, stroke->u, stroke->v, pass->taps[0], pass->taps[1],
+        scratch->samples, floats, held, cells, scratch->ring, scratch->zero,
+        stroke->pixels + (size_t)index * SNOW_TILE_COLUMNS *
+                             (size_t)u->phases * pixel,
+        pass->stride};
+    uint64_t finished = pass->tile(&tile);
+    scratch->alive[index] &= ~finished;
+    stroke->finished |= finished != 0;
 }
 
-/* Line 13: one line of the slice's sheet, behind what the image holds. */
-static void lay_line(snow_stroke *stroke, int line) {
+/* One slice of the band: its rows as masks, and each tile in turn that they
+ * reach. */
+static void draw_slice(snow_stroke *stroke, int64_t slice) {
     const snow_pass *pass = stroke->pass;
-    const snow_scratch *scratch = &stroke->scratch;
-    const snow_across *v = stroke->v;
-    int64_t first = first_row_of(stroke, line);
-    int64_t pixel = v->first + stroke->first_line + line;
-    const float *weights =
-        v->weights + (v->phases == 2 ? (pixel & 1) * v->taps : 0);
-    uint64_t *alive = scratch->alive + (size_t)line * pass->words, any = 0;
-    for (size_t w = 0; w < pass->words; w++)
-        scratch->mask[w] = 0;
-    for (int m = 0; m < v->taps; m++) {
-        int64_t row = first + m;
-        size_t slot = (size_t)row & (pass->ring - 1);
-        scratch->rows[m] = scratch->ring + slot * pass->stride;
-        for (size_t w = 0; w < pass->words; w++)
-            scratch->mask[w] |= scratch->held[slot * pass->words + w];
-    }
-    for (size_t w = 0; w < pass->words; w++)
-        any |= scratch->mask[w] &= alive[w];
-    if (!any)
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
+    stroke->u = &pass->combs[2 * slice];
+    stroke->v = &pass->combs[2 * slice + 1];
+    stroke->reach = stroke->v->lead[1] + pass->taps[1];
+    int64_t first = (v->first / v->phases + stroke->first_cell) * v->stride +
+                    stroke->v->offset;
+    snow_mask_rows_read(&pass->sheared->bands, slice, first,
+                        (stroke->cells - 1) * v->stride + stroke->reach,
+                        stroke->scratch.spans, &stroke->rows);
+    if (!stroke->rows.held)
         return;
-    float *pixels = pass->sheared->plane +
-                    (size_t)(stroke->first_line + line) * pass->stride;
-    if (pass->down(pixels, scratch->rows, weights, v->taps, scratch->mask,
-                   pass->words, alive))
-        stroke->some_dead = true;
-}
-
-/* Whether the bands of rows first .. last hold a voxel of the slice. */
-static bool any_voxel(const snow_stroke *stroke, int64_t first, int64_t last) {
-    const snow_bands *bands = &stroke->pass->sheared->bands;
-    for (int64_t n = first / SNOW_BAND_ROWS; n <= last / SNOW_BAND_ROWS; n++) {
-        const snow_slice_pointer *pa = bands->bands[n].pa + stroke->slice;
-        if (pa[1].ia > pa[0].ia)
-            return true;
-    }
-    return false;
-}
-
-/* Rows before the first one are never loaded, so the ring must be zero there.
- */
-static void empty_ring(snow_stroke *stroke) {
-    const snow_pass *pass = stroke->pass;
-    const snow_scratch *scratch = &stroke->scratch;
-    size_t taps = pass->ring;
-    memset(scratch->held, 0, taps * pass->words * sizeof *scratch->held);
-    for (size_t n = 0; n < taps; n++)
-        wipe_chunks(pass, scratch->ring + n * pass->stride,
-                    scratch->dirty + n * pass->words,
-                    scratch->held + n * pass->words);
-}
-
-/* Rows come in order, each once; the ring holds as many as a line sums.  Rows
- * before the first and after the last voxel are empty. */
-static void stroke_slice(snow_stroke *stroke) {
-    const snow_pass *pass = stroke->pass;
-    int64_t rows = pass->order->placement->rows;
-    int64_t first = first_row_of(stroke, 0);
-    int64_t last = first_row_of(stroke, stroke->lines - 1) + stroke->v->taps;
-    if (first < 0)
-        first = 0;
-    if (last > rows)
-        last = rows;
-    if (first >= last || !any_voxel(stroke, first, last - 1))
-        return;
-    if (first_row_of(stroke, 0) < 0)
-        empty_ring(stroke);
-    stroke->band = NULL;
-    stroke->next_row = first;
-    for (int line = 0; line < stroke->lines; line++) {
-        int64_t need = first_row_of(stroke, line) + stroke->v->taps;
-        for (; stroke->next_row < need; stroke->next_row++)
-            load_row(stroke, stroke->next_row, line);
-        lay_line(stroke, line);
-    }
+    pass->windows->rank(&stroke->rows);
+    /* Tiles whose window overlaps the columns. */
+    int64_t step = SNOW_TILE_COLUMNS * u->stride;
+    int64_t start = u->first / u->phases * u->stride + stroke->u->offset;
+    int64_t low = -start - pass->window + 1, high = pass->columns - start;
+    low = low > 0 ? (low + step - 1) / step : 0;
+    high = high > 0 ? (high + step - 1) / step : 0;
+    for (int64_t tile = low; tile < high && tile < pass->tiles; tile++)
+        if (stroke->scratch.alive[tile])
+            draw_tile(stroke, tile);
 }
 
 static bool any_alive(const snow_stroke *stroke) {
-    if (!stroke->some_dead)
+    if (!stroke->finished)
         return true;
-    size_t count = (size_t)stroke->lines * stroke->pass->words;
-    for (size_t n = 0; n < count; n++)
-        if (stroke->scratch.alive[n])
+    for (int64_t tile = 0; tile < stroke->pass->tiles; tile++)
+        if (stroke->scratch.alive[tile])
             return true;
     return false;
 }
@@ -414,49 +300,48 @@ static bool any_alive(const snow_stroke *stroke) {
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
 static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
-    size_t at = 0, taps = pass->ring;
-    int64_t columns = pass->order->placement->columns;
-    size_t floats = sizeof(float), pixel = (size_t)pass->channels * floats;
-    size_t mask = pass->words * sizeof(uint64_t);
+    size_t at = 0, pixel = (size_t)pass->channels * sizeof(float);
+    size_t words = snow_window_words(pass->columns) * SNOW_WINDOW_ROWS;
+    size_t filtered = 2 * SNOW_TILE_COLUMNS * pixel;
 #define PART(field, bytes)                      \
     do {                                        \
         out->field = (void *)(base + at);       \
         at += ((bytes) + 63) / 64 * 64;         \
     } while (0)
-    PART(row, (size_t)(columns + 2 * pass->pad) * pixel);
-    PART(ring, taps * pass->stride * floats);
-    PART(rows, taps * sizeof *out->rows);
-    PART(dirty, taps * mask);
-    PART(held, taps * mask);
-    PART(alive, (size_t)pass->band_lines * mask);
-    PART(wanted, mask);
-    PART(mask, mask);
-    PART(spans, ((size_t)columns / 2 + 1) * sizeof *out->spans);
+    PART(bits, words * sizeof *out->bits);
+    PART(rank, words * sizeof *out->rank);
+    PART(samples, SNOW_WINDOW_ROWS * pass->window_floats * sizeof(float));
+    PART(ring, SNOW_WINDOW_ROWS * filtered);
+    PART(zero, filtered);
+    PART(alive, (size_t)pass->tiles * sizeof *out->alive);
+    PART(spans, ((size_t)pass->columns / 2 + 1) * sizeof *out->spans);
 #undef PART
-    out->row += pass->pad * pass->channels;
     return at;
 }
 
 /* Line 07 for one band of lines: all slices, front to back. */
 static void splat_band(void *job, int64_t item, int worker) {
     const snow_pass *pass = job;
+    const snow_lattice *v = &pass->shear.v;
     snow_stroke stroke = {.pass = pass};
     lay_out(pass, pass->sheared->scratch + (size_t)worker * pass->scratch_bytes,
             &stroke.scratch);
-    stroke.first_line = (int)item * pass->band_lines;
-    stroke.lines = pass->shear.v.count - stroke.first_line;
-    if (stroke.lines > pass->band_lines)
-        stroke.lines = pass->band_lines;
-    size_t mask = pass->words * sizeof(uint64_t);
-    memset(pass->sheared->plane + (size_t)stroke.first_line * pass->stride, 0,
-           (size_t)stroke.lines * pass->stride * sizeof(float));
-    memset(stroke.scratch.alive, 0xFF, (size_t)stroke.lines * mask);
-    for (int64_t n = 0; n < pass->slices && any_alive(&stroke); n++) {
-        stroke.slice = pass->nearest_first ? n : pass->slices - 1 - n;
-        stroke.u = &pass->places[2 * stroke.slice];
-        stroke.v = &pass->places[2 * stroke.slice + 1];
-        stroke_slice(&stroke);
-    }
+    stroke.rows.bits = stroke.scratch.bits;
+    stroke.rows.rank = stroke.scratch.rank;
+    stroke.rows.words = snow_window_words(pass->columns);
+    stroke.first_cell = item * pass->cells;
+    int64_t cells = (v->count + v->phases - 1) / v->phases - stroke.first_cell;
+    stroke.cells = cells < pass->cells ? (int)cells : pass->cells;
+    size_t lines = (size_t)(stroke.cells * v->phases);
+    size_t pixels = lines * pass->stride / (size_t)pass->channels;
+    stroke.pixels = pass->sheared->plane +
+                    (size_t)(stroke.first_cell * v->phases) * pass->stride;
+    snow_tile_clear(stroke.pixels, pixels, pass->channels);
+    for (int64_t tile = 0; tile < pass->tiles; tile++)
+        stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.cells);
+    for (int64_t n = 0; n < pass->slices && any_alive(&stroke); n++)
+        draw_slice(&stroke, pass->nearest_first ? n : pass->slices - 1 - n);
+    snow_tile_finish(stroke.pixels, pixels, pass->channels);
 }
 
 static void warp_lines(void *job, int64_t item, int worker) {
@@ -481,7 +366,7 @@ static void choose_pitch(const snow_taper *taper, bool draft, int *phases,
                          int *stride) {
     double pitch = taper->wide / (draft ? 1 : 1.5);
     *phases = pitch < 1 ? 2 : 1;
-    *stride = pitch < 2 ? 1 : (int)pitch;
+    *stride = pitch < 2 ? 1 : 2;
 }
 
 static snow_status place_lattice(snow_pass *pass) {
@@ -493,52 +378,44 @@ static snow_status place_lattice(snow_pass *pass) {
         snow_taper *taper = &pass->taper[axis];
         *taper = snow_taper_make(settings->kernel, settings->footprint,
                                  pixel_width(p, axis));
+        pass->taps[axis] = snow_comb_taps(taper);
         choose_pitch(taper, draft, &options.phases[axis],
                      &options.stride[axis]);
         options.reach[axis] = snow_taper_reach(taper);
     }
     SNOW_TRY(snow_shear_make(pass->sheared->context, p, &options,
                              &pass->shear));
-    for (pass->ring = 1; pass->ring < (size_t)snow_taper_taps(&pass->taper[1]);)
-        pass->ring *= 2;
     pass->filter = draft ? SNOW_BILINEAR : SNOW_CATMULL_ROM;
-    size_t width = (size_t)pass->shear.u.count;
-    size_t chunks = (width + SNOW_CHUNK - 1) / SNOW_CHUNK;
-    pass->words = (chunks + 63) / 64;
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
+    int columns = SNOW_TILE_COLUMNS * u->phases;
+    pass->tiles = (u->count + columns - 1) / columns;
     /* The warp may read a vector beyond the last pixel. */
-    pass->stride = (chunks + 1) * SNOW_CHUNK * (size_t)pass->channels;
-    size_t lines = BAND_BYTES / (pass->stride * sizeof(float));
-    pass->band_lines = lines < BAND_LINES_LEAST  ? BAND_LINES_LEAST
-                       : lines > BAND_LINES_MOST ? BAND_LINES_MOST
-                                                 : (int)lines;
-    pass->pad = SNOW_CHUNK * pass->shear.u.stride + 2 +
-                2 * snow_taper_taps(&pass->taper[0]);
+    pass->stride = (size_t)((pass->tiles + 1) * columns * pass->channels);
+    pass->window =
+        (SNOW_TILE_COLUMNS - 1) * u->stride + pass->taps[0] + u->phases - 1;
+    pass->window_floats =
+        (size_t)(pass->window + SNOW_TILE_COLUMNS) * (size_t)pass->channels;
+    int rows = SNOW_WINDOW_ROWS - pass->taps[1] - v->phases + 1;
+    pass->cells = rows / v->stride + 1;
+    if (pass->cells > SNOW_TILE_CELLS)
+        pass->cells = SNOW_TILE_CELLS;
     return SNOW_OK;
 }
 
 /* The kernels of all slices: their shifts differ. */
 static snow_status place_slices(snow_pass *pass) {
     snow_sheared *s = pass->sheared;
-    size_t floats[2];
-    for (int axis = 0; axis < 2; axis++)
-        floats[axis] = 2 * (size_t)snow_taper_taps(&pass->taper[axis]);
     size_t slices = (size_t)pass->slices;
-    SNOW_TRY(snow_reserve(s->context, &s->places, &s->places_capacity, 0,
-                          2 * slices * sizeof *s->places));
-    SNOW_TRY(snow_reserve(s->context, &s->weights, &s->weights_capacity, 0,
-                          (floats[0] + floats[1]) * slices *
-                              sizeof *s->weights));
-    float *weights = s->weights;
+    SNOW_TRY(snow_reserve(s->context, &s->combs, &s->combs_capacity, 0,
+                          2 * slices * sizeof *s->combs));
     double step = s->key.between ? 0.5 : 1;
     const snow_lattice *lattices[2] = {&pass->shear.u, &pass->shear.v};
     for (size_t n = 0; n < slices; n++)
-        for (int axis = 0; axis < 2; axis++) {
-            double slice = (double)pass->order->slab.first + step * (double)n;
-            snow_across_place(&pass->taper[axis], lattices[axis], slice,
-                              weights, &s->places[2 * n + (size_t)axis]);
-            weights += floats[axis];
-        }
-    pass->places = s->places;
+        for (size_t axis = 0; axis < 2; axis++)
+            snow_comb_make(&pass->taper[axis], lattices[axis],
+                           (double)pass->order->slab.first + step * (double)n,
+                           &s->combs[2 * n + axis]);
+    pass->combs = s->combs;
     return SNOW_OK;
 }
 
@@ -555,19 +432,21 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     double classified = snow_seconds();
     if (shaded) {
         SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
-                              SNOW_NORMALS * sizeof *s->gloss));
+                              (SNOW_NORMALS + 1) * sizeof *s->gloss));
+        s->gloss[0] = (snow_gloss){0, 0};
         snow_gloss_table(settings, pass->order->placement, settings->threads,
-                         s->gloss);
+                         s->gloss + 1);
     }
     stats->seconds_classify += classified - mark;
     stats->seconds_shade += snow_seconds() - classified;
     pass->palette = s->palette.samples;
-    pass->gloss = shaded ? s->gloss : NULL;
+    pass->gloss = shaded ? s->gloss + 1 : NULL;
     pass->channels = pass->order->channels;
     pass->sample =
-        snow_sample_of(s->coder.bytes, pass->channels, shaded);
-    pass->across = snow_across_of(settings->isa, pass->channels);
-    pass->down = snow_down_of(settings->isa, pass->channels);
+        snow_sample_of(settings->isa, s->coder.bytes, pass->channels, shaded);
+    pass->code_bytes = (size_t)s->coder.bytes;
+    pass->tile = snow_tile_of(settings->isa, pass->channels);
+    pass->windows = snow_window_fns_of(settings->isa);
     return SNOW_OK;
 }
 
@@ -575,7 +454,7 @@ static snow_status reserve_buffers(snow_pass *pass) {
     snow_sheared *s = pass->sheared;
     snow_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    size_t lines = (size_t)pass->shear.v.count, bytes;
+    size_t lines = (size_t)pass->shear.v.count + 1, bytes;
     uint64_t all;
     if (!snow_mul_u64(pass->scratch_bytes,
                       (uint64_t)pass->order->settings->threads, &all) ||
@@ -586,7 +465,7 @@ static snow_status reserve_buffers(snow_pass *pass) {
                          pass->order->settings->threads);
     SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
                           (size_t)all));
-    /* Samples and filtered rows are zero where they hold nothing. */
+    /* For the row of zeros, above all. */
     memset(s->scratch, 0, (size_t)all);
     bytes = lines * pass->stride * sizeof *s->plane;
     return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0, bytes);
@@ -603,11 +482,11 @@ static void fill_figures(const snow_sheared *s, snow_stats *stats) {
 /* Lines 07 to 13, and the warp. */
 static void draw(snow_pass *pass, snow_stats *stats) {
     int threads = pass->order->settings->threads;
-    int64_t lines = pass->shear.v.count;
+    const snow_lattice *v = &pass->shear.v;
+    int64_t cells = (v->count + v->phases - 1) / v->phases;
     double mark = snow_seconds();
-    snow_parallel(threads,
-                  (lines + pass->band_lines - 1) / pass->band_lines,
-                  splat_band, pass);
+    snow_parallel(threads, (cells + pass->cells - 1) / pass->cells, splat_band,
+                  pass);
     double splatted = snow_seconds();
     pass->warp =
         snow_warp_of(pass->order->settings->isa, pass->filter, pass->channels);
@@ -626,6 +505,7 @@ snow_status snow_sheared_render(snow_sheared *s,
     SNOW_TRY(encode(s, order, stats));
     stats->seconds_encode += snow_seconds() - mark;
     pass.slices = s->bands.slices;
+    pass.columns = s->bands.columns;
     pass.nearest_first = order->placement->nearest_first;
     SNOW_TRY(classify_and_shade(&pass, stats));
     SNOW_TRY(place_lattice(&pass));

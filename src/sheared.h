@@ -27,11 +27,12 @@ typedef struct snow_sheared_order {
     int channels; /* 2 or 4 */
 } snow_sheared_order;
 
-/* Whether the method can make this picture: pixels that are wider than
- * SNOW_SHEARED_WIDEST voxels are left to footprint splatting, which has only a
- * few pixels to fill then. */
-#define SNOW_SHEARED_WIDEST 64
-bool snow_sheared_fits(const snow_placement *placement);
+/* Whether the method can make this picture.  Where a kernel, widened for
+ * pixels that are many voxels wide, has more than SNOW_TAPS_MOST voxels in
+ * reach, it is left to footprint splatting, which has few pixels to fill
+ * then. */
+bool snow_sheared_fits(const snow_placement *placement,
+                       const snow_settings *settings);
 
 /* Renders the slab into `pixels`, width * height * channels floats, all of
  * which are written; fills the figures of `stats` that the method knows.

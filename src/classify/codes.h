@@ -77,7 +77,8 @@ double snow_coder_value(const snow_coder *coder, size_t code);
  * long as the control points and the coder's codes, of which `key` is a copy,
  * stay the same. */
 typedef struct snow_palette {
-    float *samples;
+    float *samples; /* of code 0; before it lies a sample of zeros */
+    float *block;
     size_t capacity; /* bytes, as all capacities */
     int channels;
     float *looks; /* per code: colour, and opacity of the reference length */

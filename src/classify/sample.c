@@ -1,33 +1,33 @@
-/* classify/sample.c - the four tables-to-samples loops (model, points 3, 4 and
- * 6): colour = min(1, c * factor + white) times opacity. */
+/* classify/sample.c - the table-to-sample loops of all levels (model, points 3,
+ * 4 and 6): colour = min(1, c * factor + white) times opacity. */
 #include "classify/sample.h"
-#include "simd/vec_scalar.h"
 
 #include <string.h>
 
-#define SAMPLE_CODE uint8_t
-#define SAMPLE_CHANNELS 2
-#define SAMPLE_NAME(kind) sample_byte2_##kind
-#include "classify/sample.tmpl.h"
-#define SAMPLE_CODE uint8_t
-#define SAMPLE_CHANNELS 4
-#define SAMPLE_NAME(kind) sample_byte4_##kind
-#include "classify/sample.tmpl.h"
-#define SAMPLE_CODE uint16_t
-#define SAMPLE_CHANNELS 2
-#define SAMPLE_NAME(kind) sample_word2_##kind
-#include "classify/sample.tmpl.h"
-#define SAMPLE_CODE uint16_t
-#define SAMPLE_CHANNELS 4
-#define SAMPLE_NAME(kind) sample_word4_##kind
-#include "classify/sample.tmpl.h"
+/* By bytes of a code, channels, and whether shaded. */
+typedef snow_sample_fn *snow_sample_table[2][2][2];
 
-snow_sample_fn *snow_sample_of(int code_bytes, int channels, bool shaded) {
-    static snow_sample_fn *const functions[2][2][2] = {
-        {{sample_byte2_plain, sample_byte2_shaded},
-         {sample_byte4_plain, sample_byte4_shaded}},
-        {{sample_word2_plain, sample_word2_shaded},
-         {sample_word4_plain, sample_word4_shaded}},
-    };
-    return functions[code_bytes == 2][channels == 4][shaded];
+#define SELECT_SCALAR
+#include "simd/select.h"
+#include "classify/sample_levels.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+#include "classify/sample_levels.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+#include "classify/sample_levels.h"
+#endif
+
+snow_sample_fn *snow_sample_of(snow_isa isa, int code_bytes, int channels,
+                               bool shaded) {
+    int bytes = code_bytes == 2, color = channels == 4;
+#if SNOW_HAS_AVX
+    if (isa == SNOW_ISA_AVX512)
+        return samples_avx512[bytes][color][shaded];
+    if (isa == SNOW_ISA_AVX2)
+        return samples_avx2[bytes][color][shaded];
+#endif
+    (void)isa;
+    return samples_scalar[bytes][color][shaded];
 }

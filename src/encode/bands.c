@@ -38,8 +38,8 @@ static size_t aligned(size_t bytes) {
 }
 
 static size_t mask_bytes(const snow_bands *bands) {
-    return aligned(SNOW_BAND_ROWS * ((size_t)bands->columns + 63) / 64 * 8 +
-                   SNOW_BAND_ROWS * 8);
+    size_t words = ((size_t)bands->columns + 63) / 64;
+    return aligned(SNOW_BAND_ROWS * words * sizeof(uint64_t));
 }
 
 static size_t column_bytes(const snow_bands *bands) {
@@ -68,30 +68,64 @@ static snow_status reserve_ia(snow_sparse *band, bool with_normals) {
                         (band->ia_voxels + voxels) * size);
 }
 
+/* Rows that lie end to end, and fill their masks, are one long row. */
+static void join_rows(snow_rows *rows, size_t size) {
+    if (rows->columns % 64 == 0 && rows->stride == rows->columns * size) {
+        rows->columns *= rows->rows;
+        rows->rows = 1;
+    }
+}
+
+/* Normals of a slice whose masks are known and whose voxels begin at `voxel` in
+ * IA. */
+static void make_normals(const encode_job *job, const row_buffers *buffers,
+                         snow_sparse *band, int64_t first_row, int64_t slice,
+                         size_t voxel) {
+    const snow_bands_order *order = job->order;
+    size_t words = snow_mask_words(band);
+    if (order->between)
+        slice /= 2;
+    for (int64_t row = 0; row < band->rows; row++) {
+        size_t count = snow_columns_of_masks(
+            buffers->masks + (size_t)row * words, words, buffers->columns);
+        if (count)
+            snow_normals_of_row(order->maker, order->placement,
+                                order->first_slice + slice, first_row + row,
+                                buffers->columns, count, band->normals + voxel);
+        voxel += count;
+    }
+}
+
 static snow_status encode_slice(const encode_job *job,
                                 const row_buffers *buffers, snow_fetch *fetch,
-                                snow_sparse *band, int64_t slice) {
-    const snow_bands_order *order = job->order;
-    size_t words = snow_mask_words(band), before = band->ia_voxels;
-    SNOW_TRY(reserve_ia(band, order->maker != NULL));
-    for (int64_t row = 0; row < band->rows; row++) {
-        uint64_t *masks = buffers->masks + (size_t)row * words;
-        const void *voxels = snow_fetch_row(fetch, slice, row);
-        size_t count = job->rows.encode_row(
-            &job->rows, voxels, (size_t)band->columns, masks,
-            band->codes + band->ia_voxels * (size_t)band->code_bytes);
-        if (order->maker && count) {
-            snow_columns_of_masks(masks, words, buffers->columns);
-            snow_normals_of_row(order->maker, order->placement,
-                                order->first_slice +
-                                    (order->between ? slice / 2 : slice),
-                                fetch->first_row + row, buffers->columns, count,
-                                band->normals + band->ia_voxels);
-        }
-        band->ia_voxels += count;
-    }
-    return snow_sparse_add_masks(band, buffers->masks,
-                                 band->ia_voxels - before);
+                                snow_sparse *band, int64_t first_row,
+                                int64_t slice) {
+    size_t begin = band->ia_voxels;
+    snow_rows rows;
+    SNOW_TRY(reserve_ia(band, job->order->maker != NULL));
+    snow_fetch_slice(fetch, slice, &rows);
+    join_rows(&rows, fetch->size);
+    size_t count =
+        job->rows.encode_rows(&job->rows, &rows, buffers->masks,
+                              band->codes + begin * (size_t)band->code_bytes);
+    band->ia_voxels += count;
+    if (job->order->maker && count)
+        make_normals(job, buffers, band, first_row, slice, begin);
+    return snow_sparse_add_masks(band, buffers->masks, count);
+}
+
+/* Rows first_row .. first_row + rows - 1 of slices of the volume. */
+static snow_fetch_order fetch_order(const snow_bands_order *order,
+                                    int64_t first_slice, int64_t slices,
+                                    int64_t first_row, int64_t rows) {
+    return (snow_fetch_order){.volume = order->volume,
+                              .placement = order->placement,
+                              .first_slice = first_slice,
+                              .slices = slices,
+                              .first_row = first_row,
+                              .rows = rows,
+                              .between = order->between,
+                              .isa = order->isa};
 }
 
 static snow_status encode_band(const encode_job *job, int64_t number,
@@ -102,14 +136,15 @@ static snow_status encode_band(const encode_job *job, int64_t number,
     int64_t first = number * SNOW_BAND_ROWS, left = bands->rows - first;
     int64_t rows = left < SNOW_BAND_ROWS ? left : SNOW_BAND_ROWS;
     row_buffers buffers = buffers_of(job, worker);
+    snow_fetch_order from =
+        fetch_order(order, order->first_slice, order->slice_count, first, rows);
     snow_fetch fetch;
-    snow_fetch_begin(&fetch, order->volume, order->placement,
-                     order->first_slice, order->slice_count, first, rows,
-                     order->between, buffers.fetch);
+    snow_fetch_begin(&fetch, &from, buffers.fetch);
     SNOW_TRY(snow_sparse_begin_band(band, job->scheme, bands->columns, rows,
-                                    bands->slices, bands->code_bytes));
+                                    bands->slices, bands->code_bytes,
+                                    order->isa));
     for (int64_t slice = 0; slice < bands->slices; slice++)
-        SNOW_TRY(encode_slice(job, &buffers, &fetch, band, slice));
+        SNOW_TRY(encode_slice(job, &buffers, &fetch, band, first, slice));
     return SNOW_OK;
 }
 
@@ -167,13 +202,15 @@ static snow_status choose(encode_job *job) {
         bands->context, &codes->codes, &codes->codes_capacity, 0,
         (size_t)bands->columns * (size_t)bands->code_bytes + SNOW_ROW_MARGIN));
     for (int64_t n = 0; n < rows; n += step) {
+        snow_fetch_order from = fetch_order(
+            order, order->first_slice + n / bands->rows, 1, n % bands->rows, 1);
         snow_fetch fetch;
-        snow_fetch_begin(&fetch, order->volume, order->placement,
-                         order->first_slice + n / bands->rows, 1,
-                         n % bands->rows, 1, false, buffers.fetch);
-        interesting += job->rows.encode_row(
-            &job->rows, snow_fetch_row(&fetch, 0, 0), (size_t)bands->columns,
-            buffers.masks, codes->codes);
+        snow_rows row;
+        from.between = false;
+        snow_fetch_begin(&fetch, &from, buffers.fetch);
+        snow_fetch_slice(&fetch, 0, &row);
+        interesting += job->rows.encode_rows(&job->rows, &row, buffers.masks,
+                                             codes->codes);
         runs += count_runs(buffers.masks, words);
         voxels += (uint64_t)bands->columns;
     }
@@ -221,9 +258,9 @@ static snow_status prepare(encode_job *job, int threads) {
     int64_t rows = bands->rows < SNOW_BAND_ROWS ? bands->rows : SNOW_BAND_ROWS;
     SNOW_TRY(reserve_bands(bands, (bands->rows + SNOW_BAND_ROWS - 1) /
                                       SNOW_BAND_ROWS));
-    job->scratch_bytes =
-        mask_bytes(bands) + column_bytes(bands) +
-        snow_fetch_bytes(order->volume, order->placement, rows, order->between);
+    snow_fetch_order from = fetch_order(order, 0, order->slice_count, 0, rows);
+    job->scratch_bytes = mask_bytes(bands) + column_bytes(bands) +
+                         aligned(snow_fetch_bytes(&from));
     SNOW_TRY(snow_reserve(bands->context, &bands->scratch,
                           &bands->scratch_capacity, 0,
                           (size_t)threads * job->scratch_bytes));

@@ -38,47 +38,62 @@ ROW(encode_block)(const snow_row_encoder *encoder, int runs,
     return mask;
 }
 
+/* The columns of a row that fill no block; nothing is read beyond them. */
+static inline __attribute__((always_inline)) TARGET uint64_t
+ROW(encode_rest)(const snow_row_encoder *encoder, int runs,
+                 const ROW_CODE *voxels, size_t columns, ROW_CODE *codes) {
+    ROW_CODE rest[64] = {0};
+    memcpy(rest, voxels, columns * sizeof *rest);
+    return ROW(encode_block)(encoder, runs, rest, (UINT64_C(1) << columns) - 1,
+                             codes);
+}
+
 static inline __attribute__((always_inline)) TARGET size_t
-ROW(encode)(const snow_row_encoder *encoder, int runs, const ROW_CODE *voxels,
-            size_t columns, uint64_t *masks, ROW_CODE *codes) {
-    size_t count = 0, column = 0;
-    for (; column + 64 <= columns; column += 64, masks++) {
-        *masks = ROW(encode_block)(encoder, runs, voxels + column, ~UINT64_C(0),
-                                   codes + count);
-        count += (size_t)__builtin_popcountll(*masks);
+ROW(encode)(const snow_row_encoder *encoder, int runs, const snow_rows *rows,
+            uint64_t *masks, ROW_CODE *codes) {
+    ROW_CODE *at = codes;
+    for (size_t row = 0; row < rows->rows; row++) {
+        const ROW_CODE *voxels =
+            (const ROW_CODE *)(const void *)(rows->voxels + row * rows->stride);
+        size_t left = rows->columns;
+        for (; left >= 64; left -= 64, voxels += 64) {
+            for (size_t n = 0; n < sizeof(ROW_CODE); n++)
+                __builtin_prefetch((const char *)voxels + rows->ahead + 64 * n,
+                                   0, 2);
+            uint64_t mask =
+                ROW(encode_block)(encoder, runs, voxels, ~UINT64_C(0), at);
+            at += __builtin_popcountll(mask);
+            *masks++ = mask;
+        }
+        if (left) {
+            uint64_t mask = ROW(encode_rest)(encoder, runs, voxels, left, at);
+            at += __builtin_popcountll(mask);
+            *masks++ = mask;
+        }
     }
-    if (column < columns) {
-        ROW_CODE rest[64] = {0}; /* nothing is read beyond the row */
-        memcpy(rest, voxels + column, (columns - column) * sizeof *rest);
-        *masks = ROW(encode_block)(encoder, runs, rest,
-                                   (UINT64_C(1) << (columns - column)) - 1,
-                                   codes + count);
-        count += (size_t)__builtin_popcountll(*masks);
-    }
-    return count;
+    return (size_t)(at - codes);
 }
 
 /* One interval is what a threshold gives, and has a loop of its own. */
 TARGET static size_t ROW(encode_one)(const snow_row_encoder *encoder,
-                                     const void *voxels, size_t columns,
-                                     uint64_t *masks, void *codes) {
-    return ROW(encode)(encoder, 1, voxels, columns, masks, codes);
+                                     const snow_rows *rows, uint64_t *masks,
+                                     void *codes) {
+    return ROW(encode)(encoder, 1, rows, masks, codes);
 }
 
 TARGET static size_t ROW(encode_runs)(const snow_row_encoder *encoder,
-                                      const void *voxels, size_t columns,
-                                      uint64_t *masks, void *codes) {
-    return ROW(encode)(encoder, encoder->coder->run_count, voxels, columns,
-                       masks, codes);
+                                      const snow_rows *rows, uint64_t *masks,
+                                      void *codes) {
+    return ROW(encode)(encoder, encoder->coder->run_count, rows, masks, codes);
 }
 
 TARGET static size_t ROW(encode_table)(const snow_row_encoder *encoder,
-                                       const void *voxels, size_t columns,
-                                       uint64_t *masks, void *codes) {
-    return ROW(encode)(encoder, -1, voxels, columns, masks, codes);
+                                       const snow_rows *rows, uint64_t *masks,
+                                       void *codes) {
+    return ROW(encode)(encoder, -1, rows, masks, codes);
 }
 
-static snow_encode_row_fn *const ROW(loops)[3] = {
+static snow_encode_rows_fn *const ROW(loops)[3] = {
     ROW(encode_table), ROW(encode_one), ROW(encode_runs)};
 
 #undef ROW_CODE
