@@ -214,12 +214,21 @@ static int check_kinds(const bench_command *command,
             return usage_error("this is an option of the tables:",
                                command->table_word);
     }
-    if (options->quick && (options->volumes || options->large))
-        return usage_error("--quick has its own volume; leave out",
-                           options->large ? "--large" : "--volumes");
-    if (options->sweep && options->volumes)
-        return usage_error("a sweep has its own volumes; leave out",
-                           "--volumes");
+    bool own = options->quick || options->sweep || options->chart;
+    bool by_size = options->sweep && strcmp(options->sweep, "size") == 0;
+    if ((options->chart || options->sweep) && options->large && !by_size)
+        return usage_error("there are no large volumes in this sweep; leave "
+                           "out",
+                           "--large");
+    if ((options->chart || options->sweep) && options->sides.count > 1)
+        return usage_error("a sweep has one size; leave out all but one of",
+                           "--sizes");
+    if (options->quick && options->large)
+        return usage_error("--quick has its own volumes; leave out", "--large");
+    if (own && (options->volumes || options->data))
+        return usage_error("--quick and sweeps have their own volumes; leave "
+                           "out",
+                           options->data ? "--data" : "--volumes");
     return -1;
 }
 
@@ -273,11 +282,13 @@ static int parse(int argc, char **argv, bench_options *options,
 }
 
 int bench_main(int argc, char **argv) {
-    bench_options options = {.runs = 7, .kernel = SNOW_KERNEL_GAUSS};
+    bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};
     int code = parse(argc, argv, &options, &command);
     if (code >= 0)
         return code;
+    if (!options.runs)
+        options.runs = options.quick ? 1 : 7;
     for (size_t i = 0; i < ENTRY_COUNT; i++) {
         if (strcmp(command.name, entries[i].name) != 0)
             continue;

@@ -386,8 +386,7 @@ int bench_speed(snow_context *context, const bench_options *asked) {
         return end_in_failure(&run, status);
     if (!run.list)
         return SNOW_OK;
-    return bench_print_json(
-        json_pack("{s:s, s:i, s:o, s:o}", "bench", "speed", "runs",
-                  options.quick ? 1 : options.runs, "machine",
-                  speed_machine_json(&run.machine), "rows", run.list));
+    return bench_print_json(json_pack(
+        "{s:s, s:i, s:o, s:o}", "bench", "speed", "runs", options.runs,
+        "machine", speed_machine_json(&run.machine), "rows", run.list));
 }

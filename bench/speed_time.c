@@ -182,7 +182,7 @@ static void sum_up(row_samples *samples, speed_row *row) {
 }
 
 snow_status speed_time(speed_session *session, speed_result *result) {
-    int runs = session->options->quick ? 1 : session->options->runs;
+    int runs = session->options->runs;
     snow_status status = SNOW_OK;
     row_samples *all = calloc((size_t)result->count + 1, sizeof *all);
     if (!all)
