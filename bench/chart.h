@@ -17,7 +17,7 @@ typedef struct chart_line {
 } chart_line;
 
 typedef struct chart_panel {
-    const char *title;
+    char title[64];
     chart_line lines[CHART_LINES];
 } chart_panel;
 

@@ -226,27 +226,27 @@ static snow_status sweep_volume(speed_run *run, int panel,
 
 static snow_status sweep_sparse(speed_run *run) {
     static const struct {
-        const char *phantom, *title;
-        int64_t dims[3];
-    } panels[CHART_PANELS] = {
-        {"phantom:head", "phantom:head 256x256x113", {256, 256, 113}},
-        {"phantom:shells", "phantom:shells 256x256x256", {256, 256, 256}},
-        {"phantom:cube", "phantom:cube 256x256x110", {256, 256, 110}},
-    };
+        const char *phantom;
+        int dims[3];
+    } panels[CHART_PANELS] = {{"phantom:head", {256, 256, 113}},
+                              {"phantom:shells", {256, 256, 256}},
+                              {"phantom:cube", {256, 256, 110}}};
+    static const int quick_dims[3] = {40, 40, 32};
     snow_status status = SNOW_OK;
     chart_plot *chart = run->chart;
     chart->title = "Time of a frame against the sparse ratio";
-    chart->x_label = "sparse ratio, % of voxels that are not interesting";
+    chart->x_label = "sparse ratio, %";
     chart->tick_count = 8;
     for (int i = 0; i < 8; i++)
         chart->ticks[i] = 30 + 10 * i;
     for (int i = 0; i < CHART_PANELS && status == SNOW_OK; i++) {
-        const int64_t *d = panels[i].dims;
+        const int *dims = run->options->quick ? quick_dims : panels[i].dims;
+        chart_panel *panel = &chart->panels[chart->panel_count++];
         bench_volume volume;
-        bool quick = run->options->quick;
-        chart->panels[chart->panel_count++].title = panels[i].title;
-        status = open_phantom(run, panels[i].phantom, quick ? 40 : d[0],
-                              quick ? 40 : d[1], quick ? 32 : d[2], &volume);
+        snprintf(panel->title, sizeof panel->title, "%s %dx%dx%d",
+                 panels[i].phantom, dims[0], dims[1], dims[2]);
+        status = open_phantom(run, panels[i].phantom, dims[0], dims[1], dims[2],
+                              &volume);
         if (status != SNOW_OK)
             break;
         status = sweep_volume(run, i, &volume);
@@ -276,7 +276,8 @@ static snow_status sweep_size(speed_run *run) {
         bench_volume volume;
         speed_result result;
         chart->panel_count = panel + 1;
-        chart->panels[panel].title = panels[panel];
+        snprintf(chart->panels[panel].title, sizeof chart->panels[panel].title,
+                 "%s", panels[panel]);
         status = open_phantom(run, panels[panel], side, side, side, &volume);
         if (status != SNOW_OK)
             break;

@@ -118,8 +118,8 @@ check "it is whole" well_formed size.svg 14 phantom:engine phantom:head 24 40 \
     "milliseconds per frame (median)"
 run 0 "a chart, of sparse ratios unless told" speed --chart sparse.svg \
     --threads 1 --json
-check "it is whole" well_formed sparse.svg 7 "phantom:head 256x256x113" \
-    "phantom:cube 256x256x110" 30 100
+check "it is whole" well_formed sparse.svg 7 "phantom:head 40x40x32" \
+    "phantom:cube 40x40x32" 30 100
 check "its figures were printed" grep -q '"sparse_ratio"' "$OUT"
 check "nothing is left beside them" \
     [ "$(echo *.svg*)" = "size.svg sparse.svg" ]
