@@ -1,59 +1,36 @@
 /* frame.c - one picture, from voxels to pixels: figure 8 of the paper, whose
- * line numbers stand in the margins of render_slab and its callers.  Each line
- * calls one stage of figure 7; how a stage works is told in its folder. */
+ * line numbers stand in the margins here and in footprint.c, which holds lines
+ * 03 to 13.  How a stage works is told in its folder. */
 #include "frame.h"
 #include "base/base.h"
-#include "classify/classify.h"
+#include "classify/transfer.h"
 #include "combine/combine.h"
-#include "composite/over.h"
-#include "decompose/slab.h"
-#include "encode/encode.h"
+#include "footprint.h"
 #include "image/image.h"
-#include "splat/splat.h"
-#include "transform/transform.h"
-
-#include <math.h>
 
 struct snow_frame {
     snow_context *context;
     snow_stats stats;
-    /* Buffers of the stages, kept from picture to picture. */
-    snow_sparse sparse; /* EA, IA, PA */
-    snow_sheet sheet;
-    snow_span *spans; /* of one row */
-    size_t spans_capacity;
+    snow_exact *exact; /* buffers of original, tested and footprint */
 };
-
-/* What one picture is made from; lives as long as the call. */
-typedef struct snow_job {
-    snow_frame *frame;
-    snow_settings settings; /* with every AUTO resolved */
-    snow_placement placement;
-    snow_slab slab;
-    snow_classifier classifier;
-    snow_shader shader;
-    snow_strip strip;
-    snow_splatter splatter;
-    int channels;
-    float *pixels; /* the local image */
-    int64_t kept;  /* voxels splatted out of strips */
-} snow_job;
 
 snow_status snow_frame_new(snow_context *context, snow_frame **out) {
     snow_frame *frame = snow_allocate_clear(context, sizeof *frame);
     if (!frame)
         return SNOW_NO_MEMORY;
-    frame->context = frame->sparse.context = context;
-    *out = frame;
-    return SNOW_OK;
+    frame->context = context;
+    snow_status status = snow_exact_new(context, &frame->exact);
+    if (status == SNOW_OK)
+        *out = frame;
+    else
+        snow_frame_free(frame);
+    return status;
 }
 
 void snow_frame_free(snow_frame *frame) {
     if (!frame)
         return;
-    snow_sparse_fini(&frame->sparse);
-    snow_release(frame->context, frame->sheet.pixels);
-    snow_release(frame->context, frame->spans);
+    snow_exact_free(frame->exact);
     snow_release(frame->context, frame);
 }
 
@@ -61,218 +38,27 @@ const snow_stats *snow_frame_stats(const snow_frame *frame) {
     return &frame->stats;
 }
 
-/* Adds the seconds since *mark to a total, and moves the mark. */
-static void lap(double *mark, double *total) {
-    double now = snow_seconds();
-    *total += now - *mark;
-    *mark = now;
-}
-
-/* Classifies and shades rows of a slice from `row` on into the job's strip. */
-static void classify_and_shade(snow_job *job, int64_t slice, int64_t row) {
-    snow_stats *stats = &job->frame->stats;
-    snow_strip *strip = &job->strip;
-    int64_t rows = job->placement.rows - row;
-    double mark = snow_seconds();
-    snow_classify_strip(&job->classifier, &job->placement, slice, row,
-                        rows < strip->room_rows ? rows : strip->room_rows,
-                        strip);
-    lap(&mark, &stats->seconds_classify);
-    if (job->settings.shade == SNOW_SHADE_PHONG)
-        snow_shade_strip(&job->shader, job->channels, strip);
-    lap(&mark, &stats->seconds_shade);
-}
-
-/* Measures density and runs on every 8th row of every 8th slice. */
-static snow_encoding choose_encoding(snow_job *job) {
-    const snow_placement *p = &job->placement;
-    uint64_t voxels = 0, interesting = 0, runs = 0;
-    for (int64_t slice = 0; slice < p->slices; slice += 8)
-        for (int64_t row = slice / 8 % 8; row < p->rows; row += 8) {
-            snow_classify_strip(&job->classifier, p, slice, row, 1,
-                                &job->strip);
-            voxels += (uint64_t)p->columns;
-            interesting += job->strip.count;
-            runs += snow_spans_of_columns(job->strip.columns, job->strip.count,
-                                          job->frame->spans);
-        }
-    return snow_encoding_choose(voxels, interesting, runs);
-}
-
-/* Lines 04 to 06: one slice into the sparse matrix. */
-static snow_status encode_slice(snow_job *job, int64_t slice) {
-    snow_sparse *sparse = &job->frame->sparse;
-    SNOW_TRY(snow_sparse_begin_slice(sparse));
-    for (int64_t row = 0; row < job->placement.rows;
-         row += job->strip.room_rows) {
-        classify_and_shade(job, slice, row);
-        double mark = snow_seconds();
-        SNOW_TRY(snow_sparse_add_strip(sparse, &job->strip));
-        lap(&mark, &job->frame->stats.seconds_encode);
-    }
-    return snow_sparse_end_slice(sparse);
-}
-
-/* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
-static void splat_encoded_slice(snow_job *job, int64_t slice) {
-    snow_walk walk;
-    snow_walk_begin(&walk, &job->frame->sparse, slice - job->slab.first);
-    for (int64_t row = 0; row < job->placement.rows; row++) {
-        size_t voxel;
-        size_t count = snow_walk_row(&walk, job->frame->spans, &voxel);
-        snow_splat_row(&job->splatter, &job->frame->sheet, row,
-                       job->frame->spans, count,
-                       job->frame->sparse.ia + voxel * (size_t)job->channels);
-    }
-}
-
-/* The same without a sparse matrix, row by row out of the volume: original
- * splatting, where the classifier keeps every voxel, and tested splatting. */
-static void splat_classified_slice(snow_job *job, int64_t slice) {
-    snow_strip *strip = &job->strip;
-    for (int64_t row = 0; row < job->placement.rows; row += strip->room_rows) {
-        classify_and_shade(job, slice, row);
-        double mark = snow_seconds();
-        job->kept += (int64_t)strip->count;
-        size_t begin = 0;
-        for (int64_t n = 0; n < strip->rows; n++) {
-            size_t end = strip->row_end[n];
-            size_t spans = snow_spans_of_columns(
-                strip->columns + begin, end - begin, job->frame->spans);
-            snow_splat_row(&job->splatter, &job->frame->sheet, row + n,
-                           job->frame->spans, spans,
-                           strip->samples + begin * (size_t)job->channels);
-            begin = end;
-        }
-        lap(&mark, &job->frame->stats.seconds_splat);
-    }
-}
-
-/* The slab's n-th slice from the viewer. */
-static int64_t nth_slice(const snow_job *job, int64_t n) {
-    snow_slab slab = job->slab;
-    return slab.first + (job->placement.nearest_first ? n : slab.count - 1 - n);
-}
-
-/* Line 07, from front to back: the slab's slices onto the sheet, and each
- * sheet into the local image. */
-static void splat_and_composite(snow_job *job) {
-    snow_stats *stats = &job->frame->stats;
-    for (int64_t n = 0; n < job->slab.count; n++) {
-        int64_t slice = nth_slice(job, n);
-        snow_splatter_begin_slice(&job->splatter, slice);
-        double mark = snow_seconds();
-        if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
-            splat_encoded_slice(job, slice);
-            lap(&mark, &stats->seconds_splat);
-        } else {
-            splat_classified_slice(job, slice);
-            mark = snow_seconds();
-        }
-        snow_composite_sheet(job->pixels, &job->frame->sheet);
-        lap(&mark, &stats->seconds_composite);
-    }
-}
-
-/* Classifier, shader, splatter and buffers for this volume, look and view. */
-static snow_status prepare(snow_job *job, const snow_volume *volume,
-                           const snow_transfer *transfer,
-                           const snow_view *view) {
-    snow_frame *frame = job->frame;
-    snow_context *context = frame->context;
-    snow_settings *settings = &job->settings;
-    const snow_placement *p = &job->placement;
-    SNOW_TRY(snow_settings_resolve(context, volume, settings));
-    SNOW_TRY(
-        snow_placement_make(context, &volume->info, view, &job->placement));
-    snow_classify_options options = {
-        .threshold = settings->threshold,
-        .opacity_exponent = p->path / settings->opacity_length,
-        .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
-        .premultiply = settings->shade == SNOW_SHADE_NONE,
-    };
-    job->channels = transfer->grey ? 2 : 4;
-    SNOW_TRY(snow_classifier_init(context, volume, transfer, &options,
-                                  &job->classifier));
-    /* Lines 02 and 03; normals are made for the voxels that are kept. */
-    SNOW_TRY(snow_shader_init(context, volume, p, settings, &job->shader));
-    SNOW_TRY(snow_strip_init(context, p, job->channels, &job->strip));
-    SNOW_TRY(snow_splatter_init(context, p, settings->kernel,
-                                settings->footprint, job->channels,
-                                &job->splatter));
-    double mark = snow_seconds();
-    SNOW_TRY(snow_sheet_begin(context, p->width, p->height, job->channels,
-                              &frame->sheet));
-    lap(&mark, &frame->stats.seconds_composite);
-    return snow_reserve(context, &frame->spans, &frame->spans_capacity, 0,
-                        ((size_t)p->columns / 2 + 1) * sizeof *frame->spans);
-}
-
-/* Lines 04 to 06 for the slab: the volume into the sparse matrix. */
-static snow_status encode_slab(snow_job *job) {
-    snow_settings *settings = &job->settings;
-    if (settings->encoding == SNOW_ENCODING_AUTO)
-        settings->encoding = choose_encoding(job);
-    SNOW_TRY(snow_sparse_begin(&job->frame->sparse,
-                               snow_scheme_of(settings->encoding),
-                               &job->placement, job->channels));
-    for (int64_t n = 0; n < job->slab.count; n++)
-        SNOW_TRY(encode_slice(job, job->slab.first + n));
-    return SNOW_OK;
-}
-
-static void finish(snow_job *job) {
-    snow_context *context = job->frame->context;
-    snow_splatter_fini(context, &job->splatter);
-    snow_strip_free(context, &job->strip);
-    snow_classifier_fini(context, &job->classifier);
-}
-
-/* What is known at the end beside the times.  Original splatting keeps every
- * voxel, so nothing holds the number of interesting ones, and they are counted
- * here: over the whole volume, and outside of seconds_frame. */
-static snow_status fill_stats(const snow_job *job, const snow_volume *volume,
-                              const snow_transfer *transfer,
-                              snow_stats *stats) {
-    const snow_sparse *sparse = &job->frame->sparse;
-    const snow_placement *p = &job->placement;
+/* What was chosen for the picture. */
+static void tell_choices(const snow_job *job) {
+    snow_stats *stats = job->stats;
     stats->method = job->settings.method;
     stats->footprint = job->settings.footprint;
-    stats->slice_axis = p->slice_axis;
+    stats->slice_axis = job->placement.slice_axis;
     stats->threads = job->settings.threads;
     stats->isa = job->settings.isa;
     stats->quality = job->settings.quality;
-    stats->voxels = p->columns * p->rows * job->slab.count;
-    double voxels = (double)stats->voxels;
-    if (stats->method == SNOW_METHOD_TESTED) {
-        stats->interesting = job->kept;
-        stats->sparse_ratio = voxels > 0 ? 1 - (double)job->kept / voxels : 1;
-        return SNOW_OK;
-    }
-    if (stats->method == SNOW_METHOD_ORIGINAL) {
-        SNOW_TRY(snow_transfer_sparse_ratio(
-            transfer, volume, job->settings.threshold, &stats->sparse_ratio));
-        stats->interesting = llround(voxels * (1 - stats->sparse_ratio));
-        return SNOW_OK;
-    }
-    stats->encoding = job->settings.encoding;
-    stats->interesting = (int64_t)sparse->ia_voxels;
-    stats->sparse_ratio =
-        voxels > 0 ? 1 - (double)sparse->ia_voxels / voxels : 1;
-    stats->ea_bytes = sparse->ea_bytes;
-    stats->ia_bytes =
-        sparse->ia_voxels * (size_t)sparse->channels * sizeof *sparse->ia;
-    stats->pa_bytes = (uint64_t)(sparse->filled + 1) * sizeof *sparse->pa;
-    return SNOW_OK;
+    stats->voxels =
+        job->placement.columns * job->placement.rows * job->slab.count;
 }
 
-/* Figure 8, lines 01 to 13, for a job whose stages are ready. */
-static snow_status render_slab(snow_job *job, int parts, int part) {
+/* Figure 8, lines 01 to 03, and room for the stages to come. */
+static snow_status prepare(snow_frame *frame, const snow_view *view, int parts,
+                           int part, snow_job *job) {
+    SNOW_TRY(snow_settings_resolve(job->context, job->volume, &job->settings));
+    /* 02 */ SNOW_TRY(snow_placement_make(job->context, &job->volume->info,
+                                          view, &job->placement));
     /* 01 */ job->slab = snow_slab_equal(job->placement.slices, parts, part);
-    if (job->settings.method == SNOW_METHOD_FOOTPRINT)
-        /* 04 - 06 */ SNOW_TRY(encode_slab(job));
-    /* 07 - 13 */ splat_and_composite(job);
-    return SNOW_OK;
+    /* 03 */ return snow_exact_prepare(frame->exact, job);
 }
 
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
@@ -281,22 +67,26 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
                                    const snow_settings *settings, int parts,
                                    int part, snow_image **out) {
     double start = snow_seconds(), cpu = snow_cpu_seconds();
-    snow_job job = {.frame = frame, .settings = snow_settings_known(settings)};
-    snow_image *image = NULL;
     frame->stats = (snow_stats){0};
-    /* 02 - 03 */ snow_status status = prepare(&job, volume, transfer, view);
+    snow_job job = {
+        .context = frame->context,
+        .volume = volume,
+        .transfer = transfer,
+        .settings = snow_settings_known(settings),
+        .channels = transfer->grey ? 2 : 4,
+        .stats = &frame->stats,
+    };
+    snow_image *image = NULL;
+    SNOW_TRY(prepare(frame, view, parts, part, &job));
+    SNOW_TRY(snow_image_new(frame->context, view->width, view->height,
+                            job.channels, &image));
+    job.pixels = snow_image_pixels(image);
+    /* 04 - 13 */ snow_status status = snow_exact_render(frame->exact, &job);
+    frame->stats.seconds_frame = snow_seconds() - start;
+    frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
+    tell_choices(&job);
     if (status == SNOW_OK)
-        status = snow_image_new(frame->context, view->width, view->height,
-                                job.channels, &image);
-    if (status == SNOW_OK) {
-        job.pixels = snow_image_pixels(image);
-        status = render_slab(&job, parts, part);
-        frame->stats.seconds_frame = snow_seconds() - start;
-        frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
-    }
-    if (status == SNOW_OK)
-        status = fill_stats(&job, volume, transfer, &frame->stats);
-    finish(&job);
+        status = snow_exact_count(frame->exact, &job);
     if (status == SNOW_OK)
         *out = image;
     else

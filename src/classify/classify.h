@@ -24,13 +24,15 @@ typedef struct snow_strip {
     size_t *row_end;   /* per row: the entries up to its end */
     uint32_t *columns; /* per entry */
     float *samples;    /* per entry: (grey, a) or (r, g, b, a) */
-    int64_t room_rows; /* that the buffers hold, set by snow_strip_init */
+    int64_t room_rows; /* that the buffers hold, set by snow_strip_make */
+    size_t row_end_capacity, columns_capacity, samples_capacity; /* bytes */
 } snow_strip;
 
-/* Makes room for strips of slices placed so.  The strip's buffers belong to
- * the context; free with snow_strip_free.  Errors: SNOW_BAD_USAGE (a row of
- * 2^32 voxels or more), SNOW_NO_MEMORY. */
-snow_status snow_strip_init(snow_context *context,
+/* Makes room for strips of slices placed so, in the memory that is there where
+ * it suffices; the record begins as zeros.  The strip's buffers belong to the
+ * context; free with snow_strip_free.  Errors: SNOW_BAD_USAGE (a row of 2^32
+ * voxels or more), SNOW_NO_MEMORY. */
+snow_status snow_strip_make(snow_context *context,
                             const snow_placement *placement, int channels,
                             snow_strip *strip);
 void snow_strip_free(snow_context *context, snow_strip *strip);
@@ -57,6 +59,7 @@ struct snow_classifier {
     snow_classify_row_fn *classify_row;
     unsigned char *keep; /* per native value: is it kept? */
     float *table;        /* per native value: its sample */
+    size_t keep_capacity, table_capacity; /* bytes */
 };
 
 /* What a classifier is asked to be. */
@@ -66,12 +69,13 @@ typedef struct snow_classify_options {
     bool keep_all, premultiply;
 } snow_classify_options;
 
-/* Errors: SNOW_NO_MEMORY.  Free with snow_classifier_fini. */
-snow_status snow_classifier_init(snow_context *context,
+/* Readies a classifier; the record begins as zeros, and keeps the memory of its
+ * tables.  Errors: SNOW_NO_MEMORY.  Free with snow_classifier_fini. */
+snow_status snow_classifier_make(snow_context *context,
                                  const snow_volume *volume,
                                  const snow_transfer *transfer,
                                  const snow_classify_options *options,
-                                 snow_classifier *out);
+                                 snow_classifier *classifier);
 void snow_classifier_fini(snow_context *context, snow_classifier *classifier);
 
 /* The sample of one native value; true when it is interesting.  An
