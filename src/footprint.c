@@ -39,6 +39,7 @@ typedef struct worker {
     bool splatter_made; /* for the picture at work */
     snow_run *runs;     /* gathering: of GATHER_ROWS rows */
     size_t runs_capacity;
+    snow_places places;
     int64_t kept; /* voxels thrown out of strips */
     snow_status status;
     double seconds[STAGES];
@@ -91,6 +92,7 @@ void snow_exact_free(snow_exact *exact) {
         snow_release(context, w->spans);
         snow_release(context, w->sheet.pixels);
         snow_release(context, w->runs);
+        snow_release(context, w->places.window);
         snow_splatter_fini(context, &w->splatter);
     }
     snow_release(context, exact->groups);
@@ -160,6 +162,7 @@ static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
         return SNOW_OK;
     size_t row = (size_t)p->width * (size_t)job->channels;
     size_t runs = (size_t)p->width / 2 + 1;
+    SNOW_TRY(snow_places_make(context, p->width, &w->places));
     SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
                           GATHER_ROWS * row * sizeof *w->sheet.pixels));
     return snow_reserve(context, &w->runs, &w->runs_capacity, 0,
@@ -468,6 +471,7 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
     for (int y = first; y < end; y++) {
         size_t line = (size_t)(y - top);
         counts[line] = snow_gather_row(&exact->gatherer, dense, slice, y,
+                                       &w->places,
                                        w->sheet.pixels + line * stride,
                                        w->runs + line * room);
     }

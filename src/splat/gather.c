@@ -8,15 +8,35 @@
  * loses nothing; the map of reached windows decides. */
 #define SLACK 1e-3
 
+#define CHUNK 16 /* pixels whose places are found at once */
+
 #if SNOW_HAS_AVX
-/* Appends pixels to a row's runs: the last run grows where they touch it. */
-static inline int add_run(snow_run *runs, int count, int first, int end) {
-    if (count && runs[count - 1].end == first) {
-        runs[count - 1].end = end;
-        return count;
+/* Runs of set bits, from pixel `begin` on (a multiple of 16) and before `end`
+ * and the image's edge; returns their number. */
+static int find_runs(const uint16_t *reached, int begin, int end, int width,
+                     snow_run *runs) {
+    int count = 0, open = -1; /* where the run began that is still open */
+    for (int x = begin; x < end; x += CHUNK) {
+        unsigned bits = reached[x / CHUNK];
+        if (x + CHUNK > width)
+            bits &= (1u << (width - x)) - 1;
+        if (bits == (open < 0 ? 0 : 0xffff))
+            continue; /* no run begins or ends here */
+        for (int at = 0; at < CHUNK;) {
+            unsigned rest = (open < 0 ? bits : ~bits & 0xffff) >> at;
+            if (!rest)
+                break;
+            at += __builtin_ctz(rest);
+            if (open >= 0)
+                runs[count++] = (snow_run){open, x + at};
+            open = open < 0 ? x + at : -1;
+        }
     }
-    runs[count] = (snow_run){first, end};
-    return count + 1;
+    if (open >= 0) {
+        int last = (end + CHUNK - 1) & -CHUNK;
+        runs[count++] = (snow_run){open, last < width ? last : width};
+    }
+    return count;
 }
 
 #define SELECT_AVX2
@@ -88,6 +108,20 @@ static snow_gather_fn *pick(snow_isa isa, int channels, int taps_u) {
     return NULL;
 }
 #endif
+
+snow_status snow_places_make(snow_context *context, int width,
+                             snow_places *places) {
+    size_t pixels = ((size_t)width + CHUNK - 1) / CHUNK * CHUNK;
+    SNOW_TRY(snow_reserve(context, &places->window, &places->capacity, 0,
+                          5 * pixels * sizeof(int32_t) +
+                              pixels / CHUNK * sizeof(uint16_t)));
+    places->row_u = places->window + pixels;
+    places->row_v = places->row_u + pixels;
+    places->rest_u = (float *)(void *)(places->row_v + pixels);
+    places->rest_v = places->rest_u + pixels;
+    places->reached = (uint16_t *)(void *)(places->rest_v + pixels);
+    return SNOW_OK;
+}
 
 snow_status snow_gatherer_make(snow_context *context, const snow_placement *p,
                                snow_kernel kernel, int support, int channels,
@@ -163,7 +197,8 @@ static void narrow(double at, double step, double low, double high,
 }
 
 int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
-                    int y, float *pixels, snow_run *runs) {
+                    int y, const snow_places *places, float *pixels,
+                    snow_run *runs) {
     const snow_placement *p = g->placement;
     double origin[2], first = 0, end = p->width;
     slice_origin(p, slice, origin);
@@ -184,5 +219,5 @@ int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
         return 0;
     line.first = (int)first;
     line.end = (int)ceil(end);
-    return g->gather(g, d, &line, pixels, runs);
+    return g->gather(g, d, &line, places, pixels, runs);
 }

@@ -29,12 +29,28 @@ typedef struct snow_line {
     int first, end;
 } snow_line;
 
+/* Where the pixels of a row look, in the memory of one thread: arrays of
+ * the width, rounded up to 16. */
+typedef struct snow_places {
+    int32_t *window;        /* its first float */
+    int32_t *row_u, *row_v; /* first floats of rows of the phase tables */
+    float *rest_u, *rest_v; /* from there to the next row, 0 to 1 */
+    uint16_t *reached;      /* 16 pixels each, the first one lowest */
+    size_t capacity;        /* of the memory, which begins at `window` */
+} snow_places;
+
+/* Makes room for rows of `width` pixels; the record begins as zeros.  Errors:
+ * SNOW_NO_MEMORY.  Free with snow_release(context, places->window). */
+snow_status snow_places_make(snow_context *context, int width,
+                             snow_places *places);
+
 /* Gathers the reached pixels of a line into `pixels`, the row's first one, and
  * tells them as runs from left to right; returns their number.  The others are
  * not touched. */
 typedef int snow_gather_fn(const snow_gatherer *gatherer,
                            const snow_dense *dense, const snow_line *line,
-                           float *pixels, snow_run *runs);
+                           const snow_places *places, float *pixels,
+                           snow_run *runs);
 
 /* All that one view needs; begins as zeros, and keeps its tables. */
 struct snow_gatherer {
@@ -61,6 +77,7 @@ void snow_gather_rows(const snow_gatherer *gatherer, const snow_dense *dense,
 /* One row of the image before one slice; as snow_gather_fn.  `runs` has room
  * for width / 2 + 1. */
 int snow_gather_row(const snow_gatherer *gatherer, const snow_dense *dense,
-                    int64_t slice, int y, float *pixels, snow_run *runs);
+                    int64_t slice, int y, const snow_places *places,
+                    float *pixels, snow_run *runs);
 
 #endif

@@ -11,49 +11,41 @@
  *
  * Pixels go in chunks of 16 whatever the level, counted from the image's edge:
  * a chunk's place is a double, and what its lanes add to it is small.  First
- * all lanes find their windows and phases, then the reached ones gather:
+ * all pixels of the row find their windows and phases, then the reached ones
+ * their weights, up to 16 at a time, and then they gather:
  *
  *   acc = sum over rows j of v_j * block(row j)      whole blocks
- *   pixel = fold(u * acc)                            weights u spread out */
+ *   pixel = fold(u * acc)                            weights u spread out
+ *
+ * Weights go through memory, where they are spread for nothing by loading. */
 
-#define CHUNK 16
-
-/* Windows and phases of a chunk's pixels. */
-typedef struct LOCAL(chunk) {
-    int32_t window[CHUNK];         /* its first float */
-    int32_t cell_u[CHUNK], cell_v[CHUNK];
-    float rest_u[CHUNK], rest_v[CHUNK]; /* from that cell to the next, 0 to 1 */
-} LOCAL(chunk);
-
-/* The weights of four voxels at a phase. */
-static inline __attribute__((always_inline)) TARGET __m128 LOCAL(weights)(
-    const float *row, int padded, float rest) {
-    __m128 here = _mm_loadu_ps(row), next = _mm_loadu_ps(row + padded);
-    return _mm_fmadd_ps(_mm_set1_ps(rest), _mm_sub_ps(next, here), here);
+/* Weights of four voxels at a phase, for all `padded` voxels of a row. */
+static inline __attribute__((always_inline)) TARGET void LOCAL(weights)(
+    const float *table, int padded, float rest, float *weights) {
+    __m128 part = _mm_set1_ps(rest);
+    for (int n = 0; n < padded; n += 4) {
+        __m128 here = _mm_loadu_ps(table + n);
+        __m128 next = _mm_loadu_ps(table + padded + n);
+        _mm_storeu_ps(weights + n,
+                      _mm_fmadd_ps(part, _mm_sub_ps(next, here), here));
+    }
 }
 
 /* Sums one pixel; `taps` rows, `blocks` blocks a row. */
 static inline __attribute__((always_inline)) TARGET void LOCAL(pixel)(
-    const snow_gatherer *g, const float *window, size_t stride,
-    const float *row_u, float rest_u, const float *row_v, float rest_v,
+    const float *window, size_t stride, const float *u, const float *v,
     int taps, int blocks, float *pixel) {
-    float v[SNOW_TAPS_MOST];
-    for (int j = 0; j < taps; j += 4)
-        _mm_storeu_ps(v + j, LOCAL(weights)(row_v + j, g->phases_v.padded,
-                                            rest_v));
     B(block) sum = B(zero)();
     for (int n = 0; n < blocks; n++, window += BLOCK_VOXELS * GATHER_CHANNELS) {
         B(block) acc = B(scale)(v[0], B(load)(window));
         for (int j = 1; j < taps; j++)
             acc = B(more)(v[j], B(load)(window + (size_t)j * stride), acc);
-        __m128 w = LOCAL(weights)(row_u + n * BLOCK_VOXELS,
-                                  g->phases_u.padded, rest_u);
 #if GATHER_CHANNELS == 2
-        B(block) u = B(pairs)(w);
+        B(block) w = B(pairs)(u + n * BLOCK_VOXELS);
 #else
-        B(block) u = B(fours)(w);
+        B(block) w = B(fours)(u + n * BLOCK_VOXELS);
 #endif
-        sum = B(fma)(u, acc, sum);
+        sum = B(fma)(w, acc, sum);
     }
     __m128 folded = B(fold)(sum);
 #if GATHER_CHANNELS == 2
@@ -64,40 +56,50 @@ static inline __attribute__((always_inline)) TARGET void LOCAL(pixel)(
 #endif
 }
 
-/* Pixels first .. end - 1 of a chunk. */
+/* Pixels first .. end - 1 of a row, 16 at most. */
 static inline __attribute__((always_inline)) TARGET void LOCAL(pixels)(
-    const snow_gatherer *g, const snow_dense *d, const LOCAL(chunk) *c,
-    int first, int end, int taps, int blocks, float *pixels) {
-    size_t padded_u = (size_t)g->phases_u.padded;
-    size_t padded_v = (size_t)g->phases_v.padded;
-    for (int n = first; n < end; n++)
-        LOCAL(pixel)(g, d->samples + c->window[n], d->stride,
-                     g->phases_u.weights + (size_t)c->cell_u[n] * padded_u,
-                     c->rest_u[n],
-                     g->phases_v.weights + (size_t)c->cell_v[n] * padded_v,
-                     c->rest_v[n], taps, blocks,
-                     pixels + (size_t)n * GATHER_CHANNELS);
+    const snow_gatherer *g, const snow_dense *d, const snow_places *p,
+    int first, int end, int taps, int blocks, int padded_u, int padded_v,
+    float *pixels) {
+    float u[CHUNK * SNOW_TAPS_MOST], v[CHUNK * SNOW_TAPS_MOST];
+    const float *window = d->samples;
+    const size_t stride = d->stride;
+    for (int n = 0; n < end - first; n++) {
+        LOCAL(weights)(g->phases_u.weights + p->row_u[first + n], padded_u,
+                       p->rest_u[first + n], u + n * padded_u);
+        LOCAL(weights)(g->phases_v.weights + p->row_v[first + n], padded_v,
+                       p->rest_v[first + n], v + n * padded_v);
+    }
+    __asm__("" ::: "memory"); /* see above: not through registers */
+    for (int n = 0; n < end - first; n++)
+        LOCAL(pixel)(window + p->window[first + n], stride, u + n * padded_u,
+                     v + n * padded_v, taps, blocks,
+                     pixels + (size_t)(first + n) * GATHER_CHANNELS);
 }
 
-/* The same with the usual numbers of taps as constants. */
+/* A run of pixels, the usual numbers of taps as constants. */
 static TARGET void LOCAL(run)(const snow_gatherer *g, const snow_dense *d,
-                              const LOCAL(chunk) *c, int first, int end,
+                              const snow_places *p, snow_run run,
                               float *pixels) {
     int taps = g->phases_v.taps;
     int blocks = (g->phases_u.taps + BLOCK_VOXELS - 1) / BLOCK_VOXELS;
-    if (taps == 4 && blocks == 1)
-        LOCAL(pixels)(g, d, c, first, end, 4, 1, pixels);
-    else if (taps == 2 && blocks == 1)
-        LOCAL(pixels)(g, d, c, first, end, 2, 1, pixels);
-    else
-        LOCAL(pixels)(g, d, c, first, end, taps, blocks, pixels);
+    for (int first = run.first; first < run.end; first += CHUNK) {
+        int end = first + CHUNK < run.end ? first + CHUNK : run.end;
+        if (taps == 4 && blocks == 1)
+            LOCAL(pixels)(g, d, p, first, end, 4, 1, 4, 4, pixels);
+        else if (taps == 2 && blocks == 1)
+            LOCAL(pixels)(g, d, p, first, end, 2, 1, 4, 4, pixels);
+        else
+            LOCAL(pixels)(g, d, p, first, end, taps, blocks,
+                          g->phases_u.padded, g->phases_v.padded, pixels);
+    }
 }
 
-/* Finds the windows and phases of a chunk that begins at pixel x; returns
- * which of its pixels are reached, the first one lowest. */
+/* Finds the places of a chunk that begins at pixel x; returns which of its
+ * pixels are reached, the first one lowest. */
 static inline __attribute__((always_inline)) TARGET unsigned LOCAL(locate)(
     const snow_gatherer *g, const snow_dense *d, const snow_line *line, int x,
-    LOCAL(chunk) *c) {
+    const snow_places *p) {
     double u = line->u + x * line->du, v = line->v + x * line->dv;
     double whole_u = floor(u), whole_v = floor(v);
     V(vec) start_u = V(set1)((float)(u - whole_u));
@@ -122,39 +124,30 @@ static inline __attribute__((always_inline)) TARGET unsigned LOCAL(locate)(
         V(vec) phase_u = V(mul)(V(sub)(at_u, floor_u), cells_u);
         V(vec) phase_v = V(mul)(V(sub)(at_v, floor_v), cells_v);
         V(ints) cell_u = V(to_ints)(phase_u), cell_v = V(to_ints)(phase_v);
-        V(store_ints)(c->window + n,
+        V(store_ints)(p->window + x + n,
                       V(place)(i, GATHER_CHANNELS, j, (int)d->stride));
-        V(store_ints)(c->cell_u + n, cell_u);
-        V(store_ints)(c->cell_v + n, cell_v);
-        V(store)(c->rest_u + n, V(sub)(phase_u, V(to_floats)(cell_u)));
-        V(store)(c->rest_v + n, V(sub)(phase_v, V(to_floats)(cell_v)));
+        V(store_ints)(p->row_u + x + n, V(times)(cell_u, g->phases_u.padded));
+        V(store_ints)(p->row_v + x + n, V(times)(cell_v, g->phases_v.padded));
+        V(store)(p->rest_u + x + n, V(sub)(phase_u, V(to_floats)(cell_u)));
+        V(store)(p->rest_v + x + n, V(sub)(phase_v, V(to_floats)(cell_v)));
     }
     return reached;
 }
 
-static TARGET int LOCAL(row)(const snow_gatherer *g,
-                                    const snow_dense *d, const snow_line *line,
-                                    float *pixels, snow_run *runs) {
-    int count = 0;
-    LOCAL(chunk) chunk;
-    for (int x = line->first & -CHUNK; x < line->end; x += CHUNK) {
-        unsigned reached = LOCAL(locate)(g, d, line, x, &chunk);
-        if (x + CHUNK > g->placement->width)
-            reached &= (1u << (g->placement->width - x)) - 1;
-        while (reached) {
-            int first = __builtin_ctz(reached);
-            int end = first + __builtin_ctz(~(reached >> first));
-            LOCAL(run)(g, d, &chunk, first, end,
-                       pixels + (size_t)x * GATHER_CHANNELS);
-            count = add_run(runs, count, x + first, x + end);
-            reached &= ~0u << end;
-        }
-    }
+static TARGET int LOCAL(row)(const snow_gatherer *g, const snow_dense *d,
+                             const snow_line *line, const snow_places *p,
+                             float *pixels, snow_run *runs) {
+    int begin = line->first & -CHUNK;
+    for (int x = begin; x < line->end; x += CHUNK)
+        p->reached[x / CHUNK] = (uint16_t)LOCAL(locate)(g, d, line, x, p);
+    int count = find_runs(p->reached, begin, line->end, g->placement->width,
+                          runs);
+    for (int n = 0; n < count; n++)
+        LOCAL(run)(g, d, p, runs[n], pixels);
     return count;
 }
 
 #undef GATHER_CHANNELS
 #undef B
 #undef BLOCK_VOXELS
-#undef CHUNK
 #undef LOCAL

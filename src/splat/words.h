@@ -4,7 +4,7 @@
  *   V(ints)          as many 32-bit whole numbers as a vector has floats
  *   V(lanes)()       0, 1, 2 ...
  *   V(floor)(v), V(to_ints)(v) (towards 0), V(to_floats)(i)
- *   V(add_int)(i, n), V(clamp)(i, low, high)
+ *   V(add_int)(i, n), V(times)(i, n), V(clamp)(i, low, high)
  *   V(place)(i, i_step, j, j_step)   i * i_step + j * j_step
  *   V(store_ints)(p, i)
  *   V(bits)(map, words, i, j)    bit i of row j, rows of `words` words, of all
@@ -16,8 +16,8 @@
  *   B(block)               the type
  *   B(load)(p), B(scale)(s, b), B(more)(s, b, c) is s b + c
  *   B(zero)(), B(fma)(a, b, c)
- *   B(pairs)(w)            weights of 4 voxels, each twice (8 floats)
- *   B(fours)(w)            weights of 2 or 4 voxels, each 4 times
+ *   B(pairs)(p)            the weights of 4 voxels, each twice (8 floats)
+ *   B(fours)(p)            the weights of 2 or 4 voxels, each 4 times
  *   B(fold)(b)             the four floats that remain when halves are added */
 #ifndef SNOW_SPLAT_WORDS_H
 #define SNOW_SPLAT_WORDS_H
@@ -59,6 +59,10 @@ SNOW_AVX2_INLINE __m256i snow_avx2_place(__m256i i, int i_step, __m256i j, int j
 
 SNOW_AVX2_INLINE __m256i snow_avx2_add_int(__m256i i, int n) {
     return _mm256_add_epi32(i, _mm256_set1_epi32(n));
+}
+
+SNOW_AVX2_INLINE __m256i snow_avx2_times(__m256i i, int n) {
+    return _mm256_mullo_epi32(i, _mm256_set1_epi32(n));
 }
 
 SNOW_AVX2_INLINE void snow_avx2_store_ints(int32_t *p, __m256i i) {
@@ -109,6 +113,10 @@ SNOW_AVX512_INLINE __m512i snow_avx512_add_int(__m512i i, int n) {
     return _mm512_add_epi32(i, _mm512_set1_epi32(n));
 }
 
+SNOW_AVX512_INLINE __m512i snow_avx512_times(__m512i i, int n) {
+    return _mm512_mullo_epi32(i, _mm512_set1_epi32(n));
+}
+
 SNOW_AVX512_INLINE void snow_avx512_store_ints(int32_t *p, __m512i i) {
     _mm512_storeu_si512(p, i);
 }
@@ -146,14 +154,16 @@ SNOW_AVX2_INLINE __m256 snow_b8_fma(__m256 a, __m256 b, __m256 c) {
     return _mm256_fmadd_ps(a, b, c);
 }
 
-SNOW_AVX2_INLINE __m256 snow_b8_pairs(__m128 w) {
-    return _mm256_permutevar8x32_ps(_mm256_castps128_ps256(w),
-                                    _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3));
+SNOW_AVX2_INLINE __m256 snow_b8_pairs(const float *p) {
+    return _mm256_permutevar_ps(
+        _mm256_broadcast_ps((const __m128 *)(const void *)p),
+        _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3));
 }
 
-SNOW_AVX2_INLINE __m256 snow_b8_fours(__m128 w) {
-    return _mm256_permutevar8x32_ps(_mm256_castps128_ps256(w),
-                                    _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1));
+SNOW_AVX2_INLINE __m256 snow_b8_fours(const float *p) {
+    return _mm256_permutevar_ps(
+        _mm256_broadcast_ps((const __m128 *)(const void *)p),
+        _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1));
 }
 
 SNOW_AVX2_INLINE __m128 snow_b8_fold(__m256 b) {
@@ -190,13 +200,11 @@ SNOW_AVX2_INLINE snow_p16_block snow_p16_fma(snow_p16_block a, snow_p16_block b,
                             _mm256_fmadd_ps(a.high, b.high, c.high)};
 }
 
-SNOW_AVX2_INLINE snow_p16_block snow_p16_fours(__m128 w) {
-    __m256 wide = _mm256_castps128_ps256(w);
+SNOW_AVX2_INLINE snow_p16_block snow_p16_fours(const float *p) {
+    __m256 w = _mm256_broadcast_ps((const __m128 *)(const void *)p);
     return (snow_p16_block){
-        _mm256_permutevar8x32_ps(wide,
-                                 _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)),
-        _mm256_permutevar8x32_ps(wide,
-                                 _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3))};
+        _mm256_permutevar_ps(w, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)),
+        _mm256_permutevar_ps(w, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3))};
 }
 
 SNOW_AVX2_INLINE __m128 snow_p16_fold(snow_p16_block b) {
@@ -227,10 +235,10 @@ SNOW_AVX512_INLINE __m512 snow_b16_fma(__m512 a, __m512 b, __m512 c) {
     return _mm512_fmadd_ps(a, b, c);
 }
 
-SNOW_AVX512_INLINE __m512 snow_b16_fours(__m128 w) {
-    return _mm512_permutexvar_ps(
-        _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3),
-        _mm512_castps128_ps512(w));
+SNOW_AVX512_INLINE __m512 snow_b16_fours(const float *p) {
+    return _mm512_permutevar_ps(
+        _mm512_broadcast_f32x4(_mm_loadu_ps(p)),
+        _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3));
 }
 
 SNOW_AVX512_INLINE __m128 snow_b16_fold(__m512 b) {
