@@ -39,6 +39,10 @@ static int find_runs(const uint16_t *reached, int begin, int end, int width,
     return count;
 }
 
+/* Keeps what was stored from being kept in registers as well: weights are
+ * spread for nothing where they are loaded. */
+#define THROUGH_MEMORY __asm__("" ::: "memory")
+
 #define SELECT_AVX2
 #include "simd/select.h"
 
@@ -113,13 +117,15 @@ snow_status snow_places_make(snow_context *context, int width,
                              snow_places *places) {
     size_t pixels = ((size_t)width + CHUNK - 1) / CHUNK * CHUNK;
     SNOW_TRY(snow_reserve(context, &places->window, &places->capacity, 0,
-                          5 * pixels * sizeof(int32_t) +
+                          13 * pixels * sizeof(int32_t) +
                               pixels / CHUNK * sizeof(uint16_t)));
     places->row_u = places->window + pixels;
     places->row_v = places->row_u + pixels;
     places->rest_u = (float *)(void *)(places->row_v + pixels);
     places->rest_v = places->rest_u + pixels;
-    places->reached = (uint16_t *)(void *)(places->rest_v + pixels);
+    places->u = places->rest_v + pixels;
+    places->v = places->u + 4 * pixels;
+    places->reached = (uint16_t *)(void *)(places->v + 4 * pixels);
     return SNOW_OK;
 }
 
@@ -146,6 +152,7 @@ snow_status snow_gatherer_make(snow_context *context, const snow_placement *p,
         return SNOW_OK;
     SNOW_TRY(snow_phases_make(context, &u, &g->phases_u));
     SNOW_TRY(snow_phases_make(context, &v, &g->phases_v));
+    g->cubic = g->phases_u.cubic && g->phases_v.cubic;
     *serves = true;
     return SNOW_OK;
 }

@@ -35,6 +35,7 @@ typedef struct snow_places {
     int32_t *window;        /* its first float */
     int32_t *row_u, *row_v; /* first floats of rows of the phase tables */
     float *rest_u, *rest_v; /* from there to the next row, 0 to 1 */
+    float *u, *v; /* or, where these are cubics, four weights for each pixel */
     uint16_t *reached;      /* 16 pixels each, the first one lowest */
     size_t capacity;        /* of the memory, which begins at `window` */
 } snow_places;
@@ -56,6 +57,7 @@ typedef int snow_gather_fn(const snow_gatherer *gatherer,
 struct snow_gatherer {
     const snow_placement *placement;
     snow_phases phases_u, phases_v;
+    bool cubic; /* along both axes */
     snow_dense_shape shape;
     snow_gather_fn *gather;
 };

@@ -57,7 +57,7 @@ double snow_taper_weight(const snow_taper *taper, double t);
  * (not for the box, nor above SNOW_TAPS_MOST voxels). */
 int snow_taper_taps(const snow_taper *taper);
 double snow_taper_phase_reach(const snow_taper *taper);
-void snow_taper_phase(const snow_taper *taper, double phase, float *weights);
+void snow_taper_phase(const snow_taper *taper, double phase, double *weights);
 
 /* The weight as a table: cell c spans the distances from c / scale - shift and
  * holds the weight at its beginning and the rise to its end.  Smooth kernels

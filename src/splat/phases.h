@@ -8,6 +8,10 @@
  *   phase 1/cells| w0 w1 w2 w3 |    phases and one beyond; weights in between
  *   ...          |             |    are linear
  *
+ * Where each weight is one cubic of the phase (B-splines up to order 4 and tents
+ * of even support, not widened) its coefficients are kept as well, and serve
+ * without the table.
+ *
  * The weights of a point are all that its sum over integer shifts consists of,
  * so they are divided by their own sum (model, point 7). */
 #ifndef SNOW_PHASES_H
@@ -22,6 +26,8 @@ typedef struct snow_phases {
     int padded;      /* taps rounded up to 4; the rest weighs 0 */
     int cells;       /* phases per voxel */
     double reach;    /* as above, voxels */
+    bool cubic;      /* taps <= 4, and the cubics below are the weights */
+    float cubics[4][4]; /* [voxel][power of the phase] */
     snow_taper made_for;
 } snow_phases;
 

@@ -7,6 +7,9 @@
  *   V(add_int)(i, n), V(times)(i, n), V(clamp)(i, low, high)
  *   V(place)(i, i_step, j, j_step)   i * i_step + j * j_step
  *   V(store_ints)(p, i)
+ *   V(deal)(v), V(store_fours)(p, a, b, c, d)   of values made from a vector
+ *                                that was dealt, the first lane's a b c d, then
+ *                                the second's, and so on
  *   V(bits)(map, words, i, j)    bit i of row j, rows of `words` words, of all
  *                                lanes as a mask, the first lane lowest
  *
@@ -69,6 +72,28 @@ SNOW_AVX2_INLINE void snow_avx2_store_ints(int32_t *p, __m256i i) {
     _mm256_storeu_si256((__m256i *)(void *)p, i);
 }
 
+/* Lane 4 l + k of what is dealt is lane 2 k + l: transposing within halves then
+ * leaves lanes 2 k and 2 k + 1 in vector k. */
+SNOW_AVX2_INLINE __m256 snow_avx2_deal(__m256 v) {
+    return _mm256_permutevar8x32_ps(v,
+                                    _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_store_fours(float *p, __m256 a, __m256 b,
+                                            __m256 c, __m256 d) {
+    __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
+    __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d));
+    __m256d ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
+    __m256d cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
+    _mm256_storeu_ps(p, _mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low)));
+    _mm256_storeu_ps(p + 8,
+                     _mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low)));
+    _mm256_storeu_ps(p + 16,
+                     _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high)));
+    _mm256_storeu_ps(p + 24,
+                     _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high)));
+}
+
 SNOW_AVX2_INLINE unsigned snow_avx2_bits(const uint32_t *map, int words,
                                          __m256i i, __m256i j) {
     __m256i at = snow_avx2_place(_mm256_srli_epi32(i, 5), 1, j, words);
@@ -119,6 +144,28 @@ SNOW_AVX512_INLINE __m512i snow_avx512_times(__m512i i, int n) {
 
 SNOW_AVX512_INLINE void snow_avx512_store_ints(int32_t *p, __m512i i) {
     _mm512_storeu_si512(p, i);
+}
+
+/* As above, in quarters: lane 4 l + k of what is dealt is lane 4 k + l. */
+SNOW_AVX512_INLINE __m512 snow_avx512_deal(__m512 v) {
+    return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2,
+                                                   6, 10, 14, 3, 7, 11, 15),
+                                 v);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_store_fours(float *p, __m512 a, __m512 b,
+                                                __m512 c, __m512 d) {
+    __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b));
+    __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d));
+    __m512d ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
+    __m512d cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
+    _mm512_storeu_ps(p, _mm512_castpd_ps(_mm512_unpacklo_pd(ab_low, cd_low)));
+    _mm512_storeu_ps(p + 16,
+                     _mm512_castpd_ps(_mm512_unpackhi_pd(ab_low, cd_low)));
+    _mm512_storeu_ps(p + 32,
+                     _mm512_castpd_ps(_mm512_unpacklo_pd(ab_high, cd_high)));
+    _mm512_storeu_ps(p + 48,
+                     _mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high)));
 }
 
 SNOW_AVX512_INLINE unsigned snow_avx512_bits(const uint32_t *map, int words,
