@@ -191,6 +191,8 @@ snow_status snow_exact_prepare(snow_exact *exact, const snow_job *job) {
         .opacity_exponent = p->path / settings->opacity_length,
         .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
         .premultiply = settings->shade == SNOW_SHADE_NONE,
+        .isa = settings->method == SNOW_METHOD_FOOTPRINT ? settings->isa
+                                                         : SNOW_ISA_SCALAR,
     };
     SNOW_TRY(snow_classifier_make(context, job->volume, job->transfer, &options,
                                   &exact->classifier));
@@ -301,15 +303,24 @@ static snow_encoding choose_encoding(const snow_exact *exact,
 /* Lines 04 to 06: one slice into the sparse matrix of its group. */
 static snow_status encode_slice(const pass *work, worker *w,
                                 snow_sparse *sparse, int64_t slice) {
-    int64_t rows = work->job->placement.rows;
-    SNOW_TRY(snow_sparse_begin_slice(sparse));
-    for (int64_t row = 0; row < rows; row += w->strip.room_rows) {
-        classify_and_shade(work, w, slice, row, rows - row);
+    const snow_placement *p = &work->job->placement;
+    snow_strip *strip = &w->strip;
+    float *samples = strip->samples;
+    snow_status status = snow_sparse_begin_slice(sparse);
+    for (int64_t row = 0; row < p->rows && status == SNOW_OK;
+         row += strip->room_rows) {
+        /* Classified straight into IA: most of what is encoded is samples. */
+        status = snow_sparse_lend(
+            sparse, (size_t)(strip->room_rows * p->columns), &strip->samples);
+        if (status != SNOW_OK)
+            break;
+        classify_and_shade(work, w, slice, row, p->rows - row);
         double mark = snow_seconds();
-        SNOW_TRY(snow_sparse_add_strip(sparse, &w->strip));
+        status = snow_sparse_add_strip(sparse, strip);
         lap(&mark, &w->seconds[ENCODE]);
     }
-    return snow_sparse_end_slice(sparse);
+    strip->samples = samples;
+    return status == SNOW_OK ? snow_sparse_end_slice(sparse) : status;
 }
 
 static snow_status encode_group(const pass *work, int64_t group, worker *w) {

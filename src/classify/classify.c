@@ -5,8 +5,10 @@
  * T > 0, 255 a > T + 0.0001; a is the opacity before it is corrected for the
  * path length.  What is uninteresting contributes nothing. */
 #include "classify/classify.h"
+#include "classify/keep_bytes.h"
 
 #include <math.h>
+#include <string.h>
 
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define THRESHOLD_MARGIN 0.0001
@@ -14,10 +16,12 @@
 #define ROW_TYPE int8_t
 #define ROW_NAME classify_row_int8
 #define ROW_LOWEST INT8_MIN
+#define ROW_BYTES
 #include "classify/classify_row.tmpl.h"
 #define ROW_TYPE uint8_t
 #define ROW_NAME classify_row_uint8
 #define ROW_LOWEST 0
+#define ROW_BYTES
 #include "classify/classify_row.tmpl.h"
 #define ROW_TYPE int16_t
 #define ROW_NAME classify_row_int16
@@ -118,6 +122,7 @@ snow_status snow_classifier_make(snow_context *context,
     c->threshold = options->threshold;
     c->exponent = options->opacity_exponent;
     c->classify_row = row->classify_row;
+    c->keep_bytes = snow_keep_bytes_pick(options->isa);
     return row->values ? make_table(context, c, row) : SNOW_OK;
 }
 

@@ -46,6 +46,12 @@ typedef size_t snow_classify_row_fn(const snow_classifier *classifier,
                                     int64_t columns, uint32_t *kept,
                                     float *samples);
 
+/* The places of the voxels of 8 bits in a row that are kept: `keep` says so per
+ * value less `lowest`.  Returns their number. */
+typedef size_t snow_keep_bytes_fn(const unsigned char *keep, const void *voxels,
+                                  unsigned char lowest, int64_t columns,
+                                  uint32_t *kept);
+
 /* The transfer function made ready for one volume, threshold and path length.
  * For 8- and 16-bit voxels it is a table over all native values. */
 struct snow_classifier {
@@ -57,6 +63,7 @@ struct snow_classifier {
     double threshold; /* opacity 0 to 255 */
     double exponent;  /* path length / reference length */
     snow_classify_row_fn *classify_row;
+    snow_keep_bytes_fn *keep_bytes; /* NULL: the plain loop */
     unsigned char *keep; /* per native value: is it kept? */
     float *table;        /* per native value: its sample */
     size_t keep_capacity, table_capacity; /* bytes */
@@ -67,6 +74,7 @@ typedef struct snow_classify_options {
     double threshold;
     double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, point 6) */
     bool keep_all, premultiply;
+    snow_isa isa; /* resolved, or AUTO for the plain loops */
 } snow_classify_options;
 
 /* Readies a classifier; the record begins as zeros, and keeps the memory of its
