@@ -25,7 +25,7 @@
 #define GROUP_SLICES 8       /* of one sparse matrix */
 #define GATHER_ROWS 8        /* image rows of a band where pixels gather */
 #define BANDS_PER_THREAD 4   /* where footprints are thrown */
-#define SPREAD_BYTES (64u << 20) /* that slices spread out at once may take */
+#define SPREAD_BYTES (32u << 20) /* that slices spread out at once may take */
 
 typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
 
@@ -36,7 +36,6 @@ typedef struct worker {
     size_t spans_capacity;
     snow_sheet sheet; /* throwing: a band; gathering: only its memory is used */
     snow_splatter splatter;
-    bool splatter_made; /* for the picture at work */
     snow_run *runs;     /* gathering: of GATHER_ROWS rows */
     size_t runs_capacity;
     snow_places places;
@@ -138,7 +137,10 @@ static void cut(snow_exact *exact, const snow_job *job) {
     if (exact->gathers) {
         exact->bands = (int)parts_of(p->height, GATHER_ROWS);
         uint64_t fit = SPREAD_BYTES / snow_dense_bytes(&exact->gatherer.shape);
-        int64_t wanted = threads > 1 ? 2 * threads : 1;
+        /* Threads wait for each other between spreading and gathering: seldom
+         * where slices are spread by the dozen.  One thread has no one to wait
+         * for, and finds a single slice in its cache. */
+        int64_t wanted = threads > 1 ? job->slab.count : 1;
         exact->dense_used = fit > 1 ? smaller(wanted, (int64_t)fit) : 1;
     } else if (threads > 1)
         exact->bands = (int)smaller(BANDS_PER_THREAD * threads, p->height);
@@ -151,16 +153,23 @@ static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
                                   worker *w) {
     snow_context *context = exact->context;
     const snow_placement *p = &job->placement;
-    w->splatter_made = false;
     w->kept = 0;
     w->status = SNOW_OK;
     memset(w->seconds, 0, sizeof w->seconds);
     SNOW_TRY(snow_strip_make(context, p, job->channels, &w->strip));
     SNOW_TRY(snow_reserve(context, &w->spans, &w->spans_capacity, 0,
                           ((size_t)p->columns / 2 + 1) * sizeof *w->spans));
-    if (!exact->gathers)
-        return SNOW_OK;
+    /* Here and not where a thread needs it, so that what is taken does not
+     * depend on which thread does what. */
     size_t row = (size_t)p->width * (size_t)job->channels;
+    if (!exact->gathers) {
+        size_t rows = (size_t)parts_of(p->height, exact->bands);
+        SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
+                              rows * row * sizeof *w->sheet.pixels));
+        return snow_splatter_make(context, p, job->settings.kernel,
+                                  job->settings.footprint, job->channels,
+                                  &w->splatter);
+    }
     size_t runs = (size_t)p->width / 2 + 1;
     SNOW_TRY(snow_places_make(context, p->width, &w->places));
     SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
@@ -182,7 +191,8 @@ static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
                               &exact->gatherer, &exact->gathers);
 }
 
-snow_status snow_exact_prepare(snow_exact *exact, const snow_job *job) {
+/* Makes room and tables for a job. */
+static snow_status prepare(snow_exact *exact, const snow_job *job) {
     snow_context *context = exact->context;
     const snow_settings *settings = &job->settings;
     const snow_placement *p = &job->placement;
@@ -407,12 +417,6 @@ static snow_status throw_band(const pass *work, int64_t band, worker *w) {
     int64_t bands = work->exact->bands;
     int top = (int)(p->height * band / bands);
     int bottom = (int)(p->height * (band + 1) / bands);
-    if (!w->splatter_made)
-        SNOW_TRY(snow_splatter_make(work->exact->context, p,
-                                    job->settings.kernel,
-                                    job->settings.footprint, job->channels,
-                                    &w->splatter));
-    w->splatter_made = true;
     double mark = snow_seconds();
     SNOW_TRY(snow_sheet_begin(work->exact->context, p, job->channels, top,
                               bottom, &w->sheet));
@@ -522,6 +526,7 @@ static snow_status gather_slab(pass *work) {
 /* --- the whole ------------------------------------------------------------- */
 
 snow_status snow_exact_render(snow_exact *exact, const snow_job *job) {
+    /* 02 - 03 */ SNOW_TRY(prepare(exact, job));
     pass work = {exact, job, job->settings.encoding, 0, 0};
     if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
         if (work.encoding == SNOW_ENCODING_AUTO)

@@ -13,12 +13,8 @@ typedef struct snow_exact snow_exact;
 snow_status snow_exact_new(snow_context *context, snow_exact **out);
 void snow_exact_free(snow_exact *exact);
 
-/* Makes room and tables for a job, whose pixels may still be missing.  Errors:
+/* Fills the local image of a job, and the seconds of its stages.  Errors:
  * SNOW_BAD_USAGE, SNOW_NO_MEMORY. */
-snow_status snow_exact_prepare(snow_exact *exact, const snow_job *job);
-
-/* Fills the local image of a job that was prepared, and the seconds of its
- * stages.  Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY. */
 snow_status snow_exact_render(snow_exact *exact, const snow_job *job);
 
 /* Counts of voxels and bytes, once the picture is made.  Errors:

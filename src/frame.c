@@ -7,11 +7,19 @@
 #include "combine/combine.h"
 #include "footprint.h"
 #include "image/image.h"
+#include "sheared.h"
+#include "volume/volume.h"
 
 struct snow_frame {
     snow_context *context;
     snow_stats stats;
-    snow_exact *exact; /* buffers of original, tested and footprint */
+    /* Buffers of the methods, kept from picture to picture.  Those of sheared
+     * are made when it is first used; one for each axis where a picture is
+     * blended of several, else the first. */
+    snow_exact *exact;
+    snow_sheared *sheared[3];
+    float *layer; /* a picture to be blended */
+    size_t layer_capacity;
 };
 
 snow_status snow_frame_new(snow_context *context, snow_frame **out) {
@@ -31,6 +39,9 @@ void snow_frame_free(snow_frame *frame) {
     if (!frame)
         return;
     snow_exact_free(frame->exact);
+    for (int axis = 0; axis < 3; axis++)
+        snow_sheared_free(frame->sheared[axis]);
+    snow_release(frame->context, frame->layer);
     snow_release(frame->context, frame);
 }
 
@@ -38,8 +49,75 @@ const snow_stats *snow_frame_stats(const snow_frame *frame) {
     return &frame->stats;
 }
 
-/* What was chosen for the picture. */
-static void tell_choices(const snow_job *job) {
+/* Lines 01 and 02 for every method: settings, camera, slab. */
+static snow_status place(snow_job *job, const snow_view *view, int parts,
+                         int part) {
+    SNOW_TRY(snow_settings_resolve(job->context, job->volume, &job->settings));
+    SNOW_TRY(snow_placement_make(job->context, &job->volume->info, view,
+                                 &job->placement));
+    if (job->settings.method == SNOW_METHOD_SHEARED &&
+        !snow_sheared_fits(&job->placement, &job->settings))
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    job->slab = snow_slab_equal(job->placement.slices, parts, part);
+    return SNOW_OK;
+}
+
+/* Lines 03 to 13 by the sheared method, with slices as `placement` says. */
+static snow_status render_sheared(snow_job *job, const snow_view *view,
+                                  const snow_placement *placement,
+                                  snow_sheared **sheared, float *pixels) {
+    snow_sheared_order order = {job->volume,    job->transfer, view,
+                                &job->settings, placement,     job->slab,
+                                job->channels};
+    if (!*sheared)
+        SNOW_TRY(snow_sheared_new(job->context, sheared));
+    return snow_sheared_render(*sheared, &order, pixels, job->stats);
+}
+
+/* Adds share * layer to the picture. */
+static void blend(float *pixels, const float *layer, float share,
+                  size_t count) {
+    for (size_t i = 0; i < count; i++)
+        pixels[i] += share * layer[i];
+}
+
+/* High quality: where two or three axes are nearly as good, the picture is a
+ * blend of theirs, so that a turning one does not jump. */
+static snow_status render_blended(snow_frame *frame, snow_job *job,
+                                  const snow_view *view) {
+    const snow_volume_info *info = &job->volume->info;
+    size_t floats = (size_t)view->width * (size_t)view->height *
+                    (size_t)job->channels;
+    double shares[3];
+    snow_placement_shares(info, &job->placement, shares);
+    SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
+                          0, floats * sizeof *frame->layer));
+    for (int axis = 0; axis < 3; axis++) {
+        snow_placement placement;
+        if (shares[axis] == 0)
+            continue;
+        SNOW_TRY(snow_placement_make_along(frame->context, info, view, axis,
+                                           &placement));
+        SNOW_TRY(render_sheared(job, view, &placement, &frame->sheared[axis],
+                                frame->layer));
+        blend(job->pixels, frame->layer, (float)shares[axis], floats);
+    }
+    return SNOW_OK;
+}
+
+/* Lines 03 to 13, by the picture's method. */
+static snow_status render_slab(snow_frame *frame, snow_job *job,
+                               const snow_view *view) {
+    if (job->settings.method != SNOW_METHOD_SHEARED)
+        return snow_exact_render(frame->exact, job);
+    if (job->settings.quality == SNOW_QUALITY_HIGH)
+        return render_blended(frame, job, view);
+    return render_sheared(job, view, &job->placement, &frame->sheared[0],
+                          job->pixels);
+}
+
+/* What was chosen for the picture, and counts of voxels and bytes. */
+static snow_status fill_stats(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
     stats->method = job->settings.method;
     stats->footprint = job->settings.footprint;
@@ -49,16 +127,12 @@ static void tell_choices(const snow_job *job) {
     stats->quality = job->settings.quality;
     stats->voxels =
         job->placement.columns * job->placement.rows * job->slab.count;
-}
-
-/* Figure 8, lines 01 to 03, and room for the stages to come. */
-static snow_status prepare(snow_frame *frame, const snow_view *view, int parts,
-                           int part, snow_job *job) {
-    SNOW_TRY(snow_settings_resolve(job->context, job->volume, &job->settings));
-    /* 02 */ SNOW_TRY(snow_placement_make(job->context, &job->volume->info,
-                                          view, &job->placement));
-    /* 01 */ job->slab = snow_slab_equal(job->placement.slices, parts, part);
-    /* 03 */ return snow_exact_prepare(frame->exact, job);
+    if (stats->method != SNOW_METHOD_SHEARED)
+        return snow_exact_count(frame->exact, job);
+    if (stats->voxels > 0)
+        stats->sparse_ratio =
+            1 - (double)stats->interesting / (double)stats->voxels;
+    return SNOW_OK;
 }
 
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
@@ -77,16 +151,15 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
         .stats = &frame->stats,
     };
     snow_image *image = NULL;
-    SNOW_TRY(prepare(frame, view, parts, part, &job));
+    /* 01 */ SNOW_TRY(place(&job, view, parts, part));
     SNOW_TRY(snow_image_new(frame->context, view->width, view->height,
                             job.channels, &image));
     job.pixels = snow_image_pixels(image);
-    /* 04 - 13 */ snow_status status = snow_exact_render(frame->exact, &job);
+    snow_status status = render_slab(frame, &job, view);
     frame->stats.seconds_frame = snow_seconds() - start;
     frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
-    tell_choices(&job);
     if (status == SNOW_OK)
-        status = snow_exact_count(frame->exact, &job);
+        status = fill_stats(frame, &job);
     if (status == SNOW_OK)
         *out = image;
     else

@@ -106,6 +106,12 @@ SNOW_API snow_status snow_volume_share(snow_context *context,
                                        const snow_volume_info *info,
                                        const void *voxels, snow_volume **out);
 
+/* Promises that shared voxels stay as they are now, until it is called again:
+ * frames may keep what they encoded of them from picture to picture.  Without
+ * it shared voxels are encoded anew for every picture, as they may change.
+ * Volumes that own their voxels are frozen from the start. */
+SNOW_API void snow_volume_freeze(snow_volume *volume);
+
 /* A built-in test volume: "cube", "head", "engine", "shells" or
  * "marschner-lobb".  `dims` NULL or 0s: its default size; `seed` moves what
  * is random in it.  The same arguments give the same bytes on every machine.

@@ -3,7 +3,15 @@
  * A slice is one string of voxels, its rows end to end.  EA holds the lengths
  * of its runs, uninteresting and interesting in turn, beginning with an
  * uninteresting one (perhaps of length 0), a byte each.  A run above 255 is
- * split by a run of length 0 of the other kind: 300 is 255 0 45. */
+ * split by a run of length 0 of the other kind: 300 is 255 0 45.
+ *
+ * A band's slice begins with a summary that tells by a bit which of its rows
+ * hold anything.  The runs of those rows follow, each row by itself: it begins
+ * with an uninteresting run and ends where its columns do.
+ *
+ *   | 0 1 1 0 ... | 12 30 214 | 0 5 251 | ...     256 columns
+ *      summary      row 1       row 2
+ */
 #include "encode/encode.h"
 
 #define LONGEST 255
@@ -77,5 +85,181 @@ static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-const snow_scheme snow_scheme_rle = {rle_begin_slice, rle_add_row,
-                                     rle_end_slice, rle_next_row};
+static size_t rle_skip(snow_walk *walk, int64_t rows) {
+    uint64_t left = (uint64_t)rows * (uint64_t)walk->sparse->columns;
+    size_t voxels = 0;
+    while (left) {
+        while (!walk->run) {
+            walk->run_interesting = walk->started && !walk->run_interesting;
+            walk->started = true;
+            walk->run = *walk->ea++;
+        }
+        uint32_t take = walk->run < left ? walk->run : (uint32_t)left;
+        voxels += walk->run_interesting ? take : 0;
+        walk->run -= take;
+        left -= take;
+    }
+    return voxels;
+}
+
+/* --- slices of a band ----------------------------------------------------- */
+
+static size_t summary_bytes(const snow_sparse *s) {
+    return ((size_t)s->rows + 7) / 8;
+}
+
+/* Bytes that the runs of a slice take at most: beside the ends of rows, each
+ * belongs to an interesting voxel; and so many more splits. */
+static size_t most_bytes(const snow_sparse *s, size_t voxels) {
+    size_t splits = 2 * ((size_t)s->columns / LONGEST) + 1;
+    return 2 * voxels + (size_t)s->rows * splits;
+}
+
+/* Encoding first writes down where runs end, as places counted through all
+ * rows that hold anything, modulo 256: within 256 columns no run is too long
+ * for a byte, so that differences of such places are the runs. */
+typedef struct places {
+    unsigned char *at; /* the next one goes here */
+    size_t origin;     /* place of the row's first column */
+    size_t told;       /* columns of the row up to the last place */
+} places;
+
+/* Puts down splits until a run that ends at `column` fits a byte. */
+static void split_run(places *p, size_t column) {
+    for (; column - p->told > LONGEST; p->told += LONGEST) {
+        p->at[0] = (unsigned char)(p->origin + p->told + LONGEST);
+        p->at[1] = p->at[0];
+        p->at += 2;
+    }
+}
+
+#define STEP 4 /* words of 256 columns */
+
+/* Places of the set bits of STEP words, which begin with `column`. */
+static void put_changes(const snow_sparse *s, const uint64_t *changes,
+                        size_t column, places *p) {
+    size_t first = SIZE_MAX, last = 0;
+    for (size_t w = 0; w < STEP; w++) {
+        size_t n = STEP - 1 - w;
+        if (changes[n])
+            first = 64 * n + (size_t)__builtin_ctzll(changes[n]);
+        if (changes[w])
+            last = 64 * w + 63 - (size_t)__builtin_clzll(changes[w]);
+    }
+    if (first == SIZE_MAX)
+        return;
+    split_run(p, column + first);
+    p->at = s->loops->places(changes, STEP,
+                             (unsigned)(p->origin + column) % 256, p->at);
+    p->told = column + last;
+}
+
+/* A run ends with each bit that differs from the one before, and with the row.
+ */
+static void put_row(const snow_sparse *s, const uint64_t *masks, places *p) {
+    size_t words = snow_mask_words(s), columns = (size_t)s->columns;
+    uint64_t before = 0;
+    p->told = 0;
+    for (size_t w = 0; w < words; w += STEP) {
+        uint64_t changes[STEP] = {0};
+        for (size_t n = 0; n < STEP && w + n < words; n++) {
+            uint64_t mask = masks[w + n];
+            changes[n] = mask ^ (mask << 1 | before);
+            before = mask >> 63;
+        }
+        if (columns % 64 && w + STEP >= words)
+            changes[words - 1 - w] &= (UINT64_C(1) << columns % 64) - 1;
+        put_changes(s, changes, 64 * w, p);
+    }
+    split_run(p, columns);
+    p->origin += columns;
+    *p->at++ = (unsigned char)p->origin;
+}
+
+static void subtract(const unsigned char *restrict from, size_t count,
+                     unsigned char *restrict out) {
+    for (size_t n = 0; n < count; n++)
+        out[n] = (unsigned char)(from[n + 1] - from[n]);
+}
+
+static bool any_set(const uint64_t *masks, size_t words) {
+    uint64_t set = 0;
+    for (size_t w = 0; w < words; w++)
+        set |= masks[w];
+    return set != 0;
+}
+
+static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
+                                 size_t voxels) {
+    size_t words = snow_mask_words(s), most = most_bytes(s, voxels);
+    unsigned char *at;
+    /* Summary and runs; behind them for a while the places, after a 0. */
+    SNOW_TRY(snow_sparse_open_ea(s, summary_bytes(s) + 2 * most + 1, &at));
+    unsigned char *runs = at + summary_bytes(s), *from = runs + most;
+    places p = {.at = from + 1};
+    *from = 0;
+    memset(at, 0, summary_bytes(s));
+    for (int64_t row = 0; row < s->rows; row++, masks += words)
+        if (any_set(masks, words)) {
+            at[row / 8] |= (unsigned char)(1u << row % 8);
+            put_row(s, masks, &p);
+        }
+    size_t count = (size_t)(p.at - from) - 1;
+    subtract(from, count, runs);
+    snow_sparse_close_ea(s, runs + count);
+    return SNOW_OK;
+}
+
+static bool row_is_full(const snow_walk *walk, int64_t row) {
+    return walk->slice[row / 8] >> row % 8 & 1;
+}
+
+/* walk->ea is at the runs of the next row that holds anything. */
+static size_t rows_next_row(snow_walk *walk, snow_span *spans) {
+    if (!row_is_full(walk, walk->row))
+        return 0;
+    uint32_t columns = (uint32_t)walk->sparse->columns, column = 0;
+    const unsigned char *at = walk->ea;
+    size_t count = 0;
+    for (;;) {
+        column += *at++;
+        if (column == columns)
+            break;
+        uint32_t run = *at++;
+        if (run)
+            count = snow_span_append(spans, count, column, run);
+        column += run;
+        if (column == columns)
+            break;
+    }
+    walk->ea = at;
+    return count;
+}
+
+static size_t rows_skip(snow_walk *walk, int64_t rows) {
+    size_t columns = (size_t)walk->sparse->columns, voxels = 0;
+    for (int64_t row = walk->row; row < walk->row + rows; row++) {
+        if (!row_is_full(walk, row))
+            continue;
+        bool interesting = false;
+        for (size_t column = 0; column < columns; interesting = !interesting) {
+            voxels += interesting ? *walk->ea : 0;
+            column += *walk->ea++;
+        }
+    }
+    return voxels;
+}
+
+static const snow_reader whole_reader = {rle_next_row, rle_skip};
+static const snow_reader rows_reader = {rows_next_row, rows_skip};
+
+static void rle_begin_walk(snow_walk *walk) {
+    walk->reader = &whole_reader;
+    if (walk->sparse->code_bytes) {
+        walk->reader = &rows_reader;
+        walk->ea = walk->slice + summary_bytes(walk->sparse);
+    }
+}
+
+const snow_scheme snow_scheme_rle = {
+    rle_begin_slice, rle_add_row, rle_end_slice, rle_add_masks, rle_begin_walk};

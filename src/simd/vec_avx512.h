@@ -3,12 +3,14 @@
 #ifndef SNOW_VEC_AVX512_H
 #define SNOW_VEC_AVX512_H
 
+#include "simd/vec_scalar.h"
+
 #include <immintrin.h>
 
 #define SNOW_AVX512_LANES 16
-#define SNOW_AVX512_TARGET __attribute__((target("avx2,fma,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
+#define SNOW_AVX512_TARGET __attribute__((target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
 #define SNOW_AVX512_INLINE \
-    static inline __attribute__((always_inline, target("avx2,fma,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
+    static inline __attribute__((always_inline, target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
 
 typedef __m512 snow_avx512_vec;
 
@@ -48,12 +50,129 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fma(snow_avx512_vec a, snow_avx51
     return _mm512_fmadd_ps(a, b, c);
 }
 
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fnma(snow_avx512_vec a, snow_avx512_vec b, snow_avx512_vec c) {
+    return _mm512_fnmadd_ps(a, b, c);
+}
+
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha2(snow_avx512_vec v) {
     return _mm512_permute_ps(v, 0xF5);
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha4(snow_avx512_vec v) {
     return _mm512_permute_ps(v, 0xFF);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_interleave(snow_avx512_vec a,
+                                               snow_avx512_vec b, __m512i low,
+                                               __m512i high, float *p) {
+    __m512d x = _mm512_castps_pd(a), y = _mm512_castps_pd(b);
+    _mm512_storeu_ps(p,
+                     _mm512_castpd_ps(_mm512_permutex2var_pd(x, low, y)));
+    _mm512_storeu_ps(p + 16,
+                     _mm512_castpd_ps(_mm512_permutex2var_pd(x, high, y)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_weave2(snow_avx512_vec a, snow_avx512_vec b,
+                                           float *p) {
+    snow_avx512_interleave(a, b, _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11),
+                           _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15), p);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_weave4(snow_avx512_vec a, snow_avx512_vec b,
+                                           float *p) {
+    snow_avx512_interleave(a, b, _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
+                           _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15), p);
+}
+
+SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold4(snow_avx512_vec v) {
+    __m256 half = _mm256_add_ps(_mm512_castps512_ps256(v),
+                                _mm512_extractf32x8_ps(v, 1));
+    return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(half),
+                                       _mm256_extractf128_ps(half, 1));
+}
+
+SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
+    __m128 sum = (__m128)snow_avx512_fold4(v);
+    return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
+}
+
+/* Puts what is at p + n floats into the places of the mask, or of 16 bytes. */
+#define SNOW_AVX512_PAIR(v, mask, p, n) \
+    _mm512_mask_broadcastsd_pd(         \
+        v, mask, _mm_load_sd((const double *)(const void *)((p) + 2 * (size_t)(n))))
+#define SNOW_AVX512_FOUR(v, place, p, n) \
+    _mm512_insertf32x4(v, _mm_loadu_ps((p) + 4 * (size_t)(n)), place)
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather4(const float *p,
+                                                       const uint32_t *n) {
+    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(p + 4 * (size_t)n[0]));
+    v = SNOW_AVX512_FOUR(v, 1, p, n[1]);
+    v = SNOW_AVX512_FOUR(v, 2, p, n[2]);
+    return SNOW_AVX512_FOUR(v, 3, p, n[3]);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather2(const float *p,
+                                                       const uint32_t *n) {
+    __m512d v = _mm512_setzero_pd();
+    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
+    v = SNOW_AVX512_PAIR(v, 0x02, p, n[1]);
+    v = SNOW_AVX512_PAIR(v, 0x04, p, n[2]);
+    v = SNOW_AVX512_PAIR(v, 0x08, p, n[3]);
+    v = SNOW_AVX512_PAIR(v, 0x10, p, n[4]);
+    v = SNOW_AVX512_PAIR(v, 0x20, p, n[5]);
+    v = SNOW_AVX512_PAIR(v, 0x40, p, n[6]);
+    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0x80, p, n[7]));
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_double2(const float *p,
+                                                       const uint32_t *n) {
+    __m512d v = _mm512_setzero_pd();
+    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
+    v = SNOW_AVX512_PAIR(v, 0x0C, p, n[1]);
+    v = SNOW_AVX512_PAIR(v, 0x30, p, n[2]);
+    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0xC0, p, n[3]));
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_even(snow_avx512_vec v) {
+    return _mm512_moveldup_ps(v);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_odd(snow_avx512_vec v) {
+    return _mm512_movehdup_ps(v);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_with_alpha2(snow_avx512_vec a,
+                                                           snow_avx512_vec b) {
+    return _mm512_mask_blend_ps(0xAAAA, a, b);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_with_alpha4(snow_avx512_vec a,
+                                                           snow_avx512_vec b) {
+    return _mm512_mask_blend_ps(0x8888, a, b);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_expand8(const uint8_t *p, uint32_t bits,
+                                            uint32_t *out) {
+    __mmask16 here = (__mmask16)bits;
+    __m128i codes = _mm_maskz_expand_epi8(
+        here, _mm_loadu_si128((const __m128i *)(const void *)p));
+    _mm512_storeu_si512(
+        out, _mm512_maskz_add_epi32(here, _mm512_cvtepu8_epi32(codes),
+                                    _mm512_set1_epi32(1)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_expand16(const uint16_t *p, uint32_t bits,
+                                             uint32_t *out) {
+    __mmask16 here = (__mmask16)bits;
+    __m256i codes = _mm256_maskz_expand_epi16(
+        here, _mm256_loadu_si256((const __m256i *)(const void *)p));
+    _mm512_storeu_si512(
+        out, _mm512_maskz_add_epi32(here, _mm512_cvtepu16_epi32(codes),
+                                    _mm512_set1_epi32(1)));
+}
+
+SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {
+    return __builtin_popcountll(x);
 }
 
 SNOW_AVX512_INLINE int snow_avx512_any_less(snow_avx512_vec a,

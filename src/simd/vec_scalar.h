@@ -4,6 +4,7 @@
 #ifndef SNOW_VEC_SCALAR_H
 #define SNOW_VEC_SCALAR_H
 
+#include <stdint.h>
 #include <string.h>
 
 #define SNOW_SCALAR_LANES 4
@@ -47,6 +48,12 @@ static inline snow_scalar_vec snow_scalar_fma(snow_scalar_vec a,
     return a * b + c;
 }
 
+static inline snow_scalar_vec snow_scalar_fnma(snow_scalar_vec a,
+                                               snow_scalar_vec b,
+                                               snow_scalar_vec c) {
+    return c - a * b;
+}
+
 /* Picks a's bits where the mask is set, else b's. */
 static inline snow_scalar_vec snow_scalar_pick(snow_scalar_mask mask,
                                                snow_scalar_vec a,
@@ -71,6 +78,88 @@ static inline snow_scalar_vec snow_scalar_alpha2(snow_scalar_vec v) {
 
 static inline snow_scalar_vec snow_scalar_alpha4(snow_scalar_vec v) {
     return (snow_scalar_vec){v[3], v[3], v[3], v[3]};
+}
+
+static inline void snow_scalar_weave2(snow_scalar_vec a, snow_scalar_vec b,
+                                      float *p) {
+    snow_scalar_store(p, (snow_scalar_vec){a[0], a[1], b[0], b[1]});
+    snow_scalar_store(p + 4, (snow_scalar_vec){a[2], a[3], b[2], b[3]});
+}
+
+static inline void snow_scalar_weave4(snow_scalar_vec a, snow_scalar_vec b,
+                                      float *p) {
+    snow_scalar_store(p, a);
+    snow_scalar_store(p + 4, b);
+}
+
+static inline snow_scalar_vec snow_scalar_fold2(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[0] + v[2], v[1] + v[3], 0, 0};
+}
+
+static inline snow_scalar_vec snow_scalar_fold4(snow_scalar_vec v) {
+    return v;
+}
+
+static inline snow_scalar_vec snow_scalar_gather4(const float *p,
+                                                  const uint32_t *n) {
+    return snow_scalar_load(p + (size_t)n[0] * 4);
+}
+
+static inline snow_scalar_vec snow_scalar_gather2(const float *p,
+                                                  const uint32_t *n) {
+    const float *a = p + (size_t)n[0] * 2, *b = p + (size_t)n[1] * 2;
+    return (snow_scalar_vec){a[0], a[1], b[0], b[1]};
+}
+
+static inline snow_scalar_vec snow_scalar_double2(const float *p,
+                                                  const uint32_t *n) {
+    const float *a = p + (size_t)n[0] * 2;
+    return (snow_scalar_vec){a[0], a[1], a[0], a[1]};
+}
+
+static inline snow_scalar_vec snow_scalar_even(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[0], v[0], v[2], v[2]};
+}
+
+static inline snow_scalar_vec snow_scalar_odd(snow_scalar_vec v) {
+    return (snow_scalar_vec){v[1], v[1], v[3], v[3]};
+}
+
+static inline snow_scalar_vec snow_scalar_with_alpha2(snow_scalar_vec a,
+                                                      snow_scalar_vec b) {
+    return (snow_scalar_vec){a[0], b[1], a[2], b[3]};
+}
+
+static inline snow_scalar_vec snow_scalar_with_alpha4(snow_scalar_vec a,
+                                                      snow_scalar_vec b) {
+    return (snow_scalar_vec){a[0], a[1], a[2], b[3]};
+}
+
+static inline void snow_scalar_expand8(const uint8_t *p,
+                                        uint32_t bits, uint32_t *out) {
+    for (int i = 0; i < 16; i++, bits >>= 1) {
+        uint32_t here = bits & 1;
+        out[i] = ((uint32_t)*p + 1) & (0 - here);
+        p += here;
+    }
+}
+
+static inline void snow_scalar_expand16(const uint16_t *p,
+                                        uint32_t bits, uint32_t *out) {
+    for (int i = 0; i < 16; i++, bits >>= 1) {
+        uint32_t here = bits & 1;
+        out[i] = ((uint32_t)*p + 1) & (0 - here);
+        p += here;
+    }
+}
+
+/* By adding neighbouring groups of bits (Wilkes, Wheeler and Gill 1957). */
+static inline int snow_scalar_popcount(uint64_t x) {
+    x -= x >> 1 & UINT64_C(0x5555555555555555);
+    x = (x & UINT64_C(0x3333333333333333)) +
+        (x >> 2 & UINT64_C(0x3333333333333333));
+    x = (x + (x >> 4)) & UINT64_C(0x0F0F0F0F0F0F0F0F);
+    return (int)(x * UINT64_C(0x0101010101010101) >> 56);
 }
 
 static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {

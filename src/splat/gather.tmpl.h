@@ -62,7 +62,7 @@ static inline __attribute__((always_inline)) TARGET void LOCAL(tabled)(
     const snow_gatherer *g, const snow_dense *d, const snow_places *p,
     int first, int end, int taps, int blocks, int padded_u, int padded_v,
     float *pixels) {
-    float u[CHUNK * SNOW_TAPS_MOST], v[CHUNK * SNOW_TAPS_MOST];
+    float u[CHUNK * SNOW_PHASE_TAPS_MOST], v[CHUNK * SNOW_PHASE_TAPS_MOST];
     for (int n = 0; n < end - first; n++) {
         LOCAL(weights)(g->phases_u.weights + p->row_u[first + n], padded_u,
                        p->rest_u[first + n], u + n * padded_u);

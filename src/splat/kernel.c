@@ -143,6 +143,15 @@ double snow_taper_weight(const snow_taper *taper, double t) {
     return value / sum;
 }
 
+void snow_taper_spread(const snow_taper *taper, double t, int first, int count,
+                       float *weights) {
+    double sum = 0;
+    for (int n = 0; n < count; n++)
+        sum += value_at(taper, t - (first + n));
+    for (int n = 0; n < count; n++)
+        weights[n] = (float)(value_at(taper, t - (first + n)) / sum);
+}
+
 float snow_taper_box(const snow_taper *taper, double t) {
     double from_left = t + taper->half + EDGE, width = 2 * taper->half;
     if (from_left < 0 || from_left >= width)

@@ -27,7 +27,7 @@
 #define SNOW_FOOTPRINT_MOST 9
 
 /* Most voxels in reach along an axis that weights by phase are made for. */
-#define SNOW_TAPS_MOST 64
+#define SNOW_PHASE_TAPS_MOST 64
 
 /* A kernel of one view and grid axis. */
 typedef struct snow_taper {
@@ -54,10 +54,16 @@ double snow_taper_weight(const snow_taper *taper, double t);
 /* In gather form: the voxels in reach of a point at grid position u are i to
  * i + taps - 1 with i = floor(s), s = u + reach; its phase is s - i.  How many
  * voxels are in reach at most, `reach`, and their weights at a phase of 0 to 1
- * (not for the box, nor above SNOW_TAPS_MOST voxels). */
+ * (not for the box, nor above SNOW_PHASE_TAPS_MOST voxels). */
 int snow_taper_taps(const snow_taper *taper);
 double snow_taper_phase_reach(const snow_taper *taper);
 void snow_taper_phase(const snow_taper *taper, double phase, double *weights);
+
+/* Weights of the voxels at first, first + 1 ... for a point at `t`, all in one:
+ * what snow_taper_weight gives, but for rounding.  None but these may be in
+ * reach. */
+void snow_taper_spread(const snow_taper *taper, double t, int first, int count,
+                       float *weights);
 
 /* The weight as a table: cell c spans the distances from c / scale - shift and
  * holds the weight at its beginning and the rise to its end.  Smooth kernels

@@ -17,7 +17,7 @@
 
 bool snow_phases_serve(const snow_taper *taper) {
     return taper->kernel != SNOW_KERNEL_BOX &&
-           snow_taper_taps(taper) <= SNOW_TAPS_MOST;
+           snow_taper_taps(taper) <= SNOW_PHASE_TAPS_MOST;
 }
 
 /* The cubic through values at phases 1/8, 3/8, 5/8 and 7/8 (Lagrange). */
@@ -77,7 +77,7 @@ snow_status snow_phases_make(snow_context *context, const snow_taper *taper,
     /* Two rows at the end: phase 1, and what is read beside it, times 0, when
      * a phase just below 1 is rounded up. */
     for (size_t n = 0; n < rows; n++) {
-        double weights[SNOW_TAPS_MOST];
+        double weights[SNOW_PHASE_TAPS_MOST];
         snow_taper_phase(taper, fmin((double)n / cells, 1), weights);
         for (int tap = 0; tap < taps; tap++)
             phases->weights[n * row + (size_t)tap] = (float)weights[tap];

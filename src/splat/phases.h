@@ -32,7 +32,7 @@ typedef struct snow_phases {
 } snow_phases;
 
 /* Whether a kernel can be tabulated so: boxes jump, and a kernel that reaches
- * more than SNOW_TAPS_MOST voxels would need a long row for each phase. */
+ * more than SNOW_PHASE_TAPS_MOST voxels would need a long row for each phase. */
 bool snow_phases_serve(const snow_taper *taper);
 
 /* Makes the table unless it is made for this kernel already; the memory is

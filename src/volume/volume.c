@@ -118,8 +118,13 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
         return status;
     }
     volume->owned = voxels;
+    snow_volume_freeze(volume);
     *out = volume;
     return SNOW_OK;
+}
+
+void snow_volume_freeze(snow_volume *volume) {
+    volume->serial = ++volume->context->serials;
 }
 
 /* Voxels of the caller come without a file: no source is checked against the

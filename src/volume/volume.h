@@ -16,6 +16,9 @@ struct snow_volume {
     snow_volume_info info;
     const void *voxels;
     void *owned; /* the block to free, NULL when the voxels are shared */
+    /* A number that no other volume of the context ever had, by which a frame
+     * knows that it has encoded this one; 0 while the voxels may change. */
+    uint64_t serial;
 };
 
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and

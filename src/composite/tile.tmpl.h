@@ -1,0 +1,156 @@
+/* composite/tile.tmpl.h - the cells of a tile.  Define before including, with
+ * simd/select.h's words in force:
+ *
+ *   TILE_CHANNELS  floats of a pixel: 2 or 4
+ *   TILE_WEAVE     V(weave2) or V(weave4)
+ *   TILE_ALPHA     V(alpha2) or V(alpha4)
+ *   TILE_NAME      names of the functions
+ *
+ * All are undefined at the end.  The functions below take the numbers of taps
+ * and phases as arguments that are constants where it matters (TILE_NAME()), so
+ * that loops unroll and weights stay in registers.  The order of additions does
+ * not depend on the level. */
+
+/* Along u, one pixel a lattice column: pixel n sums voxels n + m. */
+TARGET static inline __attribute__((always_inline)) void
+TILE_NAME(_single)(const float *samples, const V(vec) *weights,
+                   const int taps, float *pixels) {
+    for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS; at += LANES) {
+        V(vec) sum = V(mul)(weights[0], V(load)(samples + at));
+        for (int m = 1; m < taps; m++)
+            sum = V(fma)(weights[m],
+                         V(load)(samples + at + m * TILE_CHANNELS), sum);
+        V(store)(pixels + at, sum);
+    }
+}
+
+/* Along u, two pixels a column, each phase with its own lead and weights. */
+TARGET static inline __attribute__((always_inline)) void
+TILE_NAME(_double)(const float *samples, const float *late,
+                   const V(vec) *weights, const int taps, float *pixels) {
+    for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS; at += LANES) {
+        V(vec) a = V(mul)(weights[0], V(load)(samples + at));
+        V(vec) b = V(mul)(weights[taps], V(load)(late + at));
+        for (int m = 1; m < taps; m++) {
+            int next = at + m * TILE_CHANNELS;
+            a = V(fma)(weights[m], V(load)(samples + next), a);
+            b = V(fma)(weights[taps + m], V(load)(late + next), b);
+        }
+        TILE_WEAVE(a, b, pixels + 2 * at);
+    }
+}
+
+/* Along u, several voxels a pixel. */
+TARGET static void TILE_NAME(_strided)(const float *samples,
+                                       const snow_comb *u, int taps, int stride,
+                                       float *pixels) {
+    for (int n = 0; n < SNOW_TILE_COLUMNS; n++)
+        for (int c = 0; c < TILE_CHANNELS; c++) {
+            const float *sample = samples + n * stride * TILE_CHANNELS + c;
+            float sum = u->weights[0][0] * *sample;
+            for (int m = 1; m < taps; m++)
+                sum += u->weights[0][m] * sample[m * TILE_CHANNELS];
+            pixels[n * TILE_CHANNELS + c] = sum;
+        }
+}
+
+/* One line: rows weighted and added up, behind the image.  True while something
+ * still shines through. */
+TARGET static inline __attribute__((always_inline)) bool
+TILE_NAME(_line)(float *line, const float *const *rows,
+                 const V(vec) *weights, const int taps, const int phases) {
+    const float *row[SNOW_TAPS_MOST];
+    V(vec) least = V(set1)(0);
+    for (int m = 0; m < taps; m++)
+        row[m] = rows[m];
+    for (int at = 0; at < phases * SNOW_TILE_COLUMNS * TILE_CHANNELS;
+         at += LANES) {
+        V(vec) front = V(load)(line + at);
+        V(vec) sum = V(mul)(weights[0], V(load)(row[0] + at));
+        for (int m = 1; m < taps; m++)
+            sum = V(fma)(weights[m], V(load)(row[m] + at), sum);
+        front = V(fnma)(TILE_ALPHA(front), sum, front);
+        V(store)(line + at, front);
+        least = V(min)(least, front);
+    }
+    /* Colours are never below 0, so that only alpha - 1 counts. */
+    return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
+}
+
+TARGET static inline __attribute__((always_inline)) void
+TILE_NAME(_filter)(const snow_tile *t, int row, const V(vec) *weights,
+                   const int taps, const int phases, float *pixels) {
+    const float *samples = t->samples + (size_t)row * t->window;
+    if (phases == 2)
+        TILE_NAME(_double)
+        (samples, samples + t->u->lead[1] * TILE_CHANNELS, weights, taps,
+         pixels);
+    else if (t->lattice_u->stride == 1)
+        TILE_NAME(_single)(samples, weights, taps, pixels);
+    else
+        TILE_NAME(_strided)(samples, t->u, taps, t->lattice_u->stride, pixels);
+}
+
+/* Weights in all lanes, phase after phase. */
+TARGET static inline __attribute__((always_inline)) void
+TILE_NAME(_weights)(const snow_comb *comb, int phases, const int taps,
+                    V(vec) *weights) {
+    for (int phase = 0; phase < phases; phase++)
+        for (int m = 0; m < taps; m++)
+            weights[phase * taps + m] = V(set1)(comb->weights[phase][m]);
+}
+
+TARGET static inline __attribute__((always_inline)) uint64_t
+TILE_NAME(_cells)(const snow_tile *t, const int taps_u, const int taps_v,
+                  const int phases_u, const int phases_v) {
+    const int stride = t->lattice_v->stride;
+    const int reach = taps_v + (phases_v == 2 ? t->v->lead[1] : 0);
+    const float *rows[SNOW_TILE_ROWS];
+    V(vec) along_u[2 * SNOW_TAPS_MOST], along_v[2 * SNOW_TAPS_MOST];
+    uint64_t finished = 0;
+    int next = 0;
+    TILE_NAME(_weights)(t->u, phases_u, taps_u, along_u);
+    TILE_NAME(_weights)(t->v, phases_v, taps_v, along_v);
+    for (uint64_t cells = t->wanted; cells; cells &= cells - 1) {
+        int cell = __builtin_ctzll(cells), first = cell * stride;
+        bool seen = false;
+        for (next = next > first ? next : first; next < first + reach; next++) {
+            float *filtered = t->ring + next * 2 * SNOW_TILE_COLUMNS *
+                                            TILE_CHANNELS;
+            rows[next] = t->zero;
+            if (t->held >> next & 1) {
+                TILE_NAME(_filter)
+                (t, next, along_u, taps_u, phases_u, filtered);
+                rows[next] = filtered;
+            }
+        }
+        for (int phase = 0; phase < phases_v; phase++)
+            seen |= TILE_NAME(_line)(
+                t->pixels + (size_t)(cell * phases_v + phase) * t->line,
+                rows + first + t->v->lead[phase], along_v + phase * taps_v,
+                taps_v, phases_u);
+        if (!seen)
+            finished |= cells & -cells;
+    }
+    return finished;
+}
+
+/* The cases that pictures are made of, unrolled; and any other. */
+TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
+    const int u = t->taps_u, v = t->taps_v;
+    const int pu = t->lattice_u->phases, pv = t->lattice_v->phases;
+    if (u == 4 && v == 4 && pu == 2 && pv == 2)
+        return TILE_NAME(_cells)(t, 4, 4, 2, 2);
+    if (u == 4 && v == 4 && pu == 1 && pv == 1)
+        return TILE_NAME(_cells)(t, 4, 4, 1, 1);
+    if (u == 2 && v == 2 && pu == 1 && pv == 1)
+        return TILE_NAME(_cells)(t, 2, 2, 1, 1);
+    if (u == 6 && v == 6 && pu == 1 && pv == 1)
+        return TILE_NAME(_cells)(t, 6, 6, 1, 1);
+    return TILE_NAME(_cells)(t, u, v, pu, pv);
+}
+
+#undef TILE_CHANNELS
+#undef TILE_WEAVE
+#undef TILE_ALPHA
+#undef TILE_NAME

@@ -1,0 +1,202 @@
+/* encode/fetch.c - see fetch.h.
+ *
+ * The block of a band holds the same rows of some slices one after another:
+ *
+ *   slice s    row 0 | row 1 | ... | row 31 | a cache line to spare
+ *   slice s+1  row 0 | row 1 | ... | row 31 |
+ *   ...
+ *
+ * Row r of all of them comes from one plane of the volume, where their voxels
+ * lie side by side: it is the transpose of a strip of that plane.  The line to
+ * spare puts the same place of different slices into different sets of the
+ * cache. */
+#include "encode/fetch.h"
+
+#include <string.h>
+
+#define TILE SNOW_TILE_LINES
+#define LINE SNOW_TILE_BYTES
+
+/* Fewer slices than this are not worth a tile. */
+#define TILE_WORTH 8
+
+static void measure(snow_fetch *f, const snow_fetch_order *order) {
+    const snow_placement *p = order->placement;
+    const int64_t *dims = order->volume->info.dims;
+    size_t size = snow_type_size(order->volume->info.type);
+    const size_t steps[3] = {size, size * (size_t)dims[0],
+                             size * (size_t)dims[0] * (size_t)dims[1]};
+    *f = (snow_fetch){
+        .column_step = steps[p->u_axis],
+        .row_step = steps[p->v_axis],
+        .slice_step = steps[p->slice_axis],
+        .type = order->volume->info.type,
+        .size = size,
+        .columns = (size_t)p->columns,
+        .rows = (size_t)order->rows,
+        .slices = order->slices,
+        .between = order->between,
+        .transposed = p->u_axis != 0,
+    };
+    f->pitch = (f->columns + TILE - 1) / TILE * TILE * size;
+    f->slice_pitch = f->rows * f->pitch + LINE;
+    /* With slices between there is one more, the partner of the last one. */
+    f->room = LINE / (int64_t)size + order->between;
+}
+
+static size_t mean_bytes(const snow_fetch *f) {
+    return f->between ? f->rows * f->pitch : 0;
+}
+
+size_t snow_fetch_bytes(const snow_fetch_order *order) {
+    snow_fetch f;
+    measure(&f, order);
+    size_t block = f.transposed ? (size_t)f.room * f.slice_pitch : 0;
+    return block + mean_bytes(&f);
+}
+
+void snow_fetch_begin(snow_fetch *f, const snow_fetch_order *order,
+                      void *scratch) {
+    measure(f, order);
+    int64_t stride;
+    f->voxels = snow_row_voxels(order->volume, order->placement,
+                                order->first_slice, order->first_row, &stride);
+    f->transpose = snow_transpose_of(f->size, order->isa);
+    f->mean = scratch;
+    f->block = f->mean + mean_bytes(f);
+}
+
+/* --- slices along x ------------------------------------------------------- */
+
+/* `lines` lines of `count` voxels into the block, whatever their number. */
+static void transpose_few(const snow_fetch *f, const unsigned char *in,
+                          size_t lines, size_t count, unsigned char *out) {
+    for (size_t n = 0; n < count; n++)
+        for (size_t u = 0; u < lines; u++)
+            memcpy(out + n * f->slice_pitch + u * f->size,
+                   in + u * f->column_step + n * f->size, f->size);
+}
+
+/* A tile at an edge: nothing is read beyond its lines, and they are filled up.
+ * The block has room for a whole one. */
+static void transpose_edge(const snow_fetch *f, const unsigned char *in,
+                           size_t lines, size_t count, unsigned char *out) {
+    unsigned char tile[TILE * LINE] = {0};
+    for (size_t u = 0; u < lines; u++)
+        memcpy(tile + u * LINE, in + u * f->column_step, count * f->size);
+    f->transpose(tile, LINE, out, f->slice_pitch, tile);
+}
+
+/* The tile after that of columns `u` on of a row at `in`: in the same row, or
+ * the first of the next. */
+static const unsigned char *
+next_tile(const snow_fetch *f, const unsigned char *in, size_t row, size_t u) {
+    if (u + 2 * TILE <= f->columns)
+        return in + (u + TILE) * f->column_step;
+    return row + 1 < f->rows && TILE <= f->columns ? in + f->row_step : in;
+}
+
+/* Row `row` of `count` slices from `slice` on, no more than a line holds, into
+ * `out`. */
+static void fill_row(const snow_fetch *f, int64_t slice, size_t row,
+                     size_t count, unsigned char *out) {
+    const unsigned char *in =
+        f->voxels + (size_t)slice * f->slice_step + row * f->row_step;
+    out += row * f->pitch;
+    for (size_t u = 0; u < f->columns; u += TILE) {
+        size_t lines = f->columns - u < TILE ? f->columns - u : TILE;
+        const unsigned char *from = in + u * f->column_step;
+        unsigned char *to = out + u * f->size;
+        if (lines == TILE && count * f->size == LINE)
+            f->transpose(from, f->column_step, to, f->slice_pitch,
+                         next_tile(f, in, row, u));
+        else if (count < TILE_WORTH)
+            transpose_few(f, from, lines, count, to);
+        else
+            transpose_edge(f, from, lines, count, to);
+    }
+}
+
+/* Makes the block hold slices from `slice` on. */
+static void fill_block(snow_fetch *f, int64_t slice) {
+    int64_t left = f->slices - slice, line = LINE / (int64_t)f->size;
+    f->block_first = slice;
+    f->block_count = left < f->room ? left : f->room;
+    for (int64_t n = 0; n < f->block_count; n += line) {
+        int64_t some = f->block_count - n < line ? f->block_count - n : line;
+        for (size_t row = 0; row < f->rows; row++)
+            fill_row(f, slice + n, row, (size_t)some,
+                     f->block + (size_t)n * f->slice_pitch);
+    }
+}
+
+/* --- slices of the volume, and between ------------------------------------ */
+
+static void slice_of_volume(snow_fetch *f, int64_t slice, snow_rows *out) {
+    *out = (snow_rows){.columns = f->columns, .rows = f->rows};
+    if (f->transposed) {
+        out->voxels =
+            f->block + (size_t)(slice - f->block_first) * f->slice_pitch;
+        out->stride = f->pitch;
+        return;
+    }
+    out->voxels = f->voxels + (size_t)slice * f->slice_step;
+    out->stride = f->row_step;
+    out->ahead = slice + 1 < f->slices ? f->slice_step : 0;
+}
+
+/* The mean of two values, without overflow. */
+#define MEAN_INTEGER(a, b) ((a >> 1) + (b >> 1) + ((a | b) & 1))
+#define MEAN_FLOAT(a, b) (a / 2 + b / 2)
+
+#define MEAN_ROW(name, type, mean)                                        \
+    static void mean_##name(const void *a, const void *b, size_t columns, \
+                            void *out) {                                  \
+        const type *p = a, *q = b;                                        \
+        type *middle = out;                                               \
+        for (size_t n = 0; n < columns; n++)                              \
+            middle[n] = (type)mean(p[n], q[n]);                           \
+    }
+
+MEAN_ROW(INT8, int8_t, MEAN_INTEGER)
+MEAN_ROW(UINT8, uint8_t, MEAN_INTEGER)
+MEAN_ROW(INT16, int16_t, MEAN_INTEGER)
+MEAN_ROW(UINT16, uint16_t, MEAN_INTEGER)
+MEAN_ROW(INT32, int32_t, MEAN_INTEGER)
+MEAN_ROW(UINT32, uint32_t, MEAN_INTEGER)
+MEAN_ROW(INT64, int64_t, MEAN_INTEGER)
+MEAN_ROW(UINT64, uint64_t, MEAN_INTEGER)
+MEAN_ROW(FLOAT32, float, MEAN_FLOAT)
+MEAN_ROW(FLOAT64, double, MEAN_FLOAT)
+
+typedef void mean_fn(const void *a, const void *b, size_t columns, void *out);
+
+static mean_fn *const means[] = {
+#define MEAN_ENTRY(name, type, text) [SNOW_##name] = mean_##name,
+    SNOW_TYPE_MAP(MEAN_ENTRY)};
+
+static void slice_between(snow_fetch *f, int64_t slice, snow_rows *out) {
+    snow_rows a, b;
+    slice_of_volume(f, slice, &a);
+    slice_of_volume(f, slice + 1, &b);
+    for (size_t row = 0; row < f->rows; row++)
+        means[f->type](a.voxels + row * a.stride, b.voxels + row * b.stride,
+                       f->columns, f->mean + row * f->pitch);
+    *out = (snow_rows){.voxels = f->mean,
+                       .stride = f->pitch,
+                       .columns = f->columns,
+                       .rows = f->rows};
+}
+
+void snow_fetch_slice(snow_fetch *f, int64_t slice, snow_rows *out) {
+    int64_t here = f->between ? slice / 2 : slice;
+    bool is_between = f->between && slice % 2;
+    /* The block has to hold the next slice too. */
+    int64_t last = here + is_between;
+    if (f->transposed && last >= f->block_first + f->block_count)
+        fill_block(f, here);
+    if (is_between)
+        slice_between(f, here, out);
+    else
+        slice_of_volume(f, here, out);
+}

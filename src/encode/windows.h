@@ -1,0 +1,56 @@
+/* encode/windows.h - rows of a band read as bit masks, and windows of them.
+ *
+ * The sheared method wants to know of a few neighbouring columns, in many rows,
+ * which hold a voxel, and where in IA the first of these lies.  All three
+ * encodings are decoded to this one form:
+ *
+ *   bits    64 zeros | one bit a column, lowest first | zeros to the end
+ *   rank    per word: voxels of the row before it
+ *   voxel   per row: its first voxel in IA */
+#ifndef SNOW_WINDOWS_H
+#define SNOW_WINDOWS_H
+
+#include "encode/bands.h"
+#include "simd/isa.h"
+
+#define SNOW_WINDOW_ROWS 64 /* a mask of rows is one word */
+#define SNOW_WINDOW_PAD 64  /* bits before the first column */
+
+typedef struct snow_mask_rows {
+    uint64_t *bits; /* [row * words + word] */
+    uint32_t *rank;
+    const unsigned char *codes[SNOW_WINDOW_ROWS]; /* of the row's first voxel */
+    const uint16_t *normals[SNOW_WINDOW_ROWS];    /* NULL: none */
+    size_t words;  /* a row, padding included */
+    uint64_t held; /* rows that hold a voxel */
+} snow_mask_rows;
+
+/* Words of a row of so many columns. */
+static inline size_t snow_window_words(int64_t columns) {
+    return (size_t)columns / 64 + 3;
+}
+
+/* Windows of `count` columns from `column` on, up to SNOW_WINDOW_MOST, which
+ * overlap the rows: -count < column < columns.  Per row that is held: its bits,
+ * and how many voxels of its row lie before it.  Returns the rows whose window
+ * holds a voxel. */
+typedef uint64_t snow_windows_fn(const snow_mask_rows *rows, int64_t column,
+                                 int count, uint64_t *bits, uint32_t *before);
+
+/* Fills rank from bits, of the rows that are held. */
+typedef void snow_rank_fn(snow_mask_rows *rows);
+
+typedef struct snow_window_fns {
+    snow_windows_fn *windows;
+    snow_rank_fn *rank;
+} snow_window_fns;
+
+const snow_window_fns *snow_window_fns_of(snow_isa isa);
+
+/* Decodes rows first .. first + count - 1 of a slice of the bands, `count` at
+ * most SNOW_WINDOW_ROWS; rows that do not exist are empty.  `spans` is room for
+ * one row's.  Ranks are not made. */
+void snow_mask_rows_read(const snow_bands *bands, int64_t slice, int64_t first,
+                         int count, snow_span *spans, snow_mask_rows *rows);
+
+#endif

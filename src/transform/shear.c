@@ -1,0 +1,77 @@
+/* transform/shear.c - the geometry of the intermediate image. */
+#include "transform/shear.h"
+
+#include <math.h>
+
+/* The longest side of an intermediate image, pixels: far above what a view of
+ * 32,768 pixels needs, which is at most about twice as many. */
+#define LONGEST_SIDE (1 << 20)
+
+/* The least and the greatest of a linear function c + a x + b y over the
+ * corners of [0, width] x [0, height]. */
+static void range_over(double c, double a, double b, double width,
+                       double height, double range[2]) {
+    range[0] = c + fmin(0, a * width) + fmin(0, b * height);
+    range[1] = c + fmax(0, a * width) + fmax(0, b * height);
+}
+
+/* The lattice of one axis: `voxels` long, seen in the range `seen` (voxels of
+ * slice 0). */
+static bool make_lattice(const snow_placement *p, int64_t voxels, double reach,
+                         const double seen[2], snow_lattice *out) {
+    double pitch = (double)out->stride / out->phases;
+    double shift = (double)(p->slices - 1) * out->slope;
+    double low = fmin(0, shift) - reach;
+    double high = fmax(0, shift) + (double)voxels - 1 + reach;
+    /* The warp reads two pixels beyond the one it is in. */
+    double from = fmax(low, seen[0] - 3 * pitch) / pitch;
+    double to = fmin(high, seen[1] + 3 * pitch) / pitch;
+    if (!(from <= to)) {
+        out->count = 0;
+        return true;
+    }
+    double first = floor(from) - SNOW_SHEAR_BORDER;
+    first = out->phases * floor(first / out->phases);
+    double count = ceil(to) + SNOW_SHEAR_BORDER - first + 1;
+    if (!(count <= LONGEST_SIDE) || !(fabs(first) < 1e15))
+        return false;
+    out->first = (int64_t)first;
+    out->count = (int)count;
+    return true;
+}
+
+snow_status snow_shear_make(snow_context *context,
+                            const snow_placement *placement,
+                            const snow_shear_options *options,
+                            snow_shear *out) {
+    const snow_placement *p = placement;
+    const int64_t voxels[2] = {p->columns, p->rows};
+    snow_shear shear = {0};
+    snow_lattice *lattices[2] = {&shear.u, &shear.v};
+    bool fits = true;
+    for (int axis = 0; axis < 2; axis++) {
+        const double *row = p->inverse[axis];
+        snow_lattice *lattice = lattices[axis];
+        lattice->phases = options->phases[axis];
+        lattice->stride = options->stride[axis];
+        lattice->slope =
+            row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
+        double zero = -row[0] * p->origin[0] - row[1] * p->origin[1];
+        double seen[2];
+        range_over(zero, row[0], row[1], p->width, p->height, seen);
+        fits = make_lattice(p, voxels[axis], options->reach[axis], seen,
+                            lattice) &&
+               fits;
+        double scale = (double)lattice->phases / lattice->stride;
+        shear.along_x[axis] = scale * row[0];
+        shear.along_y[axis] = scale * row[1];
+        shear.start[axis] = scale * (zero + (row[0] + row[1]) / 2) -
+                            (double)lattice->first;
+    }
+    if (!fits)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "the intermediate image would be too large; take "
+                         "method footprint or a smaller zoom");
+    *out = shear;
+    return SNOW_OK;
+}

@@ -1,0 +1,53 @@
+/* transform/shear.h - a parallel view as a shear and a warp (Lacroute and
+ * Levoy 1994, in the affine form of their section 2).
+ *
+ * Slice k, moved by (k * slope_u, k * slope_v) voxels in its own plane, lies on
+ * slice 0 as the viewer sees it.  Sheets of slices so moved are sampled on one
+ * lattice, the intermediate image, and composited there; one affine warp takes
+ * the result to the picture:
+ *
+ *   slice k      .  .  .  .            lattice of the intermediate image,
+ *   slice 1    .  .  .  .       --->   2 pixels a voxel:  ' ' ' ' ' ' ' ' '
+ *   slice 0   .  .  .  .                                 (P / 2 - k * slope)
+ */
+#ifndef SNOW_SHEAR_H
+#define SNOW_SHEAR_H
+
+#include "transform/transform.h"
+
+/* The intermediate image along one axis of the slices.  Lattice pixel P, which
+ * is pixel P - first of the image, samples slice k at
+ *
+ *   P * stride / phases - k * slope     voxels
+ */
+typedef struct snow_lattice {
+    int phases; /* pixels a voxel, 1 or 2 */
+    int stride; /* voxels a pixel, above 1 only where phases is 1 */
+    double slope;
+    int64_t first; /* a multiple of phases */
+    int count;     /* pixels, 0 when nothing is in view */
+} snow_lattice;
+
+typedef struct snow_shear {
+    snow_lattice u, v;
+    /* Pixel (x, y) of the picture, whose centre is at (x + 1/2, y + 1/2), is
+     * at start + x * along_x + y * along_y in pixels of the intermediate image,
+     * whose samples are at whole numbers. */
+    double start[2], along_x[2], along_y[2];
+} snow_shear;
+
+/* How an intermediate image is asked for, along u and v. */
+typedef struct snow_shear_options {
+    int phases[2], stride[2];
+    double reach[2]; /* of the kernel, voxels */
+} snow_shear_options;
+
+/* The part of the lattice that both holds voxels and is in view, with a border
+ * of SNOW_SHEAR_BORDER pixels that are empty or out of view.  Errors:
+ * SNOW_BAD_USAGE (an intermediate image beyond all measure). */
+#define SNOW_SHEAR_BORDER 3
+snow_status snow_shear_make(snow_context *context,
+                            const snow_placement *placement,
+                            const snow_shear_options *options, snow_shear *out);
+
+#endif

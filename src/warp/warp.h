@@ -1,0 +1,40 @@
+/* warp/warp.h - the intermediate image of the sheared method to the picture,
+ * by one affine resampling: Catmull-Rom (4 x 4 pixels) or bilinear (2 x 2). */
+#ifndef SNOW_WARP_H
+#define SNOW_WARP_H
+
+#include "simd/isa.h"
+#include "transform/shear.h"
+
+/* The intermediate image: lines of `stride` floats, of which the first
+ * width * channels are pixels; premultiplied. */
+typedef struct snow_plane {
+    const float *pixels;
+    size_t stride; /* floats */
+    int width, height, channels;
+} snow_plane;
+
+typedef enum snow_filter { SNOW_BILINEAR, SNOW_CATMULL_ROM } snow_filter;
+
+typedef struct snow_warp_line snow_warp_line;
+
+/* Resamples `count` pixels of a line; see warp.tmpl.h. */
+typedef void snow_warp_fn(const snow_plane *plane, const snow_warp_line *line,
+                          int first, int count, float *pixels);
+
+/* Where pixel x of the picture's line falls: start + x * step, in 2^-32 pixels
+ * of the plane, so that the place of a pixel does not depend on where a loop
+ * began. */
+struct snow_warp_line {
+    int64_t start[2], step[2];
+};
+
+/* The function of a level. */
+snow_warp_fn *snow_warp_of(snow_isa isa, snow_filter filter, int channels);
+
+/* Fills line y of a picture `width` pixels wide; 0 where the plane ends. */
+void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
+                   snow_filter filter, snow_warp_fn *warp, int y, int width,
+                   float *pixels);
+
+#endif
