@@ -111,6 +111,19 @@ typedef void snow_gradient_fn(const void *voxels, const int64_t dims[3],
 
 snow_gradient_fn *snow_gradient_of(snow_type type);
 
+/* A row of voxels along an axis; at[axis] is of no matter. */
+typedef struct snow_gradient_row {
+    const snow_volume *volume;
+    int axis;
+    int64_t at[3];
+} snow_gradient_row;
+
+/* The same for voxels of a row, x to gradients[0 .. count - 1], y and z `room`
+ * and 2 `room` further on. */
+void snow_gradients_of_row(const snow_gradient_row *row,
+                           const uint32_t *columns, size_t count, size_t room,
+                           double *gradients);
+
 /* --- shading: classify/shade.c ---------------------------------------------
  */
 
@@ -120,6 +133,7 @@ typedef struct snow_shader {
     const snow_volume *volume;
     const snow_placement *placement;
     double ambient, diffuse, specular, shininess;
+    snow_isa isa; /* resolved; all give the same bits */
     int whole; /* shininess when it is a whole number up to 1024, else -1 */
     double light[3], half[3], viewer[3]; /* W^T times the world vector */
     double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
