@@ -8,11 +8,11 @@
 /* Cosines with the light and the half-way vector, of normals that are turned to
  * the viewer; 0 where they are below, or where there is no gradient. */
 TARGET static void NAME(cosines)(const snow_shader *s,
-                                 const double g[3][SHADE_BLOCK],
+                                 const double g[3][SHADE_BLOCK], int count,
                                  double *lambert, double *highlight) {
     const double(*m)[3] = s->metric;
     const double *v = s->viewer, *l = s->light, *h = s->half;
-    for (int i = 0; i < SHADE_BLOCK; i++) {
+    for (int i = 0; i < count; i++) {
         double x = g[0][i], y = g[1][i], z = g[2][i];
         /* Only the direction counts; the square of a tiny or huge difference
          * could vanish or overflow. */
@@ -38,21 +38,21 @@ TARGET static void NAME(cosines)(const snow_shader *s,
 }
 
 /* x^shininess in place; whole exponents (the default is one) by squaring. */
-TARGET static void NAME(raise)(const snow_shader *s, double *x) {
+TARGET static void NAME(raise)(const snow_shader *s, int count, double *x) {
     double power[SHADE_BLOCK], base[SHADE_BLOCK];
-    for (int i = 0; i < SHADE_BLOCK; i++) {
+    for (int i = 0; i < count; i++) {
         base[i] = x[i];
         power[i] = s->whole < 0 ? snow_power(x[i], s->shininess) : 1;
     }
     for (unsigned n = s->whole < 0 ? 0 : (unsigned)s->whole; n; n /= 2) {
         if (n % 2)
-            for (int i = 0; i < SHADE_BLOCK; i++)
+            for (int i = 0; i < count; i++)
                 power[i] *= base[i];
-        for (int i = 0; i < SHADE_BLOCK; i++)
+        for (int i = 0; i < count; i++)
             base[i] *= base[i];
     }
     /* x^0 is 1 for a highlight of 0 too, which must stay black. */
-    for (int i = 0; i < SHADE_BLOCK; i++)
+    for (int i = 0; i < count; i++)
         x[i] = x[i] > 0 ? power[i] : 0;
 }
 
@@ -60,9 +60,10 @@ TARGET static void NAME(shade_block)(const snow_shader *s,
                                      const double g[3][SHADE_BLOCK], int count,
                                      int channels, float *samples) {
     double lambert[SHADE_BLOCK], highlight[SHADE_BLOCK];
-    NAME(cosines)(s, g, lambert, highlight);
+    int whole = (count + 7) & -8; /* whole vectors; SHADE_BLOCK at most */
+    NAME(cosines)(s, g, whole, lambert, highlight);
     if (s->specular > 0)
-        NAME(raise)(s, highlight);
+        NAME(raise)(s, whole, highlight);
     if (channels == 2)
         for (int i = 0; i < count; i++) {
             float *c = samples + 2 * i;
