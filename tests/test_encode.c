@@ -28,10 +28,10 @@ static void encode(snow_context *context, const snow_scheme *scheme,
                    int64_t columns, snow_sparse *sparse) {
     snow_placement placement = {
         .columns = columns, .rows = rows, .slices = slices};
-    snow_strip strip;
+    snow_strip strip = {0};
     float number = 1;
     *sparse = (snow_sparse){.context = context};
-    assert_int_equal(snow_strip_init(context, &placement, 2, &strip), SNOW_OK);
+    assert_int_equal(snow_strip_make(context, &placement, 2, &strip), SNOW_OK);
     assert_int_equal(snow_sparse_begin(sparse, scheme, &placement, 2), SNOW_OK);
     for (int64_t slice = 0; slice < slices; slice++) {
         assert_int_equal(snow_sparse_begin_slice(sparse), SNOW_OK);

@@ -61,16 +61,25 @@ snow_status snow_sparse_begin_slice(snow_sparse *s) {
     return s->scheme->begin_slice(s);
 }
 
-/* Appends samples to IA. */
+snow_status snow_sparse_lend(snow_sparse *s, size_t voxels, float **samples) {
+    size_t sample = (size_t)s->channels * sizeof **samples;
+    SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity,
+                          s->ia_voxels * sample,
+                          (s->ia_voxels + voxels) * sample));
+    *samples = s->ia + s->ia_voxels * (size_t)s->channels;
+    return SNOW_OK;
+}
+
+/* Appends samples to IA, where they may be already. */
 static snow_status add_samples(snow_sparse *s, const float *samples,
                                size_t count) {
     size_t sample = (size_t)s->channels * sizeof *samples;
     size_t bytes = s->ia_voxels * sample;
     SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity, bytes,
                           bytes + count * sample));
-    if (count)
-        memcpy(s->ia + s->ia_voxels * (size_t)s->channels, samples,
-               count * sample);
+    float *end = s->ia + s->ia_voxels * (size_t)s->channels;
+    if (count && samples != end)
+        memcpy(end, samples, count * sample);
     s->ia_voxels += count;
     return SNOW_OK;
 }

@@ -129,6 +129,12 @@ snow_status snow_sparse_begin(snow_sparse *sparse, const snow_scheme *scheme,
 
 snow_status snow_sparse_begin_slice(snow_sparse *sparse);
 
+/* Lends the strip the end of IA, with room for `voxels` samples, so that they
+ * need not be copied there; until the next call for the sparse matrix.  Errors:
+ * SNOW_NO_MEMORY. */
+snow_status snow_sparse_lend(snow_sparse *sparse, size_t voxels,
+                             float **samples);
+
 /* Appends the rows of a strip; strips come in order of rows. */
 snow_status snow_sparse_add_strip(snow_sparse *sparse, const snow_strip *strip);
 
