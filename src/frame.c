@@ -23,7 +23,11 @@ struct snow_frame {
     snow_sheet sheet;
     snow_span *spans; /* of one row */
     size_t spans_capacity;
-    snow_sheared *sheared; /* made when the method is first used */
+    /* Made when the method is first used; one for each axis where a picture is
+     * blended of several, else the first. */
+    snow_sheared *sheared[3];
+    float *layer; /* a picture to be blended */
+    size_t layer_capacity;
 };
 
 /* What one picture is made from; lives as long as the call. */
@@ -56,7 +60,9 @@ void snow_frame_free(snow_frame *frame) {
     snow_sparse_fini(&frame->sparse);
     snow_release(frame->context, frame->sheet.pixels);
     snow_release(frame->context, frame->spans);
-    snow_sheared_free(frame->sheared);
+    for (int axis = 0; axis < 3; axis++)
+        snow_sheared_free(frame->sheared[axis]);
+    snow_release(frame->context, frame->layer);
     snow_release(frame->context, frame);
 }
 
@@ -296,27 +302,61 @@ static snow_status render_footprints(snow_job *job, const snow_volume *volume,
     return status;
 }
 
-/* The same lines by the sheared method. */
+/* The same lines by the sheared method, with slices as `placement` says. */
 static snow_status render_sheared(snow_job *job, const snow_volume *volume,
+                                  const snow_transfer *transfer,
+                                  const snow_view *view,
+                                  const snow_placement *placement,
+                                  snow_sheared **sheared, float *pixels) {
+    snow_sheared_order order = {volume,         transfer,      view,
+                                &job->settings, placement,     job->slab,
+                                job->channels};
+    if (!*sheared)
+        SNOW_TRY(snow_sheared_new(job->frame->context, sheared));
+    return snow_sheared_render(*sheared, &order, pixels, &job->frame->stats);
+}
+
+/* Adds share * layer to the picture. */
+static void blend(float *pixels, const float *layer, float share,
+                  size_t count) {
+    for (size_t i = 0; i < count; i++)
+        pixels[i] += share * layer[i];
+}
+
+/* High quality: where two or three axes are nearly as good, the picture is a
+ * blend of theirs, so that a turning one does not jump. */
+static snow_status render_blended(snow_job *job, const snow_volume *volume,
                                   const snow_transfer *transfer,
                                   const snow_view *view) {
     snow_frame *frame = job->frame;
-    snow_sheared_order order = {volume,          transfer,
-                                view,            &job->settings,
-                                &job->placement, job->slab,
-                                job->channels};
-    if (!frame->sheared)
-        SNOW_TRY(snow_sheared_new(frame->context, &frame->sheared));
-    return snow_sheared_render(frame->sheared, &order, job->pixels,
-                               &frame->stats);
+    size_t floats = (size_t)view->width * (size_t)view->height *
+                    (size_t)job->channels;
+    double shares[3];
+    snow_placement_shares(&volume->info, &job->placement, shares);
+    SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
+                          0, floats * sizeof *frame->layer));
+    for (int axis = 0; axis < 3; axis++) {
+        snow_placement placement;
+        if (shares[axis] == 0)
+            continue;
+        SNOW_TRY(snow_placement_make_along(frame->context, &volume->info, view,
+                                           axis, &placement));
+        SNOW_TRY(render_sheared(job, volume, transfer, view, &placement,
+                                &frame->sheared[axis], frame->layer));
+        blend(job->pixels, frame->layer, (float)shares[axis], floats);
+    }
+    return SNOW_OK;
 }
 
 static snow_status render_slab(snow_job *job, const snow_volume *volume,
                                const snow_transfer *transfer,
                                const snow_view *view) {
-    return job->settings.method == SNOW_METHOD_SHEARED
-               ? render_sheared(job, volume, transfer, view)
-               : render_footprints(job, volume, transfer);
+    if (job->settings.method != SNOW_METHOD_SHEARED)
+        return render_footprints(job, volume, transfer);
+    if (job->settings.quality == SNOW_QUALITY_HIGH)
+        return render_blended(job, volume, transfer, view);
+    return render_sheared(job, volume, transfer, view, &job->placement,
+                          &job->frame->sheared[0], job->pixels);
 }
 
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,

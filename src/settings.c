@@ -160,7 +160,11 @@ snow_status snow_settings_resolve(snow_context *context,
     SNOW_TRY(check_numbers(context, s));
     SNOW_TRY(resolve_machine(context, s));
     if (s->method == SNOW_METHOD_AUTO)
-        s->method = SNOW_METHOD_FOOTPRINT;
+        s->method = SNOW_METHOD_SHEARED;
+    /* A draft's default kernel is the cheapest that is continuous. */
+    if (s->method == SNOW_METHOD_SHEARED && s->footprint == 0 &&
+        s->quality == SNOW_QUALITY_DRAFT && s->kernel == SNOW_KERNEL_BSPLINE)
+        s->kernel = SNOW_KERNEL_TENT;
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
     const double *spacing = volume->info.spacing;

@@ -360,13 +360,14 @@ static void warp_lines(void *job, int64_t item, int worker) {
 
 /* --- a picture ------------------------------------------------------------- */
 
-/* Pixels a voxel, or voxels a pixel, along one axis: a pixel of the lattice is
- * to be at most two thirds of the (widened) kernel's unit, or one in a draft. */
+/* Pixels a voxel, or voxels a pixel, along one axis.  A kernel that is widened
+ * needs fewer of them: Engine and CThead, warped from a pixel a voxel, are 52 dB
+ * and more from the exact picture at their own width, 56 dB and more from a
+ * widening of 1.14 on. */
 static void choose_pitch(const snow_taper *taper, bool draft, int *phases,
                          int *stride) {
-    double pitch = taper->wide / (draft ? 1 : 1.5);
-    *phases = pitch < 1 ? 2 : 1;
-    *stride = pitch < 2 ? 1 : 2;
+    *phases = !draft && taper->wide < 1.1 ? 2 : 1;
+    *stride = taper->wide >= (draft ? 2 : 2.5) ? 2 : 1;
 }
 
 static snow_status place_lattice(snow_pass *pass) {

@@ -66,12 +66,22 @@ picture simulation "$DATA/sim/heptane.nii.gz"
 
 # Every encoding and the original method: the same bits.
 sum() { sed -n 's/.*"checksum": "\([0-9a-f]*\)".*/\1/p' "$1"; }
-for how in "--encoding crs" "--encoding bitmap" "--encoding rle" \
-    "--method original"; do
+exact="--method footprint --encoding"
+for how in "$exact crs" "$exact bitmap" "$exact rle" "--method original"; do
     # shellcheck disable=SC2086
     run 0 "the engine by $how" "$TOOL" -q "$engine" $engine_form $how \
         --azimuth 30 -s 128x128 -o e.npy -y --stats -
     sum "$OUT" >>sums
 done
 check "all four are equal" [ "$(sort -u sums | wc -l)" -eq 1 ]
+for encoding in crs bitmap rle; do
+    for threads in 1 2 5; do
+        # shellcheck disable=SC2086
+        run 0 "the engine sheared by $encoding, -j $threads" "$TOOL" -q \
+            "$engine" $engine_form --encoding $encoding -j $threads \
+            --azimuth 30 -s 128x128 -o e.npy -y --stats -
+        sum "$OUT" >>sheared_sums
+    done
+done
+check "all nine are equal" [ "$(sort -u sheared_sums | wc -l)" -eq 1 ]
 finish

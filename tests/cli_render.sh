@@ -27,7 +27,7 @@ run 0 "-q is silent" render -q -o quiet.png
 check "-q is silent: no word" [ ! -s "$ERR" ] 
 run 0 "one line without -q" render -o said.png
 check "it is one line" [ "$(wc -l <"$ERR")" -eq 1 ]
-says "view \+z; method (footprint|original)"
+says "view \+z; method sheared, encoding (crs|bitmap|rle)"
 run 0 "-v tells more" render -v -o more.png
 says "^snowglass: seconds: read"
 says "^snowglass: bytes: volume"
@@ -48,6 +48,14 @@ same() {
     rm -f same.npy
     run 0 "render $*" render -q -o same.npy "$@"
     run 0 "$* does not change the picture" "$TOOL" compare base.npy same.npy
+}
+near() {
+    tolerance=$1
+    shift
+    rm -f near.npy
+    run 0 "render $*" render -q -o near.npy "$@"
+    run 0 "$* is within $tolerance of the picture" \
+        "$TOOL" compare base.npy near.npy --tolerance "$tolerance"
 }
 changes --azimuth -30
 changes --elevation 20
@@ -76,15 +84,22 @@ changes --shininess 3
 changes --spacing 1x1x3
 same -m over
 same -j 1
-same --deterministic
-same --isa scalar
+near 1e-5 --deterministic
+near 1e-5 --isa scalar
+same -j 2
+same -j 7
+near 0.1 --quality draft
+near 0.1 --quality high
 same --no-labels
 same --progress never
 same --encoding crs
 same --encoding bitmap
 same --encoding rle
-same --method original
-same --method footprint
+near 0.02 --method footprint
+changes --method footprint
+run 0 "the exact picture" render -q -o exact.npy --method footprint
+run 0 "the original one" render -q -o original.npy --method original
+run 0 "they are one" "$TOOL" compare exact.npy original.npy
 same --azimuth 50 --azimuth 0
 same --size 9x9 -s 40x30
 
@@ -129,7 +144,7 @@ run 0 "gives the same picture" "$TOOL" compare raw.npy gz.npy
 run 0 "figures to standard output" render -q -o f.png --threshold 10 \
     --encoding rle --stats -
 check "are one line" [ "$(wc -l <"$OUT")" -eq 1 ]
-prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "footprint", "kernel": "bspline", "footprint": 4, "threads": 1, "ranks": 1, "isa": "scalar", "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": 0.0, "combine": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
+prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "sheared", "kernel": "bspline", "footprint": 4, "threads": [0-9]+, "ranks": 1, "isa": "[a-z0-9]+", "quality": "normal", "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": [-0-9.e]+, "combine": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
 check "interesting voxels take bytes" [ "$(number ia)" -gt 0 ]
 run 0 "figures in words and as JSON" "$TOOL" -v phantom:shells \
     --dims 96x96x96 -s 40x30 -o w.png --stats -

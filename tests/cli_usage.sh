@@ -54,16 +54,16 @@ help serve|serve is not built yet
 --dataset d x|--dataset is not built yet
 --channel 1 x|--channel is not built yet
 --series 1 x|--series is not built yet
---quality high x|--quality is not built yet
+--quality best x|'best' is unknown
 --frames 3 x|--frames is not built yet
 --resume x|--resume is not built yet
 -m mip x|'mip' is not built yet; choose from: over
 --mode iso x|'iso' is not built yet
 --mode best x|'best' is unknown
---method sheared x|'sheared' is not built yet; choose from: auto, original
+--method ray x|'ray' is unknown
 --method tested x|'tested' is unknown
---isa avx2 x|'avx2' is not built yet
--j 4 x|'4' is not built yet; one thread works
+--isa sse9 x|'sse9' is unknown
+-j 5000 x|whole number
 -j 0 x|whole number
 -j many x|whole number
 --size 512 x|--size: '512' is not a picture size

@@ -147,6 +147,7 @@ static reference_scene plain_scene(const int64_t dims[3], snow_type type) {
     };
     place(&scene, MODEL_PLAIN);
     snow_settings_init(&scene.settings);
+    scene.settings.method = SNOW_METHOD_FOOTPRINT; /* the exact one */
     return scene;
 }
 

@@ -127,9 +127,66 @@ static snow_placement placement_along(const snow_volume *volume, int axis) {
 }
 
 typedef struct gradient_tally {
-    int voxels, without;
+    int voxels, without, between;
     double most;
 } gradient_tally;
+
+/* The normal half-way between a voxel and the next along `axis`; false where
+ * there is none, or so little of it that rounding has its say. */
+static bool normal_between(const snow_volume *volume, const int64_t at[3],
+                           int axis, double normal[3]) {
+    double inverse[3][3], a[3], b[3], g[3], most = 0, parts = 0;
+    int64_t next[3] = {at[0], at[1], at[2]};
+    next[axis]++;
+    assert_true(snow_matrix_invert3(volume->info.matrix, inverse));
+    for (int i = 0; i < 3; i++) {
+        a[i] = slope_along(volume, at, i);
+        b[i] = slope_along(volume, next, i);
+        parts = fmax(parts, fmax(fabs(a[i]), fabs(b[i])));
+    }
+    double scale = parts > 1e300 ? 0.25 : 1;
+    for (int i = 0; i < 3; i++) {
+        g[i] = a[i] * scale + b[i] * scale;
+        most = fmax(most, fabs(g[i]));
+    }
+    if (!(most > 2e-3 * parts) || !isfinite(most))
+        return false;
+    for (int j = 0; j < 3; j++)
+        normal[j] = (inverse[0][j] * g[0] + inverse[1][j] * g[1] +
+                     inverse[2][j] * g[2]) /
+                    most;
+    snow_normalize(normal);
+    return true;
+}
+
+/* The row half-way to the next slice. */
+static void check_between(const snow_normal_maker *known,
+                          const snow_placement *p, int64_t slice, int64_t row,
+                          const uint32_t *columns, size_t count,
+                          gradient_tally *tally) {
+    uint16_t codes[256], others[256];
+    snow_normal_maker maker = *known;
+    maker.isa = SNOW_ISA_SCALAR;
+    snow_normals_between(&maker, p, slice, row, columns, count, codes);
+    for (int isa = SNOW_ISA_AVX2; isa <= SNOW_ISA_AVX512; isa++)
+        if (snow_isa_runs(maker.isa = (snow_isa)isa)) {
+            snow_normals_between(&maker, p, slice, row, columns, count, others);
+            assert_memory_equal(codes, others, count * sizeof *codes);
+        }
+    for (size_t n = 0; n < count; n++) {
+        int64_t at[3];
+        double expected[3], found[3];
+        at[p->slice_axis] = slice;
+        at[p->v_axis] = row;
+        at[p->u_axis] = columns[n];
+        if (!normal_between(known->volume, at, p->slice_axis, expected))
+            continue;
+        assert_in_range(codes[n], 1, 255 * 255);
+        snow_normal_of(codes[n], found);
+        tally->most = fmax(tally->most, angle(found, expected));
+        tally->between++;
+    }
+}
 
 /* One row at every level, with only some of its columns. */
 static void check_row(const snow_normal_maker *known, const snow_placement *p,
@@ -166,6 +223,8 @@ static void check_row(const snow_normal_maker *known, const snow_placement *p,
         snow_normal_of(codes[n], found);
         tally->most = fmax(tally->most, angle(found, expected));
     }
+    if (slice + 1 < p->slices)
+        check_between(known, p, slice, row, columns, count, tally);
 }
 
 static gradient_tally check_volume(const snow_volume *volume) {
@@ -204,6 +263,7 @@ static void gradients_of_every_type_and_matrix(void **state) {
                                  SNOW_OK);
                 gradient_tally tally = check_volume(volume);
                 assert_true(tally.most > 0.2);
+                assert_true(tally.between > tally.voxels / 2);
                 snow_volume_close(volume);
                 model_free(&scene);
             }

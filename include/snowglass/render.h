@@ -48,7 +48,8 @@ typedef enum snow_kernel {
 /* How much work the sheared method puts into a picture. */
 typedef enum snow_quality {
     SNOW_QUALITY_NORMAL = 0, /* two intermediate pixels a voxel */
-    SNOW_QUALITY_DRAFT,      /* one, tent kernel: while a view is turned */
+    SNOW_QUALITY_DRAFT,      /* one, and the tent kernel of 2 voxels in place of
+                                the default one: while a view is turned */
     SNOW_QUALITY_HIGH        /* as normal, with a slice between each two, and
                                 both axes where the slice axis switches */
 } snow_quality;

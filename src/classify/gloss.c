@@ -9,87 +9,65 @@
 
 #include <math.h>
 
-#define SIDE 255
-#define MIDDLE 127
+#define SIDE SNOW_NORMAL_SIDE
+#define MIDDLE (SNOW_NORMAL_SIDE / 2)
 
 /* One item of work: rows of the square. */
 #define ROWS 15
 
-typedef struct gloss_job {
+typedef struct gloss_job gloss_job;
+typedef void gloss_row_fn(const gloss_job *job, int row);
+
+struct gloss_job {
+    gloss_row_fn *gloss_row;
     float viewer[3], light[3], half[3];
     float ambient, diffuse, specular;
     double shininess;
     int whole; /* as snow_shader has it */
     snow_gloss *table;
-} gloss_job;
+};
 
-/* x^whole in place, by squaring. */
-static void raise_whole(float *x, int whole) {
-    float power[SIDE];
-    for (int i = 0; i < SIDE; i++)
-        power[i] = 1;
-    for (unsigned n = (unsigned)whole; n; n /= 2) {
-        if (n % 2)
-            for (int i = 0; i < SIDE; i++)
-                power[i] *= x[i];
-        for (int i = 0; i < SIDE; i++)
-            x[i] *= x[i];
-    }
-    for (int i = 0; i < SIDE; i++)
-        x[i] = power[i];
-}
+/* The order matters, so a blank line keeps the two from being sorted. */
+#define SELECT_SCALAR
+#include "simd/select.h"
 
-static void raise(float *x, double exponent) {
-    for (int i = 0; i < SIDE; i++)
-        x[i] = (float)snow_power((double)x[i], exponent);
-}
+#include "classify/gloss.tmpl.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
 
-/* The cosines of one row of normals, turned to the viewer, with the light and
- * the half-way vector; 0 where they are below. */
-static void cosines(const gloss_job *job, int row, float *lambert,
-                    float *highlight) {
-    const float *l = job->light, *h = job->half, *e = job->viewer;
-    float down = (float)(row - MIDDLE) / MIDDLE;
-    for (int i = 0; i < SIDE; i++) {
-        float across = (float)(i - MIDDLE) / MIDDLE;
-        float x = (across + down) / 2, y = (across - down) / 2;
-        float z = 1 - fabsf(x) - fabsf(y);
-        float scale = 1 / sqrtf(x * x + y * y + z * z);
-        float facing = x * e[0] + y * e[1] + z * e[2];
-        scale = facing < 0 ? -scale : scale;
-        float lit = (x * l[0] + y * l[1] + z * l[2]) * scale;
-        float glint = (x * h[0] + y * h[1] + z * h[2]) * scale;
-        lambert[i] = lit > 0 ? lit : 0;
-        highlight[i] = lit > 0 && glint > 0 ? glint : 0;
-    }
-}
+#include "classify/gloss.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
 
-static void gloss_row(const gloss_job *job, int row) {
-    float lambert[SIDE], white[SIDE];
-    cosines(job, row, lambert, white);
-    snow_gloss *out = job->table + 1 + row * SIDE;
-    if (job->whole >= 0)
-        raise_whole(white, job->whole);
-    else
-        raise(white, job->shininess);
-    /* x^0 is 1 for a highlight of 0 too, which must stay black. */
-    for (int i = 0; i < SIDE; i++) {
-        out[i].factor = job->ambient + job->diffuse * lambert[i];
-        out[i].white = lambert[i] > 0 ? job->specular * white[i] : 0;
-    }
+#include "classify/gloss.tmpl.h"
+#endif
+
+static gloss_row_fn *row_of(snow_isa isa) {
+#if SNOW_HAS_AVX
+    if (isa == SNOW_ISA_AVX512)
+        return gloss_row_avx512;
+    if (isa == SNOW_ISA_AVX2)
+        return gloss_row_avx2;
+#endif
+    (void)isa;
+    return gloss_row_scalar;
 }
 
 static void gloss_rows(void *user, int64_t item, int worker) {
     (void)worker;
+    const gloss_job *job = user;
     for (int row = 0; row < ROWS; row++)
-        gloss_row(user, (int)item * ROWS + row);
+        job->gloss_row(job, (int)item * ROWS + row);
 }
 
 void snow_gloss_table(const snow_settings *settings,
                       const snow_placement *placement, int threads,
                       snow_gloss *table) {
     double light[3], half[3];
-    gloss_job job = {.ambient = (float)settings->ambient,
+    snow_isa isa = snow_isa_resolve(settings->isa);
+    gloss_job job = {.gloss_row = row_of(isa),
+                     .ambient = (float)settings->ambient,
                      .diffuse = (float)settings->diffuse,
                      .specular = (float)settings->specular,
                      .shininess = settings->shininess,

@@ -13,9 +13,10 @@
  * apart.
  *
  * Voxels are taken in blocks of neighbours, also those between that are not
- * asked for: vectors make up for it.  What single precision cannot tell (huge,
- * tiny and infinite differences), and the two ends of a row, go through
- * snow_gradient_of one by one. */
+ * asked for: vectors make up for it.  Where few are asked for, or neighbours
+ * lie apart in memory, their differences are collected one by one, and encoded
+ * as a block.  What single precision cannot tell (huge, tiny and infinite
+ * differences), and the two ends of a row, go through snow_gradient_of. */
 #include "classify/normals.h"
 #include "base/vec3.h"
 
@@ -23,22 +24,55 @@
 #include <string.h>
 
 /* Places along each side of the square, and the middle one. */
-#define SIDE 255
-#define MIDDLE 127
+#define SIDE SNOW_NORMAL_SIDE
+#define MIDDLE (SNOW_NORMAL_SIDE / 2)
 
 #define UNSURE 65535 /* a code of a block that must be made exactly */
-#define BLOCK 64     /* columns */
-#define GROUP 16     /* blocks are shortened to multiples of this */
+#define BLOCK 64     /* voxels */
+#define GROUP 16     /* blocks are made up to multiples of this */
+#define SPARSE 6     /* columns per voxel from which on a row is sparse */
+
+#define SUM_LEAST 1e-30F
+#define SUM_MOST 1e30F
+#define LEAST 1e-35F /* of a difference that is not 0 */
 
 typedef void differences_fn(const void *low, const void *high, size_t count,
-                            float *out);
+                            float weight, float *out);
 
 /* The loops of one level, described in classify/normals.tmpl.h. */
 typedef struct normal_kernels {
     differences_fn *differences[SNOW_FLOAT64 + 1];
-    void (*encode)(const float carry[3][3], const float *const gradients[3],
-                   size_t count, uint16_t *codes);
+    void (*add)(const float *more, size_t count, float *out);
+    bool (*encode)(const float carry[9], float gradients[3][BLOCK],
+                   size_t count, uint32_t *codes);
 } normal_kernels;
+
+/* --- differences of two values as floats ---------------------------------- */
+
+static inline float whole(int high, int low) {
+    return (float)(high - low);
+}
+
+static inline float wide(double high, double low) {
+    return (float)(high - low);
+}
+
+/* Single precision tells the direction of a gradient only where |x|+|y|+|z| is
+ * within SUM_LEAST and SUM_MOST.  A difference that is not 0 is made large
+ * enough that it cannot vanish on the way there. */
+static inline float single(float high, float low) {
+    float d = high - low, size = fabsf(d);
+    float least = size > 0 ? LEAST : 0;
+    return copysignf(size < least ? least : size, d);
+}
+
+/* And one that a float cannot hold, or that is no number, is made infinite. */
+static inline float twice(double high, double low) {
+    double d = high - low, size = fabs(d);
+    double bounded = size < 1e37 ? size : (double)INFINITY;
+    double least = bounded > 0 ? (double)LEAST : 0;
+    return (float)copysign(bounded < least ? least : bounded, d);
+}
 
 /* The order matters, so a blank line keeps the two from being sorted. */
 #define SELECT_SCALAR
@@ -125,15 +159,86 @@ snow_status snow_normal_maker_init(snow_context *context,
     return SNOW_OK;
 }
 
+/* --- rows -----------------------------------------------------------------
+ */
+
+/* A row of one slice: per axis (u along the row, v across it, w across the
+ * slices) the two voxels that are subtracted for a voxel, as bytes from it, and
+ * the weight of that difference: 2 where a border halves the way between. */
+typedef struct layer {
+    const char *first; /* the row's first voxel */
+    int64_t low[3], high[3];
+    float weight[3];
+} layer;
+
+/* What codes of a row are made of: the gradients of one layer, or of two added
+ * up. */
+typedef struct row_job {
+    const snow_normal_maker *maker;
+    const snow_placement *placement;
+    int64_t slice, row;
+    const normal_kernels *kernels;
+    snow_type type;
+    int64_t step; /* bytes from column to column */
+    layer layers[2];
+    int layer_count;
+    float carry[9]; /* gradients along u, v, w to the world */
+} row_job;
+
+static void set_axis(layer *l, int axis, int64_t at, int64_t last,
+                     int64_t stride) {
+    l->low[axis] = at > 0 ? -stride : 0;
+    l->high[axis] = at < last ? stride : 0;
+    l->weight[axis] = at > 0 && at < last ? 1 : 2;
+}
+
+static layer make_layer(const row_job *job, int64_t slice) {
+    const snow_placement *p = job->placement;
+    const snow_volume *volume = job->maker->volume;
+    const int64_t *dims = volume->info.dims;
+    int64_t size = (int64_t)snow_type_size(job->type), stride;
+    const int64_t strides[3] = {size, dims[0] * size, dims[0] * dims[1] * size};
+    layer l = {.first = snow_row_voxels(volume, p, slice, job->row, &stride)};
+    set_axis(&l, 0, 1, 2, job->step); /* the row's ends are made exactly */
+    set_axis(&l, 1, job->row, p->rows - 1, strides[p->v_axis]);
+    set_axis(&l, 2, slice, p->slices - 1, strides[p->slice_axis]);
+    return l;
+}
+
+static row_job make_job(const snow_normal_maker *maker, const snow_placement *p,
+                        int64_t slice, int64_t row, int layer_count) {
+    row_job job = {.maker = maker,
+                   .placement = p,
+                   .slice = slice,
+                   .row = row,
+                   .kernels = kernels_of(maker->isa),
+                   .type = maker->volume->info.type,
+                   .layer_count = layer_count};
+    int64_t size = (int64_t)snow_type_size(job.type);
+    job.step = p->u_axis == 0 ? size : maker->volume->info.dims[0] * size;
+    for (int n = 0; n < layer_count; n++)
+        job.layers[n] = make_layer(&job, slice + n);
+    for (int i = 0; i < 3; i++) {
+        job.carry[3 * i] = (float)maker->carry[i][p->u_axis];
+        job.carry[3 * i + 1] = (float)maker->carry[i][p->v_axis];
+        job.carry[3 * i + 2] = (float)maker->carry[i][p->slice_axis];
+    }
+    return job;
+}
+
 /* --- exact, voxel by voxel ------------------------------------------------
  */
 
 /* The code of an index gradient in doubles, of any size. */
 static uint16_t code_of_gradient(const snow_normal_maker *maker,
                                  const double gradient[3]) {
-    double most =
-        fmax(fabs(gradient[0]), fmax(fabs(gradient[1]), fabs(gradient[2])));
-    if (!(most > 0) || !isfinite(most))
+    double most = 0;
+    for (int i = 0; i < 3; i++) {
+        if (!isfinite(gradient[i]))
+            return SNOW_NO_NORMAL;
+        most = fmax(most, fabs(gradient[i]));
+    }
+    if (most == 0)
         return SNOW_NO_NORMAL;
     double world[3], g[3];
     /* Two steps, because the inverse of a subnormal number is infinite. */
@@ -145,138 +250,188 @@ static uint16_t code_of_gradient(const snow_normal_maker *maker,
     return snow_normal_code(world);
 }
 
-/* A voxel of a row, made exactly. */
-static uint16_t exact_code(const snow_normal_maker *maker,
-                           const snow_placement *placement, int64_t slice,
-                           int64_t row, int64_t column) {
-    const snow_volume_info *info = &maker->volume->info;
+/* The gradients of all layers added up, times `scale`. */
+static void sum_gradients(const row_job *job, int64_t column, double scale,
+                          double sum[3]) {
+    const snow_placement *p = job->placement;
+    const snow_volume *volume = job->maker->volume;
     int64_t at[3];
-    double gradient[3];
-    at[placement->slice_axis] = slice;
-    at[placement->v_axis] = row;
-    at[placement->u_axis] = column;
-    snow_gradient_of(info->type)(maker->volume->voxels, info->dims, at,
-                                 gradient);
-    return code_of_gradient(maker, gradient);
+    sum[0] = sum[1] = sum[2] = 0;
+    at[p->v_axis] = job->row;
+    at[p->u_axis] = column;
+    for (int n = 0; n < job->layer_count; n++) {
+        double gradient[3];
+        at[p->slice_axis] = job->slice + n;
+        snow_gradient_of(job->type)(volume->voxels, volume->info.dims, at,
+                                    gradient);
+        for (int i = 0; i < 3; i++)
+            sum[i] += gradient[i] * scale;
+    }
+}
+
+static uint16_t exact_code(const row_job *job, int64_t column) {
+    double sum[3];
+    sum_gradients(job, column, 1, sum);
+    /* Two that are finite may add up to more than a double holds. */
+    if (!isfinite(sum[0] + sum[1] + sum[2]))
+        sum_gradients(job, column, 0.25, sum);
+    return code_of_gradient(job->maker, sum);
 }
 
 /* --- blocks ---------------------------------------------------------------
  */
 
-/* A row made ready: per axis (u, v, w: along the row, across it, across the
- * slices) the two voxels at column 0 that are subtracted, as steps in voxels
- * from the row's first; and how a gradient from these differences is carried,
- * twice as much where a border leaves only half the way between them. */
-typedef struct block_row {
-    const snow_normal_maker *maker;
-    const normal_kernels *kernels;
-    const char *first; /* the row's first voxel */
-    int64_t stride;    /* between columns, in voxels */
-    size_t size;       /* bytes of a voxel */
-    int64_t columns;
-    int64_t low[3], high[3];
-    float carry[3][3];
-} block_row;
+/* Differences for the voxels of some columns, wherever they lie; as the
+ * kernels' differences, but `low` and `high` are bytes from the voxel. */
+typedef void collect_fn(const char *first, int64_t step,
+                        const uint32_t *columns, size_t count, int64_t low,
+                        int64_t high, float weight, float *out);
 
-static void set_axis(block_row *r, int n, int axis, int64_t at, int64_t last,
-                     int64_t stride) {
-    r->low[n] = at > 0 ? -stride : 0;
-    r->high[n] = at < last ? stride : 0;
-    double weight = at > 0 && at < last ? 1 : 2;
-    for (int i = 0; i < 3; i++)
-        r->carry[i][n] = (float)(r->maker->carry[i][axis] * weight);
-}
-
-static block_row make_row(const snow_normal_maker *maker,
-                          const snow_placement *p, int64_t slice, int64_t row) {
-    const snow_volume *volume = maker->volume;
-    const int64_t *dims = volume->info.dims;
-    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
-    block_row r = {.maker = maker,
-                   .kernels = kernels_of(maker->isa),
-                   .size = snow_type_size(volume->info.type),
-                   .columns = p->columns};
-    r.first = snow_row_voxels(volume, p, slice, row, &r.stride);
-    /* The ends of the row are never in a block. */
-    set_axis(&r, 0, p->u_axis, 1, 2, r.stride);
-    set_axis(&r, 1, p->v_axis, row, p->rows - 1, strides[p->v_axis]);
-    set_axis(&r, 2, p->slice_axis, slice, p->slices - 1,
-             strides[p->slice_axis]);
-    return r;
-}
-
-/* Copies `count` voxels that are `step` bytes apart. */
-static void collect(const char *from, int64_t step, size_t size, size_t count,
-                    char *to) {
-    if (size == 1)
-        for (size_t i = 0; i < count; i++, from += step)
-            to[i] = *from;
-    else if (size == 2)
-        for (size_t i = 0; i < count; i++, from += step)
-            memcpy(to + 2 * i, from, 2);
-    else if (size == 4)
-        for (size_t i = 0; i < count; i++, from += step)
-            memcpy(to + 4 * i, from, 4);
-    else
-        for (size_t i = 0; i < count; i++, from += step)
-            memcpy(to + 8 * i, from, 8);
-}
-
-/* Codes of columns first .. first + wanted - 1, all of them inside the row;
- * there is room for BLOCK.  Where voxels are not neighbours in memory, or too
- * few for whole groups, they are collected first. */
-static void encode_block(const block_row *r, int64_t first, size_t wanted,
-                         uint16_t *codes) {
-    differences_fn *differences =
-        r->kernels->differences[r->maker->volume->info.type];
-    size_t count = (wanted + GROUP - 1) / GROUP * GROUP;
-    bool direct = r->stride == 1 && first + (int64_t)count < r->columns;
-    float gradients[3][BLOCK];
-    const float *const pointers[3] = {gradients[0], gradients[1], gradients[2]};
-    double room[2][BLOCK];
-    int64_t step = r->stride * (int64_t)r->size;
-    const char *here = r->first + first * step;
-    if (!direct)
-        memset(room, 0, sizeof room);
-    for (int n = 0; n < 3; n++) {
-        const char *low = here + r->low[n] * (int64_t)r->size;
-        const char *high = here + r->high[n] * (int64_t)r->size;
-        if (!direct) {
-            collect(low, step, r->size, wanted, (char *)room[0]);
-            collect(high, step, r->size, wanted, (char *)room[1]);
-            low = (const char *)room[0];
-            high = (const char *)room[1];
-        }
-        differences(low, high, count, gradients[n]);
+#define COLLECT(name, type, as, subtract)                                    \
+    static void collect_##name(                                              \
+        const char *first, int64_t step, const uint32_t *columns,            \
+        size_t count, int64_t low, int64_t high, float weight, float *out) { \
+        for (size_t i = 0; i < count; i++) {                                 \
+            const char *here = first + columns[i] * step;                    \
+            out[i] =                                                         \
+                subtract((as) * (const type *)(const void *)(here + high),   \
+                         (as) * (const type *)(const void *)(here + low)) *  \
+                weight;                                                      \
+        }                                                                    \
     }
-    r->kernels->encode(r->carry, pointers, count, codes);
+
+COLLECT(int8, int8_t, int, whole)
+COLLECT(uint8, uint8_t, int, whole)
+COLLECT(int16, int16_t, int, whole)
+COLLECT(uint16, uint16_t, int, whole)
+COLLECT(int32, int32_t, double, wide)
+COLLECT(uint32, uint32_t, double, wide)
+COLLECT(int64, int64_t, double, wide)
+COLLECT(uint64, uint64_t, double, wide)
+COLLECT(float32, float, float, single)
+COLLECT(float64, double, double, twice)
+
+static collect_fn *const collectors[] = {
+    [SNOW_INT8] = collect_int8,       [SNOW_UINT8] = collect_uint8,
+    [SNOW_INT16] = collect_int16,     [SNOW_UINT16] = collect_uint16,
+    [SNOW_INT32] = collect_int32,     [SNOW_UINT32] = collect_uint32,
+    [SNOW_INT64] = collect_int64,     [SNOW_UINT64] = collect_uint64,
+    [SNOW_FLOAT32] = collect_float32, [SNOW_FLOAT64] = collect_float64,
+};
+
+static size_t whole_groups(size_t count) {
+    return (count + GROUP - 1) / GROUP * GROUP;
+}
+
+/* Codes of up to BLOCK columns within the row that may lie apart. */
+static void encode_apart(const row_job *job, const uint32_t *columns,
+                         size_t count, uint16_t *normals) {
+    float gradients[3][BLOCK] = {{0}}, more[BLOCK] = {0};
+    uint32_t codes[BLOCK];
+    for (int n = 0; n < job->layer_count; n++)
+        for (int axis = 0; axis < 3; axis++) {
+            const layer *l = &job->layers[n];
+            collectors[job->type](l->first, job->step, columns, count,
+                                  l->low[axis], l->high[axis], l->weight[axis],
+                                  n ? more : gradients[axis]);
+            if (n)
+                job->kernels->add(more, whole_groups(count), gradients[axis]);
+        }
+    bool unsure =
+        job->kernels->encode(job->carry, gradients, whole_groups(count), codes);
+    for (size_t n = 0; n < count; n++)
+        normals[n] = (uint16_t)codes[n];
+    for (size_t n = 0; unsure && n < count; n++)
+        if (normals[n] == UNSURE)
+            normals[n] = exact_code(job, columns[n]);
+}
+
+/* Codes of `count` neighbouring columns from `first` on; whole groups. */
+static bool encode_together(const row_job *job, int64_t first, size_t count,
+                            uint32_t *codes) {
+    const normal_kernels *kernels = job->kernels;
+    float gradients[3][BLOCK], more[BLOCK];
+    for (int n = 0; n < job->layer_count; n++)
+        for (int axis = 0; axis < 3; axis++) {
+            const layer *l = &job->layers[n];
+            const char *here = l->first + first * job->step;
+            kernels->differences[job->type](
+                here + l->low[axis], here + l->high[axis], count,
+                l->weight[axis], n ? more : gradients[axis]);
+            if (n)
+                kernels->add(more, count, gradients[axis]);
+        }
+    return kernels->encode(job->carry, gradients, count, codes);
+}
+
+/* Codes of the columns that one block holds, from the first of them on; all
+ * lie within the row.  Returns how many there were. */
+static size_t encode_block(const row_job *job, const uint32_t *columns,
+                           size_t count, uint16_t *normals) {
+    uint32_t codes[BLOCK];
+    size_t some = 1;
+    while (some < count && columns[some] - columns[0] < BLOCK)
+        some++;
+    size_t width = whole_groups(columns[some - 1] - columns[0] + 1);
+    /* The last block of a row is moved back, so that all of it lies within. */
+    int64_t first = columns[0];
+    int64_t last = job->placement->columns - 1 - (int64_t)width;
+    first = first < last ? first : last;
+    if (first < 1) {
+        encode_apart(job, columns, some, normals);
+        return some;
+    }
+    bool unsure = encode_together(job, first, width, codes);
+    for (size_t n = 0; n < some; n++)
+        normals[n] = (uint16_t)codes[columns[n] - first];
+    for (size_t n = 0; unsure && n < some; n++)
+        if (normals[n] == UNSURE)
+            normals[n] = exact_code(job, columns[n]);
+    return some;
+}
+
+/* Codes of all columns asked for. */
+static void encode_row(const row_job *job, const uint32_t *columns,
+                       size_t count, uint16_t *normals) {
+    size_t n = 0;
+    int64_t last = job->placement->columns - 1;
+    if (job->maker->skewed) {
+        for (; n < count; n++)
+            normals[n] = exact_code(job, columns[n]);
+        return;
+    }
+    if (count && columns[0] == 0)
+        normals[n++] = exact_code(job, 0);
+    if (n < count && columns[count - 1] == last) {
+        count--;
+        normals[count] = exact_code(job, last);
+    }
+    if (n == count)
+        return;
+    bool apart = job->placement->u_axis != 0 ||
+                 (columns[count - 1] - columns[n]) / SPARSE > count - n;
+    while (n < count) {
+        size_t left = count - n, some = left < BLOCK ? left : BLOCK;
+        if (apart)
+            encode_apart(job, columns + n, some, normals + n);
+        else
+            some = encode_block(job, columns + n, left, normals + n);
+        n += some;
+    }
 }
 
 void snow_normals_of_row(const snow_normal_maker *maker,
                          const snow_placement *placement, int64_t slice,
                          int64_t row, const uint32_t *columns, size_t count,
                          uint16_t *normals) {
-    block_row r = make_row(maker, placement, slice, row);
-    uint16_t codes[BLOCK];
-    size_t n = 0;
-    while (n < count) {
-        int64_t first = columns[n];
-        if (maker->skewed || first == 0 || first == r.columns - 1) {
-            normals[n++] = exact_code(maker, placement, slice, row, first);
-            continue;
-        }
-        int64_t end = first + BLOCK; /* one past the block */
-        if (end > r.columns - 1)
-            end = r.columns - 1;
-        size_t last = n;
-        while (last + 1 < count && columns[last + 1] < end)
-            last++;
-        encode_block(&r, first, columns[last] - (size_t)first + 1, codes);
-        for (; n <= last; n++) {
-            normals[n] = codes[columns[n] - first];
-            if (normals[n] == UNSURE)
-                normals[n] =
-                    exact_code(maker, placement, slice, row, columns[n]);
-        }
-    }
+    row_job job = make_job(maker, placement, slice, row, 1);
+    encode_row(&job, columns, count, normals);
+}
+
+void snow_normals_between(const snow_normal_maker *maker,
+                          const snow_placement *placement, int64_t slice,
+                          int64_t row, const uint32_t *columns, size_t count,
+                          uint16_t *normals) {
+    row_job job = make_job(maker, placement, slice, row, 2);
+    encode_row(&job, columns, count, normals);
 }

@@ -17,6 +17,7 @@
 #include "simd/isa.h"
 
 #define SNOW_NORMALS 65536
+#define SNOW_NORMAL_SIDE 255
 #define SNOW_NO_NORMAL 0       /* the code of a voxel without a gradient */
 #define SNOW_NORMAL_ERROR 0.56 /* degrees */
 
@@ -51,6 +52,13 @@ void snow_normals_of_row(const snow_normal_maker *maker,
                          const snow_placement *placement, int64_t slice,
                          int64_t row, const uint32_t *columns, size_t count,
                          uint16_t *normals);
+
+/* The same half-way between slices `slice` and `slice` + 1: of the mean of the
+ * gradients there. */
+void snow_normals_between(const snow_normal_maker *maker,
+                          const snow_placement *placement, int64_t slice,
+                          int64_t row, const uint32_t *columns, size_t count,
+                          uint16_t *normals);
 
 /* The shading table of a view and light (model, point 4): SNOW_NORMALS entries
  * into `table`.  `threads` as in base/parallel.h. */

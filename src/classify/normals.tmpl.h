@@ -1,68 +1,80 @@
-/* classify/normals.tmpl.h - normals of a block of neighbouring voxels, in
- * loops that the compiler carries to vectors.  For one level of simd/select.h,
- * which is to be included before.  No sum is fused or reordered, so all levels
- * make the same bits.
+/* classify/normals.tmpl.h - normals of a block of voxels, in loops that the
+ * compiler carries to vectors.  For one level of simd/select.h, which is to be
+ * included before; the file that includes it has the subtractions (whole, wide,
+ * single, twice), `normal_kernels` and UNSURE.  No sum is fused or reordered,
+ * so all levels make the same bits.
  *
- * NAME(differences)[type] subtracts, for `count` neighbours:
+ * NAME(differences_TYPE) subtracts `count` neighbours of that scalar type:
  *
- *   out[i] = high[i] - low[i]      of the scalar type, as a float
+ *   out[i] = (high[i] - low[i]) * weight
  *
- * NAME(encode) takes three such arrays as gradients, `carry` them to the world
- * and writes codes.  UNSURE stands where single precision could not tell.
+ * NAME(add) adds to an array of such differences.
+ *
+ * NAME(encode) takes three such arrays as gradients along u, v and w, carries
+ * them to the world and writes codes.  Where single precision cannot tell the
+ * direction it writes UNSURE, and it returns whether there is one.
+ *
  * `count` is a multiple of 16. */
 
-#define DIFFERENCES(name, type, wide)                                  \
-    TARGET static void NAME(differences_##name)(                       \
-        const void *low, const void *high, size_t count, float *out) { \
-        const type *a = low, *b = high;                                \
-        for (size_t i = 0; i < count; i++)                             \
-            out[i] = (float)((wide)b[i] - (wide)a[i]);                 \
+#define DIFFERENCES(name, type, as, subtract)                               \
+    TARGET static void NAME(differences_##name)(                            \
+        const void *low, const void *high, size_t count, float weight,      \
+        float *restrict out) {                                              \
+        const type *a = low, *b = high;                                     \
+        for (size_t n = 0; n < count; n += GROUP)                           \
+            for (size_t i = 0; i < GROUP; i++)                              \
+                out[n + i] = subtract((as)b[n + i], (as)a[n + i]) * weight; \
     }
 
-DIFFERENCES(int8, int8_t, int)
-DIFFERENCES(uint8, uint8_t, int)
-DIFFERENCES(int16, int16_t, int)
-DIFFERENCES(uint16, uint16_t, int)
-DIFFERENCES(int32, int32_t, double)
-DIFFERENCES(uint32, uint32_t, double)
-DIFFERENCES(int64, int64_t, double)
-DIFFERENCES(uint64, uint64_t, double)
-DIFFERENCES(float32, float, float)
+DIFFERENCES(int8, int8_t, int, whole)
+DIFFERENCES(uint8, uint8_t, int, whole)
+DIFFERENCES(int16, int16_t, int, whole)
+DIFFERENCES(uint16, uint16_t, int, whole)
+DIFFERENCES(int32, int32_t, double, wide)
+DIFFERENCES(uint32, uint32_t, double, wide)
+DIFFERENCES(int64, int64_t, double, wide)
+DIFFERENCES(uint64, uint64_t, double, wide)
+DIFFERENCES(float32, float, float, single)
+DIFFERENCES(float64, double, double, twice)
 
 #undef DIFFERENCES
 
-/* A difference of doubles that is too small for a float becomes one that is
- * small, not 0: NAME(encode) then knows that it was not. */
-TARGET static void NAME(differences_float64)(const void *low, const void *high,
-                                             size_t count, float *out) {
-    const double *a = low, *b = high;
-    for (size_t i = 0; i < count; i++) {
-        double d = b[i] - a[i];
-        double bounded = fabs(d) < 1e38 ? d : 1e38;
-        out[i] = fabs(d) > 0 && fabs(d) < 1e-38 ? 1e-38F : (float)bounded;
-    }
+/* What cancels out is left as the least, because differences that were made up
+ * to it would vanish too. */
+TARGET static void NAME(add)(const float *more, size_t count,
+                             float *restrict out) {
+    for (size_t n = 0; n < count; n += GROUP)
+        for (size_t i = 0; i < GROUP; i++) {
+            float sum = out[n + i] + more[n + i];
+            float least = more[n + i] == 0 ? 0 : LEAST;
+            out[n + i] = sum == 0 ? least : sum;
+        }
 }
 
-TARGET static void NAME(encode)(const float carry[3][3],
-                                const float *const gradients[3], size_t count,
-                                uint16_t *codes) {
+TARGET static bool NAME(encode)(const float carry[9], float gradients[3][BLOCK],
+                                size_t count, uint32_t *restrict codes) {
     const float *gu = gradients[0], *gv = gradients[1], *gw = gradients[2];
-    for (size_t i = 0; i < count; i++) {
-        float x =
-            carry[0][0] * gu[i] + carry[0][1] * gv[i] + carry[0][2] * gw[i];
-        float y =
-            carry[1][0] * gu[i] + carry[1][1] * gv[i] + carry[1][2] * gw[i];
-        float z =
-            carry[2][0] * gu[i] + carry[2][1] * gv[i] + carry[2][2] * gw[i];
-        float sum = fabsf(x) + fabsf(y) + fabsf(z);
-        int none = fabsf(gu[i]) + fabsf(gv[i]) + fabsf(gw[i]) == 0;
-        int sure = (sum > 1e-30F) & (sum < 1e30F);
-        float scale = copysignf(127, z) / (sure ? sum : 1);
-        float across = sure ? (x + y) * scale : 0;
-        float down = sure ? (x - y) * scale : 0;
-        int place = (int)(down + 127.5F) * 255 + (int)(across + 127.5F) + 1;
-        codes[i] = (uint16_t)(none ? SNOW_NO_NORMAL : sure ? place : UNSURE);
-    }
+    int unsure[GROUP] = {0}, any = 0;
+    for (size_t n = 0; n < count; n += GROUP)
+        for (size_t i = 0; i < GROUP; i++) {
+            float u = gu[n + i], v = gv[n + i], w = gw[n + i];
+            float x = carry[0] * u + carry[1] * v + carry[2] * w;
+            float y = carry[3] * u + carry[4] * v + carry[5] * w;
+            float z = carry[6] * u + carry[7] * v + carry[8] * w;
+            float sum = fabsf(x) + fabsf(y) + fabsf(z);
+            int sure = (sum > SUM_LEAST) & (sum < SUM_MOST);
+            float scale = copysignf(MIDDLE, z) / (sure ? sum : 1);
+            float across = sure ? (x + y) * scale : 0;
+            float down = sure ? (x - y) * scale : 0;
+            int place = (int)(down + (MIDDLE + 0.5F)) * SIDE +
+                        (int)(across + (MIDDLE + 0.5F)) + 1;
+            unsure[i] |= !sure & (sum != 0);
+            int other = sum == 0 ? SNOW_NO_NORMAL : UNSURE;
+            codes[n + i] = (uint32_t)(sure ? place : other);
+        }
+    for (size_t i = 0; i < GROUP; i++)
+        any |= unsure[i];
+    return any != 0;
 }
 
 static const normal_kernels NAME(kernels) = {
@@ -79,5 +91,6 @@ static const normal_kernels NAME(kernels) = {
             [SNOW_FLOAT32] = NAME(differences_float32),
             [SNOW_FLOAT64] = NAME(differences_float64),
         },
+    .add = NAME(add),
     .encode = NAME(encode),
 };

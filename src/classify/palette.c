@@ -8,12 +8,46 @@
 #include "base/parallel.h"
 #include "base/power.h"
 #include "classify/codes.h"
+#include "simd/isa.h"
 
 #include <string.h>
 
 /* Codes of one item of work: few enough that it stays in the first-level
  * cache, and that 256 codes are one item. */
 #define BLOCK 1024
+
+/* The loops of one level, in classify/palette.tmpl.h. */
+typedef struct palette_kernels {
+    void (*clear)(const double *opacities, size_t count, double *clarities);
+    void (*correct)(const double *clarities, size_t count, double exponent,
+                    float *opacities);
+} palette_kernels;
+
+/* The order matters, so a blank line keeps the two from being sorted. */
+#define SELECT_SCALAR
+#include "simd/select.h"
+
+#include "classify/palette.tmpl.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "classify/palette.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "classify/palette.tmpl.h"
+#endif
+
+static const palette_kernels *best_kernels(void) {
+#if SNOW_HAS_AVX
+    if (snow_isa_runs(SNOW_ISA_AVX512))
+        return &kernels_avx512;
+    if (snow_isa_runs(SNOW_ISA_AVX2))
+        return &kernels_avx2;
+#endif
+    return &kernels_scalar;
+}
 
 /* What making looks or samples needs, for the threads. */
 typedef struct palette_job {
@@ -22,6 +56,7 @@ typedef struct palette_job {
     snow_palette *palette;
     double exponent;
     bool premultiply;
+    const palette_kernels *kernels;
 } palette_job;
 
 static size_t block_end(const palette_job *job, size_t first) {
@@ -37,16 +72,19 @@ static void make_looks(void *user, int64_t item, int worker) {
     const palette_job *job = user;
     const snow_palette *palette = job->palette;
     size_t channels = (size_t)palette->channels, first = (size_t)item * BLOCK;
-    for (size_t code = first; code < block_end(job, first); code++) {
-        double rgba[4];
-        snow_transfer_at(job->transfer, snow_coder_value(job->coder, code),
-                         rgba);
-        float *look = palette->looks + code * channels;
+    size_t count = block_end(job, first) - first;
+    snow_transfer_hint hint = {0, 0};
+    double opacities[BLOCK];
+    for (size_t n = 0; n < count; n++) {
+        double value = snow_coder_value(job->coder, first + n), rgba[4];
+        float *look = palette->looks + (first + n) * channels;
+        snow_transfer_near(job->transfer, value, &hint, rgba);
         for (size_t i = 0; i + 1 < channels; i++)
             look[i] = (float)rgba[i];
         look[channels - 1] = (float)rgba[3];
-        palette->clarities[code] = snow_clarity(rgba[3]);
+        opacities[n] = rgba[3];
     }
+    job->kernels->clear(opacities, count, palette->clarities + first);
 }
 
 /* Appends numbers to a key. */
@@ -92,8 +130,8 @@ static snow_status take_key(snow_context *context, const snow_coder *coder,
 
 /* The opacities of a block for the exponent; looks of exponent 1 are taken as
  * they are. */
-static void correct(const palette_job *job, size_t first, size_t count,
-                    float *opacities) {
+static void opacities_of(const palette_job *job, size_t first, size_t count,
+                         float *opacities) {
     const snow_palette *palette = job->palette;
     const double *clarities = palette->clarities + first;
     size_t channels = (size_t)palette->channels;
@@ -102,8 +140,7 @@ static void correct(const palette_job *job, size_t first, size_t count,
         for (size_t i = 0; i < count; i++)
             opacities[i] = palette->looks[(first + i + 1) * channels - 1];
     else
-        for (size_t i = 0; i < count; i++)
-            opacities[i] = (float)snow_opacity_of(clarities[i], exponent);
+        job->kernels->correct(clarities, count, exponent, opacities);
 }
 
 static void fill_grey(const float *looks, const float *opacities, size_t count,
@@ -134,7 +171,7 @@ static void make_samples(void *user, int64_t item, int worker) {
     size_t count = block_end(job, first) - first;
     size_t place = first * (size_t)palette->channels;
     float opacities[BLOCK];
-    correct(job, first, count, opacities);
+    opacities_of(job, first, count, opacities);
     if (palette->channels == 2)
         fill_grey(palette->looks + place, opacities, count, job->premultiply,
                   palette->samples + place);
@@ -162,7 +199,8 @@ snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
                               const snow_transfer *transfer, double exponent,
                               bool premultiply, int threads,
                               snow_palette *palette) {
-    palette_job job = {coder, transfer, palette, exponent, premultiply};
+    palette_job job = {coder,    transfer,    palette,
+                       exponent, premultiply, best_kernels()};
     int64_t items = (int64_t)((coder->codes + BLOCK - 1) / BLOCK);
     bool changed;
     SNOW_TRY(take_key(context, coder, transfer, palette, &changed));

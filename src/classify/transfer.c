@@ -133,24 +133,80 @@ static double mix(double a, double b, double t) {
     return a + (b - a) * t;
 }
 
-double snow_transfer_opacity(const snow_transfer *transfer, double value) {
-    const snow_opacity_point *points = transfer->opacities;
-    size_t low = 0, high = transfer->opacity_count; /* first one beyond */
-    if (isnan(value))
-        return 0;
+/* The value of point n; both kinds of points, of `size` bytes, begin with it.
+ */
+static inline double value_of(const void *points, size_t size, size_t n) {
+    const char *first = points;
+    return *(const double *)(const void *)(first + n * size);
+}
+
+/* How many points lie at or before a value, which is not NaN; `guess` first. */
+static inline size_t points_up_to(const void *points, size_t size, size_t count,
+                                  double value, size_t guess) {
+    if ((guess == 0 || value_of(points, size, guess - 1) <= value) &&
+        (guess == count || value_of(points, size, guess) > value))
+        return guess;
+    size_t low = 0, high = count;
     while (low < high) {
         size_t middle = low + (high - low) / 2;
-        if (points[middle].value > value)
+        if (value_of(points, size, middle) > value)
             high = middle;
         else
             low = middle + 1;
     }
-    if (low == 0)
+    return low;
+}
+
+static inline double opacity_behind(const snow_transfer *transfer, size_t up_to,
+                                    double value) {
+    const snow_opacity_point *points = transfer->opacities;
+    if (up_to == 0)
         return points[0].opacity;
-    if (low == transfer->opacity_count)
-        return points[low - 1].opacity;
-    double t = part_of_way(value, points[low - 1].value, points[low].value);
-    return mix(points[low - 1].opacity, points[low].opacity, t);
+    if (up_to == transfer->opacity_count)
+        return points[up_to - 1].opacity;
+    double t = part_of_way(value, points[up_to - 1].value, points[up_to].value);
+    return mix(points[up_to - 1].opacity, points[up_to].opacity, t);
+}
+
+static inline void color_behind(const snow_transfer *transfer, size_t up_to,
+                                double value, double rgb[3]) {
+    const snow_color_point *a = transfer->colors + (up_to ? up_to - 1 : 0);
+    const snow_color_point *b = a;
+    double t = 0;
+    if (up_to > 0 && up_to < transfer->color_count) {
+        b = a + 1;
+        t = part_of_way(value, a->value, b->value);
+    }
+    rgb[0] = mix(a->red, b->red, t);
+    rgb[1] = mix(a->green, b->green, t);
+    rgb[2] = mix(a->blue, b->blue, t);
+}
+
+double snow_transfer_opacity(const snow_transfer *transfer, double value) {
+    if (isnan(value))
+        return 0;
+    size_t up_to =
+        points_up_to(transfer->opacities, sizeof *transfer->opacities,
+                     transfer->opacity_count, value, 0);
+    return opacity_behind(transfer, up_to, value);
+}
+
+void snow_transfer_color(const snow_transfer *transfer, double value,
+                         double rgb[3]) {
+    size_t up_to = points_up_to(transfer->colors, sizeof *transfer->colors,
+                                transfer->color_count, value, 0);
+    color_behind(transfer, up_to, value, rgb);
+}
+
+void snow_transfer_near(const snow_transfer *transfer, double value,
+                        snow_transfer_hint *hint, double rgba[4]) {
+    hint->color = points_up_to(transfer->colors, sizeof *transfer->colors,
+                               transfer->color_count, value, hint->color);
+    hint->opacity =
+        points_up_to(transfer->opacities, sizeof *transfer->opacities,
+                     transfer->opacity_count, value, hint->opacity);
+    color_behind(transfer, hint->color, value, rgba);
+    rgba[3] = opacity_behind(transfer, hint->opacity, value);
 }
 
 void snow_transfer_at(const snow_transfer *transfer, double value,
@@ -158,28 +214,6 @@ void snow_transfer_at(const snow_transfer *transfer, double value,
     memset(rgba, 0, 4 * sizeof *rgba);
     if (isnan(value))
         return;
-    snow_transfer_color(transfer, value, rgba);
-    rgba[3] = snow_transfer_opacity(transfer, value);
-}
-
-void snow_transfer_color(const snow_transfer *transfer, double value,
-                         double rgb[3]) {
-    const snow_color_point *points = transfer->colors;
-    size_t low = 0, high = transfer->color_count; /* first one beyond */
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (points[middle].value > value)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    const snow_color_point *a = points + (low ? low - 1 : 0), *b = a;
-    double t = 0;
-    if (low > 0 && low < transfer->color_count) {
-        b = a + 1;
-        t = part_of_way(value, a->value, b->value);
-    }
-    rgb[0] = mix(a->red, b->red, t);
-    rgb[1] = mix(a->green, b->green, t);
-    rgb[2] = mix(a->blue, b->blue, t);
+    snow_transfer_hint hint = {0, 0};
+    snow_transfer_near(transfer, value, &hint, rgba);
 }

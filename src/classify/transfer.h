@@ -24,6 +24,15 @@ double snow_transfer_opacity(const snow_transfer *transfer, double value);
 void snow_transfer_color(const snow_transfer *transfer, double value,
                          double rgb[3]);
 
+/* Both, of a value that is not NaN, as snow_transfer_at has them: faster for
+ * values that come in order.  The hint begins as zeros and is handed on. */
+typedef struct snow_transfer_hint {
+    size_t color, opacity; /* points at or before the last value */
+} snow_transfer_hint;
+
+void snow_transfer_near(const snow_transfer *transfer, double value,
+                        snow_transfer_hint *hint, double rgba[4]);
+
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define SNOW_THRESHOLD_MARGIN 0.0001
 

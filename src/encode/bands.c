@@ -141,7 +141,8 @@ static snow_status encode_band(const encode_job *job, int64_t number,
     snow_fetch fetch;
     snow_fetch_begin(&fetch, &from, buffers.fetch);
     SNOW_TRY(snow_sparse_begin_band(band, job->scheme, bands->columns, rows,
-                                    bands->slices, bands->code_bytes));
+                                    bands->slices, bands->code_bytes,
+                                    order->isa));
     for (int64_t slice = 0; slice < bands->slices; slice++)
         SNOW_TRY(encode_slice(job, &buffers, &fetch, band, first, slice));
     return SNOW_OK;

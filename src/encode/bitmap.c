@@ -109,39 +109,27 @@ static size_t summary_bytes(const snow_sparse *s) {
 static void write_plain(const snow_sparse *s, const uint64_t *masks,
                         unsigned char *at) {
     size_t words = snow_mask_words(s);
+#if __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    if (s->columns % 64 == 0) {
+        memcpy(at, masks, plain_bytes(s));
+        return;
+    }
+#endif
     for (int64_t row = 0; row < s->rows; row++, at += row_bytes(s))
         for (size_t w = 0; w < words; w++)
             snow_store_word(at + 8 * w, *masks++);
 }
 
-static unsigned char *write_words(const snow_sparse *s, const uint64_t *masks,
-                                  unsigned char *at) {
-    size_t count = snow_mask_words(s) * (size_t)s->rows;
-    unsigned char *word = at + summary_bytes(s);
-    for (size_t first = 0; first < count; first += 8, at++) {
-        unsigned summary = 0;
-        for (size_t n = first; n < lesser(first + 8, count); n++) {
-            unsigned full = masks[n] != 0;
-            snow_store_word(word, masks[n]);
-            word += 8 * full;
-            summary |= full << (n - first);
-        }
-        *at = (unsigned char)summary;
-    }
-    return word;
-}
-
 static snow_status bitmap_add_masks(snow_sparse *s, const uint64_t *masks,
                                     size_t voxels) {
     (void)voxels;
-    size_t count = snow_mask_words(s) * (size_t)s->rows, full = 0;
-    size_t plain = plain_bytes(s);
-    for (size_t n = 0; n < count; n++)
-        full += masks[n] != 0;
+    size_t count = snow_mask_words(s) * (size_t)s->rows;
+    size_t summary = summary_bytes(s), plain = plain_bytes(s);
+    size_t full = s->loops->count_words(masks, count);
     unsigned char *at;
     SNOW_TRY(snow_sparse_open_ea(s, plain, &at));
-    if (summary_bytes(s) + 8 * full < plain) {
-        at = write_words(s, masks, at);
+    if (summary + 8 * full < plain) {
+        at = s->loops->pack_words(masks, count, at, at + summary);
     } else {
         write_plain(s, masks, at);
         at += plain;

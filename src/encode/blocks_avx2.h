@@ -1,9 +1,11 @@
 /* encode/blocks_avx2.h - blocks of 64 codes for encode/rows.tmpl.h: comparisons
- * by vectors; codes are packed run by run. */
+ * by vectors; codes are packed eight at a time, by a shuffle with the places of
+ * the set bits. */
 #ifndef SNOW_BLOCKS_AVX2_H
 #define SNOW_BLOCKS_AVX2_H
 
 #include "encode/blocks_scalar.h"
+#include "encode/masks.h"
 #include "simd/vec_avx2.h"
 
 SNOW_AVX2_INLINE __m256i load_256(const void *at) {
@@ -41,19 +43,25 @@ SNOW_AVX2_INLINE uint64_t within_8_avx2(block_8_avx2 block, uint8_t first,
     return low | (uint64_t)high << 32;
 }
 
+/* Where group n of eight goes, from snow_counts_of_bytes. */
+SNOW_AVX2_INLINE size_t begin_of(uint64_t counts, int n) {
+    return n ? counts >> 8 * (n - 1) & 255 : 0;
+}
+
 SNOW_AVX2_INLINE void pack_8_avx2(block_8_avx2 block, uint64_t mask,
                                   uint8_t *out) {
-    unsigned char codes[64 + BLOCK_SPARE];
+    unsigned char codes[64];
     if (!mask)
         return;
-    if (mask == ~UINT64_C(0)) {
-        store_256(out, block.part[0]);
-        store_256(out + 32, block.part[1]);
-        return;
-    }
     store_256(codes, block.part[0]);
     store_256(codes + 32, block.part[1]);
-    copy_runs(codes, mask, 1, out);
+    uint64_t counts = snow_counts_of_bytes(mask);
+    for (int n = 0; n < 8; n++) {
+        const void *order = &snow_places_of_byte[mask >> 8 * n & 255];
+        __m128i eight = _mm_loadl_epi64((const __m128i *)(codes + 8 * n));
+        eight = _mm_shuffle_epi8(eight, _mm_loadl_epi64(order));
+        _mm_storel_epi64((__m128i *)(out + begin_of(counts, n)), eight);
+    }
 }
 
 SNOW_AVX2_INLINE uint64_t bits_8_avx2(block_8_avx2 block,
@@ -103,12 +111,22 @@ SNOW_AVX2_INLINE uint64_t within_16_avx2(block_16_avx2 block, uint16_t first,
 
 SNOW_AVX2_INLINE void pack_16_avx2(block_16_avx2 block, uint64_t mask,
                                    uint16_t *out) {
-    uint16_t codes[64 + BLOCK_SPARE];
+    uint16_t codes[64];
     if (!mask)
         return;
     for (int n = 0; n < 4; n++)
         store_256(codes + 16 * n, block.part[n]);
-    copy_runs((const unsigned char *)codes, mask, 2, (unsigned char *)out);
+    uint64_t counts = snow_counts_of_bytes(mask);
+    for (int n = 0; n < 8; n++) {
+        const void *places = &snow_places_of_byte[mask >> 8 * n & 255];
+        /* Word k is bytes 2 k and 2 k + 1. */
+        __m128i order = _mm_loadl_epi64(places);
+        order = _mm_add_epi8(order, order);
+        order = _mm_unpacklo_epi8(order, _mm_add_epi8(order, _mm_set1_epi8(1)));
+        __m128i eight = _mm_loadu_si128((const __m128i *)(codes + 8 * n));
+        eight = _mm_shuffle_epi8(eight, order);
+        _mm_storeu_si128((__m128i *)(out + begin_of(counts, n)), eight);
+    }
 }
 
 SNOW_AVX2_INLINE uint64_t bits_16_avx2(block_16_avx2 block,

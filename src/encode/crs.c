@@ -112,24 +112,23 @@ static size_t summary_bytes(const snow_sparse *s) {
     return (cells_of(s) * (size_t)s->rows + 7) / 8;
 }
 
-/* The columns of a cell of `words` words; returns the end of what it wrote. */
-static unsigned char *write_columns(const uint64_t *masks, size_t words,
-                                    unsigned char *at) {
+static bool any_set(const uint64_t *masks, size_t words) {
+    uint64_t set = 0;
     for (size_t w = 0; w < words; w++)
-        for (uint64_t mask = masks[w]; mask; mask &= mask - 1)
-            *at++ = (unsigned char)(64 * w + (size_t)__builtin_ctzll(mask));
-    return at;
+        set |= masks[w];
+    return set != 0;
 }
 
 /* A row of cells, the first of which is bit `cell` of the summary. */
-static unsigned char *write_row(const uint64_t *masks, size_t words,
+static unsigned char *write_row(const snow_sparse *s, const uint64_t *masks,
                                 unsigned char *summary, size_t cell,
                                 unsigned char *at) {
+    size_t words = snow_mask_words(s);
     for (size_t w = 0; w < words; w += CELL_WORDS, cell++) {
         size_t some = words - w < CELL_WORDS ? words - w : CELL_WORDS;
-        unsigned char *end = write_columns(masks + w, some, at + 1);
-        if (end == at + 1)
+        if (!any_set(masks + w, some))
             continue;
+        unsigned char *end = s->loops->places(masks + w, some, 0, at + 1);
         *at = (unsigned char)(end - at - 2);
         summary[cell / 8] |= (unsigned char)(1u << cell % 8);
         at = end;
@@ -147,7 +146,7 @@ static snow_status crs_add_masks(snow_sparse *s, const uint64_t *masks,
     unsigned char *end = at + summary;
     memset(at, 0, summary);
     for (int64_t row = 0; row < s->rows; row++, masks += words)
-        end = write_row(masks, words, at, (size_t)row * cells, end);
+        end = write_row(s, masks, at, (size_t)row * cells, end);
     snow_sparse_close_ea(s, end);
     return SNOW_OK;
 }

@@ -15,10 +15,10 @@ const snow_scheme *snow_scheme_of(snow_encoding encoding) {
 
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs) {
+    if (interesting && interesting >= 16 * runs)
+        return SNOW_ENCODING_RLE;
     if ((double)interesting < 0.05 * (double)voxels)
         return SNOW_ENCODING_CRS;
-    if (interesting >= 16 * runs)
-        return SNOW_ENCODING_RLE;
     return SNOW_ENCODING_BITMAP;
 }
 
@@ -96,12 +96,14 @@ snow_status snow_sparse_end_slice(snow_sparse *s) {
 
 snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
                                    int64_t columns, int64_t rows,
-                                   int64_t slices, int code_bytes) {
+                                   int64_t slices, int code_bytes,
+                                   snow_isa isa) {
     SNOW_TRY(snow_reserve(s->context, &s->pa, &s->pa_capacity, 0,
                           ((size_t)slices + 1) * sizeof *s->pa));
     s->scheme = scheme;
     s->channels = 0;
     s->code_bytes = code_bytes;
+    s->loops = snow_mask_loops_of(isa);
     s->columns = columns;
     s->rows = rows;
     s->filled = 0;

@@ -15,6 +15,7 @@
 #define SNOW_ENCODE_H
 
 #include "classify/classify.h"
+#include "encode/masks.h"
 
 #include <string.h>
 
@@ -53,8 +54,9 @@ typedef struct snow_sparse {
     unsigned char *codes;
     uint16_t *normals;
     size_t codes_capacity, normals_capacity; /* bytes */
-    int code_bytes;         /* 1 or 2: this is a band; 0: a whole volume */
-    snow_slice_pointer *pa; /* one more than slices */
+    int code_bytes; /* 1 or 2: this is a band; 0: a whole volume */
+    const snow_mask_loops *loops; /* bands, while encoding */
+    snow_slice_pointer *pa;       /* one more than slices */
     size_t pa_capacity;
     int64_t row; /* next row of the slice being encoded */
     /* RLE, while encoding: the run that is still growing. */
@@ -110,9 +112,10 @@ extern const snow_scheme snow_scheme_rle;
 /* The scheme of an encoding other than AUTO. */
 const snow_scheme *snow_scheme_of(snow_encoding encoding);
 
-/* The encoding that walks fastest: CRS below 5 % interesting voxels (the
- * other two must look at what is empty), RLE when runs are long (16 voxels
- * and more), else the bit-map, whose cost does not depend on the data. */
+/* The encoding that walks fastest: RLE when runs are long (16 voxels and more),
+ * for a run is read as fast as a few columns and takes the fewest bytes; CRS
+ * below 5 % interesting voxels (the bit-map must look at what is empty); else
+ * the bit-map, whose cost does not depend on the data. */
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs);
 
@@ -132,8 +135,8 @@ snow_status snow_sparse_end_slice(snow_sparse *sparse);
  * ia_voxels, which the caller counts.  Errors: SNOW_NO_MEMORY. */
 snow_status snow_sparse_begin_band(snow_sparse *sparse,
                                    const snow_scheme *scheme, int64_t columns,
-                                   int64_t rows, int64_t slices,
-                                   int code_bytes);
+                                   int64_t rows, int64_t slices, int code_bytes,
+                                   snow_isa isa);
 
 /* 64-bit words that the mask of a row takes. */
 static inline size_t snow_mask_words(const snow_sparse *sparse) {
@@ -194,23 +197,6 @@ static inline size_t snow_span_append_mask(snow_span *spans, size_t count,
         mask &= mask + (UINT64_C(1) << skip);
     }
     return count;
-}
-
-/* A 64-bit word of EA, whose bytes lie lowest first on every machine. */
-static inline uint64_t snow_load_word(const unsigned char *at) {
-    uint64_t word;
-    memcpy(&word, at, sizeof word);
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-    word = __builtin_bswap64(word);
-#endif
-    return word;
-}
-
-static inline void snow_store_word(unsigned char *at, uint64_t word) {
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-    word = __builtin_bswap64(word);
-#endif
-    memcpy(at, &word, sizeof word);
 }
 
 /* The spans of a row whose kept columns are known. */

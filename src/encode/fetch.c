@@ -84,7 +84,16 @@ static void transpose_edge(const snow_fetch *f, const unsigned char *in,
     unsigned char tile[TILE * LINE] = {0};
     for (size_t u = 0; u < lines; u++)
         memcpy(tile + u * LINE, in + u * f->column_step, count * f->size);
-    f->transpose(tile, LINE, out, f->slice_pitch);
+    f->transpose(tile, LINE, out, f->slice_pitch, tile);
+}
+
+/* The tile after that of columns `u` on of a row at `in`: in the same row, or
+ * the first of the next. */
+static const unsigned char *
+next_tile(const snow_fetch *f, const unsigned char *in, size_t row, size_t u) {
+    if (u + 2 * TILE <= f->columns)
+        return in + (u + TILE) * f->column_step;
+    return row + 1 < f->rows && TILE <= f->columns ? in + f->row_step : in;
 }
 
 /* Row `row` of `count` slices from `slice` on, no more than a line holds, into
@@ -99,7 +108,8 @@ static void fill_row(const snow_fetch *f, int64_t slice, size_t row,
         const unsigned char *from = in + u * f->column_step;
         unsigned char *to = out + u * f->size;
         if (lines == TILE && count * f->size == LINE)
-            f->transpose(from, f->column_step, to, f->slice_pitch);
+            f->transpose(from, f->column_step, to, f->slice_pitch,
+                         next_tile(f, in, row, u));
         else if (count < TILE_WORTH)
             transpose_few(f, from, lines, count, to);
         else

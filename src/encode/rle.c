@@ -108,37 +108,78 @@ static size_t summary_bytes(const snow_sparse *s) {
     return ((size_t)s->rows + 7) / 8;
 }
 
-/* Bytes that a slice takes at most: beside its ends, every run belongs to an
- * interesting voxel. */
+/* Bytes that the runs of a slice take at most: beside the ends of rows, each
+ * belongs to an interesting voxel; and so many more splits. */
 static size_t most_bytes(const snow_sparse *s, size_t voxels) {
     size_t splits = 2 * ((size_t)s->columns / LONGEST) + 1;
-    return summary_bytes(s) + 2 * voxels + (size_t)s->rows * splits;
+    return 2 * voxels + (size_t)s->rows * splits;
 }
 
-static unsigned char *put_run(unsigned char *at, size_t run) {
-    for (; run > LONGEST; run -= LONGEST) {
-        *at++ = LONGEST;
-        *at++ = 0;
+/* Encoding first writes down where runs end, as places counted through all
+ * rows that hold anything, modulo 256: within 256 columns no run is too long
+ * for a byte, so that differences of such places are the runs. */
+typedef struct places {
+    unsigned char *at; /* the next one goes here */
+    size_t origin;     /* place of the row's first column */
+    size_t told;       /* columns of the row up to the last place */
+} places;
+
+/* Puts down splits until a run that ends at `column` fits a byte. */
+static void split_run(places *p, size_t column) {
+    for (; column - p->told > LONGEST; p->told += LONGEST) {
+        p->at[0] = (unsigned char)(p->origin + p->told + LONGEST);
+        p->at[1] = p->at[0];
+        p->at += 2;
     }
-    *at++ = (unsigned char)run;
-    return at;
 }
 
-/* A run ends with each bit that differs from the one before. */
-static unsigned char *put_row(const uint64_t *masks, size_t words,
-                              size_t columns, unsigned char *at) {
-    size_t told = 0; /* columns so far */
+#define STEP 4 /* words of 256 columns */
+
+/* Places of the set bits of STEP words, which begin with `column`. */
+static void put_changes(const snow_sparse *s, const uint64_t *changes,
+                        size_t column, places *p) {
+    size_t first = SIZE_MAX, last = 0;
+    for (size_t w = 0; w < STEP; w++) {
+        size_t n = STEP - 1 - w;
+        if (changes[n])
+            first = 64 * n + (size_t)__builtin_ctzll(changes[n]);
+        if (changes[w])
+            last = 64 * w + 63 - (size_t)__builtin_clzll(changes[w]);
+    }
+    if (first == SIZE_MAX)
+        return;
+    split_run(p, column + first);
+    p->at = s->loops->places(changes, STEP,
+                             (unsigned)(p->origin + column) % 256, p->at);
+    p->told = column + last;
+}
+
+/* A run ends with each bit that differs from the one before, and with the row.
+ */
+static void put_row(const snow_sparse *s, const uint64_t *masks, places *p) {
+    size_t words = snow_mask_words(s), columns = (size_t)s->columns;
     uint64_t before = 0;
-    for (size_t w = 0; w < words; w++) {
-        uint64_t change = masks[w] ^ (masks[w] << 1 | before);
-        before = masks[w] >> 63;
-        for (; change; change &= change - 1) {
-            size_t column = 64 * w + (size_t)__builtin_ctzll(change);
-            at = put_run(at, column - told);
-            told = column;
+    p->told = 0;
+    for (size_t w = 0; w < words; w += STEP) {
+        uint64_t changes[STEP] = {0};
+        for (size_t n = 0; n < STEP && w + n < words; n++) {
+            uint64_t mask = masks[w + n];
+            changes[n] = mask ^ (mask << 1 | before);
+            before = mask >> 63;
         }
+        if (columns % 64 && w + STEP >= words)
+            changes[words - 1 - w] &= (UINT64_C(1) << columns % 64) - 1;
+        put_changes(s, changes, 64 * w, p);
     }
-    return told < columns ? put_run(at, columns - told) : at;
+    split_run(p, columns);
+    p->origin += columns;
+    *p->at++ = (unsigned char)p->origin;
+}
+
+static void subtract(const unsigned char *restrict from, size_t count,
+                     unsigned char *restrict out) {
+    for (size_t n = 0; n < count; n++)
+        out[n] = (unsigned char)(from[n + 1] - from[n]);
 }
 
 static bool any_set(const uint64_t *masks, size_t words) {
@@ -150,17 +191,22 @@ static bool any_set(const uint64_t *masks, size_t words) {
 
 static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
                                  size_t voxels) {
-    size_t words = snow_mask_words(s), columns = (size_t)s->columns;
+    size_t words = snow_mask_words(s), most = most_bytes(s, voxels);
     unsigned char *at;
-    SNOW_TRY(snow_sparse_open_ea(s, most_bytes(s, voxels), &at));
+    /* Summary and runs; behind them for a while the places, after a 0. */
+    SNOW_TRY(snow_sparse_open_ea(s, summary_bytes(s) + 2 * most + 1, &at));
+    unsigned char *runs = at + summary_bytes(s), *from = runs + most;
+    places p = {.at = from + 1};
+    *from = 0;
     memset(at, 0, summary_bytes(s));
-    unsigned char *end = at + summary_bytes(s);
     for (int64_t row = 0; row < s->rows; row++, masks += words)
         if (any_set(masks, words)) {
             at[row / 8] |= (unsigned char)(1u << row % 8);
-            end = put_row(masks, words, columns, end);
+            put_row(s, masks, &p);
         }
-    snow_sparse_close_ea(s, end);
+    size_t count = (size_t)(p.at - from) - 1;
+    subtract(from, count, runs);
+    snow_sparse_close_ea(s, runs + count);
     return SNOW_OK;
 }
 

@@ -8,9 +8,10 @@
 #define SQUARE 8
 
 #define TRANSPOSE_PLAIN(size, type)                                           \
-    static void transpose_##size##_plain(const unsigned char *in,             \
-                                         size_t stride, unsigned char *out,   \
-                                         size_t pitch) {                      \
+    static void transpose_##size##_plain(                                     \
+        const unsigned char *in, size_t stride, unsigned char *out,           \
+        size_t pitch, const unsigned char *next) {                            \
+        (void)next;                                                           \
         for (size_t n = 0; n < SNOW_TILE_BYTES / sizeof(type); n += SQUARE)   \
             for (size_t u = 0; u < SNOW_TILE_LINES; u++)                      \
                 for (size_t k = n; k < n + SQUARE; k++)                       \

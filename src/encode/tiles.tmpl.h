@@ -45,17 +45,19 @@ TILE(part)(const unsigned char *in, size_t stride, unsigned char *out,
 #endif
     for (int n = 0; n < TILE_LINES; n++)
         NAME(wide_spread)
-        (TILE_SIZE == 1 ? a[n] : b[n], out + (size_t)n * pitch,
-         TILE_LINES * pitch);
+    (TILE_SIZE == 1 ? a[n] : b[n], out + (size_t)n * pitch, TILE_LINES * pitch);
 }
 
 TARGET static void TILE(transpose)(const unsigned char *in, size_t stride,
-                                   unsigned char *out, size_t pitch) {
-    for (size_t line = 0; line < SNOW_TILE_LINES; line += TILE_LINES)
+                                   unsigned char *out, size_t pitch,
+                                   const unsigned char *next) {
+    for (size_t line = 0; line < SNOW_TILE_LINES; line += TILE_LINES) {
+        for (size_t n = line; n < line + TILE_LINES; n++)
+            __builtin_prefetch(next + n * stride, 0, 2);
         for (size_t at = 0; at < SNOW_TILE_BYTES; at += WIDE_BYTES)
-            TILE(part)
-            (in + line * stride + at, stride,
-             out + at / TILE_SIZE * pitch + line * TILE_SIZE, pitch);
+            TILE(part)(in + line * stride + at, stride,
+                       out + at / TILE_SIZE * pitch + line * TILE_SIZE, pitch);
+    }
 }
 
 #undef TILE_LINES

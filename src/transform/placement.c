@@ -44,19 +44,32 @@ static void slice_normal(const snow_volume_info *info, int axis,
     snow_normalize(normal);
 }
 
-/* Chooses the slice axis; the cosine between its normal and the line of sight
- * is positive in size. */
-static void choose_axis(const snow_volume_info *info, snow_placement *p) {
+/* The cosine, without its sign, between the line of sight and the normal of
+ * the slices along an axis. */
+static double axis_cosine(const snow_volume_info *info, int axis,
+                          const double back[3]) {
+    double normal[3];
+    slice_normal(info, axis, normal);
+    return fabs(snow_dot(normal, back));
+}
+
+/* The axis along which slices are seen most from the front. */
+static int choose_axis(const snow_volume_info *info, const double back[3]) {
     double best = -1;
+    int chosen = 2;
     for (int axis = 2; axis >= 0; axis--) {
-        double normal[3];
-        slice_normal(info, axis, normal);
-        double cosine = fabs(snow_dot(normal, p->back));
+        double cosine = axis_cosine(info, axis, back);
         if (cosine > best + AXIS_TIE) {
             best = cosine;
-            p->slice_axis = axis;
+            chosen = axis;
         }
     }
+    return chosen;
+}
+
+static void cut_along(const snow_volume_info *info, int slice_axis,
+                      snow_placement *p) {
+    p->slice_axis = slice_axis;
     p->u_axis = p->slice_axis == 0 ? 1 : 0;
     p->v_axis = p->slice_axis == 2 ? 1 : 2;
     p->columns = info->dims[p->u_axis];
@@ -141,26 +154,71 @@ static snow_status check_view(snow_context *context, const snow_view *view) {
     return SNOW_OK;
 }
 
+/* The camera of a view, and a placement with nothing else in it. */
+static snow_status place_camera(snow_context *context, const snow_view *view,
+                                snow_placement *p) {
+    SNOW_TRY(check_view(context, view));
+    *p = (snow_placement){.width = view->width, .height = view->height};
+    memcpy(p->back, view->back, sizeof p->back);
+    memcpy(p->up, view->up, sizeof p->up);
+    snow_cross(p->up, p->back, p->right);
+    snow_frame_turn(p->right, p->up, p->back, view->azimuth, view->elevation,
+                    view->roll);
+    return SNOW_OK;
+}
+
+static snow_status place(snow_context *context, const snow_volume_info *info,
+                         const snow_view *view, int slice_axis,
+                         snow_placement *p) {
+    cut_along(info, slice_axis, p);
+    measure_path(info, p);
+    place_slices(info, view, p);
+    if (isfinite(p->path) && isfinite(p->origin[0]) &&
+        isfinite(p->origin[1]) && invert_slice_map(p))
+        return SNOW_OK;
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "voxels of %gx%gx%g cannot be seen at zoom %g: they "
+                     "are too flat or too large; give --spacing",
+                     info->spacing[0], info->spacing[1], info->spacing[2],
+                     view->zoom);
+}
+
 snow_status snow_placement_make(snow_context *context,
                                 const snow_volume_info *info,
                                 const snow_view *view, snow_placement *out) {
-    SNOW_TRY(check_view(context, view));
-    snow_placement p = {.width = view->width, .height = view->height};
-    memcpy(p.back, view->back, sizeof p.back);
-    memcpy(p.up, view->up, sizeof p.up);
-    snow_cross(p.up, p.back, p.right);
-    snow_frame_turn(p.right, p.up, p.back, view->azimuth, view->elevation,
-                    view->roll);
-    choose_axis(info, &p);
-    measure_path(info, &p);
-    place_slices(info, view, &p);
-    if (!isfinite(p.path) || !isfinite(p.origin[0]) || !isfinite(p.origin[1]) ||
-        !invert_slice_map(&p))
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "voxels of %gx%gx%g cannot be seen at zoom %g: they "
-                         "are too flat or too large; give --spacing",
-                         info->spacing[0], info->spacing[1], info->spacing[2],
-                         view->zoom);
+    snow_placement p;
+    SNOW_TRY(place_camera(context, view, &p));
+    SNOW_TRY(place(context, info, view, choose_axis(info, p.back), &p));
     *out = p;
     return SNOW_OK;
+}
+
+snow_status snow_placement_make_along(snow_context *context,
+                                      const snow_volume_info *info,
+                                      const snow_view *view, int slice_axis,
+                                      snow_placement *out) {
+    snow_placement p;
+    SNOW_TRY(place_camera(context, view, &p));
+    SNOW_TRY(place(context, info, view, slice_axis, &p));
+    *out = p;
+    return SNOW_OK;
+}
+
+/* Axes a and b are equally good where their cosines are equal: on a plane that
+ * the line of sight misses by asin((cos a - cos b) / sqrt 2), for normals at
+ * right angles. */
+void snow_placement_shares(const snow_volume_info *info,
+                           const snow_placement *placement, double shares[3]) {
+    const double width = sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
+    double best = axis_cosine(info, placement->slice_axis, placement->back);
+    double sum = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double behind =
+            (best - axis_cosine(info, axis, placement->back)) / sqrt(2.0);
+        shares[axis] =
+            axis == placement->slice_axis ? 1 : fmax(0, 1 - behind / width);
+        sum += shares[axis];
+    }
+    for (int axis = 0; axis < 3; axis++)
+        shares[axis] /= sum;
 }

@@ -39,6 +39,20 @@ snow_status snow_placement_make(snow_context *context,
                                 const snow_volume_info *info,
                                 const snow_view *view, snow_placement *out);
 
+/* The same with slices along an axis of the caller's choice. */
+snow_status snow_placement_make_along(snow_context *context,
+                                      const snow_volume_info *info,
+                                      const snow_view *view, int slice_axis,
+                                      snow_placement *out);
+
+/* Shares of the pictures along the three axes in one that does not change
+ * abruptly where the slice axis does: they add up to 1, and all but the
+ * placement's own are 0 unless the line of sight is within SNOW_BLEND_DEGREES
+ * of a direction at which another axis is as good. */
+#define SNOW_BLEND_DEGREES 5
+void snow_placement_shares(const snow_volume_info *info,
+                           const snow_placement *placement, double shares[3]);
+
 /* Turns a frame of unit vectors: azimuth about up, then elevation about the
  * new right, then roll about the line of sight; degrees, as VTK's camera. */
 void snow_frame_turn(double right[3], double up[3], double back[3],

@@ -1,0 +1,18 @@
+/* classify/palette.tmpl.h - clarities of opacities, and opacities of a view
+ * from clarities, in loops that the compiler carries to vectors.  For one level
+ * of simd/select.h, which is to be included before.  All levels make the same
+ * bits. */
+
+TARGET static void NAME(clear)(const double *restrict opacities, size_t count,
+                               double *restrict clarities) {
+    for (size_t i = 0; i < count; i++)
+        clarities[i] = snow_clarity(opacities[i]);
+}
+
+TARGET static void NAME(correct)(const double *restrict clarities, size_t count,
+                                 double exponent, float *restrict opacities) {
+    for (size_t i = 0; i < count; i++)
+        opacities[i] = (float)snow_opacity_of(clarities[i], exponent);
+}
+
+static const palette_kernels NAME(kernels) = {NAME(clear), NAME(correct)};
