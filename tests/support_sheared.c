@@ -32,7 +32,7 @@ typedef struct sheared_job {
     snow_kernel kernel;
     int support;
     bool draft, between;
-    int axis;
+    int axis;             /* of the slices; below 0: not chosen yet */
     int64_t first, count; /* slices of the slab */
     int64_t sheets;       /* with those between */
     lattice_axis u, v;
@@ -70,10 +70,11 @@ static void place_axis(sheared_job *job, int axis, lattice_axis *out) {
     out->voxels = job->scene->info.dims[axis];
     out->width = reference_widening(job->kernel, job->support, rho);
     out->drift = ray.step[axis] / ray.step[job->axis];
-    /* A pixel is at most two thirds of the kernel's unit, or one of a draft's;
-     * it is half a voxel, one, or two. */
-    double most = job->draft ? out->width : out->width / 1.5;
-    out->pitch = most < 1 ? 0.5 : most < 2 ? 1 : 2;
+    /* Two pixels a voxel for kernels that are hardly widened, one in two for
+     * those that are far wider. */
+    bool fine = !job->draft && out->width < 1.1;
+    bool coarse = out->width >= (job->draft ? 2 : 2.5);
+    out->pitch = fine ? 0.5 : coarse ? 2 : 1;
 }
 
 static void begin_job(sheared_job *job) {
@@ -82,7 +83,8 @@ static void begin_job(sheared_job *job) {
     choose_kernel(settings, &job->kernel, &job->support);
     job->draft = settings->quality == SNOW_QUALITY_DRAFT;
     job->between = settings->quality == SNOW_QUALITY_HIGH;
-    job->axis = reference_slice_axis(job->scene, &job->camera);
+    if (job->axis < 0)
+        job->axis = reference_slice_axis(job->scene, &job->camera);
     place_axis(job, job->axis == 0 ? 1 : 0, &job->u);
     place_axis(job, job->axis == 2 ? 1 : 2, &job->v);
 }
@@ -94,10 +96,50 @@ static bool axis_fits(const sheared_job *job, const lattice_axis *a) {
     return 2 * ceil(half) <= TAPS_MOST;
 }
 
-bool sheared_fits(const reference_scene *scene) {
-    sheared_job job = {.scene = scene};
+static bool fits_along(const reference_scene *scene, int axis) {
+    sheared_job job = {.scene = scene, .axis = axis};
     begin_job(&job);
     return axis_fits(&job, &job.u) && axis_fits(&job, &job.v);
+}
+
+/* What share the pictures along the three axes have: the best axis' own, and in
+ * high quality those of others whose turn is less than 5 degrees away, falling
+ * off linearly.  Parts of a picture come along one axis.  Returns the best
+ * axis. */
+static int share_axes(const reference_scene *scene, int parts,
+                      double shares[3]) {
+    reference_camera camera;
+    double inverse[3][3], cosine[3], sum = 0;
+    reference_camera_of(scene, &camera);
+    reference_inverse(scene->info.matrix, inverse);
+    int best = reference_slice_axis(scene, &camera);
+    bool blended = scene->settings.quality == SNOW_QUALITY_HIGH && parts < 2;
+    for (int n = 0; n < 3; n++) {
+        double *row = inverse[n], along = 0, square = 0;
+        for (int c = 0; c < 3; c++) {
+            along += row[c] * camera.back[c];
+            square += row[c] * row[c];
+        }
+        cosine[n] = fabs(along) / sqrt(square);
+    }
+    for (int n = 0; n < 3; n++) {
+        double away = (cosine[best] - cosine[n]) / sqrt(2);
+        double share = 1 - away / sin(acos(-1.0) / 36);
+        shares[n] = n == best ? 1 : blended ? fmax(0, share) : 0;
+        sum += shares[n];
+    }
+    for (int n = 0; n < 3; n++)
+        shares[n] /= sum;
+    return best;
+}
+
+bool sheared_fits(const reference_scene *scene, int parts) {
+    double shares[3];
+    share_axes(scene, parts, shares);
+    for (int n = 0; n < 3; n++)
+        if (shares[n] > 0 && !fits_along(scene, n))
+            return false;
+    return true;
 }
 
 /* The pixels that the picture looks up, but for those without a voxel in
@@ -393,19 +435,19 @@ static void place_slab(sheared_job *job) {
 
 static void tell(const sheared_job *job, sheared_facts *facts) {
     const double pitch[2] = {job->u.pitch, job->v.pitch};
-    *facts = (sheared_facts){.axis = job->axis};
     for (int n = 0; n < 2; n++) {
         facts->phases[n] = pitch[n] < 1 ? 2 : 1;
         facts->stride[n] = pitch[n] > 1 ? 2 : 1;
     }
-    facts->lattice_pixels = (double)(job->u.count * job->v.count);
     for (int64_t n = 0; n < job->u.count * job->v.count; n++)
         facts->strongest = fmax(facts->strongest, job->plane[4 * n + 3]);
 }
 
-double *sheared_render(const reference_scene *scene,
-                       const sheared_options *options, sheared_facts *facts) {
-    sheared_job job = {.scene = scene, .options = options};
+/* Adds the share of the picture along one axis. */
+static void render_along(const reference_scene *scene,
+                         const sheared_options *options, int axis, double share,
+                         double *pixels, sheared_facts *facts) {
+    sheared_job job = {.scene = scene, .options = options, .axis = axis};
     int width = scene->view.width, height = scene->view.height;
     begin_job(&job);
     place_slab(&job);
@@ -413,16 +455,31 @@ double *sheared_render(const reference_scene *scene,
     bound_axis(&job, &job.v);
     make_samples(&job);
     fill_plane(&job);
-    double *pixels = calloc((size_t)width * (size_t)height * 4, sizeof(double));
-    assert_non_null(pixels);
     for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++)
+        for (int x = 0; x < width; x++, pixels += 4) {
+            double pixel[4] = {0};
             look_up(&job, meet(&job, job.u.axis, x + 0.5, y + 0.5),
-                    meet(&job, job.v.axis, x + 0.5, y + 0.5),
-                    pixels + 4 * ((size_t)y * (size_t)width + (size_t)x));
-    if (facts)
-        tell(&job, facts);
+                    meet(&job, job.v.axis, x + 0.5, y + 0.5), pixel);
+            for (int c = 0; c < 4; c++)
+                pixels[c] += share * pixel[c];
+        }
+    tell(&job, facts);
     free(job.plane);
     free(job.samples);
+}
+
+double *sheared_render(const reference_scene *scene,
+                       const sheared_options *options, sheared_facts *facts) {
+    double shares[3];
+    size_t count = (size_t)scene->view.width * (size_t)scene->view.height;
+    double *pixels = calloc(count * 4, sizeof(double));
+    assert_non_null(pixels);
+    *facts = (sheared_facts){0};
+    facts->axis = share_axes(scene, options->parts, shares);
+    for (int n = 0; n < 3; n++)
+        if (shares[n] > 0) {
+            render_along(scene, options, n, shares[n], pixels, facts);
+            facts->axes++;
+        }
     return pixels;
 }

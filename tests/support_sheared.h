@@ -21,16 +21,16 @@ typedef struct sheared_options {
 
 /* What a rendering came to beside its pixels. */
 typedef struct sheared_facts {
-    int axis;         /* of the slices */
+    int axis;         /* of the slices: the best one */
+    int axes;         /* that the picture is blended of */
     int phases[2];    /* pixels a voxel of the lattice, along u and v */
     int stride[2];    /* voxels a pixel */
-    double strongest; /* greatest opacity on the lattice */
-    double lattice_pixels;
+    double strongest; /* greatest opacity on a lattice */
 } sheared_facts;
 
 /* Whether the method can make the picture: a lattice pixel has no more than 30
  * voxels in reach along u or v. */
-bool sheared_fits(const reference_scene *scene);
+bool sheared_fits(const reference_scene *scene, int parts);
 
 /* The picture: width * height * 4 doubles, premultiplied.  Free with free(). */
 double *sheared_render(const reference_scene *scene,

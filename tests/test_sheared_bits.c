@@ -415,7 +415,10 @@ static void a_warm_frame_allocates_its_image_only(void **state) {
     }
 }
 
-int main(void) {
+/* With an argument: the tests of that name, which may hold a *. */
+int main(int argc, char **argv) {
+    if (argc > 1)
+        cmocka_set_test_filter(argv[1]);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
         cmocka_unit_test(all_encodings_give_the_same_bits),
