@@ -307,10 +307,10 @@ static snow_status render_sheared(snow_job *job, const snow_volume *volume,
                                   const snow_transfer *transfer,
                                   const snow_view *view,
                                   const snow_placement *placement,
-                                  snow_sheared **sheared, float *pixels) {
-    snow_sheared_order order = {volume,         transfer,      view,
-                                &job->settings, placement,     job->slab,
-                                job->channels};
+                                  snow_slab slab, snow_sheared **sheared,
+                                  float *pixels) {
+    snow_sheared_order order = {
+        volume, transfer, view, &job->settings, placement, slab, job->channels};
     if (!*sheared)
         SNOW_TRY(snow_sheared_new(job->frame->context, sheared));
     return snow_sheared_render(*sheared, &order, pixels, &job->frame->stats);
@@ -323,14 +323,14 @@ static void blend(float *pixels, const float *layer, float share,
         pixels[i] += share * layer[i];
 }
 
-/* High quality: where two or three axes are nearly as good, the picture is a
- * blend of theirs, so that a turning one does not jump. */
+/* High quality of a whole volume: where two or three axes are nearly as good,
+ * the picture is a blend of theirs, so that a turning one does not jump. */
 static snow_status render_blended(snow_job *job, const snow_volume *volume,
                                   const snow_transfer *transfer,
                                   const snow_view *view) {
     snow_frame *frame = job->frame;
-    size_t floats = (size_t)view->width * (size_t)view->height *
-                    (size_t)job->channels;
+    size_t floats =
+        (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     double shares[3];
     snow_placement_shares(&volume->info, &job->placement, shares);
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
@@ -342,6 +342,7 @@ static snow_status render_blended(snow_job *job, const snow_volume *volume,
         SNOW_TRY(snow_placement_make_along(frame->context, &volume->info, view,
                                            axis, &placement));
         SNOW_TRY(render_sheared(job, volume, transfer, view, &placement,
+                                snow_slab_equal(placement.slices, 1, 0),
                                 &frame->sheared[axis], frame->layer));
         blend(job->pixels, frame->layer, (float)shares[axis], floats);
     }
@@ -353,10 +354,11 @@ static snow_status render_slab(snow_job *job, const snow_volume *volume,
                                const snow_view *view) {
     if (job->settings.method != SNOW_METHOD_SHEARED)
         return render_footprints(job, volume, transfer);
-    if (job->settings.quality == SNOW_QUALITY_HIGH)
+    if (job->settings.quality == SNOW_QUALITY_HIGH &&
+        job->slab.count == job->placement.slices)
         return render_blended(job, volume, transfer, view);
     return render_sheared(job, volume, transfer, view, &job->placement,
-                          &job->frame->sheared[0], job->pixels);
+                          job->slab, &job->frame->sheared[0], job->pixels);
 }
 
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,

@@ -222,6 +222,19 @@ static size_t plain_row(const scene *s, const snow_bands_order *order,
     return count;
 }
 
+static void plain_normals(const snow_bands_order *order, int64_t slice,
+                          int64_t row, const uint32_t *columns, size_t count,
+                          uint16_t *normals) {
+    bool doubled = order->between;
+    int64_t here = order->first_slice + (doubled ? slice / 2 : slice);
+    if (doubled && slice % 2)
+        snow_normals_between(order->maker, order->placement, here, row, columns,
+                             count, normals);
+    else
+        snow_normals_of_row(order->maker, order->placement, here, row, columns,
+                            count, normals);
+}
+
 static uint16_t code_at(const snow_sparse *band, size_t voxel) {
     const unsigned char *code = snow_bands_codes(band, voxel);
     uint16_t wide;
@@ -280,10 +293,8 @@ static size_t check_slice(const scene *s, const snow_bands *bands,
         assert_int_equal(voxel, expected);
         for (size_t n = 0; n < count; n++)
             assert_int_equal(code_at(band, voxel + n), codes[n]);
-        if (order->maker && count && !order->between) {
-            snow_normals_of_row(order->maker, order->placement,
-                                order->first_slice + slice, first + row,
-                                columns, count, normals);
+        if (order->maker && count) {
+            plain_normals(order, slice, first + row, columns, count, normals);
             assert_memory_equal(snow_bands_normals(band, voxel), normals,
                                 count * sizeof *normals);
         }
@@ -465,7 +476,8 @@ static void levels_and_threads_change_no_byte(void **state) {
                 snow_bands bands = {.context = context};
                 order.isa = (snow_isa)isa;
                 order.threads = threads[t];
-                if (!snow_isa_runs(order.isa))
+                /* More threads than processors are slow: not every time. */
+                if (!snow_isa_runs(order.isa) || (t && (round + isa) % 4))
                     continue;
                 assert_int_equal(snow_bands_encode(&bands, &order), SNOW_OK);
                 assert_same(&first, &bands);
@@ -510,6 +522,7 @@ static void slices_between_are_means(void **state) {
             for (int64_t first = 0; first < 2; first++) {
                 snow_bands_order order = order_of(&s, SNOW_ENCODING_CRS);
                 order.between = true;
+                order.maker = &s.maker;
                 order.first_slice = first;
                 order.slice_count = slices - 2 * first;
                 encode_and_check(&s, &order, &bands);
@@ -694,8 +707,7 @@ static void memory_that_runs_out_anywhere_is_told(void **state) {
     snow_context *context = counting_context(&memory);
     for (int threads = 1; threads < 3; threads++)
         for (int e = 0; e < 4; e++) {
-            scene s =
-                make_scene(context, SNOW_UINT8, 0, 140, 70, 66, SOME, 1, 2);
+            scene s = make_scene(context, SNOW_UINT8, 0, 70, 70, 9, SOME, 1, 2);
             snow_bands bands = {.context = context};
             snow_bands_order order = order_of(&s, (snow_encoding)e);
             order.maker = &s.maker;

@@ -5,10 +5,12 @@
 
 #define SELECT_SCALAR
 #include "simd/select.h"
+
 #include "encode/windows.tmpl.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
+
 #include "encode/windows.tmpl.h"
 #endif
 

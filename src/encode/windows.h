@@ -21,8 +21,8 @@ typedef struct snow_mask_rows {
     uint32_t *rank;
     const unsigned char *codes[SNOW_WINDOW_ROWS]; /* of the row's first voxel */
     const uint16_t *normals[SNOW_WINDOW_ROWS];    /* NULL: none */
-    size_t words;  /* a row, padding included */
-    uint64_t held; /* rows that hold a voxel */
+    size_t words;                                 /* a row, padding included */
+    uint64_t held;                                /* rows that hold a voxel */
 } snow_mask_rows;
 
 /* Words of a row of so many columns. */
