@@ -183,6 +183,28 @@ static void splat_and_composite(snow_job *job) {
     }
 }
 
+/* Leaves to footprints what the sheared method cannot make: along the best axis
+ * or, in high quality, another that the picture may be blended of. */
+static snow_status check_sheared(snow_job *job, const snow_volume *volume,
+                                 const snow_view *view) {
+    snow_settings *settings = &job->settings;
+    bool fits = snow_sheared_fits(&job->placement, settings);
+    double shares[3] = {0};
+    if (settings->quality == SNOW_QUALITY_HIGH)
+        snow_placement_shares(&volume->info, &job->placement, shares);
+    for (int axis = 0; axis < 3; axis++) {
+        snow_placement placement;
+        if (shares[axis] == 0)
+            continue;
+        SNOW_TRY(snow_placement_make_along(job->frame->context, &volume->info,
+                                           view, axis, &placement));
+        fits = fits && snow_sheared_fits(&placement, settings);
+    }
+    if (!fits)
+        settings->method = SNOW_METHOD_FOOTPRINT;
+    return SNOW_OK;
+}
+
 /* Lines 01 and 02 for every method: settings, camera, slab. */
 static snow_status place(snow_job *job, const snow_volume *volume,
                          const snow_view *view, int parts, int part) {
@@ -190,9 +212,8 @@ static snow_status place(snow_job *job, const snow_volume *volume,
     SNOW_TRY(snow_settings_resolve(context, volume, &job->settings));
     SNOW_TRY(
         snow_placement_make(context, &volume->info, view, &job->placement));
-    if (job->settings.method == SNOW_METHOD_SHEARED &&
-        !snow_sheared_fits(&job->placement, &job->settings))
-        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    if (job->settings.method == SNOW_METHOD_SHEARED)
+        SNOW_TRY(check_sheared(job, volume, view));
     job->slab = snow_slab_equal(job->placement.slices, parts, part);
     return SNOW_OK;
 }
