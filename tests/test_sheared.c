@@ -380,6 +380,33 @@ static void high_quality_has_slices_between(void **state) {
     model_close(&stage);
 }
 
+/* Voxels are thin along x, and slices along x are a little better than those
+ * along z: the picture is blended of both, but the second has too many voxels
+ * in reach of a pixel where the first has few. */
+static void blends_that_do_not_fit_along_one_axis(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    uint64_t random = 18;
+    sheared_tally tally = {0};
+    for (int n = 0; n < 60; n++) {
+        reference_scene scene = model_scene((int64_t[]){40, 12, 11}, SNOW_UINT8,
+                                            n % 2, MODEL_PLAIN, (uint64_t)n);
+        make_plain(&scene, &random);
+        scene.settings.threshold = 0;
+        scene.settings.quality = SNOW_QUALITY_HIGH;
+        scene.info.matrix[0][0] = scene.info.spacing[0] = 0.2;
+        scene.view.width = 26;
+        scene.view.height = 31;
+        stand_at(&scene, 0, 0.02 * pow(200, support_uniform(&random)));
+        scene.view.azimuth = 46 + support_uniform(&random);
+        sheared_check(&stage, &scene, NULL, SHEARED_BOUND, &tally);
+        free_voxels(&scene);
+    }
+    sheared_report("blends of thin voxels", &tally);
+    assert_true(tally.footprints > 10 && tally.clear > 10);
+    model_close(&stage);
+}
+
 /* Unless a footprint or another kernel is named. */
 static void drafts_use_the_tent_of_two_voxels(void **state) {
     (void)state;
@@ -559,6 +586,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(rows_longer_than_words_bands_and_tiles),
         cmocka_unit_test(slabs_alone_equal_theirs),
         cmocka_unit_test(high_quality_has_slices_between),
+        cmocka_unit_test(blends_that_do_not_fit_along_one_axis),
         cmocka_unit_test(drafts_use_the_tent_of_two_voxels),
         cmocka_unit_test(opaque_voxels_hide_what_lies_behind),
         cmocka_unit_test(shaded_pictures_by_stored_normals),
