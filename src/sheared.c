@@ -315,10 +315,10 @@ static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
     size_t at = 0, pixel = (size_t)pass->channels * sizeof(float);
     size_t words = snow_window_words(pass->columns) * SNOW_WINDOW_ROWS;
     size_t filtered = 2 * SNOW_TILE_COLUMNS * pixel;
-#define PART(field, bytes)                \
-    do {                                  \
-        out->field = (void *)(base + at); \
-        at += ((bytes) + 63) / 64 * 64;   \
+#define PART(field, bytes)                              \
+    do {                                                \
+        out->field = base ? (void *)(base + at) : NULL; \
+        at += ((bytes) + 63) / 64 * 64;                 \
     } while (0)
     PART(bits, words * sizeof *out->bits);
     PART(rank, words * sizeof *out->rank);
