@@ -73,6 +73,7 @@ typedef struct snow_pass {
     snow_down_fn *down;
     snow_warp_fn *warp;
     snow_filter filter;
+    size_t ring;     /* rows that the ring has room for: a power of 2 */
     size_t words;    /* of a chunk mask */
     int band_lines;
     size_t stride;   /* floats of a line of the plane */
@@ -281,9 +282,11 @@ static void sample_spans(const snow_stroke *stroke, size_t count,
 static void clear_spans(const snow_stroke *stroke, size_t count) {
     size_t pixel = (size_t)stroke->pass->channels;
     const snow_span *span = stroke->scratch.spans;
-    for (; count; count--, span++)
-        memset(stroke->scratch.row + span->column * pixel, 0,
-               span->length * pixel * sizeof(float));
+    for (; count; count--, span++) {
+        float *sample = stroke->scratch.row + span->column * pixel;
+        for (size_t n = 0; n < span->length * pixel; n++)
+            sample[n] = 0;
+    }
 }
 
 /* Makes a row of the ring zero where it held something else. */
@@ -303,7 +306,7 @@ static void wipe_chunks(const snow_pass *pass, float *line, uint64_t *dirty,
 static void load_row(snow_stroke *stroke, int64_t row, int line) {
     const snow_pass *pass = stroke->pass;
     const snow_scratch *scratch = &stroke->scratch;
-    size_t slot = (size_t)(row % stroke->v->taps);
+    size_t slot = (size_t)row & (pass->ring - 1);
     uint64_t *held = scratch->held + slot * pass->words;
     float *filtered = scratch->ring + slot * pass->stride;
     size_t voxel = 0, count = 0;
@@ -333,7 +336,7 @@ static void lay_line(snow_stroke *stroke, int line) {
         scratch->mask[w] = 0;
     for (int m = 0; m < v->taps; m++) {
         int64_t row = first + m;
-        size_t slot = (size_t)((row % v->taps + v->taps) % v->taps);
+        size_t slot = (size_t)row & (pass->ring - 1);
         scratch->rows[m] = scratch->ring + slot * pass->stride;
         for (size_t w = 0; w < pass->words; w++)
             scratch->mask[w] |= scratch->held[slot * pass->words + w];
@@ -365,7 +368,7 @@ static bool any_voxel(const snow_stroke *stroke, int64_t first, int64_t last) {
 static void empty_ring(snow_stroke *stroke) {
     const snow_pass *pass = stroke->pass;
     const snow_scratch *scratch = &stroke->scratch;
-    size_t taps = (size_t)stroke->v->taps;
+    size_t taps = pass->ring;
     memset(scratch->held, 0, taps * pass->words * sizeof *scratch->held);
     for (size_t n = 0; n < taps; n++)
         wipe_chunks(pass, scratch->ring + n * pass->stride,
@@ -411,7 +414,7 @@ static bool any_alive(const snow_stroke *stroke) {
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
 static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
-    size_t at = 0, taps = (size_t)pass->places[1].taps;
+    size_t at = 0, taps = pass->ring;
     int64_t columns = pass->order->placement->columns;
     size_t floats = sizeof(float), pixel = (size_t)pass->channels * floats;
     size_t mask = pass->words * sizeof(uint64_t);
@@ -496,6 +499,8 @@ static snow_status place_lattice(snow_pass *pass) {
     }
     SNOW_TRY(snow_shear_make(pass->sheared->context, p, &options,
                              &pass->shear));
+    for (pass->ring = 1; pass->ring < (size_t)snow_taper_taps(&pass->taper[1]);)
+        pass->ring *= 2;
     pass->filter = draft ? SNOW_BILINEAR : SNOW_CATMULL_ROM;
     size_t width = (size_t)pass->shear.u.count;
     size_t chunks = (width + SNOW_CHUNK - 1) / SNOW_CHUNK;

@@ -6,10 +6,7 @@
  * path length.  What is uninteresting contributes nothing. */
 #include "classify/classify.h"
 
-#include <math.h>
-
-/* So that rounding never decides whether a voxel is above the threshold. */
-#define THRESHOLD_MARGIN 0.0001
+#include "base/power.h"
 
 #define ROW_TYPE int8_t
 #define ROW_NAME classify_row_int8
@@ -74,15 +71,16 @@ bool snow_classify_value(const snow_classifier *c, double native,
         sample[2] = sample[3] = 0;
     if (!(opacity > 0))
         return false;
-    bool interesting =
-        !(c->threshold > 0) || 255 * opacity > c->threshold + THRESHOLD_MARGIN;
+    bool interesting = snow_is_interesting(opacity, c->threshold);
     if (!interesting && !c->keep_all)
         return false;
     double rgb[3];
     snow_transfer_color(c->transfer, value, rgb);
-    /* pow(x, 1) is x: along an axis of a cubic grid the call can be spared. */
-    double clear = 1 - opacity;
-    double corrected = 1 - (c->exponent == 1 ? clear : pow(clear, c->exponent));
+    /* Along an axis of a cubic grid the exponent is 1. */
+    double corrected = c->exponent == 1
+                           ? opacity
+                           : snow_opacity_of(snow_clarity(opacity),
+                                             snow_exponent_within(c->exponent));
     double weight = c->premultiply ? corrected : 1;
     for (int i = 0; i < c->channels - 1; i++)
         sample[i] = (float)(rgb[i] * weight);

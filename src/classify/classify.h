@@ -90,6 +90,15 @@ const void *snow_row_voxels(const snow_volume *volume,
                             const snow_placement *placement, int64_t slice,
                             int64_t row, int64_t *stride);
 
+/* --- gradients: classify/gradient.c ----------------------------------------
+ */
+
+/* The gradient of native values at a voxel, in index space. */
+typedef void snow_gradient_fn(const void *voxels, const int64_t dims[3],
+                              const int64_t at[3], double gradient[3]);
+
+snow_gradient_fn *snow_gradient_of(snow_type type);
+
 /* --- shading: classify/shade.c ---------------------------------------------
  */
 
@@ -103,6 +112,15 @@ typedef struct snow_shader {
     double light[3], half[3], viewer[3]; /* W^T times the world vector */
     double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
 } snow_shader;
+
+/* The unit vectors to the light and half-way between it and the viewer; false
+ * when the light is straight behind the volume and there is no half-way. */
+bool snow_light_of(const snow_placement *placement,
+                   const snow_settings *settings, double light[3],
+                   double half[3]);
+
+/* A shininess as a whole number when it is one up to 1024, else -1. */
+int snow_whole_shininess(double shininess);
 
 /* W is the inverse transpose of the matrix' linear part, which carries index
  * gradients to the world.  Errors: SNOW_BAD_USAGE (a singular matrix). */

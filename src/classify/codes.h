@@ -22,14 +22,19 @@
 
 #define SNOW_KEPT_RUNS 16
 
+/* Native values from first to last, both included. */
+typedef struct snow_native_run {
+    double first, last;
+} snow_native_run;
+
 /* Which voxels are interesting, and their codes, for one volume, opacity
  * function and threshold (model, point 3). */
 typedef struct snow_coder {
     snow_type type;
     double slope, intercept; /* data value = slope * native + intercept */
     double threshold;
-    int bytes;     /* of a code: 1 or 2 */
-    size_t codes;  /* 256 or 65,536 */
+    int bytes;      /* of a code: 1 or 2 */
+    size_t codes;   /* 256 or 65,536 */
     int32_t lowest; /* native value of code 0, for 8- and 16-bit types */
     /* 8- and 16-bit types: per code, 1 when it is interesting; and the same as
      * runs of codes, first to last, when there are at most SNOW_KEPT_RUNS of
@@ -39,11 +44,13 @@ typedef struct snow_coder {
     struct {
         uint16_t first, last;
     } runs[SNOW_KEPT_RUNS];
-    /* Wider types: the control values in data units, rising, and the opacity
-     * function by which voxels are kept. */
-    const snow_transfer *transfer; /* valid while encoding only */
+    /* All types: the interesting native values, as rising runs. */
+    snow_native_run *native_runs;
+    size_t native_run_count;
+    /* Wider types: the control values in data units, rising, each once, and
+     * how many codes lie between two of them.  Code 0 is below the first. */
     double *stops;
-    size_t stop_count;
+    size_t stop_count, stretch_codes;
 } snow_coder;
 
 /* Errors: SNOW_NO_MEMORY.  Free with snow_coder_fini. */
@@ -66,15 +73,19 @@ double snow_coder_value(const snow_coder *coder, size_t code);
 
 /* Samples of all codes: (grey, a) or (r, g, b, a) floats per code.  With
  * premultiply colours are multiplied by the opacity.  The buffers are kept from
- * one making to the next; the parts that do not depend on the view too. */
+ * one making to the next; the parts that do not depend on the view too, for as
+ * long as the control points and the coder's codes, of which `key` is a copy,
+ * stay the same. */
 typedef struct snow_palette {
     float *samples;
-    size_t capacity; /* bytes */
+    size_t capacity; /* bytes, as all capacities */
     int channels;
-    /* Colour and logarithm of transparency of each code, of the last transfer
-     * function; and what they were made for. */
-    float *looks;
+    float *looks; /* per code: colour, and opacity of the reference length */
     size_t looks_capacity;
+    double *clarities; /* per code: log(1 - opacity) */
+    size_t clarities_capacity;
+    double *key, *next_key;
+    size_t key_count, key_capacity, next_key_capacity;
 } snow_palette;
 
 /* Makes the palette of a view: opacities are corrected for the path length as

@@ -4,14 +4,21 @@
  * sphere is enough.  It is unfolded onto a square (an octahedron's upper half:
  * Meyer et al. 2010, Cigolle et al. 2014) of 255 x 255 places; one more code
  * says that there is no gradient.  A stored normal is off by at most
- * SNOW_NORMAL_ERROR degrees. */
+ * SNOW_NORMAL_ERROR degrees, by 0.24 in the mean.
+ *
+ * A normal that is nearly perpendicular to the line of sight may be turned to
+ * the viewer on the other side than the exact one.  Under a head light that
+ * changes nothing but rounding; under a light from the side such a voxel, on
+ * the object's outline, may be lit instead of dark. */
 #ifndef SNOW_NORMALS_H
 #define SNOW_NORMALS_H
 
 #include "classify/classify.h"
+#include "simd/isa.h"
 
 #define SNOW_NORMALS 65536
-#define SNOW_NO_NORMAL 0 /* the code of a voxel without a gradient */
+#define SNOW_NO_NORMAL 0       /* the code of a voxel without a gradient */
+#define SNOW_NORMAL_ERROR 0.56 /* degrees */
 
 /* What a normal makes of a colour c: min(1, c * factor + white). */
 typedef struct snow_gloss {
@@ -26,7 +33,10 @@ void snow_normal_of(uint16_t code, double normal[3]);
 /* How a volume's index gradients are carried to the world, for encoding. */
 typedef struct snow_normal_maker {
     const snow_volume *volume;
-    float carry[3][3]; /* the inverse transpose of the matrix' linear part */
+    double carry[3][3]; /* the inverse transpose of the matrix' linear part,
+                           its largest entry made 1: only directions count */
+    bool skewed;        /* beyond what single precision carries */
+    snow_isa isa;       /* resolved; all levels make the same bits */
 } snow_normal_maker;
 
 /* Errors: SNOW_BAD_USAGE (a singular matrix). */

@@ -5,65 +5,12 @@
  *
  * The normal n is W g / |W g| for an index gradient g, so n.l is
  * g.(W^T l) / |W g|: only scalars leave index space. */
+#include "base/power.h"
 #include "base/vec3.h"
 #include "classify/classify.h"
 
 #include <math.h>
 #include <string.h>
-
-/* The difference at `here` from neighbours that count only when finite. */
-static double difference(double here, double below, double above) {
-    bool has_below = isfinite(below), has_above = isfinite(above);
-    if (has_below && has_above)
-        return (above - below) / 2;
-    if (has_above && isfinite(here))
-        return above - here;
-    if (has_below && isfinite(here))
-        return here - below;
-    return 0;
-}
-
-#define GRADIENT_TYPE int8_t
-#define GRADIENT_NAME gradient_int8
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE uint8_t
-#define GRADIENT_NAME gradient_uint8
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE int16_t
-#define GRADIENT_NAME gradient_int16
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE uint16_t
-#define GRADIENT_NAME gradient_uint16
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE int32_t
-#define GRADIENT_NAME gradient_int32
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE uint32_t
-#define GRADIENT_NAME gradient_uint32
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE int64_t
-#define GRADIENT_NAME gradient_int64
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE uint64_t
-#define GRADIENT_NAME gradient_uint64
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE float
-#define GRADIENT_NAME gradient_float32
-#include "classify/gradient.tmpl.h"
-#define GRADIENT_TYPE double
-#define GRADIENT_NAME gradient_float64
-#include "classify/gradient.tmpl.h"
-
-typedef void gradient_fn(const void *voxels, const int64_t dims[3],
-                         const int64_t at[3], double gradient[3]);
-
-static gradient_fn *const type_gradients[] = {
-    [SNOW_INT8] = gradient_int8,       [SNOW_UINT8] = gradient_uint8,
-    [SNOW_INT16] = gradient_int16,     [SNOW_UINT16] = gradient_uint16,
-    [SNOW_INT32] = gradient_int32,     [SNOW_UINT32] = gradient_uint32,
-    [SNOW_INT64] = gradient_int64,     [SNOW_UINT64] = gradient_uint64,
-    [SNOW_FLOAT32] = gradient_float32, [SNOW_FLOAT64] = gradient_float64,
-};
 
 /* out = W^T v, where W is the inverse transpose and `inverse` the inverse. */
 static void to_index(double inverse[3][3], const double v[3], double out[3]) {
@@ -71,15 +18,26 @@ static void to_index(double inverse[3][3], const double v[3], double out[3]) {
         out[i] = snow_dot(inverse[i], v);
 }
 
-/* The direction to the light: from the camera's, to its right, then up. */
-static void light_direction(const snow_placement *placement,
-                            const snow_settings *settings, double light[3]) {
+bool snow_light_of(const snow_placement *placement,
+                   const snow_settings *settings, double light[3],
+                   double half[3]) {
     double right[3], up[3];
     memcpy(right, placement->right, sizeof right);
     memcpy(up, placement->up, sizeof up);
     memcpy(light, placement->back, 3 * sizeof *light);
     snow_frame_turn(right, up, light, settings->light_azimuth,
                     settings->light_elevation, 0);
+    for (int i = 0; i < 3; i++)
+        half[i] = light[i] + placement->back[i];
+    if (!(snow_length(half) > 1e-9))
+        return false;
+    snow_normalize(half);
+    return true;
+}
+
+int snow_whole_shininess(double shininess) {
+    bool whole = shininess <= 1024 && shininess == floor(shininess);
+    return whole ? (int)shininess : -1;
 }
 
 snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
@@ -92,21 +50,13 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
         .diffuse = settings->diffuse,
         .specular = settings->specular,
         .shininess = settings->shininess,
-        .whole = -1,
+        .whole = snow_whole_shininess(settings->shininess),
     };
-    if (shader.shininess <= 1024 && shader.shininess == floor(shader.shininess))
-        shader.whole = (int)shader.shininess;
     double inverse[3][3], light[3], half[3];
     if (!snow_matrix_invert3(volume->info.matrix, inverse))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "the volume's matrix cannot be inverted");
-    light_direction(placement, settings, light);
-    for (int i = 0; i < 3; i++)
-        half[i] = light[i] + placement->back[i];
-    /* A light straight behind the volume has no half-way vector. */
-    if (snow_length(half) > 1e-9)
-        snow_normalize(half);
-    else
+    if (!snow_light_of(placement, settings, light, half))
         shader.specular = 0;
     to_index(inverse, light, shader.light);
     to_index(inverse, half, shader.half);
@@ -118,11 +68,10 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
     return SNOW_OK;
 }
 
-/* x^shininess.  Whole exponents (the default is one) by squaring: several times
- * faster than pow(), and the same bits whichever libm there is. */
+/* x^shininess.  Whole exponents (the default is one) by squaring. */
 static double power(const snow_shader *shader, double x) {
     if (shader->whole < 0)
-        return pow(x, shader->shininess);
+        return snow_power(x, shader->shininess);
     double result = 1;
     for (unsigned n = (unsigned)shader->whole; n; n /= 2, x *= x)
         if (n % 2)
@@ -177,7 +126,7 @@ void snow_shade_strip(const snow_shader *shader, int channels,
                       snow_strip *strip) {
     const snow_placement *p = shader->placement;
     const snow_volume *volume = shader->volume;
-    gradient_fn *gradient_of = type_gradients[volume->info.type];
+    snow_gradient_fn *gradient_of = snow_gradient_of(volume->info.type);
     int64_t at[3];
     at[p->slice_axis] = strip->slice;
     size_t n = 0;

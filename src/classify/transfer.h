@@ -24,4 +24,14 @@ double snow_transfer_opacity(const snow_transfer *transfer, double value);
 void snow_transfer_color(const snow_transfer *transfer, double value,
                          double rgb[3]);
 
+/* So that rounding never decides whether a voxel is above the threshold. */
+#define SNOW_THRESHOLD_MARGIN 0.0001
+
+/* Whether a voxel of this opacity is above a threshold of 0 to 255 (model,
+ * point 3). */
+static inline bool snow_is_interesting(double opacity, double threshold) {
+    return opacity > 0 && (!(threshold > 0) ||
+                           255 * opacity > threshold + SNOW_THRESHOLD_MARGIN);
+}
+
 #endif

@@ -24,8 +24,10 @@
 typedef struct snow_bands {
     snow_context *context;
     snow_sparse *bands;
-    int64_t band_count; /* ceil(rows / SNOW_BAND_ROWS) */
-    size_t capacity;    /* of bands, bytes */
+    int64_t band_count;     /* ceil(rows / SNOW_BAND_ROWS) */
+    size_t capacity;        /* of bands, bytes */
+    unsigned char *scratch; /* of the threads, while encoding */
+    size_t scratch_capacity;
     int64_t columns, rows, slices;
     int code_bytes;
     bool with_normals;
@@ -39,15 +41,15 @@ typedef struct snow_bands_order {
     const snow_volume *volume;
     const snow_placement *placement;
     const snow_coder *coder;
-    const snow_normal_maker *maker; /* NULL: no normals */
-    snow_encoding encoding;         /* AUTO: by measured density and runs */
+    const snow_normal_maker *maker;   /* NULL: no normals */
+    snow_encoding encoding;           /* AUTO: by measured density and runs */
     int64_t first_slice, slice_count; /* the slab; slice 0 of the bands is
                                          first_slice of the volume */
     bool between; /* with a slice half-way between each two: slice n of the
                      bands is slice n/2 of the slab, or for odd n the mean of
                      slices (n-1)/2 and (n+1)/2, of native values as of
                      gradients; 2 slice_count - 1 slices in all */
-    snow_isa isa;                   /* resolved */
+    snow_isa isa; /* resolved */
     int threads;
 } snow_bands_order;
 

@@ -2,10 +2,23 @@
  *
  * The rows of a slice follow each other without a gap; voxel n of the slice is
  * bit n mod 8, counted from the lowest, of byte n / 8.  The slice's last byte
- * is filled up with zeros. */
+ * is filled up with zeros.
+ *
+ * A band's slice has one of two forms, whichever takes fewer bytes; so its size
+ * tells which one it is.
+ *
+ *   plain   as above, but that each row begins with a byte of its own:
+ *
+ *           | row 0 . . . . . . 0 0 | row 1 . . . . . . 0 0 | row 2 ...
+ *
+ *   words   every row is cut into words of 64 voxels (the last one filled up
+ *           with zeros); a summary tells by a bit which of them, row by row,
+ *           hold anything, and those words follow:
+ *
+ *           | 0 0 1 0  0 0 0 0  0 1 1 0 ... | word 2 | word 9 | word 10 | ...
+ *              row 0      row 1     row 2
+ */
 #include "encode/encode.h"
-
-#include <string.h>
 
 static snow_status bitmap_begin_slice(snow_sparse *s) {
     return snow_sparse_grow_ea(s, (size_t)((s->columns * s->rows + 7) / 8));
@@ -30,33 +43,174 @@ static snow_status bitmap_end_slice(snow_sparse *s) {
 /* Bits n .. n + 55 at least, in the low end of a word.  Reads up to 8 bytes
  * beyond the one that holds bit n. */
 static uint64_t load_bits(const unsigned char *bits, size_t n) {
-    uint64_t word;
-    memcpy(&word, bits + n / 8, sizeof word);
-#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
-    word = __builtin_bswap64(word);
-#endif
-    return word >> n % 8;
+    return snow_load_word(bits + n / 8) >> n % 8;
 }
 
 #define CHUNK 56 /* bits that one load always gives */
 
+/* Bits first .. first + count - 1, count <= CHUNK. */
+static uint64_t some_bits(const unsigned char *bits, size_t first,
+                          size_t count) {
+    return load_bits(bits, first) & ((UINT64_C(1) << count) - 1);
+}
+
+static size_t lesser(size_t a, size_t b) {
+    return a < b ? a : b;
+}
+
+/* How many of `count` bits from `first` on are set. */
+static size_t count_bits(const unsigned char *bits, size_t first,
+                         size_t count) {
+    size_t set = 0;
+    for (size_t n = 0; n < count; n += CHUNK)
+        set += (size_t)__builtin_popcountll(
+            some_bits(bits, first + n, lesser(count - n, CHUNK)));
+    return set;
+}
+
+/* --- whole slices --------------------------------------------------------- */
+
 static size_t bitmap_next_row(snow_walk *walk, snow_span *spans) {
-    uint32_t columns = (uint32_t)walk->sparse->columns;
-    size_t first = (size_t)walk->row * columns, count = 0;
-    for (uint32_t column = 0; column < columns; column += CHUNK) {
-        uint32_t valid = columns - column < CHUNK ? columns - column : CHUNK;
-        uint64_t word =
-            load_bits(walk->ea, first + column) & ((UINT64_C(1) << valid) - 1);
-        while (word) {
-            int skip = __builtin_ctzll(word);
-            int run = __builtin_ctzll(~(word >> skip));
-            count = snow_span_append(spans, count, column + (uint32_t)skip,
-                                     (uint32_t)run);
-            word &= ~(((UINT64_C(1) << run) - 1) << skip);
+    size_t columns = (size_t)walk->sparse->columns, count = 0;
+    size_t first = (size_t)walk->row * columns;
+    for (size_t column = 0; column < columns; column += CHUNK)
+        count =
+            snow_span_append_mask(spans, count, (uint32_t)column,
+                                  some_bits(walk->slice, first + column,
+                                            lesser(columns - column, CHUNK)));
+    return count;
+}
+
+static size_t bitmap_skip(snow_walk *walk, int64_t rows) {
+    size_t columns = (size_t)walk->sparse->columns;
+    return count_bits(walk->slice, (size_t)walk->row * columns,
+                      (size_t)rows * columns);
+}
+
+static const snow_reader whole_reader = {bitmap_next_row, bitmap_skip};
+
+/* --- slices of a band ----------------------------------------------------- */
+
+/* Bytes of a row in the plain form. */
+static size_t row_bytes(const snow_sparse *s) {
+    return ((size_t)s->columns + 7) / 8;
+}
+
+static size_t plain_bytes(const snow_sparse *s) {
+    return row_bytes(s) * (size_t)s->rows;
+}
+
+static size_t summary_bytes(const snow_sparse *s) {
+    return (snow_mask_words(s) * (size_t)s->rows + 7) / 8;
+}
+
+/* The last word of a row reaches into the next row, which then overwrites it.
+ */
+static void write_plain(const snow_sparse *s, const uint64_t *masks,
+                        unsigned char *at) {
+    size_t words = snow_mask_words(s);
+    for (int64_t row = 0; row < s->rows; row++, at += row_bytes(s))
+        for (size_t w = 0; w < words; w++)
+            snow_store_word(at + 8 * w, *masks++);
+}
+
+static unsigned char *write_words(const snow_sparse *s, const uint64_t *masks,
+                                  unsigned char *at) {
+    size_t count = snow_mask_words(s) * (size_t)s->rows;
+    unsigned char *word = at + summary_bytes(s);
+    for (size_t first = 0; first < count; first += 8, at++) {
+        unsigned summary = 0;
+        for (size_t n = first; n < lesser(first + 8, count); n++) {
+            unsigned full = masks[n] != 0;
+            snow_store_word(word, masks[n]);
+            word += 8 * full;
+            summary |= full << (n - first);
+        }
+        *at = (unsigned char)summary;
+    }
+    return word;
+}
+
+static snow_status bitmap_add_masks(snow_sparse *s, const uint64_t *masks,
+                                    size_t voxels) {
+    (void)voxels;
+    size_t count = snow_mask_words(s) * (size_t)s->rows, full = 0;
+    size_t plain = plain_bytes(s);
+    for (size_t n = 0; n < count; n++)
+        full += masks[n] != 0;
+    unsigned char *at;
+    SNOW_TRY(snow_sparse_open_ea(s, plain, &at));
+    if (summary_bytes(s) + 8 * full < plain) {
+        at = write_words(s, masks, at);
+    } else {
+        write_plain(s, masks, at);
+        at += plain;
+    }
+    snow_sparse_close_ea(s, at);
+    return SNOW_OK;
+}
+
+static size_t plain_next_row(snow_walk *walk, snow_span *spans) {
+    size_t columns = (size_t)walk->sparse->columns, count = 0;
+    const unsigned char *row =
+        walk->slice + (size_t)walk->row * row_bytes(walk->sparse);
+    size_t column = 0;
+    for (; column + 64 <= columns; column += 64)
+        count = snow_span_append_mask(spans, count, (uint32_t)column,
+                                      snow_load_word(row + column / 8));
+    if (column < columns) {
+        uint64_t valid = (UINT64_C(1) << (columns - column)) - 1;
+        count = snow_span_append_mask(spans, count, (uint32_t)column,
+                                      snow_load_word(row + column / 8) & valid);
+    }
+    return count;
+}
+
+static size_t plain_skip(snow_walk *walk, int64_t rows) {
+    size_t row = 8 * row_bytes(walk->sparse);
+    return count_bits(walk->slice, (size_t)walk->row * row, (size_t)rows * row);
+}
+
+/* walk->ea is at the next word that holds anything. */
+static size_t words_next_row(snow_walk *walk, snow_span *spans) {
+    size_t words = snow_mask_words(walk->sparse), count = 0;
+    size_t first = (size_t)walk->row * words;
+    for (size_t w = 0; w < words; w += CHUNK) {
+        uint64_t summary =
+            some_bits(walk->slice, first + w, lesser(words - w, CHUNK));
+        for (; summary; summary &= summary - 1, walk->ea += 8) {
+            size_t word = w + (size_t)__builtin_ctzll(summary);
+            count = snow_span_append_mask(spans, count, (uint32_t)(64 * word),
+                                          snow_load_word(walk->ea));
         }
     }
     return count;
 }
 
+static size_t words_skip(snow_walk *walk, int64_t rows) {
+    size_t words = snow_mask_words(walk->sparse);
+    size_t full = count_bits(walk->slice, (size_t)walk->row * words,
+                             (size_t)rows * words);
+    size_t voxels = count_bits(walk->ea, 0, 64 * full);
+    walk->ea += 8 * full;
+    return voxels;
+}
+
+static const snow_reader plain_reader = {plain_next_row, plain_skip};
+static const snow_reader words_reader = {words_next_row, words_skip};
+
+static void bitmap_begin_walk(snow_walk *walk) {
+    const snow_sparse *s = walk->sparse;
+    if (!s->code_bytes) {
+        walk->reader = &whole_reader;
+    } else if (walk->slice_bytes == plain_bytes(s)) {
+        walk->reader = &plain_reader;
+    } else {
+        walk->reader = &words_reader;
+        walk->ea = walk->slice + summary_bytes(s);
+    }
+}
+
 const snow_scheme snow_scheme_bitmap = {bitmap_begin_slice, bitmap_add_row,
-                                        bitmap_end_slice, bitmap_next_row};
+                                        bitmap_end_slice, bitmap_add_masks,
+                                        bitmap_begin_walk};

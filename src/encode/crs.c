@@ -8,10 +8,17 @@
  *
  * INDR holds 32-bit numbers, COL 16-bit ones.  Rows longer than 65,536 are cut
  * into segments of that length, each with an INDR of its own, so that a column
- * within its segment always fits. */
+ * within its segment always fits.
+ *
+ * A band's slice is cut finer: into cells, 256 columns of one row each, row by
+ * row.  A summary tells by a bit which cells hold anything; those follow, each
+ * as a byte for the number of its voxels, less one, and a byte for the column
+ * of each within the cell.  What INDR tells is the sum of the numbers before.
+ *
+ *   | 0 1 0 0  1 0 ... | 2 | 17 18 90 | 0 | 255 | ...
+ *      summary          cell 1: three  cell 4: one
+ */
 #include "encode/encode.h"
-
-#include <string.h>
 
 #define SEGMENT 65536
 
@@ -60,15 +67,20 @@ static snow_status crs_end_slice(snow_sparse *s) {
     return snow_sparse_grow_ea(s, s->ea_bytes % sizeof(uint32_t));
 }
 
+/* COL of the slice at `ea`. */
+static const unsigned char *col_of(const snow_sparse *s,
+                                   const unsigned char *ea) {
+    return ea + ((size_t)s->rows * segments_of(s) + 1) * sizeof(uint32_t);
+}
+
 static size_t crs_next_row(snow_walk *walk, snow_span *spans) {
     const snow_sparse *s = walk->sparse;
     size_t segments = segments_of(s), first = (size_t)walk->row * segments;
-    const unsigned char *col =
-        walk->ea + ((size_t)s->rows * segments + 1) * sizeof(uint32_t);
+    const unsigned char *col = col_of(s, walk->slice);
     size_t count = 0;
     for (size_t segment = 0; segment < segments; segment++) {
-        uint32_t begin = load_indr(walk->ea, first + segment);
-        uint32_t end = load_indr(walk->ea, first + segment + 1);
+        uint32_t begin = load_indr(walk->slice, first + segment);
+        uint32_t end = load_indr(walk->slice, first + segment + 1);
         for (size_t i = begin; i < end; i++) {
             uint16_t column;
             memcpy(&column, col + i * sizeof column, sizeof column);
@@ -79,5 +91,108 @@ static size_t crs_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-const snow_scheme snow_scheme_crs = {crs_begin_slice, crs_add_row,
-                                     crs_end_slice, crs_next_row};
+static size_t crs_skip(snow_walk *walk, int64_t rows) {
+    size_t segments = segments_of(walk->sparse);
+    size_t first = (size_t)walk->row * segments;
+    return load_indr(walk->slice, first + (size_t)rows * segments) -
+           load_indr(walk->slice, first);
+}
+
+/* --- slices of a band ----------------------------------------------------- */
+
+#define CELL 256
+#define CELL_WORDS (CELL / 64)
+
+/* Cells of a row. */
+static size_t cells_of(const snow_sparse *s) {
+    return ((size_t)s->columns + CELL - 1) / CELL;
+}
+
+static size_t summary_bytes(const snow_sparse *s) {
+    return (cells_of(s) * (size_t)s->rows + 7) / 8;
+}
+
+/* The columns of a cell of `words` words; returns the end of what it wrote. */
+static unsigned char *write_columns(const uint64_t *masks, size_t words,
+                                    unsigned char *at) {
+    for (size_t w = 0; w < words; w++)
+        for (uint64_t mask = masks[w]; mask; mask &= mask - 1)
+            *at++ = (unsigned char)(64 * w + (size_t)__builtin_ctzll(mask));
+    return at;
+}
+
+/* A row of cells, the first of which is bit `cell` of the summary. */
+static unsigned char *write_row(const uint64_t *masks, size_t words,
+                                unsigned char *summary, size_t cell,
+                                unsigned char *at) {
+    for (size_t w = 0; w < words; w += CELL_WORDS, cell++) {
+        size_t some = words - w < CELL_WORDS ? words - w : CELL_WORDS;
+        unsigned char *end = write_columns(masks + w, some, at + 1);
+        if (end == at + 1)
+            continue;
+        *at = (unsigned char)(end - at - 2);
+        summary[cell / 8] |= (unsigned char)(1u << cell % 8);
+        at = end;
+    }
+    return at;
+}
+
+static snow_status crs_add_masks(snow_sparse *s, const uint64_t *masks,
+                                 size_t voxels) {
+    size_t cells = cells_of(s), words = snow_mask_words(s);
+    size_t summary = summary_bytes(s), full = cells * (size_t)s->rows;
+    unsigned char *at;
+    SNOW_TRY(snow_sparse_open_ea(
+        s, summary + voxels + (full < voxels ? full : voxels), &at));
+    unsigned char *end = at + summary;
+    memset(at, 0, summary);
+    for (int64_t row = 0; row < s->rows; row++, masks += words)
+        end = write_row(masks, words, at, (size_t)row * cells, end);
+    snow_sparse_close_ea(s, end);
+    return SNOW_OK;
+}
+
+static bool cell_is_full(const snow_walk *walk, size_t cell) {
+    return walk->slice[cell / 8] >> cell % 8 & 1;
+}
+
+/* walk->ea is at the next cell that holds anything. */
+static size_t cells_next_row(snow_walk *walk, snow_span *spans) {
+    size_t cells = cells_of(walk->sparse), count = 0;
+    const unsigned char *at = walk->ea;
+    for (size_t n = 0; n < cells; n++) {
+        if (!cell_is_full(walk, (size_t)walk->row * cells + n))
+            continue;
+        for (size_t left = (size_t)*at++ + 1; left; left--)
+            count =
+                snow_span_append(spans, count, (uint32_t)(n * CELL) + *at++, 1);
+    }
+    walk->ea = at;
+    return count;
+}
+
+static size_t cells_skip(snow_walk *walk, int64_t rows) {
+    size_t cells = cells_of(walk->sparse), voxels = 0;
+    size_t first = (size_t)walk->row * cells;
+    for (size_t n = first; n < first + (size_t)rows * cells; n++)
+        if (cell_is_full(walk, n)) {
+            size_t some = (size_t)*walk->ea + 1;
+            voxels += some;
+            walk->ea += 1 + some;
+        }
+    return voxels;
+}
+
+static const snow_reader whole_reader = {crs_next_row, crs_skip};
+static const snow_reader cells_reader = {cells_next_row, cells_skip};
+
+static void crs_begin_walk(snow_walk *walk) {
+    walk->reader = &whole_reader;
+    if (walk->sparse->code_bytes) {
+        walk->reader = &cells_reader;
+        walk->ea = walk->slice + summary_bytes(walk->sparse);
+    }
+}
+
+const snow_scheme snow_scheme_crs = {
+    crs_begin_slice, crs_add_row, crs_end_slice, crs_add_masks, crs_begin_walk};

@@ -2,11 +2,6 @@
  * (section 3.1 of the paper, figure 3). */
 #include "encode/encode.h"
 
-#include <string.h>
-
-/* The bit-map is read a word at a time, up to this far beyond EA's end. */
-#define EA_MARGIN 8
-
 const snow_scheme *snow_scheme_of(snow_encoding encoding) {
     switch (encoding) {
     case SNOW_ENCODING_CRS:
@@ -44,9 +39,9 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
         snow_reserve(s->context, &s->pa, &s->pa_capacity, 0, (size_t)pointers));
     s->scheme = scheme;
     s->channels = channels;
+    s->code_bytes = 0;
     s->columns = placement->columns;
     s->rows = placement->rows;
-
     s->filled = 0;
     s->ea_bytes = s->ia_voxels = 0;
     s->pa[0] = (snow_slice_pointer){0, 0};
@@ -55,8 +50,8 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
 
 snow_status snow_sparse_grow_ea(snow_sparse *s, size_t size) {
     SNOW_TRY(snow_reserve(s->context, &s->ea, &s->ea_capacity, s->ea_bytes,
-                          s->ea_bytes + size + EA_MARGIN));
-    memset(s->ea + s->ea_bytes, 0, size + EA_MARGIN);
+                          s->ea_bytes + size + SNOW_EA_MARGIN));
+    memset(s->ea + s->ea_bytes, 0, size + SNOW_EA_MARGIN);
     s->ea_bytes += size;
     return SNOW_OK;
 }
@@ -99,22 +94,89 @@ snow_status snow_sparse_end_slice(snow_sparse *s) {
     return SNOW_OK;
 }
 
+snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
+                                   int64_t columns, int64_t rows,
+                                   int64_t slices, int code_bytes) {
+    SNOW_TRY(snow_reserve(s->context, &s->pa, &s->pa_capacity, 0,
+                          ((size_t)slices + 1) * sizeof *s->pa));
+    s->scheme = scheme;
+    s->channels = 0;
+    s->code_bytes = code_bytes;
+    s->columns = columns;
+    s->rows = rows;
+    s->filled = 0;
+    s->ea_bytes = s->ia_voxels = 0;
+    s->pa[0] = (snow_slice_pointer){0, 0};
+    return SNOW_OK;
+}
+
+snow_status snow_sparse_open_ea(snow_sparse *s, size_t most,
+                                unsigned char **at) {
+    SNOW_TRY(snow_reserve(s->context, &s->ea, &s->ea_capacity, s->ea_bytes,
+                          s->ea_bytes + most + SNOW_EA_MARGIN));
+    *at = s->ea + s->ea_bytes;
+    return SNOW_OK;
+}
+
+void snow_sparse_close_ea(snow_sparse *s, const unsigned char *end) {
+    s->ea_bytes = (size_t)(end - s->ea);
+    /* What a walk reads beyond the end is masked away, but must be there. */
+    snow_store_word(s->ea + s->ea_bytes, 0);
+}
+
+snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,
+                                  size_t voxels) {
+    if (voxels)
+        SNOW_TRY(s->scheme->add_masks(s, masks, voxels));
+    s->filled++;
+    s->pa[s->filled] = (snow_slice_pointer){s->ea_bytes, s->ia_voxels};
+    return SNOW_OK;
+}
+
 void snow_sparse_fini(snow_sparse *s) {
     snow_release(s->context, s->ea);
     snow_release(s->context, s->ia);
+    snow_release(s->context, s->codes);
+    snow_release(s->context, s->normals);
     snow_release(s->context, s->pa);
     *s = (snow_sparse){.context = s->context};
 }
 
+static size_t nothing_next_row(snow_walk *walk, snow_span *spans) {
+    (void)walk;
+    (void)spans;
+    return 0;
+}
+
+static size_t nothing_skip(snow_walk *walk, int64_t rows) {
+    (void)walk;
+    (void)rows;
+    return 0;
+}
+
+/* A slice of no bytes. */
+static const snow_reader nothing = {nothing_next_row, nothing_skip};
+
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];
-    *walk = (snow_walk){.sparse = s,
-                        .ea = s->ea + pointer.ea,
-                        .voxel = (size_t)pointer.ia};
+    *walk =
+        (snow_walk){.sparse = s,
+                    .reader = &nothing,
+                    .slice_bytes = (size_t)(s->pa[slice + 1].ea - pointer.ea),
+                    .voxel = (size_t)pointer.ia};
+    if (!walk->slice_bytes)
+        return;
+    walk->slice = walk->ea = s->ea + pointer.ea;
+    s->scheme->begin_walk(walk);
+}
+
+void snow_walk_skip(snow_walk *walk, int64_t rows) {
+    walk->voxel += walk->reader->skip(walk, rows);
+    walk->row += rows;
 }
 
 size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel) {
-    size_t count = walk->sparse->scheme->next_row(walk, spans), voxels = 0;
+    size_t count = walk->reader->next_row(walk, spans), voxels = 0;
     for (size_t i = 0; i < count; i++)
         voxels += spans[i].length;
     *voxel = walk->voxel;

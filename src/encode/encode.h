@@ -16,6 +16,8 @@
 
 #include "classify/classify.h"
 
+#include <string.h>
+
 /* Interesting voxels column .. column + length - 1 of a row. */
 typedef struct snow_span {
     uint32_t column, length;
@@ -27,9 +29,15 @@ typedef struct snow_slice_pointer {
 } snow_slice_pointer;
 
 typedef struct snow_scheme snow_scheme;
+typedef struct snow_reader snow_reader;
 
-/* A volume's interesting voxels.  Slices are appended in order; the buffers
- * are kept when it is begun again. */
+/* A volume's interesting voxels, or those of a band of rows (encode/bands.h).
+ * Slices are appended in order; the buffers are kept when it is begun again.
+ *
+ * Slices of a whole volume are written as the paper's figures 4 to 6 show.
+ * Those of a band are written in forms that cost next to nothing where nothing
+ * is: each scheme's file draws its own.  One rule is common: a band's slice
+ * without interesting voxels takes no bytes of EA. */
 typedef struct snow_sparse {
     snow_context *context;
     const snow_scheme *scheme;
@@ -37,7 +45,7 @@ typedef struct snow_sparse {
     int64_t columns, rows; /* of a slice */
 
     int64_t filled;    /* slices ended so far */
-    unsigned char *ea; /* with 8 bytes beyond its end, to be read past */
+    unsigned char *ea; /* with bytes beyond its end, to be read past */
     size_t ea_bytes, ea_capacity;
     /* IA holds samples (footprint), or codes and normals (encode/bands.h). */
     float *ia;
@@ -45,8 +53,8 @@ typedef struct snow_sparse {
     unsigned char *codes;
     uint16_t *normals;
     size_t codes_capacity, normals_capacity; /* bytes */
-    int code_bytes;
-    snow_slice_pointer *pa;        /* one more than slices */
+    int code_bytes;         /* 1 or 2: this is a band; 0: a whole volume */
+    snow_slice_pointer *pa; /* one more than slices */
     size_t pa_capacity;
     int64_t row; /* next row of the slice being encoded */
     /* RLE, while encoding: the run that is still growing. */
@@ -57,13 +65,26 @@ typedef struct snow_sparse {
 /* A walk through the rows of one slice. */
 typedef struct snow_walk {
     const snow_sparse *sparse;
-    const unsigned char *ea; /* the slice's first byte, or the next run */
+    const snow_reader *reader;  /* of the form that the slice is written in */
+    const unsigned char *slice; /* its first byte in EA */
+    size_t slice_bytes;
+    const unsigned char *ea; /* the next run, cell or word to be read */
     size_t voxel;            /* the next row's first voxel in IA */
     int64_t row;             /* the next row */
     /* RLE: voxels left in the current run, its kind, whether there is one. */
     uint32_t run;
     bool run_interesting, started;
 } snow_walk;
+
+/* How one form of a slice is read. */
+struct snow_reader {
+    /* Reads the next row's spans into `spans`, which has room for
+     * (columns + 1) / 2; returns their number.  The walk's voxel and row are
+     * moved on by the caller. */
+    size_t (*next_row)(snow_walk *walk, snow_span *spans);
+    /* Passes over rows: returns how many voxels they hold.  The same holds. */
+    size_t (*skip)(snow_walk *walk, int64_t rows);
+};
 
 /* A way to write EA (section 3.2). */
 struct snow_scheme {
@@ -73,9 +94,13 @@ struct snow_scheme {
     snow_status (*add_row)(snow_sparse *sparse, const uint32_t *columns,
                            size_t count);
     snow_status (*end_slice)(snow_sparse *sparse);
-    /* Reads the next row's spans into `spans`, which has room for
-     * (columns + 1) / 2; returns their number. */
-    size_t (*next_row)(snow_walk *walk, snow_span *spans);
+    /* Appends a band's slice of `voxels` > 0 interesting voxels: `masks` holds
+     * snow_mask_words words for each row, a bit for each voxel, lowest first.
+     * Errors: SNOW_NO_MEMORY. */
+    snow_status (*add_masks)(snow_sparse *sparse, const uint64_t *masks,
+                             size_t voxels);
+    /* Sets a walk, whose slice is known, before its first row. */
+    void (*begin_walk)(snow_walk *walk);
 };
 
 extern const snow_scheme snow_scheme_crs;
@@ -103,6 +128,23 @@ snow_status snow_sparse_add_strip(snow_sparse *sparse, const snow_strip *strip);
 
 snow_status snow_sparse_end_slice(snow_sparse *sparse);
 
+/* Begins a band of `rows` rows anew: no IA is written, but PA tells of
+ * ia_voxels, which the caller counts.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_sparse_begin_band(snow_sparse *sparse,
+                                   const snow_scheme *scheme, int64_t columns,
+                                   int64_t rows, int64_t slices,
+                                   int code_bytes);
+
+/* 64-bit words that the mask of a row takes. */
+static inline size_t snow_mask_words(const snow_sparse *sparse) {
+    return ((size_t)sparse->columns + 63) / 64;
+}
+
+/* Appends a slice of a band; `voxels` of it are interesting, and counted in
+ * ia_voxels already.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_sparse_add_masks(snow_sparse *sparse, const uint64_t *masks,
+                                  size_t voxels);
+
 /* Frees the buffers; the record may be all zeros but for its context. */
 void snow_sparse_fini(snow_sparse *sparse);
 
@@ -116,8 +158,16 @@ void snow_walk_skip(snow_walk *walk, int64_t rows);
  * number of spans. */
 size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel);
 
-/* Appends `size` bytes to EA, cleared, for the schemes. */
+/* For the schemes: appends `size` bytes to EA, cleared. */
 snow_status snow_sparse_grow_ea(snow_sparse *sparse, size_t size);
+
+/* For the schemes: room for up to `most` bytes at EA's end, which *at is set
+ * to, and SNOW_EA_MARGIN more that may be written too; and how many of them
+ * count. */
+#define SNOW_EA_MARGIN 64
+snow_status snow_sparse_open_ea(snow_sparse *sparse, size_t most,
+                                unsigned char **at);
+void snow_sparse_close_ea(snow_sparse *sparse, const unsigned char *end);
 
 /* Adds voxels to a row's spans: the last span grows where they touch it, or a
  * new one begins. */
@@ -129,6 +179,38 @@ static inline size_t snow_span_append(snow_span *spans, size_t count,
     }
     spans[count] = (snow_span){column, length};
     return count + 1;
+}
+
+/* Adds the voxels of a mask whose lowest bit is `column`. */
+static inline size_t snow_span_append_mask(snow_span *spans, size_t count,
+                                           uint32_t column, uint64_t mask) {
+    while (mask) {
+        int skip = __builtin_ctzll(mask);
+        uint64_t rest = ~(mask >> skip);
+        int run = rest ? __builtin_ctzll(rest) : 64;
+        count = snow_span_append(spans, count, column + (uint32_t)skip,
+                                 (uint32_t)run);
+        /* Adding the lowest bit carries through the run. */
+        mask &= mask + (UINT64_C(1) << skip);
+    }
+    return count;
+}
+
+/* A 64-bit word of EA, whose bytes lie lowest first on every machine. */
+static inline uint64_t snow_load_word(const unsigned char *at) {
+    uint64_t word;
+    memcpy(&word, at, sizeof word);
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    word = __builtin_bswap64(word);
+#endif
+    return word;
+}
+
+static inline void snow_store_word(unsigned char *at, uint64_t word) {
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+    word = __builtin_bswap64(word);
+#endif
+    memcpy(at, &word, sizeof word);
 }
 
 /* The spans of a row whose kept columns are known. */

@@ -3,7 +3,15 @@
  * A slice is one string of voxels, its rows end to end.  EA holds the lengths
  * of its runs, uninteresting and interesting in turn, beginning with an
  * uninteresting one (perhaps of length 0), a byte each.  A run above 255 is
- * split by a run of length 0 of the other kind: 300 is 255 0 45. */
+ * split by a run of length 0 of the other kind: 300 is 255 0 45.
+ *
+ * A band's slice begins with a summary that tells by a bit which of its rows
+ * hold anything.  The runs of those rows follow, each row by itself: it begins
+ * with an uninteresting run and ends where its columns do.
+ *
+ *   | 0 1 1 0 ... | 12 30 214 | 0 5 251 | ...     256 columns
+ *      summary      row 1       row 2
+ */
 #include "encode/encode.h"
 
 #define LONGEST 255
@@ -77,5 +85,135 @@ static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-const snow_scheme snow_scheme_rle = {rle_begin_slice, rle_add_row,
-                                     rle_end_slice, rle_next_row};
+static size_t rle_skip(snow_walk *walk, int64_t rows) {
+    uint64_t left = (uint64_t)rows * (uint64_t)walk->sparse->columns;
+    size_t voxels = 0;
+    while (left) {
+        while (!walk->run) {
+            walk->run_interesting = walk->started && !walk->run_interesting;
+            walk->started = true;
+            walk->run = *walk->ea++;
+        }
+        uint32_t take = walk->run < left ? walk->run : (uint32_t)left;
+        voxels += walk->run_interesting ? take : 0;
+        walk->run -= take;
+        left -= take;
+    }
+    return voxels;
+}
+
+/* --- slices of a band ----------------------------------------------------- */
+
+static size_t summary_bytes(const snow_sparse *s) {
+    return ((size_t)s->rows + 7) / 8;
+}
+
+/* Bytes that a slice takes at most: beside its ends, every run belongs to an
+ * interesting voxel. */
+static size_t most_bytes(const snow_sparse *s, size_t voxels) {
+    size_t splits = 2 * ((size_t)s->columns / LONGEST) + 1;
+    return summary_bytes(s) + 2 * voxels + (size_t)s->rows * splits;
+}
+
+static unsigned char *put_run(unsigned char *at, size_t run) {
+    for (; run > LONGEST; run -= LONGEST) {
+        *at++ = LONGEST;
+        *at++ = 0;
+    }
+    *at++ = (unsigned char)run;
+    return at;
+}
+
+/* A run ends with each bit that differs from the one before. */
+static unsigned char *put_row(const uint64_t *masks, size_t words,
+                              size_t columns, unsigned char *at) {
+    size_t told = 0; /* columns so far */
+    uint64_t before = 0;
+    for (size_t w = 0; w < words; w++) {
+        uint64_t change = masks[w] ^ (masks[w] << 1 | before);
+        before = masks[w] >> 63;
+        for (; change; change &= change - 1) {
+            size_t column = 64 * w + (size_t)__builtin_ctzll(change);
+            at = put_run(at, column - told);
+            told = column;
+        }
+    }
+    return told < columns ? put_run(at, columns - told) : at;
+}
+
+static bool any_set(const uint64_t *masks, size_t words) {
+    uint64_t set = 0;
+    for (size_t w = 0; w < words; w++)
+        set |= masks[w];
+    return set != 0;
+}
+
+static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
+                                 size_t voxels) {
+    size_t words = snow_mask_words(s), columns = (size_t)s->columns;
+    unsigned char *at;
+    SNOW_TRY(snow_sparse_open_ea(s, most_bytes(s, voxels), &at));
+    memset(at, 0, summary_bytes(s));
+    unsigned char *end = at + summary_bytes(s);
+    for (int64_t row = 0; row < s->rows; row++, masks += words)
+        if (any_set(masks, words)) {
+            at[row / 8] |= (unsigned char)(1u << row % 8);
+            end = put_row(masks, words, columns, end);
+        }
+    snow_sparse_close_ea(s, end);
+    return SNOW_OK;
+}
+
+static bool row_is_full(const snow_walk *walk, int64_t row) {
+    return walk->slice[row / 8] >> row % 8 & 1;
+}
+
+/* walk->ea is at the runs of the next row that holds anything. */
+static size_t rows_next_row(snow_walk *walk, snow_span *spans) {
+    if (!row_is_full(walk, walk->row))
+        return 0;
+    uint32_t columns = (uint32_t)walk->sparse->columns, column = 0;
+    const unsigned char *at = walk->ea;
+    size_t count = 0;
+    for (;;) {
+        column += *at++;
+        if (column == columns)
+            break;
+        uint32_t run = *at++;
+        if (run)
+            count = snow_span_append(spans, count, column, run);
+        column += run;
+        if (column == columns)
+            break;
+    }
+    walk->ea = at;
+    return count;
+}
+
+static size_t rows_skip(snow_walk *walk, int64_t rows) {
+    size_t columns = (size_t)walk->sparse->columns, voxels = 0;
+    for (int64_t row = walk->row; row < walk->row + rows; row++) {
+        if (!row_is_full(walk, row))
+            continue;
+        bool interesting = false;
+        for (size_t column = 0; column < columns; interesting = !interesting) {
+            voxels += interesting ? *walk->ea : 0;
+            column += *walk->ea++;
+        }
+    }
+    return voxels;
+}
+
+static const snow_reader whole_reader = {rle_next_row, rle_skip};
+static const snow_reader rows_reader = {rows_next_row, rows_skip};
+
+static void rle_begin_walk(snow_walk *walk) {
+    walk->reader = &whole_reader;
+    if (walk->sparse->code_bytes) {
+        walk->reader = &rows_reader;
+        walk->ea = walk->slice + summary_bytes(walk->sparse);
+    }
+}
+
+const snow_scheme snow_scheme_rle = {
+    rle_begin_slice, rle_add_row, rle_end_slice, rle_add_masks, rle_begin_walk};

@@ -15,6 +15,10 @@
  * chunk of a line. */
 #define SNOW_CHUNK 16
 
+/* The most voxels that a pixel sums along one axis: support 9, pixels of 64
+ * voxels, and one for the ends. */
+#define SNOW_TAPS_MOST 512
+
 /* The kernel of one slice along one axis of the lattice: pixel P, of phase
  * P mod phases, sums the voxels
  *

@@ -1,0 +1,185 @@
+/* classify/palette.c - the samples of all codes for one view.
+ *
+ * What a code looks like is made once for a transfer function: its colour, its
+ * opacity a, and log(1 - a).  A view then costs one exponential a code (model,
+ * point 6), by base/power.h, in loops that a compiler carries to vectors.
+ * Whether the looks still hold is told by a key: a copy of all numbers that
+ * they are made of. */
+#include "base/parallel.h"
+#include "base/power.h"
+#include "classify/codes.h"
+
+#include <string.h>
+
+/* Codes of one item of work: few enough that it stays in the first-level
+ * cache, and that 256 codes are one item. */
+#define BLOCK 1024
+
+/* What making looks or samples needs, for the threads. */
+typedef struct palette_job {
+    const snow_coder *coder;
+    const snow_transfer *transfer;
+    snow_palette *palette;
+    double exponent;
+    bool premultiply;
+} palette_job;
+
+static size_t block_end(const palette_job *job, size_t first) {
+    size_t end = first + BLOCK;
+    return end < job->coder->codes ? end : job->coder->codes;
+}
+
+/* --- looks ----------------------------------------------------------------
+ */
+
+static void make_looks(void *user, int64_t item, int worker) {
+    (void)worker;
+    const palette_job *job = user;
+    const snow_palette *palette = job->palette;
+    size_t channels = (size_t)palette->channels, first = (size_t)item * BLOCK;
+    for (size_t code = first; code < block_end(job, first); code++) {
+        double rgba[4];
+        snow_transfer_at(job->transfer, snow_coder_value(job->coder, code),
+                         rgba);
+        float *look = palette->looks + code * channels;
+        for (size_t i = 0; i + 1 < channels; i++)
+            look[i] = (float)rgba[i];
+        look[channels - 1] = (float)rgba[3];
+        palette->clarities[code] = snow_clarity(rgba[3]);
+    }
+}
+
+/* Appends numbers to a key. */
+static size_t add_numbers(double *key, size_t count, const void *numbers,
+                          size_t bytes) {
+    memcpy(key + count, numbers, bytes);
+    return count + bytes / sizeof *key;
+}
+
+/* Writes all that looks depend on into the palette's key; *changed tells
+ * whether it was another one. */
+static snow_status take_key(snow_context *context, const snow_coder *coder,
+                            const snow_transfer *transfer,
+                            snow_palette *palette, bool *changed) {
+    const double head[] = {(double)coder->type, coder->slope, coder->intercept,
+                           (double)transfer->color_count,
+                           (double)transfer->opacity_count};
+    size_t stops = coder->stop_count * sizeof *coder->stops;
+    size_t colors = transfer->color_count * sizeof *transfer->colors;
+    size_t opacities = transfer->opacity_count * sizeof *transfer->opacities;
+    SNOW_TRY(snow_reserve(context, &palette->next_key,
+                          &palette->next_key_capacity, 0,
+                          sizeof head + stops + colors + opacities));
+    double *key = palette->next_key;
+    size_t count = add_numbers(key, 0, head, sizeof head);
+    if (stops)
+        count = add_numbers(key, count, coder->stops, stops);
+    count = add_numbers(key, count, transfer->colors, colors);
+    count = add_numbers(key, count, transfer->opacities, opacities);
+    *changed = count != palette->key_count ||
+               memcmp(palette->key, key, count * sizeof *key) != 0;
+    size_t capacity = palette->next_key_capacity;
+    palette->next_key_capacity = palette->key_capacity;
+    palette->next_key = palette->key;
+    palette->key_capacity = capacity;
+    palette->key = key;
+    palette->key_count = count;
+    return SNOW_OK;
+}
+
+/* --- samples --------------------------------------------------------------
+ */
+
+/* The opacities of a block for the exponent; looks of exponent 1 are taken as
+ * they are. */
+static void correct(const palette_job *job, size_t first, size_t count,
+                    float *opacities) {
+    const snow_palette *palette = job->palette;
+    const double *clarities = palette->clarities + first;
+    size_t channels = (size_t)palette->channels;
+    double exponent = snow_exponent_within(job->exponent);
+    if (job->exponent == 1)
+        for (size_t i = 0; i < count; i++)
+            opacities[i] = palette->looks[(first + i + 1) * channels - 1];
+    else
+        for (size_t i = 0; i < count; i++)
+            opacities[i] = (float)snow_opacity_of(clarities[i], exponent);
+}
+
+static void fill_grey(const float *looks, const float *opacities, size_t count,
+                      bool premultiply, float *samples) {
+    for (size_t i = 0; i < count; i++) {
+        float weight = premultiply ? opacities[i] : 1;
+        samples[2 * i] = looks[2 * i] * weight;
+        samples[2 * i + 1] = opacities[i];
+    }
+}
+
+static void fill_color(const float *looks, const float *opacities, size_t count,
+                       bool premultiply, float *samples) {
+    for (size_t i = 0; i < count; i++) {
+        float weight = premultiply ? opacities[i] : 1;
+        samples[4 * i] = looks[4 * i] * weight;
+        samples[4 * i + 1] = looks[4 * i + 1] * weight;
+        samples[4 * i + 2] = looks[4 * i + 2] * weight;
+        samples[4 * i + 3] = opacities[i];
+    }
+}
+
+static void make_samples(void *user, int64_t item, int worker) {
+    (void)worker;
+    const palette_job *job = user;
+    const snow_palette *palette = job->palette;
+    size_t first = (size_t)item * BLOCK;
+    size_t count = block_end(job, first) - first;
+    size_t place = first * (size_t)palette->channels;
+    float opacities[BLOCK];
+    correct(job, first, count, opacities);
+    if (palette->channels == 2)
+        fill_grey(palette->looks + place, opacities, count, job->premultiply,
+                  palette->samples + place);
+    else
+        fill_color(palette->looks + place, opacities, count, job->premultiply,
+                   palette->samples + place);
+}
+
+static snow_status make_room(snow_context *context, size_t codes,
+                             snow_palette *palette) {
+    size_t bytes = codes * (size_t)palette->channels * sizeof(float);
+    SNOW_TRY(
+        snow_reserve(context, &palette->samples, &palette->capacity, 0, bytes));
+    SNOW_TRY(snow_reserve(context, &palette->looks, &palette->looks_capacity, 0,
+                          bytes));
+    return snow_reserve(context, &palette->clarities,
+                        &palette->clarities_capacity, 0,
+                        codes * sizeof *palette->clarities);
+}
+
+snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
+                              const snow_transfer *transfer, double exponent,
+                              bool premultiply, int threads,
+                              snow_palette *palette) {
+    palette_job job = {coder, transfer, palette, exponent, premultiply};
+    int64_t items = (int64_t)((coder->codes + BLOCK - 1) / BLOCK);
+    bool changed;
+    SNOW_TRY(take_key(context, coder, transfer, palette, &changed));
+    if (changed) {
+        size_t count = palette->key_count;
+        palette->key_count = 0; /* no key, until there are looks for it */
+        palette->channels = transfer->grey ? 2 : 4;
+        SNOW_TRY(make_room(context, coder->codes, palette));
+        snow_parallel(threads, items, make_looks, &job);
+        palette->key_count = count;
+    }
+    snow_parallel(threads, items, make_samples, &job);
+    return SNOW_OK;
+}
+
+void snow_palette_fini(snow_context *context, snow_palette *palette) {
+    snow_release(context, palette->samples);
+    snow_release(context, palette->looks);
+    snow_release(context, palette->clarities);
+    snow_release(context, palette->key);
+    snow_release(context, palette->next_key);
+    *palette = (snow_palette){0};
+}

@@ -1,0 +1,274 @@
+/* encode/bands.c - a slab into the bands of the sheared method: lines 04 to 06
+ * of figure 8, with codes instead of samples.
+ *
+ * A band is one item of work: its slices one after another, and of each the
+ * rows: native voxels (fetch.h) to masks and codes (rows.h), masks to EA (the
+ * schemes), and for shading the normals of the interesting voxels.  The result
+ * does not depend on the number of threads, nor on the level of instructions.
+ */
+#include "encode/bands.h"
+
+#include "base/parallel.h"
+#include "encode/fetch.h"
+#include "encode/rows.h"
+
+#include <stdatomic.h>
+
+/* Where a band's slices come from and go to, for all threads. */
+typedef struct encode_job {
+    snow_bands *bands;
+    const snow_bands_order *order;
+    const snow_scheme *scheme;
+    snow_row_encoder rows;
+    unsigned char *scratch;
+    size_t scratch_bytes; /* of one thread */
+    atomic_int failed;    /* the last failure's snow_status */
+} encode_job;
+
+/* The scratch of a thread: masks of a slice of a band, columns of a row, and
+ * what snow_fetch wants. */
+typedef struct row_buffers {
+    uint64_t *masks;
+    uint32_t *columns;
+    unsigned char *fetch;
+} row_buffers;
+
+static size_t aligned(size_t bytes) {
+    return (bytes + 63) / 64 * 64;
+}
+
+static size_t mask_bytes(const snow_bands *bands) {
+    return aligned(SNOW_BAND_ROWS * ((size_t)bands->columns + 63) / 64 * 8 +
+                   SNOW_BAND_ROWS * 8);
+}
+
+static size_t column_bytes(const snow_bands *bands) {
+    return aligned((size_t)bands->columns * sizeof(uint32_t) + 64);
+}
+
+static row_buffers buffers_of(const encode_job *job, int worker) {
+    unsigned char *at = job->scratch + (size_t)worker * job->scratch_bytes;
+    unsigned char *columns = at + mask_bytes(job->bands);
+    return (row_buffers){(uint64_t *)(void *)at, (uint32_t *)(void *)columns,
+                         columns + column_bytes(job->bands)};
+}
+
+/* Room in IA for a slice of a band in which every voxel is interesting. */
+static snow_status reserve_ia(snow_sparse *band, bool with_normals) {
+    size_t voxels = (size_t)band->columns * (size_t)band->rows;
+    size_t size = (size_t)band->code_bytes;
+    SNOW_TRY(snow_reserve(band->context, &band->codes, &band->codes_capacity,
+                          band->ia_voxels * size,
+                          (band->ia_voxels + voxels) * size + SNOW_ROW_MARGIN));
+    if (!with_normals)
+        return SNOW_OK;
+    size = sizeof *band->normals;
+    return snow_reserve(band->context, &band->normals, &band->normals_capacity,
+                        band->ia_voxels * size,
+                        (band->ia_voxels + voxels) * size);
+}
+
+static snow_status encode_slice(const encode_job *job,
+                                const row_buffers *buffers, snow_fetch *fetch,
+                                snow_sparse *band, int64_t slice) {
+    const snow_bands_order *order = job->order;
+    size_t words = snow_mask_words(band), before = band->ia_voxels;
+    SNOW_TRY(reserve_ia(band, order->maker != NULL));
+    for (int64_t row = 0; row < band->rows; row++) {
+        uint64_t *masks = buffers->masks + (size_t)row * words;
+        const void *voxels = snow_fetch_row(fetch, slice, row);
+        size_t count = job->rows.encode_row(
+            &job->rows, voxels, (size_t)band->columns, masks,
+            band->codes + band->ia_voxels * (size_t)band->code_bytes);
+        if (order->maker && count) {
+            snow_columns_of_masks(masks, words, buffers->columns);
+            snow_normals_of_row(order->maker, order->placement,
+                                order->first_slice +
+                                    (order->between ? slice / 2 : slice),
+                                fetch->first_row + row, buffers->columns, count,
+                                band->normals + band->ia_voxels);
+        }
+        band->ia_voxels += count;
+    }
+    return snow_sparse_add_masks(band, buffers->masks,
+                                 band->ia_voxels - before);
+}
+
+static snow_status encode_band(const encode_job *job, int64_t number,
+                               int worker) {
+    const snow_bands *bands = job->bands;
+    const snow_bands_order *order = job->order;
+    snow_sparse *band = &bands->bands[number];
+    int64_t first = number * SNOW_BAND_ROWS, left = bands->rows - first;
+    int64_t rows = left < SNOW_BAND_ROWS ? left : SNOW_BAND_ROWS;
+    row_buffers buffers = buffers_of(job, worker);
+    snow_fetch fetch;
+    snow_fetch_begin(&fetch, order->volume, order->placement,
+                     order->first_slice, order->slice_count, first, rows,
+                     order->between, buffers.fetch);
+    SNOW_TRY(snow_sparse_begin_band(band, job->scheme, bands->columns, rows,
+                                    bands->slices, bands->code_bytes));
+    for (int64_t slice = 0; slice < bands->slices; slice++)
+        SNOW_TRY(encode_slice(job, &buffers, &fetch, band, slice));
+    return SNOW_OK;
+}
+
+static void work(void *arguments, int64_t item, int worker) {
+    encode_job *job = arguments;
+    if (atomic_load(&job->failed))
+        return;
+    snow_status status = encode_band(job, item, worker);
+    if (status != SNOW_OK)
+        atomic_store(&job->failed, (int)status);
+}
+
+/* --- density and runs ----------------------------------------------------- */
+
+/* One row in so many is looked at, spread evenly over the slab; no fewer than
+ * ROWS_LEAST and no more than fit into VOXELS_MOST: a row along y costs a cache
+ * line for each voxel. */
+#define SAMPLE_STEP 199
+#define ROWS_LEAST 64
+#define VOXELS_MOST 65536
+
+static int64_t sample_step(const snow_bands *bands, int64_t rows) {
+    int64_t step = SAMPLE_STEP;
+    int64_t most = VOXELS_MOST / bands->columns + ROWS_LEAST;
+    if (rows / step > most)
+        step = rows / most;
+    if (rows / step < ROWS_LEAST)
+        step = rows / ROWS_LEAST;
+    return step < 1 ? 1 : step;
+}
+
+/* Runs that begin in a row. */
+static size_t count_runs(const uint64_t *masks, size_t words) {
+    uint64_t before = 0;
+    size_t runs = 0;
+    for (size_t w = 0; w < words; w++) {
+        runs +=
+            (size_t)__builtin_popcountll(masks[w] & ~(masks[w] << 1 | before));
+        before = masks[w] >> 63;
+    }
+    return runs;
+}
+
+/* Measures rows of the slab (without slices between) and chooses. */
+static snow_status choose(encode_job *job) {
+    snow_bands *bands = job->bands;
+    const snow_bands_order *order = job->order;
+    size_t words = ((size_t)bands->columns + 63) / 64;
+    int64_t rows = bands->rows * order->slice_count;
+    int64_t step = sample_step(bands, rows);
+    uint64_t voxels = 0, interesting = 0, runs = 0;
+    row_buffers buffers = buffers_of(job, 0);
+    snow_sparse *codes = &bands->bands[0]; /* lends its buffer */
+    SNOW_TRY(snow_reserve(
+        bands->context, &codes->codes, &codes->codes_capacity, 0,
+        (size_t)bands->columns * (size_t)bands->code_bytes + SNOW_ROW_MARGIN));
+    for (int64_t n = 0; n < rows; n += step) {
+        snow_fetch fetch;
+        snow_fetch_begin(&fetch, order->volume, order->placement,
+                         order->first_slice + n / bands->rows, 1,
+                         n % bands->rows, 1, false, buffers.fetch);
+        interesting += job->rows.encode_row(
+            &job->rows, snow_fetch_row(&fetch, 0, 0), (size_t)bands->columns,
+            buffers.masks, codes->codes);
+        runs += count_runs(buffers.masks, words);
+        voxels += (uint64_t)bands->columns;
+    }
+    bands->encoding = snow_encoding_choose(voxels, interesting, runs);
+    return SNOW_OK;
+}
+
+/* --- setting up ----------------------------------------------------------- */
+
+/* Records for so many bands; new ones are empty. */
+static snow_status reserve_bands(snow_bands *bands, int64_t count) {
+    size_t before = bands->capacity;
+    SNOW_TRY(snow_reserve(bands->context, &bands->bands, &bands->capacity,
+                          before, (size_t)count * sizeof *bands->bands));
+    size_t n = before / sizeof *bands->bands;
+    for (; n < bands->capacity / sizeof *bands->bands; n++)
+        bands->bands[n] = (snow_sparse){.context = bands->context};
+    bands->band_count = count;
+    return SNOW_OK;
+}
+
+static snow_status measure(snow_bands *bands, const snow_bands_order *order) {
+    const snow_placement *p = order->placement;
+    uint64_t voxels;
+    if (!snow_mul_u64((uint64_t)p->columns, (uint64_t)p->rows, &voxels) ||
+        voxels > UINT32_MAX)
+        return snow_fail(bands->context, SNOW_BAD_USAGE,
+                         "slices of %lldx%lld voxels are too large to encode; "
+                         "take a part of the volume",
+                         (long long)p->columns, (long long)p->rows);
+    bands->columns = p->columns;
+    bands->rows = p->rows;
+    bands->slices = order->slice_count;
+    if (order->between && order->slice_count)
+        bands->slices = 2 * order->slice_count - 1;
+    bands->code_bytes = order->coder->bytes;
+    bands->with_normals = order->maker != NULL;
+    bands->encoding = order->encoding;
+    return SNOW_OK;
+}
+
+static snow_status prepare(encode_job *job, int threads) {
+    snow_bands *bands = job->bands;
+    const snow_bands_order *order = job->order;
+    int64_t rows = bands->rows < SNOW_BAND_ROWS ? bands->rows : SNOW_BAND_ROWS;
+    SNOW_TRY(reserve_bands(bands, (bands->rows + SNOW_BAND_ROWS - 1) /
+                                      SNOW_BAND_ROWS));
+    job->scratch_bytes =
+        mask_bytes(bands) + column_bytes(bands) +
+        snow_fetch_bytes(order->volume, order->placement, rows, order->between);
+    SNOW_TRY(snow_reserve(bands->context, &bands->scratch,
+                          &bands->scratch_capacity, 0,
+                          (size_t)threads * job->scratch_bytes));
+    job->scratch = bands->scratch;
+    snow_row_encoder_init(order->coder, order->isa, &job->rows);
+    if (bands->encoding == SNOW_ENCODING_AUTO)
+        SNOW_TRY(choose(job));
+    job->scheme = snow_scheme_of(bands->encoding);
+    return SNOW_OK;
+}
+
+static void add_up(snow_bands *bands) {
+    uint64_t voxels = 0, ea = 0, slices = (uint64_t)bands->slices + 1;
+    for (int64_t n = 0; n < bands->band_count; n++) {
+        voxels += bands->bands[n].ia_voxels;
+        ea += bands->bands[n].ea_bytes;
+    }
+    uint64_t size = (uint64_t)bands->code_bytes;
+    if (bands->with_normals)
+        size += sizeof(uint16_t);
+    bands->voxels = voxels;
+    bands->ea_bytes = ea;
+    bands->ia_bytes = voxels * size;
+    bands->pa_bytes =
+        (uint64_t)bands->band_count * slices * sizeof(snow_slice_pointer);
+}
+
+snow_status snow_bands_encode(snow_bands *bands,
+                              const snow_bands_order *order) {
+    SNOW_TRY(measure(bands, order));
+    int64_t count = (bands->rows + SNOW_BAND_ROWS - 1) / SNOW_BAND_ROWS;
+    int threads = order->threads < count ? order->threads : (int)count;
+    encode_job job = {.bands = bands, .order = order};
+    atomic_init(&job.failed, SNOW_OK);
+    SNOW_TRY(prepare(&job, threads));
+    snow_parallel(threads, count, work, &job);
+    SNOW_TRY((snow_status)atomic_load(&job.failed));
+    add_up(bands);
+    return SNOW_OK;
+}
+
+void snow_bands_fini(snow_bands *bands) {
+    for (size_t n = 0; n < bands->capacity / sizeof *bands->bands; n++)
+        snow_sparse_fini(&bands->bands[n]);
+    snow_release(bands->context, bands->bands);
+    snow_release(bands->context, bands->scratch);
+    *bands = (snow_bands){.context = bands->context};
+}
