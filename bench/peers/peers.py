@@ -14,6 +14,7 @@ import math
 import statistics
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,6 +26,8 @@ AZIMUTH, ELEVATION = 30, 20  # of the first picture, in degrees
 STEP = 0.5                   # degrees from picture to picture
 SLOW = 1.0                   # seconds: such a program gets SLOW_TURNS turns
 SLOW_TURNS = 3
+REST = 0.01  # seconds before each picture: idle threads of the last program
+             # may wait actively for a while, at the next one's cost
 
 # name: (file below --data, phantom when there is none, voxels, first visible
 # value).  Where the phantom is None the volume is left out without --data.
@@ -173,6 +176,10 @@ class Runner:
             print(f"  {error}", file=sys.stderr)
             return None
 
+    def frame(self, azimuth):
+        time.sleep(REST)
+        return self.attempt(self.worker.frame, azimuth, ELEVATION)
+
     def may(self, times):
         """Whether it is to have another turn."""
         return not self.failed and (len(times) < SLOW_TURNS or
@@ -186,7 +193,7 @@ def begin(runner, case, folder):
     runner.idle = runner.attempt(worker.peak_megabytes)
     runner.attempt(worker.load)
     runner.attempt(worker.table, write_table(case, 0, folder))
-    runner.first = runner.attempt(worker.frame, AZIMUTH, ELEVATION)
+    runner.first = runner.frame(AZIMUTH)
     path = folder / "pictures" / (f"{case.name.replace(':', '-')}-"
                                   f"{worker.name}-{worker.threads}.ppm")
     runner.attempt(worker.save, path)
@@ -203,7 +210,7 @@ def turn(runners, turns):
         azimuth = AZIMUTH + STEP * (step + 1)
         for runner in runners:
             if runner.may(runner.turning):
-                took = runner.attempt(runner.worker.frame, azimuth, ELEVATION)
+                took = runner.frame(azimuth)
                 if took and step:
                     runner.turning.append(took)
 
@@ -215,7 +222,7 @@ def change(runners, case, turns, folder):
         for runner in runners:
             if runner.may(runner.changing):
                 runner.attempt(runner.worker.table, table)
-                took = runner.attempt(runner.worker.frame, AZIMUTH, ELEVATION)
+                took = runner.frame(AZIMUTH)
                 if took and step:
                     runner.changing.append(took)
 
@@ -234,6 +241,7 @@ def figures(runner, reference):
                frame=middle(runner.turning, 0),
                frame_cpu=middle(runner.turning, 1),
                frame_least=1e3 * min(t[0] for t in runner.turning),
+               change_least=1e3 * min(t[0] for t in runner.changing),
                change=middle(runner.changing, 0),
                change_cpu=middle(runner.changing, 1),
                turns=len(runner.turning), megabytes=runner.megabytes,

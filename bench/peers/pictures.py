@@ -34,7 +34,8 @@ def read_ppm(path):
         magic, size, most = (file.readline() for _ in range(3))
         pixels = file.read()
     width, height = map(int, size.split())
-    if (magic, most) != (b"P6\n", b"255\n") or len(pixels) != 3 * width * height:
+    if ((magic, most) != (b"P6\n", b"255\n") or
+            len(pixels) != 3 * width * height):
         raise ValueError(f"{path}: not the PPM that the workers write")
     return width, height, pixels
 

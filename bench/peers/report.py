@@ -28,7 +28,7 @@ def join_volpack(rows):
         return rows
     plain["octree"] = octree
     plain["reclassified"] = plain["change"]
-    for key in ("change", "change_cpu"):
+    for key in ("change", "change_cpu", "change_least"):
         plain[key] = min(plain[key], octree[key])
     return [row for row in rows if row is not octree]
 
@@ -61,8 +61,9 @@ def text_of(case):
         "",
         f"{case['case']}: {'x'.join(map(str, case['dims']))}, "
         f"{case['source']}; ms a picture, medians",
-        f"{'':28}{'thr':>4}{'first':>8}{'turning':>9}{'cpu':>8}"
-        f"{'of ours':>9}{'TF new':>8}{'of ours':>9}{'MB':>7}{'dB':>7}"]
+        f"{'':28}{'thr':>4}{'first':>8}{'turning':>9}{'least':>8}{'cpu':>8}"
+        f"{'of ours':>9}{'TF new':>8}{'cpu':>8}{'of ours':>9}{'MB':>7}"
+        f"{'dB':>7}"]
     for row in case["rows"]:
         head = f"{LABELS.get(row['program'], row['program']):28}" \
                f"{row['threads']:>4}"
@@ -72,9 +73,9 @@ def text_of(case):
         db = f"{row['psnr']:.1f}" if "psnr" in row else ""
         lines.append(
             f"{head}{number(row['first']):>8}{number(row['frame']):>9}"
-            f"{number(row['frame_cpu']):>8}"
+            f"{number(row['frame_least']):>8}{number(row['frame_cpu']):>8}"
             f"{ratio(row, case['rows'], 'frame'):>9}"
-            f"{number(row['change']):>8}"
+            f"{number(row['change']):>8}{number(row['change_cpu']):>8}"
             f"{ratio(row, case['rows'], 'change'):>9}"
             f"{row['megabytes']:>7.0f}{db:>7}")
     return "\n".join(lines)

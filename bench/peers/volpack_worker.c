@@ -80,15 +80,17 @@ static void load(void) {
     size_t count = (size_t)worker.dims[0] * (size_t)worker.dims[1] *
                    (size_t)worker.dims[2];
     FILE *file = fopen(worker.raw, "rb");
+    size_t got = 0;
     worker.values = malloc(count);
-    if (!file || !worker.values ||
-        fread(worker.values, 1, count, file) != count)
+    if (file) {
+        got = worker.values ? fread(worker.values, 1, count, file) : 0;
+        fclose(file);
+    }
+    if (got != count)
         pipe_fail(&face, "the volume cannot be read");
-    fclose(file);
 }
 
-/* --- preparation -----------------------------------------------------------
- */
+/* --- preparation --- */
 
 /* Colours as materials: one is enough when the colour does not depend on the
  * value.  Else the table's colours lie between those of value 0 and of value
@@ -119,7 +121,8 @@ static double mixture(int value) {
         if (fabs(last[c] - first[c]) > fabs(last[widest] - first[widest]))
             widest = c;
     double width = last[widest] - first[widest];
-    return width ? (worker.table[value][widest] - first[widest]) / width : 0;
+    return width != 0 ? (worker.table[value][widest] - first[widest]) / width
+                      : 0;
 }
 
 /* The transfer function goes into VolPack's tables, which it reads in place. */
@@ -255,8 +258,7 @@ static void prepare(void) {
     worker.prepared = true;
 }
 
-/* --- pictures --------------------------------------------------------------
- */
+/* --- pictures --- */
 
 /* VolPack's object space has voxel i at i - n/2 in units of the longest side,
  * and a picture's pixel x at x; here a voxel is a box about its sample and a
