@@ -11,6 +11,7 @@ import array
 import gzip
 import json
 import math
+import signal
 import statistics
 import subprocess
 import sys
@@ -24,8 +25,8 @@ import report
 
 AZIMUTH, ELEVATION = 30, 20  # of the first picture, in degrees
 STEP = 0.5                   # degrees from picture to picture
-SLOW = 1.0                   # seconds: such a program gets SLOW_TURNS turns
-SLOW_TURNS = 3
+SLOW = 1.0                   # seconds: such a program gets SLOW_TURNS turns,
+SLOW_TURNS = 3               # and its warming up counts as one
 REST = 0.01  # seconds before each picture: idle threads of the last program
              # may wait actively for a while, at the next one's cost
 
@@ -118,7 +119,11 @@ def make_raw(name, options):
     if not source.exists():
         raise programs.Failed(f"{source} is missing")
     if source.suffix == ".vti":
-        return raw, from_vti(source, raw), file
+        try:
+            return raw, from_vti(source, raw), file
+        except (OSError, subprocess.CalledProcessError) as error:
+            raise programs.Failed(f"{file} is read by VTK, which is "
+                                  "missing") from error
     packed = source.read_bytes()
     raw.write_bytes(head_bytes(packed) if name == "head"
                     else gzip.decompress(packed))
@@ -211,7 +216,7 @@ def turn(runners, turns):
         for runner in runners:
             if runner.may(runner.turning):
                 took = runner.frame(azimuth)
-                if took and step:
+                if took and (step or took[0] > SLOW):
                     runner.turning.append(took)
 
 
@@ -223,7 +228,7 @@ def change(runners, case, turns, folder):
             if runner.may(runner.changing):
                 runner.attempt(runner.worker.table, table)
                 took = runner.frame(AZIMUTH)
-                if took and step:
+                if took and (step or took[0] > SLOW):
                     runner.changing.append(took)
 
 
@@ -247,7 +252,9 @@ def figures(runner, reference):
                turns=len(runner.turning), megabytes=runner.megabytes,
                idle_megabytes=runner.idle)
     if reference and reference is not runner.picture:
-        row["psnr"] = pictures.psnr(runner.picture, reference)
+        decibel = pictures.psnr(runner.picture, reference)
+        # JSON has no infinity: equal pictures have null.
+        row["psnr"] = decibel if math.isfinite(decibel) else None
     return row
 
 
@@ -355,6 +362,9 @@ def repeat(options):
 
 def main():
     options = parse()
+    # However it ends, the workers and the display end with it.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
+    signal.signal(signal.SIGINT, lambda *_: sys.exit(1))
     display = programs.Display()
     made, cases, left_out = {}, [], {}
     try:

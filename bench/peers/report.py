@@ -70,7 +70,8 @@ def text_of(case):
         if "failed" in row:
             lines.append(f"{head}  failed: {row['failed']}")
             continue
-        db = f"{row['psnr']:.1f}" if "psnr" in row else ""
+        db = "" if "psnr" not in row else \
+             "equal" if row["psnr"] is None else f"{row['psnr']:.1f}"
         lines.append(
             f"{head}{number(row['first']):>8}{number(row['frame']):>9}"
             f"{number(row['frame_least']):>8}{number(row['frame_cpu']):>8}"
