@@ -39,7 +39,7 @@ VOLUMES = {
              (256, 256, 113), 30),
     "bonsai": ("classic/bonsai.vti", None, None, 20),
     "aneurism": ("classic/aneurism.vti", None, None, 20),
-    "engine512": (None, "engine", (512, 512, 512), 10),
+    "engine512": (None, "engine", (512, 512, 512), 30),
 }
 
 # Colours of value 0 and of value 255, between them a straight line; opacity at
