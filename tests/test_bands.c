@@ -588,6 +588,46 @@ static void a_sparse_slice_takes_few_bytes(void **state) {
     snow_context_free(context);
 }
 
+/* The drawings of crs.c, bitmap.c and rle.c: a row of 600 columns. */
+static void the_bytes_of_a_row_are_those_of_the_drawings(void **state) {
+    (void)state;
+    static const struct {
+        snow_encoding encoding;
+        size_t size;
+        unsigned char bytes[32];
+    } cases[] = {
+        {SNOW_ENCODING_CRS, 9, {0x6, 1, 44, 45, 3, 77, 78, 79, 80}},
+        {SNOW_ENCODING_BITMAP,
+         18,
+         {0x10, 0x02, 0, 0, 0, 0, 0, 0x30, 0, 0, 0, 0xe0, 0x01}},
+        {SNOW_ENCODING_RLE, 10, {1, 255, 0, 45, 2, 255, 0, 32, 4, 7}},
+    };
+    snow_context *context = support_context();
+    snow_bands bands = {.context = context};
+    scene s = make_scene(context, SNOW_UINT8, 2, 600, 1, 1, NOTHING, 1, 3);
+    memset(s.voxels + 300, 150, 2);
+    memset(s.voxels + 589, 150, 4);
+    for (size_t n = 0; n < 3; n++) {
+        snow_bands_order order = order_of(&s, cases[n].encoding);
+        encode_and_check(&s, &order, &bands);
+        const snow_sparse *band = &bands.bands[0];
+        assert_int_equal(band->ea_bytes, cases[n].size);
+        assert_memory_equal(band->ea, cases[n].bytes, cases[n].size);
+    }
+    /* A gap is split only where it must be. */
+    static const unsigned char runs[] = {1, 10, 240, 50, 255, 0, 45};
+    memset(s.voxels, 150, 600);
+    memset(s.voxels, 0, 10);
+    memset(s.voxels + 250, 0, 50);
+    snow_bands_order order = order_of(&s, SNOW_ENCODING_RLE);
+    encode_and_check(&s, &order, &bands);
+    assert_int_equal(bands.ea_bytes, sizeof runs);
+    assert_memory_equal(bands.bands[0].ea, runs, sizeof runs);
+    free_scene(&s);
+    snow_bands_fini(&bands);
+    snow_context_free(context);
+}
+
 static void auto_is_chosen_by_density_and_runs(void **state) {
     (void)state;
     static const struct {
@@ -596,8 +636,8 @@ static void auto_is_chosen_by_density_and_runs(void **state) {
     } cases[] = {{NOTHING, SNOW_ENCODING_CRS},
                  {TINY, SNOW_ENCODING_CRS},
                  {SOME, SNOW_ENCODING_BITMAP},
-                 {ALL, SNOW_ENCODING_RLE},
-                 {STREAKS, SNOW_ENCODING_RLE}};
+                 {ALL, SNOW_ENCODING_BITMAP},
+                 {STREAKS, SNOW_ENCODING_BITMAP}};
     snow_context *context = support_context();
     snow_bands bands = {.context = context};
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
@@ -748,6 +788,7 @@ int main(void) {
         cmocka_unit_test(skipping_rows_is_walking_them),
         cmocka_unit_test(what_is_empty_takes_no_bytes),
         cmocka_unit_test(a_sparse_slice_takes_few_bytes),
+        cmocka_unit_test(the_bytes_of_a_row_are_those_of_the_drawings),
         cmocka_unit_test(auto_is_chosen_by_density_and_runs),
         cmocka_unit_test(slices_too_large_for_32_bits_are_refused),
         cmocka_unit_test(encoding_again_allocates_nothing),

@@ -21,7 +21,7 @@ TARGET static void SAMPLE_NAME(plain)(const void *codes,
                                       int count, const float *palette,
                                       const snow_gloss *gloss, float *samples) {
     const float *entries = palette - SAMPLE_CHANNELS;
-    uint32_t entry[SNOW_WINDOW_MOST + 1];
+    uint32_t entry[SNOW_WINDOW_MOST + 17];
     const SAMPLE_CODE *code = codes;
     (void)normals, (void)gloss;
     for (int at = 0; at < count; at += 16) {
