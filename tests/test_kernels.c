@@ -540,15 +540,14 @@ static void draw_rows(window_case *w, int columns, uint64_t *random) {
     }
 }
 
-static void check_ranks(window_case *w, const char *name) {
+/* The voxels of a row before each of its words. */
+static void rank_rows(window_case *w) {
     for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
         uint32_t rank = 0;
         for (size_t word = 0; word < w->rows.words; word++) {
             size_t at = (size_t)row * w->rows.words + word;
-            uint32_t expected = w->rows.held >> row & 1 ? rank : 0xDEADBEEF;
-            if (w->rank[at] != expected)
-                fail_msg("%s ranks word %zu of row %d %u, not %u: %d columns",
-                         name, word, row, w->rank[at], expected, w->columns);
+            if (w->rows.held >> row & 1)
+                w->rank[at] = rank;
             for (int n = 0; n < 64; n++)
                 rank += (uint32_t)(w->bits[at] >> n & 1);
         }
@@ -594,8 +593,7 @@ static void windows_at_every_column(void **state) {
             if (!snow_isa_runs(levels[level]))
                 continue;
             draw_rows(&w, columns, &random);
-            snow_window_fns_of(levels[level])->rank(&w.rows);
-            check_ranks(&w, snow_isa_name(levels[level]));
+            rank_rows(&w);
             for (int n = 0; n < 24; n++) {
                 w.count = 1 + (n < 4 ? SNOW_WINDOW_MOST - 1
                                      : draw(&random, SNOW_WINDOW_MOST));
@@ -604,6 +602,160 @@ static void windows_at_every_column(void **state) {
                     w.column = n % 8 ? columns - 1 : 1 - w.count;
                 check_window(&w, levels[level]);
             }
+        }
+}
+
+/* --- rows of bands ---------------------------------------------------------
+ */
+
+#define SLICES 3
+
+/* A small volume, of which values from 128 on are interesting, in bands. */
+typedef struct band_case {
+    snow_context *context;
+    snow_volume *volume;
+    snow_coder coder;
+    snow_bands bands;
+    int columns, rows;
+    unsigned char voxels[SLICES * 70 * 130];
+} band_case;
+
+/* Slices of noise, of long runs, and of next to nothing. */
+static void fill_slices(band_case *b, uint64_t *random) {
+    int count = b->columns * b->rows;
+    for (int slice = 0; slice < SLICES; slice++)
+        for (int at = 0; at < count;) {
+            int most = slice == 0 ? 3 : slice == 1 ? 300 : 1;
+            int run = 1 + draw(random, most);
+            bool kept = draw(random, slice == 2 ? 200 : 2) == 0;
+            for (; run-- && at < count; at++)
+                b->voxels[slice * count + at] =
+                    (unsigned char)(draw(random, 128) + 128 * kept);
+        }
+}
+
+static void begin_bands(band_case *b, snow_encoding encoding,
+                        uint64_t *random) {
+    static const snow_color_point white[] = {{0, 1, 1, 1}};
+    static const snow_opacity_point step[] = {{128, 0}, {128, 0.5}};
+    snow_volume_info info = {.dims = {b->columns, b->rows, SLICES},
+                             .type = SNOW_UINT8};
+    snow_view view;
+    snow_placement placement;
+    snow_transfer *transfer = NULL;
+    fill_slices(b, random);
+    b->context = support_context();
+    assert_int_equal(
+        snow_volume_share(b->context, &info, b->voxels, &b->volume), SNOW_OK);
+    assert_int_equal(
+        snow_transfer_new(b->context, white, 1, step, 2, &transfer), SNOW_OK);
+    assert_int_equal(
+        snow_coder_init(b->context, b->volume, transfer, 0, &b->coder),
+        SNOW_OK);
+    assert_int_equal(snow_view_named(b->context, "+z", &view), SNOW_OK);
+    assert_int_equal(snow_placement_make(b->context,
+                                         snow_volume_describe(b->volume), &view,
+                                         &placement),
+                     SNOW_OK);
+    snow_bands_order order = {.volume = b->volume,
+                              .placement = &placement,
+                              .coder = &b->coder,
+                              .encoding = encoding,
+                              .slice_count = SLICES,
+                              .isa = snow_isa_resolve(SNOW_ISA_AUTO),
+                              .threads = 1};
+    b->bands = (snow_bands){.context = b->context};
+    assert_int_equal(snow_bands_encode(&b->bands, &order), SNOW_OK);
+    snow_transfer_free(transfer);
+}
+
+static void end_bands(band_case *b) {
+    snow_bands_fini(&b->bands);
+    snow_coder_fini(b->context, &b->coder);
+    snow_volume_close(b->volume);
+    assert_int_equal(snow_context_bytes(b->context), 0);
+    snow_context_free(b->context);
+}
+
+/* Row `row` of the slice as it was read at place n: bits, ranks and codes. */
+static void check_read_row(const band_case *b, const snow_mask_rows *rows,
+                           int slice, int64_t row, int n, const char *name) {
+    const unsigned char *voxels =
+        b->voxels +
+        ((size_t)slice * (size_t)b->rows + (size_t)row) * (size_t)b->columns;
+    const uint64_t *bits = rows->bits + (size_t)n * rows->words;
+    const uint32_t *rank = rows->rank + (size_t)n * rows->words;
+    uint32_t count = 0;
+    for (size_t at = 0; at < 64 * rows->words; at++) {
+        size_t column = at - SNOW_WINDOW_PAD; /* far beyond, before the first */
+        bool kept = column < (size_t)b->columns && voxels[column] >= 128;
+        if (at % 64 == 0 && rank[at / 64] != count)
+            fail_msg("%s ranks word %zu of row %d of %dx%d %u, not %u", name,
+                     at / 64, (int)row, b->columns, b->rows, rank[at / 64],
+                     count);
+        if ((bits[at / 64] >> at % 64 & 1) != kept)
+            fail_msg("%s: bit %zu of row %d of %dx%d is not %d", name, at,
+                     (int)row, b->columns, b->rows, kept);
+        if (kept)
+            assert_int_equal(rows->codes[n][count], voxels[column]);
+        count += kept;
+    }
+}
+
+static bool holds_voxels(const band_case *b, int slice, int64_t row) {
+    if (row < 0 || row >= b->rows)
+        return false;
+    for (int column = 0; column < b->columns; column++)
+        if (b->voxels[((size_t)slice * (size_t)b->rows + (size_t)row) *
+                          (size_t)b->columns +
+                      (size_t)column] >= 128)
+            return true;
+    return false;
+}
+
+static void check_read(const band_case *b, snow_isa isa, int slice,
+                       int64_t first, int count) {
+    size_t words = snow_window_words(b->columns);
+    guarded bits = guarded_new(SNOW_WINDOW_ROWS * words * sizeof(uint64_t));
+    guarded rank = guarded_new(SNOW_WINDOW_ROWS * words * sizeof(uint32_t));
+    guarded spans =
+        guarded_new(((size_t)b->columns / 2 + 1) * sizeof(snow_span));
+    snow_mask_rows rows = {
+        .bits = guarded_at(&bits), .rank = guarded_at(&rank), .words = words};
+    snow_window_fns_of(isa)->read(&b->bands, slice, first, count,
+                                  guarded_at(&spans), &rows);
+    for (int n = 0; n < SNOW_WINDOW_ROWS; n++) {
+        bool held = n < count && holds_voxels(b, slice, first + n);
+        if ((rows.held >> n & 1) != held)
+            fail_msg("%s: row %d of %dx%d is%s held", snow_isa_name(isa),
+                     (int)first + n, b->columns, b->rows, held ? " not" : "");
+        if (held)
+            check_read_row(b, &rows, slice, first + n, n, snow_isa_name(isa));
+    }
+    bool sound = guarded_end(&bits);
+    sound &= guarded_end(&rank);
+    if (!guarded_end(&spans) || !sound)
+        fail_msg("a guard of %s is broken: %dx%d", snow_isa_name(isa),
+                 b->columns, b->rows);
+}
+
+static void rows_of_bands_are_read_as_bits(void **state) {
+    (void)state;
+    uint64_t random = 9;
+    static band_case b;
+    for (b.columns = 1; b.columns <= 130; b.columns++)
+        for (int encoding = SNOW_ENCODING_CRS; encoding <= SNOW_ENCODING_RLE;
+             encoding++) {
+            b.rows = 1 + draw(&random, 70);
+            begin_bands(&b, (snow_encoding)encoding, &random);
+            for (int n = 0; n < 12 * (int)COUNT(levels); n++) {
+                snow_isa isa = levels[(size_t)n % COUNT(levels)];
+                int count = 1 + draw(&random, SNOW_WINDOW_ROWS);
+                int64_t first = draw(&random, b.rows + count) - count;
+                if (snow_isa_runs(isa))
+                    check_read(&b, isa, draw(&random, SLICES), first, count);
+            }
+            end_bands(&b);
         }
 }
 
@@ -1094,9 +1246,36 @@ static void call_windows(void *user, snow_isa isa) {
                                      before);
 }
 
-static void call_rank(void *user, snow_isa isa) {
-    window_case *w = user;
-    snow_window_fns_of(isa)->rank(&w->rows);
+typedef struct timed_read {
+    band_case bands;
+    window_case window;
+} timed_read;
+
+static void call_read(void *user, snow_isa isa) {
+    timed_read *t = user;
+    snow_span spans[66];
+    snow_window_fns_of(isa)->read(&t->bands.bands, 0, 16, 36, spans,
+                                  &t->window.rows);
+}
+
+static void time_windows(uint64_t *random) {
+    static const char *const names[] = {"crs", "bitmap", "rle"};
+    static timed_read t;
+    draw_rows(&t.window, 130, random);
+    rank_rows(&t.window);
+    t.window.rows.held = ~UINT64_C(0) >> 28;
+    t.window.count = 20;
+    t.window.column = 55;
+    time_kernel("windows of 36 rows", call_windows, &t.window);
+    for (int n = 0; n < 3; n++) {
+        char name[64];
+        t.bands.columns = 130;
+        t.bands.rows = 70;
+        begin_bands(&t.bands, (snow_encoding)(SNOW_ENCODING_CRS + n), random);
+        snprintf(name, sizeof name, "read 36 rows of 130 from %s", names[n]);
+        time_kernel(name, call_read, &t);
+        end_bands(&t.bands);
+    }
 }
 
 static void call_warp(void *user, snow_isa isa) {
@@ -1144,7 +1323,6 @@ static void time_warps(uint64_t *random) {
 
 static int time_all(void) {
     uint64_t random = 8;
-    static window_case w;
     for (int channels = 2; channels <= 4; channels += 2) {
         time_tile(0, 4, channels);
         time_tile(1, 4, channels);
@@ -1154,12 +1332,7 @@ static int time_all(void) {
         time_tile(2, 12, channels);
     }
     time_samples(&random);
-    draw_rows(&w, 130, &random);
-    w.rows.held = ~UINT64_C(0) >> 28;
-    w.count = 20;
-    w.column = 55;
-    time_kernel("rank of 36 rows", call_rank, &w);
-    time_kernel("windows of 36 rows", call_windows, &w);
+    time_windows(&random);
     time_warps(&random);
     return 0;
 }
@@ -1170,6 +1343,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(pixels_are_cleared_and_finished),
         cmocka_unit_test(samples_of_every_window),
         cmocka_unit_test(windows_at_every_column),
+        cmocka_unit_test(rows_of_bands_are_read_as_bits),
         cmocka_unit_test(lines_through_every_plane),
         cmocka_unit_test(words_mean_what_they_say),
         cmocka_unit_test(combs_hold_the_kernel),
