@@ -40,11 +40,12 @@ struct snow_sheared {
     snow_bands bands;
     encoded_key key;
     snow_palette palette;
-    snow_gloss *gloss; /* an entry of zeros, and SNOW_NORMALS */
-    snow_comb *combs;  /* of all slices, along u and v */
-    float *plane;      /* the intermediate image */
-    char *scratch;     /* of all workers */
-    size_t gloss_capacity, combs_capacity, plane_capacity,
+    snow_gloss *gloss;    /* an entry of zeros, and SNOW_NORMALS */
+    snow_comb *combs;     /* of all slices, along u and v */
+    float *plane;         /* the intermediate image */
+    unsigned char *drawn; /* per band and tile */
+    char *scratch;        /* of all workers */
+    size_t gloss_capacity, combs_capacity, plane_capacity, drawn_capacity,
         scratch_capacity; /* bytes */
 };
 
@@ -69,7 +70,9 @@ typedef struct snow_pass {
     snow_filter filter;
     int cells;     /* of a band */
     int64_t tiles; /* of a band */
-    int window;    /* voxels that a tile can need of a row */
+    int64_t bands;
+    int threads; /* that splat */
+    int window;  /* voxels that a tile can need of a row */
     size_t window_floats;
     size_t stride; /* floats of a line of the plane */
     size_t scratch_bytes;
@@ -96,6 +99,7 @@ typedef struct snow_stroke {
     int cells;
     bool finished;          /* a cell is not alive any more */
     float *pixels;          /* of the plane */
+    unsigned char *drawn;   /* tiles of the band that were drawn on */
     const snow_comb *u, *v; /* of the slice */
     int reach;              /* rows that a cell needs */
 } snow_stroke;
@@ -118,6 +122,7 @@ void snow_sheared_free(snow_sheared *s) {
     snow_release(s->context, s->gloss);
     snow_release(s->context, s->combs);
     snow_release(s->context, s->plane);
+    snow_release(s->context, s->drawn);
     snow_release(s->context, s->scratch);
     snow_release(s->context, s);
 }
@@ -237,11 +242,12 @@ static void draw_tile(snow_stroke *stroke, int64_t index) {
         stroke->u->offset;
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
-    held = pass->windows->windows(&stroke->rows, column, pass->window, bits,
-                                  before);
+    uint64_t alive = scratch->alive[index];
+    held = pass->windows->windows(
+        &stroke->rows, rows_of_cells(alive, v->stride, stroke->reach), column,
+        pass->window, bits, before);
     uint64_t cells =
-        cells_of_rows(held, stroke->cells, v->stride, stroke->reach) &
-        scratch->alive[index];
+        cells_of_rows(held, stroke->cells, v->stride, stroke->reach) & alive;
     if (!cells)
         return;
     held &= rows_of_cells(cells, v->stride, stroke->reach);
@@ -272,6 +278,7 @@ static void draw_tile(snow_stroke *stroke, int64_t index) {
     uint64_t finished = pass->tile(&tile);
     scratch->alive[index] &= ~finished;
     stroke->finished |= finished != 0;
+    stroke->drawn[index] = 1;
 }
 
 /* One slice of the band: its rows as masks, and each tile in turn that they
@@ -338,6 +345,8 @@ static void splat_band(void *job, int64_t item, int worker) {
     snow_stroke stroke = {.pass = pass};
     lay_out(pass, pass->sheared->scratch + (size_t)worker * pass->scratch_bytes,
             &stroke.scratch);
+    memset(stroke.scratch.zero, 0,
+           2 * SNOW_TILE_COLUMNS * (size_t)pass->channels * sizeof(float));
     stroke.rows.bits = stroke.scratch.bits;
     stroke.rows.rank = stroke.scratch.rank;
     stroke.rows.words = snow_window_words(pass->columns);
@@ -348,6 +357,8 @@ static void splat_band(void *job, int64_t item, int worker) {
     size_t pixels = lines * pass->stride / (size_t)pass->channels;
     stroke.pixels = pass->sheared->plane +
                     (size_t)(stroke.first_cell * v->phases) * pass->stride;
+    stroke.drawn = pass->sheared->drawn + item * pass->tiles;
+    memset(stroke.drawn, 0, (size_t)pass->tiles);
     snow_tile_clear(stroke.pixels, pixels, pass->channels);
     for (int64_t tile = 0; tile < pass->tiles; tile++)
         stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.cells);
@@ -360,8 +371,16 @@ static void warp_lines(void *job, int64_t item, int worker) {
     const snow_pass *pass = job;
     (void)worker;
     const snow_view *view = pass->order->view;
-    snow_plane plane = {pass->sheared->plane, pass->stride, pass->shear.u.count,
-                        pass->shear.v.count, pass->channels};
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
+    snow_plane plane = {pass->sheared->plane,
+                        pass->stride,
+                        u->count,
+                        v->count,
+                        pass->channels,
+                        pass->sheared->drawn,
+                        SNOW_TILE_COLUMNS * u->phases,
+                        pass->cells * v->phases,
+                        (int)pass->tiles};
     int first = (int)item * WARP_LINES, last = first + WARP_LINES;
     for (int y = first; y < last && y < view->height; y++)
         snow_warp_row(&plane, &pass->shear, pass->filter, pass->warp, y,
@@ -413,6 +432,10 @@ static snow_status place_lattice(snow_pass *pass) {
     pass->cells = rows / v->stride + 1;
     if (pass->cells > SNOW_TILE_CELLS)
         pass->cells = SNOW_TILE_CELLS;
+    int64_t cells = (v->count + v->phases - 1) / v->phases;
+    pass->bands = (cells + pass->cells - 1) / pass->cells;
+    pass->threads =
+        settings->threads < pass->bands ? settings->threads : (int)pass->bands;
     return SNOW_OK;
 }
 
@@ -468,21 +491,13 @@ static snow_status reserve_buffers(snow_pass *pass) {
     snow_sheared *s = pass->sheared;
     snow_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    size_t lines = (size_t)pass->shear.v.count + 1, bytes;
-    uint64_t all;
-    if (!snow_mul_u64(pass->scratch_bytes,
-                      (uint64_t)pass->order->settings->threads, &all) ||
-        all > SIZE_MAX)
-        return snow_fail(s->context, SNOW_NO_MEMORY,
-                         "no memory for %d threads; give --threads a smaller "
-                         "number",
-                         pass->order->settings->threads);
+    size_t lines = (size_t)pass->shear.v.count + 1;
     SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
-                          (size_t)all));
-    /* For the row of zeros, above all. */
-    memset(s->scratch, 0, (size_t)all);
-    bytes = lines * pass->stride * sizeof *s->plane;
-    return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0, bytes);
+                          pass->scratch_bytes * (size_t)pass->threads));
+    SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
+                          (size_t)(pass->bands * pass->tiles)));
+    return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0,
+                        lines * pass->stride * sizeof *s->plane);
 }
 
 static void fill_figures(const snow_sheared *s, snow_stats *stats) {
@@ -496,11 +511,9 @@ static void fill_figures(const snow_sheared *s, snow_stats *stats) {
 /* Lines 07 to 13, and the warp. */
 static void draw(snow_pass *pass, snow_stats *stats) {
     int threads = pass->order->settings->threads;
-    const snow_lattice *v = &pass->shear.v;
-    int64_t cells = (v->count + v->phases - 1) / v->phases;
     double mark = snow_seconds();
-    snow_parallel(pass->sheared->context, threads,
-                  (cells + pass->cells - 1) / pass->cells, splat_band, pass);
+    snow_parallel(pass->sheared->context, threads, pass->bands, splat_band,
+                  pass);
     double splatted = snow_seconds();
     pass->warp =
         snow_warp_of(pass->order->settings->isa, pass->filter, pass->channels);

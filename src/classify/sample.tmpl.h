@@ -29,10 +29,12 @@ TARGET static void SAMPLE_NAME(plain)(const void *codes,
         SAMPLE_EXPAND(code, here, entry + at);
         code += V(popcount)(here);
     }
-    for (int i = 0; i < count; i++)
-        memcpy(samples + i * SAMPLE_CHANNELS,
-               entries + (size_t)entry[i] * SAMPLE_CHANNELS,
-               SAMPLE_CHANNELS * sizeof *samples);
+    /* Four at a time, past the end: entries there are 0. */
+    for (int i = 0; i < count; i += 4)
+        for (int n = i; n < i + 4; n++)
+            memcpy(samples + n * SAMPLE_CHANNELS,
+                   entries + (size_t)entry[n] * SAMPLE_CHANNELS,
+                   SAMPLE_CHANNELS * sizeof *samples);
 }
 
 TARGET static void SAMPLE_NAME(shaded)(const void *codes,

@@ -31,11 +31,12 @@ static inline size_t snow_window_words(int64_t columns) {
 }
 
 /* Windows of `count` columns from `column` on, up to SNOW_WINDOW_MOST, which
- * overlap the rows: -count < column < columns.  Per row that is held: its bits,
- * and how many voxels of its row lie before it.  Returns the rows whose window
- * holds a voxel. */
-typedef uint64_t snow_windows_fn(const snow_mask_rows *rows, int64_t column,
-                                 int count, uint64_t *bits, uint32_t *before);
+ * overlap the rows: -count < column < columns.  Per row that is held and
+ * wanted: its bits, and how many voxels of its row lie before it.  Returns the
+ * rows of these whose window holds a voxel. */
+typedef uint64_t snow_windows_fn(const snow_mask_rows *rows, uint64_t wanted,
+                                 int64_t column, int count, uint64_t *bits,
+                                 uint32_t *before);
 
 /* Decodes rows first .. first + count - 1 of a slice of the bands, `count` at
  * most SNOW_WINDOW_ROWS; rows that do not exist are empty.  `spans` is room for

@@ -1,14 +1,14 @@
 /* encode/windows.tmpl.h - counting bits, for one level: simd/select.h's words
  * are in force.  The levels differ in how they count only. */
 
-TARGET static uint64_t NAME(windows)(const snow_mask_rows *rows, int64_t column,
-                                     int count, uint64_t *bits,
-                                     uint32_t *before) {
+TARGET static uint64_t NAME(windows)(const snow_mask_rows *rows,
+                                     uint64_t wanted, int64_t column, int count,
+                                     uint64_t *bits, uint32_t *before) {
     size_t at = (size_t)(column + SNOW_WINDOW_PAD), word = at / 64;
     unsigned shift = at % 64;
     uint64_t below = (UINT64_C(1) << shift) - 1;
     uint64_t within = (UINT64_C(1) << count) - 1, found = 0;
-    for (uint64_t left = rows->held; left; left &= left - 1) {
+    for (uint64_t left = rows->held & wanted; left; left &= left - 1) {
         int row = __builtin_ctzll(left);
         const uint64_t *words = rows->bits + (size_t)row * rows->words + word;
         /* In two steps, since a shift by 64 is none. */
