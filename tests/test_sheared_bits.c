@@ -3,6 +3,7 @@
  * frame encodes anew. */
 #include <math.h>
 
+#include "frame.h"
 #include "image/image.h"
 #include "simd/isa.h"
 #include "support_sheared.h"
@@ -300,24 +301,45 @@ static void another_volume_is_encoded_anew(void **state) {
     close_studio(&s);
 }
 
+/* A slab's picture by a frame. */
+static snow_image *shoot_slab(const studio *s, snow_frame *frame, int parts,
+                              int part) {
+    const reference_scene *scene = &s->scene;
+    snow_transfer *transfer = NULL;
+    snow_image *image = NULL;
+    assert_int_equal(snow_transfer_new(s->context, scene->colors,
+                                       scene->color_count, scene->opacities,
+                                       scene->opacity_count, &transfer),
+                     SNOW_OK);
+    assert_int_equal(snow_frame_render_slab(frame, s->volume, transfer,
+                                            &scene->view, &scene->settings,
+                                            parts, part, &image),
+                     SNOW_OK);
+    snow_transfer_free(transfer);
+    return image;
+}
+
+/* One frame after another slab of the same size, or of another, of a volume
+ * that is frozen. */
 static void slabs_are_encoded_each_for_itself(void **state) {
     (void)state;
-    model_stage stage = model_open();
-    reference_scene scene =
-        model_scene((int64_t[]){20, 17, 23}, SNOW_UINT8, true, MODEL_PLAIN, 1);
-    scene.settings.method = SNOW_METHOD_SHEARED;
-    model_turn(&scene, 20, 10, 0, 1);
-    float *first = sheared_picture(&stage, &scene, 2, 0);
-    float *second = sheared_picture(&stage, &scene, 2, 1);
-    float *again = sheared_picture(&stage, &scene, 2, 0);
-    size_t bytes = 64 * 48 * 4 * sizeof(float);
-    assert_memory_equal(first, again, bytes);
-    assert_memory_not_equal(first, second, bytes);
-    free(first);
-    free(second);
-    free(again);
-    model_free(&scene);
-    model_close(&stage);
+    studio s = open_studio(SNOW_UINT8, true, 1);
+    for (int parts = 1; parts <= 5; parts++)
+        for (int part = 0; part < parts; part++) {
+            snow_frame *fresh = NULL;
+            assert_int_equal(snow_frame_new(s.context, &fresh), SNOW_OK);
+            snow_image *kept = shoot_slab(&s, s.frame, parts, part);
+            assert_int_equal(snow_frame_stats(s.frame)->encoded, 1);
+            snow_image *again = shoot_slab(&s, s.frame, parts, part);
+            assert_int_equal(snow_frame_stats(s.frame)->encoded, 0);
+            snow_image *alone = shoot_slab(&s, fresh, parts, part);
+            assert_true(apart(kept, alone) == 0 && apart(kept, again) == 0);
+            snow_image_free(kept);
+            snow_image_free(again);
+            snow_image_free(alone);
+            snow_frame_free(fresh);
+        }
+    close_studio(&s);
 }
 
 /* --- memory ----------------------------------------------------------------
