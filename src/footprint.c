@@ -22,9 +22,9 @@
 
 #include <string.h>
 
-#define GROUP_SLICES 8       /* of one sparse matrix */
-#define GATHER_ROWS 8        /* image rows of a band where pixels gather */
-#define BANDS_PER_THREAD 4   /* where footprints are thrown */
+#define GROUP_SLICES 8           /* of one sparse matrix */
+#define GATHER_ROWS 8            /* image rows of a band where pixels gather */
+#define BANDS_PER_THREAD 4       /* where footprints are thrown */
 #define SPREAD_BYTES (32u << 20) /* that slices spread out at once may take */
 
 typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
@@ -36,7 +36,7 @@ typedef struct worker {
     size_t spans_capacity;
     snow_sheet sheet; /* throwing: a band; gathering: only its memory is used */
     snow_splatter splatter;
-    snow_run *runs;     /* gathering: of GATHER_ROWS rows */
+    snow_run *runs; /* gathering: of GATHER_ROWS rows */
     size_t runs_capacity;
     snow_places places;
     int64_t kept; /* voxels thrown out of strips */
@@ -102,12 +102,13 @@ void snow_exact_free(snow_exact *exact) {
     snow_release(context, exact);
 }
 
-/* --- preparation ----------------------------------------------------------- */
+/* --- preparation -----------------------------------------------------------
+ */
 
 /* Makes an array hold `wanted` records, new ones as zeros. */
 static snow_status more_records(snow_context *context, void *array_pointer,
-                                size_t *capacity, int64_t *made,
-                                int64_t wanted, size_t size) {
+                                size_t *capacity, int64_t *made, int64_t wanted,
+                                size_t size) {
     if (wanted <= *made)
         return SNOW_OK;
     SNOW_TRY(snow_reserve(context, array_pointer, capacity,
@@ -144,8 +145,8 @@ static void cut(snow_exact *exact, const snow_job *job) {
         exact->dense_used = fit > 1 ? smaller(wanted, (int64_t)fit) : 1;
     } else if (threads > 1)
         exact->bands = (int)smaller(BANDS_PER_THREAD * threads, p->height);
-    int64_t most = exact->bands > exact->groups_used ? exact->bands
-                                                     : exact->groups_used;
+    int64_t most =
+        exact->bands > exact->groups_used ? exact->bands : exact->groups_used;
     exact->threads = (int)smaller(threads, most);
 }
 
@@ -225,12 +226,13 @@ static snow_status prepare(snow_exact *exact, const snow_job *job) {
                           &exact->dense_count, exact->dense_used,
                           sizeof *exact->dense));
     for (int64_t n = 0; n < exact->dense_used; n++)
-        SNOW_TRY(snow_dense_make(context, &exact->gatherer.shape,
-                                 &exact->dense[n]));
+        SNOW_TRY(
+            snow_dense_make(context, &exact->gatherer.shape, &exact->dense[n]));
     return SNOW_OK;
 }
 
-/* --- work and time --------------------------------------------------------- */
+/* --- work and time ---------------------------------------------------------
+ */
 
 /* Adds the seconds since *mark to a total, and moves the mark. */
 static void lap(double *mark, double *total) {
@@ -291,7 +293,8 @@ static void classify_and_shade(const pass *work, worker *w, int64_t slice,
     lap(&mark, &w->seconds[SHADE]);
 }
 
-/* --- encoding -------------------------------------------------------------- */
+/* --- encoding --------------------------------------------------------------
+ */
 
 /* Measures density and runs on every 8th row of every 8th slice. */
 static snow_encoding choose_encoding(const snow_exact *exact,
@@ -368,7 +371,8 @@ static const float *walk_row(const pass *work, snow_walk *walk, worker *w,
     return walk->sparse->ia + voxel * (size_t)work->job->channels;
 }
 
-/* --- throwing footprints --------------------------------------------------- */
+/* --- throwing footprints ---------------------------------------------------
+ */
 
 /* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
 static void throw_encoded(const pass *work, worker *w, int64_t slice,
@@ -400,9 +404,9 @@ static void throw_classified(const pass *work, worker *w, int64_t slice,
             size_t stop = strip->row_end[n];
             size_t spans = snow_spans_of_columns(strip->columns + begin,
                                                  stop - begin, w->spans);
-            snow_splat_row(
-                &w->splatter, &w->sheet, row + n, w->spans, spans,
-                strip->samples + begin * (size_t)work->job->channels);
+            snow_splat_row(&w->splatter, &w->sheet, row + n, w->spans, spans,
+                           strip->samples +
+                               begin * (size_t)work->job->channels);
             begin = stop;
         }
         lap(&mark, &w->seconds[SPLAT]);
@@ -444,7 +448,8 @@ static void throw_item(void *data, int64_t item, int number) {
         w->status = throw_band(work, item, w);
 }
 
-/* --- gathering footprints -------------------------------------------------- */
+/* --- gathering footprints --------------------------------------------------
+ */
 
 /* Lines 08 to 12, first half: the interesting voxels of one slice, out of EA
  * and IA, to where its pixels gather them. */
@@ -473,8 +478,8 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
     const snow_job *job = work->job;
     const snow_dense *dense = &exact->dense[n];
     int64_t slice = nth_slice(job, work->first + n);
-    size_t channels = (size_t)job->channels, room = w->runs_capacity /
-                      sizeof *w->runs / GATHER_ROWS;
+    size_t channels = (size_t)job->channels,
+           room = w->runs_capacity / sizeof *w->runs / GATHER_ROWS;
     size_t stride = (size_t)job->placement.width * channels;
     int first, end, counts[GATHER_ROWS];
     snow_gather_rows(&exact->gatherer, dense, slice, &first, &end);
@@ -485,10 +490,9 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
     double mark = snow_seconds();
     for (int y = first; y < end; y++) {
         size_t line = (size_t)(y - top);
-        counts[line] = snow_gather_row(&exact->gatherer, dense, slice, y,
-                                       &w->places,
-                                       w->sheet.pixels + line * stride,
-                                       w->runs + line * room);
+        counts[line] = snow_gather_row(
+            &exact->gatherer, dense, slice, y, &w->places,
+            w->sheet.pixels + line * stride, w->runs + line * room);
     }
     lap(&mark, &w->seconds[SPLAT]);
     for (int y = first; y < end; y++) {
@@ -523,7 +527,8 @@ static snow_status gather_slab(pass *work) {
     return SNOW_OK;
 }
 
-/* --- the whole ------------------------------------------------------------- */
+/* --- the whole -------------------------------------------------------------
+ */
 
 snow_status snow_exact_render(snow_exact *exact, const snow_job *job) {
     /* 02 - 03 */ SNOW_TRY(prepare(exact, job));
@@ -539,7 +544,8 @@ snow_status snow_exact_render(snow_exact *exact, const snow_job *job) {
     /* 07 - 13 */ return run(&work, exact->bands, throw_item);
 }
 
-/* --- counts ---------------------------------------------------------------- */
+/* --- counts ----------------------------------------------------------------
+ */
 
 static void count_item(void *data, int64_t item, int number) {
     const pass *work = data;
@@ -560,8 +566,8 @@ static void count_item(void *data, int64_t item, int number) {
 static snow_status count_classified(snow_exact *exact, const snow_job *job,
                                     int64_t *count) {
     int64_t kept = 0;
-    bool known = job->settings.method == SNOW_METHOD_TESTED &&
-                 exact->bands == 1;
+    bool known =
+        job->settings.method == SNOW_METHOD_TESTED && exact->bands == 1;
     if (!known) {
         pass work = {.exact = exact, .job = job};
         for (int n = 0; n < exact->threads; n++)
@@ -584,8 +590,7 @@ static void count_encoded(const snow_exact *exact, snow_stats *stats) {
         const snow_sparse *s = &exact->groups[n];
         stats->interesting += (int64_t)s->ia_voxels;
         stats->ea_bytes += s->ea_bytes;
-        stats->ia_bytes +=
-            s->ia_voxels * (size_t)s->channels * sizeof *s->ia;
+        stats->ia_bytes += s->ia_voxels * (size_t)s->channels * sizeof *s->ia;
         stats->pa_bytes += (uint64_t)(s->filled + 1) * sizeof *s->pa;
     }
 }

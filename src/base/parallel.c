@@ -38,7 +38,8 @@ void __tsan_release(void *address);
 
 #ifdef _OPENMP
 /* One thread's share of the items. */
-static __attribute__((noinline)) void work_off(int64_t items, snow_work_fn *work, void *job) {
+static __attribute__((noinline)) void work_off(int64_t items,
+                                               snow_work_fn *work, void *job) {
     int worker = omp_get_thread_num();
 #pragma omp for schedule(dynamic, 1)
     for (int64_t item = 0; item < items; item++)
