@@ -192,14 +192,15 @@ void snow_gather_rows(const snow_gatherer *g, const snow_dense *d,
  */
 static void narrow(double at, double step, double low, double high,
                    double *first, double *end) {
-    if (fabs(step) * fmax(fabs(*first), fabs(*end)) < SLACK) {
+    if (fabs(step) * *end < SLACK) {
         if (at < low - SLACK || at > high + SLACK)
             *end = *first;
         return;
     }
     double a = (low - at) / step, b = (high - at) / step;
-    *first = fmax(*first, fmin(a, b) - 1);
-    *end = fmin(*end, fmax(a, b) + 1);
+    double from = (a < b ? a : b) - 1, upto = (a < b ? b : a) + 1;
+    *first = from > *first ? from : *first; /* fmax() may be a call */
+    *end = upto < *end ? upto : *end;
 }
 
 int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,

@@ -157,7 +157,10 @@ LOCAL(locate)(const snow_gatherer *g, const snow_dense *d,
         /* Windows out of the slice become those at its ends: empty ones. */
         i = V(clamp)(i, 0, last_u);
         j = V(clamp)(j, 0, last_v);
-        reached |= V(bits)(d->reached, (int)d->words, i, j) << n;
+        unsigned bits = V(bits)(d->reached, (int)d->words, i, j);
+        if (!bits)
+            continue;
+        reached |= bits << n;
         V(store_ints)
         (p->window + x + n, V(place)(i, GATHER_CHANNELS, j, (int)d->stride));
         V(vec) phase_u = V(sub)(at_u, floor_u), phase_v = V(sub)(at_v, floor_v);
