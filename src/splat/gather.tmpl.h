@@ -31,10 +31,10 @@ LOCAL(weights)(const float *table, int padded, float rest, float *weights) {
     }
 }
 
-/* Sums one pixel; `taps` rows, `blocks` blocks a row. */
-static inline __attribute__((always_inline)) TARGET void
-LOCAL(pixel)(const float *window, size_t stride, const float *u, const float *v,
-             int taps, int blocks, float *pixel) {
+/* Sums one pixel, but for folding; `taps` rows, `blocks` blocks a row. */
+static inline __attribute__((always_inline)) TARGET B(block)
+    LOCAL(sum)(const float *window, size_t stride, const float *u,
+               const float *v, int taps, int blocks) {
     B(block) sum = B(zero)();
     for (int n = 0; n < blocks; n++, window += BLOCK_VOXELS * GATHER_CHANNELS) {
         B(block) acc = B(scale)(v[0], B(load)(window));
@@ -47,7 +47,13 @@ LOCAL(pixel)(const float *window, size_t stride, const float *u, const float *v,
 #endif
         sum = B(fma)(w, acc, sum);
     }
-    __m128 folded = B(fold)(sum);
+    return sum;
+}
+
+static inline __attribute__((always_inline)) TARGET void
+LOCAL(pixel)(const float *window, size_t stride, const float *u, const float *v,
+             int taps, int blocks, float *pixel) {
+    __m128 folded = B(fold)(LOCAL(sum)(window, stride, u, v, taps, blocks));
 #if GATHER_CHANNELS == 2
     folded = _mm_add_ps(folded, _mm_movehl_ps(folded, folded));
     _mm_storel_pi((__m64 *)(void *)pixel, folded);
@@ -74,9 +80,9 @@ LOCAL(tabled)(const snow_gatherer *g, const snow_dense *d, const snow_places *p,
     THROUGH_MEMORY;
     for (int n = 0; n < end - first; n++)
         LOCAL(pixel)
-        (d->samples + p->window[first + n], d->stride, u + n * padded_u,
-         v + n * padded_v, taps, blocks,
-         pixels + (size_t)(first + n) * GATHER_CHANNELS);
+    (d->samples + p->window[first + n], d->stride, u + n * padded_u,
+     v + n * padded_v, taps, blocks,
+     pixels + (size_t)(first + n) * GATHER_CHANNELS);
 }
 
 /* The same for a run of any length, whose weights are there already. */
@@ -85,7 +91,19 @@ LOCAL(cubic)(const snow_dense *d, const snow_places *p, snow_run run, int taps,
              int blocks, float *pixels) {
     const float *samples = d->samples;
     const size_t stride = d->stride;
-    for (int n = run.first; n < run.end; n++)
+    int n = run.first;
+#if GATHER_CHANNELS == 4
+    for (; n + 4 <= run.end; n += 4) {
+        B(block) sum[4];
+        for (int i = 0; i < 4; i++) {
+            size_t at = (size_t)(n + i);
+            sum[i] = LOCAL(sum)(samples + p->window[at], stride, p->u + 4 * at,
+                                p->v + 4 * at, taps, blocks);
+        }
+        B(fold_four)(sum, pixels + 4 * (size_t)n);
+    }
+#endif
+    for (; n < run.end; n++)
         LOCAL(pixel)
         (samples + p->window[n], stride, p->u + 4 * (size_t)n,
          p->v + 4 * (size_t)n, taps, blocks,
@@ -116,8 +134,8 @@ static TARGET void LOCAL(run)(const snow_gatherer *g, const snow_dense *d,
             LOCAL(tabled)(g, d, p, first, end, 4, 1, 4, 4, pixels);
         else
             LOCAL(tabled)
-            (g, d, p, first, end, taps, blocks, g->phases_u.padded,
-             g->phases_v.padded, pixels);
+        (g, d, p, first, end, taps, blocks, g->phases_u.padded,
+         g->phases_v.padded, pixels);
     }
 }
 

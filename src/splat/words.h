@@ -21,7 +21,8 @@
  *   B(zero)(), B(fma)(a, b, c)
  *   B(pairs)(p)            the weights of 4 voxels, each twice (8 floats)
  *   B(fours)(p)            the weights of 2 or 4 voxels, each 4 times
- *   B(fold)(b)             the four floats that remain when halves are added */
+ *   B(fold)(b)             the four floats that remain when halves are added
+ *   B(fold_four)(b, p)     the same of b[0] to b[3], stored */
 #ifndef SNOW_SPLAT_WORDS_H
 #define SNOW_SPLAT_WORDS_H
 
@@ -218,6 +219,16 @@ SNOW_AVX2_INLINE __m128 snow_b8_fold(__m256 b) {
     return _mm_add_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
 }
 
+SNOW_AVX2_INLINE __m256 snow_b8_fold_two(__m256 a, __m256 b) {
+    return _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20),
+                         _mm256_permute2f128_ps(a, b, 0x31));
+}
+
+SNOW_AVX2_INLINE void snow_b8_fold_four(const __m256 b[4], float *p) {
+    _mm256_storeu_ps(p, snow_b8_fold_two(b[0], b[1]));
+    _mm256_storeu_ps(p + 8, snow_b8_fold_two(b[2], b[3]));
+}
+
 /* --- blocks of 16 floats, as pairs -----------------------------------------
  */
 
@@ -260,6 +271,13 @@ SNOW_AVX2_INLINE __m128 snow_p16_fold(snow_p16_block b) {
     return snow_b8_fold(_mm256_add_ps(b.low, b.high));
 }
 
+SNOW_AVX2_INLINE void snow_p16_fold_four(const snow_p16_block b[4], float *p) {
+    __m256 halves[4];
+    for (int i = 0; i < 4; i++)
+        halves[i] = _mm256_add_ps(b[i].low, b[i].high);
+    snow_b8_fold_four(halves, p);
+}
+
 /* --- blocks of 16 floats, whole --------------------------------------------
  */
 
@@ -294,6 +312,16 @@ SNOW_AVX512_INLINE __m512 snow_b16_fours(const float *p) {
 SNOW_AVX512_INLINE __m128 snow_b16_fold(__m512 b) {
     return snow_b8_fold(
         _mm256_add_ps(_mm512_castps512_ps256(b), _mm512_extractf32x8_ps(b, 1)));
+}
+
+/* Quarters 0 + 2 and 1 + 3 of each, as snow_b8_fold adds them, then these. */
+SNOW_AVX512_INLINE void snow_b16_fold_four(const __m512 b[4], float *p) {
+    __m512 ab = _mm512_add_ps(_mm512_shuffle_f32x4(b[0], b[1], 0x44),
+                              _mm512_shuffle_f32x4(b[0], b[1], 0xee));
+    __m512 cd = _mm512_add_ps(_mm512_shuffle_f32x4(b[2], b[3], 0x44),
+                              _mm512_shuffle_f32x4(b[2], b[3], 0xee));
+    _mm512_storeu_ps(p, _mm512_add_ps(_mm512_shuffle_f32x4(ab, cd, 0x88),
+                                      _mm512_shuffle_f32x4(ab, cd, 0xdd)));
 }
 
 #endif
