@@ -56,8 +56,8 @@ TARGET static void SAMPLE_NAME(shaded)(const void *codes,
         V(vec) shine = SAMPLE_SHINE(shines, normal + i);
         V(vec) color = V(fma)(straight, V(even)(shine), V(odd)(shine));
         color = V(mul)(V(min)(color, V(set1)(1)), SAMPLE_ALPHA(straight));
-        V(store)
-        (samples + i * SAMPLE_CHANNELS, SAMPLE_WITH_ALPHA(color, straight));
+        V(store)(samples + i * SAMPLE_CHANNELS,
+                 SAMPLE_WITH_ALPHA(color, straight));
     }
 }
 
