@@ -49,15 +49,36 @@ const snow_stats *snow_frame_stats(const snow_frame *frame) {
     return &frame->stats;
 }
 
+/* Leaves to footprints what the sheared method cannot make: along the best axis
+ * or, in high quality, another that the picture may be blended of. */
+static snow_status check_sheared(snow_job *job, const snow_view *view) {
+    const snow_volume_info *info = &job->volume->info;
+    snow_settings *settings = &job->settings;
+    bool fits = snow_sheared_fits(&job->placement, settings);
+    double shares[3] = {0};
+    if (settings->quality == SNOW_QUALITY_HIGH)
+        snow_placement_shares(info, &job->placement, shares);
+    for (int axis = 0; axis < 3; axis++) {
+        snow_placement placement;
+        if (shares[axis] == 0)
+            continue;
+        SNOW_TRY(snow_placement_make_along(job->context, info, view, axis,
+                                           &placement));
+        fits = fits && snow_sheared_fits(&placement, settings);
+    }
+    if (!fits)
+        settings->method = SNOW_METHOD_FOOTPRINT;
+    return SNOW_OK;
+}
+
 /* Lines 01 and 02 for every method: settings, camera, slab. */
 static snow_status place(snow_job *job, const snow_view *view, int parts,
                          int part) {
     SNOW_TRY(snow_settings_resolve(job->context, job->volume, &job->settings));
     SNOW_TRY(snow_placement_make(job->context, &job->volume->info, view,
                                  &job->placement));
-    if (job->settings.method == SNOW_METHOD_SHEARED &&
-        !snow_sheared_fits(&job->placement, &job->settings))
-        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    if (job->settings.method == SNOW_METHOD_SHEARED)
+        SNOW_TRY(check_sheared(job, view));
     job->slab = snow_slab_equal(job->placement.slices, parts, part);
     return SNOW_OK;
 }
@@ -65,9 +86,10 @@ static snow_status place(snow_job *job, const snow_view *view, int parts,
 /* Lines 03 to 13 by the sheared method, with slices as `placement` says. */
 static snow_status render_sheared(snow_job *job, const snow_view *view,
                                   const snow_placement *placement,
-                                  snow_sheared **sheared, float *pixels) {
+                                  snow_slab slab, snow_sheared **sheared,
+                                  float *pixels) {
     snow_sheared_order order = {job->volume,    job->transfer, view,
-                                &job->settings, placement,     job->slab,
+                                &job->settings, placement,     slab,
                                 job->channels};
     if (!*sheared)
         SNOW_TRY(snow_sheared_new(job->context, sheared));
@@ -81,8 +103,8 @@ static void blend(float *pixels, const float *layer, float share,
         pixels[i] += share * layer[i];
 }
 
-/* High quality: where two or three axes are nearly as good, the picture is a
- * blend of theirs, so that a turning one does not jump. */
+/* High quality of a whole volume: where two or three axes are nearly as good,
+ * the picture is a blend of theirs, so that a turning one does not jump. */
 static snow_status render_blended(snow_frame *frame, snow_job *job,
                                   const snow_view *view) {
     const snow_volume_info *info = &job->volume->info;
@@ -98,8 +120,9 @@ static snow_status render_blended(snow_frame *frame, snow_job *job,
             continue;
         SNOW_TRY(snow_placement_make_along(frame->context, info, view, axis,
                                            &placement));
-        SNOW_TRY(render_sheared(job, view, &placement, &frame->sheared[axis],
-                                frame->layer));
+        SNOW_TRY(render_sheared(job, view, &placement,
+                                snow_slab_equal(placement.slices, 1, 0),
+                                &frame->sheared[axis], frame->layer));
         blend(job->pixels, frame->layer, (float)shares[axis], floats);
     }
     return SNOW_OK;
@@ -110,10 +133,11 @@ static snow_status render_slab(snow_frame *frame, snow_job *job,
                                const snow_view *view) {
     if (job->settings.method != SNOW_METHOD_SHEARED)
         return snow_exact_render(frame->exact, job);
-    if (job->settings.quality == SNOW_QUALITY_HIGH)
+    if (job->settings.quality == SNOW_QUALITY_HIGH &&
+        job->slab.count == job->placement.slices)
         return render_blended(frame, job, view);
-    return render_sheared(job, view, &job->placement, &frame->sheared[0],
-                          job->pixels);
+    return render_sheared(job, view, &job->placement, job->slab,
+                          &frame->sheared[0], job->pixels);
 }
 
 /* What was chosen for the picture, and counts of voxels and bytes. */

@@ -89,7 +89,7 @@ near 1e-5 --isa scalar
 same -j 2
 same -j 7
 near 0.1 --quality draft
-near 0.1 --quality high
+near 0.2 --quality high
 same --no-labels
 same --progress never
 same --encoding crs

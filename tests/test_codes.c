@@ -1,6 +1,6 @@
 /* tests/test_codes.c - codes and palettes against plain computations in double:
  * which voxels are interesting, what a code stands for, what it looks like. */
-#include "support.h"
+#include "support_volumes.h"
 
 #include "base/power.h"
 #include "classify/codes.h"
@@ -147,6 +147,23 @@ static void check_wide_value(const scene *s, const snow_coder *coder,
                      code, coded[i], exact[i]);
 }
 
+/* Holds what each code stands for against the stretch it is dealt out to. */
+static void check_wide_codes(const snow_coder *coder) {
+    size_t inside = (coder->stop_count - 1) * coder->stretch_codes;
+    assert_true(inside + 2 <= coder->codes);
+    assert_true(snow_coder_value(coder, 0) < coder->stops[0]);
+    for (size_t code = 1; code < coder->codes; code++) {
+        double value = snow_coder_value(coder, code);
+        if (code > inside) {
+            assert_true(value == coder->stops[coder->stop_count - 1]);
+            continue;
+        }
+        size_t stretch = (code - 1) / coder->stretch_codes;
+        assert_true(value >= coder->stops[stretch]);
+        assert_true(value < coder->stops[stretch + 1]);
+    }
+}
+
 /* Values all over, at each control value and beside it, and no numbers. */
 static void check_wide(snow_type type, double slope, double intercept,
                        const snow_color_point *colors, size_t color_count,
@@ -161,6 +178,7 @@ static void check_wide(snow_type type, double slope, double intercept,
         uint64_t seed = 11;
         assert_int_equal(coder.bytes, 2);
         assert_null(coder.keep);
+        check_wide_codes(&coder);
         for (int n = 0; n < 20000; n++) {
             double part = 1.2 * support_uniform(&seed) - 0.1;
             double data = low * (1 - part) + high * part;
@@ -330,9 +348,9 @@ static void a_palette_follows_the_transfer_function(void **state) {
     const snow_color_point grey[] = {{0, 0, 0, 0}, {100, 1, 1, 1}};
     scene first = scene_of(SNOW_UINT8, 1, 0, grey, 2, rough, ROUGH);
     scene second = scene_of(SNOW_UINT8, 1, 0, colorful, 5, rough, ROUGH);
-    scene third = scene_of(SNOW_UINT8, 1, 0, colorful, 5, rough, ROUGH - 1);
+    scene third = scene_of(SNOW_UINT8, 0.5, 0, colorful, 5, rough, ROUGH);
     scene fourth = scene_of(SNOW_FLOAT64, 1, 0, colorful, 5, rough, ROUGH);
-    scene fifth = scene_of(SNOW_FLOAT64, 1, 2, colorful, 4, rough, ROUGH);
+    scene fifth = scene_of(SNOW_FLOAT64, 1, 2, colorful, 4, rough, ROUGH - 1);
     const scene *scenes[] = {&first,  &second, &second, &third,
                              &fourth, &fifth,  &first};
     snow_palette palette = {0};
@@ -350,6 +368,62 @@ static void a_palette_follows_the_transfer_function(void **state) {
     scene_end(&third);
     scene_end(&fourth);
     scene_end(&fifth);
+}
+
+static void no_memory_leaves_nothing_behind(void **state) {
+    support_place *place = *state;
+    const snow_type types[] = {SNOW_UINT8, SNOW_FLOAT32};
+    for (int t = 0; t < 2; t++) {
+        scene s = scene_of(types[t], 1, 0, colorful, 5, rough, ROUGH);
+        snow_status status = SNOW_NO_MEMORY;
+        int64_t failures = 0;
+        for (; status != SNOW_OK; failures++) {
+            snow_coder coder = {.bytes = 77};
+            snow_palette palette = {0};
+            place->allocations = 0;
+            place->fail_at = failures + 1;
+            status = snow_coder_init(place->context, s.volume, s.transfer, 0,
+                                     &coder);
+            if (status == SNOW_OK) {
+                status = snow_palette_make(place->context, &coder, s.transfer,
+                                           1.5, true, 1, &palette);
+                snow_coder_fini(place->context, &coder);
+            } else {
+                assert_int_equal(coder.bytes, 77);
+            }
+            snow_palette_fini(place->context, &palette);
+            place->fail_at = 0;
+        }
+        assert_true(failures > 6);
+        scene_end(&s);
+    }
+}
+
+static void a_palette_survives_a_lack_of_memory(void **state) {
+    support_place *place = *state;
+    scene small = scene_of(SNOW_UINT8, 1, 0, black, 1, rough, ROUGH);
+    scene large = scene_of(SNOW_INT16, 1, 0, colorful, 5, rough, ROUGH);
+    snow_coder first = coder_of(&small, 0), second = coder_of(&large, 0);
+    snow_palette palette = {0};
+    small.context = large.context = place->context;
+    for (int64_t n = 1; n < 5; n++) {
+        check_palette(&small, &first, 1.5, false, 1, &palette);
+        place->allocations = 0;
+        place->fail_at = n;
+        assert_int_equal(snow_palette_make(place->context, &second,
+                                           large.transfer, 2, true, 1,
+                                           &palette),
+                         SNOW_NO_MEMORY);
+        place->fail_at = 0;
+        check_palette(&large, &second, 2, true, 1, &palette);
+        snow_palette_fini(place->context, &palette);
+    }
+    small.context = small.volume->context;
+    large.context = large.volume->context;
+    snow_coder_fini(small.context, &first);
+    snow_coder_fini(large.context, &second);
+    scene_end(&small);
+    scene_end(&large);
 }
 
 static void own_powers_agree_with_the_library(void **state) {
@@ -380,6 +454,10 @@ int main(void) {
         cmocka_unit_test(new_colours_keep_the_codes),
         cmocka_unit_test(palettes_are_corrected_for_the_path),
         cmocka_unit_test(a_palette_follows_the_transfer_function),
+        cmocka_unit_test_setup_teardown(no_memory_leaves_nothing_behind,
+                                        support_place_begin, support_place_end),
+        cmocka_unit_test_setup_teardown(a_palette_survives_a_lack_of_memory,
+                                        support_place_begin, support_place_end),
         cmocka_unit_test(own_powers_agree_with_the_library),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

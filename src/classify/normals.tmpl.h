@@ -54,7 +54,7 @@ TARGET static void NAME(add)(const float *more, size_t count,
 TARGET static bool NAME(encode)(const float carry[9], float gradients[3][BLOCK],
                                 size_t count, uint32_t *restrict codes) {
     const float *gu = gradients[0], *gv = gradients[1], *gw = gradients[2];
-    int any_unsure = 0;
+    int unsure[GROUP] = {0}, any = 0;
     for (size_t n = 0; n < count; n += GROUP)
         for (size_t i = 0; i < GROUP; i++) {
             float u = gu[n + i], v = gv[n + i], w = gw[n + i];
@@ -68,11 +68,13 @@ TARGET static bool NAME(encode)(const float carry[9], float gradients[3][BLOCK],
             float down = sure ? (x - y) * scale : 0;
             int place = (int)(down + (MIDDLE + 0.5F)) * SIDE +
                         (int)(across + (MIDDLE + 0.5F)) + 1;
-            any_unsure |= !(sure | (sum == 0));
+            unsure[i] |= !sure & (sum != 0);
             int other = sum == 0 ? SNOW_NO_NORMAL : UNSURE;
             codes[n + i] = (uint32_t)(sure ? place : other);
         }
-    return any_unsure != 0;
+    for (size_t i = 0; i < GROUP; i++)
+        any |= unsure[i];
+    return any != 0;
 }
 
 static const normal_kernels NAME(kernels) = {

@@ -38,8 +38,7 @@ TARGET static void NAME(cosines)(const snow_shader *s,
 }
 
 /* x^shininess in place; whole exponents (the default is one) by squaring. */
-TARGET static void NAME(to_shininess)(const snow_shader *s, int count,
-                                      double *x) {
+TARGET static void NAME(to_power)(const snow_shader *s, int count, double *x) {
     double power[SHADE_BLOCK], base[SHADE_BLOCK];
     for (int i = 0; i < count; i++) {
         base[i] = x[i];
@@ -64,7 +63,7 @@ TARGET static void NAME(shade_block)(const snow_shader *s,
     int whole = (count + 7) & -8; /* whole vectors; SHADE_BLOCK at most */
     NAME(cosines)(s, g, whole, lambert, highlight);
     if (s->specular > 0)
-        NAME(to_shininess)(s, whole, highlight);
+        NAME(to_power)(s, whole, highlight);
     if (channels == 2)
         for (int i = 0; i < count; i++) {
             float *c = samples + 2 * i;

@@ -15,11 +15,11 @@ const snow_scheme *snow_scheme_of(snow_encoding encoding) {
 
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs) {
+    if ((double)interesting >= 0.05 * (double)voxels)
+        return SNOW_ENCODING_BITMAP;
     if (interesting && interesting >= 16 * runs)
         return SNOW_ENCODING_RLE;
-    if ((double)interesting < 0.05 * (double)voxels)
-        return SNOW_ENCODING_CRS;
-    return SNOW_ENCODING_BITMAP;
+    return SNOW_ENCODING_CRS;
 }
 
 snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
@@ -166,7 +166,7 @@ static size_t nothing_skip(snow_walk *walk, int64_t rows) {
 }
 
 /* A slice of no bytes. */
-static const snow_reader nothing = {nothing_next_row, nothing_skip};
+static const snow_reader nothing = {nothing_next_row, NULL, nothing_skip};
 
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];

@@ -1,5 +1,5 @@
-/* simd/vec_scalar.h - the vector vocabulary for machines of any kind: vectors of
- * 4 floats that the compiler carries to SSE2, NEON or plain instructions.
+/* simd/vec_scalar.h - the vector vocabulary for machines of any kind: vectors
+ * of 4 floats that the compiler carries to SSE2, NEON or plain instructions.
  * simd/select.h says what the words mean. */
 #ifndef SNOW_VEC_SCALAR_H
 #define SNOW_VEC_SCALAR_H
@@ -42,22 +42,19 @@ static inline snow_scalar_vec snow_scalar_mul(snow_scalar_vec a,
     return a * b;
 }
 
-static inline snow_scalar_vec snow_scalar_fma(snow_scalar_vec a,
-                                              snow_scalar_vec b,
-                                              snow_scalar_vec c) {
+static inline snow_scalar_vec
+snow_scalar_fma(snow_scalar_vec a, snow_scalar_vec b, snow_scalar_vec c) {
     return a * b + c;
 }
 
-static inline snow_scalar_vec snow_scalar_fnma(snow_scalar_vec a,
-                                               snow_scalar_vec b,
-                                               snow_scalar_vec c) {
+static inline snow_scalar_vec
+snow_scalar_fnma(snow_scalar_vec a, snow_scalar_vec b, snow_scalar_vec c) {
     return c - a * b;
 }
 
 /* Picks a's bits where the mask is set, else b's. */
-static inline snow_scalar_vec snow_scalar_pick(snow_scalar_mask mask,
-                                               snow_scalar_vec a,
-                                               snow_scalar_vec b) {
+static inline snow_scalar_vec
+snow_scalar_pick(snow_scalar_mask mask, snow_scalar_vec a, snow_scalar_vec b) {
     return (snow_scalar_vec)(((snow_scalar_mask)a & mask) |
                              ((snow_scalar_mask)b & ~mask));
 }
@@ -135,8 +132,8 @@ static inline snow_scalar_vec snow_scalar_with_alpha4(snow_scalar_vec a,
     return (snow_scalar_vec){a[0], a[1], a[2], b[3]};
 }
 
-static inline void snow_scalar_expand8(const uint8_t *p,
-                                        uint32_t bits, uint32_t *out) {
+static inline void snow_scalar_expand8(const uint8_t *p, uint32_t bits,
+                                       uint32_t *out) {
     for (int i = 0; i < 16; i++, bits >>= 1) {
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);
@@ -144,8 +141,8 @@ static inline void snow_scalar_expand8(const uint8_t *p,
     }
 }
 
-static inline void snow_scalar_expand16(const uint16_t *p,
-                                        uint32_t bits, uint32_t *out) {
+static inline void snow_scalar_expand16(const uint16_t *p, uint32_t bits,
+                                        uint32_t *out) {
     for (int i = 0; i < 16; i++, bits >>= 1) {
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);

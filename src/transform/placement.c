@@ -173,8 +173,8 @@ static snow_status place(snow_context *context, const snow_volume_info *info,
     cut_along(info, slice_axis, p);
     measure_path(info, p);
     place_slices(info, view, p);
-    if (isfinite(p->path) && isfinite(p->origin[0]) &&
-        isfinite(p->origin[1]) && invert_slice_map(p))
+    if (isfinite(p->path) && isfinite(p->origin[0]) && isfinite(p->origin[1]) &&
+        invert_slice_map(p))
         return SNOW_OK;
     return snow_fail(context, SNOW_BAD_INPUT,
                      "voxels of %gx%gx%g cannot be seen at zoom %g: they "

@@ -49,13 +49,16 @@ static inline void store_pixel(snow_scalar_vec pixel, int channels,
 
 #define SELECT_SCALAR
 #include "simd/select.h"
+
 #include "warp/levels.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
+
 #include "warp/levels.h"
 #define SELECT_AVX512
 #include "simd/select.h"
+
 #include "warp/levels.h"
 #endif
 
