@@ -265,7 +265,7 @@ static void deal_out(snow_exact *exact, double wall, snow_stats *stats) {
 static snow_status run(pass *work, int64_t items, snow_work_fn *one) {
     snow_exact *exact = work->exact;
     double start = snow_seconds();
-    snow_parallel(exact->threads, items, one, work);
+    snow_parallel(exact->context, exact->threads, items, one, work);
     deal_out(exact, snow_seconds() - start, work->job->stats);
     for (int n = 0; n < exact->threads; n++)
         if (exact->workers[n].status != SNOW_OK)
@@ -577,7 +577,8 @@ static snow_status count_classified(snow_exact *exact, const snow_job *job,
         SNOW_TRY(snow_classifier_make(exact->context, job->volume,
                                       job->transfer, &options,
                                       &exact->classifier));
-        snow_parallel(exact->threads, job->slab.count, count_item, &work);
+        snow_parallel(exact->context, exact->threads, job->slab.count,
+                      count_item, &work);
     }
     for (int n = 0; n < exact->threads; n++)
         kept += exact->workers[n].kept;

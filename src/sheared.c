@@ -448,8 +448,8 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
         SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
                               (SNOW_NORMALS + 1) * sizeof *s->gloss));
         s->gloss[0] = (snow_gloss){0, 0};
-        snow_gloss_table(settings, pass->order->placement, settings->threads,
-                         s->gloss + 1);
+        snow_gloss_table(s->context, settings, pass->order->placement,
+                         settings->threads, s->gloss + 1);
     }
     stats->seconds_classify += classified - mark;
     stats->seconds_shade += snow_seconds() - classified;
@@ -499,12 +499,12 @@ static void draw(snow_pass *pass, snow_stats *stats) {
     const snow_lattice *v = &pass->shear.v;
     int64_t cells = (v->count + v->phases - 1) / v->phases;
     double mark = snow_seconds();
-    snow_parallel(threads, (cells + pass->cells - 1) / pass->cells, splat_band,
-                  pass);
+    snow_parallel(pass->sheared->context, threads,
+                  (cells + pass->cells - 1) / pass->cells, splat_band, pass);
     double splatted = snow_seconds();
     pass->warp =
         snow_warp_of(pass->order->settings->isa, pass->filter, pass->channels);
-    snow_parallel(threads,
+    snow_parallel(pass->sheared->context, threads,
                   (pass->order->view->height + WARP_LINES - 1) / WARP_LINES,
                   warp_lines, pass);
     stats->seconds_splat += splatted - mark;

@@ -97,7 +97,8 @@ same --encoding bitmap
 same --encoding rle
 near 0.02 --method footprint
 changes --method footprint
-run 0 "the exact picture" render -q -o exact.npy --method footprint
+run 0 "the exact picture" render -q -o exact.npy --method footprint \
+    --isa scalar
 run 0 "the original one" render -q -o original.npy --method original
 run 0 "they are one" "$TOOL" compare exact.npy original.npy
 same --azimuth 50 --azimuth 0

@@ -72,7 +72,7 @@ static void place_axis(sheared_job *job, int axis, lattice_axis *out) {
     out->drift = ray.step[axis] / ray.step[job->axis];
     /* Two pixels a voxel for kernels that are hardly widened, one in two for
      * those that are far wider. */
-    bool fine = !job->draft && out->width < 1.1;
+    bool fine = !job->draft && out->width < 1.2;
     bool coarse = out->width >= (job->draft ? 2 : 2.5);
     out->pitch = fine ? 0.5 : coarse ? 2 : 1;
 }

@@ -301,7 +301,7 @@ snow_status snow_bands_encode(snow_bands *bands,
     encode_job job = {.bands = bands, .order = order};
     atomic_init(&job.failed, SNOW_OK);
     SNOW_TRY(prepare(&job, threads));
-    snow_parallel(threads, count, work, &job);
+    snow_parallel(bands->context, threads, count, work, &job);
     SNOW_TRY((snow_status)atomic_load(&job.failed));
     add_up(bands);
     return SNOW_OK;
