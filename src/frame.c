@@ -108,8 +108,8 @@ static void blend(float *pixels, const float *layer, float share,
 static snow_status render_blended(snow_frame *frame, snow_job *job,
                                   const snow_view *view) {
     const snow_volume_info *info = &job->volume->info;
-    size_t floats = (size_t)view->width * (size_t)view->height *
-                    (size_t)job->channels;
+    size_t floats =
+        (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     double shares[3];
     snow_placement_shares(info, &job->placement, shares);
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,

@@ -23,11 +23,9 @@ static const snow_isa levels[] = {SNOW_ISA_AVX2, SNOW_ISA_AVX512};
 /* Random spans of random samples: values 0.5 to 2 where something is, of which
  * the colours, but not the opacity, are a function. */
 static reference_scene random_scene(uint64_t *random, bool grey) {
-    static const snow_color_point rainbow[] = {{0.5, 1, 0.2, 0},
-                                               {1.2, 0.1, 0.9, 0.4},
-                                               {2, 0.1, 0.3, 1}};
-    static const snow_color_point ramp[] = {{0.5, 0.1, 0.1, 0.1},
-                                            {2, 1, 1, 1}};
+    static const snow_color_point rainbow[] = {
+        {0.5, 1, 0.2, 0}, {1.2, 0.1, 0.9, 0.4}, {2, 0.1, 0.3, 1}};
+    static const snow_color_point ramp[] = {{0.5, 0.1, 0.1, 0.1}, {2, 1, 1, 1}};
     int64_t dims[3];
     for (int n = 0; n < 3; n++)
         dims[n] = 1 + (int64_t)(support_uniform(random) * 22);

@@ -63,9 +63,9 @@ struct snow_classifier {
     double threshold; /* opacity 0 to 255 */
     double exponent;  /* path length / reference length */
     snow_classify_row_fn *classify_row;
-    snow_keep_bytes_fn *keep_bytes; /* NULL: the plain loop */
-    unsigned char *keep; /* per native value: is it kept? */
-    float *table;        /* per native value: its sample */
+    snow_keep_bytes_fn *keep_bytes;       /* NULL: the plain loop */
+    unsigned char *keep;                  /* per native value: is it kept? */
+    float *table;                         /* per native value: its sample */
     size_t keep_capacity, table_capacity; /* bytes */
 };
 
@@ -134,7 +134,7 @@ typedef struct snow_shader {
     const snow_placement *placement;
     double ambient, diffuse, specular, shininess;
     snow_isa isa; /* resolved; all give the same bits */
-    int whole; /* shininess when it is a whole number up to 1024, else -1 */
+    int whole;    /* shininess when it is a whole number up to 1024, else -1 */
     double light[3], half[3], viewer[3]; /* W^T times the world vector */
     double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
 } snow_shader;

@@ -29,17 +29,15 @@ static void GRADIENT_ROW(const snow_gradient_row *row, const uint32_t *columns,
     const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
     int64_t at[3] = {row->at[0], row->at[1], row->at[2]};
     at[row->axis] = 0;
-    const GRADIENT_TYPE *first =
-        (const GRADIENT_TYPE *)row->volume->voxels + at[0] +
-        at[1] * strides[1] + at[2] * strides[2];
+    const GRADIENT_TYPE *first = (const GRADIENT_TYPE *)row->volume->voxels +
+                                 at[0] + at[1] * strides[1] +
+                                 at[2] * strides[2];
     const int64_t step = strides[row->axis];
     for (size_t n = 0; n < count; n++) {
         const GRADIENT_TYPE *here = first + columns[n] * step;
         double x = ((double)here[1] - (double)here[-1]) / 2;
-        double y =
-            ((double)here[strides[1]] - (double)here[-strides[1]]) / 2;
-        double z =
-            ((double)here[strides[2]] - (double)here[-strides[2]]) / 2;
+        double y = ((double)here[strides[1]] - (double)here[-strides[1]]) / 2;
+        double z = ((double)here[strides[2]] - (double)here[-strides[2]]) / 2;
         gradients[n] = x;
         gradients[room + n] = y;
         gradients[2 * room + n] = z;

@@ -126,8 +126,8 @@ void snow_shade_strip(const snow_shader *shader, int channels,
         while (n < strip->row_end[line]) {
             size_t count = strip->row_end[line] - n;
             count = count < SHADE_BLOCK ? count : SHADE_BLOCK;
-            snow_gradients_of_row(&row, strip->columns + n, count,
-                                  SHADE_BLOCK, gradients[0]);
+            snow_gradients_of_row(&row, strip->columns + n, count, SHADE_BLOCK,
+                                  gradients[0]);
             shade_block(shader, (const double(*)[SHADE_BLOCK])gradients,
                         (int)count, channels,
                         strip->samples + n * (size_t)channels);

@@ -11,8 +11,7 @@ static TARGET void NAME(over_grey)(float *front, const float *back,
     for (; n + LANES / 2 <= count; n += LANES / 2) {
         V(vec) f = V(load)(front + 2 * n);
         V(vec) left = V(sub)(one, V(alpha2)(f));
-        V(store)(front + 2 * n,
-                 V(add)(f, V(mul)(left, V(load)(back + 2 * n))));
+        V(store)(front + 2 * n, V(add)(f, V(mul)(left, V(load)(back + 2 * n))));
     }
     over_grey(front + 2 * n, back + 2 * n, count - n);
 }
@@ -24,8 +23,7 @@ static TARGET void NAME(over_rgba)(float *front, const float *back,
     for (; n + LANES / 4 <= count; n += LANES / 4) {
         V(vec) f = V(load)(front + 4 * n);
         V(vec) left = V(sub)(one, V(alpha4)(f));
-        V(store)(front + 4 * n,
-                 V(add)(f, V(mul)(left, V(load)(back + 4 * n))));
+        V(store)(front + 4 * n, V(add)(f, V(mul)(left, V(load)(back + 4 * n))));
     }
     over_rgba(front + 4 * n, back + 4 * n, count - n);
 }

@@ -129,7 +129,8 @@ void snow_dense_add_row(snow_dense *d, const snow_span *spans, size_t count,
     if (!count)
         return;
     int64_t first = spans[0].column;
-    d->extents[n] = (snow_span){(uint32_t)first, (uint32_t)at - (uint32_t)first};
+    d->extents[n] =
+        (snow_span){(uint32_t)first, (uint32_t)at - (uint32_t)first};
     d->c0 = first < d->c0 ? first : d->c0;
     d->c1 = (int64_t)at > d->c1 ? (int64_t)at : d->c1;
     d->r0 = (int64_t)n < d->r0 ? (int64_t)n : d->r0;

@@ -90,10 +90,8 @@ static const struct gather_level {
     snow_gather_fn *rgba_small; /* two voxels in reach */
     snow_gather_fn *rgba;
 } levels[] = {
-    [SNOW_ISA_AVX2] = {grey_avx2_row, small_avx2_row,
-                       rgba_avx2_row},
-    [SNOW_ISA_AVX512] = {grey_avx512_row, small_avx512_row,
-                         rgba_avx512_row},
+    [SNOW_ISA_AVX2] = {grey_avx2_row, small_avx2_row, rgba_avx2_row},
+    [SNOW_ISA_AVX512] = {grey_avx512_row, small_avx512_row, rgba_avx512_row},
 };
 
 static snow_gather_fn *pick(snow_isa isa, int channels, int taps_u) {
@@ -190,17 +188,19 @@ void snow_gather_rows(const snow_gatherer *g, const snow_dense *d,
         *top = *bottom = 0;
 }
 
-/* Narrows pixels [*first, *end) to those where at + x step is in [low, high]. */
+/* Narrows pixels [*first, *end) to those where at + x step is in [low, high].
+ */
 static void narrow(double at, double step, double low, double high,
                    double *first, double *end) {
-    if (fabs(step) * fmax(fabs(*first), fabs(*end)) < SLACK) {
+    if (fabs(step) * *end < SLACK) {
         if (at < low - SLACK || at > high + SLACK)
             *end = *first;
         return;
     }
     double a = (low - at) / step, b = (high - at) / step;
-    *first = fmax(*first, fmin(a, b) - 1);
-    *end = fmin(*end, fmax(a, b) + 1);
+    double from = (a < b ? a : b) - 1, upto = (a < b ? b : a) + 1;
+    *first = from > *first ? from : *first; /* fmax() may be a call */
+    *end = upto < *end ? upto : *end;
 }
 
 int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
@@ -211,17 +211,17 @@ int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
     slice_origin(p, slice, origin);
     double x0 = 0.5 - origin[0], y0 = y + 0.5 - origin[1];
     snow_line line = {
-        .u = p->inverse[0][0] * x0 + p->inverse[0][1] * y0 +
-             g->phases_u.reach + g->shape.taps_u,
-        .v = p->inverse[1][0] * x0 + p->inverse[1][1] * y0 +
-             g->phases_v.reach + g->shape.taps_v,
+        .u = p->inverse[0][0] * x0 + p->inverse[0][1] * y0 + g->phases_u.reach +
+             g->shape.taps_u,
+        .v = p->inverse[1][0] * x0 + p->inverse[1][1] * y0 + g->phases_v.reach +
+             g->shape.taps_v,
         .du = p->inverse[0][0],
         .dv = p->inverse[1][0],
     };
-    narrow(line.u, line.du, (double)d->c0 + 1,
-           (double)d->c1 + g->shape.taps_u, &first, &end);
-    narrow(line.v, line.dv, (double)d->r0 + 1,
-           (double)d->r1 + g->shape.taps_v, &first, &end);
+    narrow(line.u, line.du, (double)d->c0 + 1, (double)d->c1 + g->shape.taps_u,
+           &first, &end);
+    narrow(line.v, line.dv, (double)d->r0 + 1, (double)d->r1 + g->shape.taps_v,
+           &first, &end);
     if (!(first < end))
         return 0;
     line.first = (int)first;

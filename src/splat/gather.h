@@ -36,8 +36,8 @@ typedef struct snow_places {
     int32_t *row_u, *row_v; /* first floats of rows of the phase tables */
     float *rest_u, *rest_v; /* from there to the next row, 0 to 1 */
     float *u, *v; /* or, where these are cubics, four weights for each pixel */
-    uint16_t *reached;      /* 16 pixels each, the first one lowest */
-    size_t capacity;        /* of the memory, which begins at `window` */
+    uint16_t *reached; /* 16 pixels each, the first one lowest */
+    size_t capacity;   /* of the memory, which begins at `window` */
 } snow_places;
 
 /* Makes room for rows of `width` pixels; the record begins as zeros.  Errors:

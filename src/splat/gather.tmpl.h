@@ -20,8 +20,8 @@
  * Weights go through memory, where they are spread for nothing by loading. */
 
 /* Weights of four voxels at a phase, for all `padded` voxels of a row. */
-static inline __attribute__((always_inline)) TARGET void LOCAL(weights)(
-    const float *table, int padded, float rest, float *weights) {
+static inline __attribute__((always_inline)) TARGET void
+LOCAL(weights)(const float *table, int padded, float rest, float *weights) {
     __m128 part = _mm_set1_ps(rest);
     for (int n = 0; n < padded; n += 4) {
         __m128 here = _mm_loadu_ps(table + n);
@@ -31,10 +31,10 @@ static inline __attribute__((always_inline)) TARGET void LOCAL(weights)(
     }
 }
 
-/* Sums one pixel; `taps` rows, `blocks` blocks a row. */
-static inline __attribute__((always_inline)) TARGET void LOCAL(pixel)(
-    const float *window, size_t stride, const float *u, const float *v,
-    int taps, int blocks, float *pixel) {
+/* Sums one pixel, but for folding; `taps` rows, `blocks` blocks a row. */
+static inline __attribute__((always_inline)) TARGET B(block)
+    LOCAL(sum)(const float *window, size_t stride, const float *u,
+               const float *v, int taps, int blocks) {
     B(block) sum = B(zero)();
     for (int n = 0; n < blocks; n++, window += BLOCK_VOXELS * GATHER_CHANNELS) {
         B(block) acc = B(scale)(v[0], B(load)(window));
@@ -47,7 +47,13 @@ static inline __attribute__((always_inline)) TARGET void LOCAL(pixel)(
 #endif
         sum = B(fma)(w, acc, sum);
     }
-    __m128 folded = B(fold)(sum);
+    return sum;
+}
+
+static inline __attribute__((always_inline)) TARGET void
+LOCAL(pixel)(const float *window, size_t stride, const float *u, const float *v,
+             int taps, int blocks, float *pixel) {
+    __m128 folded = B(fold)(LOCAL(sum)(window, stride, u, v, taps, blocks));
 #if GATHER_CHANNELS == 2
     folded = _mm_add_ps(folded, _mm_movehl_ps(folded, folded));
     _mm_storel_pi((__m64 *)(void *)pixel, folded);
@@ -58,34 +64,50 @@ static inline __attribute__((always_inline)) TARGET void LOCAL(pixel)(
 
 /* Pixels first .. end - 1 of a row, their weights out of the tables, 16 at
  * most. */
-static inline __attribute__((always_inline)) TARGET void LOCAL(tabled)(
-    const snow_gatherer *g, const snow_dense *d, const snow_places *p,
-    int first, int end, int taps, int blocks, int padded_u, int padded_v,
-    float *pixels) {
+static inline __attribute__((always_inline)) TARGET void
+LOCAL(tabled)(const snow_gatherer *g, const snow_dense *d, const snow_places *p,
+              int first, int end, int taps, int blocks, int padded_u,
+              int padded_v, float *pixels) {
     float u[CHUNK * SNOW_PHASE_TAPS_MOST], v[CHUNK * SNOW_PHASE_TAPS_MOST];
     for (int n = 0; n < end - first; n++) {
-        LOCAL(weights)(g->phases_u.weights + p->row_u[first + n], padded_u,
-                       p->rest_u[first + n], u + n * padded_u);
-        LOCAL(weights)(g->phases_v.weights + p->row_v[first + n], padded_v,
-                       p->rest_v[first + n], v + n * padded_v);
+        LOCAL(weights)
+        (g->phases_u.weights + p->row_u[first + n], padded_u,
+         p->rest_u[first + n], u + n * padded_u);
+        LOCAL(weights)
+        (g->phases_v.weights + p->row_v[first + n], padded_v,
+         p->rest_v[first + n], v + n * padded_v);
     }
     THROUGH_MEMORY;
     for (int n = 0; n < end - first; n++)
-        LOCAL(pixel)(d->samples + p->window[first + n], d->stride,
-                     u + n * padded_u, v + n * padded_v, taps, blocks,
-                     pixels + (size_t)(first + n) * GATHER_CHANNELS);
+        LOCAL(pixel)
+    (d->samples + p->window[first + n], d->stride, u + n * padded_u,
+     v + n * padded_v, taps, blocks,
+     pixels + (size_t)(first + n) * GATHER_CHANNELS);
 }
 
 /* The same for a run of any length, whose weights are there already. */
-static inline __attribute__((always_inline)) TARGET void LOCAL(cubic)(
-    const snow_dense *d, const snow_places *p, snow_run run, int taps,
-    int blocks, float *pixels) {
+static inline __attribute__((always_inline)) TARGET void
+LOCAL(cubic)(const snow_dense *d, const snow_places *p, snow_run run, int taps,
+             int blocks, float *pixels) {
     const float *samples = d->samples;
     const size_t stride = d->stride;
-    for (int n = run.first; n < run.end; n++)
-        LOCAL(pixel)(samples + p->window[n], stride, p->u + 4 * (size_t)n,
-                     p->v + 4 * (size_t)n, taps, blocks,
-                     pixels + (size_t)n * GATHER_CHANNELS);
+    int n = run.first;
+#if GATHER_CHANNELS == 4
+    for (; n + 4 <= run.end; n += 4) {
+        B(block) sum[4];
+        for (int i = 0; i < 4; i++) {
+            size_t at = (size_t)(n + i);
+            sum[i] = LOCAL(sum)(samples + p->window[at], stride, p->u + 4 * at,
+                                p->v + 4 * at, taps, blocks);
+        }
+        B(fold_four)(sum, pixels + 4 * (size_t)n);
+    }
+#endif
+    for (; n < run.end; n++)
+        LOCAL(pixel)
+        (samples + p->window[n], stride, p->u + 4 * (size_t)n,
+         p->v + 4 * (size_t)n, taps, blocks,
+         pixels + (size_t)n * GATHER_CHANNELS);
 }
 
 /* A run of pixels, the usual numbers of taps as constants. */
@@ -111,14 +133,15 @@ static TARGET void LOCAL(run)(const snow_gatherer *g, const snow_dense *d,
         if (taps == 4 && blocks == 1)
             LOCAL(tabled)(g, d, p, first, end, 4, 1, 4, 4, pixels);
         else
-            LOCAL(tabled)(g, d, p, first, end, taps, blocks,
-                          g->phases_u.padded, g->phases_v.padded, pixels);
+            LOCAL(tabled)
+        (g, d, p, first, end, taps, blocks, g->phases_u.padded,
+         g->phases_v.padded, pixels);
     }
 }
 
 /* Four weights for each of a vector's phases. */
-static inline __attribute__((always_inline)) TARGET void LOCAL(cubics)(
-    const float (*cubics)[4], V(vec) phase, float *weights) {
+static inline __attribute__((always_inline)) TARGET void
+LOCAL(cubics)(const float (*cubics)[4], V(vec) phase, float *weights) {
     V(vec) dealt = V(deal)(phase), w[4];
     for (int n = 0; n < 4; n++) {
         const float *c = cubics[n];
@@ -131,9 +154,9 @@ static inline __attribute__((always_inline)) TARGET void LOCAL(cubics)(
 
 /* Finds the places of a chunk that begins at pixel x; returns which of its
  * pixels are reached, the first one lowest. */
-static inline __attribute__((always_inline)) TARGET unsigned LOCAL(locate)(
-    const snow_gatherer *g, const snow_dense *d, const snow_line *line, int x,
-    const snow_places *p, bool cubic) {
+static inline __attribute__((always_inline)) TARGET unsigned
+LOCAL(locate)(const snow_gatherer *g, const snow_dense *d,
+              const snow_line *line, int x, const snow_places *p, bool cubic) {
     double u = line->u + x * line->du, v = line->v + x * line->dv;
     double whole_u = floor(u), whole_v = floor(v);
     V(vec) start_u = V(set1)((float)(u - whole_u));
@@ -152,9 +175,12 @@ static inline __attribute__((always_inline)) TARGET unsigned LOCAL(locate)(
         /* Windows out of the slice become those at its ends: empty ones. */
         i = V(clamp)(i, 0, last_u);
         j = V(clamp)(j, 0, last_v);
-        reached |= V(bits)(d->reached, (int)d->words, i, j) << n;
-        V(store_ints)(p->window + x + n,
-                      V(place)(i, GATHER_CHANNELS, j, (int)d->stride));
+        unsigned bits = V(bits)(d->reached, (int)d->words, i, j);
+        if (!bits)
+            continue;
+        reached |= bits << n;
+        V(store_ints)
+        (p->window + x + n, V(place)(i, GATHER_CHANNELS, j, (int)d->stride));
         V(vec) phase_u = V(sub)(at_u, floor_u), phase_v = V(sub)(at_v, floor_v);
         if (cubic) {
             LOCAL(cubics)(g->phases_u.cubics, phase_u, p->u + 4 * (x + n));
@@ -184,8 +210,8 @@ static TARGET int LOCAL(row)(const snow_gatherer *g, const snow_dense *d,
         for (int x = begin; x < line->end; x += CHUNK)
             p->reached[x / CHUNK] =
                 (uint16_t)LOCAL(locate)(g, d, line, x, p, false);
-    int count = find_runs(p->reached, begin, line->end, g->placement->width,
-                          runs);
+    int count =
+        find_runs(p->reached, begin, line->end, g->placement->width, runs);
     for (int n = 0; n < count; n++)
         LOCAL(run)(g, d, p, runs[n], pixels);
     return count;

@@ -169,18 +169,17 @@ double snow_taper_phase_reach(const snow_taper *taper) {
     return taper->half + EDGE - (snow_taper_taps(taper) - 1);
 }
 
-void snow_taper_phase(const snow_taper *taper, double phase,
-                      double *weights) {
+void snow_taper_phase(const snow_taper *taper, double phase, double *weights) {
     double sum = 0;
     int taps = snow_taper_taps(taper);
     double below_one = fmin(phase, 1 - 1e-9); /* 1 is the end of the phases */
     for (int n = 0; n < taps; n++) {
         double from_left = below_one + (taps - 1 - n), width = 2 * taper->half;
         double t = from_left - taper->half - EDGE;
-        weights[n] = from_left < width
-                        ? kernels[taper->kernel].value(taper->support,
-                                                       t / taper->wide)
-                        : 0;
+        weights[n] =
+            from_left < width
+                ? kernels[taper->kernel].value(taper->support, t / taper->wide)
+                : 0;
         sum += weights[n];
     }
     for (int n = 0; n < taps; n++)

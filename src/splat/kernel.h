@@ -77,8 +77,8 @@ typedef struct snow_taper_cell {
 
 typedef struct snow_taper_table {
     snow_taper_cell *cells;
-    float shift; /* half the support and a margin of empty cells, voxels */
-    float scale; /* cells per voxel */
+    float shift;     /* half the support and a margin of empty cells, voxels */
+    float scale;     /* cells per voxel */
     size_t capacity; /* of cells, bytes */
     snow_taper made_for;
 } snow_taper_table;

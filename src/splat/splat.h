@@ -43,8 +43,8 @@ struct snow_splatter {
     const snow_placement *placement;
     snow_taper along_u, along_v;
     snow_splat_row_fn *splat_row;
-    double origin[2];         /* pixel position of voxel (0, 0) of the slice */
-    double reach[2];          /* half the footprint's bounding box, pixels */
+    double origin[2]; /* pixel position of voxel (0, 0) of the slice */
+    double reach[2];  /* half the footprint's bounding box, pixels */
     bool aligned;
     bool transposed;          /* aligned views: u lies along the image's y */
     snow_taps taps_u, taps_v; /* aligned views */

@@ -21,10 +21,10 @@ snow_status snow_taps_make(snow_context *context, const snow_taper *taper,
                          (long long)voxels, pixels);
     size_t of_ints = (size_t)count * sizeof *taps->first;
     taps->origin = NAN;
-    SNOW_TRY(snow_reserve(context, &taps->first, &taps->first_capacity, 0,
-                          of_ints));
-    SNOW_TRY(snow_reserve(context, &taps->count, &taps->count_capacity, 0,
-                          of_ints));
+    SNOW_TRY(
+        snow_reserve(context, &taps->first, &taps->first_capacity, 0, of_ints));
+    SNOW_TRY(
+        snow_reserve(context, &taps->count, &taps->count_capacity, 0, of_ints));
     SNOW_TRY(snow_reserve(context, &taps->offset, &taps->offset_capacity, 0,
                           of_ints));
     return snow_reserve(context, &taps->weights, &taps->weights_capacity, 0,

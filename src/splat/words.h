@@ -21,7 +21,8 @@
  *   B(zero)(), B(fma)(a, b, c)
  *   B(pairs)(p)            the weights of 4 voxels, each twice (8 floats)
  *   B(fours)(p)            the weights of 2 or 4 voxels, each 4 times
- *   B(fold)(b)             the four floats that remain when halves are added */
+ *   B(fold)(b)             the four floats that remain when halves are added
+ *   B(fold_four)(b, p)     the same of b[0] to b[3], stored */
 #ifndef SNOW_SPLAT_WORDS_H
 #define SNOW_SPLAT_WORDS_H
 
@@ -54,10 +55,10 @@ SNOW_AVX2_INLINE __m256i snow_avx2_clamp(__m256i i, int low, int high) {
     return _mm256_min_epi32(i, _mm256_set1_epi32(high));
 }
 
-SNOW_AVX2_INLINE __m256i snow_avx2_place(__m256i i, int i_step, __m256i j, int j_step) {
-    return _mm256_add_epi32(
-        _mm256_mullo_epi32(i, _mm256_set1_epi32(i_step)),
-        _mm256_mullo_epi32(j, _mm256_set1_epi32(j_step)));
+SNOW_AVX2_INLINE __m256i snow_avx2_place(__m256i i, int i_step, __m256i j,
+                                         int j_step) {
+    return _mm256_add_epi32(_mm256_mullo_epi32(i, _mm256_set1_epi32(i_step)),
+                            _mm256_mullo_epi32(j, _mm256_set1_epi32(j_step)));
 }
 
 SNOW_AVX2_INLINE __m256i snow_avx2_add_int(__m256i i, int n) {
@@ -97,10 +98,10 @@ SNOW_AVX2_INLINE void snow_avx2_store_fours(float *p, __m256 a, __m256 b,
 SNOW_AVX2_INLINE unsigned snow_avx2_bits(const uint32_t *map, int words,
                                          __m256i i, __m256i j) {
     __m256i at = snow_avx2_place(_mm256_srli_epi32(i, 5), 1, j, words);
-    __m256i word = _mm256_i32gather_epi32((const int *)(const void *)map, at, 4);
-    __m256i left = _mm256_sub_epi32(
-        _mm256_set1_epi32(31),
-        _mm256_and_si256(i, _mm256_set1_epi32(31)));
+    __m256i word =
+        _mm256_i32gather_epi32((const int *)(const void *)map, at, 4);
+    __m256i left = _mm256_sub_epi32(_mm256_set1_epi32(31),
+                                    _mm256_and_si256(i, _mm256_set1_epi32(31)));
     __m256i bit = _mm256_sllv_epi32(word, left); /* to the sign */
     return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(bit));
 }
@@ -128,10 +129,10 @@ SNOW_AVX512_INLINE __m512i snow_avx512_clamp(__m512i i, int low, int high) {
     return _mm512_min_epi32(i, _mm512_set1_epi32(high));
 }
 
-SNOW_AVX512_INLINE __m512i snow_avx512_place(__m512i i, int i_step, __m512i j, int j_step) {
-    return _mm512_add_epi32(
-        _mm512_mullo_epi32(i, _mm512_set1_epi32(i_step)),
-        _mm512_mullo_epi32(j, _mm512_set1_epi32(j_step)));
+SNOW_AVX512_INLINE __m512i snow_avx512_place(__m512i i, int i_step, __m512i j,
+                                             int j_step) {
+    return _mm512_add_epi32(_mm512_mullo_epi32(i, _mm512_set1_epi32(i_step)),
+                            _mm512_mullo_epi32(j, _mm512_set1_epi32(j_step)));
 }
 
 SNOW_AVX512_INLINE __m512i snow_avx512_add_int(__m512i i, int n) {
@@ -148,9 +149,9 @@ SNOW_AVX512_INLINE void snow_avx512_store_ints(int32_t *p, __m512i i) {
 
 /* As above, in quarters: lane 4 l + k of what is dealt is lane 4 k + l. */
 SNOW_AVX512_INLINE __m512 snow_avx512_deal(__m512 v) {
-    return _mm512_permutexvar_ps(_mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2,
-                                                   6, 10, 14, 3, 7, 11, 15),
-                                 v);
+    return _mm512_permutexvar_ps(
+        _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15),
+        v);
 }
 
 SNOW_AVX512_INLINE void snow_avx512_store_fours(float *p, __m512 a, __m512 b,
@@ -173,11 +174,12 @@ SNOW_AVX512_INLINE unsigned snow_avx512_bits(const uint32_t *map, int words,
     __m512i at = snow_avx512_place(_mm512_srli_epi32(i, 5), 1, j, words);
     __m512i word = _mm512_i32gather_epi32(at, map, 4);
     __m512i bit = _mm512_and_si512(i, _mm512_set1_epi32(31));
-    return _mm512_test_epi32_mask(
-        word, _mm512_sllv_epi32(_mm512_set1_epi32(1), bit));
+    return _mm512_test_epi32_mask(word,
+                                  _mm512_sllv_epi32(_mm512_set1_epi32(1), bit));
 }
 
-/* --- blocks of 8 floats ---------------------------------------------------- */
+/* --- blocks of 8 floats ----------------------------------------------------
+ */
 
 typedef __m256 snow_b8_block;
 
@@ -217,7 +219,18 @@ SNOW_AVX2_INLINE __m128 snow_b8_fold(__m256 b) {
     return _mm_add_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
 }
 
-/* --- blocks of 16 floats, as pairs ----------------------------------------- */
+SNOW_AVX2_INLINE __m256 snow_b8_fold_two(__m256 a, __m256 b) {
+    return _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20),
+                         _mm256_permute2f128_ps(a, b, 0x31));
+}
+
+SNOW_AVX2_INLINE void snow_b8_fold_four(const __m256 b[4], float *p) {
+    _mm256_storeu_ps(p, snow_b8_fold_two(b[0], b[1]));
+    _mm256_storeu_ps(p + 8, snow_b8_fold_two(b[2], b[3]));
+}
+
+/* --- blocks of 16 floats, as pairs -----------------------------------------
+ */
 
 typedef struct snow_p16_block {
     __m256 low, high;
@@ -258,7 +271,15 @@ SNOW_AVX2_INLINE __m128 snow_p16_fold(snow_p16_block b) {
     return snow_b8_fold(_mm256_add_ps(b.low, b.high));
 }
 
-/* --- blocks of 16 floats, whole -------------------------------------------- */
+SNOW_AVX2_INLINE void snow_p16_fold_four(const snow_p16_block b[4], float *p) {
+    __m256 halves[4];
+    for (int i = 0; i < 4; i++)
+        halves[i] = _mm256_add_ps(b[i].low, b[i].high);
+    snow_b8_fold_four(halves, p);
+}
+
+/* --- blocks of 16 floats, whole --------------------------------------------
+ */
 
 typedef __m512 snow_b16_block;
 
@@ -289,8 +310,18 @@ SNOW_AVX512_INLINE __m512 snow_b16_fours(const float *p) {
 }
 
 SNOW_AVX512_INLINE __m128 snow_b16_fold(__m512 b) {
-    return snow_b8_fold(_mm256_add_ps(_mm512_castps512_ps256(b),
-                                      _mm512_extractf32x8_ps(b, 1)));
+    return snow_b8_fold(
+        _mm256_add_ps(_mm512_castps512_ps256(b), _mm512_extractf32x8_ps(b, 1)));
+}
+
+/* Quarters 0 + 2 and 1 + 3 of each, as snow_b8_fold adds them, then these. */
+SNOW_AVX512_INLINE void snow_b16_fold_four(const __m512 b[4], float *p) {
+    __m512 ab = _mm512_add_ps(_mm512_shuffle_f32x4(b[0], b[1], 0x44),
+                              _mm512_shuffle_f32x4(b[0], b[1], 0xee));
+    __m512 cd = _mm512_add_ps(_mm512_shuffle_f32x4(b[2], b[3], 0x44),
+                              _mm512_shuffle_f32x4(b[2], b[3], 0xee));
+    _mm512_storeu_ps(p, _mm512_add_ps(_mm512_shuffle_f32x4(ab, cd, 0x88),
+                                      _mm512_shuffle_f32x4(ab, cd, 0xdd)));
 }
 
 #endif
