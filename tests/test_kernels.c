@@ -507,6 +507,7 @@ typedef struct window_case {
     snow_mask_rows rows;
     uint64_t bits[SNOW_WINDOW_ROWS * 8];
     uint32_t rank[SNOW_WINDOW_ROWS * 8];
+    uint64_t wanted;
 } window_case;
 
 static bool bit_at(const window_case *w, int row, int64_t column) {
@@ -523,6 +524,7 @@ static void draw_rows(window_case *w, int columns, uint64_t *random) {
     w->rows.bits = w->bits;
     w->rows.rank = w->rank;
     w->rows.held = draw_mask(random, SNOW_WINDOW_ROWS);
+    w->wanted = draw_mask(random, SNOW_WINDOW_ROWS);
     for (size_t n = 0; n < COUNT(w->bits); n++) {
         w->bits[n] = support_random(random); /* of rows that are not held */
         w->rank[n] = 0xDEADBEEF;
@@ -559,7 +561,8 @@ static void check_window(const window_case *w, snow_isa isa) {
     uint32_t before[SNOW_WINDOW_ROWS];
     memset(bits, GUARD_BYTE, sizeof bits);
     memset(before, GUARD_BYTE, sizeof before);
-    uint64_t got = snow_window_fns_of(isa)->windows(&w->rows, w->column,
+    uint64_t wanted = w->wanted;
+    uint64_t got = snow_window_fns_of(isa)->windows(&w->rows, wanted, w->column,
                                                     w->count, bits, before);
     for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
         uint64_t window = 0;
@@ -568,7 +571,7 @@ static void check_window(const window_case *w, snow_isa isa) {
             window |= (uint64_t)bit_at(w, row, w->column + n) << n;
         for (int64_t n = 0; n < w->column; n++)
             voxels += bit_at(w, row, n);
-        if (!(w->rows.held >> row & 1)) {
+        if (!((w->rows.held & wanted) >> row & 1)) {
             memset(&window, GUARD_BYTE, sizeof window);
             memset(&voxels, GUARD_BYTE, sizeof voxels);
         } else {
@@ -1242,8 +1245,8 @@ static void call_windows(void *user, snow_isa isa) {
     window_case *w = user;
     uint64_t bits[SNOW_WINDOW_ROWS];
     uint32_t before[SNOW_WINDOW_ROWS];
-    snow_window_fns_of(isa)->windows(&w->rows, w->column, w->count, bits,
-                                     before);
+    snow_window_fns_of(isa)->windows(&w->rows, w->wanted, w->column, w->count,
+                                     bits, before);
 }
 
 typedef struct timed_read {
