@@ -504,6 +504,7 @@ static void samples_of_every_window(void **state) {
 typedef struct window_case {
     int columns, count;
     int64_t column;
+    uint64_t wanted;
     snow_mask_rows rows;
     uint64_t bits[SNOW_WINDOW_ROWS * 8];
     uint32_t rank[SNOW_WINDOW_ROWS * 8];
@@ -559,8 +560,8 @@ static void check_window(const window_case *w, snow_isa isa) {
     uint32_t before[SNOW_WINDOW_ROWS];
     memset(bits, GUARD_BYTE, sizeof bits);
     memset(before, GUARD_BYTE, sizeof before);
-    uint64_t got = snow_window_fns_of(isa)->windows(&w->rows, w->column,
-                                                    w->count, bits, before);
+    uint64_t got = snow_window_fns_of(isa)->windows(
+        &w->rows, w->wanted, w->column, w->count, bits, before);
     for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
         uint64_t window = 0;
         uint32_t voxels = 0;
@@ -568,7 +569,7 @@ static void check_window(const window_case *w, snow_isa isa) {
             window |= (uint64_t)bit_at(w, row, w->column + n) << n;
         for (int64_t n = 0; n < w->column; n++)
             voxels += bit_at(w, row, n);
-        if (!(w->rows.held >> row & 1)) {
+        if (!(w->rows.held >> row & w->wanted >> row & 1)) {
             memset(&window, GUARD_BYTE, sizeof window);
             memset(&voxels, GUARD_BYTE, sizeof voxels);
         } else {
@@ -600,6 +601,7 @@ static void windows_at_every_column(void **state) {
                 w.column = draw(&random, columns + w.count - 1) - w.count + 1;
                 if (n % 4 == 0)
                     w.column = n % 8 ? columns - 1 : 1 - w.count;
+                w.wanted = draw_mask(&random, SNOW_WINDOW_ROWS);
                 check_window(&w, levels[level]);
             }
         }
@@ -1242,8 +1244,8 @@ static void call_windows(void *user, snow_isa isa) {
     window_case *w = user;
     uint64_t bits[SNOW_WINDOW_ROWS];
     uint32_t before[SNOW_WINDOW_ROWS];
-    snow_window_fns_of(isa)->windows(&w->rows, w->column, w->count, bits,
-                                     before);
+    snow_window_fns_of(isa)->windows(&w->rows, w->wanted, w->column, w->count,
+                                     bits, before);
 }
 
 typedef struct timed_read {
@@ -1264,6 +1266,7 @@ static void time_windows(uint64_t *random) {
     draw_rows(&t.window, 130, random);
     rank_rows(&t.window);
     t.window.rows.held = ~UINT64_C(0) >> 28;
+    t.window.wanted = ~UINT64_C(0);
     t.window.count = 20;
     t.window.column = 55;
     time_kernel("windows of 36 rows", call_windows, &t.window);
