@@ -1,4 +1,4 @@
-/* bench/bench.c - the verb `bench`: which table, with what.
+/* bench/bench.c - the verb `bench`: what is measured, with which options.
  *
  * It reads its own options, since they mean nothing to other verbs, and the
  * help of the tool shows its text as it stands. */
@@ -11,33 +11,69 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: snowglass bench table1|table2|table3 [options]\n"
+    "usage: snowglass bench table1|table2|table3|speed [options]\n"
     "\n"
-    "Prints the paper's table beside ours: sparse ratios (table1), original\n"
-    "splatting against the three sparse encodings (table2), the same for\n"
-    "footprints of 2x2 to 5x5 (table3).  256x256 grey pictures, one voxel per\n"
-    "pixel, preset linear, no shading, one thread.  Every row is verified\n"
-    "before its times are printed.\n"
+    "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
+    "(table1), original splatting against the three sparse encodings "
+    "(table2),\n"
+    "the same for footprints of 2x2 to 5x5 (table3).  256x256 grey pictures, "
+    "one\n"
+    "voxel per pixel, preset linear, no shading, one thread.\n"
+    "\n"
+    "speed prints how fast pictures are made while the view turns: volumes, "
+    "looks,\n"
+    "colours, shading, sizes, methods, encodings and threads, against "
+    "original and\n"
+    "tested splatting with the same kernel.  It takes many minutes.\n"
+    "\n"
+    "Every row is verified before its times are printed.\n"
     "\n"
     "  --data DIR       folder that holds "
     "classic/engine_256x256x110_u8.raw.gz\n"
-    "                   and classic/CThead_256x256x113_u16be.raw.gz; without\n"
-    "                   it the phantoms of these names are used\n"
+    "                   and classic/CThead_256x256x113_u16be.raw.gz, for "
+    "speed also\n"
+    "                   classic/aneurism.vti and classic/bonsai.vti; without "
+    "it\n"
+    "                   phantoms are used\n"
     "  --json           print one JSON object\n"
     "  --runs N         alternated runs whose median is taken, 5 to 99 (7)\n"
+    "  --help           this text\n"
+    "\n"
+    "tables:\n"
     "  --kernel NAME    gauss, tent, bspline or box (gauss)\n"
     "  --azimuth DEG    turn the camera from +z (0)\n"
     "  --elevation DEG  (0)\n"
-    "  --help           this text\n";
+    "\n"
+    "speed:\n"
+    "  --volumes LIST   of engine, head, aneurism, bonsai, cube, shells, "
+    "cube512,\n"
+    "                   engine512, head512 (all that are there, but for those "
+    "of\n"
+    "                   512x512x512)\n"
+    "  --large          those, too: some minutes for each picture\n"
+    "  --sizes LIST     sides of the square picture in pixels (512)\n"
+    "  --threads LIST   (1 and all processors)\n"
+    "  --only LIST      of translucent, opaque, grey, rgba, unshaded, phong,\n"
+    "                   original, tested, footprint, sheared, auto, crs, "
+    "bitmap,\n"
+    "                   rle, draft, normal, high, bspline, tent: words of one "
+    "kind\n"
+    "                   add up, kinds restrict each other\n"
+    "  --sweep NAME     instead: phantoms by sparse ratio (sparse) or by size "
+    "(size)\n"
+    "  --chart FILE     draw the sweep (sparse unless told) as SVG\n"
+    "  --quick          one run on a tiny phantom: a test, no measurement\n";
 
-/* The tables by name: a new measurement is a file and a line here. */
+/* What is measured, by name: a new one is a file and a line here. */
 static const struct bench_entry {
     const char *name;
     int (*run)(snow_context *context, const bench_options *options);
+    bool table; /* of the paper */
 } entries[] = {
-    {"table1", bench_table1},
-    {"table2", bench_table2},
-    {"table3", bench_table3},
+    {"table1", bench_table1, true},
+    {"table2", bench_table2, true},
+    {"table3", bench_table3, true},
+    {"speed", bench_speed, false},
 };
 
 #define ENTRY_COUNT (sizeof entries / sizeof entries[0])
@@ -65,6 +101,53 @@ static bool parse_number(const char *text, double low, double high,
     return true;
 }
 
+/* Whole numbers with commas between them. */
+static bool parse_list(const char *text, int low, int high, bench_list *out) {
+    bench_list list = {0};
+    for (const char *at = text;; at++) {
+        char *end;
+        long value = strtol(at, &end, 10);
+        if (end == at || *at == ' ' || value < low || value > high ||
+            list.count == BENCH_LIST_MOST)
+            return false;
+        list.values[list.count++] = (int)value;
+        at = end;
+        if (*at != ',')
+            break;
+    }
+    if (text[strspn(text, "0123456789,")])
+        return false;
+    *out = list;
+    return true;
+}
+
+/* The options of `speed` alone. */
+static bool take_speed_option(int option, const char *value,
+                              bench_options *out) {
+    switch (option) {
+    case 'q':
+        return out->quick = true;
+    case 'l':
+        return out->large = true;
+    case 'v':
+        out->volumes = value;
+        return true;
+    case 'o':
+        out->only = value;
+        return true;
+    case 'c':
+        out->chart = value;
+        return *value;
+    case 'w':
+        out->sweep = value;
+        return strcmp(value, "sparse") == 0 || strcmp(value, "size") == 0;
+    case 's':
+        return parse_list(value, 1, 8192, &out->sides);
+    default:
+        return parse_list(value, 1, 256, &out->threads);
+    }
+}
+
 /* Takes one option; false when its value is bad.  Fewer than five runs give no
  * median that can be trusted; bench/measure.c has room for 99. */
 static bool take_option(int option, const char *value, bench_options *out) {
@@ -89,8 +172,10 @@ static bool take_option(int option, const char *value, bench_options *out) {
         return true;
     case 'a':
         return parse_number(value, -1e6, 1e6, &out->azimuth);
-    default:
+    case 'e':
         return parse_number(value, -1e6, 1e6, &out->elevation);
+    default:
+        return take_speed_option(option, value, out);
     }
 }
 
@@ -108,10 +193,49 @@ static const char *option_word(char **argv) {
     return argv[optind - (apart ? 2 : 1)];
 }
 
+/* What an option belongs to: nothing is ignored. */
+#define OF_TABLES "kae"
+#define OF_SPEED "qlvocwst"
+
+typedef struct bench_command {
+    const char *name;
+    const char *table_word, *speed_word; /* an option of the one kind, NULL */
+} bench_command;
+
+static int check_kinds(const bench_command *command,
+                       const bench_options *options) {
+    for (size_t i = 0; i < ENTRY_COUNT; i++) {
+        if (strcmp(command->name, entries[i].name) != 0)
+            continue;
+        if (entries[i].table && command->speed_word)
+            return usage_error("this is an option of bench speed:",
+                               command->speed_word);
+        if (!entries[i].table && command->table_word)
+            return usage_error("this is an option of the tables:",
+                               command->table_word);
+    }
+    bool own = options->quick || options->sweep || options->chart;
+    bool by_size = options->sweep && strcmp(options->sweep, "size") == 0;
+    if ((options->chart || options->sweep) && options->large && !by_size)
+        return usage_error("there are no large volumes in this sweep; leave "
+                           "out",
+                           "--large");
+    if ((options->chart || options->sweep) && options->sides.count > 1)
+        return usage_error("a sweep has one size; leave out all but one of",
+                           "--sizes");
+    if (options->quick && options->large)
+        return usage_error("--quick has its own volumes; leave out", "--large");
+    if (own && (options->volumes || options->data))
+        return usage_error("--quick and sweeps have their own volumes; leave "
+                           "out",
+                           options->data ? "--data" : "--volumes");
+    return -1;
+}
+
 /* Parses the command line into options and `*name`; an exit code, or -1 to go
  * on. */
 static int parse(int argc, char **argv, bench_options *options,
-                 const char **name) {
+                 bench_command *command) {
     static const struct option longs[] = {
         {"data", required_argument, NULL, 'd'},
         {"json", no_argument, NULL, 'j'},
@@ -119,6 +243,14 @@ static int parse(int argc, char **argv, bench_options *options,
         {"kernel", required_argument, NULL, 'k'},
         {"azimuth", required_argument, NULL, 'a'},
         {"elevation", required_argument, NULL, 'e'},
+        {"quick", no_argument, NULL, 'q'},
+        {"large", no_argument, NULL, 'l'},
+        {"volumes", required_argument, NULL, 'v'},
+        {"only", required_argument, NULL, 'o'},
+        {"chart", required_argument, NULL, 'c'},
+        {"sweep", required_argument, NULL, 'w'},
+        {"sizes", required_argument, NULL, 's'},
+        {"threads", required_argument, NULL, 't'},
         {"help", no_argument, NULL, 'h'},
         {NULL, 0, NULL, 0},
     };
@@ -136,25 +268,31 @@ static int parse(int argc, char **argv, bench_options *options,
         }
         if (!take_option(option, optarg, options))
             return usage_error("this value is not possible:", optarg);
+        if (strchr(OF_TABLES, option))
+            command->table_word = option_word(argv);
+        if (strchr(OF_SPEED, option))
+            command->speed_word = option_word(argv);
     }
     /* getopt has moved the words that are no options behind the others. */
     if (optind + 1 != argc)
         return usage_error("give one table to measure, not",
                            optind < argc ? argv[optind + 1] : "none");
-    *name = argv[optind];
-    return -1;
+    command->name = argv[optind];
+    return check_kinds(command, options);
 }
 
 int bench_main(int argc, char **argv) {
-    bench_options options = {.runs = 7, .kernel = SNOW_KERNEL_GAUSS};
-    const char *name = NULL;
-    int code = parse(argc, argv, &options, &name);
+    bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
+    bench_command command = {0};
+    int code = parse(argc, argv, &options, &command);
     if (code >= 0)
         return code;
+    if (!options.runs)
+        options.runs = options.quick ? 1 : 7;
     for (size_t i = 0; i < ENTRY_COUNT; i++) {
-        if (strcmp(name, entries[i].name) != 0)
+        if (strcmp(command.name, entries[i].name) != 0)
             continue;
-        if (!bench_data_found(&options))
+        if (entries[i].table && !bench_data_found(&options))
             return SNOW_BAD_INPUT;
         snow_context *context;
         if (snow_context_new(NULL, &context) != SNOW_OK)
@@ -163,5 +301,5 @@ int bench_main(int argc, char **argv) {
         snow_context_free(context);
         return code;
     }
-    return usage_error("there is no benchmark", name);
+    return usage_error("there is no benchmark", command.name);
 }

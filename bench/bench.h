@@ -1,4 +1,4 @@
-/* bench/bench.h - the paper's tables, measured again.
+/* bench/bench.h - the paper's tables, measured again, and today's speed.
  *
  * Everything here stands on the public headers only.  A row is verified before
  * its times are printed: all encodings give the same bits as testing the
@@ -12,6 +12,14 @@
 /* The verb: `argv[0]` is "bench".  Returns the tool's exit code. */
 int bench_main(int argc, char **argv);
 
+#define BENCH_LIST_MOST 8
+
+/* Numbers of a list such as 256,512. */
+typedef struct bench_list {
+    int count;
+    int values[BENCH_LIST_MOST];
+} bench_list;
+
 /* What the user asked for. */
 typedef struct bench_options {
     const char *data; /* folder of the real volumes; NULL: phantoms */
@@ -19,17 +27,33 @@ typedef struct bench_options {
     int runs;           /* alternated runs whose median is taken */
     snow_kernel kernel; /* of tables 2 and 3 */
     double azimuth, elevation;
+    /* Of `speed` only; NULL and 0 where nothing was asked. */
+    bool quick, large;
+    const char *volumes, *only; /* words, separated by commas */
+    const char *sweep;          /* "sparse", "size" */
+    const char *chart;          /* an SVG file */
+    bench_list sides;           /* of the square pictures, in pixels */
+    bench_list threads;
 } bench_options;
 
 /* The paper's three test volumes. */
 typedef enum bench_set { BENCH_CUBE, BENCH_HEAD, BENCH_ENGINE } bench_set;
+
+/* Where a volume comes from. */
+typedef struct bench_source {
+    const char *name;            /* "Cube", "Head", ... */
+    const char *phantom;         /* what stands in without --data */
+    const char *file;            /* below --data; NULL: always the phantom */
+    snow_volume_options options; /* of a raw file; dims of a phantom */
+} bench_source;
 
 /* A volume at 8 bits with the look of Table 1 (opacity is the value itself). */
 typedef struct bench_volume {
     const char *name; /* "Cube", "Head", "Engine" */
     char source[256]; /* where it came from, and how it was mapped */
     snow_volume *file;
-    unsigned char *mapped; /* voxels scaled to 8 bits, or NULL */
+    unsigned char *mapped; /* voxels that are ours: scaled to 8 bits, or read
+                              out of a .vti file; else NULL */
     snow_volume *volume;   /* what is rendered: `file`, or over `mapped` */
     snow_transfer *transfer;
 } bench_volume;
@@ -42,6 +66,19 @@ bool bench_data_found(const bench_options *options);
 snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out);
 void bench_volume_close(bench_volume *volume);
+
+/* The same for any source; *out has no transfer function then. */
+const bench_source *bench_source_of(bench_set set);
+bool bench_source_found(const bench_source *source,
+                        const bench_options *options);
+snow_status bench_source_open(snow_context *context, const bench_source *source,
+                              const bench_options *options, bench_volume *out);
+
+/* Reads 8-bit voxels out of VTK's ImageData; *voxels, which the volume shares,
+ * is to be freed after it.  Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY, told on
+ * stderr. */
+snow_status bench_vti_open(snow_context *context, const char *path,
+                           unsigned char **voxels, snow_volume **out);
 
 /* The ways to splat that are compared. */
 typedef enum bench_way {
@@ -80,6 +117,12 @@ double bench_gain(const bench_row *row, bench_way way);
 int bench_table1(snow_context *context, const bench_options *options);
 int bench_table2(snow_context *context, const bench_options *options);
 int bench_table3(snow_context *context, const bench_options *options);
+
+/* Today's speed, method by method: see speed.h. */
+int bench_speed(snow_context *context, const bench_options *options);
+
+/* The median of some values, which are sorted by it. */
+double bench_median(double *values, int count);
 
 /* A line of tables 2 and 3: the paper's figures, in seconds on its SP2. */
 typedef struct bench_paper_row {

@@ -4,6 +4,7 @@
  * times cannot be compared, the gains can.  So text puts the paper's gain
  * beside each of ours and its seconds below; JSON gives all. */
 #include "bench.h"
+#include "machine.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -15,16 +16,9 @@ static const char *const way_names[BENCH_WAYS] = {"original", "tested", "crs",
 /* A time without its machine means nothing.  Where there is no /proc the
  * processor is "unknown", which is no reason to fail. */
 json_t *bench_machine(void) {
-    char line[256], cpu[256] = "unknown";
-    FILE *file = fopen("/proc/cpuinfo", "r");
-    while (file && fgets(line, sizeof line, file))
-        if (sscanf(line, "model name : %255[^\n]", cpu) == 1)
-            break;
-    if (file)
-        fclose(file);
-    return json_pack("{s:s, s:s, s:s, s:s, s:i}", "cpu", cpu, "version",
-                     snow_version(), "compiler", __VERSION__, "isa",
-                     snow_isa_used(), "threads", 1);
+    return json_pack("{s:s, s:s, s:s, s:s, s:i}", "cpu", machine_processor(),
+                     "version", snow_version(), "compiler", machine_compiler(),
+                     "isa", snow_isa_used(), "threads", 1);
 }
 
 /* Flushed here, so that a full disk ends in exit code 4. */

@@ -21,12 +21,8 @@
 
 /* Raw files say nothing of themselves, so their form stands here, as the
  * collections that they come from give it. */
-static const struct bench_source {
-    const char *name, *phantom;
-    const char *file; /* NULL: always the phantom */
-    snow_volume_options options;
-} sources[] = {
-    [BENCH_CUBE] = {"Cube", "phantom:cube", NULL, {{0}, 0, 0, {0}, 0, 0}},
+static const bench_source sources[] = {
+    [BENCH_CUBE] = {"Cube", "phantom:cube", NULL, {.offset = 0}},
     [BENCH_HEAD] = {"Head",
                     "phantom:head",
                     "classic/CThead_256x256x113_u16be.raw.gz",
@@ -39,30 +35,38 @@ static const struct bench_source {
                       {.dims = {256, 256, 110}, .type = SNOW_UINT8}},
 };
 
+const bench_source *bench_source_of(bench_set set) {
+    return &sources[set];
+}
+
 static void spell_path(const bench_options *options, const char *file,
                        char *path, size_t size) {
     snprintf(path, size, "%s/%s", options->data, file);
 }
 
+bool bench_source_found(const bench_source *source,
+                        const bench_options *options) {
+    char path[PATH_BYTES];
+    if (!options->data || !source->file)
+        return true;
+    spell_path(options, source->file, path, sizeof path);
+    FILE *file = fopen(path, "rb");
+    bool found = file && fgetc(file) != EOF; /* folders open, too */
+    const char *reason = file ? "cannot be read" : strerror(errno);
+    if (!found)
+        fprintf(stderr,
+                "snowglass: bench: %s: %s; --data takes the folder that holds "
+                "classic/\n",
+                path, reason);
+    if (file)
+        fclose(file);
+    return found;
+}
+
 bool bench_data_found(const bench_options *options) {
-    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++) {
-        char path[PATH_BYTES];
-        if (!options->data || !sources[i].file)
-            continue;
-        spell_path(options, sources[i].file, path, sizeof path);
-        FILE *file = fopen(path, "rb");
-        bool found = file && fgetc(file) != EOF; /* folders open, too */
-        const char *reason = file ? "cannot be read" : strerror(errno);
-        if (!found)
-            fprintf(stderr,
-                    "snowglass: bench: %s: %s; --data takes the folder that "
-                    "holds classic/\n",
-                    path, reason);
-        if (file)
-            fclose(file);
-        if (!found)
+    for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
+        if (!bench_source_found(&sources[i], options))
             return false;
-    }
     return true;
 }
 
@@ -88,19 +92,42 @@ static snow_status map_head(snow_context *context, bench_volume *out) {
     return snow_volume_share(context, &info, out->mapped, &out->volume);
 }
 
+static bool is_vti(const char *path) {
+    size_t length = strlen(path);
+    return length > 4 && strcmp(path + length - 4, ".vti") == 0;
+}
+
 /* What was opened is kept in words for the table: figures of a phantom are no
- * figures of the paper's volume. */
-static snow_status open_file(snow_context *context, bench_set set,
+ * figures of the real volume. */
+static snow_status open_file(snow_context *context, const bench_source *source,
                              const bench_options *options, bench_volume *out) {
-    const struct bench_source *source = &sources[set];
     if (!options->data || !source->file) {
         snprintf(out->source, sizeof out->source, "%s", source->phantom);
-        return snow_volume_open(context, source->phantom, NULL, &out->file);
+        return snow_volume_open(context, source->phantom, &source->options,
+                                &out->file);
     }
     char path[PATH_BYTES];
     spell_path(options, source->file, path, sizeof path);
     snprintf(out->source, sizeof out->source, "%s", source->file);
+    if (is_vti(path))
+        return bench_vti_open(context, path, &out->mapped, &out->file);
     return snow_volume_open(context, path, &source->options, &out->file);
+}
+
+snow_status bench_source_open(snow_context *context, const bench_source *source,
+                              const bench_options *options, bench_volume *out) {
+    *out = (bench_volume){.name = source->name};
+    snow_status status = open_file(context, source, options, out);
+    if (status == SNOW_OK) {
+        out->volume = out->file;
+        if (snow_volume_describe(out->file)->type != SNOW_UINT8)
+            status = map_head(context, out);
+    }
+    if (status == SNOW_OK)
+        snow_volume_freeze(out->volume); /* nobody changes what we share */
+    else
+        bench_volume_close(out);
+    return status;
 }
 
 /* The look is the paper's: the opacity of a voxel is its value of 0 to 255,
@@ -109,17 +136,13 @@ snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out) {
     static const snow_look linear = {
         .preset = "linear", .range = SNOW_RANGE_VALUES, .low = 0, .high = 255};
-    *out = (bench_volume){.name = sources[set].name};
-    snow_status status = open_file(context, set, options, out);
+    snow_status status =
+        bench_source_open(context, &sources[set], options, out);
     if (status == SNOW_OK) {
-        out->volume = out->file;
-        if (snow_volume_describe(out->file)->type != SNOW_UINT8)
-            status = map_head(context, out);
-    }
-    if (status == SNOW_OK)
         status = snow_transfer_make(out->volume, &linear, &out->transfer);
-    if (status != SNOW_OK)
-        bench_volume_close(out);
+        if (status != SNOW_OK)
+            bench_volume_close(out);
+    }
     return status;
 }
 

@@ -4,8 +4,23 @@
 #define SNOW_FRAME_H
 
 #include "base/base.h"
+#include "decompose/slab.h"
+#include "transform/transform.h"
 
 #include <snowglass/render.h>
+
+/* What one picture is made from; lives as long as the call that makes it. */
+typedef struct snow_job {
+    snow_context *context;
+    const snow_volume *volume;
+    const snow_transfer *transfer;
+    snow_settings settings; /* resolved, but perhaps for the encoding */
+    snow_placement placement;
+    snow_slab slab;
+    int channels;
+    float *pixels; /* the local image: transparent, to be filled */
+    snow_stats *stats;
+} snow_job;
 
 /* The settings as far as the caller's record reaches (its `size`), defaults
  * beyond. */

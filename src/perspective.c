@@ -12,7 +12,7 @@
 
 /* What one picture is made from; lives as long as the call. */
 typedef struct pass {
-    const snow_perspective_order *order;
+    const snow_job *job;
     snow_context *context;
     snow_stats *stats;
     snow_classifier classifier;
@@ -35,27 +35,28 @@ static void lap(double *mark, double *total) {
 
 /* Lines 02 and 03: tables and buffers. */
 static snow_status prepare(pass *s) {
-    const snow_perspective_order *o = s->order;
-    const snow_settings *settings = o->settings;
+    const snow_job *o = s->job;
+    const snow_settings *settings = &o->settings;
     /* Opacities of the reference length; each voxel's own comes after. */
     snow_classify_options options = {
         .threshold = settings->threshold,
         .opacity_exponent = 1,
         .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
         .premultiply = settings->shade == SNOW_SHADE_NONE,
+        .isa = SNOW_ISA_SCALAR,
     };
-    SNOW_TRY(snow_classifier_init(s->context, o->volume, o->transfer, &options,
+    SNOW_TRY(snow_classifier_make(s->context, o->volume, o->transfer, &options,
                                   &s->classifier));
-    SNOW_TRY(snow_shader_init(s->context, o->volume, o->placement, settings,
+    SNOW_TRY(snow_shader_init(s->context, o->volume, &o->placement, settings,
                               &s->shader));
-    SNOW_TRY(snow_strip_init(s->context, o->placement, o->channels, &s->strip));
-    SNOW_TRY(snow_eye_splatter_init(s->context, o->placement, settings->kernel,
+    SNOW_TRY(snow_strip_make(s->context, &o->placement, o->channels, &s->strip));
+    SNOW_TRY(snow_eye_splatter_init(s->context, &o->placement, settings->kernel,
                                     settings->footprint, o->channels,
                                     &s->splatter));
-    SNOW_TRY(snow_sheet_begin(s->context, o->placement->width,
-                              o->placement->height, o->channels, &s->sheet));
+    SNOW_TRY(snow_sheet_begin(s->context, &o->placement, o->channels, 0,
+                              o->placement.height, &s->sheet));
     s->spans = snow_allocate_array(
-        s->context, (uint64_t)o->placement->columns / 2 + 1, sizeof *s->spans);
+        s->context, (uint64_t)o->placement.columns / 2 + 1, sizeof *s->spans);
     return s->spans ? SNOW_OK : SNOW_NO_MEMORY;
 }
 
@@ -70,18 +71,18 @@ static void finish(pass *s) {
 
 /* Classifies and shades rows of a slice from `row` on into the strip. */
 static void classify_and_shade(pass *s, int64_t slice, int64_t row) {
-    const snow_perspective_order *o = s->order;
+    const snow_job *o = s->job;
     snow_strip *strip = &s->strip;
-    int64_t rows = o->placement->rows - row;
+    int64_t rows = o->placement.rows - row;
     double mark = snow_seconds();
-    snow_classify_strip(&s->classifier, o->placement, slice, row,
+    snow_classify_strip(&s->classifier, &o->placement, slice, row,
                         rows < strip->room_rows ? rows : strip->room_rows,
                         strip);
     lap(&mark, &s->stats->seconds_classify);
-    if (o->settings->shade == SNOW_SHADE_PHONG)
+    if (o->settings.shade == SNOW_SHADE_PHONG)
         snow_shade_strip(&s->shader, o->channels, strip);
     lap(&mark, &s->stats->seconds_shade);
-    snow_lengthen_strip(o->placement, o->settings->opacity_length, o->channels,
+    snow_lengthen_strip(&o->placement, o->settings.opacity_length, o->channels,
                         strip);
     lap(&mark, &s->stats->seconds_classify);
 }
@@ -89,7 +90,7 @@ static void classify_and_shade(pass *s, int64_t slice, int64_t row) {
 /* Lines 04 to 06: one slice into the sparse matrix. */
 static snow_status encode_slice(pass *s, int64_t slice) {
     SNOW_TRY(snow_sparse_begin_slice(&s->sparse));
-    for (int64_t row = 0; row < s->order->placement->rows;
+    for (int64_t row = 0; row < s->job->placement.rows;
          row += s->strip.room_rows) {
         classify_and_shade(s, slice, row);
         double mark = snow_seconds();
@@ -101,7 +102,7 @@ static snow_status encode_slice(pass *s, int64_t slice) {
 
 /* Density and runs on every 8th row of every 8th slice. */
 static snow_encoding choose_encoding(pass *s) {
-    const snow_placement *p = s->order->placement;
+    const snow_placement *p = &s->job->placement;
     uint64_t voxels = 0, interesting = 0, runs = 0;
     for (int64_t slice = 0; slice < p->slices; slice += 8)
         for (int64_t row = slice / 8 % 8; row < p->rows; row += 8) {
@@ -115,14 +116,14 @@ static snow_encoding choose_encoding(pass *s) {
 }
 
 static snow_status encode_slab(pass *s) {
-    snow_encoding encoding = s->order->settings->encoding;
+    snow_encoding encoding = s->job->settings.encoding;
     if (encoding == SNOW_ENCODING_AUTO)
         encoding = choose_encoding(s);
     s->stats->encoding = encoding;
     SNOW_TRY(snow_sparse_begin(&s->sparse, snow_scheme_of(encoding),
-                               s->order->placement, s->order->channels));
-    for (int64_t n = 0; n < s->order->slab.count; n++)
-        SNOW_TRY(encode_slice(s, s->order->slab.first + n));
+                               &s->job->placement, s->job->channels));
+    for (int64_t n = 0; n < s->job->slab.count; n++)
+        SNOW_TRY(encode_slice(s, s->job->slab.first + n));
     return SNOW_OK;
 }
 
@@ -130,11 +131,11 @@ static snow_status encode_slab(pass *s) {
 static void splat_encoded_slice(pass *s, int64_t slice) {
     snow_walk walk;
     double mark = snow_seconds();
-    snow_walk_begin(&walk, &s->sparse, slice - s->order->slab.first);
-    for (int64_t row = 0; row < s->order->placement->rows; row++) {
+    snow_walk_begin(&walk, &s->sparse, slice - s->job->slab.first);
+    for (int64_t row = 0; row < s->job->placement.rows; row++) {
         size_t voxel, count = snow_walk_row(&walk, s->spans, &voxel);
         snow_eye_splat_row(&s->splatter, &s->sheet, row, s->spans, count,
-                           s->sparse.ia + voxel * (size_t)s->order->channels);
+                           s->sparse.ia + voxel * (size_t)s->job->channels);
     }
     lap(&mark, &s->stats->seconds_splat);
 }
@@ -142,7 +143,7 @@ static void splat_encoded_slice(pass *s, int64_t slice) {
 /* The same row by row out of the volume: original and tested splatting. */
 static void splat_classified_slice(pass *s, int64_t slice) {
     snow_strip *strip = &s->strip;
-    for (int64_t row = 0; row < s->order->placement->rows;
+    for (int64_t row = 0; row < s->job->placement.rows;
          row += strip->room_rows) {
         classify_and_shade(s, slice, row);
         double mark = snow_seconds();
@@ -154,7 +155,7 @@ static void splat_classified_slice(pass *s, int64_t slice) {
                                                  end - begin, s->spans);
             snow_eye_splat_row(
                 &s->splatter, &s->sheet, row + n, s->spans, spans,
-                strip->samples + begin * (size_t)s->order->channels);
+                strip->samples + begin * (size_t)s->job->channels);
             begin = end;
         }
         lap(&mark, &s->stats->seconds_splat);
@@ -164,16 +165,16 @@ static void splat_classified_slice(pass *s, int64_t slice) {
 /* Line 07, away from the eye: the slab's slices onto the sheet, and each sheet
  * into the local image. */
 static snow_status splat_and_composite(pass *s) {
-    const snow_perspective_order *o = s->order;
+    const snow_job *o = s->job;
     for (int64_t n = 0; n < o->slab.count; n++) {
-        int64_t slice = snow_eye_nth_slice(&o->placement->eye, o->slab.first,
+        int64_t slice = snow_eye_nth_slice(&o->placement.eye, o->slab.first,
                                            o->slab.count, n);
         bool seen;
         SNOW_TRY(snow_eye_splatter_begin_slice(s->context, &s->splatter, slice,
                                                &seen));
         if (!seen)
             continue;
-        if (o->settings->method == SNOW_METHOD_FOOTPRINT)
+        if (o->settings.method == SNOW_METHOD_FOOTPRINT)
             splat_encoded_slice(s, slice);
         else
             splat_classified_slice(s, slice);
@@ -185,20 +186,20 @@ static snow_status splat_and_composite(pass *s) {
 }
 
 static snow_status count(const pass *s) {
-    const snow_perspective_order *o = s->order;
+    const snow_job *o = s->job;
     const snow_sparse *sparse = &s->sparse;
     snow_stats *stats = s->stats;
-    double voxels = (double)o->placement->columns * (double)o->placement->rows *
+    double voxels = (double)o->placement.columns * (double)o->placement.rows *
                     (double)o->slab.count;
-    if (o->settings->method == SNOW_METHOD_ORIGINAL) {
+    if (o->settings.method == SNOW_METHOD_ORIGINAL) {
         SNOW_TRY(snow_transfer_sparse_ratio(o->transfer, o->volume,
-                                            o->settings->threshold,
+                                            o->settings.threshold,
                                             &stats->sparse_ratio));
         stats->interesting = llround(voxels * (1 - stats->sparse_ratio));
         return SNOW_OK;
     }
     stats->interesting = s->kept;
-    if (o->settings->method == SNOW_METHOD_FOOTPRINT) {
+    if (o->settings.method == SNOW_METHOD_FOOTPRINT) {
         stats->interesting = (int64_t)sparse->ia_voxels;
         stats->ea_bytes = sparse->ea_bytes;
         stats->ia_bytes =
@@ -210,16 +211,14 @@ static snow_status count(const pass *s) {
     return SNOW_OK;
 }
 
-snow_status snow_perspective_render(snow_context *context,
-                                    const snow_perspective_order *order,
-                                    float *pixels, snow_stats *stats) {
-    pass s = {.order = order,
-              .context = context,
-              .stats = stats,
-              .sparse = {.context = context},
-              .pixels = pixels};
+snow_status snow_perspective_render(const snow_job *job) {
+    pass s = {.job = job,
+              .context = job->context,
+              .stats = job->stats,
+              .sparse = {.context = job->context},
+              .pixels = job->pixels};
     snow_status status = prepare(&s);
-    if (status == SNOW_OK && order->settings->method == SNOW_METHOD_FOOTPRINT)
+    if (status == SNOW_OK && job->settings.method == SNOW_METHOD_FOOTPRINT)
         status = encode_slab(&s);
     if (status == SNOW_OK)
         status = splat_and_composite(&s);

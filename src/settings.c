@@ -10,10 +10,8 @@
 #include <string.h>
 
 static const char *const methods[] = {
-    [SNOW_METHOD_AUTO] = "auto",
-    [SNOW_METHOD_ORIGINAL] = "original",
-    [SNOW_METHOD_TESTED] = "tested",
-    [SNOW_METHOD_FOOTPRINT] = "footprint",
+    [SNOW_METHOD_AUTO] = "auto",       [SNOW_METHOD_ORIGINAL] = "original",
+    [SNOW_METHOD_TESTED] = "tested",   [SNOW_METHOD_FOOTPRINT] = "footprint",
     [SNOW_METHOD_SHEARED] = "sheared",
 };
 

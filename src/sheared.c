@@ -28,9 +28,9 @@ typedef struct snow_pass {
     const snow_sheared_order *order;
     snow_sheared *sheared;
     snow_shear shear;
-    snow_taper taper[2];    /* along u and v */
-    int taps[2];            /* of the tapers */
-    const snow_comb *combs; /* [2 * slice + axis] */
+    snow_taper taper[2];     /* along u and v */
+    int taps[2];             /* of the tapers */
+    const snow_comb *combs;  /* [2 * slice + axis] */
     int64_t columns, slices; /* of the bands */
     bool nearest_first;
     int channels;
@@ -44,7 +44,9 @@ typedef struct snow_pass {
     snow_filter filter;
     int cells;     /* of a band */
     int64_t tiles; /* of a band */
-    int window;    /* voxels that a tile can need of a row */
+    int64_t bands;
+    int threads; /* that splat */
+    int window;  /* voxels that a tile can need of a row */
     size_t window_floats;
     size_t stride; /* floats of a line of the plane */
     size_t scratch_bytes;
@@ -69,10 +71,11 @@ typedef struct snow_stroke {
     snow_mask_rows rows;
     int64_t first_cell;
     int cells;
-    bool finished; /* a cell is not alive any more */
-    float *pixels; /* of the plane */
+    bool finished;          /* a cell is not alive any more */
+    float *pixels;          /* of the plane */
+    unsigned char *drawn;   /* tiles of the band that were drawn on */
     const snow_comb *u, *v; /* of the slice */
-    int reach; /* rows that a cell needs */
+    int reach;              /* rows that a cell needs */
 } snow_stroke;
 
 snow_status snow_sheared_new(snow_context *context, snow_sheared **out) {
@@ -93,6 +96,7 @@ void snow_sheared_free(snow_sheared *s) {
     snow_release(s->context, s->gloss);
     snow_release(s->context, s->combs);
     snow_release(s->context, s->plane);
+    snow_release(s->context, s->drawn);
     snow_release(s->context, s->scratch);
     snow_release(s->context, s->seen);
     snow_release(s->context, s->teeth);
@@ -117,7 +121,8 @@ bool snow_sheared_fits(const snow_placement *p, const snow_settings *settings) {
     return true;
 }
 
-/* --- encoding -------------------------------------------------------------- */
+/* --- encoding --------------------------------------------------------------
+ */
 
 static bool same_key(const snow_encoded_key *a, const snow_encoded_key *b) {
     return a->serial && a->serial == b->serial &&
@@ -174,7 +179,8 @@ snow_status snow_sheared_encode(snow_sheared *s,
     return SNOW_OK;
 }
 
-/* --- one band of lines ----------------------------------------------------- */
+/* --- one band of lines -----------------------------------------------------
+ */
 
 /* Cells of `wanted`, in terms of the rows that they need: cell i needs rows
  * i * stride to i * stride + reach - 1.  Where stride is 1 both are shifts. */
@@ -209,14 +215,17 @@ static void draw_tile(snow_stroke *stroke, int64_t index) {
     const snow_pass *pass = stroke->pass;
     const snow_scratch *scratch = &stroke->scratch;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
-    int64_t column = (u->first / u->phases + index * SNOW_TILE_COLUMNS) *
-                         u->stride + stroke->u->offset;
+    int64_t column =
+        (u->first / u->phases + index * SNOW_TILE_COLUMNS) * u->stride +
+        stroke->u->offset;
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
-    held = pass->windows->windows(&stroke->rows, column, pass->window, bits,
-                                  before);
-    uint64_t cells = cells_of_rows(held, stroke->cells, v->stride,
-                                   stroke->reach) & scratch->alive[index];
+    uint64_t alive = scratch->alive[index];
+    held = pass->windows->windows(
+        &stroke->rows, rows_of_cells(alive, v->stride, stroke->reach), column,
+        pass->window, bits, before);
+    uint64_t cells =
+        cells_of_rows(held, stroke->cells, v->stride, stroke->reach) & alive;
     if (!cells)
         return;
     held &= rows_of_cells(cells, v->stride, stroke->reach);
@@ -229,15 +238,25 @@ static void draw_tile(snow_stroke *stroke, int64_t index) {
                      pass->window, pass->palette, pass->gloss,
                      scratch->samples + (size_t)row * floats);
     }
-    snow_tile tile = {
-        u, v, stroke->u, stroke->v, pass->taps[0], pass->taps[1],
-        scratch->samples, floats, held, cells, scratch->ring, scratch->zero,
-        stroke->pixels + (size_t)index * SNOW_TILE_COLUMNS *
-                             (size_t)u->phases * pixel,
-        pass->stride};
+    snow_tile tile = {u,
+                      v,
+                      stroke->u,
+                      stroke->v,
+                      pass->taps[0],
+                      pass->taps[1],
+                      scratch->samples,
+                      floats,
+                      held,
+                      cells,
+                      scratch->ring,
+                      scratch->zero,
+                      stroke->pixels + (size_t)index * SNOW_TILE_COLUMNS *
+                                           (size_t)u->phases * pixel,
+                      pass->stride};
     uint64_t finished = pass->tile(&tile);
     scratch->alive[index] &= ~finished;
     stroke->finished |= finished != 0;
+    stroke->drawn[index] = 1;
 }
 
 /* One slice of the band: its rows as masks, and each tile in turn that they
@@ -250,12 +269,11 @@ static void draw_slice(snow_stroke *stroke, int64_t slice) {
     stroke->reach = stroke->v->lead[1] + pass->taps[1];
     int64_t first = (v->first / v->phases + stroke->first_cell) * v->stride +
                     stroke->v->offset;
-    snow_mask_rows_read(&pass->sheared->bands, slice, first,
+    pass->windows->read(&pass->sheared->bands, slice, first,
                         (stroke->cells - 1) * v->stride + stroke->reach,
                         stroke->scratch.spans, &stroke->rows);
     if (!stroke->rows.held)
         return;
-    pass->windows->rank(&stroke->rows);
     /* Tiles whose window overlaps the columns. */
     int64_t step = SNOW_TILE_COLUMNS * u->stride;
     int64_t start = u->first / u->phases * u->stride + stroke->u->offset;
@@ -282,10 +300,10 @@ static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
     size_t at = 0, pixel = (size_t)pass->channels * sizeof(float);
     size_t words = snow_window_words(pass->columns) * SNOW_WINDOW_ROWS;
     size_t filtered = 2 * SNOW_TILE_COLUMNS * pixel;
-#define PART(field, bytes)                      \
-    do {                                        \
-        out->field = (void *)(base + at);       \
-        at += ((bytes) + 63) / 64 * 64;         \
+#define PART(field, bytes)                              \
+    do {                                                \
+        out->field = base ? (void *)(base + at) : NULL; \
+        at += ((bytes) + 63) / 64 * 64;                 \
     } while (0)
     PART(bits, words * sizeof *out->bits);
     PART(rank, words * sizeof *out->rank);
@@ -305,6 +323,8 @@ static void splat_band(void *job, int64_t item, int worker) {
     snow_stroke stroke = {.pass = pass};
     lay_out(pass, pass->sheared->scratch + (size_t)worker * pass->scratch_bytes,
             &stroke.scratch);
+    memset(stroke.scratch.zero, 0,
+           2 * SNOW_TILE_COLUMNS * (size_t)pass->channels * sizeof(float));
     stroke.rows.bits = stroke.scratch.bits;
     stroke.rows.rank = stroke.scratch.rank;
     stroke.rows.words = snow_window_words(pass->columns);
@@ -315,6 +335,8 @@ static void splat_band(void *job, int64_t item, int worker) {
     size_t pixels = lines * pass->stride / (size_t)pass->channels;
     stroke.pixels = pass->sheared->plane +
                     (size_t)(stroke.first_cell * v->phases) * pass->stride;
+    stroke.drawn = pass->sheared->drawn + item * pass->tiles;
+    memset(stroke.drawn, 0, (size_t)pass->tiles);
     snow_tile_clear(stroke.pixels, pixels, pass->channels);
     for (int64_t tile = 0; tile < pass->tiles; tile++)
         stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.cells);
@@ -327,8 +349,16 @@ static void warp_lines(void *job, int64_t item, int worker) {
     const snow_pass *pass = job;
     (void)worker;
     const snow_view *view = pass->order->view;
-    snow_plane plane = {pass->sheared->plane, pass->stride, pass->shear.u.count,
-                        pass->shear.v.count, pass->channels};
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
+    snow_plane plane = {pass->sheared->plane,
+                        pass->stride,
+                        u->count,
+                        v->count,
+                        pass->channels,
+                        pass->sheared->drawn,
+                        SNOW_TILE_COLUMNS * u->phases,
+                        pass->cells * v->phases,
+                        (int)pass->tiles};
     int first = (int)item * WARP_LINES, last = first + WARP_LINES;
     for (int y = first; y < last && y < view->height; y++)
         snow_warp_row(&plane, &pass->shear, pass->filter, pass->warp, y,
@@ -337,15 +367,16 @@ static void warp_lines(void *job, int64_t item, int worker) {
                                          (size_t)pass->channels);
 }
 
-/* --- a picture ------------------------------------------------------------- */
+/* --- a picture -------------------------------------------------------------
+ */
 
 /* Pixels a voxel, or voxels a pixel, along one axis.  A kernel that is widened
- * needs fewer of them: Engine and CThead, warped from a pixel a voxel, are 52 dB
- * and more from the exact picture at their own width, 56 dB and more from a
- * widening of 1.14 on. */
+ * needs fewer of them: Engine and CThead, warped from a pixel a voxel, are 52
+ * dB and more from the exact picture at their own width, 57 dB and more from a
+ * widening of 1.22 on. */
 static void choose_pitch(const snow_taper *taper, bool draft, int *phases,
                          int *stride) {
-    *phases = !draft && taper->wide < 1.1 ? 2 : 1;
+    *phases = !draft && taper->wide < 1.2 ? 2 : 1;
     *stride = taper->wide >= (draft ? 2 : 2.5) ? 2 : 1;
 }
 
@@ -363,8 +394,8 @@ static snow_status place_lattice(snow_pass *pass) {
                      &options.stride[axis]);
         options.reach[axis] = snow_taper_reach(taper);
     }
-    SNOW_TRY(snow_shear_make(pass->sheared->context, p, &options,
-                             &pass->shear));
+    SNOW_TRY(
+        snow_shear_make(pass->sheared->context, p, &options, &pass->shear));
     pass->filter = draft ? SNOW_BILINEAR : SNOW_CATMULL_ROM;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     int columns = SNOW_TILE_COLUMNS * u->phases;
@@ -379,6 +410,10 @@ static snow_status place_lattice(snow_pass *pass) {
     pass->cells = rows / v->stride + 1;
     if (pass->cells > SNOW_TILE_CELLS)
         pass->cells = SNOW_TILE_CELLS;
+    int64_t cells = (v->count + v->phases - 1) / v->phases;
+    pass->bands = (cells + pass->cells - 1) / pass->cells;
+    pass->threads =
+        settings->threads < pass->bands ? settings->threads : (int)pass->bands;
     return SNOW_OK;
 }
 
@@ -407,7 +442,7 @@ snow_status snow_sheared_shade(snow_sheared *s,
     SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
                           (SNOW_NORMALS + 1) * sizeof *s->gloss));
     s->gloss[0] = (snow_gloss){0, 0};
-    snow_gloss_table(settings, order->placement, settings->threads,
+    snow_gloss_table(s->context, settings, order->placement, settings->threads,
                      s->gloss + 1);
     return SNOW_OK;
 }
@@ -437,30 +472,17 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     return SNOW_OK;
 }
 
-snow_status snow_sheared_reserve_scratch(snow_sheared *s, size_t bytes,
-                                         int threads) {
-    uint64_t all;
-    if (!snow_mul_u64(bytes, (uint64_t)threads, &all) || all > SIZE_MAX)
-        return snow_fail(s->context, SNOW_NO_MEMORY,
-                         "no memory for %d threads; give --threads a smaller "
-                         "number",
-                         threads);
-    SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
-                          (size_t)all));
-    /* For the row of zeros, above all. */
-    memset(s->scratch, 0, (size_t)all);
-    return SNOW_OK;
-}
-
 static snow_status reserve_buffers(snow_pass *pass) {
     snow_sheared *s = pass->sheared;
     snow_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    size_t lines = (size_t)pass->shear.v.count + 1, bytes;
-    SNOW_TRY(snow_sheared_reserve_scratch(s, pass->scratch_bytes,
-                                          pass->order->settings->threads));
-    bytes = lines * pass->stride * sizeof *s->plane;
-    return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0, bytes);
+    size_t lines = (size_t)pass->shear.v.count + 1;
+    SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
+                          pass->scratch_bytes * (size_t)pass->threads));
+    SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
+                          (size_t)(pass->bands * pass->tiles)));
+    return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0,
+                        lines * pass->stride * sizeof *s->plane);
 }
 
 void snow_sheared_fill_figures(const snow_sheared *s, snow_stats *stats) {
@@ -474,15 +496,13 @@ void snow_sheared_fill_figures(const snow_sheared *s, snow_stats *stats) {
 /* Lines 07 to 13, and the warp. */
 static void draw(snow_pass *pass, snow_stats *stats) {
     int threads = pass->order->settings->threads;
-    const snow_lattice *v = &pass->shear.v;
-    int64_t cells = (v->count + v->phases - 1) / v->phases;
     double mark = snow_seconds();
-    snow_parallel(threads, (cells + pass->cells - 1) / pass->cells, splat_band,
+    snow_parallel(pass->sheared->context, threads, pass->bands, splat_band,
                   pass);
     double splatted = snow_seconds();
     pass->warp =
         snow_warp_of(pass->order->settings->isa, pass->filter, pass->channels);
-    snow_parallel(threads,
+    snow_parallel(pass->sheared->context, threads,
                   (pass->order->view->height + WARP_LINES - 1) / WARP_LINES,
                   warp_lines, pass);
     stats->seconds_splat += splatted - mark;

@@ -26,8 +26,9 @@ struct snow_sheared {
     snow_gloss *gloss; /* an entry of zeros, and SNOW_NORMALS */
     snow_comb *combs;  /* of all slices, along u and v */
     float *plane;      /* the intermediate image */
-    char *scratch;     /* of all workers */
-    size_t gloss_capacity, combs_capacity, plane_capacity,
+    unsigned char *drawn; /* per band and tile */
+    char *scratch;        /* of all workers */
+    size_t gloss_capacity, combs_capacity, plane_capacity, drawn_capacity,
         scratch_capacity; /* bytes */
     /* In perspective: all slices, how they are resampled along u, and how far
      * their kernels reach. */
@@ -46,11 +47,6 @@ snow_status snow_sheared_encode(snow_sheared *sheared,
 /* The table of shading for a view and light.  Errors: SNOW_NO_MEMORY. */
 snow_status snow_sheared_shade(snow_sheared *sheared,
                                const snow_sheared_order *order);
-
-/* Room for what all workers need, `bytes` each, zeros.  Errors:
- * SNOW_NO_MEMORY. */
-snow_status snow_sheared_reserve_scratch(snow_sheared *sheared, size_t bytes,
-                                         int threads);
 
 /* Counts of the encoding. */
 void snow_sheared_fill_figures(const snow_sheared *sheared, snow_stats *stats);

@@ -40,6 +40,8 @@ typedef struct seen_pass {
     double step[2];       /* the most of a slice, voxels a pixel */
     int channels, columns, lines; /* of a tile */
     int64_t tiles;                /* of a band */
+    int64_t bands;
+    int threads; /* that splat */
     size_t width;         /* pixels of all tiles */
     size_t window_floats; /* of a tile's row */
     size_t stride;        /* floats of a line of the plane */
@@ -76,6 +78,7 @@ typedef struct seen_stroke {
     int first_line, lines;
     bool finished; /* a line is not alive any more */
     float *pixels; /* of the plane */
+    unsigned char *drawn; /* tiles of the band that were drawn on */
     const snow_seen_slice *slice;
     int64_t row;                            /* the voxel row of mask row 0 */
     uint64_t lines_of_row[SNOW_WINDOW_ROWS]; /* that need a mask row */
@@ -179,6 +182,10 @@ static void choose_tiles(seen_pass *pass) {
     double lines = (SNOW_WINDOW_ROWS - 1 - pass->taps[1]) / pass->step[1];
     pass->lines = lines < SNOW_RAY_TILE_LINES ? (int)lines
                                               : SNOW_RAY_TILE_LINES;
+    pass->bands = (pass->scaled.v.count + pass->lines - 1) / pass->lines;
+    pass->threads = pass->order->settings->threads;
+    if (pass->threads > pass->bands)
+        pass->threads = (int)pass->bands;
     pass->columns = columns;
     pass->tiles = (pass->scaled.u.count + columns - 1) / columns;
     pass->width = (size_t)pass->tiles * (size_t)columns;
@@ -224,8 +231,8 @@ static snow_status fill_slices(seen_pass *pass) {
         pass->slices[n].first = (int32_t *)(void *)at;
         pass->slices[n].weights = (float *)(void *)(at + pass->width * 4);
     }
-    snow_parallel(pass->order->settings->threads, pass->slice_count,
-                  fill_slice, pass);
+    snow_parallel(s->context, pass->order->settings->threads,
+                  pass->slice_count, fill_slice, pass);
     return SNOW_OK;
 }
 
@@ -299,9 +306,11 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
         return;
     uint64_t bits[SNOW_WINDOW_ROWS];
     uint32_t before[SNOW_WINDOW_ROWS];
-    uint64_t held =
-        pass->windows->windows(&stroke->rows, column, count, bits, before);
-    uint64_t lines = lines_of_rows(stroke, held) & scratch->alive[index];
+    uint64_t alive = scratch->alive[index];
+    uint64_t held = pass->windows->windows(
+        &stroke->rows, rows_of_lines(stroke, stroke->rows.held, alive), column,
+        count, bits, before);
+    uint64_t lines = lines_of_rows(stroke, held) & alive;
     if (!lines)
         return;
     held = rows_of_lines(stroke, held, lines);
@@ -326,6 +335,7 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
     uint64_t finished = pass->tile(&tile);
     scratch->alive[index] &= ~finished;
     stroke->finished |= finished != 0;
+    stroke->drawn[index] = 1;
 }
 
 /* Weights of the band's lines, and which of them need which row. */
@@ -354,12 +364,11 @@ static void draw_slice(seen_stroke *stroke, int64_t index) {
         snow_rake_first(&of_band, stroke->lines - 1) + slice->v.taps;
     if (end <= 0 || stroke->row >= pass->voxel_rows)
         return;
-    snow_mask_rows_read(&pass->sheared->bands, index, stroke->row,
+    pass->windows->read(&pass->sheared->bands, index, stroke->row,
                         (int)(end - stroke->row), stroke->scratch.spans,
                         &stroke->rows);
     if (!stroke->rows.held)
         return;
-    pass->windows->rank(&stroke->rows);
     fill_lines(stroke);
     /* Tiles whose pixels can reach a column; draw_tile looks closer. */
     const snow_rake *u = &slice->u;
@@ -387,10 +396,10 @@ static size_t lay_out(const seen_pass *pass, char *base, seen_scratch *out) {
     size_t at = 0, pixel = (size_t)pass->channels * sizeof(float);
     size_t words = snow_window_words(pass->voxel_columns) * SNOW_WINDOW_ROWS;
     size_t filtered = SNOW_RAY_TILE_COLUMNS * pixel;
-#define PART(field, bytes)                      \
-    do {                                        \
-        out->field = (void *)(base + at);       \
-        at += ((bytes) + 63) / 64 * 64;         \
+#define PART(field, bytes)                              \
+    do {                                                \
+        out->field = base ? (void *)(base + at) : NULL; \
+        at += ((bytes) + 63) / 64 * 64;                 \
     } while (0)
     PART(bits, words * sizeof *out->bits);
     PART(rank, words * sizeof *out->rank);
@@ -423,6 +432,10 @@ static void splat_band(void *job, int64_t item, int worker) {
         (size_t)stroke.lines * pass->stride / (size_t)pass->channels;
     stroke.pixels =
         pass->sheared->plane + (size_t)stroke.first_line * pass->stride;
+    stroke.drawn = pass->sheared->drawn + item * pass->tiles;
+    memset(stroke.drawn, 0, (size_t)pass->tiles);
+    memset(stroke.scratch.zero, 0,
+           SNOW_RAY_TILE_COLUMNS * (size_t)pass->channels * sizeof(float));
     snow_tile_clear(stroke.pixels, pixels, pass->channels);
     for (int64_t tile = 0; tile < pass->tiles; tile++)
         stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.lines);
@@ -436,9 +449,15 @@ static void warp_lines(void *job, int64_t item, int worker) {
     const seen_pass *pass = job;
     (void)worker;
     const snow_view *view = pass->order->view;
-    snow_plane plane = {pass->sheared->plane, pass->stride,
-                        pass->scaled.u.count, pass->scaled.v.count,
-                        pass->channels};
+    snow_plane plane = {pass->sheared->plane,
+                        pass->stride,
+                        pass->scaled.u.count,
+                        pass->scaled.v.count,
+                        pass->channels,
+                        pass->sheared->drawn,
+                        pass->columns,
+                        pass->lines,
+                        (int)pass->tiles};
     int first = (int)item * WARP_LINES, last = first + WARP_LINES;
     for (int y = first; y < last && y < view->height; y++)
         snow_warp_row_seen(&plane, &pass->scaled, pass->filter, pass->warp, y,
@@ -482,9 +501,11 @@ static snow_status reserve_buffers(seen_pass *pass) {
     snow_sheared *s = pass->sheared;
     seen_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    SNOW_TRY(snow_sheared_reserve_scratch(s, pass->scratch_bytes,
-                                          pass->order->settings->threads));
     size_t lines = (size_t)pass->scaled.v.count + 1;
+    SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
+                          pass->scratch_bytes * (size_t)pass->threads));
+    SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
+                          (size_t)(pass->bands * pass->tiles)));
     return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0,
                         lines * pass->stride * sizeof *s->plane);
 }
@@ -495,11 +516,10 @@ static snow_status draw(seen_pass *pass, snow_stats *stats) {
     double mark = snow_seconds();
     SNOW_TRY(fill_slices(pass));
     SNOW_TRY(reserve_buffers(pass));
-    snow_parallel(threads,
-                  (pass->scaled.v.count + pass->lines - 1) / pass->lines,
-                  splat_band, pass);
+    snow_parallel(pass->sheared->context, threads, pass->bands, splat_band,
+                  pass);
     double splatted = snow_seconds();
-    snow_parallel(threads,
+    snow_parallel(pass->sheared->context, threads,
                   (pass->order->view->height + WARP_LINES - 1) / WARP_LINES,
                   warp_lines, pass);
     stats->seconds_splat += splatted - mark;

@@ -66,7 +66,7 @@ picture simulation "$DATA/sim/heptane.nii.gz"
 
 # Every encoding and the original method: the same bits.
 sum() { sed -n 's/.*"checksum": "\([0-9a-f]*\)".*/\1/p' "$1"; }
-exact="--method footprint --encoding"
+exact="--isa scalar --method footprint --encoding"
 for how in "$exact crs" "$exact bitmap" "$exact rle" "--method original"; do
     # shellcheck disable=SC2086
     run 0 "the engine by $how" "$TOOL" -q "$engine" $engine_form $how \

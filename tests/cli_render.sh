@@ -91,7 +91,7 @@ near 1e-5 --isa scalar
 same -j 2
 same -j 7
 near 0.1 --quality draft
-near 0.1 --quality high
+near 0.2 --quality high
 same --no-labels
 same --progress never
 same --encoding crs
@@ -99,7 +99,8 @@ same --encoding bitmap
 same --encoding rle
 near 0.02 --method footprint
 changes --method footprint
-run 0 "the exact picture" render -q -o exact.npy --method footprint
+run 0 "the exact picture" render -q -o exact.npy --method footprint \
+    --isa scalar
 run 0 "the original one" render -q -o original.npy --method original
 run 0 "they are one" "$TOOL" compare exact.npy original.npy
 same --azimuth 50 --azimuth 0

@@ -450,7 +450,7 @@ static void check_gloss(snow_context *context, const snow_settings *settings,
                         const snow_placement *p, int threads) {
     snow_gloss *table = malloc(SNOW_NORMALS * sizeof *table);
     uint64_t seed = 77;
-    snow_gloss_table(settings, p, threads, table);
+    snow_gloss_table(context, settings, p, threads, table);
     for (int code = 0; code < SNOW_NORMALS; code++)
         if (code == SNOW_NO_NORMAL || code > 255 * 255) {
             assert_true(table[code].factor == (float)settings->ambient);

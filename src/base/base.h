@@ -21,12 +21,13 @@
 
 struct snow_context {
     snow_allocator allocator;
-    pthread_mutex_t lock; /* of bytes, peak and message: the threads of one
-                             picture allocate */
+    pthread_mutex_t lock;   /* of bytes, peak and message: the threads of one
+                               picture allocate */
     snow_notice_fn *notice; /* NULL: nobody listens */
     void *notice_user;
-    uint64_t bytes, peak; /* held now; the most ever held */
-    uint64_t serials;     /* given out so far, to tell objects apart */
+    uint64_t bytes, peak;   /* held now; the most ever held */
+    struct snow_pool *pool; /* threads (base/parallel.h), NULL until needed */
+    uint64_t serials;       /* given out so far, to tell objects apart */
     char message[SNOW_MESSAGE_BYTES];
 };
 

@@ -6,6 +6,7 @@
  *   raw ... | header { raw, bytes } pad | block, aligned to 64 ...
  */
 #include "base/base.h"
+#include "base/parallel.h"
 
 #include <assert.h>
 #include <stdarg.h>
@@ -53,6 +54,7 @@ snow_status snow_context_new(const snow_allocator *allocator,
 
 void snow_context_free(snow_context *context) {
     if (context) {
+        snow_pool_free(context);
         snow_allocator allocator = context->allocator;
         pthread_mutex_destroy(&context->lock);
         allocator.release(allocator.user, context);

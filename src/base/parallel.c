@@ -1,94 +1,170 @@
-/* base/parallel.c - threads by OpenMP, the calling one included; and how many
- * this process may use.
+/* base/parallel.c - a pool of threads for each context.
  *
- * OpenMP's library is not built for the thread sanitizer, which therefore does
- * not see that a parallel region begins after what stands before it and ends
- * before what follows.  `fork_point` and `join_point` tell it; what two items
- * do to each other it sees by itself. */
+ * A call is a round: the caller writes down the work, wakes as many sleepers as
+ * it wants, and takes items like everybody else; who finds none left signs off,
+ * and the caller waits for the last.  Nobody spins: on a machine with other
+ * work a spinning thread takes the time of the one that it waits for. */
 #include "base/parallel.h"
 
-#include <snowglass/snowglass.h>
-#include <stdio.h>
+#include <stdatomic.h>
 #include <string.h>
 
-#ifdef _OPENMP
-#include <omp.h>
-#endif
+typedef struct snow_pool snow_pool;
 
-#if defined(__SANITIZE_THREAD__)
-#define SNOW_TSAN 1
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define SNOW_TSAN 1
-#endif
-#endif
+/* A thread of the pool; its number is that of the worker. */
+typedef struct pool_thread {
+    snow_pool *pool;
+    pthread_t id;
+    int worker;
+    uint64_t seen; /* the last round that it need not care for */
+} pool_thread;
 
-#ifdef SNOW_TSAN
-void __tsan_acquire(void *address);
-void __tsan_release(void *address);
-#define RELEASE(address) __tsan_release(address)
-#define ACQUIRE(address) __tsan_acquire(address)
-#else
-#define RELEASE(address) (void)(address)
-#define ACQUIRE(address) (void)(address)
-#endif
+struct snow_pool {
+    pthread_mutex_t lock;
+    pthread_cond_t wake, rest;
+    pool_thread *threads; /* worker n is threads[n - 1] */
+    int count, room;
+    /* The round, guarded by the lock but for `next`. */
+    uint64_t round;
+    bool quit;
+    int wanted; /* workers of this round, the caller included */
+    int busy;   /* of the pool's threads */
+    snow_work_fn *work;
+    void *job;
+    int64_t items;
+    atomic_int_fast64_t next;
+};
 
-#ifdef _OPENMP
-/* One thread's share of the items. */
-static void work_off(int64_t items, snow_work_fn *work, void *job) {
-    int worker = omp_get_thread_num();
-#pragma omp for schedule(dynamic, 1)
-    for (int64_t item = 0; item < items; item++)
-        work(job, item, worker);
+/* Memory of the context itself, which is not counted among its objects'. */
+static void *take(snow_context *context, size_t bytes) {
+    void *block = context->allocator.allocate(context->allocator.user, bytes);
+    if (block)
+        memset(block, 0, bytes);
+    return block;
 }
 
-void snow_parallel(int threads, int64_t items, snow_work_fn *work, void *job) {
+static void give_back(snow_context *context, void *block) {
+    if (block)
+        context->allocator.release(context->allocator.user, block);
+}
+
+static void work_off(snow_pool *pool, int worker) {
+    for (;;) {
+        int64_t item = atomic_fetch_add(&pool->next, 1);
+        if (item >= pool->items)
+            return;
+        pool->work(pool->job, item, worker);
+    }
+}
+
+/* The life of a thread: asleep until there is a round that wants it. */
+static void *live(void *argument) {
+    pool_thread *self = argument;
+    snow_pool *pool = self->pool;
+    uint64_t seen = self->seen;
+    pthread_mutex_lock(&pool->lock);
+    while (!pool->quit) {
+        if (pool->round == seen || self->worker >= pool->wanted) {
+            seen = pool->round;
+            pthread_cond_wait(&pool->wake, &pool->lock);
+            continue;
+        }
+        seen = pool->round;
+        pthread_mutex_unlock(&pool->lock);
+        work_off(pool, self->worker);
+        pthread_mutex_lock(&pool->lock);
+        if (--pool->busy == 0)
+            pthread_cond_signal(&pool->rest);
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return NULL;
+}
+
+static snow_pool *pool_of(snow_context *context) {
+    if (context->pool)
+        return context->pool;
+    snow_pool *pool = take(context, sizeof *pool);
+    if (!pool)
+        return NULL;
+    if (pthread_mutex_init(&pool->lock, NULL) ||
+        pthread_cond_init(&pool->wake, NULL) ||
+        pthread_cond_init(&pool->rest, NULL)) {
+        give_back(context, pool);
+        return NULL;
+    }
+    context->pool = pool;
+    return pool;
+}
+
+/* Makes threads until there are `count`, as far as the system gives them. */
+static void grow(snow_context *context, snow_pool *pool, int count) {
+    if (count > pool->room) {
+        /* A thread knows its record's address: the records may not move. */
+        if (pool->count)
+            snow_pool_free(context);
+        pool = pool_of(context);
+        pool_thread *threads =
+            pool ? take(context, (size_t)count * sizeof *threads) : NULL;
+        if (!threads)
+            return;
+        give_back(context, pool->threads);
+        pool->threads = threads;
+        pool->room = count;
+    }
+    for (; pool->count < count; pool->count++) {
+        pool_thread *thread = &pool->threads[pool->count];
+        *thread = (pool_thread){
+            .pool = pool, .worker = pool->count + 1, .seen = pool->round};
+        if (pthread_create(&thread->id, NULL, live, thread))
+            return;
+    }
+}
+
+void snow_parallel(snow_context *context, int threads, int64_t items,
+                   snow_work_fn *work, void *job) {
     if (threads > items)
         threads = (int)items;
-    if (threads < 2) {
+    snow_pool *pool = threads > 1 ? pool_of(context) : NULL;
+    if (pool) {
+        grow(context, pool, threads - 1);
+        pool = context->pool;
+    }
+    if (!pool || !pool->count) {
         for (int64_t item = 0; item < items; item++)
             work(job, item, 0);
         return;
     }
-    char fork_point, join_point;
-    RELEASE(&fork_point);
-#pragma omp parallel num_threads(threads)
-    {
-        ACQUIRE(&fork_point);
-        work_off(items, work, job);
-        RELEASE(&join_point);
-    }
-    ACQUIRE(&join_point);
-}
-#else
-void snow_parallel(int threads, int64_t items, snow_work_fn *work, void *job) {
-    (void)threads;
-    for (int64_t item = 0; item < items; item++)
-        work(job, item, 0);
-}
-#endif
-
-/* A group's processor quota of cgroup v2 ("max 100000", "150000 100000"),
- * rounded up; 0 when there is none. */
-static int cgroup_quota(void) {
-    FILE *file = fopen("/sys/fs/cgroup/cpu.max", "r");
-    long long quota = 0, period = 0;
-    if (!file)
-        return 0;
-    int read = fscanf(file, "%lld %lld", &quota, &period);
-    fclose(file);
-    if (read != 2 || quota <= 0 || period <= 0)
-        return 0;
-    long long whole = (quota + period - 1) / period;
-    return whole < SNOW_THREADS_MOST ? (int)whole : SNOW_THREADS_MOST;
+    pthread_mutex_lock(&pool->lock);
+    pool->work = work;
+    pool->job = job;
+    pool->items = items;
+    pool->wanted = threads;
+    pool->busy = threads - 1 < pool->count ? threads - 1 : pool->count;
+    pool->round++;
+    atomic_store(&pool->next, 0);
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    work_off(pool, 0);
+    pthread_mutex_lock(&pool->lock);
+    while (pool->busy)
+        pthread_cond_wait(&pool->rest, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
 }
 
-int snow_processors(void) {
-#ifdef _OPENMP
-    int processors = omp_get_num_procs(); /* those that affinity leaves */
-#else
-    int processors = 1;
-#endif
-    int quota = cgroup_quota();
-    return quota > 0 && quota < processors ? quota : processors;
+void snow_pool_free(snow_context *context) {
+    snow_pool *pool = context->pool;
+    if (!pool)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->quit = true;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    for (int n = 0; n < pool->count; n++)
+        pthread_join(pool->threads[n].id, NULL);
+    pthread_cond_destroy(&pool->rest);
+    pthread_cond_destroy(&pool->wake);
+    pthread_mutex_destroy(&pool->lock);
+    give_back(context, pool->threads);
+    give_back(context, pool);
+    context->pool = NULL;
 }

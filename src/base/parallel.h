@@ -14,7 +14,13 @@
 typedef void snow_work_fn(void *job, int64_t item, int worker);
 
 /* Does items 0 .. items - 1 on up to `threads` threads, the calling one
- * included, and returns when all are done.  Items are handed out in order. */
-void snow_parallel(int threads, int64_t items, snow_work_fn *work, void *job);
+ * included, and returns when all are done.  Items are handed out in order.  The
+ * threads belong to the context and sleep between calls; where the system gives
+ * fewer, fewer do the work.  One call at a time for each context. */
+void snow_parallel(snow_context *context, int threads, int64_t items,
+                   snow_work_fn *work, void *job);
+
+/* Ends a context's threads; for snow_context_free. */
+void snow_pool_free(snow_context *context);
 
 #endif

@@ -5,16 +5,21 @@
  * T > 0, 255 a > T + 0.0001; a is the opacity before it is corrected for the
  * path length.  What is uninteresting contributes nothing. */
 #include "classify/classify.h"
+#include "classify/keep_bytes.h"
 
 #include "base/power.h"
+
+#include <string.h>
 
 #define ROW_TYPE int8_t
 #define ROW_NAME classify_row_int8
 #define ROW_LOWEST INT8_MIN
+#define ROW_BYTES
 #include "classify/classify_row.tmpl.h"
 #define ROW_TYPE uint8_t
 #define ROW_NAME classify_row_uint8
 #define ROW_LOWEST 0
+#define ROW_BYTES
 #include "classify/classify_row.tmpl.h"
 #define ROW_TYPE int16_t
 #define ROW_NAME classify_row_int16
@@ -91,12 +96,9 @@ bool snow_classify_value(const snow_classifier *c, double native,
 static snow_status make_table(snow_context *context, snow_classifier *c,
                               const struct type_row *row) {
     size_t values = (size_t)row->values, channels = (size_t)c->channels;
-    c->keep = snow_allocate(context, values);
-    c->table = snow_allocate_array(context, values, channels * sizeof(float));
-    if (!c->keep || !c->table) {
-        snow_classifier_fini(context, c);
-        return SNOW_NO_MEMORY;
-    }
+    SNOW_TRY(snow_reserve(context, &c->keep, &c->keep_capacity, 0, values));
+    SNOW_TRY(snow_reserve(context, &c->table, &c->table_capacity, 0,
+                          values * channels * sizeof(float)));
     for (size_t i = 0; i < values; i++) {
         double native = (double)row->lowest + (double)i;
         c->keep[i] = snow_classify_value(c, native, c->table + i * channels) ||
@@ -105,33 +107,28 @@ static snow_status make_table(snow_context *context, snow_classifier *c,
     return SNOW_OK;
 }
 
-snow_status snow_classifier_init(snow_context *context,
+snow_status snow_classifier_make(snow_context *context,
                                  const snow_volume *volume,
                                  const snow_transfer *transfer,
                                  const snow_classify_options *options,
-                                 snow_classifier *out) {
+                                 snow_classifier *c) {
     const struct type_row *row = &type_rows[volume->info.type];
-    snow_classifier c = {
-        .volume = volume,
-        .transfer = transfer,
-        .channels = transfer->grey ? 2 : 4,
-        .keep_all = options->keep_all,
-        .premultiply = options->premultiply,
-        .threshold = options->threshold,
-        .exponent = options->opacity_exponent,
-        .classify_row = row->classify_row,
-    };
-    if (row->values)
-        SNOW_TRY(make_table(context, &c, row));
-    *out = c;
-    return SNOW_OK;
+    c->volume = volume;
+    c->transfer = transfer;
+    c->channels = transfer->grey ? 2 : 4;
+    c->keep_all = options->keep_all;
+    c->premultiply = options->premultiply;
+    c->threshold = options->threshold;
+    c->exponent = options->opacity_exponent;
+    c->classify_row = row->classify_row;
+    c->keep_bytes = snow_keep_bytes_pick(options->isa);
+    return row->values ? make_table(context, c, row) : SNOW_OK;
 }
 
 void snow_classifier_fini(snow_context *context, snow_classifier *c) {
     snow_release(context, c->keep);
     snow_release(context, c->table);
-    c->keep = NULL;
-    c->table = NULL;
+    *c = (snow_classifier){0};
 }
 
 const void *snow_row_voxels(const snow_volume *volume,

@@ -24,13 +24,15 @@ typedef struct snow_strip {
     size_t *row_end;   /* per row: the entries up to its end */
     uint32_t *columns; /* per entry */
     float *samples;    /* per entry: (grey, a) or (r, g, b, a) */
-    int64_t room_rows; /* that the buffers hold, set by snow_strip_init */
+    int64_t room_rows; /* that the buffers hold, set by snow_strip_make */
+    size_t row_end_capacity, columns_capacity, samples_capacity; /* bytes */
 } snow_strip;
 
-/* Makes room for strips of slices placed so.  The strip's buffers belong to
- * the context; free with snow_strip_free.  Errors: SNOW_BAD_USAGE (a row of
- * 2^32 voxels or more), SNOW_NO_MEMORY. */
-snow_status snow_strip_init(snow_context *context,
+/* Makes room for strips of slices placed so, in the memory that is there where
+ * it suffices; the record begins as zeros.  The strip's buffers belong to the
+ * context; free with snow_strip_free.  Errors: SNOW_BAD_USAGE (a row of 2^32
+ * voxels or more), SNOW_NO_MEMORY. */
+snow_status snow_strip_make(snow_context *context,
                             const snow_placement *placement, int channels,
                             snow_strip *strip);
 void snow_strip_free(snow_context *context, snow_strip *strip);
@@ -44,6 +46,12 @@ typedef size_t snow_classify_row_fn(const snow_classifier *classifier,
                                     int64_t columns, uint32_t *kept,
                                     float *samples);
 
+/* The places of the voxels of 8 bits in a row that are kept: `keep` says so per
+ * value less `lowest`.  Returns their number. */
+typedef size_t snow_keep_bytes_fn(const unsigned char *keep, const void *voxels,
+                                  unsigned char lowest, int64_t columns,
+                                  uint32_t *kept);
+
 /* The transfer function made ready for one volume, threshold and path length.
  * For 8- and 16-bit voxels it is a table over all native values. */
 struct snow_classifier {
@@ -55,8 +63,10 @@ struct snow_classifier {
     double threshold; /* opacity 0 to 255 */
     double exponent;  /* path length / reference length */
     snow_classify_row_fn *classify_row;
-    unsigned char *keep; /* per native value: is it kept? */
-    float *table;        /* per native value: its sample */
+    snow_keep_bytes_fn *keep_bytes;       /* NULL: the plain loop */
+    unsigned char *keep;                  /* per native value: is it kept? */
+    float *table;                         /* per native value: its sample */
+    size_t keep_capacity, table_capacity; /* bytes */
 };
 
 /* What a classifier is asked to be. */
@@ -64,14 +74,16 @@ typedef struct snow_classify_options {
     double threshold;
     double opacity_exponent; /* a' = 1 - (1 - a)^exponent (model, point 6) */
     bool keep_all, premultiply;
+    snow_isa isa; /* resolved, or AUTO for the plain loops */
 } snow_classify_options;
 
-/* Errors: SNOW_NO_MEMORY.  Free with snow_classifier_fini. */
-snow_status snow_classifier_init(snow_context *context,
+/* Readies a classifier; the record begins as zeros, and keeps the memory of its
+ * tables.  Errors: SNOW_NO_MEMORY.  Free with snow_classifier_fini. */
+snow_status snow_classifier_make(snow_context *context,
                                  const snow_volume *volume,
                                  const snow_transfer *transfer,
                                  const snow_classify_options *options,
-                                 snow_classifier *out);
+                                 snow_classifier *classifier);
 void snow_classifier_fini(snow_context *context, snow_classifier *classifier);
 
 /* The sample of one native value; true when it is interesting.  An
@@ -99,6 +111,19 @@ typedef void snow_gradient_fn(const void *voxels, const int64_t dims[3],
 
 snow_gradient_fn *snow_gradient_of(snow_type type);
 
+/* A row of voxels along an axis; at[axis] is of no matter. */
+typedef struct snow_gradient_row {
+    const snow_volume *volume;
+    int axis;
+    int64_t at[3];
+} snow_gradient_row;
+
+/* The same for voxels of a row, x to gradients[0 .. count - 1], y and z `room`
+ * and 2 `room` further on. */
+void snow_gradients_of_row(const snow_gradient_row *row,
+                           const uint32_t *columns, size_t count, size_t room,
+                           double *gradients);
+
 /* --- shading: classify/shade.c ---------------------------------------------
  */
 
@@ -108,7 +133,8 @@ typedef struct snow_shader {
     const snow_volume *volume;
     const snow_placement *placement;
     double ambient, diffuse, specular, shininess;
-    int whole; /* shininess when it is a whole number up to 1024, else -1 */
+    snow_isa isa; /* resolved; all give the same bits */
+    int whole;    /* shininess when it is a whole number up to 1024, else -1 */
     double light[3], half[3], viewer[3]; /* W^T times the world vector */
     double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
 } snow_shader;

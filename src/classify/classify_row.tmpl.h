@@ -5,6 +5,7 @@
  *   ROW_NAME    name of the function
  *   ROW_LOWEST  the smallest value of the type: with it the row is classified
  *               by the table; without it every voxel is evaluated
+ *   ROW_BYTES   for the types of 8 bits: they may have faster loops
  *
  * All are undefined at the end. */
 
@@ -14,19 +15,28 @@ static size_t ROW_NAME(const snow_classifier *c, const void *voxels,
     const ROW_TYPE *voxel = voxels;
     size_t count = 0;
 #ifdef ROW_LOWEST
-    /* The places first, without a branch: a voxel that is not kept is
-     * overwritten by the next one. */
-    for (int64_t i = 0; i < columns; i++) {
-        kept[count] = (uint32_t)i;
-        count += c->keep[(int)voxel[i * stride] - (ROW_LOWEST)];
-    }
-    size_t size = (size_t)c->channels;
-    for (size_t n = 0; n < count; n++) {
-        int value = voxel[kept[n] * stride];
-        const float *entry = c->table + (size_t)(value - (ROW_LOWEST)) * size;
-        for (size_t channel = 0; channel < size; channel++)
-            samples[n * size + channel] = entry[channel];
-    }
+#ifdef ROW_BYTES
+    if (c->keep_bytes && stride == 1)
+        count = c->keep_bytes(c->keep, voxels, (unsigned char)(ROW_LOWEST),
+                              columns, kept);
+    else
+#endif
+        /* The places first, without a branch: a voxel that is not kept is
+         * overwritten by the next one. */
+        for (int64_t i = 0; i < columns; i++) {
+            kept[count] = (uint32_t)i;
+            count += c->keep[(int)voxel[i * stride] - (ROW_LOWEST)];
+        }
+    if (c->channels == 2)
+        for (size_t n = 0; n < count; n++) {
+            size_t entry = (size_t)(voxel[kept[n] * stride] - (ROW_LOWEST));
+            memcpy(samples + 2 * n, c->table + 2 * entry, 2 * sizeof *samples);
+        }
+    else
+        for (size_t n = 0; n < count; n++) {
+            size_t entry = (size_t)(voxel[kept[n] * stride] - (ROW_LOWEST));
+            memcpy(samples + 4 * n, c->table + 4 * entry, 4 * sizeof *samples);
+        }
 #else
     for (int64_t i = 0; i < columns; i++) {
         double value = (double)voxel[i * stride];
@@ -41,3 +51,4 @@ static size_t ROW_NAME(const snow_classifier *c, const void *voxels,
 #undef ROW_TYPE
 #undef ROW_NAME
 #undef ROW_LOWEST
+#undef ROW_BYTES

@@ -61,7 +61,7 @@ static void gloss_rows(void *user, int64_t item, int worker) {
         job->gloss_row(job, (int)item * ROWS + row);
 }
 
-void snow_gloss_table(const snow_settings *settings,
+void snow_gloss_table(snow_context *context, const snow_settings *settings,
                       const snow_placement *placement, int threads,
                       snow_gloss *table) {
     double light[3], half[3];
@@ -84,5 +84,5 @@ void snow_gloss_table(const snow_settings *settings,
     table[SNOW_NO_NORMAL] = plain;
     for (int code = SIDE * SIDE + 1; code < SNOW_NORMALS; code++)
         table[code] = plain;
-    snow_parallel(threads, SIDE / ROWS, gloss_rows, &job);
+    snow_parallel(context, threads, SIDE / ROWS, gloss_rows, &job);
 }

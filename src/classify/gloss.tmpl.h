@@ -5,7 +5,7 @@
  * NAME(gloss_row) writes the entries of one row of the square of normals. */
 
 /* x^whole in place, by squaring. */
-TARGET static void NAME(raise_whole)(float *x, int whole) {
+TARGET static void NAME(power_whole)(float *x, int whole) {
     float power[SIDE];
     for (int i = 0; i < SIDE; i++)
         power[i] = 1;
@@ -20,7 +20,7 @@ TARGET static void NAME(raise_whole)(float *x, int whole) {
         x[i] = power[i];
 }
 
-TARGET static void NAME(raise_real)(float *x, double exponent) {
+TARGET static void NAME(power_real)(float *x, double exponent) {
     for (int i = 0; i < SIDE; i++)
         x[i] = (float)snow_power((double)x[i], exponent);
 }
@@ -50,9 +50,9 @@ TARGET static void NAME(gloss_row)(const gloss_job *job, int row) {
     snow_gloss *out = job->table + 1 + row * SIDE;
     NAME(cosines)(job, row, lambert, white);
     if (job->whole >= 0)
-        NAME(raise_whole)(white, job->whole);
+        NAME(power_whole)(white, job->whole);
     else
-        NAME(raise_real)(white, job->shininess);
+        NAME(power_real)(white, job->shininess);
     /* x^0 is 1 for a highlight of 0 too, which must stay black. */
     for (int i = 0; i < SIDE; i++) {
         out[i].factor = job->ambient + job->diffuse * lambert[i];

@@ -2,9 +2,10 @@
  * space, for one scalar type.  Define before including:
  *
  *   GRADIENT_TYPE  C type of a voxel
- *   GRADIENT_NAME  name of the function
+ *   GRADIENT_NAME  name of the function for one voxel
+ *   GRADIENT_ROW   name of the function for voxels inside of a row
  *
- * Both are undefined at the end.  Beside the border, and beside a value that
+ * All are undefined at the end.  Beside the border, and beside a value that
  * is not finite, the difference is one-sided; with neither neighbour it is 0.
  */
 
@@ -21,5 +22,35 @@ static void GRADIENT_NAME(const void *voxels, const int64_t dims[3],
     }
 }
 
+/* Of voxels that have neighbours on all sides. */
+static void GRADIENT_ROW(const snow_gradient_row *row, const uint32_t *columns,
+                         size_t count, size_t room, double *gradients) {
+    const int64_t *dims = row->volume->info.dims;
+    const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
+    int64_t at[3] = {row->at[0], row->at[1], row->at[2]};
+    at[row->axis] = 0;
+    const GRADIENT_TYPE *first = (const GRADIENT_TYPE *)row->volume->voxels +
+                                 at[0] + at[1] * strides[1] +
+                                 at[2] * strides[2];
+    const int64_t step = strides[row->axis];
+    for (size_t n = 0; n < count; n++) {
+        const GRADIENT_TYPE *here = first + columns[n] * step;
+        double x = ((double)here[1] - (double)here[-1]) / 2;
+        double y = ((double)here[strides[1]] - (double)here[-strides[1]]) / 2;
+        double z = ((double)here[strides[2]] - (double)here[-strides[2]]) / 2;
+        gradients[n] = x;
+        gradients[room + n] = y;
+        gradients[2 * room + n] = z;
+        if (isfinite(x + y + z)) /* always so for whole numbers */
+            continue;
+        double careful[3];
+        at[row->axis] = columns[n];
+        GRADIENT_NAME(row->volume->voxels, dims, at, careful);
+        for (size_t i = 0; i < 3; i++)
+            gradients[i * room + n] = careful[i];
+    }
+}
+
+#undef GRADIENT_ROW
 #undef GRADIENT_TYPE
 #undef GRADIENT_NAME

@@ -62,7 +62,7 @@ void snow_normals_between(const snow_normal_maker *maker,
 
 /* The shading table of a view and light (model, point 4): SNOW_NORMALS entries
  * into `table`.  `threads` as in base/parallel.h. */
-void snow_gloss_table(const snow_settings *settings,
+void snow_gloss_table(snow_context *context, const snow_settings *settings,
                       const snow_placement *placement, int threads,
                       snow_gloss *table);
 

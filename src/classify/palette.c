@@ -215,10 +215,10 @@ static snow_status make_palette(snow_context *context, palette_job *job,
         palette->key_count = 0; /* no key, until there are looks for it */
         palette->channels = transfer->grey ? 2 : 4;
         SNOW_TRY(make_room(context, coder->codes, palette));
-        snow_parallel(threads, items, make_looks, job);
+        snow_parallel(context, threads, items, make_looks, job);
         palette->key_count = count;
     }
-    snow_parallel(threads, items, make_samples, job);
+    snow_parallel(context, threads, items, make_samples, job);
     return SNOW_OK;
 }
 

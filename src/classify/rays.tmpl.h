@@ -39,7 +39,7 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         V(store)(exponents + at,
                  V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
     }
-    const V(lanes) spread = V(lanes_of)(RAY_CHANNELS == 2 ? ray_twice
+    const V(places) spread = V(places_of)(RAY_CHANNELS == 2 ? ray_twice
                                                           : ray_four_times);
     const V(vec) one = V(set1)(1), round = V(set1)(0x1.8p23f);
     for (int i = 0; i < count; i += LANES / RAY_CHANNELS) {

@@ -9,13 +9,16 @@ typedef snow_sample_fn *snow_sample_table[2][2][2];
 
 #define SELECT_SCALAR
 #include "simd/select.h"
+
 #include "classify/sample_levels.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
+
 #include "classify/sample_levels.h"
 #define SELECT_AVX512
 #include "simd/select.h"
+
 #include "classify/sample_levels.h"
 #endif
 

@@ -8,6 +8,7 @@
 #include "base/power.h"
 #include "base/vec3.h"
 #include "classify/classify.h"
+#include "simd/isa.h"
 
 #include <math.h>
 #include <string.h>
@@ -51,6 +52,7 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
         .specular = settings->specular,
         .shininess = settings->shininess,
         .whole = snow_whole_shininess(settings->shininess),
+        .isa = snow_isa_resolve(settings->isa),
     };
     double inverse[3][3], light[3], half[3];
     if (!snow_matrix_invert3(volume->info.matrix, inverse))
@@ -68,78 +70,73 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
     return SNOW_OK;
 }
 
-/* x^shininess.  Whole exponents (the default is one) by squaring. */
-static double power(const snow_shader *shader, double x) {
-    if (shader->whole < 0)
-        return snow_power(x, shader->shininess);
-    double result = 1;
-    for (unsigned n = (unsigned)shader->whole; n; n /= 2, x *= x)
-        if (n % 2)
-            result *= x;
-    return result;
+/* Voxels that are shaded at once: their gradients lie in the first-level
+ * cache. */
+#define SHADE_BLOCK 128
+
+/* What no one sees becomes 0: the far side of a highlight has powers that are
+ * subnormal as floats, with which splatting takes twice as long. */
+#define UNSEEN 1e-20
+
+/* A colour under a factor and white light. */
+static inline float shaded(float color, double factor, double white) {
+    double sum = factor * (double)color + white;
+    sum = sum > UNSEEN ? sum : 0;
+    return (float)(sum < 1 ? sum : 1);
 }
 
-/* The factor of the colour and the white added to it, for a gradient. */
-static void reflect(const snow_shader *shader, const double gradient[3],
-                    double *factor, double *white) {
-    /* Only the direction counts; the square of a tiny or huge difference could
-     * vanish or overflow. */
-    double most = fabs(gradient[0]), g[3];
-    for (int i = 1; i < 3; i++)
-        most = fabs(gradient[i]) > most ? fabs(gradient[i]) : most;
-    double inverse = most > 0x1p-300 && most < 0x1p300 ? 1 : 1 / most;
-    for (int i = 0; i < 3; i++)
-        g[i] = gradient[i] * inverse;
-    double carried[3] = {snow_dot(shader->metric[0], g),
-                         snow_dot(shader->metric[1], g),
-                         snow_dot(shader->metric[2], g)};
-    double square = snow_dot(carried, g);
-    *factor = shader->ambient;
-    *white = 0;
-    if (!(square > 0) || !isfinite(square))
-        return;
-    double scale = 1 / sqrt(square);
-    if (snow_dot(g, shader->viewer) < 0)
-        scale = -scale;
-    double lambert = scale * snow_dot(g, shader->light);
-    if (lambert <= 0)
-        return;
-    double highlight = scale * snow_dot(g, shader->half);
-    *factor += shader->diffuse * lambert;
-    if (highlight > 0 && shader->specular > 0)
-        *white = shader->specular * power(shader, highlight);
-}
+/* The order matters, so a blank line keeps the two from being sorted. */
+#define SELECT_SCALAR
+#include "simd/select.h"
 
-/* Shades one sample, and multiplies its colour by its opacity. */
-static void shade_sample(const snow_shader *shader, const double gradient[3],
-                         int channels, float *sample) {
-    double factor, white;
-    reflect(shader, gradient, &factor, &white);
-    float opacity = sample[channels - 1];
-    for (int i = 0; i < channels - 1; i++) {
-        double shaded = factor * (double)sample[i] + white;
-        sample[i] = (float)(shaded < 1 ? shaded : 1) * opacity;
-    }
+#include "classify/shade.tmpl.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "classify/shade.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "classify/shade.tmpl.h"
+#endif
+
+typedef void shade_block_fn(const snow_shader *shader,
+                            const double gradients[3][SHADE_BLOCK], int count,
+                            int channels, float *samples);
+
+static shade_block_fn *block_of(snow_isa isa) {
+#if SNOW_HAS_AVX
+    if (isa == SNOW_ISA_AVX512)
+        return shade_block_avx512;
+    if (isa == SNOW_ISA_AVX2)
+        return shade_block_avx2;
+#endif
+    (void)isa;
+    return shade_block_scalar;
 }
 
 void snow_shade_strip(const snow_shader *shader, int channels,
                       snow_strip *strip) {
     const snow_placement *p = shader->placement;
     const snow_volume *volume = shader->volume;
-    snow_gradient_fn *gradient_of = snow_gradient_of(volume->info.type);
-    int64_t at[3];
-    at[p->slice_axis] = strip->slice;
+    shade_block_fn *shade_block = block_of(shader->isa);
+    double gradients[3][SHADE_BLOCK];
+    memset(gradients, 0, sizeof gradients);
+    snow_gradient_row row = {.volume = volume, .axis = p->u_axis};
+    row.at[p->slice_axis] = strip->slice;
     size_t n = 0;
-    for (int64_t row = 0; row < strip->rows; row++) {
-        at[p->v_axis] = strip->first_row + row;
-        for (; n < strip->row_end[row]; n++) {
-            float *sample = strip->samples + n * (size_t)channels;
-            if (!(sample[channels - 1] > 0))
-                continue;
-            double gradient[3];
-            at[p->u_axis] = strip->columns[n];
-            gradient_of(volume->voxels, volume->info.dims, at, gradient);
-            shade_sample(shader, gradient, channels, sample);
+    for (int64_t line = 0; line < strip->rows; line++) {
+        row.at[p->v_axis] = strip->first_row + line;
+        while (n < strip->row_end[line]) {
+            size_t count = strip->row_end[line] - n;
+            count = count < SHADE_BLOCK ? count : SHADE_BLOCK;
+            snow_gradients_of_row(&row, strip->columns + n, count, SHADE_BLOCK,
+                                  gradients[0]);
+            shade_block(shader, (const double(*)[SHADE_BLOCK])gradients,
+                        (int)count, channels,
+                        strip->samples + n * (size_t)channels);
+            n += count;
         }
     }
 }

@@ -30,18 +30,19 @@ snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
                                 .slices = dims[2]};
     snow_classify_options options = {.threshold = threshold,
                                      .opacity_exponent = 1};
-    snow_classifier classifier;
-    snow_strip strip;
-    SNOW_TRY(
-        snow_classifier_init(context, volume, transfer, &options, &classifier));
+    snow_classifier classifier = {0};
+    snow_strip strip = {0};
     snow_status status =
-        snow_strip_init(context, &placement, classifier.channels, &strip);
+        snow_classifier_make(context, volume, transfer, &options, &classifier);
+    if (status == SNOW_OK)
+        status =
+            snow_strip_make(context, &placement, classifier.channels, &strip);
     if (status == SNOW_OK) {
         double voxels = (double)dims[0] * (double)dims[1] * (double)dims[2];
         double kept = (double)count_kept(&classifier, &placement, &strip);
         *ratio = 1 - kept / voxels;
-        snow_strip_free(context, &strip);
     }
+    snow_strip_free(context, &strip);
     snow_classifier_fini(context, &classifier);
     return status;
 }

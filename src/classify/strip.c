@@ -5,7 +5,7 @@
  * part of today's second-level caches. */
 #define STRIP_VOXELS 16384
 
-snow_status snow_strip_init(snow_context *context,
+snow_status snow_strip_make(snow_context *context,
                             const snow_placement *placement, int channels,
                             snow_strip *strip) {
     if (placement->columns > UINT32_MAX)
@@ -19,17 +19,14 @@ snow_status snow_strip_init(snow_context *context,
     if (rows < 1)
         rows = 1;
     uint64_t voxels = (uint64_t)rows * (uint64_t)placement->columns;
-    *strip = (snow_strip){.room_rows = rows};
-    strip->row_end =
-        snow_allocate_array(context, (uint64_t)rows, sizeof *strip->row_end);
-    strip->columns =
-        snow_allocate_array(context, voxels, sizeof *strip->columns);
-    strip->samples = snow_allocate_array(
-        context, voxels, (size_t)channels * sizeof *strip->samples);
-    if (strip->row_end && strip->columns && strip->samples)
-        return SNOW_OK;
-    snow_strip_free(context, strip);
-    return SNOW_NO_MEMORY;
+    strip->room_rows = rows;
+    SNOW_TRY(snow_reserve(context, &strip->row_end, &strip->row_end_capacity, 0,
+                          (size_t)rows * sizeof *strip->row_end));
+    SNOW_TRY(snow_reserve(context, &strip->columns, &strip->columns_capacity, 0,
+                          (size_t)voxels * sizeof *strip->columns));
+    return snow_reserve(context, &strip->samples, &strip->samples_capacity, 0,
+                        (size_t)voxels * (size_t)channels *
+                            sizeof *strip->samples);
 }
 
 void snow_strip_free(snow_context *context, snow_strip *strip) {

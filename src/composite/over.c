@@ -1,6 +1,7 @@
 /* composite/over.c - "composite successive slices to produce the local image"
  * (line 13 of figure 8); Porter and Duff 1984. */
 #include "composite/over.h"
+#include "simd/isa.h"
 
 #include <string.h>
 
@@ -22,6 +23,28 @@ static void over_rgba(float *restrict front, const float *restrict back,
     }
 }
 
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "composite/over.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "composite/over.tmpl.h"
+#endif
+
+snow_over_fn *snow_over_pick(snow_isa isa, int channels) {
+#if SNOW_HAS_AVX
+    if (isa == SNOW_ISA_AVX512)
+        return channels == 2 ? over_grey_avx512 : over_rgba_avx512;
+    if (isa == SNOW_ISA_AVX2)
+        return channels == 2 ? over_grey_avx2 : over_rgba_avx2;
+#endif
+    (void)isa;
+    return channels == 2 ? over_grey : over_rgba;
+}
+
 void snow_over_row(float *front, const float *back, size_t count,
                    int channels) {
     if (channels == 2)
@@ -35,12 +58,12 @@ void snow_composite_sheet(float *image, snow_sheet *sheet) {
     if (sheet->x0 < sheet->x1) {
         size_t count = (size_t)(sheet->x1 - sheet->x0);
         for (int y = sheet->y0; y < sheet->y1; y++) {
-            size_t at = ((size_t)y * (size_t)sheet->width + (size_t)sheet->x0) *
-                        channels;
-            snow_over_row(image + at, sheet->pixels + at, count,
-                          sheet->channels);
-            memset(sheet->pixels + at, 0,
-                   count * channels * sizeof *sheet->pixels);
+            size_t width = (size_t)sheet->width, x = (size_t)sheet->x0;
+            size_t line = (size_t)(y - sheet->top);
+            float *back = sheet->pixels + (line * width + x) * channels;
+            snow_over_row(image + ((size_t)y * width + x) * channels, back,
+                          count, sheet->channels);
+            memset(back, 0, count * channels * sizeof *back);
         }
     }
     snow_sheet_unmark(sheet);

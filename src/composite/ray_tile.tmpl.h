@@ -31,7 +31,7 @@ RAY_NAME(_group)(const snow_ray_tile *t, const int n, const int taps,
                            : 0;
         spread[lane] = pixel;
     }
-    const V(lanes) pick = V(lanes_of)(from), repeat = V(lanes_of)(spread);
+    const V(places) pick = V(places_of)(from), repeat = V(places_of)(spread);
     for (int m = 0; m < taps; m++)
         weights[m] =
             V(pick)(t->u.weights + (size_t)m * t->u.stride + n, repeat);

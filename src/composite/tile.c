@@ -5,13 +5,16 @@
 
 #define SELECT_SCALAR
 #include "simd/select.h"
+
 #include "composite/tile_levels.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
+
 #include "composite/tile_levels.h"
 #define SELECT_AVX512
 #include "simd/select.h"
+
 #include "composite/tile_levels.h"
 #endif
 

@@ -23,7 +23,8 @@
 
 #define SNOW_TILE_COLUMNS 16
 #define SNOW_TILE_CELLS 32
-#define SNOW_TILE_ROWS 64 /* of voxels that the cells can need: a mask's bits */
+#define SNOW_TILE_ROWS 64 /* of voxels that the cells can need: a mask's bits \
+                           */
 
 /* What may still shine through where a cell is given up: half a step of an
  * 8-bit picture.  All that lies behind changes it by less. */
@@ -37,14 +38,14 @@ typedef struct snow_tile {
     /* Windows: row i begins with the voxel of column comb.offset of the tile's
      * first lattice column; zeros where there is no interesting voxel. */
     const float *samples;
-    size_t window; /* floats from row to row */
-    uint64_t held; /* rows that have a voxel: bit i */
-    uint64_t wanted; /* cells to be drawn; cell i needs rows i * stride to
-                        i * stride + lead + taps_v - 1 */
-    float *ring;   /* SNOW_TILE_ROWS filtered rows, not shared */
+    size_t window;     /* floats from row to row */
+    uint64_t held;     /* rows that have a voxel: bit i */
+    uint64_t wanted;   /* cells to be drawn; cell i needs rows i * stride to
+                          i * stride + lead + taps_v - 1 */
+    float *ring;       /* SNOW_TILE_ROWS filtered rows, not shared */
     const float *zero; /* a filtered row of zeros */
-    float *pixels; /* the tile's first pixel */
-    size_t line;   /* floats from line to line */
+    float *pixels;     /* the tile's first pixel */
+    size_t line;       /* floats from line to line */
 } snow_tile;
 
 /* Draws the wanted cells; returns those that let nothing through any more. */

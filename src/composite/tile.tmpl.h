@@ -13,13 +13,13 @@
 
 /* Along u, one pixel a lattice column: pixel n sums voxels n + m. */
 TARGET static inline __attribute__((always_inline)) void
-TILE_NAME(_single)(const float *samples, const V(vec) *weights,
-                   const int taps, float *pixels) {
+TILE_NAME(_single)(const float *samples, const V(vec) * weights, const int taps,
+                   float *pixels) {
     for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS; at += LANES) {
         V(vec) sum = V(mul)(weights[0], V(load)(samples + at));
         for (int m = 1; m < taps; m++)
-            sum = V(fma)(weights[m],
-                         V(load)(samples + at + m * TILE_CHANNELS), sum);
+            sum = V(fma)(weights[m], V(load)(samples + at + m * TILE_CHANNELS),
+                         sum);
         V(store)(pixels + at, sum);
     }
 }
@@ -27,7 +27,7 @@ TILE_NAME(_single)(const float *samples, const V(vec) *weights,
 /* Along u, two pixels a column, each phase with its own lead and weights. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_double)(const float *samples, const float *late,
-                   const V(vec) *weights, const int taps, float *pixels) {
+                   const V(vec) * weights, const int taps, float *pixels) {
     for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS; at += LANES) {
         V(vec) a = V(mul)(weights[0], V(load)(samples + at));
         V(vec) b = V(mul)(weights[taps], V(load)(late + at));
@@ -41,9 +41,8 @@ TILE_NAME(_double)(const float *samples, const float *late,
 }
 
 /* Along u, several voxels a pixel. */
-TARGET static void TILE_NAME(_strided)(const float *samples,
-                                       const snow_comb *u, int taps, int stride,
-                                       float *pixels) {
+TARGET static void TILE_NAME(_strided)(const float *samples, const snow_comb *u,
+                                       int taps, int stride, float *pixels) {
     for (int n = 0; n < SNOW_TILE_COLUMNS; n++)
         for (int c = 0; c < TILE_CHANNELS; c++) {
             const float *sample = samples + n * stride * TILE_CHANNELS + c;
@@ -57,8 +56,8 @@ TARGET static void TILE_NAME(_strided)(const float *samples,
 /* One line: rows weighted and added up, behind the image.  True while something
  * still shines through. */
 TARGET static inline __attribute__((always_inline)) bool
-TILE_NAME(_line)(float *line, const float *const *rows,
-                 const V(vec) *weights, const int taps, const int phases) {
+TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
+                 const int taps, const int phases) {
     const float *row[SNOW_TAPS_MOST];
     V(vec) least = V(set1)(0);
     for (int m = 0; m < taps; m++)
@@ -78,23 +77,21 @@ TILE_NAME(_line)(float *line, const float *const *rows,
 }
 
 TARGET static inline __attribute__((always_inline)) void
-TILE_NAME(_filter)(const snow_tile *t, int row, const V(vec) *weights,
+TILE_NAME(_filter)(const snow_tile *t, int row, const V(vec) * weights,
                    const int taps, const int phases, float *pixels) {
     const float *samples = t->samples + (size_t)row * t->window;
     if (phases == 2)
         TILE_NAME(_double)
-        (samples, samples + t->u->lead[1] * TILE_CHANNELS, weights, taps,
-         pixels);
+    (samples, samples + t->u->lead[1] * TILE_CHANNELS, weights, taps, pixels);
     else if (t->lattice_u->stride == 1)
         TILE_NAME(_single)(samples, weights, taps, pixels);
-    else
-        TILE_NAME(_strided)(samples, t->u, taps, t->lattice_u->stride, pixels);
+    else TILE_NAME(_strided)(samples, t->u, taps, t->lattice_u->stride, pixels);
 }
 
 /* Weights in all lanes, phase after phase. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_weights)(const snow_comb *comb, int phases, const int taps,
-                    V(vec) *weights) {
+                    V(vec) * weights) {
     for (int phase = 0; phase < phases; phase++)
         for (int m = 0; m < taps; m++)
             weights[phase * taps + m] = V(set1)(comb->weights[phase][m]);
@@ -115,8 +112,8 @@ TILE_NAME(_cells)(const snow_tile *t, const int taps_u, const int taps_v,
         int cell = __builtin_ctzll(cells), first = cell * stride;
         bool seen = false;
         for (next = next > first ? next : first; next < first + reach; next++) {
-            float *filtered = t->ring + next * 2 * SNOW_TILE_COLUMNS *
-                                            TILE_CHANNELS;
+            float *filtered =
+                t->ring + next * 2 * SNOW_TILE_COLUMNS * TILE_CHANNELS;
             rows[next] = t->zero;
             if (t->held >> next & 1) {
                 TILE_NAME(_filter)

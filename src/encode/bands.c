@@ -83,15 +83,20 @@ static void make_normals(const encode_job *job, const row_buffers *buffers,
                          size_t voxel) {
     const snow_bands_order *order = job->order;
     size_t words = snow_mask_words(band);
-    if (order->between)
-        slice /= 2;
+    bool is_between = order->between && slice % 2;
+    int64_t here = order->first_slice + (order->between ? slice / 2 : slice);
     for (int64_t row = 0; row < band->rows; row++) {
         size_t count = snow_columns_of_masks(
             buffers->masks + (size_t)row * words, words, buffers->columns);
-        if (count)
-            snow_normals_of_row(order->maker, order->placement,
-                                order->first_slice + slice, first_row + row,
-                                buffers->columns, count, band->normals + voxel);
+        uint16_t *normals = band->normals + voxel;
+        if (count && is_between)
+            snow_normals_between(order->maker, order->placement, here,
+                                 first_row + row, buffers->columns, count,
+                                 normals);
+        else if (count)
+            snow_normals_of_row(order->maker, order->placement, here,
+                                first_row + row, buffers->columns, count,
+                                normals);
         voxel += count;
     }
 }
@@ -296,7 +301,7 @@ snow_status snow_bands_encode(snow_bands *bands,
     encode_job job = {.bands = bands, .order = order};
     atomic_init(&job.failed, SNOW_OK);
     SNOW_TRY(prepare(&job, threads));
-    snow_parallel(threads, count, work, &job);
+    snow_parallel(bands->context, threads, count, work, &job);
     SNOW_TRY((snow_status)atomic_load(&job.failed));
     add_up(bands);
     return SNOW_OK;

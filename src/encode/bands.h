@@ -47,14 +47,17 @@ typedef struct snow_bands_order {
                                          first_slice of the volume */
     bool between; /* with a slice half-way between each two: slice n of the
                      bands is slice n/2 of the slab, or for odd n the mean of
-                     slices (n-1)/2 and (n+1)/2, of native values as of
-                     gradients; 2 slice_count - 1 slices in all */
+                     slices (n-1)/2 and (n+1)/2, of native values (of
+                     integers, halves rounded up) as of gradients;
+                     2 slice_count - 1 slices in all */
     snow_isa isa; /* resolved */
     int threads;
 } snow_bands_order;
 
-/* Encodes anew; buffers are kept from one time to the next.  Errors:
- * SNOW_BAD_USAGE (a slice of 2^32 voxels or more), SNOW_NO_MEMORY. */
+/* Encodes anew; buffers are kept from one time to the next.  The bytes are the
+ * same for every level and number of threads.  Errors: SNOW_BAD_USAGE (a slice
+ * of 2^32 voxels or more), SNOW_NO_MEMORY; then the bands hold nothing to be
+ * read, but may be encoded again. */
 snow_status snow_bands_encode(snow_bands *bands, const snow_bands_order *order);
 
 /* Frees the buffers; the record may be all zeros but for its context. */

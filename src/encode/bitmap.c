@@ -20,6 +20,8 @@
  */
 #include "encode/encode.h"
 
+#include <string.h>
+
 static snow_status bitmap_begin_slice(snow_sparse *s) {
     return snow_sparse_grow_ea(s, (size_t)((s->columns * s->rows + 7) / 8));
 }
@@ -87,7 +89,7 @@ static size_t bitmap_skip(snow_walk *walk, int64_t rows) {
                       (size_t)rows * columns);
 }
 
-static const snow_reader whole_reader = {bitmap_next_row, bitmap_skip};
+static const snow_reader whole_reader = {bitmap_next_row, NULL, bitmap_skip};
 
 /* --- slices of a band ----------------------------------------------------- */
 
@@ -154,6 +156,17 @@ static size_t plain_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
+static void plain_next_mask(snow_walk *walk, uint64_t *mask) {
+    size_t columns = (size_t)walk->sparse->columns, whole = columns / 64;
+    const unsigned char *row =
+        walk->slice + (size_t)walk->row * row_bytes(walk->sparse);
+    for (size_t word = 0; word < whole; word++)
+        mask[word] = snow_load_word(row + 8 * word);
+    if (columns % 64)
+        mask[whole] = snow_load_word(row + 8 * whole) &
+                      ((UINT64_C(1) << columns % 64) - 1);
+}
+
 static size_t plain_skip(snow_walk *walk, int64_t rows) {
     size_t row = 8 * row_bytes(walk->sparse);
     return count_bits(walk->slice, (size_t)walk->row * row, (size_t)rows * row);
@@ -175,6 +188,19 @@ static size_t words_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
+static void words_next_mask(snow_walk *walk, uint64_t *mask) {
+    size_t words = snow_mask_words(walk->sparse);
+    size_t first = (size_t)walk->row * words;
+    memset(mask, 0, words * sizeof *mask);
+    for (size_t w = 0; w < words; w += CHUNK) {
+        uint64_t summary =
+            some_bits(walk->slice, first + w, lesser(words - w, CHUNK));
+        for (; summary; summary &= summary - 1, walk->ea += 8)
+            mask[w + (size_t)__builtin_ctzll(summary)] =
+                snow_load_word(walk->ea);
+    }
+}
+
 static size_t words_skip(snow_walk *walk, int64_t rows) {
     size_t words = snow_mask_words(walk->sparse);
     size_t full = count_bits(walk->slice, (size_t)walk->row * words,
@@ -184,8 +210,10 @@ static size_t words_skip(snow_walk *walk, int64_t rows) {
     return voxels;
 }
 
-static const snow_reader plain_reader = {plain_next_row, plain_skip};
-static const snow_reader words_reader = {words_next_row, words_skip};
+static const snow_reader plain_reader = {plain_next_row, plain_next_mask,
+                                         plain_skip};
+static const snow_reader words_reader = {words_next_row, words_next_mask,
+                                         words_skip};
 
 static void bitmap_begin_walk(snow_walk *walk) {
     const snow_sparse *s = walk->sparse;

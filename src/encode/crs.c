@@ -182,8 +182,8 @@ static size_t cells_skip(snow_walk *walk, int64_t rows) {
     return voxels;
 }
 
-static const snow_reader whole_reader = {crs_next_row, crs_skip};
-static const snow_reader cells_reader = {cells_next_row, cells_skip};
+static const snow_reader whole_reader = {crs_next_row, NULL, crs_skip};
+static const snow_reader cells_reader = {cells_next_row, NULL, cells_skip};
 
 static void crs_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;

@@ -15,11 +15,11 @@ const snow_scheme *snow_scheme_of(snow_encoding encoding) {
 
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs) {
+    if ((double)interesting >= 0.05 * (double)voxels)
+        return SNOW_ENCODING_BITMAP;
     if (interesting && interesting >= 16 * runs)
         return SNOW_ENCODING_RLE;
-    if ((double)interesting < 0.05 * (double)voxels)
-        return SNOW_ENCODING_CRS;
-    return SNOW_ENCODING_BITMAP;
+    return SNOW_ENCODING_CRS;
 }
 
 snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
@@ -61,16 +61,25 @@ snow_status snow_sparse_begin_slice(snow_sparse *s) {
     return s->scheme->begin_slice(s);
 }
 
-/* Appends samples to IA. */
+snow_status snow_sparse_lend(snow_sparse *s, size_t voxels, float **samples) {
+    size_t sample = (size_t)s->channels * sizeof **samples;
+    SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity,
+                          s->ia_voxels * sample,
+                          (s->ia_voxels + voxels) * sample));
+    *samples = s->ia + s->ia_voxels * (size_t)s->channels;
+    return SNOW_OK;
+}
+
+/* Appends samples to IA, where they may be already. */
 static snow_status add_samples(snow_sparse *s, const float *samples,
                                size_t count) {
     size_t sample = (size_t)s->channels * sizeof *samples;
     size_t bytes = s->ia_voxels * sample;
     SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity, bytes,
                           bytes + count * sample));
-    if (count)
-        memcpy(s->ia + s->ia_voxels * (size_t)s->channels, samples,
-               count * sample);
+    float *end = s->ia + s->ia_voxels * (size_t)s->channels;
+    if (count && samples != end)
+        memcpy(end, samples, count * sample);
     s->ia_voxels += count;
     return SNOW_OK;
 }
@@ -157,7 +166,7 @@ static size_t nothing_skip(snow_walk *walk, int64_t rows) {
 }
 
 /* A slice of no bytes. */
-static const snow_reader nothing = {nothing_next_row, nothing_skip};
+static const snow_reader nothing = {nothing_next_row, NULL, nothing_skip};
 
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {
     snow_slice_pointer pointer = s->pa[slice];

@@ -84,6 +84,9 @@ struct snow_reader {
      * (columns + 1) / 2; returns their number.  The walk's voxel and row are
      * moved on by the caller. */
     size_t (*next_row)(snow_walk *walk, snow_span *spans);
+    /* The same as snow_mask_words words of bits; NULL where a form has no
+     * quicker way than by spans. */
+    void (*next_mask)(snow_walk *walk, uint64_t *mask);
     /* Passes over rows: returns how many voxels they hold.  The same holds. */
     size_t (*skip)(snow_walk *walk, int64_t rows);
 };
@@ -112,10 +115,10 @@ extern const snow_scheme snow_scheme_rle;
 /* The scheme of an encoding other than AUTO. */
 const snow_scheme *snow_scheme_of(snow_encoding encoding);
 
-/* The encoding that walks fastest: RLE when runs are long (16 voxels and more),
- * for a run is read as fast as a few columns and takes the fewest bytes; CRS
- * below 5 % interesting voxels (the bit-map must look at what is empty); else
- * the bit-map, whose cost does not depend on the data. */
+/* The encoding that is read fastest, or else takes the fewest bytes: the
+ * bit-map, whose cost does not depend on the data; below 5 % interesting voxels,
+ * where it must look at what is empty, RLE when runs are long (16 voxels and
+ * more), for a run takes fewer bytes than a few columns, else CRS. */
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs);
 
@@ -125,6 +128,12 @@ snow_status snow_sparse_begin(snow_sparse *sparse, const snow_scheme *scheme,
                               const snow_placement *placement, int channels);
 
 snow_status snow_sparse_begin_slice(snow_sparse *sparse);
+
+/* Lends the strip the end of IA, with room for `voxels` samples, so that they
+ * need not be copied there; until the next call for the sparse matrix.  Errors:
+ * SNOW_NO_MEMORY. */
+snow_status snow_sparse_lend(snow_sparse *sparse, size_t voxels,
+                             float **samples);
 
 /* Appends the rows of a strip; strips come in order of rows. */
 snow_status snow_sparse_add_strip(snow_sparse *sparse, const snow_strip *strip);

@@ -138,20 +138,16 @@ static void split_run(places *p, size_t column) {
 /* Places of the set bits of STEP words, which begin with `column`. */
 static void put_changes(const snow_sparse *s, const uint64_t *changes,
                         size_t column, places *p) {
-    size_t first = SIZE_MAX, last = 0;
-    for (size_t w = 0; w < STEP; w++) {
-        size_t n = STEP - 1 - w;
-        if (changes[n])
-            first = 64 * n + (size_t)__builtin_ctzll(changes[n]);
-        if (changes[w])
-            last = 64 * w + 63 - (size_t)__builtin_clzll(changes[w]);
-    }
-    if (first == SIZE_MAX)
+    size_t w = 0, origin = p->origin + column;
+    if (!(changes[0] | changes[1] | changes[2] | changes[3]))
         return;
-    split_run(p, column + first);
-    p->at = s->loops->places(changes, STEP,
-                             (unsigned)(p->origin + column) % 256, p->at);
-    p->told = column + last;
+    if (column) { /* else the run so far is short */
+        while (!changes[w])
+            w++;
+        split_run(p, column + 64 * w + (size_t)__builtin_ctzll(changes[w]));
+    }
+    p->at = s->loops->places(changes, STEP, (unsigned)origin % 256, p->at);
+    p->told = column + (unsigned char)(p->at[-1] - origin);
 }
 
 /* A run ends with each bit that differs from the one before, and with the row.
@@ -250,8 +246,8 @@ static size_t rows_skip(snow_walk *walk, int64_t rows) {
     return voxels;
 }
 
-static const snow_reader whole_reader = {rle_next_row, rle_skip};
-static const snow_reader rows_reader = {rows_next_row, rows_skip};
+static const snow_reader whole_reader = {rle_next_row, NULL, rle_skip};
+static const snow_reader rows_reader = {rows_next_row, NULL, rows_skip};
 
 static void rle_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;

@@ -55,8 +55,9 @@ TARGET static void TILE(transpose)(const unsigned char *in, size_t stride,
         for (size_t n = line; n < line + TILE_LINES; n++)
             __builtin_prefetch(next + n * stride, 0, 2);
         for (size_t at = 0; at < SNOW_TILE_BYTES; at += WIDE_BYTES)
-            TILE(part)(in + line * stride + at, stride,
-                       out + at / TILE_SIZE * pitch + line * TILE_SIZE, pitch);
+            TILE(part)
+        (in + line * stride + at, stride,
+         out + at / TILE_SIZE * pitch + line * TILE_SIZE, pitch);
     }
 }
 

@@ -21,8 +21,8 @@ typedef struct snow_mask_rows {
     uint32_t *rank;
     const unsigned char *codes[SNOW_WINDOW_ROWS]; /* of the row's first voxel */
     const uint16_t *normals[SNOW_WINDOW_ROWS];    /* NULL: none */
-    size_t words;  /* a row, padding included */
-    uint64_t held; /* rows that hold a voxel */
+    size_t words;                                 /* a row, padding included */
+    uint64_t held;                                /* rows that hold a voxel */
 } snow_mask_rows;
 
 /* Words of a row of so many columns. */
@@ -31,26 +31,25 @@ static inline size_t snow_window_words(int64_t columns) {
 }
 
 /* Windows of `count` columns from `column` on, up to SNOW_WINDOW_MOST, which
- * overlap the rows: -count < column < columns.  Per row that is held: its bits,
- * and how many voxels of its row lie before it.  Returns the rows whose window
- * holds a voxel. */
-typedef uint64_t snow_windows_fn(const snow_mask_rows *rows, int64_t column,
-                                 int count, uint64_t *bits, uint32_t *before);
-
-/* Fills rank from bits, of the rows that are held. */
-typedef void snow_rank_fn(snow_mask_rows *rows);
-
-typedef struct snow_window_fns {
-    snow_windows_fn *windows;
-    snow_rank_fn *rank;
-} snow_window_fns;
-
-const snow_window_fns *snow_window_fns_of(snow_isa isa);
+ * overlap the rows: -count < column < columns.  Per row that is held and
+ * wanted: its bits, and how many voxels of its row lie before it.  Returns the
+ * rows of these whose window holds a voxel. */
+typedef uint64_t snow_windows_fn(const snow_mask_rows *rows, uint64_t wanted,
+                                 int64_t column, int count, uint64_t *bits,
+                                 uint32_t *before);
 
 /* Decodes rows first .. first + count - 1 of a slice of the bands, `count` at
  * most SNOW_WINDOW_ROWS; rows that do not exist are empty.  `spans` is room for
- * one row's.  Ranks are not made. */
-void snow_mask_rows_read(const snow_bands *bands, int64_t slice, int64_t first,
-                         int count, snow_span *spans, snow_mask_rows *rows);
+ * one row's. */
+typedef void snow_mask_rows_fn(const snow_bands *bands, int64_t slice,
+                               int64_t first, int count, snow_span *spans,
+                               snow_mask_rows *rows);
+
+typedef struct snow_window_fns {
+    snow_windows_fn *windows;
+    snow_mask_rows_fn *read;
+} snow_window_fns;
+
+const snow_window_fns *snow_window_fns_of(snow_isa isa);
 
 #endif

@@ -6,8 +6,8 @@
 #include <string.h>
 
 static const char *const names[] = {
-    [SNOW_ISA_AUTO] = "auto",     [SNOW_ISA_SCALAR] = "scalar",
-    [SNOW_ISA_AVX2] = "avx2",     [SNOW_ISA_AVX512] = "avx512",
+    [SNOW_ISA_AUTO] = "auto", [SNOW_ISA_SCALAR] = "scalar",
+    [SNOW_ISA_AVX2] = "avx2", [SNOW_ISA_AVX512] = "avx512",
     [SNOW_ISA_NEON] = "neon",
 };
 

@@ -1,3 +1,4 @@
+/* clang-format off */
 /* simd/select.h - gives a template the vector vocabulary of one level.  Define
  * one of these before including; it is undefined again:
  *
@@ -33,16 +34,16 @@
  *   V(fold2)(v), V(fold4)(v)         the sum of the vector's pixels, by halves,
  *                                    in the first 2 or 4 floats of a scalar
  *                                    vector
- *
  *   V(sqrt)(v)                       the square root, rounded correctly
  *   V(power2)(v)                     2^k, where v is 1.5 * 2^23 + k for a whole
  *                                    number k of -126 to 127
- *   V(lanes), V(lanes_of)(p)         LANES numbers below LANES, as int32_t at p
+ *   V(places), V(places_of)(p)       LANES numbers below LANES: int32_t at p
  *   V(pick)(p, n)                    p[n0], p[n1] ...; all LANES floats at p
  *                                    may be read
  *
  * The template's own file includes the three vec_*.h headers and this one once
  * per level; no file needs special compiler flags. */
+/* clang-format on */
 #include "simd/isa.h"
 #include "simd/vec_scalar.h"
 #if SNOW_HAS_AVX

@@ -10,7 +10,8 @@
 #define SNOW_AVX2_LANES 8
 #define SNOW_AVX2_TARGET __attribute__((target("avx2,fma,popcnt,bmi,bmi2")))
 #define SNOW_AVX2_INLINE \
-    static inline __attribute__((always_inline, target("avx2,fma,popcnt,bmi,bmi2")))
+    static inline        \
+        __attribute__((always_inline, target("avx2,fma,popcnt,bmi,bmi2")))
 
 typedef __m256 snow_avx2_vec;
 
@@ -46,11 +47,13 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_max(snow_avx2_vec a, snow_avx2_vec b) {
     return _mm256_max_ps(a, b);
 }
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fma(snow_avx2_vec a, snow_avx2_vec b, snow_avx2_vec c) {
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fma(snow_avx2_vec a, snow_avx2_vec b,
+                                             snow_avx2_vec c) {
     return _mm256_fmadd_ps(a, b, c);
 }
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fnma(snow_avx2_vec a, snow_avx2_vec b, snow_avx2_vec c) {
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fnma(snow_avx2_vec a, snow_avx2_vec b,
+                                              snow_avx2_vec c) {
     return _mm256_fnmadd_ps(a, b, c);
 }
 
@@ -65,12 +68,11 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha4(snow_avx2_vec v) {
 SNOW_AVX2_INLINE void snow_avx2_weave2(snow_avx2_vec a, snow_avx2_vec b,
                                        float *p) {
     __m256d low = _mm256_unpacklo_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
-    __m256d high =
-        _mm256_unpackhi_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
-    _mm256_storeu_ps(
-        p, _mm256_castpd_ps(_mm256_permute2f128_pd(low, high, 0x20)));
-    _mm256_storeu_ps(
-        p + 8, _mm256_castpd_ps(_mm256_permute2f128_pd(low, high, 0x31)));
+    __m256d high = _mm256_unpackhi_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
+    _mm256_storeu_ps(p,
+                     _mm256_castpd_ps(_mm256_permute2f128_pd(low, high, 0x20)));
+    _mm256_storeu_ps(p + 8,
+                     _mm256_castpd_ps(_mm256_permute2f128_pd(low, high, 0x31)));
 }
 
 SNOW_AVX2_INLINE void snow_avx2_weave4(snow_avx2_vec a, snow_avx2_vec b,
@@ -114,8 +116,8 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_gather2(const float *p,
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_double2(const float *p,
                                                  const uint32_t *n) {
-    return _mm256_castpd_ps(_mm256_blend_pd(snow_avx2_pair(p, n, 0),
-                                            snow_avx2_pair(p, n, 1), 12));
+    return _mm256_castpd_ps(
+        _mm256_blend_pd(snow_avx2_pair(p, n, 0), snow_avx2_pair(p, n, 1), 12));
 }
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_even(snow_avx2_vec v) {
@@ -136,8 +138,8 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_with_alpha4(snow_avx2_vec a,
     return _mm256_blend_ps(a, b, 0x88);
 }
 
-SNOW_AVX2_INLINE void snow_avx2_expand8(const uint8_t *p,
-                                        uint32_t bits, uint32_t *out) {
+SNOW_AVX2_INLINE void snow_avx2_expand8(const uint8_t *p, uint32_t bits,
+                                        uint32_t *out) {
     for (int i = 0; i < 16; i++, bits >>= 1) {
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);
@@ -145,8 +147,8 @@ SNOW_AVX2_INLINE void snow_avx2_expand8(const uint8_t *p,
     }
 }
 
-SNOW_AVX2_INLINE void snow_avx2_expand16(const uint16_t *p,
-                                        uint32_t bits, uint32_t *out) {
+SNOW_AVX2_INLINE void snow_avx2_expand16(const uint16_t *p, uint32_t bits,
+                                         uint32_t *out) {
     for (int i = 0; i < 16; i++, bits >>= 1) {
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);
@@ -172,14 +174,14 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_power2(snow_avx2_vec v) {
     return _mm256_castsi256_ps(_mm256_slli_epi32(k, 23));
 }
 
-typedef __m256i snow_avx2_lanes;
+typedef __m256i snow_avx2_places;
 
-SNOW_AVX2_INLINE snow_avx2_lanes snow_avx2_lanes_of(const int32_t *p) {
+SNOW_AVX2_INLINE snow_avx2_places snow_avx2_places_of(const int32_t *p) {
     return _mm256_loadu_si256((const __m256i *)(const void *)p);
 }
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_pick(const float *p,
-                                              snow_avx2_lanes n) {
+                                              snow_avx2_places n) {
     return _mm256_permutevar8x32_ps(_mm256_loadu_ps(p), n);
 }
 

@@ -8,9 +8,13 @@
 #include <immintrin.h>
 
 #define SNOW_AVX512_LANES 16
-#define SNOW_AVX512_TARGET __attribute__((target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
-#define SNOW_AVX512_INLINE \
-    static inline __attribute__((always_inline, target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw,avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
+#define SNOW_AVX512_TARGET                                             \
+    __attribute__((target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw," \
+                          "avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
+#define SNOW_AVX512_INLINE                                                 \
+    static inline __attribute__((                                          \
+        always_inline, target("avx2,fma,popcnt,bmi,bmi2,avx512f,avx512bw," \
+                              "avx512vl,avx512dq,avx512vbmi,avx512vbmi2")))
 
 typedef __m512 snow_avx512_vec;
 
@@ -26,31 +30,40 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_set1(float x) {
     return _mm512_set1_ps(x);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_add(snow_avx512_vec a, snow_avx512_vec b) {
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_add(snow_avx512_vec a,
+                                                   snow_avx512_vec b) {
     return _mm512_add_ps(a, b);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sub(snow_avx512_vec a, snow_avx512_vec b) {
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sub(snow_avx512_vec a,
+                                                   snow_avx512_vec b) {
     return _mm512_sub_ps(a, b);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_mul(snow_avx512_vec a, snow_avx512_vec b) {
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_mul(snow_avx512_vec a,
+                                                   snow_avx512_vec b) {
     return _mm512_mul_ps(a, b);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_min(snow_avx512_vec a, snow_avx512_vec b) {
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_min(snow_avx512_vec a,
+                                                   snow_avx512_vec b) {
     return _mm512_min_ps(a, b);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_max(snow_avx512_vec a, snow_avx512_vec b) {
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_max(snow_avx512_vec a,
+                                                   snow_avx512_vec b) {
     return _mm512_max_ps(a, b);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fma(snow_avx512_vec a, snow_avx512_vec b, snow_avx512_vec c) {
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fma(snow_avx512_vec a,
+                                                   snow_avx512_vec b,
+                                                   snow_avx512_vec c) {
     return _mm512_fmadd_ps(a, b, c);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fnma(snow_avx512_vec a, snow_avx512_vec b, snow_avx512_vec c) {
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fnma(snow_avx512_vec a,
+                                                    snow_avx512_vec b,
+                                                    snow_avx512_vec c) {
     return _mm512_fnmadd_ps(a, b, c);
 }
 
@@ -66,8 +79,7 @@ SNOW_AVX512_INLINE void snow_avx512_interleave(snow_avx512_vec a,
                                                snow_avx512_vec b, __m512i low,
                                                __m512i high, float *p) {
     __m512d x = _mm512_castps_pd(a), y = _mm512_castps_pd(b);
-    _mm512_storeu_ps(p,
-                     _mm512_castpd_ps(_mm512_permutex2var_pd(x, low, y)));
+    _mm512_storeu_ps(p, _mm512_castpd_ps(_mm512_permutex2var_pd(x, low, y)));
     _mm512_storeu_ps(p + 16,
                      _mm512_castpd_ps(_mm512_permutex2var_pd(x, high, y)));
 }
@@ -85,8 +97,8 @@ SNOW_AVX512_INLINE void snow_avx512_weave4(snow_avx512_vec a, snow_avx512_vec b,
 }
 
 SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold4(snow_avx512_vec v) {
-    __m256 half = _mm256_add_ps(_mm512_castps512_ps256(v),
-                                _mm512_extractf32x8_ps(v, 1));
+    __m256 half =
+        _mm256_add_ps(_mm512_castps512_ps256(v), _mm512_extractf32x8_ps(v, 1));
     return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(half),
                                        _mm256_extractf128_ps(half, 1));
 }
@@ -99,7 +111,8 @@ SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
 /* Puts what is at p + n floats into the places of the mask, or of 16 bytes. */
 #define SNOW_AVX512_PAIR(v, mask, p, n) \
     _mm512_mask_broadcastsd_pd(         \
-        v, mask, _mm_load_sd((const double *)(const void *)((p) + 2 * (size_t)(n))))
+        v, mask,                        \
+        _mm_load_sd((const double *)(const void *)((p) + 2 * (size_t)(n))))
 #define SNOW_AVX512_FOUR(v, place, p, n) \
     _mm512_insertf32x4(v, _mm_loadu_ps((p) + 4 * (size_t)(n)), place)
 
@@ -156,9 +169,9 @@ SNOW_AVX512_INLINE void snow_avx512_expand8(const uint8_t *p, uint32_t bits,
     __mmask16 here = (__mmask16)bits;
     __m128i codes = _mm_maskz_expand_epi8(
         here, _mm_loadu_si128((const __m128i *)(const void *)p));
-    _mm512_storeu_si512(
-        out, _mm512_maskz_add_epi32(here, _mm512_cvtepu8_epi32(codes),
-                                    _mm512_set1_epi32(1)));
+    _mm512_storeu_si512(out, _mm512_maskz_add_epi32(here,
+                                                    _mm512_cvtepu8_epi32(codes),
+                                                    _mm512_set1_epi32(1)));
 }
 
 SNOW_AVX512_INLINE void snow_avx512_expand16(const uint16_t *p, uint32_t bits,
@@ -190,14 +203,14 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_power2(snow_avx512_vec v) {
     return _mm512_castsi512_ps(_mm512_slli_epi32(k, 23));
 }
 
-typedef __m512i snow_avx512_lanes;
+typedef __m512i snow_avx512_places;
 
-SNOW_AVX512_INLINE snow_avx512_lanes snow_avx512_lanes_of(const int32_t *p) {
+SNOW_AVX512_INLINE snow_avx512_places snow_avx512_places_of(const int32_t *p) {
     return _mm512_loadu_si512(p);
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_pick(const float *p,
-                                              snow_avx512_lanes n) {
+                                              snow_avx512_places n) {
     return _mm512_permutexvar_ps(n, _mm512_loadu_ps(p));
 }
 

@@ -1,5 +1,5 @@
-/* simd/vec_scalar.h - the vector vocabulary for machines of any kind: vectors of
- * 4 floats that the compiler carries to SSE2, NEON or plain instructions.
+/* simd/vec_scalar.h - the vector vocabulary for machines of any kind: vectors
+ * of 4 floats that the compiler carries to SSE2, NEON or plain instructions.
  * simd/select.h says what the words mean. */
 #ifndef SNOW_VEC_SCALAR_H
 #define SNOW_VEC_SCALAR_H
@@ -42,15 +42,13 @@ static inline snow_scalar_vec snow_scalar_mul(snow_scalar_vec a,
     return a * b;
 }
 
-static inline snow_scalar_vec snow_scalar_fma(snow_scalar_vec a,
-                                              snow_scalar_vec b,
-                                              snow_scalar_vec c) {
+static inline snow_scalar_vec
+snow_scalar_fma(snow_scalar_vec a, snow_scalar_vec b, snow_scalar_vec c) {
     return a * b + c;
 }
 
-static inline snow_scalar_vec snow_scalar_fnma(snow_scalar_vec a,
-                                               snow_scalar_vec b,
-                                               snow_scalar_vec c) {
+static inline snow_scalar_vec
+snow_scalar_fnma(snow_scalar_vec a, snow_scalar_vec b, snow_scalar_vec c) {
     return c - a * b;
 }
 
@@ -135,8 +133,8 @@ static inline snow_scalar_vec snow_scalar_with_alpha4(snow_scalar_vec a,
     return (snow_scalar_vec){a[0], a[1], a[2], b[3]};
 }
 
-static inline void snow_scalar_expand8(const uint8_t *p,
-                                        uint32_t bits, uint32_t *out) {
+static inline void snow_scalar_expand8(const uint8_t *p, uint32_t bits,
+                                       uint32_t *out) {
     for (int i = 0; i < 16; i++, bits >>= 1) {
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);
@@ -144,8 +142,8 @@ static inline void snow_scalar_expand8(const uint8_t *p,
     }
 }
 
-static inline void snow_scalar_expand16(const uint16_t *p,
-                                        uint32_t bits, uint32_t *out) {
+static inline void snow_scalar_expand16(const uint16_t *p, uint32_t bits,
+                                        uint32_t *out) {
     for (int i = 0; i < 16; i++, bits >>= 1) {
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);
@@ -178,16 +176,16 @@ static inline snow_scalar_vec snow_scalar_power2(snow_scalar_vec v) {
     return (snow_scalar_vec)(((bits)v + 127) << 23);
 }
 
-typedef struct snow_scalar_lanes {
+typedef struct snow_scalar_places {
     int32_t n[4];
-} snow_scalar_lanes;
+} snow_scalar_places;
 
-static inline snow_scalar_lanes snow_scalar_lanes_of(const int32_t *p) {
-    return (snow_scalar_lanes){{p[0], p[1], p[2], p[3]}};
+static inline snow_scalar_places snow_scalar_places_of(const int32_t *p) {
+    return (snow_scalar_places){{p[0], p[1], p[2], p[3]}};
 }
 
 static inline snow_scalar_vec snow_scalar_pick(const float *p,
-                                               snow_scalar_lanes lanes) {
+                                               snow_scalar_places lanes) {
     const int32_t *n = lanes.n;
     return (snow_scalar_vec){p[n[0]], p[n[1]], p[n[2]], p[n[3]]};
 }

@@ -18,10 +18,15 @@ static inline void SPLAT_STAMP(snow_sheet *sheet, const snow_taps *taps_x,
     int columns = taps_x->count[x], lines = taps_y->count[y];
     if (!columns || !lines) /* out of view: `first` may be past the end */
         return;
+    int first = taps_y->first[y] - sheet->top, j = first < 0 ? -first : 0;
+    if (lines > sheet->bottom - taps_y->first[y])
+        lines = sheet->bottom - taps_y->first[y];
+    if (j >= lines) /* out of the band */
+        return;
     size_t stride = (size_t)sheet->width * SPLAT_CHANNELS;
-    float *line = sheet->pixels + (size_t)taps_y->first[y] * stride +
+    float *line = sheet->pixels + (size_t)(first + j) * stride +
                   (size_t)taps_x->first[x] * SPLAT_CHANNELS;
-    for (int j = 0; j < lines; j++, line += stride) {
+    for (; j < lines; j++, line += stride) {
         float scaled[SPLAT_CHANNELS];
         for (int c = 0; c < SPLAT_CHANNELS; c++)
             scaled[c] = weights_y[j] * sample[c];

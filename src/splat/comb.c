@@ -23,8 +23,7 @@ void snow_comb_make(const snow_taper *taper, const snow_lattice *lattice,
         double at = (double)phase / lattice->phases - slice * lattice->slope;
         double base = floor(at);
         offset[phase] = (int64_t)base - before;
-        snow_taper_spread(taper, at - base, -before, taps,
-                          out->weights[phase]);
+        snow_taper_spread(taper, at - base, -before, taps, out->weights[phase]);
     }
     bool odd = lattice->phases == 2 && offset[1] > offset[0];
     out->offset = offset[0];

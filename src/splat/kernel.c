@@ -2,6 +2,7 @@
  */
 #include "splat/kernel.h"
 
+#include <limits.h>
 #include <math.h>
 #include <string.h>
 
@@ -160,9 +161,41 @@ float snow_taper_box(const snow_taper *taper, double t) {
     return (float)(1 / ceil(width - fraction));
 }
 
+int snow_taper_taps(const snow_taper *taper) {
+    return (int)fmin(ceil(2 * taper->half - EDGE), INT_MAX);
+}
+
+double snow_taper_phase_reach(const snow_taper *taper) {
+    return taper->half + EDGE - (snow_taper_taps(taper) - 1);
+}
+
+void snow_taper_phase(const snow_taper *taper, double phase, double *weights) {
+    double sum = 0;
+    int taps = snow_taper_taps(taper);
+    double below_one = fmin(phase, 1 - 1e-9); /* 1 is the end of the phases */
+    for (int n = 0; n < taps; n++) {
+        double from_left = below_one + (taps - 1 - n), width = 2 * taper->half;
+        double t = from_left - taper->half - EDGE;
+        weights[n] =
+            from_left < width
+                ? kernels[taper->kernel].value(taper->support, t / taper->wide)
+                : 0;
+        sum += weights[n];
+    }
+    for (int n = 0; n < taps; n++)
+        weights[n] /= sum;
+}
+
+bool snow_taper_same(const snow_taper *a, const snow_taper *b) {
+    return a->kernel == b->kernel && a->support == b->support &&
+           a->half == b->half && a->wide == b->wide;
+}
+
 snow_status snow_taper_table_make(snow_context *context,
                                   const snow_taper *taper,
                                   snow_taper_table *out) {
+    if (out->cells && snow_taper_same(taper, &out->made_for))
+        return SNOW_OK;
     /* A wide kernel is smooth: fewer cells per voxel serve it as well.  A
      * widened one of support 2 has steep kinks within cells, where the number
      * of voxels in reach changes. */
@@ -171,9 +204,9 @@ snow_status snow_taper_table_make(snow_context *context,
     size_t cells = 2 * (size_t)fmin(ceil(taper->half * fine), HALF_CELLS_MOST);
     double scale = (double)cells / (2 * taper->half);
     size_t all = cells + 2 * MARGIN_CELLS;
-    snow_taper_cell *table = snow_allocate_array(context, all, sizeof *table);
-    if (!table)
-        return SNOW_NO_MEMORY;
+    SNOW_TRY(snow_reserve(context, &out->cells, &out->capacity, 0,
+                          all * sizeof *out->cells));
+    snow_taper_cell *table = out->cells;
     memset(table, 0, all * sizeof *table);
     /* A little inside the ends, where a half-open kernel has its values. */
     double inside = taper->half - 2 * EDGE, weight = 0;
@@ -185,7 +218,8 @@ snow_status snow_taper_table_make(snow_context *context,
                 (snow_taper_cell){(float)weight, (float)(next - weight)};
         weight = next;
     }
-    *out = (snow_taper_table){
-        table, (float)(taper->half + MARGIN_CELLS / scale), (float)scale};
+    out->shift = (float)(taper->half + MARGIN_CELLS / scale);
+    out->scale = (float)scale;
+    out->made_for = *taper;
     return SNOW_OK;
 }

@@ -26,6 +26,9 @@
 
 #define SNOW_FOOTPRINT_MOST 9
 
+/* Most voxels in reach along an axis that weights by phase are made for. */
+#define SNOW_PHASE_TAPS_MOST 64
+
 /* A kernel of one view and grid axis. */
 typedef struct snow_taper {
     snow_kernel kernel;
@@ -48,6 +51,14 @@ double snow_taper_reach(const snow_taper *taper);
 /* The weight of a voxel at distance t, in double: the definition. */
 double snow_taper_weight(const snow_taper *taper, double t);
 
+/* In gather form: the voxels in reach of a point at grid position u are i to
+ * i + taps - 1 with i = floor(s), s = u + reach; its phase is s - i.  How many
+ * voxels are in reach at most, `reach`, and their weights at a phase of 0 to 1
+ * (not for the box, nor above SNOW_PHASE_TAPS_MOST voxels). */
+int snow_taper_taps(const snow_taper *taper);
+double snow_taper_phase_reach(const snow_taper *taper);
+void snow_taper_phase(const snow_taper *taper, double phase, double *weights);
+
 /* Weights of the voxels at first, first + 1 ... for a point at `t`, all in one:
  * what snow_taper_weight gives, but for rounding.  None but these may be in
  * reach. */
@@ -66,14 +77,21 @@ typedef struct snow_taper_cell {
 
 typedef struct snow_taper_table {
     snow_taper_cell *cells;
-    float shift; /* half the support and a margin of empty cells, voxels */
-    float scale; /* cells per voxel */
+    float shift;     /* half the support and a margin of empty cells, voxels */
+    float scale;     /* cells per voxel */
+    size_t capacity; /* of cells, bytes */
+    snow_taper made_for;
 } snow_taper_table;
 
-/* Errors: SNOW_NO_MEMORY.  Free with snow_release(context, table->cells). */
+/* Whether two tapers are one. */
+bool snow_taper_same(const snow_taper *a, const snow_taper *b);
+
+/* Makes the table unless it is made for this kernel already; the record begins
+ * as zeros.  Errors: SNOW_NO_MEMORY.  Free with snow_release(context,
+ * table->cells). */
 snow_status snow_taper_table_make(snow_context *context,
                                   const snow_taper *taper,
-                                  snow_taper_table *out);
+                                  snow_taper_table *table);
 
 /* The weight at t by the table; |t| may pass the support by a few EDGE. */
 static inline float snow_taper_look_up(const snow_taper_table *table, float t) {

@@ -18,6 +18,8 @@ static inline void SPLAT_THROW(const snow_splatter *splatter, snow_sheet *sheet,
     const float step_u = (float)u->step, step_v = (float)v->step;
     int line = snow_first_pixel(y - splatter->reach[1], sheet->height);
     int bottom = snow_last_pixel(y + splatter->reach[1], sheet->height);
+    line = line > sheet->top ? line : sheet->top;
+    bottom = bottom < sheet->bottom ? bottom : sheet->bottom - 1;
     for (; line <= bottom; line++) {
         double dy = line + 0.5 - y;
         double middle_u = u->lean * dy, middle_v = v->lean * dy;
@@ -29,7 +31,8 @@ static inline void SPLAT_THROW(const snow_splatter *splatter, snow_sheet *sheet,
         const float at_u = (float)(u->step * dx + u->rise * dy);
         const float at_v = (float)(v->step * dx + v->rise * dy);
         float *pixel = sheet->pixels +
-                       ((size_t)line * (size_t)sheet->width + (size_t)first) *
+                       ((size_t)(line - sheet->top) * (size_t)sheet->width +
+                        (size_t)first) *
                            SPLAT_CHANNELS;
         for (int i = 0; i <= last - first; i++, pixel += SPLAT_CHANNELS) {
             float weight = SPLAT_WEIGHT(splatter, at_u + (float)i * step_u,

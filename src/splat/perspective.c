@@ -45,19 +45,14 @@ void snow_eye_splatter_fini(snow_context *context, snow_eye_splatter *s) {
     *s = (snow_eye_splatter){0};
 }
 
-/* The kernel along one axis, and its table unless that is there already. */
+/* The kernel along one axis, and its table. */
 static snow_status widen(snow_context *context, snow_eye_splatter *s, int axis,
                          double width) {
     snow_taper taper = snow_taper_make(s->kernel, s->support, width);
-    snow_taper_table table;
-    bool same = s->table[axis].cells && taper.wide == s->taper[axis].wide;
     s->taper[axis] = taper;
-    if (same || s->kernel == SNOW_KERNEL_BOX)
+    if (s->kernel == SNOW_KERNEL_BOX)
         return SNOW_OK;
-    SNOW_TRY(snow_taper_table_make(context, &taper, &table));
-    snow_release(context, s->table[axis].cells);
-    s->table[axis] = table;
-    return SNOW_OK;
+    return snow_taper_table_make(context, &taper, &s->table[axis]);
 }
 
 snow_status snow_eye_splatter_begin_slice(snow_context *context,

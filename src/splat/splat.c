@@ -88,18 +88,18 @@ static snow_oblique_axis oblique_axis(const double inverse[2],
     return axis;
 }
 
-static snow_status init_aligned(snow_context *context, int channels,
+static snow_status make_aligned(snow_context *context, int channels,
                                 snow_splatter *s) {
     const snow_placement *p = s->placement;
     int across = s->transposed ? p->height : p->width;
     int down = s->transposed ? p->width : p->height;
     s->splat_row = channels == 2 ? aligned_grey : aligned_rgba;
     SNOW_TRY(
-        snow_taps_init(context, &s->along_u, p->columns, across, &s->taps_u));
-    return snow_taps_init(context, &s->along_v, p->rows, down, &s->taps_v);
+        snow_taps_make(context, &s->along_u, p->columns, across, &s->taps_u));
+    return snow_taps_make(context, &s->along_v, p->rows, down, &s->taps_v);
 }
 
-static snow_status init_oblique(snow_context *context, int channels,
+static snow_status make_oblique(snow_context *context, int channels,
                                 snow_splatter *s) {
     const snow_placement *p = s->placement;
     s->oblique_u = oblique_axis(p->inverse[0], &s->along_u);
@@ -113,26 +113,21 @@ static snow_status init_oblique(snow_context *context, int channels,
     return snow_taper_table_make(context, &s->along_v, &s->table_v);
 }
 
-snow_status snow_splatter_init(snow_context *context, const snow_placement *p,
+snow_status snow_splatter_make(snow_context *context, const snow_placement *p,
                                snow_kernel kernel, int support, int channels,
-                               snow_splatter *out) {
-    snow_splatter s = {.placement = p};
-    s.along_u = snow_taper_make(kernel, support,
-                                hypot(p->inverse[0][0], p->inverse[0][1]));
-    s.along_v = snow_taper_make(kernel, support,
-                                hypot(p->inverse[1][0], p->inverse[1][1]));
+                               snow_splatter *s) {
+    s->placement = p;
+    s->along_u = snow_taper_make(kernel, support,
+                                 hypot(p->inverse[0][0], p->inverse[0][1]));
+    s->along_v = snow_taper_make(kernel, support,
+                                 hypot(p->inverse[1][0], p->inverse[1][1]));
     for (int i = 0; i < 2; i++)
-        s.reach[i] = fabs(p->step_u[i]) * snow_taper_reach(&s.along_u) +
-                     fabs(p->step_v[i]) * snow_taper_reach(&s.along_v);
-    s.transposed = lies_along(p, 1);
-    bool aligned = s.transposed || lies_along(p, 0);
-    snow_status status = aligned ? init_aligned(context, channels, &s)
-                                 : init_oblique(context, channels, &s);
-    if (status != SNOW_OK)
-        snow_splatter_fini(context, &s);
-    else
-        *out = s;
-    return status;
+        s->reach[i] = fabs(p->step_u[i]) * snow_taper_reach(&s->along_u) +
+                      fabs(p->step_v[i]) * snow_taper_reach(&s->along_v);
+    s->transposed = lies_along(p, 1);
+    s->aligned = s->transposed || lies_along(p, 0);
+    return s->aligned ? make_aligned(context, channels, s)
+                      : make_oblique(context, channels, s);
 }
 
 void snow_splatter_fini(snow_context *context, snow_splatter *s) {
@@ -147,7 +142,7 @@ void snow_splatter_begin_slice(snow_splatter *s, int64_t slice) {
     const snow_placement *p = s->placement;
     for (int i = 0; i < 2; i++)
         s->origin[i] = p->origin[i] + (double)slice * p->step_slice[i];
-    if (!s->taps_u.count)
+    if (!s->aligned)
         return;
     int u = s->transposed ? 1 : 0, v = 1 - u;
     const int pixels[2] = {p->width, p->height};
@@ -169,10 +164,30 @@ static void mark_voxel(const snow_splatter *s, snow_sheet *sheet,
     int y0 = snow_first_pixel(at[1] - s->reach[1], sheet->height);
     int x1 = snow_last_pixel(at[0] + s->reach[0], sheet->width) + 1;
     int y1 = snow_last_pixel(at[1] + s->reach[1], sheet->height) + 1;
+    y0 = y0 > sheet->top ? y0 : sheet->top;
+    y1 = y1 < sheet->bottom ? y1 : sheet->bottom;
     sheet->x0 = x0 < sheet->x0 ? x0 : sheet->x0;
     sheet->y0 = y0 < sheet->y0 ? y0 : sheet->y0;
     sheet->x1 = x1 > sheet->x1 ? x1 : sheet->x1;
     sheet->y1 = y1 > sheet->y1 ? y1 : sheet->y1;
+}
+
+void snow_splatter_rows(const snow_splatter *s, const snow_sheet *sheet,
+                        int64_t *first, int64_t *end) {
+    const snow_placement *p = s->placement;
+    double step = p->step_v[1], across = (double)p->columns * p->step_u[1];
+    *first = 0;
+    *end = p->rows;
+    if (fabs(step) * (double)p->rows < ALIGNED)
+        return;
+    /* A pixel more on either side is of no matter, one less would be. */
+    double low = sheet->top - s->origin[1] - s->reach[1] - larger(across, 0);
+    double high =
+        sheet->bottom - s->origin[1] + s->reach[1] - smaller(across, 0);
+    double a = (low - 1) / step, b = (high + 1) / step;
+    double rows = (double)p->rows;
+    *first = (int64_t)fmin(fmax(floor(smaller(a, b)), 0), rows);
+    *end = (int64_t)fmin(fmax(ceil(larger(a, b)) + 1, 0), rows);
 }
 
 void snow_splat_row(const snow_splatter *s, snow_sheet *sheet, int64_t row,
@@ -186,15 +201,18 @@ void snow_splat_row(const snow_splatter *s, snow_sheet *sheet, int64_t row,
     s->splat_row(s, sheet, row, spans, count, samples);
 }
 
-snow_status snow_sheet_begin(snow_context *context, int width, int height,
-                             int channels, snow_sheet *sheet) {
-    size_t bytes = (size_t)width * (size_t)height * (size_t)channels *
-                   sizeof *sheet->pixels;
+snow_status snow_sheet_begin(snow_context *context, const snow_placement *image,
+                             int channels, int top, int bottom,
+                             snow_sheet *sheet) {
+    size_t bytes = (size_t)image->width * (size_t)(bottom - top) *
+                   (size_t)channels * sizeof *sheet->pixels;
     SNOW_TRY(snow_reserve(context, &sheet->pixels, &sheet->capacity, 0, bytes));
     memset(sheet->pixels, 0, bytes);
-    sheet->width = width;
-    sheet->height = height;
+    sheet->width = image->width;
+    sheet->height = image->height;
     sheet->channels = channels;
+    sheet->top = top;
+    sheet->bottom = bottom;
     snow_sheet_unmark(sheet);
     return SNOW_OK;
 }

@@ -6,8 +6,8 @@
 /* Pixels by which an origin may move before the weights are made anew. */
 #define SAME_PLACE 1e-9
 
-snow_status snow_taps_init(snow_context *context, const snow_taper *taper,
-                           int64_t voxels, int pixels, snow_taps *out) {
+snow_status snow_taps_make(snow_context *context, const snow_taper *taper,
+                           int64_t voxels, int pixels, snow_taps *taps) {
     uint64_t count = (uint64_t)voxels;
     /* A pixel is reached by at most this many voxels. */
     uint64_t reached =
@@ -19,17 +19,16 @@ snow_status snow_taps_init(snow_context *context, const snow_taper *taper,
                          "the footprints of %lld voxels on %d pixels are too "
                          "many; take a smaller picture",
                          (long long)voxels, pixels);
-    snow_taps taps = {.origin = NAN};
-    taps.first = snow_allocate_array(context, count, sizeof *taps.first);
-    taps.count = snow_allocate_array(context, count, sizeof *taps.count);
-    taps.offset = snow_allocate_array(context, count, sizeof *taps.offset);
-    taps.weights = snow_allocate_array(context, weights, sizeof *taps.weights);
-    if (!taps.first || !taps.count || !taps.offset || !taps.weights) {
-        snow_taps_fini(context, &taps);
-        return SNOW_NO_MEMORY;
-    }
-    *out = taps;
-    return SNOW_OK;
+    size_t of_ints = (size_t)count * sizeof *taps->first;
+    taps->origin = NAN;
+    SNOW_TRY(
+        snow_reserve(context, &taps->first, &taps->first_capacity, 0, of_ints));
+    SNOW_TRY(
+        snow_reserve(context, &taps->count, &taps->count_capacity, 0, of_ints));
+    SNOW_TRY(snow_reserve(context, &taps->offset, &taps->offset_capacity, 0,
+                          of_ints));
+    return snow_reserve(context, &taps->weights, &taps->weights_capacity, 0,
+                        (size_t)weights * sizeof *taps->weights);
 }
 
 void snow_taps_fini(snow_context *context, snow_taps *taps) {
@@ -37,7 +36,7 @@ void snow_taps_fini(snow_context *context, snow_taps *taps) {
     snow_release(context, taps->count);
     snow_release(context, taps->offset);
     snow_release(context, taps->weights);
-    *taps = (snow_taps){.origin = NAN};
+    *taps = (snow_taps){0};
 }
 
 /* Fills the run of one voxel at `centre`; returns its number of pixels. */

@@ -14,12 +14,14 @@ typedef struct snow_taps {
     uint32_t *offset; /* per voxel: where its weights begin */
     float *weights;
     double origin; /* pixel position of voxel 0 that they are made for */
+    size_t first_capacity, count_capacity, offset_capacity, weights_capacity;
 } snow_taps;
 
-/* Room for `voxels` voxels before `pixels` pixels.  Errors: SNOW_NO_MEMORY.
+/* Room for `voxels` voxels before `pixels` pixels, in the memory that is there
+ * where it suffices; the record begins as zeros.  Errors: SNOW_NO_MEMORY.
  * Free with snow_taps_fini. */
-snow_status snow_taps_init(snow_context *context, const snow_taper *taper,
-                           int64_t voxels, int pixels, snow_taps *out);
+snow_status snow_taps_make(snow_context *context, const snow_taper *taper,
+                           int64_t voxels, int pixels, snow_taps *taps);
 void snow_taps_fini(snow_context *context, snow_taps *taps);
 
 /* Tabulates weights for voxels at origin + n * step pixels, unless that is

@@ -54,8 +54,7 @@ snow_status snow_shear_make(snow_context *context,
         snow_lattice *lattice = lattices[axis];
         lattice->phases = options->phases[axis];
         lattice->stride = options->stride[axis];
-        lattice->slope =
-            row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
+        lattice->slope = row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
         double zero = -row[0] * p->origin[0] - row[1] * p->origin[1];
         double seen[2];
         range_over(zero, row[0], row[1], p->width, p->height, seen);
@@ -65,8 +64,8 @@ snow_status snow_shear_make(snow_context *context,
         double scale = (double)lattice->phases / lattice->stride;
         shear.along_x[axis] = scale * row[0];
         shear.along_y[axis] = scale * row[1];
-        shear.start[axis] = scale * (zero + (row[0] + row[1]) / 2) -
-                            (double)lattice->first;
+        shear.start[axis] =
+            scale * (zero + (row[0] + row[1]) / 2) - (double)lattice->first;
     }
     if (!fits)
         return snow_fail(context, SNOW_BAD_USAGE,

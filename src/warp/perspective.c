@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#define CHUNK 64 /* pixels whose places are made at once */
+#define CHUNK 16 /* pixels that are warped, or left out, together */
 
 /* Cuts [*low, *high] to the numbers x for which zero + x * slope is at least
  * 0. */
@@ -46,6 +46,28 @@ static void place_pixels(double line[3][2], int first, int count,
     }
 }
 
+/* The blocks of `size` pixels, within 0 .. most, that are read between two
+ * places.  Along a line a place only rises or only falls. */
+static void blocks_between(int64_t a, int64_t b, int size, int most,
+                           int range[2]) {
+    int64_t low = ((a < b ? a : b) >> 32) - 1, high = ((a < b ? b : a) >> 32) + 2;
+    range[0] = (int)(low < 0 ? 0 : low) / size;
+    range[1] = (int)(high > most ? most : high) / size;
+}
+
+static bool any_drawn(const snow_plane *plane, const int64_t first[2],
+                      const int64_t last[2]) {
+    int x[2], y[2];
+    blocks_between(first[0], last[0], plane->block_width, plane->width - 1, x);
+    blocks_between(first[1], last[1], plane->block_height, plane->height - 1,
+                   y);
+    for (int j = y[0]; j <= y[1]; j++)
+        for (int i = x[0]; i <= x[1]; i++)
+            if (plane->drawn[j * plane->blocks + i])
+                return true;
+    return false;
+}
+
 void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
                         snow_filter filter, snow_warp_places_fn *warp, int y,
                         int width, float *pixels) {
@@ -66,8 +88,11 @@ void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
         int64_t places[CHUNK][2];
         int count = last - x + 1 < CHUNK ? last - x + 1 : CHUNK;
         place_pixels(line, x, count, places);
-        warp(plane, (const int64_t(*)[2])places, count,
-             pixels + (size_t)x * pixel);
+        float *run = pixels + (size_t)x * pixel;
+        if (any_drawn(plane, places[0], places[count - 1]))
+            warp(plane, (const int64_t(*)[2])places, count, run);
+        else
+            memset(run, 0, (size_t)count * pixel * sizeof *run);
     }
     memset(pixels + (size_t)(last + 1) * pixel, 0,
            (size_t)(width - 1 - last) * pixel * sizeof *pixels);

@@ -49,13 +49,16 @@ static inline void store_pixel(snow_scalar_vec pixel, int channels,
 
 #define SELECT_SCALAR
 #include "simd/select.h"
+
 #include "warp/levels.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
+
 #include "warp/levels.h"
 #define SELECT_AVX512
 #include "simd/select.h"
+
 #include "warp/levels.h"
 #endif
 
@@ -112,6 +115,46 @@ static int64_t fixed(double x) {
     return (int64_t)floor(x * 0x1p32 + 0.5);
 }
 
+/* Pixels of the picture that are warped, or left out, together. */
+#define RUN 16
+
+/* The blocks that pixels first .. last of a line read along an axis. */
+static void blocks_of(const snow_warp_line *line, int axis, int first, int last,
+                      int size, int most, int range[2]) {
+    int64_t a = (line->start[axis] + first * line->step[axis]) >> 32;
+    int64_t b = (line->start[axis] + last * line->step[axis]) >> 32;
+    int64_t low = (a < b ? a : b) - 1, high = (a < b ? b : a) + 2;
+    range[0] = (int)(low < 0 ? 0 : low) / size;
+    range[1] = (int)(high > most ? most : high) / size;
+}
+
+/* Whether anything was drawn where pixels first .. last of a line read. */
+static bool any_drawn(const snow_plane *plane, const snow_warp_line *line,
+                      int first, int last) {
+    int x[2], y[2];
+    blocks_of(line, 0, first, last, plane->block_width, plane->width - 1, x);
+    blocks_of(line, 1, first, last, plane->block_height, plane->height - 1, y);
+    for (int j = y[0]; j <= y[1]; j++)
+        for (int i = x[0]; i <= x[1]; i++)
+            if (plane->drawn[j * plane->blocks + i])
+                return true;
+    return false;
+}
+
+/* Pixels first .. last of a line, which lie within the plane. */
+static void warp_runs(const snow_plane *plane, const snow_warp_line *line,
+                      snow_warp_fn *warp, int first, int last, float *pixels) {
+    size_t pixel = (size_t)plane->channels;
+    for (int x = first; x <= last; x += RUN) {
+        int end = x + RUN - 1 < last ? x + RUN - 1 : last;
+        float *run = pixels + (size_t)x * pixel;
+        if (any_drawn(plane, line, x, end))
+            warp(plane, line, x, end - x + 1, run);
+        else
+            memset(run, 0, (size_t)(end - x + 1) * pixel * sizeof *run);
+    }
+}
+
 void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
                    snow_filter filter, snow_warp_fn *warp, int y, int width,
                    float *pixels) {
@@ -133,7 +176,7 @@ void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
     if (last < first)
         first = width, last = width - 1;
     memset(pixels, 0, (size_t)first * pixel * sizeof *pixels);
-    warp(plane, &line, first, last - first + 1, pixels + (size_t)first * pixel);
+    warp_runs(plane, &line, warp, first, last, pixels);
     memset(pixels + (size_t)(last + 1) * pixel, 0,
            (size_t)(width - 1 - last) * pixel * sizeof *pixels);
 }

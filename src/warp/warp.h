@@ -8,11 +8,15 @@
 #include "transform/shear.h"
 
 /* The intermediate image: lines of `stride` floats, of which the first
- * width * channels are pixels; premultiplied. */
+ * width * channels are pixels; premultiplied.  It is cut into blocks, and where
+ * a block was not drawn on, its pixels are 0. */
 typedef struct snow_plane {
     const float *pixels;
     size_t stride; /* floats */
     int width, height, channels;
+    const unsigned char *drawn; /* [line / block_height * blocks + column /
+                                   block_width]: 0 where all is 0 */
+    int block_width, block_height, blocks; /* pixels; blocks a line */
 } snow_plane;
 
 typedef enum snow_filter { SNOW_BILINEAR, SNOW_CATMULL_ROM } snow_filter;

@@ -20,8 +20,7 @@ TARGET static inline __attribute__((always_inline)) snow_scalar_vec
 WARP_NAME(_pixel)(const float *run, size_t stride, const float *along_y,
                   V(vec) part[WARP_VECTORS]) {
     for (int n = 0; n < WARP_VECTORS; n++) {
-        V(vec) sum =
-            V(mul)(V(set1)(along_y[0]), V(load)(run + n * LANES));
+        V(vec) sum = V(mul)(V(set1)(along_y[0]), V(load)(run + n * LANES));
         for (int m = 1; m < WARP_TAPS; m++)
             sum = V(fma)(V(set1)(along_y[m]),
                          V(load)(run + (size_t)m * stride + n * LANES), sum);

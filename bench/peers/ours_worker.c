@@ -1,0 +1,127 @@
+/* bench/peers/ours_worker.c - Snowglass behind the pipe of peers.py.
+ *
+ * What is timed is what a user of the library would write: through the public
+ * headers, from the voxels in memory to a picture in memory.
+ *
+ *   ours_worker RAW X Y Z SIZE THREADS SHADED METHOD QUALITY */
+#include "pipe.h"
+
+#include <snowglass/snowglass.h>
+#include <stdlib.h>
+
+/* All that lives between two commands. */
+static struct worker {
+    const char *raw;
+    snow_context *context;
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    snow_image *image;
+    snow_view view; /* its width and height are set when it is loaded */
+    snow_settings settings;
+    snow_volume_options options;
+    snow_color_point colors[PIPE_VALUES];
+    snow_opacity_point opacities[PIPE_VALUES];
+    bool changed; /* the table is newer than `transfer` */
+} worker;
+
+static void load(void);
+static void take(const pipe_table *table);
+static void frame(double azimuth, double elevation);
+static void pixel(int x, int y, unsigned char rgb[3]);
+
+static pipe_worker face = {
+    .name = "ours_worker",
+    .load = load,
+    .take = take,
+    .frame = frame,
+    .pixel = pixel,
+};
+
+static void check(snow_status status) {
+    if (status != SNOW_OK)
+        pipe_fail(&face, snow_context_message(worker.context));
+}
+
+static void take(const pipe_table *table) {
+    for (int v = 0; v < PIPE_VALUES; v++) {
+        const double *c = (*table)[v];
+        worker.colors[v] = (snow_color_point){v, c[0], c[1], c[2]};
+        worker.opacities[v] = (snow_opacity_point){v, c[3]};
+    }
+    worker.changed = true;
+}
+
+static void load(void) {
+    check(snow_volume_open(worker.context, worker.raw, &worker.options,
+                           &worker.volume));
+    check(snow_view_named(worker.context, "+z", &worker.view));
+    check(snow_frame_new(worker.context, &worker.frame));
+    worker.view.width = worker.view.height = face.size;
+}
+
+/* A changed transfer function is made here, since making it is part of showing
+ * it. */
+static void frame(double azimuth, double elevation) {
+    if (worker.changed) {
+        snow_transfer_free(worker.transfer);
+        worker.transfer = NULL;
+        check(snow_transfer_new(worker.context, worker.colors, PIPE_VALUES,
+                                worker.opacities, PIPE_VALUES,
+                                &worker.transfer));
+        worker.changed = false;
+    }
+    worker.view.azimuth = azimuth;
+    worker.view.elevation = elevation;
+    snow_image_free(worker.image);
+    worker.image = NULL;
+    check(snow_frame_render(worker.frame, worker.volume, worker.transfer,
+                            &worker.view, &worker.settings, &worker.image));
+}
+
+static unsigned char byte_of(float x) {
+    return (unsigned char)(255 * (x < 0 ? 0 : x > 1 ? 1 : x) + 0.5F);
+}
+
+/* Over black, premultiplied colour is what is seen.  Grey pictures have two
+ * channels. */
+static void pixel(int x, int y, unsigned char rgb[3]) {
+    int channels = snow_image_channels(worker.image);
+    const float *at = snow_image_pixels(worker.image) +
+                      (y * snow_image_width(worker.image) + x) * channels;
+    for (int c = 0; c < 3; c++)
+        rgb[c] = byte_of(at[channels == 2 ? 0 : c]);
+}
+
+static void set_up(char **argv) {
+    snow_settings *settings = &worker.settings;
+    int method = snow_method_named(argv[8]);
+    int quality = snow_quality_named(argv[9]);
+    if (method < 0 || quality < 0)
+        pipe_fail(&face, "no such method or quality");
+    if (snow_context_new(NULL, &worker.context) != SNOW_OK)
+        pipe_fail(&face, "no memory");
+    worker.raw = argv[1];
+    face.size = atoi(argv[5]);
+    worker.options.type = SNOW_UINT8;
+    for (int i = 0; i < 3; i++)
+        worker.options.dims[i] = atoi(argv[2 + i]);
+    snow_settings_init(settings);
+    settings->threads = atoi(argv[6]);
+    settings->shade = atoi(argv[7]) ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+    settings->method = (snow_method)method;
+    settings->quality = (snow_quality)quality;
+}
+
+int main(int argc, char **argv) {
+    if (argc != 10)
+        pipe_fail(&face, "wants RAW X Y Z SIZE THREADS SHADED METHOD QUALITY");
+    set_up(argv);
+    pipe_serve(&face);
+    snow_image_free(worker.image);
+    snow_frame_free(worker.frame);
+    snow_transfer_free(worker.transfer);
+    snow_volume_close(worker.volume);
+    snow_context_free(worker.context);
+    return 0;
+}

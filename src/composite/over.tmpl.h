@@ -1,0 +1,29 @@
+/* composite/over.tmpl.h - "over" for a run of pixels, for one level, chosen
+ * before.  Nothing is to be defined.
+ *
+ * The same product and sum for each float as over_grey and over_rgba, which
+ * also do what is left at the end: no bit depends on the level. */
+
+static TARGET void NAME(over_grey)(float *front, const float *back,
+                                   size_t count) {
+    const V(vec) one = V(set1)(1);
+    size_t n = 0;
+    for (; n + LANES / 2 <= count; n += LANES / 2) {
+        V(vec) f = V(load)(front + 2 * n);
+        V(vec) left = V(sub)(one, V(alpha2)(f));
+        V(store)(front + 2 * n, V(add)(f, V(mul)(left, V(load)(back + 2 * n))));
+    }
+    over_grey(front + 2 * n, back + 2 * n, count - n);
+}
+
+static TARGET void NAME(over_rgba)(float *front, const float *back,
+                                   size_t count) {
+    const V(vec) one = V(set1)(1);
+    size_t n = 0;
+    for (; n + LANES / 4 <= count; n += LANES / 4) {
+        V(vec) f = V(load)(front + 4 * n);
+        V(vec) left = V(sub)(one, V(alpha4)(f));
+        V(store)(front + 4 * n, V(add)(f, V(mul)(left, V(load)(back + 4 * n))));
+    }
+    over_rgba(front + 4 * n, back + 4 * n, count - n);
+}

@@ -1,0 +1,609 @@
+/* footprint.c - the exact methods, from voxels to the local image: figure 8 of
+ * the paper, whose line numbers stand in the margins of snow_exact_render and
+ * its callees.
+ *
+ *   original, tested   a voxel row is classified and thrown, slice by slice
+ *   footprint          the slab is encoded, and its interesting voxels thrown;
+ *                      or, where the instruction set has loops for it,
+ *                      gathered: the same sums pixel by pixel (splat/gather.h)
+ *
+ * Threads take groups of slices to encode, and bands of image rows to splat
+ * and composite: each walks all slices front to back for its band, so that no
+ * two write one pixel.  Every pixel is made by the same operations in the same
+ * order however bands are cut: the number of threads cannot change a bit. */
+#include "footprint.h"
+#include "base/base.h"
+#include "base/parallel.h"
+#include "classify/classify.h"
+#include "composite/over.h"
+#include "encode/encode.h"
+#include "splat/gather.h"
+#include "splat/splat.h"
+
+#include <string.h>
+
+#define GROUP_SLICES 8           /* of one sparse matrix */
+#define GATHER_ROWS 8            /* image rows of a band where pixels gather */
+#define BANDS_PER_THREAD 4       /* where footprints are thrown */
+#define SPREAD_BYTES (32u << 20) /* that slices spread out at once may take */
+
+typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
+
+/* What one thread works with. */
+typedef struct worker {
+    snow_strip strip;
+    snow_span *spans; /* of one row */
+    size_t spans_capacity;
+    snow_sheet sheet; /* throwing: a band; gathering: only its memory is used */
+    snow_splatter splatter;
+    snow_run *runs; /* gathering: of GATHER_ROWS rows */
+    size_t runs_capacity;
+    snow_places places;
+    int64_t kept; /* voxels thrown out of strips */
+    snow_status status;
+    double seconds[STAGES];
+} worker;
+
+struct snow_exact {
+    snow_context *context;
+    snow_classifier classifier;
+    snow_shader shader;
+    snow_gatherer gatherer;
+    bool gathers; /* the picture at work */
+    snow_over_fn *over;
+    snow_sparse *groups; /* EA, IA, PA of GROUP_SLICES slices each */
+    snow_dense *dense;   /* gathering: slices spread out */
+    worker *workers;
+    size_t groups_capacity, dense_capacity, workers_capacity; /* bytes */
+    int64_t group_count, dense_count, worker_count; /* that were ever made */
+    int64_t groups_used, dense_used;                /* by this picture */
+    int threads, bands;
+};
+
+/* A part of a picture's work that threads share. */
+typedef struct pass {
+    snow_exact *exact;
+    const snow_job *job;
+    snow_encoding encoding;
+    int64_t first, count; /* gathering: slices from the viewer */
+} pass;
+
+snow_status snow_exact_new(snow_context *context, snow_exact **out) {
+    snow_exact *exact = snow_allocate_clear(context, sizeof *exact);
+    if (!exact)
+        return SNOW_NO_MEMORY;
+    exact->context = context;
+    *out = exact;
+    return SNOW_OK;
+}
+
+void snow_exact_free(snow_exact *exact) {
+    if (!exact)
+        return;
+    snow_context *context = exact->context;
+    for (int64_t n = 0; n < exact->group_count; n++)
+        snow_sparse_fini(&exact->groups[n]);
+    for (int64_t n = 0; n < exact->dense_count; n++)
+        snow_dense_fini(context, &exact->dense[n]);
+    for (int64_t n = 0; n < exact->worker_count; n++) {
+        worker *w = &exact->workers[n];
+        snow_strip_free(context, &w->strip);
+        snow_release(context, w->spans);
+        snow_release(context, w->sheet.pixels);
+        snow_release(context, w->runs);
+        snow_release(context, w->places.window);
+        snow_splatter_fini(context, &w->splatter);
+    }
+    snow_release(context, exact->groups);
+    snow_release(context, exact->dense);
+    snow_release(context, exact->workers);
+    snow_gatherer_fini(context, &exact->gatherer);
+    snow_classifier_fini(context, &exact->classifier);
+    snow_release(context, exact);
+}
+
+/* --- preparation -----------------------------------------------------------
+ */
+
+/* Makes an array hold `wanted` records, new ones as zeros. */
+static snow_status more_records(snow_context *context, void *array_pointer,
+                                size_t *capacity, int64_t *made, int64_t wanted,
+                                size_t size) {
+    if (wanted <= *made)
+        return SNOW_OK;
+    SNOW_TRY(snow_reserve(context, array_pointer, capacity,
+                          (size_t)*made * size, (size_t)wanted * size));
+    char *array;
+    memcpy(&array, array_pointer, sizeof array);
+    memset(array + (size_t)*made * size, 0, (size_t)(wanted - *made) * size);
+    *made = wanted;
+    return SNOW_OK;
+}
+
+static int64_t smaller(int64_t a, int64_t b) {
+    return a < b ? a : b;
+}
+
+static int64_t parts_of(int64_t whole, int64_t part) {
+    return (whole + part - 1) / part;
+}
+
+/* How the picture is cut for threads. */
+static void cut(snow_exact *exact, const snow_job *job) {
+    const snow_placement *p = &job->placement;
+    int64_t threads = job->settings.threads;
+    exact->groups_used = parts_of(job->slab.count, GROUP_SLICES);
+    exact->bands = 1;
+    exact->dense_used = 0;
+    if (exact->gathers) {
+        exact->bands = (int)parts_of(p->height, GATHER_ROWS);
+        uint64_t fit = SPREAD_BYTES / snow_dense_bytes(&exact->gatherer.shape);
+        /* Threads wait for each other between spreading and gathering: seldom
+         * where slices are spread by the dozen.  One thread has no one to wait
+         * for, and finds a single slice in its cache. */
+        int64_t wanted = threads > 1 ? job->slab.count : 1;
+        exact->dense_used = fit > 1 ? smaller(wanted, (int64_t)fit) : 1;
+    } else if (threads > 1)
+        exact->bands = (int)smaller(BANDS_PER_THREAD * threads, p->height);
+    int64_t most =
+        exact->bands > exact->groups_used ? exact->bands : exact->groups_used;
+    exact->threads = (int)smaller(threads, most);
+}
+
+static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
+                                  worker *w) {
+    snow_context *context = exact->context;
+    const snow_placement *p = &job->placement;
+    w->kept = 0;
+    w->status = SNOW_OK;
+    memset(w->seconds, 0, sizeof w->seconds);
+    SNOW_TRY(snow_strip_make(context, p, job->channels, &w->strip));
+    SNOW_TRY(snow_reserve(context, &w->spans, &w->spans_capacity, 0,
+                          ((size_t)p->columns / 2 + 1) * sizeof *w->spans));
+    /* Here and not where a thread needs it, so that what is taken does not
+     * depend on which thread does what. */
+    size_t row = (size_t)p->width * (size_t)job->channels;
+    if (!exact->gathers) {
+        size_t rows = (size_t)parts_of(p->height, exact->bands);
+        SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
+                              rows * row * sizeof *w->sheet.pixels));
+        return snow_splatter_make(context, p, job->settings.kernel,
+                                  job->settings.footprint, job->channels,
+                                  &w->splatter);
+    }
+    size_t runs = (size_t)p->width / 2 + 1;
+    SNOW_TRY(snow_places_make(context, p->width, &w->places));
+    SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
+                          GATHER_ROWS * row * sizeof *w->sheet.pixels));
+    return snow_reserve(context, &w->runs, &w->runs_capacity, 0,
+                        GATHER_ROWS * runs * sizeof *w->runs);
+}
+
+/* Loops for gathering exist for this picture, and it is the method that may
+ * use them: original and tested stay what they are compared as. */
+static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
+    const snow_settings *settings = &job->settings;
+    exact->gathers = false;
+    exact->over = snow_over_pick(settings->isa, job->channels);
+    if (settings->method != SNOW_METHOD_FOOTPRINT)
+        return SNOW_OK;
+    return snow_gatherer_make(exact->context, &job->placement, settings->kernel,
+                              settings->footprint, job->channels, settings->isa,
+                              &exact->gatherer, &exact->gathers);
+}
+
+/* Makes room and tables for a job. */
+static snow_status prepare(snow_exact *exact, const snow_job *job) {
+    snow_context *context = exact->context;
+    const snow_settings *settings = &job->settings;
+    const snow_placement *p = &job->placement;
+    snow_classify_options options = {
+        .threshold = settings->threshold,
+        .opacity_exponent = p->path / settings->opacity_length,
+        .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
+        .premultiply = settings->shade == SNOW_SHADE_NONE,
+        .isa = settings->method == SNOW_METHOD_FOOTPRINT ? settings->isa
+                                                         : SNOW_ISA_SCALAR,
+    };
+    SNOW_TRY(snow_classifier_make(context, job->volume, job->transfer, &options,
+                                  &exact->classifier));
+    /* Normals are made for the voxels that are kept. */
+    SNOW_TRY(
+        snow_shader_init(context, job->volume, p, settings, &exact->shader));
+    SNOW_TRY(choose_loops(exact, job));
+    cut(exact, job);
+    SNOW_TRY(more_records(context, &exact->groups, &exact->groups_capacity,
+                          &exact->group_count, exact->groups_used,
+                          sizeof *exact->groups));
+    for (int64_t n = 0; n < exact->groups_used; n++)
+        exact->groups[n].context = context;
+    SNOW_TRY(more_records(context, &exact->workers, &exact->workers_capacity,
+                          &exact->worker_count, exact->threads,
+                          sizeof *exact->workers));
+    for (int n = 0; n < exact->threads; n++)
+        SNOW_TRY(prepare_worker(exact, job, &exact->workers[n]));
+    SNOW_TRY(more_records(context, &exact->dense, &exact->dense_capacity,
+                          &exact->dense_count, exact->dense_used,
+                          sizeof *exact->dense));
+    for (int64_t n = 0; n < exact->dense_used; n++)
+        SNOW_TRY(
+            snow_dense_make(context, &exact->gatherer.shape, &exact->dense[n]));
+    return SNOW_OK;
+}
+
+/* --- work and time ---------------------------------------------------------
+ */
+
+/* Adds the seconds since *mark to a total, and moves the mark. */
+static void lap(double *mark, double *total) {
+    double now = snow_seconds();
+    *total += now - *mark;
+    *mark = now;
+}
+
+/* Deals a pass' wall time out to the stages as its threads spent theirs. */
+static void deal_out(snow_exact *exact, double wall, snow_stats *stats) {
+    double *totals[STAGES] = {
+        [CLASSIFY] = &stats->seconds_classify,
+        [SHADE] = &stats->seconds_shade,
+        [ENCODE] = &stats->seconds_encode,
+        [SPLAT] = &stats->seconds_splat,
+        [COMPOSITE] = &stats->seconds_composite,
+    };
+    double spent[STAGES] = {0}, all = 0;
+    for (int n = 0; n < exact->threads; n++)
+        for (int s = 0; s < STAGES; s++) {
+            spent[s] += exact->workers[n].seconds[s];
+            all += exact->workers[n].seconds[s];
+            exact->workers[n].seconds[s] = 0;
+        }
+    for (int s = 0; s < STAGES && all > 0; s++)
+        *totals[s] += wall * spent[s] / all;
+}
+
+/* Does the items of a pass on the threads. */
+static snow_status run(pass *work, int64_t items, snow_work_fn *one) {
+    snow_exact *exact = work->exact;
+    double start = snow_seconds();
+    snow_parallel(exact->context, exact->threads, items, one, work);
+    deal_out(exact, snow_seconds() - start, work->job->stats);
+    for (int n = 0; n < exact->threads; n++)
+        if (exact->workers[n].status != SNOW_OK)
+            return exact->workers[n].status;
+    return SNOW_OK;
+}
+
+/* The slab's n-th slice from the viewer. */
+static int64_t nth_slice(const snow_job *job, int64_t n) {
+    snow_slab slab = job->slab;
+    return slab.first + (job->placement.nearest_first ? n : slab.count - 1 - n);
+}
+
+/* Classifies and shades `rows` rows of a slice, or as many as a strip holds,
+ * from `row` on into the worker's strip. */
+static void classify_and_shade(const pass *work, worker *w, int64_t slice,
+                               int64_t row, int64_t rows) {
+    const snow_exact *exact = work->exact;
+    double mark = snow_seconds();
+    snow_classify_strip(&exact->classifier, &work->job->placement, slice, row,
+                        smaller(rows, w->strip.room_rows), &w->strip);
+    lap(&mark, &w->seconds[CLASSIFY]);
+    if (work->job->settings.shade == SNOW_SHADE_PHONG)
+        snow_shade_strip(&exact->shader, work->job->channels, &w->strip);
+    lap(&mark, &w->seconds[SHADE]);
+}
+
+/* --- encoding --------------------------------------------------------------
+ */
+
+/* Measures density and runs on every 8th row of every 8th slice. */
+static snow_encoding choose_encoding(const snow_exact *exact,
+                                     const snow_placement *p) {
+    worker *w = &exact->workers[0];
+    uint64_t voxels = 0, interesting = 0, runs = 0;
+    for (int64_t slice = 0; slice < p->slices; slice += 8)
+        for (int64_t row = slice / 8 % 8; row < p->rows; row += 8) {
+            snow_classify_strip(&exact->classifier, p, slice, row, 1,
+                                &w->strip);
+            voxels += (uint64_t)p->columns;
+            interesting += w->strip.count;
+            runs += snow_spans_of_columns(w->strip.columns, w->strip.count,
+                                          w->spans);
+        }
+    return snow_encoding_choose(voxels, interesting, runs);
+}
+
+/* Lines 04 to 06: one slice into the sparse matrix of its group. */
+static snow_status encode_slice(const pass *work, worker *w,
+                                snow_sparse *sparse, int64_t slice) {
+    const snow_placement *p = &work->job->placement;
+    snow_strip *strip = &w->strip;
+    float *samples = strip->samples;
+    snow_status status = snow_sparse_begin_slice(sparse);
+    for (int64_t row = 0; row < p->rows && status == SNOW_OK;
+         row += strip->room_rows) {
+        /* Classified straight into IA: most of what is encoded is samples. */
+        status = snow_sparse_lend(
+            sparse, (size_t)(strip->room_rows * p->columns), &strip->samples);
+        if (status != SNOW_OK)
+            break;
+        classify_and_shade(work, w, slice, row, p->rows - row);
+        double mark = snow_seconds();
+        status = snow_sparse_add_strip(sparse, strip);
+        lap(&mark, &w->seconds[ENCODE]);
+    }
+    strip->samples = samples;
+    return status == SNOW_OK ? snow_sparse_end_slice(sparse) : status;
+}
+
+static snow_status encode_group(const pass *work, int64_t group, worker *w) {
+    const snow_job *job = work->job;
+    snow_sparse *sparse = &work->exact->groups[group];
+    SNOW_TRY(snow_sparse_begin(sparse, snow_scheme_of(work->encoding),
+                               &job->placement, job->channels));
+    int64_t first = group * GROUP_SLICES;
+    int64_t end = smaller(first + GROUP_SLICES, job->slab.count);
+    for (int64_t n = first; n < end; n++)
+        SNOW_TRY(encode_slice(work, w, sparse, job->slab.first + n));
+    return SNOW_OK;
+}
+
+static void encode_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    worker *w = &work->exact->workers[number];
+    if (w->status == SNOW_OK)
+        w->status = encode_group(work, item, w);
+}
+
+/* Sets a walk to the beginning of a slice of the volume. */
+static void walk_slice(const pass *work, int64_t slice, snow_walk *walk) {
+    int64_t n = slice - work->job->slab.first;
+    snow_walk_begin(walk, &work->exact->groups[n / GROUP_SLICES],
+                    n % GROUP_SLICES);
+}
+
+/* The next row of a walk: its spans go to the worker, its samples are
+ * returned. */
+static const float *walk_row(const pass *work, snow_walk *walk, worker *w,
+                             size_t *spans) {
+    size_t voxel;
+    *spans = snow_walk_row(walk, w->spans, &voxel);
+    return walk->sparse->ia + voxel * (size_t)work->job->channels;
+}
+
+/* --- throwing footprints ---------------------------------------------------
+ */
+
+/* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
+static void throw_encoded(const pass *work, worker *w, int64_t slice,
+                          int64_t first, int64_t end) {
+    double mark = snow_seconds();
+    snow_walk walk;
+    walk_slice(work, slice, &walk);
+    for (int64_t row = 0; row < end; row++) {
+        size_t spans;
+        const float *samples = walk_row(work, &walk, w, &spans);
+        if (row >= first)
+            snow_splat_row(&w->splatter, &w->sheet, row, w->spans, spans,
+                           samples);
+    }
+    lap(&mark, &w->seconds[SPLAT]);
+}
+
+/* The same without a sparse matrix, row by row out of the volume: original
+ * splatting, where the classifier keeps every voxel, and tested splatting. */
+static void throw_classified(const pass *work, worker *w, int64_t slice,
+                             int64_t first, int64_t end) {
+    snow_strip *strip = &w->strip;
+    for (int64_t row = first; row < end; row += strip->room_rows) {
+        classify_and_shade(work, w, slice, row, end - row);
+        double mark = snow_seconds();
+        w->kept += (int64_t)strip->count;
+        size_t begin = 0;
+        for (int64_t n = 0; n < strip->rows; n++) {
+            size_t stop = strip->row_end[n];
+            size_t spans = snow_spans_of_columns(strip->columns + begin,
+                                                 stop - begin, w->spans);
+            snow_splat_row(&w->splatter, &w->sheet, row + n, w->spans, spans,
+                           strip->samples +
+                               begin * (size_t)work->job->channels);
+            begin = stop;
+        }
+        lap(&mark, &w->seconds[SPLAT]);
+    }
+}
+
+/* Line 07, from front to back: the slab's slices onto the sheet, and each
+ * sheet into the local image; for one band of its rows. */
+static snow_status throw_band(const pass *work, int64_t band, worker *w) {
+    const snow_job *job = work->job;
+    const snow_placement *p = &job->placement;
+    int64_t bands = work->exact->bands;
+    int top = (int)(p->height * band / bands);
+    int bottom = (int)(p->height * (band + 1) / bands);
+    double mark = snow_seconds();
+    SNOW_TRY(snow_sheet_begin(work->exact->context, p, job->channels, top,
+                              bottom, &w->sheet));
+    lap(&mark, &w->seconds[COMPOSITE]);
+    for (int64_t n = 0; n < job->slab.count; n++) {
+        int64_t slice = nth_slice(job, n), first = 0, end = p->rows;
+        snow_splatter_begin_slice(&w->splatter, slice);
+        if (bands > 1) /* one band takes every row, as the paper does */
+            snow_splatter_rows(&w->splatter, &w->sheet, &first, &end);
+        if (job->settings.method == SNOW_METHOD_FOOTPRINT)
+            throw_encoded(work, w, slice, first, end);
+        else
+            throw_classified(work, w, slice, first, end);
+        mark = snow_seconds();
+        snow_composite_sheet(job->pixels, &w->sheet);
+        lap(&mark, &w->seconds[COMPOSITE]);
+    }
+    return SNOW_OK;
+}
+
+static void throw_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    worker *w = &work->exact->workers[number];
+    if (w->status == SNOW_OK)
+        w->status = throw_band(work, item, w);
+}
+
+/* --- gathering footprints --------------------------------------------------
+ */
+
+/* Lines 08 to 12, first half: the interesting voxels of one slice, out of EA
+ * and IA, to where its pixels gather them. */
+static void spread_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    worker *w = &work->exact->workers[number];
+    snow_dense *dense = &work->exact->dense[item];
+    double mark = snow_seconds();
+    snow_walk walk;
+    walk_slice(work, nth_slice(work->job, work->first + item), &walk);
+    snow_dense_begin(dense);
+    for (int64_t row = 0; row < work->job->placement.rows; row++) {
+        size_t spans;
+        const float *samples = walk_row(work, &walk, w, &spans);
+        snow_dense_add_row(dense, w->spans, spans, samples);
+    }
+    snow_dense_end(dense);
+    lap(&mark, &w->seconds[SPLAT]);
+}
+
+/* Second half and line 13, for one slice and band: pixels gather, row by row,
+ * and each row goes into the local image. */
+static void gather_slice(const pass *work, worker *w, int64_t n, int top,
+                         int bottom) {
+    const snow_exact *exact = work->exact;
+    const snow_job *job = work->job;
+    const snow_dense *dense = &exact->dense[n];
+    int64_t slice = nth_slice(job, work->first + n);
+    size_t channels = (size_t)job->channels,
+           room = w->runs_capacity / sizeof *w->runs / GATHER_ROWS;
+    size_t stride = (size_t)job->placement.width * channels;
+    int first, end, counts[GATHER_ROWS];
+    snow_gather_rows(&exact->gatherer, dense, slice, &first, &end);
+    first = first > top ? first : top;
+    end = end < bottom ? end : bottom;
+    if (first >= end)
+        return;
+    double mark = snow_seconds();
+    for (int y = first; y < end; y++) {
+        size_t line = (size_t)(y - top);
+        counts[line] = snow_gather_row(
+            &exact->gatherer, dense, slice, y, &w->places,
+            w->sheet.pixels + line * stride, w->runs + line * room);
+    }
+    lap(&mark, &w->seconds[SPLAT]);
+    for (int y = first; y < end; y++) {
+        size_t line = (size_t)(y - top);
+        const snow_run *runs = w->runs + line * room;
+        for (int i = 0; i < counts[line]; i++) {
+            size_t at = (size_t)runs[i].first * channels;
+            exact->over(job->pixels + (size_t)y * stride + at,
+                        w->sheet.pixels + line * stride + at,
+                        (size_t)(runs[i].end - runs[i].first));
+        }
+    }
+    lap(&mark, &w->seconds[COMPOSITE]);
+}
+
+static void gather_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    int top = (int)item * GATHER_ROWS;
+    int bottom = (int)smaller(top + GATHER_ROWS, work->job->placement.height);
+    for (int64_t n = 0; n < work->count; n++)
+        gather_slice(work, &work->exact->workers[number], n, top, bottom);
+}
+
+/* Line 07, from front to back: some slices at a time. */
+static snow_status gather_slab(pass *work) {
+    int64_t slices = work->job->slab.count;
+    for (work->first = 0; work->first < slices; work->first += work->count) {
+        work->count = smaller(work->exact->dense_used, slices - work->first);
+        SNOW_TRY(run(work, work->count, spread_item));
+        SNOW_TRY(run(work, work->exact->bands, gather_item));
+    }
+    return SNOW_OK;
+}
+
+/* --- the whole -------------------------------------------------------------
+ */
+
+snow_status snow_exact_render(snow_exact *exact, const snow_job *job) {
+    /* 02 - 03 */ SNOW_TRY(prepare(exact, job));
+    pass work = {exact, job, job->settings.encoding, 0, 0};
+    if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
+        if (work.encoding == SNOW_ENCODING_AUTO)
+            work.encoding = choose_encoding(exact, &job->placement);
+        job->stats->encoding = work.encoding;
+        /* 04 - 06 */ SNOW_TRY(run(&work, exact->groups_used, encode_item));
+    }
+    if (exact->gathers)
+        /* 07 - 13 */ return gather_slab(&work);
+    /* 07 - 13 */ return run(&work, exact->bands, throw_item);
+}
+
+/* --- counts ----------------------------------------------------------------
+ */
+
+static void count_item(void *data, int64_t item, int number) {
+    const pass *work = data;
+    const snow_exact *exact = work->exact;
+    const snow_placement *p = &work->job->placement;
+    worker *w = &exact->workers[number];
+    for (int64_t row = 0; row < p->rows; row += w->strip.room_rows) {
+        snow_classify_strip(&exact->classifier, p, work->job->slab.first + item,
+                            row, smaller(p->rows - row, w->strip.room_rows),
+                            &w->strip);
+        w->kept += (int64_t)w->strip.count;
+    }
+}
+
+/* Original splatting keeps every voxel, and bands keep some more than once, so
+ * nothing holds the number of interesting voxels, and they are counted here:
+ * outside of seconds_frame. */
+static snow_status count_classified(snow_exact *exact, const snow_job *job,
+                                    int64_t *count) {
+    int64_t kept = 0;
+    bool known =
+        job->settings.method == SNOW_METHOD_TESTED && exact->bands == 1;
+    if (!known) {
+        pass work = {.exact = exact, .job = job};
+        for (int n = 0; n < exact->threads; n++)
+            exact->workers[n].kept = 0;
+        snow_classify_options options = {.threshold = job->settings.threshold,
+                                         .opacity_exponent = 1};
+        SNOW_TRY(snow_classifier_make(exact->context, job->volume,
+                                      job->transfer, &options,
+                                      &exact->classifier));
+        snow_parallel(exact->context, exact->threads, job->slab.count,
+                      count_item, &work);
+    }
+    for (int n = 0; n < exact->threads; n++)
+        kept += exact->workers[n].kept;
+    *count = kept;
+    return SNOW_OK;
+}
+
+static void count_encoded(const snow_exact *exact, snow_stats *stats) {
+    for (int64_t n = 0; n < exact->groups_used; n++) {
+        const snow_sparse *s = &exact->groups[n];
+        stats->interesting += (int64_t)s->ia_voxels;
+        stats->ea_bytes += s->ea_bytes;
+        stats->ia_bytes += s->ia_voxels * (size_t)s->channels * sizeof *s->ia;
+        stats->pa_bytes += (uint64_t)(s->filled + 1) * sizeof *s->pa;
+    }
+}
+
+snow_status snow_exact_count(snow_exact *exact, const snow_job *job) {
+    snow_stats *stats = job->stats;
+    if (job->settings.method == SNOW_METHOD_FOOTPRINT)
+        count_encoded(exact, stats);
+    else
+        SNOW_TRY(count_classified(exact, job, &stats->interesting));
+    double voxels = (double)stats->voxels;
+    stats->sparse_ratio =
+        voxels > 0 ? 1 - (double)stats->interesting / voxels : 1;
+    return SNOW_OK;
+}

@@ -1,0 +1,230 @@
+/* splat/gather.c - splatting in gather form; see splat/gather.h. */
+#include "splat/gather.h"
+#include "splat/words.h"
+
+#include <math.h>
+
+/* Pixels and windows by which bounds are taken too wide, so that rounding
+ * loses nothing; the map of reached windows decides. */
+#define SLACK 1e-3
+
+#define CHUNK 16 /* pixels whose places are found at once */
+
+#if SNOW_HAS_AVX
+/* Runs of set bits, from pixel `begin` on (a multiple of 16) and before `end`
+ * and the image's edge; returns their number. */
+static int find_runs(const uint16_t *reached, int begin, int end, int width,
+                     snow_run *runs) {
+    int count = 0, open = -1; /* where the run began that is still open */
+    for (int x = begin; x < end; x += CHUNK) {
+        unsigned bits = reached[x / CHUNK];
+        if (x + CHUNK > width)
+            bits &= (1u << (width - x)) - 1;
+        if (bits == (open < 0 ? 0 : 0xffff))
+            continue; /* no run begins or ends here */
+        for (int at = 0; at < CHUNK;) {
+            unsigned rest = (open < 0 ? bits : ~bits & 0xffff) >> at;
+            if (!rest)
+                break;
+            at += __builtin_ctz(rest);
+            if (open >= 0)
+                runs[count++] = (snow_run){open, x + at};
+            open = open < 0 ? x + at : -1;
+        }
+    }
+    if (open >= 0) {
+        int last = (end + CHUNK - 1) & -CHUNK;
+        runs[count++] = (snow_run){open, last < width ? last : width};
+    }
+    return count;
+}
+
+/* Keeps what was stored from being kept in registers as well: weights are
+ * spread for nothing where they are loaded. */
+#define THROUGH_MEMORY __asm__("" ::: "memory")
+
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#define GATHER_CHANNELS 2
+#define LOCAL(word) grey_avx2_##word
+#define B(word) snow_b8_##word
+#define BLOCK_VOXELS 4
+#include "splat/gather.tmpl.h"
+
+#define GATHER_CHANNELS 4
+#define LOCAL(word) small_avx2_##word
+#define B(word) snow_b8_##word
+#define BLOCK_VOXELS 2
+#include "splat/gather.tmpl.h"
+
+#define GATHER_CHANNELS 4
+#define LOCAL(word) rgba_avx2_##word
+#define B(word) snow_p16_##word
+#define BLOCK_VOXELS 4
+#include "splat/gather.tmpl.h"
+
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#define GATHER_CHANNELS 2
+#define LOCAL(word) grey_avx512_##word
+#define B(word) snow_b8_##word
+#define BLOCK_VOXELS 4
+#include "splat/gather.tmpl.h"
+
+#define GATHER_CHANNELS 4
+#define LOCAL(word) small_avx512_##word
+#define B(word) snow_b8_##word
+#define BLOCK_VOXELS 2
+#include "splat/gather.tmpl.h"
+
+#define GATHER_CHANNELS 4
+#define LOCAL(word) rgba_avx512_##word
+#define B(word) snow_b16_##word
+#define BLOCK_VOXELS 4
+#include "splat/gather.tmpl.h"
+
+static const struct gather_level {
+    snow_gather_fn *grey;
+    snow_gather_fn *rgba_small; /* two voxels in reach */
+    snow_gather_fn *rgba;
+} levels[] = {
+    [SNOW_ISA_AVX2] = {grey_avx2_row, small_avx2_row, rgba_avx2_row},
+    [SNOW_ISA_AVX512] = {grey_avx512_row, small_avx512_row, rgba_avx512_row},
+};
+
+static snow_gather_fn *pick(snow_isa isa, int channels, int taps_u) {
+    if (isa != SNOW_ISA_AVX2 && isa != SNOW_ISA_AVX512)
+        return NULL;
+    const struct gather_level *level = &levels[isa];
+    if (channels == 2)
+        return level->grey;
+    return taps_u <= 2 ? level->rgba_small : level->rgba;
+}
+#else
+static snow_gather_fn *pick(snow_isa isa, int channels, int taps_u) {
+    (void)isa;
+    (void)channels;
+    (void)taps_u;
+    return NULL;
+}
+#endif
+
+snow_status snow_places_make(snow_context *context, int width,
+                             snow_places *places) {
+    size_t pixels = ((size_t)width + CHUNK - 1) / CHUNK * CHUNK;
+    SNOW_TRY(snow_reserve(context, &places->window, &places->capacity, 0,
+                          13 * pixels * sizeof(int32_t) +
+                              pixels / CHUNK * sizeof(uint16_t)));
+    places->row_u = places->window + pixels;
+    places->row_v = places->row_u + pixels;
+    places->rest_u = (float *)(void *)(places->row_v + pixels);
+    places->rest_v = places->rest_u + pixels;
+    places->u = places->rest_v + pixels;
+    places->v = places->u + 4 * pixels;
+    places->reached = (uint16_t *)(void *)(places->v + 4 * pixels);
+    return SNOW_OK;
+}
+
+snow_status snow_gatherer_make(snow_context *context, const snow_placement *p,
+                               snow_kernel kernel, int support, int channels,
+                               snow_isa isa, snow_gatherer *g, bool *serves) {
+    snow_taper u = snow_taper_make(kernel, support,
+                                   hypot(p->inverse[0][0], p->inverse[0][1]));
+    snow_taper v = snow_taper_make(kernel, support,
+                                   hypot(p->inverse[1][0], p->inverse[1][1]));
+    *serves = false;
+    if (!snow_phases_serve(&u) || !snow_phases_serve(&v))
+        return SNOW_OK;
+    int taps_u = snow_taper_taps(&u);
+    g->placement = p;
+    g->gather = pick(isa, channels, taps_u);
+    g->shape = (snow_dense_shape){.columns = p->columns,
+                                  .rows = p->rows,
+                                  .channels = channels,
+                                  .taps_u = taps_u,
+                                  .taps_v = snow_taper_taps(&v),
+                                  .padded_u = (taps_u + 3) / 4 * 4};
+    if (!g->gather || !snow_dense_serves(&g->shape))
+        return SNOW_OK;
+    SNOW_TRY(snow_phases_make(context, &u, &g->phases_u));
+    SNOW_TRY(snow_phases_make(context, &v, &g->phases_v));
+    g->cubic = g->phases_u.cubic && g->phases_v.cubic;
+    *serves = true;
+    return SNOW_OK;
+}
+
+void snow_gatherer_fini(snow_context *context, snow_gatherer *g) {
+    snow_phases_fini(context, &g->phases_u);
+    snow_phases_fini(context, &g->phases_v);
+    *g = (snow_gatherer){0};
+}
+
+/* Where on the image voxel (0, 0) of a slice lies. */
+static void slice_origin(const snow_placement *p, int64_t slice,
+                         double origin[2]) {
+    for (int i = 0; i < 2; i++)
+        origin[i] = p->origin[i] + (double)slice * p->step_slice[i];
+}
+
+void snow_gather_rows(const snow_gatherer *g, const snow_dense *d,
+                      int64_t slice, int *top, int *bottom) {
+    const snow_placement *p = g->placement;
+    double origin[2], low = INFINITY, high = -INFINITY;
+    slice_origin(p, slice, origin);
+    for (int corner = 0; corner < 4; corner++) {
+        double u = corner & 1 ? (double)d->c1 - 1 + g->shape.taps_u
+                              : (double)d->c0 - g->shape.taps_u;
+        double v = corner & 2 ? (double)d->r1 - 1 + g->shape.taps_v
+                              : (double)d->r0 - g->shape.taps_v;
+        double y = origin[1] + u * p->step_u[1] + v * p->step_v[1];
+        low = fmin(low, y);
+        high = fmax(high, y);
+    }
+    *top = (int)fmin(fmax(low - 1, 0), p->height);
+    *bottom = (int)fmax(fmin(high + 1, p->height), 0);
+    if (d->c0 >= d->c1)
+        *top = *bottom = 0;
+}
+
+/* Narrows pixels [*first, *end) to those where at + x step is in [low, high].
+ */
+static void narrow(double at, double step, double low, double high,
+                   double *first, double *end) {
+    if (fabs(step) * *end < SLACK) {
+        if (at < low - SLACK || at > high + SLACK)
+            *end = *first;
+        return;
+    }
+    double a = (low - at) / step, b = (high - at) / step;
+    double from = (a < b ? a : b) - 1, upto = (a < b ? b : a) + 1;
+    *first = from > *first ? from : *first; /* fmax() may be a call */
+    *end = upto < *end ? upto : *end;
+}
+
+int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
+                    int y, const snow_places *places, float *pixels,
+                    snow_run *runs) {
+    const snow_placement *p = g->placement;
+    double origin[2], first = 0, end = p->width;
+    slice_origin(p, slice, origin);
+    double x0 = 0.5 - origin[0], y0 = y + 0.5 - origin[1];
+    snow_line line = {
+        .u = p->inverse[0][0] * x0 + p->inverse[0][1] * y0 + g->phases_u.reach +
+             g->shape.taps_u,
+        .v = p->inverse[1][0] * x0 + p->inverse[1][1] * y0 + g->phases_v.reach +
+             g->shape.taps_v,
+        .du = p->inverse[0][0],
+        .dv = p->inverse[1][0],
+    };
+    narrow(line.u, line.du, (double)d->c0 + 1, (double)d->c1 + g->shape.taps_u,
+           &first, &end);
+    narrow(line.v, line.dv, (double)d->r0 + 1, (double)d->r1 + g->shape.taps_v,
+           &first, &end);
+    if (!(first < end))
+        return 0;
+    line.first = (int)first;
+    line.end = (int)ceil(end);
+    return g->gather(g, d, &line, places, pixels, runs);
+}

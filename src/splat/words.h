@@ -1,0 +1,328 @@
+/* splat/words.h - the words that splatting in gather form needs beyond
+ * simd/select.h: whole numbers, and blocks of voxels.
+ *
+ *   V(ints)          as many 32-bit whole numbers as a vector has floats
+ *   V(lanes)()       0, 1, 2 ...
+ *   V(floor)(v), V(to_ints)(v) (towards 0), V(to_floats)(i)
+ *   V(add_int)(i, n), V(times)(i, n), V(clamp)(i, low, high)
+ *   V(place)(i, i_step, j, j_step)   i * i_step + j * j_step
+ *   V(store_ints)(p, i)
+ *   V(deal)(v), V(store_fours)(p, a, b, c, d)   of values made from a vector
+ *                                that was dealt, the first lane's a b c d, then
+ *                                the second's, and so on
+ *   V(bits)(map, words, i, j)    bit i of row j, rows of `words` words, of all
+ *                                lanes as a mask, the first lane lowest
+ *
+ * A block is what a footprint's row is gathered in: 8 or 16 floats, of which
+ * the 16 are a pair of vectors below AVX-512.  B(word) says which:
+ *
+ *   B(block)               the type
+ *   B(load)(p), B(scale)(s, b), B(more)(s, b, c) is s b + c
+ *   B(zero)(), B(fma)(a, b, c)
+ *   B(pairs)(p)            the weights of 4 voxels, each twice (8 floats)
+ *   B(fours)(p)            the weights of 2 or 4 voxels, each 4 times
+ *   B(fold)(b)             the four floats that remain when halves are added
+ *   B(fold_four)(b, p)     the same of b[0] to b[3], stored */
+#ifndef SNOW_SPLAT_WORDS_H
+#define SNOW_SPLAT_WORDS_H
+
+#include "simd/isa.h"
+
+#if SNOW_HAS_AVX
+#include "simd/vec_avx2.h"
+#include "simd/vec_avx512.h"
+
+typedef __m256i snow_avx2_ints;
+
+SNOW_AVX2_INLINE __m256 snow_avx2_lanes(void) {
+    return _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+SNOW_AVX2_INLINE __m256 snow_avx2_floor(__m256 v) {
+    return _mm256_floor_ps(v);
+}
+
+SNOW_AVX2_INLINE __m256i snow_avx2_to_ints(__m256 v) {
+    return _mm256_cvttps_epi32(v);
+}
+
+SNOW_AVX2_INLINE __m256 snow_avx2_to_floats(__m256i i) {
+    return _mm256_cvtepi32_ps(i);
+}
+
+SNOW_AVX2_INLINE __m256i snow_avx2_clamp(__m256i i, int low, int high) {
+    i = _mm256_max_epi32(i, _mm256_set1_epi32(low));
+    return _mm256_min_epi32(i, _mm256_set1_epi32(high));
+}
+
+SNOW_AVX2_INLINE __m256i snow_avx2_place(__m256i i, int i_step, __m256i j,
+                                         int j_step) {
+    return _mm256_add_epi32(_mm256_mullo_epi32(i, _mm256_set1_epi32(i_step)),
+                            _mm256_mullo_epi32(j, _mm256_set1_epi32(j_step)));
+}
+
+SNOW_AVX2_INLINE __m256i snow_avx2_add_int(__m256i i, int n) {
+    return _mm256_add_epi32(i, _mm256_set1_epi32(n));
+}
+
+SNOW_AVX2_INLINE __m256i snow_avx2_times(__m256i i, int n) {
+    return _mm256_mullo_epi32(i, _mm256_set1_epi32(n));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_store_ints(int32_t *p, __m256i i) {
+    _mm256_storeu_si256((__m256i *)(void *)p, i);
+}
+
+/* Lane 4 l + k of what is dealt is lane 2 k + l: transposing within halves then
+ * leaves lanes 2 k and 2 k + 1 in vector k. */
+SNOW_AVX2_INLINE __m256 snow_avx2_deal(__m256 v) {
+    return _mm256_permutevar8x32_ps(v,
+                                    _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_store_fours(float *p, __m256 a, __m256 b,
+                                            __m256 c, __m256 d) {
+    __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
+    __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d));
+    __m256d ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
+    __m256d cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
+    _mm256_storeu_ps(p, _mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low)));
+    _mm256_storeu_ps(p + 8,
+                     _mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low)));
+    _mm256_storeu_ps(p + 16,
+                     _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high)));
+    _mm256_storeu_ps(p + 24,
+                     _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high)));
+}
+
+SNOW_AVX2_INLINE unsigned snow_avx2_bits(const uint32_t *map, int words,
+                                         __m256i i, __m256i j) {
+    __m256i at = snow_avx2_place(_mm256_srli_epi32(i, 5), 1, j, words);
+    __m256i word =
+        _mm256_i32gather_epi32((const int *)(const void *)map, at, 4);
+    __m256i left = _mm256_sub_epi32(_mm256_set1_epi32(31),
+                                    _mm256_and_si256(i, _mm256_set1_epi32(31)));
+    __m256i bit = _mm256_sllv_epi32(word, left); /* to the sign */
+    return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(bit));
+}
+
+typedef __m512i snow_avx512_ints;
+
+SNOW_AVX512_INLINE __m512 snow_avx512_lanes(void) {
+    return _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+}
+
+SNOW_AVX512_INLINE __m512 snow_avx512_floor(__m512 v) {
+    return _mm512_roundscale_ps(v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
+}
+
+SNOW_AVX512_INLINE __m512i snow_avx512_to_ints(__m512 v) {
+    return _mm512_cvttps_epi32(v);
+}
+
+SNOW_AVX512_INLINE __m512 snow_avx512_to_floats(__m512i i) {
+    return _mm512_cvtepi32_ps(i);
+}
+
+SNOW_AVX512_INLINE __m512i snow_avx512_clamp(__m512i i, int low, int high) {
+    i = _mm512_max_epi32(i, _mm512_set1_epi32(low));
+    return _mm512_min_epi32(i, _mm512_set1_epi32(high));
+}
+
+SNOW_AVX512_INLINE __m512i snow_avx512_place(__m512i i, int i_step, __m512i j,
+                                             int j_step) {
+    return _mm512_add_epi32(_mm512_mullo_epi32(i, _mm512_set1_epi32(i_step)),
+                            _mm512_mullo_epi32(j, _mm512_set1_epi32(j_step)));
+}
+
+SNOW_AVX512_INLINE __m512i snow_avx512_add_int(__m512i i, int n) {
+    return _mm512_add_epi32(i, _mm512_set1_epi32(n));
+}
+
+SNOW_AVX512_INLINE __m512i snow_avx512_times(__m512i i, int n) {
+    return _mm512_mullo_epi32(i, _mm512_set1_epi32(n));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_store_ints(int32_t *p, __m512i i) {
+    _mm512_storeu_si512(p, i);
+}
+
+/* As above, in quarters: lane 4 l + k of what is dealt is lane 4 k + l. */
+SNOW_AVX512_INLINE __m512 snow_avx512_deal(__m512 v) {
+    return _mm512_permutexvar_ps(
+        _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15),
+        v);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_store_fours(float *p, __m512 a, __m512 b,
+                                                __m512 c, __m512 d) {
+    __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b));
+    __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d));
+    __m512d ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
+    __m512d cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
+    _mm512_storeu_ps(p, _mm512_castpd_ps(_mm512_unpacklo_pd(ab_low, cd_low)));
+    _mm512_storeu_ps(p + 16,
+                     _mm512_castpd_ps(_mm512_unpackhi_pd(ab_low, cd_low)));
+    _mm512_storeu_ps(p + 32,
+                     _mm512_castpd_ps(_mm512_unpacklo_pd(ab_high, cd_high)));
+    _mm512_storeu_ps(p + 48,
+                     _mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high)));
+}
+
+SNOW_AVX512_INLINE unsigned snow_avx512_bits(const uint32_t *map, int words,
+                                             __m512i i, __m512i j) {
+    __m512i at = snow_avx512_place(_mm512_srli_epi32(i, 5), 1, j, words);
+    __m512i word = _mm512_i32gather_epi32(at, map, 4);
+    __m512i bit = _mm512_and_si512(i, _mm512_set1_epi32(31));
+    return _mm512_test_epi32_mask(word,
+                                  _mm512_sllv_epi32(_mm512_set1_epi32(1), bit));
+}
+
+/* --- blocks of 8 floats ----------------------------------------------------
+ */
+
+typedef __m256 snow_b8_block;
+
+SNOW_AVX2_INLINE __m256 snow_b8_load(const float *p) {
+    return _mm256_loadu_ps(p);
+}
+
+SNOW_AVX2_INLINE __m256 snow_b8_scale(float s, __m256 b) {
+    return _mm256_mul_ps(_mm256_set1_ps(s), b);
+}
+
+SNOW_AVX2_INLINE __m256 snow_b8_more(float s, __m256 b, __m256 c) {
+    return _mm256_fmadd_ps(_mm256_set1_ps(s), b, c);
+}
+
+SNOW_AVX2_INLINE __m256 snow_b8_zero(void) {
+    return _mm256_setzero_ps();
+}
+
+SNOW_AVX2_INLINE __m256 snow_b8_fma(__m256 a, __m256 b, __m256 c) {
+    return _mm256_fmadd_ps(a, b, c);
+}
+
+SNOW_AVX2_INLINE __m256 snow_b8_pairs(const float *p) {
+    return _mm256_permutevar_ps(
+        _mm256_broadcast_ps((const __m128 *)(const void *)p),
+        _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3));
+}
+
+SNOW_AVX2_INLINE __m256 snow_b8_fours(const float *p) {
+    return _mm256_permutevar_ps(
+        _mm256_broadcast_ps((const __m128 *)(const void *)p),
+        _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1));
+}
+
+SNOW_AVX2_INLINE __m128 snow_b8_fold(__m256 b) {
+    return _mm_add_ps(_mm256_castps256_ps128(b), _mm256_extractf128_ps(b, 1));
+}
+
+SNOW_AVX2_INLINE __m256 snow_b8_fold_two(__m256 a, __m256 b) {
+    return _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20),
+                         _mm256_permute2f128_ps(a, b, 0x31));
+}
+
+SNOW_AVX2_INLINE void snow_b8_fold_four(const __m256 b[4], float *p) {
+    _mm256_storeu_ps(p, snow_b8_fold_two(b[0], b[1]));
+    _mm256_storeu_ps(p + 8, snow_b8_fold_two(b[2], b[3]));
+}
+
+/* --- blocks of 16 floats, as pairs -----------------------------------------
+ */
+
+typedef struct snow_p16_block {
+    __m256 low, high;
+} snow_p16_block;
+
+SNOW_AVX2_INLINE snow_p16_block snow_p16_load(const float *p) {
+    return (snow_p16_block){_mm256_loadu_ps(p), _mm256_loadu_ps(p + 8)};
+}
+
+SNOW_AVX2_INLINE snow_p16_block snow_p16_scale(float s, snow_p16_block b) {
+    return (snow_p16_block){snow_b8_scale(s, b.low), snow_b8_scale(s, b.high)};
+}
+
+SNOW_AVX2_INLINE snow_p16_block snow_p16_more(float s, snow_p16_block b,
+                                              snow_p16_block c) {
+    return (snow_p16_block){snow_b8_more(s, b.low, c.low),
+                            snow_b8_more(s, b.high, c.high)};
+}
+
+SNOW_AVX2_INLINE snow_p16_block snow_p16_zero(void) {
+    return (snow_p16_block){_mm256_setzero_ps(), _mm256_setzero_ps()};
+}
+
+SNOW_AVX2_INLINE snow_p16_block snow_p16_fma(snow_p16_block a, snow_p16_block b,
+                                             snow_p16_block c) {
+    return (snow_p16_block){_mm256_fmadd_ps(a.low, b.low, c.low),
+                            _mm256_fmadd_ps(a.high, b.high, c.high)};
+}
+
+SNOW_AVX2_INLINE snow_p16_block snow_p16_fours(const float *p) {
+    __m256 w = _mm256_broadcast_ps((const __m128 *)(const void *)p);
+    return (snow_p16_block){
+        _mm256_permutevar_ps(w, _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1)),
+        _mm256_permutevar_ps(w, _mm256_setr_epi32(2, 2, 2, 2, 3, 3, 3, 3))};
+}
+
+SNOW_AVX2_INLINE __m128 snow_p16_fold(snow_p16_block b) {
+    return snow_b8_fold(_mm256_add_ps(b.low, b.high));
+}
+
+SNOW_AVX2_INLINE void snow_p16_fold_four(const snow_p16_block b[4], float *p) {
+    __m256 halves[4];
+    for (int i = 0; i < 4; i++)
+        halves[i] = _mm256_add_ps(b[i].low, b[i].high);
+    snow_b8_fold_four(halves, p);
+}
+
+/* --- blocks of 16 floats, whole --------------------------------------------
+ */
+
+typedef __m512 snow_b16_block;
+
+SNOW_AVX512_INLINE __m512 snow_b16_load(const float *p) {
+    return _mm512_loadu_ps(p);
+}
+
+SNOW_AVX512_INLINE __m512 snow_b16_scale(float s, __m512 b) {
+    return _mm512_mul_ps(_mm512_set1_ps(s), b);
+}
+
+SNOW_AVX512_INLINE __m512 snow_b16_more(float s, __m512 b, __m512 c) {
+    return _mm512_fmadd_ps(_mm512_set1_ps(s), b, c);
+}
+
+SNOW_AVX512_INLINE __m512 snow_b16_zero(void) {
+    return _mm512_setzero_ps();
+}
+
+SNOW_AVX512_INLINE __m512 snow_b16_fma(__m512 a, __m512 b, __m512 c) {
+    return _mm512_fmadd_ps(a, b, c);
+}
+
+SNOW_AVX512_INLINE __m512 snow_b16_fours(const float *p) {
+    return _mm512_permutevar_ps(
+        _mm512_broadcast_f32x4(_mm_loadu_ps(p)),
+        _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3));
+}
+
+SNOW_AVX512_INLINE __m128 snow_b16_fold(__m512 b) {
+    return snow_b8_fold(
+        _mm256_add_ps(_mm512_castps512_ps256(b), _mm512_extractf32x8_ps(b, 1)));
+}
+
+/* Quarters 0 + 2 and 1 + 3 of each, as snow_b8_fold adds them, then these. */
+SNOW_AVX512_INLINE void snow_b16_fold_four(const __m512 b[4], float *p) {
+    __m512 ab = _mm512_add_ps(_mm512_shuffle_f32x4(b[0], b[1], 0x44),
+                              _mm512_shuffle_f32x4(b[0], b[1], 0xee));
+    __m512 cd = _mm512_add_ps(_mm512_shuffle_f32x4(b[2], b[3], 0x44),
+                              _mm512_shuffle_f32x4(b[2], b[3], 0xee));
+    _mm512_storeu_ps(p, _mm512_add_ps(_mm512_shuffle_f32x4(ab, cd, 0x88),
+                                      _mm512_shuffle_f32x4(ab, cd, 0xdd)));
+}
+
+#endif
+#endif

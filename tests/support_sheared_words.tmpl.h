@@ -1,0 +1,39 @@
+/* tests/support_sheared_words.tmpl.h - every word of simd/select.h on sixteen
+ * floats, for one level: what words do lane by lane, pixel by pixel and entry by
+ * entry does not depend on how many floats a vector holds. */
+
+TARGET static void NAME(words)(const word_input *in, word_output *out) {
+    for (int at = 0; at < 16; at += LANES) {
+        V(vec) a = V(load)(in->a + at), b = V(load)(in->b + at);
+        V(vec) c = V(load)(in->c + at);
+        V(store)(out->lanes[ADD] + at, V(add)(a, b));
+        V(store)(out->lanes[SUB] + at, V(sub)(a, b));
+        V(store)(out->lanes[MUL] + at, V(mul)(a, b));
+        V(store)(out->lanes[MIN] + at, V(min)(a, b));
+        V(store)(out->lanes[MAX] + at, V(max)(a, b));
+        V(store)(out->lanes[FMA] + at, V(fma)(a, b, c));
+        V(store)(out->lanes[FNMA] + at, V(fnma)(a, b, c));
+        V(store)(out->lanes[SET1] + at, V(set1)(in->a[3]));
+        V(store)(out->lanes[ALPHA2] + at, V(alpha2)(a));
+        V(store)(out->lanes[ALPHA4] + at, V(alpha4)(a));
+        V(store)(out->lanes[EVEN] + at, V(even)(a));
+        V(store)(out->lanes[ODD] + at, V(odd)(a));
+        V(store)(out->lanes[WITH_ALPHA2] + at, V(with_alpha2)(a, b));
+        V(store)(out->lanes[WITH_ALPHA4] + at, V(with_alpha4)(a, b));
+        V(store)
+        (out->lanes[GATHER4] + at, V(gather4)(in->table, in->entries + at / 4));
+        V(store)
+        (out->lanes[GATHER2] + at, V(gather2)(in->table, in->entries + at / 2));
+        V(store)
+        (out->lanes[DOUBLE2] + at, V(double2)(in->table, in->entries + at / 4));
+        V(weave2)(a, b, out->weave2 + 2 * at);
+        V(weave4)(a, b, out->weave4 + 2 * at);
+        out->less[at / LANES] = V(any_less)(a, b) != 0;
+        snow_scalar_store(out->fold2[at / LANES], V(fold2)(a));
+        snow_scalar_store(out->fold4[at / LANES], V(fold4)(a));
+    }
+    out->lane_count = LANES;
+    V(expand8)(in->bytes, in->bits, out->expand8);
+    V(expand16)(in->shorts, in->bits, out->expand16);
+    out->popcount = V(popcount)(in->mask);
+}

@@ -1,0 +1,455 @@
+/* tests/test_sheared_bits.c - what must not change a bit of a sheared picture
+ * (threads, encodings, vector levels, what a frame did before), and when a
+ * frame encodes anew. */
+#include <math.h>
+
+#include "frame.h"
+#include "image/image.h"
+#include "simd/isa.h"
+#include "support_sheared.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* Scalar kernels round products and sums apart. */
+#define SCALAR_BOUND 1e-4
+
+/* A scene with the objects that a program would keep. */
+typedef struct studio {
+    snow_context *context;
+    snow_frame *frame;
+    snow_volume *volume;
+    reference_scene scene;
+} studio;
+
+static studio open_studio(snow_type type, bool grey, uint64_t seed) {
+    studio s = {.context = support_context()};
+    s.scene =
+        model_scene((int64_t[]){70, 45, 38}, type, grey, MODEL_OBLIQUE, seed);
+    s.scene.settings.method = SNOW_METHOD_SHEARED;
+    s.scene.settings.threads = 2;
+    s.scene.view.width = 90;
+    s.scene.view.height = 70;
+    model_turn(&s.scene, 20, -15, 10, 1.4);
+    assert_int_equal(snow_frame_new(s.context, &s.frame), SNOW_OK);
+    assert_int_equal(
+        snow_volume_share(s.context, &s.scene.info, s.scene.voxels, &s.volume),
+        SNOW_OK);
+    snow_volume_freeze(s.volume);
+    return s;
+}
+
+static void close_studio(studio *s) {
+    snow_frame_free(s->frame);
+    snow_volume_close(s->volume);
+    assert_int_equal(snow_context_bytes(s->context), 0);
+    snow_context_free(s->context);
+    free((void *)(uintptr_t)s->scene.voxels);
+}
+
+/* A picture by a frame, as it is; the caller frees it. */
+static snow_image *shoot_with(const studio *s, snow_frame *frame) {
+    const reference_scene *scene = &s->scene;
+    snow_transfer *transfer = NULL;
+    snow_image *image = NULL;
+    assert_int_equal(snow_transfer_new(s->context, scene->colors,
+                                       scene->color_count, scene->opacities,
+                                       scene->opacity_count, &transfer),
+                     SNOW_OK);
+    snow_status status = snow_frame_render(
+        frame, s->volume, transfer, &scene->view, &scene->settings, &image);
+    snow_transfer_free(transfer);
+    if (status != SNOW_OK)
+        fail_msg("%s", snow_context_message(s->context));
+    assert_int_equal(snow_frame_stats(frame)->method, SNOW_METHOD_SHEARED);
+    return image;
+}
+
+static snow_image *shoot(const studio *s) {
+    return shoot_with(s, s->frame);
+}
+
+/* The largest difference of two pictures of one size. */
+static double apart(snow_image *a, snow_image *b) {
+    assert_int_equal(snow_image_width(a), snow_image_width(b));
+    assert_int_equal(snow_image_height(a), snow_image_height(b));
+    assert_int_equal(snow_image_channels(a), snow_image_channels(b));
+    size_t count = (size_t)snow_image_width(a) * (size_t)snow_image_height(a) *
+                   (size_t)snow_image_channels(a);
+    const float *p = snow_image_pixels(a), *q = snow_image_pixels(b);
+    double most = 0;
+    for (size_t n = 0; n < count; n++)
+        most = fmax(most, fabs((double)p[n] - (double)q[n]));
+    /* Also zeros of either sign and numbers that are none. */
+    if (most == 0)
+        assert_memory_equal(p, q, count * sizeof *p);
+    return most;
+}
+
+/* Renders by a frame that knows nothing, and compares with `image`, which is
+ * freed; the bits have to be equal. */
+static void same_as_fresh(const studio *s, snow_image *image) {
+    snow_frame *fresh = NULL;
+    assert_int_equal(snow_frame_new(s->context, &fresh), SNOW_OK);
+    snow_image *expected = shoot_with(s, fresh);
+    assert_true(apart(image, expected) == 0);
+    snow_image_free(expected);
+    snow_image_free(image);
+    snow_frame_free(fresh);
+}
+
+static const snow_type types[] = {SNOW_UINT8, SNOW_INT16, SNOW_FLOAT32};
+static const snow_quality qualities[] = {SNOW_QUALITY_NORMAL,
+                                         SNOW_QUALITY_DRAFT, SNOW_QUALITY_HIGH};
+
+/* Scenes of all types, qualities, colours and shades, in turn. */
+static studio numbered_studio(size_t n) {
+    studio s = open_studio(types[n % COUNT(types)], n / 3 % 2, n);
+    s.scene.settings.quality = qualities[n / 6 % COUNT(qualities)];
+    s.scene.settings.shade = n / 18 % 2 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+    return s;
+}
+
+#define STUDIOS 36
+
+static void any_number_of_threads_gives_the_same_bits(void **state) {
+    (void)state;
+    static const int threads[] = {2, 3, 7, 16};
+    for (size_t n = 0; n < STUDIOS; n++) {
+        studio s = numbered_studio(n);
+        s.scene.settings.threads = 1;
+        snow_image *one = shoot(&s);
+        for (size_t t = 0; t < COUNT(threads); t++) {
+            s.scene.settings.threads = threads[t];
+            snow_frame *fresh = NULL;
+            assert_int_equal(snow_frame_new(s.context, &fresh), SNOW_OK);
+            snow_image *many = shoot_with(&s, fresh);
+            assert_true(apart(one, many) == 0);
+            assert_int_equal(snow_frame_stats(fresh)->threads, threads[t]);
+            snow_image_free(many);
+            snow_frame_free(fresh);
+        }
+        snow_image_free(one);
+        close_studio(&s);
+    }
+}
+
+static void all_encodings_give_the_same_bits(void **state) {
+    (void)state;
+    for (size_t n = 0; n < STUDIOS; n++) {
+        studio s = numbered_studio(n);
+        s.scene.settings.encoding = SNOW_ENCODING_CRS;
+        snow_image *crs = shoot(&s);
+        for (int e = SNOW_ENCODING_AUTO; e <= SNOW_ENCODING_RLE; e++) {
+            s.scene.settings.encoding = (snow_encoding)e;
+            snow_image *other = shoot(&s);
+            const snow_stats *stats = snow_frame_stats(s.frame);
+            assert_true(apart(crs, other) == 0);
+            assert_int_equal(stats->encoded, 1);
+            if (e != SNOW_ENCODING_AUTO)
+                assert_int_equal(stats->encoding, e);
+            snow_image_free(other);
+        }
+        snow_image_free(crs);
+        close_studio(&s);
+    }
+}
+
+static void vector_levels_differ_as_stated(void **state) {
+    (void)state;
+    double most = 0;
+    for (size_t n = 0; n < STUDIOS; n++) {
+        snow_image *images[3] = {NULL};
+        studio s = numbered_studio(n);
+        for (int level = 0; level < 3; level++) {
+            s.scene.settings.isa = (snow_isa)(SNOW_ISA_SCALAR + level);
+            if (snow_isa_runs(s.scene.settings.isa))
+                images[level] = shoot(&s);
+        }
+        if (images[1])
+            most = fmax(most, apart(images[0], images[1]));
+        if (images[2])
+            assert_true(apart(images[1], images[2]) == 0);
+        for (int level = 0; level < 3; level++)
+            snow_image_free(images[level]);
+        close_studio(&s);
+    }
+    print_message("             scalar and vectors differ by up to %.2g\n",
+                  most);
+    assert_true(most <= SCALAR_BOUND);
+}
+
+/* Renders with what was changed since the last picture: whether that encodes
+ * anew is as expected, and the bits are those of a fresh frame. */
+#define expect_encoded(s, expected)                                        \
+    do {                                                                   \
+        snow_image *image = shoot(s);                                      \
+        assert_int_equal(snow_frame_stats((s)->frame)->encoded, expected); \
+        same_as_fresh(s, image);                                           \
+    } while (0)
+
+/* Of a kind of data, what makes codes of the wide types. */
+static void an_encoding_is_used_until_it_does_not_fit(void **state) {
+    (void)state;
+    static const snow_color_point red[] = {
+        {20, 1, 0.2, 0.1}, {45, 1, 0.1, 0}, {45, 0.9, 0, 0}, {90, 1, 1, 0}};
+    static const snow_opacity_point strong[] = {
+        {40, 0}, {60, 0.3}, {60, 0.2}, {85, 0.1}, {99, 0.4}};
+    static const snow_opacity_point shifted[] = {
+        {42, 0}, {60, 0.3}, {60, 0.2}, {85, 0.1}, {99, 0.4}};
+    for (size_t n = 0; n < STUDIOS; n++) {
+        studio s = numbered_studio(n);
+        reference_scene *scene = &s.scene;
+        snow_settings *settings = &scene->settings;
+        expect_encoded(&s, 1);
+        expect_encoded(&s, 0); /* nothing */
+        scene->colors = red;
+        scene->color_count = COUNT(red);
+        expect_encoded(&s, snow_type_size(types[n % 3]) > 2 && n / 3 % 2);
+        settings->light_azimuth = 40;
+        settings->specular = 0.7;
+        expect_encoded(&s, 0);
+        model_turn(scene, 12, -20, 50, 2);
+        expect_encoded(&s, 0);
+        scene->view.width = 40;
+        expect_encoded(&s, 0);
+        scene->opacities = strong; /* the same interesting voxels */
+        expect_encoded(&s, 0);
+        settings->opacity_length = 3;
+        settings->kernel = SNOW_KERNEL_GAUSS;
+        settings->threads = 3;
+        expect_encoded(&s, 0);
+        scene->opacities = shifted;
+        expect_encoded(&s, 1);
+        settings->threshold = 30;
+        expect_encoded(&s, 1);
+        settings->threshold = 0;
+        expect_encoded(&s, 1);
+        model_look(scene, (double[]){1, 0, 0}, (double[]){0, 0, 1});
+        expect_encoded(&s, 1); /* another slice axis */
+        settings->shade = settings->shade == SNOW_SHADE_NONE ? SNOW_SHADE_PHONG
+                                                             : SNOW_SHADE_NONE;
+        expect_encoded(&s, 1);
+        settings->quality = settings->quality == SNOW_QUALITY_HIGH
+                                ? SNOW_QUALITY_NORMAL
+                                : SNOW_QUALITY_HIGH;
+        expect_encoded(&s, 1);
+        settings->encoding = SNOW_ENCODING_RLE;
+        expect_encoded(&s, 1);
+        expect_encoded(&s, 0);
+        close_studio(&s);
+    }
+}
+
+/* Writes another value into every third voxel. */
+static void change_voxels(studio *s) {
+    unsigned char *voxels = (void *)(uintptr_t)s->scene.voxels;
+    for (size_t n = 0; n < 70 * 45 * 38; n += 3)
+        voxels[n] = (unsigned char)(voxels[n] * 7 + 80);
+}
+
+static void shared_voxels_may_change_until_they_are_frozen(void **state) {
+    (void)state;
+    studio s = open_studio(SNOW_UINT8, true, 1);
+    snow_volume_close(s.volume);
+    assert_int_equal(
+        snow_volume_share(s.context, &s.scene.info, s.scene.voxels, &s.volume),
+        SNOW_OK);
+    snow_image *before = shoot(&s);
+    expect_encoded(&s, 1); /* not frozen: nobody knows */
+    change_voxels(&s);
+    snow_image *after = shoot(&s);
+    assert_int_equal(snow_frame_stats(s.frame)->encoded, 1);
+    assert_true(apart(before, after) > 0.01);
+    same_as_fresh(&s, after);
+
+    snow_volume_freeze(s.volume);
+    expect_encoded(&s, 1);
+    snow_image *frozen = shoot(&s);
+    change_voxels(&s); /* against the promise: the frame does not look */
+    after = shoot(&s);
+    assert_int_equal(snow_frame_stats(s.frame)->encoded, 0);
+    assert_true(apart(frozen, after) == 0);
+    snow_image_free(after);
+    snow_volume_freeze(s.volume); /* a new promise */
+    after = shoot(&s);
+    assert_int_equal(snow_frame_stats(s.frame)->encoded, 1);
+    assert_true(apart(frozen, after) > 0.01);
+    same_as_fresh(&s, after);
+    snow_image_free(before);
+    snow_image_free(frozen);
+    close_studio(&s);
+}
+
+static void another_volume_is_encoded_anew(void **state) {
+    (void)state;
+    studio s = open_studio(SNOW_UINT8, false, 1);
+    studio t = open_studio(SNOW_UINT8, false, 2);
+    expect_encoded(&s, 1);
+    /* The same context and frame, other voxels; then the first again. */
+    snow_volume *first = s.volume, *second = NULL;
+    assert_int_equal(
+        snow_volume_share(s.context, &t.scene.info, t.scene.voxels, &second),
+        SNOW_OK);
+    snow_volume_freeze(second);
+    s.volume = second;
+    expect_encoded(&s, 1);
+    s.volume = first;
+    expect_encoded(&s, 1);
+    expect_encoded(&s, 0);
+    snow_volume_close(second);
+    close_studio(&t);
+    close_studio(&s);
+}
+
+/* A slab's picture by a frame. */
+static snow_image *shoot_slab(const studio *s, snow_frame *frame, int parts,
+                              int part) {
+    const reference_scene *scene = &s->scene;
+    snow_transfer *transfer = NULL;
+    snow_image *image = NULL;
+    assert_int_equal(snow_transfer_new(s->context, scene->colors,
+                                       scene->color_count, scene->opacities,
+                                       scene->opacity_count, &transfer),
+                     SNOW_OK);
+    assert_int_equal(snow_frame_render_slab(frame, s->volume, transfer,
+                                            &scene->view, &scene->settings,
+                                            parts, part, &image),
+                     SNOW_OK);
+    snow_transfer_free(transfer);
+    return image;
+}
+
+/* One frame after another slab of the same size, or of another, of a volume
+ * that is frozen. */
+static void slabs_are_encoded_each_for_itself(void **state) {
+    (void)state;
+    studio s = open_studio(SNOW_UINT8, true, 1);
+    for (int parts = 1; parts <= 5; parts++)
+        for (int part = 0; part < parts; part++) {
+            snow_frame *fresh = NULL;
+            assert_int_equal(snow_frame_new(s.context, &fresh), SNOW_OK);
+            snow_image *kept = shoot_slab(&s, s.frame, parts, part);
+            assert_int_equal(snow_frame_stats(s.frame)->encoded, 1);
+            snow_image *again = shoot_slab(&s, s.frame, parts, part);
+            assert_int_equal(snow_frame_stats(s.frame)->encoded, 0);
+            snow_image *alone = shoot_slab(&s, fresh, parts, part);
+            assert_true(apart(kept, alone) == 0 && apart(kept, again) == 0);
+            snow_image_free(kept);
+            snow_image_free(again);
+            snow_image_free(alone);
+            snow_frame_free(fresh);
+        }
+    close_studio(&s);
+}
+
+/* --- memory ----------------------------------------------------------------
+ */
+
+typedef struct counting_allocator {
+    long allocations;
+    size_t largest;
+} counting_allocator;
+
+static void *allocate_counted(void *user, size_t bytes) {
+    counting_allocator *counts = user;
+    counts->allocations++;
+    counts->largest = bytes > counts->largest ? bytes : counts->largest;
+    return malloc(bytes);
+}
+
+static void release_counted(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+/* Renders three times, since a palette's key has two buffers in turns; returns
+ * the allocations of the last time.  The test fails when it keeps more memory
+ * than the time before. */
+static long allocations_when_warm(const reference_scene *scene) {
+    counting_allocator counts = {0};
+    const snow_allocator allocator = {allocate_counted, release_counted,
+                                      &counts};
+    snow_context *context = NULL;
+    snow_frame *frame = NULL;
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_image *image = NULL;
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+    assert_int_equal(snow_frame_new(context, &frame), SNOW_OK);
+    assert_int_equal(
+        snow_volume_share(context, &scene->info, scene->voxels, &volume),
+        SNOW_OK);
+    snow_volume_freeze(volume);
+    assert_int_equal(snow_transfer_new(context, scene->colors,
+                                       scene->color_count, scene->opacities,
+                                       scene->opacity_count, &transfer),
+                     SNOW_OK);
+    uint64_t held[3] = {0};
+    long before = 0;
+    for (int n = 0; n < 3; n++) {
+        before = counts.allocations;
+        assert_int_equal(snow_frame_render(frame, volume, transfer,
+                                           &scene->view, &scene->settings,
+                                           &image),
+                         SNOW_OK);
+        held[n] = snow_context_bytes(context);
+        snow_image_free(image);
+    }
+    long last = counts.allocations - before;
+    assert_int_equal(held[1], held[2]);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_frame_free(frame);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+    return last;
+}
+
+static long allocations_of_an_image(void) {
+    counting_allocator counts = {0};
+    const snow_allocator allocator = {allocate_counted, release_counted,
+                                      &counts};
+    snow_context *context = NULL;
+    snow_image *image = NULL;
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+    long before = counts.allocations;
+    assert_int_equal(snow_image_new(context, 90, 70, 4, &image), SNOW_OK);
+    long made = counts.allocations - before;
+    snow_image_free(image);
+    snow_context_free(context);
+    return made;
+}
+
+/* What decides whether the encoding fits (a coder: three small arrays) is made
+ * for each picture and freed again; beside it there is the image only. */
+#define CODER_ALLOCATIONS 3
+
+static void a_warm_frame_allocates_its_image_only(void **state) {
+    (void)state;
+    long most = allocations_of_an_image() + CODER_ALLOCATIONS;
+    for (size_t n = 0; n < STUDIOS; n++) {
+        studio s = numbered_studio(n);
+        long warm = allocations_when_warm(&s.scene);
+        if (warm > most)
+            fail_msg("%ld allocations, not %ld: %s", warm, most,
+                     model_words(&s.scene));
+        close_studio(&s);
+    }
+}
+
+/* With an argument: the tests of that name, which may hold a *. */
+int main(int argc, char **argv) {
+    if (argc > 1)
+        cmocka_set_test_filter(argv[1]);
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
+        cmocka_unit_test(all_encodings_give_the_same_bits),
+        cmocka_unit_test(vector_levels_differ_as_stated),
+        cmocka_unit_test(an_encoding_is_used_until_it_does_not_fit),
+        cmocka_unit_test(shared_voxels_may_change_until_they_are_frozen),
+        cmocka_unit_test(another_volume_is_encoded_anew),
+        cmocka_unit_test(slabs_are_encoded_each_for_itself),
+        cmocka_unit_test(a_warm_frame_allocates_its_image_only),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
