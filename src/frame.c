@@ -104,7 +104,8 @@ static void blend(float *pixels, const float *layer, float share,
         pixels[i] += share * layer[i];
 }
 
-/* The axes' shares; one that the method cannot draw leaves its to the others. */
+/* The axes' shares; one that the method cannot draw leaves its to the others.
+ */
 static snow_status share_axes(const snow_job *job, const snow_view *view,
                               double shares[3]) {
     const snow_volume_info *info = &job->volume->info;

@@ -49,7 +49,8 @@ static snow_status prepare(pass *s) {
                                   &s->classifier));
     SNOW_TRY(snow_shader_init(s->context, o->volume, &o->placement, settings,
                               &s->shader));
-    SNOW_TRY(snow_strip_make(s->context, &o->placement, o->channels, &s->strip));
+    SNOW_TRY(
+        snow_strip_make(s->context, &o->placement, o->channels, &s->strip));
     SNOW_TRY(snow_eye_splatter_init(s->context, &o->placement, settings->kernel,
                                     settings->footprint, o->channels,
                                     &s->splatter));

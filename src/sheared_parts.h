@@ -23,9 +23,9 @@ struct snow_sheared {
     snow_bands bands;
     snow_encoded_key key;
     snow_palette palette;
-    snow_gloss *gloss; /* an entry of zeros, and SNOW_NORMALS */
-    snow_comb *combs;  /* of all slices, along u and v */
-    float *plane;      /* the intermediate image */
+    snow_gloss *gloss;    /* an entry of zeros, and SNOW_NORMALS */
+    snow_comb *combs;     /* of all slices, along u and v */
+    float *plane;         /* the intermediate image */
     unsigned char *drawn; /* per band and tile */
     char *scratch;        /* of all workers */
     size_t gloss_capacity, combs_capacity, plane_capacity, drawn_capacity,

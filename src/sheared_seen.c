@@ -17,7 +17,8 @@
 #define WARP_LINES 16
 
 /* The farthest slice is at most this many times as far from the eye as the
- * nearest one: near slices have that many more pixels a voxel than they need. */
+ * nearest one: near slices have that many more pixels a voxel than they need.
+ */
 #define RATIO_MOST 8
 
 /* One slice of the bands on the lattice.  Along u, first voxels and weights
@@ -36,12 +37,12 @@ typedef struct seen_pass {
     snow_scaled scaled;
     snow_seen_slice *slices;
     int64_t slice_count, voxel_columns, voxel_rows; /* of the bands */
-    int taps[2];          /* the most of a slice, along u and v */
-    double step[2];       /* the most of a slice, voxels a pixel */
+    int taps[2];                  /* the most of a slice, along u and v */
+    double step[2];               /* the most of a slice, voxels a pixel */
     int channels, columns, lines; /* of a tile */
     int64_t tiles;                /* of a band */
     int64_t bands;
-    int threads; /* that splat */
+    int threads;          /* that splat */
     size_t width;         /* pixels of all tiles */
     size_t window_floats; /* of a tile's row */
     size_t stride;        /* floats of a line of the plane */
@@ -76,11 +77,11 @@ typedef struct seen_stroke {
     seen_scratch scratch;
     snow_mask_rows rows;
     int first_line, lines;
-    bool finished; /* a line is not alive any more */
-    float *pixels; /* of the plane */
+    bool finished;        /* a line is not alive any more */
+    float *pixels;        /* of the plane */
     unsigned char *drawn; /* tiles of the band that were drawn on */
     const snow_seen_slice *slice;
-    int64_t row;                            /* the voxel row of mask row 0 */
+    int64_t row;                             /* the voxel row of mask row 0 */
     uint64_t lines_of_row[SNOW_WINDOW_ROWS]; /* that need a mask row */
 } seen_stroke;
 
@@ -100,8 +101,8 @@ static void tapers_at(const snow_placement *p, const snow_settings *settings,
     double width[2];
     snow_eye_pixel_width(p, slice, width);
     for (int axis = 0; axis < 2; axis++)
-        taper[axis] = snow_taper_make(settings->kernel, settings->footprint,
-                                      width[axis]);
+        taper[axis] =
+            snow_taper_make(settings->kernel, settings->footprint, width[axis]);
 }
 
 bool snow_sheared_seen_fits(const snow_placement *p,
@@ -129,8 +130,8 @@ static snow_status place_lattice(seen_pass *pass) {
                           2 * slices * sizeof *s->reach));
     snow_scaled_options options = {.pitch = {INFINITY, INFINITY},
                                    .reach = {s->reach, s->reach + slices}};
-    double near = fmin(fabs(p->eye.at[2]),
-                       fabs((double)(p->slices - 1) - p->eye.at[2]));
+    double near =
+        fmin(fabs(p->eye.at[2]), fabs((double)(p->slices - 1) - p->eye.at[2]));
     for (size_t k = 0; k < slices; k++) {
         snow_taper taper[2];
         double step = fabs((double)k - p->eye.at[2]) / near;
@@ -162,10 +163,10 @@ static snow_status place_slices(seen_pass *pass) {
         tapers_at(order->placement, order->settings, k, taper);
         slice->height = k - pass->scaled.level;
         for (int axis = 0; axis < 2; axis++) {
-            *rakes[axis] = (snow_rake){taper[axis], snow_comb_taps(&taper[axis]),
-                                       snow_scaled_start(axes[axis], step),
-                                       axes[axis]->pitch * step,
-                                       axes[axis]->count};
+            *rakes[axis] =
+                (snow_rake){taper[axis], snow_comb_taps(&taper[axis]),
+                            snow_scaled_start(axes[axis], step),
+                            axes[axis]->pitch * step, axes[axis]->count};
             if (rakes[axis]->taps > pass->taps[axis])
                 pass->taps[axis] = rakes[axis]->taps;
             pass->step[axis] = fmax(pass->step[axis], rakes[axis]->step);
@@ -180,8 +181,8 @@ static void choose_tiles(seen_pass *pass) {
     if (pass->step[0] * (columns - 1) + pass->taps[0] + 1 > SNOW_WINDOW_MOST)
         columns /= 2;
     double lines = (SNOW_WINDOW_ROWS - 1 - pass->taps[1]) / pass->step[1];
-    pass->lines = lines < SNOW_RAY_TILE_LINES ? (int)lines
-                                              : SNOW_RAY_TILE_LINES;
+    pass->lines =
+        lines < SNOW_RAY_TILE_LINES ? (int)lines : SNOW_RAY_TILE_LINES;
     pass->bands = (pass->scaled.v.count + pass->lines - 1) / pass->lines;
     pass->threads = pass->order->settings->threads;
     if (pass->threads > pass->bands)
@@ -231,12 +232,13 @@ static snow_status fill_slices(seen_pass *pass) {
         pass->slices[n].first = (int32_t *)(void *)at;
         pass->slices[n].weights = (float *)(void *)(at + pass->width * 4);
     }
-    snow_parallel(s->context, pass->order->settings->threads,
-                  pass->slice_count, fill_slice, pass);
+    snow_parallel(s->context, pass->order->settings->threads, pass->slice_count,
+                  fill_slice, pass);
     return SNOW_OK;
 }
 
-/* --- one band of lines ----------------------------------------------------- */
+/* --- one band of lines -----------------------------------------------------
+ */
 
 /* The polynomial whose root is the exponent of the voxel at column + x of a row
  * (classify/rays.h): the squared length of the ray's step between two slices,
@@ -300,8 +302,8 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
     const snow_seen_slice *slice = stroke->slice;
     size_t at = (size_t)index * (size_t)pass->columns;
     int column = slice->first[at];
-    int count = slice->first[at + (size_t)pass->columns - 1] - column +
-                slice->u.taps;
+    int count =
+        slice->first[at + (size_t)pass->columns - 1] - column + slice->u.taps;
     if (column <= -count || column >= pass->voxel_columns)
         return;
     uint64_t bits[SNOW_WINDOW_ROWS];
@@ -360,8 +362,7 @@ static void draw_slice(seen_stroke *stroke, int64_t index) {
     of_band.start += slice->v.step * stroke->first_line;
     stroke->slice = slice;
     stroke->row = snow_rake_first(&of_band, 0);
-    int64_t end =
-        snow_rake_first(&of_band, stroke->lines - 1) + slice->v.taps;
+    int64_t end = snow_rake_first(&of_band, stroke->lines - 1) + slice->v.taps;
     if (end <= 0 || stroke->row >= pass->voxel_rows)
         return;
     pass->windows->read(&pass->sheared->bands, index, stroke->row,
@@ -409,8 +410,8 @@ static size_t lay_out(const seen_pass *pass, char *base, seen_scratch *out) {
     PART(alive, (size_t)pass->tiles * sizeof *out->alive);
     PART(spans, ((size_t)pass->voxel_columns / 2 + 1) * sizeof *out->spans);
     PART(first, SNOW_RAY_TILE_LINES * sizeof *out->first);
-    PART(weights, (size_t)pass->taps[1] * SNOW_RAY_TILE_LINES *
-                      sizeof *out->weights);
+    PART(weights,
+         (size_t)pass->taps[1] * SNOW_RAY_TILE_LINES * sizeof *out->weights);
 #undef PART
     return at;
 }
@@ -449,15 +450,10 @@ static void warp_lines(void *job, int64_t item, int worker) {
     const seen_pass *pass = job;
     (void)worker;
     const snow_view *view = pass->order->view;
-    snow_plane plane = {pass->sheared->plane,
-                        pass->stride,
-                        pass->scaled.u.count,
-                        pass->scaled.v.count,
-                        pass->channels,
-                        pass->sheared->drawn,
-                        pass->columns,
-                        pass->lines,
-                        (int)pass->tiles};
+    snow_plane plane = {
+        pass->sheared->plane, pass->stride,   pass->scaled.u.count,
+        pass->scaled.v.count, pass->channels, pass->sheared->drawn,
+        pass->columns,        pass->lines,    (int)pass->tiles};
     int first = (int)item * WARP_LINES, last = first + WARP_LINES;
     for (int y = first; y < last && y < view->height; y++)
         snow_warp_row_seen(&plane, &pass->scaled, pass->filter, pass->warp, y,
@@ -466,7 +462,8 @@ static void warp_lines(void *job, int64_t item, int worker) {
                                               (size_t)pass->channels);
 }
 
-/* --- a picture ------------------------------------------------------------- */
+/* --- a picture -------------------------------------------------------------
+ */
 
 /* Lines 02 and 03: tables for this look, light and view. */
 static snow_status classify_and_shade(seen_pass *pass, snow_stats *stats) {

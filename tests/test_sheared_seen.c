@@ -36,7 +36,8 @@ static void stand_at(reference_scene *scene, size_t n, double zoom) {
     model_turn(scene, s->azimuth, s->elevation, s->roll, zoom);
 }
 
-/* --- opacities and weights ------------------------------------------------- */
+/* --- opacities and weights -------------------------------------------------
+ */
 
 /* Against pow(), for every exponent that a view can have, and then some. */
 static void opacities_of_rays_are_within_a_quarter_step(void **state) {
@@ -117,16 +118,17 @@ static void a_rake_has_the_weights_of_its_kernel(void **state) {
                     for (int m = 0; m < rake.taps; m++) {
                         double exact = snow_taper_weight(
                             &taper, place - (double)(first[n] + m));
-                        largest = fmax(
-                            largest, fabs((double)weights[m * PIXELS + n] -
-                                          exact));
+                        largest =
+                            fmax(largest,
+                                 fabs((double)weights[m * PIXELS + n] - exact));
                     }
                 }
             }
     assert_true(largest < 2e-6);
 }
 
-/* --- the transcription ------------------------------------------------------ */
+/* --- the transcription ------------------------------------------------------
+ */
 
 /* What sheared_seen.c does, in double: samples of all slices on one lattice,
  * laid over each other there, and one warp.  Only where the lattice lies is
@@ -204,9 +206,8 @@ static void lay_slice(transcript *t, const snow_placement *p, int64_t k) {
             for (int64_t j = v0; j <= v1; j++)
                 for (int64_t i = u0; i <= u1; i++) {
                     at[t->axis] = k, at[t->u_axis] = i, at[t->v_axis] = j;
-                    size_t voxel = (size_t)((at[2] * dims[1] + at[1]) *
-                                                dims[0] +
-                                            at[0]);
+                    size_t voxel =
+                        (size_t)((at[2] * dims[1] + at[1]) * dims[0] + at[0]);
                     for (int c = 0; c < 4; c++)
                         sheet[c] += u_weights[i] * v_weights[j] *
                                     t->samples[4 * voxel + (size_t)c];
@@ -273,8 +274,9 @@ static double *transcribe(snow_context *context, const reference_scene *scene) {
     double *samples = reference_samples(scene, &t.camera, t.axis);
     t.samples = samples;
     lay_lattice(&t, &p, context);
-    t.plane = calloc((size_t)t.scaled.u.count * (size_t)t.scaled.v.count * 4 + 1,
-                     sizeof(double));
+    t.plane =
+        calloc((size_t)t.scaled.u.count * (size_t)t.scaled.v.count * 4 + 1,
+               sizeof(double));
     for (int64_t n = 0; n < p.slices; n++)
         lay_slice(&t, &p, p.nearest_first ? n : p.slices - 1 - n);
     size_t width = (size_t)scene->view.width;
@@ -293,15 +295,16 @@ static void pictures_are_those_of_the_method_in_double(void **state) {
     (void)state;
     static const double fovs[] = {5, 30, 60, 100};
     static const double zooms[] = {0.3, 1, 3, 8};
-    static const int64_t sizes[][3] = {{13, 10, 15}, {50, 34, 21}, {21, 60, 40}};
+    static const int64_t sizes[][3] = {
+        {13, 10, 15}, {50, 34, 21}, {21, 60, 40}};
     static const snow_type types[] = {SNOW_UINT8, SNOW_INT16};
     model_stage stage = model_open();
     double largest[2] = {0, 0};
     int sheared = 0, pictures = 0;
     for (size_t n = 0; n < 72; n++) {
-        reference_scene scene = model_scene(
-            sizes[n % 3], types[n % 2], n / 2 % 2 == 0,
-            (model_matrix)(n % MODEL_MATRICES), n);
+        reference_scene scene =
+            model_scene(sizes[n % 3], types[n % 2], n / 2 % 2 == 0,
+                        (model_matrix)(n % MODEL_MATRICES), n);
         stand_at(&scene, n, zooms[n / 7 % 4]);
         scene.view.fov = fovs[n / 3 % 4];
         scene.view.width = 40 + (int)(n % 5) * 9;
@@ -331,14 +334,16 @@ static void pictures_are_those_of_the_method_in_double(void **state) {
         free(picture);
         model_free(&scene);
     }
-    print_message("             %d pictures of %d differ by up to %.2g, or %.2g "
-                  "where something is opaque\n",
-                  sheared, pictures, largest[1], largest[0]);
+    print_message(
+        "             %d pictures of %d differ by up to %.2g, or %.2g "
+        "where something is opaque\n",
+        sheared, pictures, largest[1], largest[0]);
     assert_true(sheared > 60);
     model_close(&stage);
 }
 
-/* --- against the exact picture --------------------------------------------- */
+/* --- against the exact picture ---------------------------------------------
+ */
 
 /* A few soft balls, opaque in their middle. */
 static reference_scene soft_scene(const int64_t dims[3], int n) {
@@ -359,8 +364,7 @@ static reference_scene soft_scene(const int64_t dims[3], int n) {
                 double y = (double)j / (double)dims[1] - 0.6;
                 double z = (double)k / (double)dims[2] - 0.5;
                 double ball = exp(-9 * (x * x + y * y + z * z));
-                *voxel++ =
-                    (float)(ball * (0.8 + 0.2 * sin(7 * x + 5 * z + n)));
+                *voxel++ = (float)(ball * (0.8 + 0.2 * sin(7 * x + 5 * z + n)));
             }
     return scene;
 }
@@ -411,7 +415,8 @@ static void smooth_scenes_are_near_the_exact_picture(void **state) {
     model_close(&stage);
 }
 
-/* --- promises --------------------------------------------------------------- */
+/* --- promises ---------------------------------------------------------------
+ */
 
 static void compare_with(const model_stage *stage, reference_scene *scene,
                          const float *first, double bound) {
@@ -428,9 +433,9 @@ static void threads_encodings_and_levels_do_not_matter(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (size_t n = 0; n < 12; n++) {
-        reference_scene scene =
-            model_scene((int64_t[]){130, 70, 90}, n % 2 ? SNOW_UINT8 : SNOW_INT16,
-                        n % 3 == 0, (model_matrix)(n % MODEL_MATRICES), n);
+        reference_scene scene = model_scene(
+            (int64_t[]){130, 70, 90}, n % 2 ? SNOW_UINT8 : SNOW_INT16,
+            n % 3 == 0, (model_matrix)(n % MODEL_MATRICES), n);
         stand_at(&scene, n, n % 4 == 3 ? 4 : 1);
         scene.view.fov = n % 2 ? 30 : 55;
         scene.view.width = 150, scene.view.height = 130;
@@ -448,8 +453,7 @@ static void threads_encodings_and_levels_do_not_matter(void **state) {
         scene.settings.encoding = SNOW_ENCODING_RLE;
         compare_with(&stage, &scene, first, 0);
         for (int isa = SNOW_ISA_SCALAR; isa <= SNOW_ISA_AVX512; isa++)
-            if (snow_isa_runs((snow_isa)isa) &&
-                snow_isa_runs(SNOW_ISA_AVX2)) {
+            if (snow_isa_runs((snow_isa)isa) && snow_isa_runs(SNOW_ISA_AVX2)) {
                 scene.settings.isa = (snow_isa)isa;
                 compare_with(&stage, &scene, first,
                              isa == SNOW_ISA_SCALAR ? 0.5 / 255 + 1e-5 : 0);
@@ -468,9 +472,9 @@ static void an_eye_between_slices_is_left_to_footprints(void **state) {
     snow_placement p;
     model_turn(&scene, 44, 0, 0, 1);
     scene.view.fov = 115;
-    assert_int_equal(snow_placement_make(stage.context, &scene.info,
-                                         &scene.view, &p),
-                     SNOW_OK);
+    assert_int_equal(
+        snow_placement_make(stage.context, &scene.info, &scene.view, &p),
+        SNOW_OK);
     assert_true(p.eye.at[2] > 0 && p.eye.at[2] < 30);
     scene.settings.method = SNOW_METHOD_SHEARED;
     free(model_picture(&stage, &scene));

@@ -19,8 +19,9 @@ extern "C" {
 
 #define SNOW_FOV_LEAST 0.001
 #define SNOW_FOV_MOST 120
-#define SNOW_FOV_USUAL 30 /* where perspective is asked for, and no more told \
-                           */
+#define SNOW_FOV_USUAL                                     \
+    30 /* where perspective is asked for, and no more told \
+        */
 
 /* Make one with snow_view_named or snow_view_default, or set it to zeros first:
  * it may grow at its end, and 0 is the default of what is added. */

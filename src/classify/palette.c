@@ -226,8 +226,8 @@ snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
                               const snow_transfer *transfer, double exponent,
                               bool premultiply, int threads,
                               snow_palette *palette) {
-    palette_job job = {coder,    transfer,    palette,
-                       exponent, premultiply, best_kernels(), false};
+    palette_job job = {coder,       transfer,       palette, exponent,
+                       premultiply, best_kernels(), false};
     return make_palette(context, &job, threads);
 }
 
@@ -235,7 +235,8 @@ snow_status snow_palette_make_clear(snow_context *context,
                                     const snow_coder *coder,
                                     const snow_transfer *transfer, int threads,
                                     snow_palette *palette) {
-    palette_job job = {coder, transfer, palette, 1, false, best_kernels(), true};
+    palette_job job = {coder, transfer,       palette, 1,
+                       false, best_kernels(), true};
     return make_palette(context, &job, threads);
 }
 

@@ -2,10 +2,10 @@
  * its own ray, and so its own opacity (model, point 6).
  *
  * a' = 1 - (1 - a)^e = 1 - 2^(e log2(1 - a)): the palette holds the logarithm
- * (snow_palette_make_clear), and e is the root of a polynomial of degree 2 along
- * a row, for a ray's length through a slice is that of a vector which is linear
- * there.  Nothing is rounded to levels, so that there are no seams: opacities
- * are off by less than 1e-5 of themselves. */
+ * (snow_palette_make_clear), and e is the root of a polynomial of degree 2
+ * along a row, for a ray's length through a slice is that of a vector which is
+ * linear there.  Nothing is rounded to levels, so that there are no seams:
+ * opacities are off by less than 1e-5 of themselves. */
 #ifndef SNOW_RAYS_H
 #define SNOW_RAYS_H
 

@@ -36,16 +36,15 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
     for (int at = 0; at < count; at += LANES) {
         V(vec) x = V(load)(ray_places + at);
         V(vec) sum = V(fma)(V(set1)(square[2]), x, V(set1)(square[1]));
-        V(store)(exponents + at,
-                 V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
+        V(store)(exponents + at, V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
     }
-    const V(places) spread = V(places_of)(RAY_CHANNELS == 2 ? ray_twice
-                                                          : ray_four_times);
+    const V(places) spread =
+        V(places_of)(RAY_CHANNELS == 2 ? ray_twice : ray_four_times);
     const V(vec) one = V(set1)(1), round = V(set1)(0x1.8p23f);
     for (int i = 0; i < count; i += LANES / RAY_CHANNELS) {
         V(vec) straight = RAY_GATHER(entries, entry + i);
-        V(vec) power = V(mul)(RAY_ALPHA(straight),
-                              V(pick)(exponents + i, spread));
+        V(vec)
+        power = V(mul)(RAY_ALPHA(straight), V(pick)(exponents + i, spread));
         power = V(max)(power, V(set1)(-126));
         /* 2^power as 2^k 2^f with |f| <= 1/2; 2^f - 1 by its series. */
         V(vec) whole = V(add)(power, round);
@@ -56,16 +55,16 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         series = V(fma)(series, f, V(set1)(0.240226506959f));
         series = V(fma)(series, f, V(set1)(0.693147180560f));
         V(vec) scale = V(power2)(whole);
-        V(vec) alpha =
-            V(fnma)(V(mul)(scale, f), series, V(sub)(one, scale));
+        V(vec) alpha = V(fnma)(V(mul)(scale, f), series, V(sub)(one, scale));
         V(vec) color = straight;
 #if RAY_SHADED
         V(vec) shine = RAY_SHINE(shines, normal + i);
         color = V(fma)(straight, V(even)(shine), V(odd)(shine));
         color = V(min)(color, one);
 #endif
-        V(store)(samples + i * RAY_CHANNELS,
-                 RAY_WITH_ALPHA(V(mul)(color, alpha), alpha));
+        V(store)
+        (samples + i * RAY_CHANNELS,
+         RAY_WITH_ALPHA(V(mul)(color, alpha), alpha));
     }
 }
 

@@ -28,10 +28,10 @@ typedef struct snow_ray_tile {
     /* Windows: row i begins with the voxel of column u.first[0]; zeros where
      * there is no interesting voxel.  A vector beyond the last may be read. */
     const float *samples;
-    size_t window;   /* floats from row to row */
-    uint64_t held;   /* rows that have a voxel and are needed: bit i */
-    uint64_t wanted; /* lines to be drawn */
-    float *ring;     /* SNOW_TILE_ROWS filtered rows, not shared */
+    size_t window;     /* floats from row to row */
+    uint64_t held;     /* rows that have a voxel and are needed: bit i */
+    uint64_t wanted;   /* lines to be drawn */
+    float *ring;       /* SNOW_TILE_ROWS filtered rows, not shared */
     const float *zero; /* a filtered row of zeros */
     float *pixels;     /* the tile's first pixel */
     size_t line;       /* floats from line to line */

@@ -1,5 +1,5 @@
-/* composite/ray_tile.tmpl.h - the lines of a tile in perspective.  Define before
- * including, with simd/select.h's words in force:
+/* composite/ray_tile.tmpl.h - the lines of a tile in perspective.  Define
+ * before including, with simd/select.h's words in force:
  *
  *   RAY_CHANNELS  floats of a pixel: 2 or 4
  *   RAY_GATHER    V(gather2) or V(gather4)
@@ -7,14 +7,14 @@
  *   RAY_NAME      names of the functions
  *
  * All are undefined at the end.  The numbers of taps are arguments that are
- * constants where it matters (RAY_NAME()), so that loops unroll and weights stay
- * in registers.  The order of additions does not depend on the level. */
+ * constants where it matters (RAY_NAME()), so that loops unroll and weights
+ * stay in registers.  The order of additions does not depend on the level. */
 
 #define RAY_PIXELS (LANES / RAY_CHANNELS)
 
 /* A vector of pixels in all held rows.  Where pixels are at most a voxel apart,
- * what a tap reads of RAY_PIXELS of them lies within as many voxels: one vector,
- * out of which lanes are picked.  Else it is gathered. */
+ * what a tap reads of RAY_PIXELS of them lies within as many voxels: one
+ * vector, out of which lanes are picked.  Else it is gathered. */
 TARGET static inline __attribute__((always_inline)) void
 RAY_NAME(_group)(const snow_ray_tile *t, const int n, const int taps,
                  const bool dense) {
@@ -42,10 +42,10 @@ RAY_NAME(_group)(const snow_ray_tile *t, const int n, const int taps,
         const float *sample = samples + row * t->window;
         V(vec) sum = V(set1)(0);
         for (int m = 0; m < taps; m++, sample += RAY_CHANNELS) {
-            V(vec) tap = dense ? V(pick)(sample, pick)
-                               : RAY_GATHER(sample, voxel);
-            sum = m == 0 ? V(mul)(weights[0], tap)
-                         : V(fma)(weights[m], tap, sum);
+            V(vec)
+            tap = dense ? V(pick)(sample, pick) : RAY_GATHER(sample, voxel);
+            sum =
+                m == 0 ? V(mul)(weights[0], tap) : V(fma)(weights[m], tap, sum);
         }
         V(store)(t->ring + row * row_floats + (size_t)n * RAY_CHANNELS, sum);
     }

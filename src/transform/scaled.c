@@ -103,11 +103,11 @@ snow_status snow_scaled_make(snow_context *context, const snow_placement *p,
                              snow_scaled *out) {
     double ends[2];
     heights_of(p, ends);
-    snow_scaled scaled = {
-        .u = {.pitch = options->pitch[0]},
-        .v = {.pitch = options->pitch[1]},
-        .height = fabs(ends[0]) < fabs(ends[1]) ? ends[0] : ends[1],
-        .level = p->eye.at[2]};
+    snow_scaled scaled = {.u = {.pitch = options->pitch[0]},
+                          .v = {.pitch = options->pitch[1]},
+                          .height =
+                              fabs(ends[0]) < fabs(ends[1]) ? ends[0] : ends[1],
+                          .level = p->eye.at[2]};
     if (!make_axis(p, &scaled, 0, options->reach[0], &scaled.u) ||
         !make_axis(p, &scaled, 1, options->reach[1], &scaled.v))
         return snow_fail(context, SNOW_BAD_USAGE,

@@ -43,8 +43,7 @@ double snow_scaled_ratio(const snow_placement *placement);
 
 /* By how much slice k's plane is farther than k0's: voxels of slice k for one
  * of slice k0. */
-static inline double snow_scaled_step(const snow_scaled *scaled,
-                                      double slice) {
+static inline double snow_scaled_step(const snow_scaled *scaled, double slice) {
     return (slice - scaled->level) / scaled->height;
 }
 

@@ -50,7 +50,8 @@ static void place_pixels(double line[3][2], int first, int count,
  * places.  Along a line a place only rises or only falls. */
 static void blocks_between(int64_t a, int64_t b, int size, int most,
                            int range[2]) {
-    int64_t low = ((a < b ? a : b) >> 32) - 1, high = ((a < b ? b : a) >> 32) + 2;
+    int64_t low = ((a < b ? a : b) >> 32) - 1,
+            high = ((a < b ? b : a) >> 32) + 2;
     range[0] = (int)(low < 0 ? 0 : low) / size;
     range[1] = (int)(high > most ? most : high) / size;
 }

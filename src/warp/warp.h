@@ -1,5 +1,6 @@
 /* warp/warp.h - the intermediate image of the sheared method to the picture,
- * by one affine or projective resampling: Catmull-Rom (4 x 4 pixels) or bilinear (2 x 2). */
+ * by one affine or projective resampling: Catmull-Rom (4 x 4 pixels) or
+ * bilinear (2 x 2). */
 #ifndef SNOW_WARP_H
 #define SNOW_WARP_H
 

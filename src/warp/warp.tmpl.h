@@ -51,8 +51,7 @@ WARP_NAME(_along_x)(float fraction, V(vec) part[WARP_VECTORS]) {
 
 /* The pixel at place (x, y) of the plane, in 2^-32 pixels. */
 TARGET static inline __attribute__((always_inline)) void
-WARP_NAME(_place)(const snow_plane *plane, int64_t x, int64_t y,
-                  float *pixel) {
+WARP_NAME(_place)(const snow_plane *plane, int64_t x, int64_t y, float *pixel) {
     const float *run = plane->pixels +
                        (size_t)((y >> 32) + 1 - WARP_TAPS / 2) * plane->stride +
                        (size_t)((x >> 32) + 1 - WARP_TAPS / 2) * WARP_CHANNELS;
@@ -68,17 +67,18 @@ TARGET static void WARP_NAME()(const snow_plane *plane,
                                const snow_warp_line *line, int first, int count,
                                float *pixels) {
     for (int n = 0; n < count; n++)
-        WARP_NAME(_place)(plane, line->start[0] + (first + n) * line->step[0],
-                          line->start[1] + (first + n) * line->step[1],
-                          pixels + n * WARP_CHANNELS);
+        WARP_NAME(_place)
+        (plane, line->start[0] + (first + n) * line->step[0],
+         line->start[1] + (first + n) * line->step[1],
+         pixels + n * WARP_CHANNELS);
 }
 
 TARGET static void WARP_NAME(_places)(const snow_plane *plane,
                                       const int64_t (*places)[2], int count,
                                       float *pixels) {
     for (int n = 0; n < count; n++)
-        WARP_NAME(_place)(plane, places[n][0], places[n][1],
-                          pixels + n * WARP_CHANNELS);
+        WARP_NAME(_place)
+        (plane, places[n][0], places[n][1], pixels + n * WARP_CHANNELS);
 }
 
 #undef WARP_VECTORS
