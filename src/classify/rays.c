@@ -13,12 +13,6 @@ static const float ray_places[SNOW_WINDOW_MOST + 17] = {
     64, 65, 66, 67, 68, 69, 70, 71, 72, 73, 74, 75, 76, 77, 78, 79,
 };
 
-/* Lanes that repeat the first numbers of a vector. */
-static const int32_t ray_twice[] = {0, 0, 1, 1, 2, 2, 3, 3,
-                                    4, 4, 5, 5, 6, 6, 7, 7};
-static const int32_t ray_four_times[] = {0, 0, 0, 0, 1, 1, 1, 1,
-                                         2, 2, 2, 2, 3, 3, 3, 3};
-
 #define SELECT_SCALAR
 #include "simd/select.h"
 

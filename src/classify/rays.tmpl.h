@@ -38,8 +38,7 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         V(vec) sum = V(fma)(V(set1)(square[2]), x, V(set1)(square[1]));
         V(store)(exponents + at, V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
     }
-    const V(places) spread =
-        V(places_of)(RAY_CHANNELS == 2 ? ray_twice : ray_four_times);
+    const V(places) spread = RAY_CHANNELS == 2 ? V(repeat2)() : V(repeat4)();
     const V(vec) one = V(set1)(1), round = V(set1)(0x1.8p23f);
     for (int i = 0; i < count; i += LANES / RAY_CHANNELS) {
         V(vec) straight = RAY_GATHER(entries, entry + i);

@@ -3,6 +3,7 @@
  *
  *   RAY_CHANNELS  floats of a pixel: 2 or 4
  *   RAY_GATHER    V(gather2) or V(gather4)
+ *   RAY_PLACES, RAY_REPEAT  V(places2), V(repeat2) or V(places4), V(repeat4)
  *   RAY_ALPHA     V(alpha2) or V(alpha4)
  *   RAY_NAME      names of the functions
  *
@@ -20,18 +21,11 @@ RAY_NAME(_group)(const snow_ray_tile *t, const int n, const int taps,
                  const bool dense) {
     const int32_t *first = t->u.first + n;
     const size_t row_floats = (size_t)t->columns * RAY_CHANNELS;
-    int32_t from[LANES], spread[LANES];
-    uint32_t voxel[LANES];
+    uint32_t voxel[RAY_PIXELS];
     V(vec) weights[SNOW_TAPS_MOST];
-    for (int lane = 0; lane < LANES; lane++) {
-        int pixel = lane / RAY_CHANNELS;
-        voxel[pixel] = (uint32_t)(first[pixel] - first[0]);
-        from[lane] = dense ? (first[pixel] - first[0]) * RAY_CHANNELS +
-                                 lane % RAY_CHANNELS
-                           : 0;
-        spread[lane] = pixel;
-    }
-    const V(places) pick = V(places_of)(from), repeat = V(places_of)(spread);
+    for (int i = 0; i < RAY_PIXELS; i++)
+        voxel[i] = (uint32_t)(first[i] - first[0]);
+    const V(places) pick = RAY_PLACES(first), repeat = RAY_REPEAT();
     for (int m = 0; m < taps; m++)
         weights[m] =
             V(pick)(t->u.weights + (size_t)m * t->u.stride + n, repeat);
@@ -114,4 +108,6 @@ TARGET static uint64_t RAY_NAME()(const snow_ray_tile *t) {
 #undef RAY_CHANNELS
 #undef RAY_ALPHA
 #undef RAY_GATHER
+#undef RAY_PLACES
+#undef RAY_REPEAT
 #undef RAY_NAME

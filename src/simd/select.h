@@ -37,7 +37,11 @@
  *   V(sqrt)(v)                       the square root, rounded correctly
  *   V(power2)(v)                     2^k, where v is 1.5 * 2^23 + k for a whole
  *                                    number k of -126 to 127
- *   V(places), V(places_of)(p)       LANES numbers below LANES: int32_t at p
+ *   V(places)                        a type: LANES numbers below LANES
+ *   V(places2)(first), V(places4)    of voxels of 2 or 4 floats: the lanes of
+ *                                    voxels first[0], first[1] ..., counted from
+ *                                    first[0]
+ *   V(repeat2)(), V(repeat4)         0, 1 ..., each 2 or 4 times
  *   V(pick)(p, n)                    p[n0], p[n1] ...; all LANES floats at p
  *                                    may be read
  *

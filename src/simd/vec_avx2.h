@@ -170,19 +170,42 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sqrt(snow_avx2_vec v) {
 
 /* k is in the last bits of the float, and shifted into the exponent. */
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_power2(snow_avx2_vec v) {
-    __m256i k = _mm256_add_epi32(_mm256_castps_si256(v), _mm256_set1_epi32(127));
+    __m256i k =
+        _mm256_add_epi32(_mm256_castps_si256(v), _mm256_set1_epi32(127));
     return _mm256_castsi256_ps(_mm256_slli_epi32(k, 23));
 }
 
 typedef __m256i snow_avx2_places;
 
-SNOW_AVX2_INLINE snow_avx2_places snow_avx2_places_of(const int32_t *p) {
-    return _mm256_loadu_si256((const __m256i *)(const void *)p);
-}
-
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_pick(const float *p,
                                               snow_avx2_places n) {
     return _mm256_permutevar8x32_ps(_mm256_loadu_ps(p), n);
+}
+
+SNOW_AVX2_INLINE snow_avx2_places snow_avx2_repeat2(void) {
+    return _mm256_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3);
+}
+
+SNOW_AVX2_INLINE snow_avx2_places snow_avx2_places2(const int32_t *first) {
+    __m256i voxel = _mm256_castsi128_si256(
+        _mm_loadu_si128((const __m128i *)(const void *)first));
+    voxel = _mm256_sub_epi32(voxel, _mm256_set1_epi32(*first));
+    voxel = _mm256_permutevar8x32_epi32(voxel, snow_avx2_repeat2());
+    return _mm256_add_epi32(_mm256_slli_epi32(voxel, 1),
+                            _mm256_setr_epi32(0, 1, 0, 1, 0, 1, 0, 1));
+}
+
+SNOW_AVX2_INLINE snow_avx2_places snow_avx2_repeat4(void) {
+    return _mm256_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1);
+}
+
+SNOW_AVX2_INLINE snow_avx2_places snow_avx2_places4(const int32_t *first) {
+    __m256i voxel = _mm256_castsi128_si256(
+        _mm_loadl_epi64((const __m128i *)(const void *)first));
+    voxel = _mm256_sub_epi32(voxel, _mm256_set1_epi32(*first));
+    voxel = _mm256_permutevar8x32_epi32(voxel, snow_avx2_repeat4());
+    return _mm256_add_epi32(_mm256_slli_epi32(voxel, 2),
+                            _mm256_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3));
 }
 
 #endif

@@ -199,19 +199,46 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sqrt(snow_avx512_vec v) {
 
 /* k is in the last bits of the float, and shifted into the exponent. */
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_power2(snow_avx512_vec v) {
-    __m512i k = _mm512_add_epi32(_mm512_castps_si512(v), _mm512_set1_epi32(127));
+    __m512i k =
+        _mm512_add_epi32(_mm512_castps_si512(v), _mm512_set1_epi32(127));
     return _mm512_castsi512_ps(_mm512_slli_epi32(k, 23));
 }
 
 typedef __m512i snow_avx512_places;
 
-SNOW_AVX512_INLINE snow_avx512_places snow_avx512_places_of(const int32_t *p) {
-    return _mm512_loadu_si512(p);
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_pick(const float *p,
+                                                    snow_avx512_places n) {
+    return _mm512_permutexvar_ps(n, _mm512_loadu_ps(p));
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_pick(const float *p,
-                                              snow_avx512_places n) {
-    return _mm512_permutexvar_ps(n, _mm512_loadu_ps(p));
+SNOW_AVX512_INLINE snow_avx512_places snow_avx512_repeat2(void) {
+    return _mm512_setr_epi32(0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7);
+}
+
+SNOW_AVX512_INLINE snow_avx512_places
+snow_avx512_places2(const int32_t *first) {
+    __m512i voxel = _mm512_castsi256_si512(
+        _mm256_loadu_si256((const __m256i *)(const void *)first));
+    voxel = _mm512_sub_epi32(voxel, _mm512_set1_epi32(*first));
+    voxel = _mm512_permutexvar_epi32(snow_avx512_repeat2(), voxel);
+    return _mm512_add_epi32(
+        _mm512_slli_epi32(voxel, 1),
+        _mm512_setr_epi32(0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1, 0, 1));
+}
+
+SNOW_AVX512_INLINE snow_avx512_places snow_avx512_repeat4(void) {
+    return _mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3);
+}
+
+SNOW_AVX512_INLINE snow_avx512_places
+snow_avx512_places4(const int32_t *first) {
+    __m512i voxel = _mm512_castsi128_si512(
+        _mm_loadu_si128((const __m128i *)(const void *)first));
+    voxel = _mm512_sub_epi32(voxel, _mm512_set1_epi32(*first));
+    voxel = _mm512_permutexvar_epi32(snow_avx512_repeat4(), voxel);
+    return _mm512_add_epi32(
+        _mm512_slli_epi32(voxel, 2),
+        _mm512_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1, 2, 3));
 }
 
 #endif

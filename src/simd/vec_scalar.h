@@ -180,14 +180,28 @@ typedef struct snow_scalar_places {
     int32_t n[4];
 } snow_scalar_places;
 
-static inline snow_scalar_places snow_scalar_places_of(const int32_t *p) {
-    return (snow_scalar_places){{p[0], p[1], p[2], p[3]}};
-}
-
 static inline snow_scalar_vec snow_scalar_pick(const float *p,
                                                snow_scalar_places lanes) {
     const int32_t *n = lanes.n;
     return (snow_scalar_vec){p[n[0]], p[n[1]], p[n[2]], p[n[3]]};
+}
+
+static inline snow_scalar_places snow_scalar_places2(const int32_t *first) {
+    int32_t next = 2 * (first[1] - first[0]);
+    return (snow_scalar_places){{0, 1, next, next + 1}};
+}
+
+static inline snow_scalar_places snow_scalar_places4(const int32_t *first) {
+    (void)first;
+    return (snow_scalar_places){{0, 1, 2, 3}};
+}
+
+static inline snow_scalar_places snow_scalar_repeat2(void) {
+    return (snow_scalar_places){{0, 0, 1, 1}};
+}
+
+static inline snow_scalar_places snow_scalar_repeat4(void) {
+    return (snow_scalar_places){{0, 0, 0, 0}};
 }
 
 #endif

@@ -4,6 +4,7 @@
  * the tent, are short formulas, which loops over pixels carry to vectors; the
  * others go through the definition. */
 #include "splat/rake.h"
+#include "simd/isa.h"
 
 #include <math.h>
 
@@ -36,30 +37,40 @@ static inline float tent(float t) {
     return t < 1 ? 1 - t : 0;
 }
 
-/* Weights of up to CHUNK pixels, whose places within their voxels are known,
- * by VALUE of the distance over `wide`. */
-#define SPREAD(name, value)                                                 \
-    static void name(const float *within, int count, int taps, float scale, \
-                     size_t stride, float *weights) {                       \
-        float sums[CHUNK] = {0};                                            \
-        for (int m = 0; m < taps; m++) {                                    \
-            float *row = weights + (size_t)m * stride;                      \
-            float voxel = (float)(m - taps / 2 + 1);                        \
-            for (int n = 0; n < count; n++) {                               \
-                float t = (within[n] - voxel) * scale;                      \
-                row[n] = value(t < 0 ? -t : t);                             \
-                sums[n] += row[n];                                          \
-            }                                                               \
-        }                                                                   \
-        for (int n = 0; n < count; n++)                                     \
-            sums[n] = 1 / sums[n];                                          \
-        for (int m = 0; m < taps; m++)                                      \
-            for (int n = 0; n < count; n++)                                 \
-                weights[(size_t)m * stride + (size_t)n] *= sums[n];         \
-    }
+/* The loops of one level, in splat/rake.tmpl.h. */
+typedef void spread_fn(const float *within, int count, int taps, float scale,
+                       size_t stride, float *weights);
+typedef struct rake_loops {
+    void (*locate)(double start, double step, int from, int count, int before,
+                   int32_t *first, float *within);
+    spread_fn *cubic, *tent;
+} rake_loops;
 
-SPREAD(spread_cubic, cubic)
-SPREAD(spread_tent, tent)
+/* The order matters, so a blank line keeps the two from being sorted. */
+#define SELECT_SCALAR
+#include "simd/select.h"
+
+#include "splat/rake.tmpl.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "splat/rake.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "splat/rake.tmpl.h"
+#endif
+
+static const rake_loops *best_loops(void) {
+#if SNOW_HAS_AVX
+    if (snow_isa_runs(SNOW_ISA_AVX512))
+        return &loops_avx512;
+    if (snow_isa_runs(SNOW_ISA_AVX2))
+        return &loops_avx2;
+#endif
+    return &loops_scalar;
+}
 
 /* Any kernel, by its definition in double. */
 static void spread_any(const snow_rake *rake, int from, int count,
@@ -74,21 +85,18 @@ static void spread_any(const snow_rake *rake, int from, int count,
     }
 }
 
-static void fill_chunk(const snow_rake *rake, int from, int count,
-                       size_t stride, int32_t *first, float *weights) {
+static void fill_chunk(const snow_rake *rake, const rake_loops *loops, int from,
+                       int count, size_t stride, int32_t *first,
+                       float *weights) {
     const snow_taper *taper = &rake->taper;
     float within[CHUNK];
-    for (int n = 0; n < count; n++) {
-        double place = place_of(rake, from + n);
-        int64_t voxel = below(place);
-        within[n] = (float)(place - (double)voxel);
-        first[n] = (int32_t)(voxel - (rake->taps / 2 - 1));
-    }
+    loops->locate(rake->start, rake->step, from, count, rake->taps / 2 - 1,
+                  first, within);
     if (taper->kernel == SNOW_KERNEL_BSPLINE && taper->support == 4)
-        spread_cubic(within, count, rake->taps, (float)(1 / taper->wide),
+        loops->cubic(within, count, rake->taps, (float)(1 / taper->wide),
                      stride, weights);
     else if (taper->kernel == SNOW_KERNEL_TENT)
-        spread_tent(within, count, rake->taps, (float)(1 / taper->half), stride,
+        loops->tent(within, count, rake->taps, (float)(1 / taper->half), stride,
                     weights);
     else
         spread_any(rake, from, count, stride, weights);
@@ -96,7 +104,8 @@ static void fill_chunk(const snow_rake *rake, int from, int count,
 
 void snow_rake_fill(const snow_rake *rake, int from, int to, size_t stride,
                     int32_t *first, float *weights) {
+    const rake_loops *loops = best_loops();
     for (int n = from; n < to; n += CHUNK)
-        fill_chunk(rake, n, to - n < CHUNK ? to - n : CHUNK, stride, first + n,
-                   weights + n);
+        fill_chunk(rake, loops, n, to - n < CHUNK ? to - n : CHUNK, stride,
+                   first + n, weights + n);
 }

@@ -36,14 +36,10 @@ static void cut_line(const snow_plane *plane, double line[3][2], int before,
     }
 }
 
-static void place_pixels(double line[3][2], int first, int count,
-                         int64_t places[CHUNK][2]) {
-    for (int n = 0; n < count; n++) {
-        double x = first + n;
-        double scale = 0x1p32 / (line[2][0] + x * line[2][1]);
-        places[n][0] = (int64_t)((line[0][0] + x * line[0][1]) * scale);
-        places[n][1] = (int64_t)((line[1][0] + x * line[1][1]) * scale);
-    }
+static inline void place_pixel(double line[3][2], int x, int64_t place[2]) {
+    double scale = 0x1p32 / (line[2][0] + x * line[2][1]);
+    place[0] = (int64_t)((line[0][0] + x * line[0][1]) * scale);
+    place[1] = (int64_t)((line[1][0] + x * line[1][1]) * scale);
 }
 
 /* The blocks of `size` pixels, within 0 .. most, that are read between two
@@ -69,6 +65,22 @@ static bool any_drawn(const snow_plane *plane, const int64_t first[2],
     return false;
 }
 
+/* Pixels x .. x + count - 1 of a line, which lie within the plane. */
+static void warp_run(const snow_plane *plane, double line[3][2],
+                     snow_warp_places_fn *warp, int x, int count,
+                     float *pixels) {
+    int64_t places[CHUNK][2];
+    place_pixel(line, x, places[0]);
+    place_pixel(line, x + count - 1, places[count - 1]);
+    if (!any_drawn(plane, places[0], places[count - 1])) {
+        memset(pixels, 0, (size_t)(count * plane->channels) * sizeof *pixels);
+        return;
+    }
+    for (int n = 1; n < count - 1; n++)
+        place_pixel(line, x + n, places[n]);
+    warp(plane, (const int64_t(*)[2])places, count, pixels);
+}
+
 void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
                         snow_filter filter, snow_warp_places_fn *warp, int y,
                         int width, float *pixels) {
@@ -85,16 +97,10 @@ void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
     if (last < first)
         first = width, last = width - 1;
     memset(pixels, 0, (size_t)first * pixel * sizeof *pixels);
-    for (int x = first; x <= last; x += CHUNK) {
-        int64_t places[CHUNK][2];
-        int count = last - x + 1 < CHUNK ? last - x + 1 : CHUNK;
-        place_pixels(line, x, count, places);
-        float *run = pixels + (size_t)x * pixel;
-        if (any_drawn(plane, places[0], places[count - 1]))
-            warp(plane, (const int64_t(*)[2])places, count, run);
-        else
-            memset(run, 0, (size_t)count * pixel * sizeof *run);
-    }
+    for (int x = first; x <= last; x += CHUNK)
+        warp_run(plane, line, warp, x,
+                 last - x + 1 < CHUNK ? last - x + 1 : CHUNK,
+                 pixels + (size_t)x * pixel);
     memset(pixels + (size_t)(last + 1) * pixel, 0,
            (size_t)(width - 1 - last) * pixel * sizeof *pixels);
 }
