@@ -68,9 +68,8 @@ TARGET static void WARP_NAME()(const snow_plane *plane,
                                float *pixels) {
     for (int n = 0; n < count; n++)
         WARP_NAME(_place)
-        (plane, line->start[0] + (first + n) * line->step[0],
-         line->start[1] + (first + n) * line->step[1],
-         pixels + n * WARP_CHANNELS);
+    (plane, line->start[0] + (first + n) * line->step[0],
+     line->start[1] + (first + n) * line->step[1], pixels + n * WARP_CHANNELS);
 }
 
 TARGET static void WARP_NAME(_places)(const snow_plane *plane,
@@ -78,7 +77,7 @@ TARGET static void WARP_NAME(_places)(const snow_plane *plane,
                                       float *pixels) {
     for (int n = 0; n < count; n++)
         WARP_NAME(_place)
-        (plane, places[n][0], places[n][1], pixels + n * WARP_CHANNELS);
+    (plane, places[n][0], places[n][1], pixels + n * WARP_CHANNELS);
 }
 
 #undef WARP_VECTORS
