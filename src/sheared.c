@@ -36,7 +36,7 @@ typedef struct encoded_key {
 
 struct snow_sheared {
     snow_context *context;
-    snow_coder coder; /* of the bands */
+    snow_coder coder, next; /* of the bands; room for the next picture's */
     snow_bands bands;
     encoded_key key;
     snow_palette palette;
@@ -118,6 +118,7 @@ void snow_sheared_free(snow_sheared *s) {
         return;
     snow_bands_fini(&s->bands);
     snow_coder_fini(s->context, &s->coder);
+    snow_coder_fini(s->context, &s->next);
     snow_palette_fini(s->context, &s->palette);
     snow_release(s->context, s->gloss);
     snow_release(s->context, s->combs);
@@ -186,12 +187,15 @@ static snow_status encode(snow_sheared *s, const snow_sheared_order *order,
         .encoding = settings->encoding,
         .slab = order->slab,
     };
-    snow_coder coder;
-    SNOW_TRY(snow_coder_init(s->context, order->volume, order->transfer,
-                             settings->threshold, &coder));
-    bool kept = same_key(&key, &s->key) && snow_coder_same(&coder, &s->coder);
-    snow_coder_fini(s->context, &s->coder);
-    s->coder = coder;
+    SNOW_TRY(snow_coder_make(s->context, order->volume, order->transfer,
+                             settings->threshold, &s->next));
+    bool kept = same_key(&key, &s->key) && snow_coder_same(&s->next, &s->coder);
+    snow_coder coder = s->coder;
+    s->coder = s->next;
+    s->next = coder;
+    if (!coder.native_runs) /* the first time: so that the second takes none */
+        SNOW_TRY(snow_coder_make(s->context, order->volume, order->transfer,
+                                 settings->threshold, &s->next));
     if (kept)
         return SNOW_OK;
     s->key.serial = 0; /* should the encoding fail half-way */
