@@ -120,6 +120,7 @@ static int make_view(snow_context *context, const options *asked,
     out->elevation = asked->elevation;
     out->roll = asked->roll;
     out->zoom = asked->zoom;
+    out->fov = asked->fov;
     return GO_ON;
 }
 

@@ -120,8 +120,11 @@ const option_row option_table[] = {
      "", "then turns it clockwise (0)"},
     {"zoom", 0, "Z", TOPIC_CAMERA, RENDER, read_real, FIELD(zoom), 1e-6, 1e6,
      "", "magnifies, 1e-6 to 1e6; at 1 the whole volume is in view (1)"},
-    LATER("perspective", 0, "FOV", TOPIC_CAMERA,
-          "leave it out for a parallel projection"),
+    {"perspective", 0, "[FOV]", TOPIC_CAMERA, RENDER, read_fov, FIELD(fov),
+     SNOW_FOV_LEAST, SNOW_FOV_MOST, "",
+     "from an eye whose field of view is so many degrees over the shorter side, "
+     "up to 120; 30 where no number follows (without it: a parallel "
+     "projection)"},
     LATER("position", 0, "X,Y,Z", TOPIC_CAMERA,
           "give --view, --azimuth and --elevation"),
     LATER("target", 0, "X,Y,Z", TOPIC_CAMERA,

@@ -62,6 +62,11 @@ const verb_row *verb_of(unsigned bit) {
     return row;
 }
 
+/* An argument that may be left out: a number. */
+static bool takes_number(const option_row *row) {
+    return row->read && row->argument && row->argument[0] == '[';
+}
+
 /* The table in getopt's form. */
 static void fill_getopt(struct option longs[ROWS_MAX + 1],
                         char letters[2 * ROWS_MAX + 2]) {
@@ -71,7 +76,8 @@ static void fill_getopt(struct option longs[ROWS_MAX + 1],
     for (const option_row *row = option_table; row->name && count < ROWS_MAX;
          row++, count++) {
         bool optional = row->argument &&
-                        (row->read == NULL || strcmp(row->name, "help") == 0);
+                        (row->read == NULL || strcmp(row->name, "help") == 0 ||
+                         takes_number(row));
         int argument = optional        ? optional_argument
                        : row->argument ? required_argument
                                        : no_argument;
@@ -167,6 +173,15 @@ static int take(options *out, const option_row *row, const verb_row *verb,
     return fail_usage("--%s: '%s' %s", row->name, text, wrong);
 }
 
+/* An argument that may be left out is the word behind the option only where all
+ * of that is a number: any other is an operand, as in --perspective in.nrrd. */
+static const char *take_number(int argc, char **argv) {
+    double number;
+    if (optind >= argc || !value_real(argv[optind], &number))
+        return NULL;
+    return argv[optind++];
+}
+
 /* --help ends the reading; the word after it is its topic. */
 static int take_help(options *out, int argc, char **argv, const char *text) {
     bool follows = !text && optind < argc && argv[optind][0] != '-';
@@ -241,7 +256,14 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
                               row->name, row->name, row->argument);
         if (strcmp(row->name, "help") == 0)
             return take_help(out, argc, argv, optarg);
-        int done = take(out, row, verb, optarg);
+        const char *text = optarg;
+        if (takes_number(row) && text && !*text)
+            return fail_usage("--%s: its value is missing; give --%s=30, or "
+                              "leave out the =",
+                              row->name, row->name);
+        if (takes_number(row) && !text)
+            text = take_number(argc, argv);
+        int done = take(out, row, verb, text);
         if (done != GO_ON || out->version)
             return done;
     }

@@ -63,6 +63,7 @@ typedef struct options {
 
     const char *view; /* NULL: the volume's own */
     double azimuth, elevation, roll, zoom;
+    double fov; /* 0: parallel */
 
     int64_t dims[3]; /* 0: not told */
     snow_type type;
@@ -97,7 +98,8 @@ typedef bool option_read(const option_row *row, const char *text, void *field,
 struct option_row {
     const char *name;     /* long name */
     char letter;          /* short name, or 0 */
-    const char *argument; /* its name in the help, or its choices a|b; NULL */
+    const char *argument; /* its name in the help, or its choices a|b; in
+                             brackets when it may be left out; NULL */
     topic topic;
     unsigned verbs; /* those that take it */
     option_read *read;

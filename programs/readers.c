@@ -102,6 +102,14 @@ bool read_real(const option_row *row, const char *text, void *field,
     return true;
 }
 
+bool read_fov(const option_row *row, const char *text, void *field,
+              char wrong[WRONG_BYTES]) {
+    if (*text)
+        return read_real(row, text, field, wrong);
+    *(double *)field = SNOW_FOV_USUAL;
+    return true;
+}
+
 /* Differences are of values 0 to 1; people think of them in steps of 255. */
 bool read_tolerance(const option_row *row, const char *text, void *field,
                     char wrong[WRONG_BYTES]) {

@@ -10,6 +10,7 @@ option_read read_flag;       /* bool: true */
 option_read read_constant;   /* int: the row's low */
 option_read read_choice;     /* const char *: one of the row's argument */
 option_read read_real;       /* double within low..high */
+option_read read_fov;        /* double; an empty text is the usual one */
 option_read read_tolerance;  /* double, also as a quotient */
 option_read read_integer;    /* int64_t within low..high */
 option_read read_count;      /* uint64_t */

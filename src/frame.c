@@ -7,6 +7,7 @@
 #include "combine/combine.h"
 #include "footprint.h"
 #include "image/image.h"
+#include "perspective.h"
 #include "sheared.h"
 #include "volume/volume.h"
 
@@ -103,6 +104,29 @@ static void blend(float *pixels, const float *layer, float share,
         pixels[i] += share * layer[i];
 }
 
+/* The axes' shares; one that the method cannot draw leaves its to the others.
+ */
+static snow_status share_axes(const snow_job *job, const snow_view *view,
+                              double shares[3]) {
+    const snow_volume_info *info = &job->volume->info;
+    double left = 1;
+    snow_placement_shares(info, &job->placement, shares);
+    for (int axis = 0; axis < 3; axis++) {
+        snow_placement placement;
+        if (shares[axis] == 0 || axis == job->placement.slice_axis)
+            continue;
+        SNOW_TRY(snow_placement_make_along(job->context, info, view, axis,
+                                           &placement));
+        if (!snow_sheared_fits(&placement, &job->settings)) {
+            left -= shares[axis];
+            shares[axis] = 0;
+        }
+    }
+    for (int axis = 0; axis < 3; axis++)
+        shares[axis] /= left;
+    return SNOW_OK;
+}
+
 /* High quality of a whole volume: where two or three axes are nearly as good,
  * the picture is a blend of theirs, so that a turning one does not jump. */
 static snow_status render_blended(snow_frame *frame, snow_job *job,
@@ -111,7 +135,7 @@ static snow_status render_blended(snow_frame *frame, snow_job *job,
     size_t floats =
         (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     double shares[3];
-    snow_placement_shares(info, &job->placement, shares);
+    SNOW_TRY(share_axes(job, view, shares));
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
                           0, floats * sizeof *frame->layer));
     for (int axis = 0; axis < 3; axis++) {
@@ -131,6 +155,9 @@ static snow_status render_blended(snow_frame *frame, snow_job *job,
 /* Lines 03 to 13, by the picture's method. */
 static snow_status render_slab(snow_frame *frame, snow_job *job,
                                const snow_view *view) {
+    if (job->settings.method != SNOW_METHOD_SHEARED &&
+        job->placement.perspective)
+        return snow_perspective_render(job);
     if (job->settings.method != SNOW_METHOD_SHEARED)
         return snow_exact_render(frame->exact, job);
     if (job->settings.quality == SNOW_QUALITY_HIGH &&
@@ -151,6 +178,8 @@ static snow_status fill_stats(snow_frame *frame, const snow_job *job) {
     stats->quality = job->settings.quality;
     stats->voxels =
         job->placement.columns * job->placement.rows * job->slab.count;
+    if (stats->method != SNOW_METHOD_SHEARED && job->placement.perspective)
+        return SNOW_OK; /* snow_perspective_render has counted */
     if (stats->method != SNOW_METHOD_SHEARED)
         return snow_exact_count(frame->exact, job);
     if (stats->voxels > 0)

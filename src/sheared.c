@@ -12,10 +12,8 @@
 #include "sheared.h"
 
 #include "base/parallel.h"
-#include "classify/sample.h"
-#include "composite/tile.h"
-#include "encode/windows.h"
 #include "image/image.h"
+#include "sheared_parts.h"
 #include "volume/volume.h"
 #include "warp/warp.h"
 
@@ -24,30 +22,6 @@
 
 /* Lines of the picture that are warped as one item of work. */
 #define WARP_LINES 16
-
-/* What the bands in memory were encoded from. */
-typedef struct encoded_key {
-    uint64_t serial; /* of the volume; 0: nothing is encoded */
-    int slice_axis;
-    bool shaded, between;
-    snow_encoding encoding; /* as asked for */
-    snow_slab slab;
-} encoded_key;
-
-struct snow_sheared {
-    snow_context *context;
-    snow_coder coder, next; /* of the bands; room for the next picture's */
-    snow_bands bands;
-    encoded_key key;
-    snow_palette palette;
-    snow_gloss *gloss;    /* an entry of zeros, and SNOW_NORMALS */
-    snow_comb *combs;     /* of all slices, along u and v */
-    float *plane;         /* the intermediate image */
-    unsigned char *drawn; /* per band and tile */
-    char *scratch;        /* of all workers */
-    size_t gloss_capacity, combs_capacity, plane_capacity, drawn_capacity,
-        scratch_capacity; /* bytes */
-};
 
 /* One picture in the making. */
 typedef struct snow_pass {
@@ -136,6 +110,9 @@ void snow_sheared_free(snow_sheared *s) {
     snow_release(s->context, s->plane);
     snow_release(s->context, s->drawn);
     snow_release(s->context, s->scratch);
+    snow_release(s->context, s->seen);
+    snow_release(s->context, s->teeth);
+    snow_release(s->context, s->reach);
     snow_release(s->context, s);
 }
 
@@ -145,6 +122,8 @@ static double pixel_width(const snow_placement *p, int axis) {
 }
 
 bool snow_sheared_fits(const snow_placement *p, const snow_settings *settings) {
+    if (p->perspective)
+        return snow_sheared_seen_fits(p, settings);
     for (int axis = 0; axis < 2; axis++) {
         snow_taper taper = snow_taper_make(
             settings->kernel, settings->footprint, pixel_width(p, axis));
@@ -157,7 +136,7 @@ bool snow_sheared_fits(const snow_placement *p, const snow_settings *settings) {
 /* --- encoding --------------------------------------------------------------
  */
 
-static bool same_key(const encoded_key *a, const encoded_key *b) {
+static bool same_key(const snow_encoded_key *a, const snow_encoded_key *b) {
     return a->serial && a->serial == b->serial &&
            a->slice_axis == b->slice_axis && a->shaded == b->shaded &&
            a->between == b->between && a->encoding == b->encoding &&
@@ -185,12 +164,11 @@ static snow_status encode_bands(snow_sheared *s,
     return snow_bands_encode(&s->bands, &bands);
 }
 
-/* Lines 04 to 06, unless the bands hold just that already: colours, light and
- * the camera may change as they like as long as the slice axis stays. */
-static snow_status encode(snow_sheared *s, const snow_sheared_order *order,
-                          snow_stats *stats) {
+snow_status snow_sheared_encode(snow_sheared *s,
+                                const snow_sheared_order *order,
+                                snow_stats *stats) {
     const snow_settings *settings = order->settings;
-    encoded_key key = {
+    snow_encoded_key key = {
         .serial = order->volume->serial,
         .slice_axis = order->placement->slice_axis,
         .shaded = settings->shade == SNOW_SHADE_PHONG,
@@ -495,6 +473,19 @@ static snow_status place_slices(snow_pass *pass) {
     return SNOW_OK;
 }
 
+snow_status snow_sheared_shade(snow_sheared *s,
+                               const snow_sheared_order *order) {
+    const snow_settings *settings = order->settings;
+    if (settings->shade != SNOW_SHADE_PHONG)
+        return SNOW_OK;
+    SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
+                          (SNOW_NORMALS + 1) * sizeof *s->gloss));
+    s->gloss[0] = (snow_gloss){0, 0};
+    snow_gloss_table(s->context, settings, order->placement, settings->threads,
+                     s->gloss + 1);
+    return SNOW_OK;
+}
+
 /* Lines 02 and 03: tables for this look, light and view. */
 static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     snow_sheared *s = pass->sheared;
@@ -506,13 +497,7 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
                                path / settings->opacity_length, !shaded,
                                settings->threads, &s->palette));
     double classified = snow_seconds();
-    if (shaded) {
-        SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
-                              (SNOW_NORMALS + 1) * sizeof *s->gloss));
-        s->gloss[0] = (snow_gloss){0, 0};
-        snow_gloss_table(s->context, settings, pass->order->placement,
-                         settings->threads, s->gloss + 1);
-    }
+    SNOW_TRY(snow_sheared_shade(s, pass->order));
     stats->seconds_classify += classified - mark;
     stats->seconds_shade += snow_seconds() - classified;
     pass->palette = s->palette.samples;
@@ -539,7 +524,7 @@ static snow_status reserve_buffers(snow_pass *pass) {
                         lines * pass->stride * sizeof *s->plane);
 }
 
-static void fill_figures(const snow_sheared *s, snow_stats *stats) {
+void snow_sheared_fill_figures(const snow_sheared *s, snow_stats *stats) {
     stats->encoding = s->bands.encoding;
     stats->interesting = (int64_t)s->bands.voxels;
     stats->ea_bytes = s->bands.ea_bytes;
@@ -566,16 +551,18 @@ static void draw(snow_pass *pass, snow_stats *stats) {
 snow_status snow_sheared_render(snow_sheared *s,
                                 const snow_sheared_order *order, float *pixels,
                                 snow_stats *stats) {
+    if (order->placement->perspective)
+        return snow_sheared_seen_render(s, order, pixels, stats);
     snow_pass pass = {.order = order, .sheared = s, .pixels = pixels};
     double mark = snow_seconds();
-    SNOW_TRY(encode(s, order, stats));
+    SNOW_TRY(snow_sheared_encode(s, order, stats));
     stats->seconds_encode += snow_seconds() - mark;
     pass.slices = s->bands.slices;
     pass.columns = s->bands.columns;
     pass.nearest_first = order->placement->nearest_first;
     SNOW_TRY(classify_and_shade(&pass, stats));
     SNOW_TRY(place_lattice(&pass));
-    fill_figures(s, stats);
+    snow_sheared_fill_figures(s, stats);
     if (pass.shear.u.count == 0 || pass.shear.v.count == 0 ||
         pass.slices == 0) {
         memset(pixels, 0,

@@ -61,6 +61,8 @@ changes --azimuth -30
 changes --elevation 20
 changes --roll 15
 changes --zoom 2
+changes --perspective
+changes --perspective 60
 changes --view left
 changes --view -z
 changes --threshold 60
@@ -103,6 +105,27 @@ run 0 "the original one" render -q -o original.npy --method original
 run 0 "they are one" "$TOOL" compare exact.npy original.npy
 same --azimuth 50 --azimuth 0
 same --size 9x9 -s 40x30
+
+# The number behind --perspective may be left out, and is only a number.
+run 0 "an eye of 30 degrees" render -q -o eye.npy --perspective
+for way in "--perspective 30" "--perspective=30" "--perspective=60 --perspective"; do
+    # shellcheck disable=SC2086
+    run 0 "$way" render -q -o eye2.npy -y $way
+    run 0 "$way is --perspective" "$TOOL" compare eye.npy eye2.npy
+done
+run 0 "an input behind --perspective" "$TOOL" render -q --perspective \
+    phantom:shells --dims 24x24x20 -s 40x30 -o eye3.npy
+run 0 "it is no number" "$TOOL" compare eye.npy eye3.npy
+run 0 "a number and an input behind it" "$TOOL" render -q --perspective 30 \
+    phantom:shells --dims 24x24x20 -s 40x30 -o eye4.npy
+run 0 "they are told apart" "$TOOL" compare eye.npy eye4.npy
+run 0 "the exact picture in perspective" \
+    render -q -o eye5.npy --perspective --method footprint
+run 0 "is near the sheared one" \
+    "$TOOL" compare eye.npy eye5.npy --tolerance 0.02
+run 0 "the original method in perspective" \
+    render -q -o eye6.npy --perspective --method original
+run 0 "is the exact picture" "$TOOL" compare eye5.npy eye6.npy
 
 # Streams and formats.
 run 0 "the picture to standard output" render -q -o -

@@ -33,8 +33,13 @@ convert a b|convert is not built yet
 tf list|tf is not built yet
 serve x|serve is not built yet
 help serve|serve is not built yet
---perspective x -o y.png|--perspective is not built yet; leave it out
---perspective=30 x|--perspective is not built yet
+--perspective=wide x -o y.png|--perspective: 'wide' is out of range; give a decimal number from 0.001 to 120
+--perspective=150 x -o y.png|--perspective: '150' is out of range
+--perspective 0 x -o y.png|--perspective: '0' is out of range
+--perspective= x -o y.png|--perspective: its value is missing
+--perspective x y -o y.png|one word too many
+--persp x -o y.png|did you mean --perspective
+info --perspective x|no option of info
 --position 1,2,3 x|--position is not built yet
 --target 1,2,3 x|--target is not built yet
 --up 1,2,3 x|--up is not built yet

@@ -48,7 +48,7 @@ static void slope_at(const reference_scene *scene, const double at[3],
 /* The stretch of a ray within the voxel boxes; false when it misses them. */
 static bool clip(const reference_scene *scene, const reference_ray *ray,
                  double *enter, double *leave) {
-    *enter = -INFINITY;
+    *enter = scene->view.fov > 0 ? 0 : -INFINITY; /* from the eye on */
     *leave = INFINITY;
     for (int n = 0; n < 3; n++) {
         double low = -0.5, high = (double)scene->info.dims[n] - 0.5;

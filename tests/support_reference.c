@@ -13,8 +13,8 @@ typedef struct gather {
     const double *samples;
     snow_kernel kernel;
     int support;
-    int axis, u_axis, v_axis; /* of the slices; the two within a slice */
-    double u_width, v_width;  /* by how much the kernel is widened */
+    int axis, u_axis, v_axis;  /* of the slices; the two within a slice */
+    double *u_width, *v_width; /* per slice: how much the kernel is widened */
     double *u_weights, *v_weights;
 } gather;
 
@@ -22,12 +22,14 @@ static int64_t voxel_offset(const int64_t dims[3], const int64_t at[3]) {
     return (at[2] * dims[1] + at[1]) * dims[0] + at[0];
 }
 
-/* Where the ray meets the plane of slice `slice`. */
-static void meet_slice(const gather *g, const reference_ray *ray, int64_t slice,
+/* Where the ray meets the plane of slice `slice`; false when that is not in
+ * front of the eye. */
+static bool meet_slice(const gather *g, const reference_ray *ray, int64_t slice,
                        double *u, double *v) {
     double t = ((double)slice - ray->start[g->axis]) / ray->step[g->axis];
     *u = ray->start[g->u_axis] + t * ray->step[g->u_axis];
     *v = ray->start[g->v_axis] + t * ray->step[g->v_axis];
+    return isfinite(t) && (g->scene->view.fov == 0 || t > 0);
 }
 
 /* The sheet of one slice where the ray meets it. */
@@ -38,13 +40,14 @@ static void gather_sheet(const gather *g, const reference_ray *ray,
     int64_t u0, u1, v0, v1;
     for (int c = 0; c < 4; c++)
         sheet[c] = 0;
-    meet_slice(g, ray, slice, &u, &v);
-    reference_weights(g->kernel, g->support, g->u_width, u, dims[g->u_axis],
-                      g->u_weights, &u0, &u1);
+    if (!meet_slice(g, ray, slice, &u, &v))
+        return;
+    reference_weights(g->kernel, g->support, g->u_width[slice], u,
+                      dims[g->u_axis], g->u_weights, &u0, &u1);
     if (u0 > u1)
         return;
-    reference_weights(g->kernel, g->support, g->v_width, v, dims[g->v_axis],
-                      g->v_weights, &v0, &v1);
+    reference_weights(g->kernel, g->support, g->v_width[slice], v,
+                      dims[g->v_axis], g->v_weights, &v0, &v1);
     for (int64_t j = v0; j <= v1; j++) {
         for (int64_t i = u0; i <= u1; i++) {
             int64_t at[3];
@@ -82,19 +85,28 @@ static void gather_pixel(const gather *g, const reference_ray *ray,
     }
 }
 
-/* How many voxels a pixel is wide along each axis of the slice: by how much
- * (u, v) moves from one pixel to its right and its lower neighbour. */
-static void widen_kernel(gather *g, const reference_camera *camera) {
-    double u[3], v[3];
-    for (int n = 0; n < 3; n++) {
+/* How many voxels a pixel is wide along each axis of a slice: by how much
+ * (u, v) moves from a bit to the left of the pixel position at which the
+ * slice's middle is seen to a bit to the right, and from above to below. */
+static void widen_kernel(gather *g, const reference_camera *camera,
+                         int64_t slice) {
+    const double bit = 1e-3;
+    double middle[3], pixel[2], u[4], v[4];
+    for (int n = 0; n < 3; n++)
+        middle[n] = (double)(g->scene->info.dims[n] - 1) / 2;
+    middle[g->axis] = (double)slice;
+    reference_project(g->scene, camera, middle, pixel);
+    for (int n = 0; n < 4; n++) {
+        double x = n == 0 ? -bit : n == 1 ? bit : 0;
+        double y = n == 2 ? -bit : n == 3 ? bit : 0;
         reference_ray ray =
-            reference_ray_at(g->scene, camera, n == 1 ? 1 : 0, n == 2 ? 1 : 0);
-        meet_slice(g, &ray, 0, &u[n], &v[n]);
+            reference_ray_at(g->scene, camera, pixel[0] + x, pixel[1] + y);
+        meet_slice(g, &ray, slice, &u[n], &v[n]);
     }
-    g->u_width = reference_widening(g->kernel, g->support,
-                                    hypot(u[1] - u[0], u[2] - u[0]));
-    g->v_width = reference_widening(g->kernel, g->support,
-                                    hypot(v[1] - v[0], v[2] - v[0]));
+    g->u_width[slice] = reference_widening(
+        g->kernel, g->support, hypot(u[1] - u[0], u[3] - u[2]) / (2 * bit));
+    g->v_width[slice] = reference_widening(
+        g->kernel, g->support, hypot(v[1] - v[0], v[3] - v[2]) / (2 * bit));
 }
 
 static double *render(const reference_scene *scene, bool back_to_front) {
@@ -106,7 +118,11 @@ static double *render(const reference_scene *scene, bool back_to_front) {
     g.axis = reference_slice_axis(scene, &camera);
     g.u_axis = g.axis == 0 ? 1 : 0;
     g.v_axis = g.axis == 2 ? 1 : 2;
-    widen_kernel(&g, &camera);
+    size_t slices = (size_t)scene->info.dims[g.axis];
+    g.u_width = calloc(slices, sizeof(double));
+    g.v_width = calloc(slices, sizeof(double));
+    for (int64_t slice = 0; slice < scene->info.dims[g.axis]; slice++)
+        widen_kernel(&g, &camera, slice);
     double *samples = reference_samples(scene, &camera, g.axis);
     g.samples = samples;
     g.u_weights = calloc((size_t)scene->info.dims[g.u_axis], sizeof(double));
@@ -121,6 +137,8 @@ static double *render(const reference_scene *scene, bool back_to_front) {
             gather_pixel(&g, &ray, back_to_front, pixels + 4 * at);
         }
     }
+    free(g.u_width);
+    free(g.v_width);
     free(g.u_weights);
     free(g.v_weights);
     free(samples);

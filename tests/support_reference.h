@@ -30,14 +30,16 @@ typedef struct reference_camera {
     double right[3], up[3], back[3];
     double target[3]; /* middle of the voxel boxes */
     double radius;    /* from the target to the farthest corner of a box */
-    double pitch;     /* world length of a pixel's side */
+    double distance;  /* of the eye from the target; 0: parallel */
+    double pitch;     /* world length of a pixel's side, at the target */
 } reference_camera;
 
 void reference_camera_of(const reference_scene *scene, reference_camera *out);
 
 /* A ray in index space: position = start + t * step, where t counts world
  * length away from the camera.  `x`, `y` are image points (pixel centres lie
- * at one half). */
+ * at one half).  In perspective it starts at the eye, and only t > 0 is seen;
+ * a parallel one starts in the plane of the target and has no beginning. */
 typedef struct reference_ray {
     double start[3], step[3];
 } reference_ray;
@@ -46,15 +48,22 @@ reference_ray reference_ray_at(const reference_scene *scene,
                                const reference_camera *camera, double x,
                                double y);
 
+/* The image point at which an index position is seen. */
+void reference_project(const reference_scene *scene,
+                       const reference_camera *camera, const double index[3],
+                       double pixel[2]);
+
 /* Rows of the inverse of the matrix' linear part. */
 void reference_inverse(const double matrix[4][4], double inverse[3][3]);
 
 /* The index axis that slices are taken along (model, point 5), and how far the
- * ray runs from one slice to the next (d of point 6). */
+ * ray through an index position runs from one slice to the next (d of point
+ * 6). */
 int reference_slice_axis(const reference_scene *scene,
                          const reference_camera *camera);
 double reference_slice_step(const reference_scene *scene,
-                            const reference_camera *camera, int axis);
+                            const reference_camera *camera, int axis,
+                            const double index[3]);
 
 /* The kernel b(t / w) before normalisation, widened by `w`; the support in
  * voxels that the settings mean; and the factor w for pixels that are `rho`

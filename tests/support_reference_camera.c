@@ -62,6 +62,44 @@ void reference_camera_of(const reference_scene *scene, reference_camera *out) {
     measure_boxes(&scene->info, out);
     int side = view->width < view->height ? view->width : view->height;
     out->pitch = 2 * out->radius / (view->zoom * side);
+    out->distance = 0;
+    if (view->fov == 0)
+        return;
+    /* The field of view spans the shorter side at the target's distance. */
+    double half = view->fov / 2 * acos(-1.0) / 180;
+    out->distance = out->radius / sin(half);
+    out->pitch = 2 * out->distance * tan(half) / (view->zoom * side);
+}
+
+/* The world position of an image point in the plane of the target. */
+static void image_point(const reference_scene *scene,
+                        const reference_camera *camera, double x, double y,
+                        double world[3]) {
+    double right = (x - scene->view.width / 2.0) * camera->pitch;
+    double down = (y - scene->view.height / 2.0) * camera->pitch;
+    for (int n = 0; n < 3; n++)
+        world[n] =
+            camera->target[n] + right * camera->right[n] - down * camera->up[n];
+}
+
+static void eye_of(const reference_camera *camera, double eye[3]) {
+    for (int n = 0; n < 3; n++)
+        eye[n] = camera->target[n] + camera->distance * camera->back[n];
+}
+
+void reference_project(const reference_scene *scene,
+                       const reference_camera *camera, const double index[3],
+                       double pixel[2]) {
+    double world[3], from[3], scale = 1;
+    world_of(scene->info.matrix, index, world);
+    for (int n = 0; n < 3; n++)
+        from[n] = world[n] - camera->target[n];
+    if (camera->distance > 0) /* similar triangles */
+        scale = camera->distance / (camera->distance - dot(from, camera->back));
+    pixel[0] = scene->view.width / 2.0 +
+               scale * dot(from, camera->right) / camera->pitch;
+    pixel[1] = scene->view.height / 2.0 -
+               scale * dot(from, camera->up) / camera->pitch;
 }
 
 void reference_inverse(const double matrix[4][4], double inverse[3][3]) {
@@ -80,17 +118,27 @@ void reference_inverse(const double matrix[4][4], double inverse[3][3]) {
 reference_ray reference_ray_at(const reference_scene *scene,
                                const reference_camera *camera, double x,
                                double y) {
-    double inverse[3][3], from_origin[3];
-    double right = (x - scene->view.width / 2.0) * camera->pitch;
-    double down = (y - scene->view.height / 2.0) * camera->pitch;
+    double inverse[3][3], point[3], from[3], along[3], length = 0;
+    image_point(scene, camera, x, y, point);
+    for (int n = 0; n < 3; n++) {
+        from[n] = point[n];
+        along[n] = -camera->back[n];
+    }
+    if (camera->distance > 0) {
+        eye_of(camera, from);
+        for (int n = 0; n < 3; n++)
+            along[n] = point[n] - from[n];
+        length = sqrt(dot(along, along));
+        for (int n = 0; n < 3; n++)
+            along[n] /= length;
+    }
     for (int n = 0; n < 3; n++)
-        from_origin[n] = camera->target[n] + right * camera->right[n] -
-                         down * camera->up[n] - scene->info.matrix[n][3];
+        from[n] -= scene->info.matrix[n][3];
     reference_inverse(scene->info.matrix, inverse);
     reference_ray ray;
     for (int n = 0; n < 3; n++) {
-        ray.start[n] = dot(inverse[n], from_origin);
-        ray.step[n] = -dot(inverse[n], camera->back);
+        ray.start[n] = dot(inverse[n], from);
+        ray.step[n] = dot(inverse[n], along);
     }
     return ray;
 }
@@ -120,9 +168,17 @@ int reference_slice_axis(const reference_scene *scene,
 }
 
 double reference_slice_step(const reference_scene *scene,
-                            const reference_camera *camera, int axis) {
-    double inverse[3][3];
+                            const reference_camera *camera, int axis,
+                            const double index[3]) {
+    double inverse[3][3], along[3], eye[3], world[3];
     reference_inverse(scene->info.matrix, inverse);
-    double distance = 1 / sqrt(dot(inverse[axis], inverse[axis]));
-    return distance / slice_cosine(scene, camera, axis);
+    const double *normal = inverse[axis];
+    eye_of(camera, eye);
+    world_of(scene->info.matrix, index, world);
+    for (int n = 0; n < 3; n++)
+        along[n] = camera->distance > 0 ? world[n] - eye[n] : -camera->back[n];
+    /* The slices' distance is one over the normal's length. */
+    double cosine = fabs(dot(normal, along)) /
+                    sqrt(dot(normal, normal) * dot(along, along));
+    return 1 / (sqrt(dot(normal, normal)) * cosine);
 }

@@ -164,8 +164,7 @@ static double opacity_length(const reference_scene *scene) {
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis) {
     const int64_t *dims = scene->info.dims;
-    double exponent =
-        reference_slice_step(scene, camera, axis) / opacity_length(scene);
+    double length = opacity_length(scene);
     size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
     double *samples = calloc(count * 4, sizeof(double)), *sample = samples;
     for (int64_t k = 0; k < dims[2]; k++)
@@ -183,7 +182,9 @@ double *reference_samples(const reference_scene *scene,
                     gradient_at(scene, i, j, k, gradient);
                     reference_shade(scene, camera, gradient, rgba);
                 }
-                sample[3] = 1 - pow(1 - rgba[3], exponent);
+                double index[3] = {(double)i, (double)j, (double)k};
+                double step = reference_slice_step(scene, camera, axis, index);
+                sample[3] = 1 - pow(1 - rgba[3], step / length);
                 for (int c = 0; c < 3; c++)
                     sample[c] = rgba[c] * sample[3];
             }

@@ -283,7 +283,8 @@ static double path_exponent(const sheared_job *job) {
     if (length == 0)
         length = fmin(scene->info.spacing[0],
                       fmin(scene->info.spacing[1], scene->info.spacing[2]));
-    double step = reference_slice_step(scene, &job->camera, job->axis);
+    double step = reference_slice_step(scene, &job->camera, job->axis,
+                                       (const double[]){0, 0, 0});
     return step / length / (job->between ? 2 : 1);
 }
 

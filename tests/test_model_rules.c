@@ -164,8 +164,9 @@ static void check_footprint(const model_stage *stage, reference_scene *scene,
                             const int64_t at[3]) {
     reference_camera camera;
     reference_camera_of(scene, &camera);
-    double step = reference_slice_step(scene, &camera,
-                                       reference_slice_axis(scene, &camera));
+    const double index[3] = {(double)at[0], (double)at[1], (double)at[2]};
+    double step = reference_slice_step(
+        scene, &camera, reference_slice_axis(scene, &camera), index);
     double alpha = 1 - pow(1 - 0.6, step);
     const int64_t *dims = scene->info.dims;
     float *voxel =

@@ -32,7 +32,7 @@ typedef struct test_paths {
 
 /* A picture of a file, as a program would make it. */
 static snow_status make_picture(snow_context *context, const test_paths *paths,
-                                const snow_settings *settings) {
+                                const snow_settings *settings, double fov) {
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
@@ -48,6 +48,7 @@ static snow_status make_picture(snow_context *context, const test_paths *paths,
         snow_view_default(volume, &view);
         view.width = view.height = 32;
         view.azimuth = 30;
+        view.fov = fov;
         status =
             snow_frame_render(frame, volume, transfer, &view, settings, &image);
     }
@@ -62,12 +63,12 @@ static snow_status make_picture(snow_context *context, const test_paths *paths,
 
 /* Runs make_picture under an allocator; nothing may stay behind. */
 static snow_status run(failing_allocator *allocator, const test_paths *paths,
-                       const snow_settings *settings) {
+                       const snow_settings *settings, double fov) {
     snow_allocator functions = {allocate_or_fail, release_counted, allocator};
     snow_context *context;
     if (snow_context_new(&functions, &context) != SNOW_OK)
         return SNOW_NO_MEMORY;
-    snow_status status = make_picture(context, paths, settings);
+    snow_status status = make_picture(context, paths, settings, fov);
     snow_context_free(context);
     assert_int_equal(allocator->held, 0);
     return status;
@@ -85,8 +86,9 @@ static void write_input(const test_paths *paths) {
 }
 
 /* Every allocation fails in turn; only then does the picture come out. */
-static void fail_each(const char *suffix, snow_method method,
-                      snow_encoding encoding, bool for_good, int threads) {
+static void fail_each_seen(const char *suffix, snow_method method,
+                           snow_encoding encoding, bool for_good, int threads,
+                           double fov) {
     char folder[] = "/tmp/snow-memory-XXXXXX";
     assert_non_null(mkdtemp(folder));
     test_paths paths;
@@ -99,12 +101,12 @@ static void fail_each(const char *suffix, snow_method method,
     settings.encoding = encoding;
     settings.threads = threads;
     failing_allocator whole = {.failing = -1};
-    assert_int_equal(run(&whole, &paths, &settings), SNOW_OK);
+    assert_int_equal(run(&whole, &paths, &settings, fov), SNOW_OK);
     assert_int_equal(unlink(paths.output), 0);
     assert_true(whole.allocations > 20);
     for (long n = 0; n < whole.allocations; n++) {
         failing_allocator allocator = {.failing = n, .for_good = for_good};
-        snow_status status = run(&allocator, &paths, &settings);
+        snow_status status = run(&allocator, &paths, &settings, fov);
         /* Without memory for threads the calling one does it all. */
         if (status == SNOW_OK && threads > 1)
             assert_int_equal(unlink(paths.output), 0);
@@ -115,6 +117,25 @@ static void fail_each(const char *suffix, snow_method method,
     assert_int_equal(unlink(paths.input), 0);
     /* Temporary files would keep the folder from going. */
     assert_int_equal(rmdir(folder), 0);
+}
+
+static void fail_each(const char *suffix, snow_method method,
+                      snow_encoding encoding, bool for_good, int threads) {
+    fail_each_seen(suffix, method, encoding, for_good, threads, 0);
+}
+
+static void perspective_fails_cleanly_at_every_allocation(void **state) {
+    (void)state;
+    for (int for_good = 0; for_good < 2; for_good++) {
+        fail_each_seen(".nrrd", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS,
+                       for_good, 1, 30);
+        fail_each_seen(".mha", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, for_good,
+                       1, 60);
+        fail_each_seen(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_AUTO,
+                       for_good, 1, 30);
+        fail_each_seen(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_RLE,
+                       for_good, 3, 30);
+    }
 }
 
 static void a_picture_fails_cleanly_at_every_allocation(void **state) {
@@ -139,6 +160,7 @@ static void a_picture_fails_cleanly_when_memory_ends_for_good(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_picture_fails_cleanly_at_every_allocation),
+        cmocka_unit_test(perspective_fails_cleanly_at_every_allocation),
         cmocka_unit_test(a_picture_fails_cleanly_when_memory_ends_for_good),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,10 +1,13 @@
 /* snowglass/view.h - where the camera stands, and the image it exposes.
  *
- * Parallel projection.  The camera looks at the middle of the voxel boxes from
- * a named side; azimuth turns it about the up axis, elevation about the new
- * right, roll about the line of sight.  The pixel pitch is 2R / (zoom min(W,
- * H)), where R is the distance from the target to the farthest corner: at zoom
- * 1 the whole volume is in the picture whatever its turn. */
+ * The camera looks at the middle of the voxel boxes from a named side; azimuth
+ * turns it about the up axis, elevation about the new right, roll about the
+ * line of sight.  R is the distance from the target to the farthest corner.
+ *
+ * Parallel projection: the pixel pitch is 2R / (zoom min(W, H)).  Perspective:
+ * the eye is R / sin(fov / 2) from the target, and at zoom 1 the field of view
+ * spans the shorter side of the image; zoom scales the image.  In both, at zoom
+ * 1, the whole volume is in the picture whatever its turn. */
 #ifndef SNOWGLASS_VIEW_H
 #define SNOWGLASS_VIEW_H
 
@@ -14,6 +17,14 @@
 extern "C" {
 #endif
 
+#define SNOW_FOV_LEAST 0.001
+#define SNOW_FOV_MOST 120
+#define SNOW_FOV_USUAL                                     \
+    30 /* where perspective is asked for, and no more told \
+        */
+
+/* Make one with snow_view_named or snow_view_default, or set it to zeros first:
+ * it may grow at its end, and 0 is the default of what is added. */
 typedef struct snow_view {
     int width, height; /* image in pixels, 1 to 32768 each */
     double back[3];    /* unit vector, target to camera, in the world */
@@ -22,13 +33,15 @@ typedef struct snow_view {
     double elevation;  /* degrees: moves the camera up */
     double roll;       /* degrees: turns the camera clockwise */
     double zoom;       /* above 0; 2 shows everything twice as large */
+    double fov;        /* degrees over the shorter side, SNOW_FOV_LEAST to
+                          SNOW_FOV_MOST; 0: a parallel projection */
 } snow_view;
 
 /* The view by name: anterior posterior left right superior inferior iso +x -x
- * +y -y +z -z, at 512x512, angles 0, zoom 1.  +z: the camera sits on the +z
- * side, +y is up; for x and y sides +z is up; anterior is +y, left -x, superior
- * +z; iso looks from (1, 1, 1), +z up.  Letters may be of either case.  Errors:
- * SNOW_BAD_USAGE. */
+ * +y -y +z -z, at 512x512, angles 0, zoom 1, parallel.  +z: the camera sits on
+ * the +z side, +y is up; for x and y sides +z is up; anterior is +y, left -x,
+ * superior +z; iso looks from (1, 1, 1), +z up.  Letters may be of either case.
+ * Errors: SNOW_BAD_USAGE. */
 SNOW_API snow_status snow_view_named(snow_context *context, const char *name,
                                      snow_view *out);
 

@@ -159,4 +159,12 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
 void snow_shade_strip(const snow_shader *shader, int channels,
                       snow_strip *strip);
 
+/* --- perspective: classify/paths.c -----------------------------------------
+ */
+
+/* Corrects the samples of a strip, whose opacities are those of the reference
+ * length, for the rays of the voxels; colours are premultiplied. */
+void snow_lengthen_strip(const snow_placement *placement, double opacity_length,
+                         int channels, snow_strip *strip);
+
 #endif

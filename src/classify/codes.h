@@ -103,4 +103,13 @@ snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
                               bool premultiply, int threads, snow_palette *out);
 void snow_palette_fini(snow_context *context, snow_palette *palette);
 
+/* The palette for rays that differ from voxel to voxel (classify/rays.h): as
+ * above, with straight colours and, in the place of opacities, log2(1 - a); of
+ * opacity 1 SNOW_OPAQUE. */
+#define SNOW_OPAQUE (-1e30f)
+snow_status snow_palette_make_clear(snow_context *context,
+                                    const snow_coder *coder,
+                                    const snow_transfer *transfer, int threads,
+                                    snow_palette *out);
+
 #endif

@@ -57,6 +57,7 @@ typedef struct palette_job {
     double exponent;
     bool premultiply;
     const palette_kernels *kernels;
+    bool clear; /* logarithms in the place of opacities */
 } palette_job;
 
 static size_t block_end(const palette_job *job, size_t first) {
@@ -139,7 +140,12 @@ static void opacities_of(const palette_job *job, size_t first, size_t count,
     const double *clarities = palette->clarities + first;
     size_t channels = (size_t)palette->channels;
     double exponent = snow_exponent_within(job->exponent);
-    if (job->exponent == 1)
+    if (job->clear)
+        for (size_t i = 0; i < count; i++)
+            opacities[i] = clarities[i] > (double)SNOW_OPAQUE
+                               ? (float)(clarities[i] * (1 / SNOW_LN2))
+                               : SNOW_OPAQUE;
+    else if (job->exponent == 1)
         for (size_t i = 0; i < count; i++)
             opacities[i] = palette->looks[(first + i + 1) * channels - 1];
     else
@@ -198,12 +204,12 @@ static snow_status make_room(snow_context *context, size_t codes,
                         codes * sizeof *palette->clarities);
 }
 
-snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
-                              const snow_transfer *transfer, double exponent,
-                              bool premultiply, int threads,
-                              snow_palette *palette) {
-    palette_job job = {coder,    transfer,    palette,
-                       exponent, premultiply, best_kernels()};
+/* Looks where they are out of date, and samples. */
+static snow_status make_palette(snow_context *context, palette_job *job,
+                                int threads) {
+    const snow_coder *coder = job->coder;
+    const snow_transfer *transfer = job->transfer;
+    snow_palette *palette = job->palette;
     int64_t items = (int64_t)((coder->codes + BLOCK - 1) / BLOCK);
     bool changed;
     SNOW_TRY(take_key(context, coder, transfer, palette, &changed));
@@ -212,11 +218,29 @@ snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
         palette->key_count = 0; /* no key, until there are looks for it */
         palette->channels = transfer->grey ? 2 : 4;
         SNOW_TRY(make_room(context, coder->codes, palette));
-        snow_parallel(context, threads, items, make_looks, &job);
+        snow_parallel(context, threads, items, make_looks, job);
         palette->key_count = count;
     }
-    snow_parallel(context, threads, items, make_samples, &job);
+    snow_parallel(context, threads, items, make_samples, job);
     return SNOW_OK;
+}
+
+snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
+                              const snow_transfer *transfer, double exponent,
+                              bool premultiply, int threads,
+                              snow_palette *palette) {
+    palette_job job = {coder,       transfer,       palette, exponent,
+                       premultiply, best_kernels(), false};
+    return make_palette(context, &job, threads);
+}
+
+snow_status snow_palette_make_clear(snow_context *context,
+                                    const snow_coder *coder,
+                                    const snow_transfer *transfer, int threads,
+                                    snow_palette *palette) {
+    palette_job job = {coder, transfer,       palette, 1,
+                       false, best_kernels(), true};
+    return make_palette(context, &job, threads);
 }
 
 void snow_palette_fini(snow_context *context, snow_palette *palette) {

@@ -1,3 +1,4 @@
+/* clang-format off */
 /* simd/select.h - gives a template the vector vocabulary of one level.  Define
  * one of these before including; it is undefined again:
  *
@@ -17,20 +18,32 @@
  *   V(alpha2)(v), V(alpha4)(v)       the last channel of each pixel of 2 or 4
  *                                    floats, in all of its lanes
  *   V(any_less)(a, b)                whether a < b in any lane
- *   V(gather4)(p, n), V(gather2)     entries n[0], n[1] ... of a table of 4 or
- * 2 floats each, as many as a vector holds V(double2)(p, n) entries of 2
- * floats, each twice V(even)(v), V(odd)(v)            the first or second of
- * each two lanes, in both of them V(with_alpha2)(a, b), V(with_alpha4)  a with
- * the last channels of b V(expand8)(p, bits, out), V(expand16) 16 places: the
- * next of the numbers at p, and 1 more, where a bit is set, else 0; may read 16
- * numbers beyond the last V(popcount)(x)                   bits that are set in
- * a uint64_t V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4
- * floats) of a and b in turns: a0 b0 a1 b1 ... V(fold2)(v), V(fold4)(v) the sum
- * of the vector's pixels, by halves, in the first 2 or 4 floats of a scalar
+ *   V(gather4)(p, n), V(gather2)     entries n[0], n[1] ... of a table of 4 or 2
+ *                                    floats each, as many as a vector holds
+ *   V(double2)(p, n)                 entries of 2 floats, each twice
+ *   V(even)(v), V(odd)(v)            the first or second of each two lanes, in
+ *                                    both of them
+ *   V(with_alpha2)(a, b), V(with_alpha4)  a with the last channels of b
+ *   V(expand8)(p, bits, out), V(expand16)
+ *                                    16 places: the next of the numbers at p,
+ *                                    and 1 more, where a bit is set, else 0;
+ *                                    may read 16 numbers beyond the last
+ *   V(popcount)(x)                   bits that are set in a uint64_t
+ *   V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4 floats) of a
+ *                                    and b in turns: a0 b0 a1 b1 ...
+ *   V(fold2)(v), V(fold4)(v)         the sum of the vector's pixels, by halves,
+ *                                    in the first 2 or 4 floats of a scalar
  *                                    vector
+ *   V(sqrt)(v)                       the square root, rounded correctly
+ *   V(power2)(v)                     2^k, where v is 1.5 * 2^23 + k for a whole
+ *                                    number k of -126 to 127
+ *   V(places), V(places_of)(p)       LANES numbers below LANES: int32_t at p
+ *   V(pick)(p, n)                    p[n0], p[n1] ...; all LANES floats at p
+ *                                    may be read
  *
  * The template's own file includes the three vec_*.h headers and this one once
  * per level; no file needs special compiler flags. */
+/* clang-format on */
 #include "simd/isa.h"
 #include "simd/vec_scalar.h"
 #if SNOW_HAS_AVX

@@ -164,4 +164,25 @@ SNOW_AVX2_INLINE int snow_avx2_any_less(snow_avx2_vec a, snow_avx2_vec b) {
     return _mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)) != 0;
 }
 
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sqrt(snow_avx2_vec v) {
+    return _mm256_sqrt_ps(v);
+}
+
+/* k is in the last bits of the float, and shifted into the exponent. */
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_power2(snow_avx2_vec v) {
+    __m256i k = _mm256_add_epi32(_mm256_castps_si256(v), _mm256_set1_epi32(127));
+    return _mm256_castsi256_ps(_mm256_slli_epi32(k, 23));
+}
+
+typedef __m256i snow_avx2_places;
+
+SNOW_AVX2_INLINE snow_avx2_places snow_avx2_places_of(const int32_t *p) {
+    return _mm256_loadu_si256((const __m256i *)(const void *)p);
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_pick(const float *p,
+                                              snow_avx2_places n) {
+    return _mm256_permutevar8x32_ps(_mm256_loadu_ps(p), n);
+}
+
 #endif

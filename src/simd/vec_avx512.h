@@ -193,4 +193,25 @@ SNOW_AVX512_INLINE int snow_avx512_any_less(snow_avx512_vec a,
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) != 0;
 }
 
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sqrt(snow_avx512_vec v) {
+    return _mm512_sqrt_ps(v);
+}
+
+/* k is in the last bits of the float, and shifted into the exponent. */
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_power2(snow_avx512_vec v) {
+    __m512i k = _mm512_add_epi32(_mm512_castps_si512(v), _mm512_set1_epi32(127));
+    return _mm512_castsi512_ps(_mm512_slli_epi32(k, 23));
+}
+
+typedef __m512i snow_avx512_places;
+
+SNOW_AVX512_INLINE snow_avx512_places snow_avx512_places_of(const int32_t *p) {
+    return _mm512_loadu_si512(p);
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_pick(const float *p,
+                                              snow_avx512_places n) {
+    return _mm512_permutexvar_ps(n, _mm512_loadu_ps(p));
+}
+
 #endif

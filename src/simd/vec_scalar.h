@@ -53,20 +53,21 @@ snow_scalar_fnma(snow_scalar_vec a, snow_scalar_vec b, snow_scalar_vec c) {
 }
 
 /* Picks a's bits where the mask is set, else b's. */
-static inline snow_scalar_vec
-snow_scalar_pick(snow_scalar_mask mask, snow_scalar_vec a, snow_scalar_vec b) {
+static inline snow_scalar_vec snow_scalar_choose(snow_scalar_mask mask,
+                                                 snow_scalar_vec a,
+                                                 snow_scalar_vec b) {
     return (snow_scalar_vec)(((snow_scalar_mask)a & mask) |
                              ((snow_scalar_mask)b & ~mask));
 }
 
 static inline snow_scalar_vec snow_scalar_min(snow_scalar_vec a,
                                               snow_scalar_vec b) {
-    return snow_scalar_pick((snow_scalar_mask)(a < b), a, b);
+    return snow_scalar_choose((snow_scalar_mask)(a < b), a, b);
 }
 
 static inline snow_scalar_vec snow_scalar_max(snow_scalar_vec a,
                                               snow_scalar_vec b) {
-    return snow_scalar_pick((snow_scalar_mask)(a > b), a, b);
+    return snow_scalar_choose((snow_scalar_mask)(a > b), a, b);
 }
 
 static inline snow_scalar_vec snow_scalar_alpha2(snow_scalar_vec v) {
@@ -162,6 +163,31 @@ static inline int snow_scalar_popcount(uint64_t x) {
 static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {
     snow_scalar_mask less = (snow_scalar_mask)(a < b);
     return (less[0] | less[1] | less[2] | less[3]) != 0;
+}
+
+static inline snow_scalar_vec snow_scalar_sqrt(snow_scalar_vec v) {
+    return (snow_scalar_vec){__builtin_sqrtf(v[0]), __builtin_sqrtf(v[1]),
+                             __builtin_sqrtf(v[2]), __builtin_sqrtf(v[3])};
+}
+
+/* k is in the last bits of the float, and shifted into the exponent. */
+static inline snow_scalar_vec snow_scalar_power2(snow_scalar_vec v) {
+    typedef unsigned bits __attribute__((vector_size(16)));
+    return (snow_scalar_vec)(((bits)v + 127) << 23);
+}
+
+typedef struct snow_scalar_places {
+    int32_t n[4];
+} snow_scalar_places;
+
+static inline snow_scalar_places snow_scalar_places_of(const int32_t *p) {
+    return (snow_scalar_places){{p[0], p[1], p[2], p[3]}};
+}
+
+static inline snow_scalar_vec snow_scalar_pick(const float *p,
+                                               snow_scalar_places lanes) {
+    const int32_t *n = lanes.n;
+    return (snow_scalar_vec){p[n[0]], p[n[1]], p[n[2]], p[n[3]]};
 }
 
 #endif

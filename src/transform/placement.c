@@ -1,7 +1,7 @@
 /* transform/placement.c - a volume before the camera: the slice axis, the
  * order of slices, and the affine map from voxels to pixels. */
 #include "base/vec3.h"
-#include "transform/transform.h"
+#include "transform/eye.h"
 
 #include <math.h>
 #include <string.h>
@@ -97,8 +97,7 @@ static void to_pixels(const snow_placement *p, const double step[3],
 
 static void place_slices(const snow_volume_info *info, const snow_view *view,
                          snow_placement *p) {
-    double pitch = 2 * snow_volume_radius(info) /
-                   (view->zoom * fmin(view->width, view->height));
+    double pitch = snow_pixel_pitch(info, view);
     double *steps[3];
     steps[p->u_axis] = p->step_u;
     steps[p->v_axis] = p->step_v;
@@ -141,6 +140,12 @@ static snow_status check_view(snow_context *context, const snow_view *view) {
     if (!(view->zoom > 0) || !isfinite(view->zoom))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "zoom is %g; take a number above 0", view->zoom);
+    if (view->fov != 0 &&
+        !(view->fov >= SNOW_FOV_LEAST && view->fov <= SNOW_FOV_MOST))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a field of view of %g degrees is not possible; take "
+                         "%g to %g, or 0 for a parallel projection",
+                         view->fov, SNOW_FOV_LEAST, (double)SNOW_FOV_MOST);
     if (!isfinite(view->azimuth) || !isfinite(view->elevation) ||
         !isfinite(view->roll))
         return snow_fail(context, SNOW_BAD_USAGE,
@@ -173,8 +178,11 @@ static snow_status place(snow_context *context, const snow_volume_info *info,
     cut_along(info, slice_axis, p);
     measure_path(info, p);
     place_slices(info, view, p);
-    if (isfinite(p->path) && isfinite(p->origin[0]) && isfinite(p->origin[1]) &&
-        invert_slice_map(p))
+    bool fits = isfinite(p->path) && isfinite(p->origin[0]) &&
+                isfinite(p->origin[1]) && invert_slice_map(p);
+    if (fits && view->fov > 0)
+        fits = snow_eye_place(info, view, p);
+    if (fits)
         return SNOW_OK;
     return snow_fail(context, SNOW_BAD_INPUT,
                      "voxels of %gx%gx%g cannot be seen at zoom %g: they "

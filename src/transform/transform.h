@@ -6,13 +6,26 @@
  *
  *   (x, y) = origin + u * step_u + v * step_v + k * step_slice
  *
- * in pixels, x to the right, y down, the first pixel's centre at (1/2, 1/2). */
+ * in pixels, x to the right, y down, the first pixel's centre at (1/2, 1/2).
+ *
+ * Perspective is told in transform/eye.h. */
 #ifndef SNOW_TRANSFORM_H
 #define SNOW_TRANSFORM_H
 
 #include "base/base.h"
 
 #include <snowglass/view.h>
+
+/* An eye that sees the volume in perspective.  Vectors are in steps of (u, v,
+ * slice). */
+typedef struct snow_eye {
+    double at[3];        /* place: voxel (u, v) of slice k, not whole numbers */
+    double ray[3][3];    /* through pixel position (x, y), away from the eye:
+                            ray[i][0] + x ray[i][1] + y ray[i][2] */
+    double pixel[3][3];  /* a step from the eye to x and y times its depth, and
+                            its depth: rows of a matrix */
+    double metric[3][3]; /* squared world length of a step s: s . metric s */
+} snow_eye;
 
 typedef struct snow_placement {
     /* The camera as a right-handed frame of unit vectors in the world. */
@@ -29,6 +42,12 @@ typedef struct snow_placement {
     double inverse[2][2]; /* pixels to (u, v): the inverse of step_u, step_v */
 
     double path; /* world length of a ray between two slice planes */
+
+    /* In perspective the maps above are those of a parallel camera that sees
+     * the target alike, and path is that of the ray to the target; the true
+     * ones depend on the voxel. */
+    bool perspective;
+    snow_eye eye;
 } snow_placement;
 
 /* Places a volume before a camera (model, points 2, 5 and 6).  The slice axis

@@ -62,22 +62,39 @@ static inline void store_pixel(snow_scalar_vec pixel, int channels,
 #include "warp/levels.h"
 #endif
 
-snow_warp_fn *snow_warp_of(snow_isa isa, snow_filter filter, int channels) {
+/* Both functions of a level. */
+typedef struct warp_pair {
+    snow_warp_fn *line;
+    snow_warp_places_fn *places;
+} warp_pair;
+
+#define PAIR(name, level) ((warp_pair){name##_##level, name##_places_##level})
+
+static warp_pair pair_of(snow_isa isa, snow_filter filter, int channels) {
     bool cubic = filter == SNOW_CATMULL_ROM, grey = channels == 2;
 #if SNOW_HAS_AVX
     if (isa == SNOW_ISA_AVX512 && cubic && !grey)
-        return cubic4_avx512;
+        return PAIR(cubic4, avx512);
     if (isa == SNOW_ISA_AVX512 || isa == SNOW_ISA_AVX2) {
         if (cubic)
-            return grey ? cubic2_avx2 : cubic4_avx2;
+            return grey ? PAIR(cubic2, avx2) : PAIR(cubic4, avx2);
         if (!grey)
-            return linear4_avx2;
+            return PAIR(linear4, avx2);
     }
 #endif
     (void)isa;
     if (cubic)
-        return grey ? cubic2_scalar : cubic4_scalar;
-    return grey ? linear2_scalar : linear4_scalar;
+        return grey ? PAIR(cubic2, scalar) : PAIR(cubic4, scalar);
+    return grey ? PAIR(linear2, scalar) : PAIR(linear4, scalar);
+}
+
+snow_warp_fn *snow_warp_of(snow_isa isa, snow_filter filter, int channels) {
+    return pair_of(isa, filter, channels).line;
+}
+
+snow_warp_places_fn *snow_warp_places_of(snow_isa isa, snow_filter filter,
+                                         int channels) {
+    return pair_of(isa, filter, channels).places;
 }
 
 /* Cuts [*low, *high] to the numbers x for which place + x * step is within

@@ -1,9 +1,11 @@
 /* warp/warp.h - the intermediate image of the sheared method to the picture,
- * by one affine resampling: Catmull-Rom (4 x 4 pixels) or bilinear (2 x 2). */
+ * by one affine or projective resampling: Catmull-Rom (4 x 4 pixels) or
+ * bilinear (2 x 2). */
 #ifndef SNOW_WARP_H
 #define SNOW_WARP_H
 
 #include "simd/isa.h"
+#include "transform/scaled.h"
 #include "transform/shear.h"
 
 /* The intermediate image: lines of `stride` floats, of which the first
@@ -33,12 +35,24 @@ struct snow_warp_line {
     int64_t start[2], step[2];
 };
 
-/* The function of a level. */
+/* The same for `count` places (x, y) in 2^-32 pixels of the plane. */
+typedef void snow_warp_places_fn(const snow_plane *plane,
+                                 const int64_t (*places)[2], int count,
+                                 float *pixels);
+
+/* The functions of a level. */
 snow_warp_fn *snow_warp_of(snow_isa isa, snow_filter filter, int channels);
+snow_warp_places_fn *snow_warp_places_of(snow_isa isa, snow_filter filter,
+                                         int channels);
 
 /* Fills line y of a picture `width` pixels wide; 0 where the plane ends. */
 void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
                    snow_filter filter, snow_warp_fn *warp, int y, int width,
                    float *pixels);
+
+/* The same in perspective: warp/perspective.c. */
+void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
+                        snow_filter filter, snow_warp_places_fn *warp, int y,
+                        int width, float *pixels);
 
 #endif

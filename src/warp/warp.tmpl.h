@@ -6,7 +6,8 @@
  *                  (Catmull-Rom); WARP_CHANNELS * WARP_TAPS is a multiple of
  *                  LANES
  *   WARP_FOLD      V(fold2) or V(fold4), as WARP_CHANNELS
- *   WARP_NAME      name of the function
+ *   WARP_NAME      names of the functions: of a line whose places are a
+ *                  number of steps apart, and (_places) of any places
  *
  * All are undefined at the end.  The taps along x are neighbours in memory, so
  * a line of them is one run of WARP_CHANNELS * WARP_TAPS floats: lines are
@@ -48,23 +49,36 @@ WARP_NAME(_along_x)(float fraction, V(vec) part[WARP_VECTORS]) {
     }
 }
 
+/* The pixel at place (x, y) of the plane, in 2^-32 pixels. */
+TARGET static inline __attribute__((always_inline)) void
+WARP_NAME(_place)(const snow_plane *plane, int64_t x, int64_t y, float *pixel) {
+    const float *run = plane->pixels +
+                       (size_t)((y >> 32) + 1 - WARP_TAPS / 2) * plane->stride +
+                       (size_t)((x >> 32) + 1 - WARP_TAPS / 2) * WARP_CHANNELS;
+    float along_y[4];
+    V(vec) part[WARP_VECTORS];
+    snow_scalar_store(along_y, cubic_weights(WARP_CUBIC, fraction_of(y)));
+    WARP_NAME(_along_x)(fraction_of(x), part);
+    store_pixel(WARP_NAME(_pixel)(run, plane->stride, along_y, part),
+                WARP_CHANNELS, pixel);
+}
+
 TARGET static void WARP_NAME()(const snow_plane *plane,
                                const snow_warp_line *line, int first, int count,
                                float *pixels) {
-    for (int n = 0; n < count; n++) {
-        int64_t x = line->start[0] + (first + n) * line->step[0];
-        int64_t y = line->start[1] + (first + n) * line->step[1];
-        const float *run =
-            plane->pixels +
-            (size_t)((y >> 32) + 1 - WARP_TAPS / 2) * plane->stride +
-            (size_t)((x >> 32) + 1 - WARP_TAPS / 2) * WARP_CHANNELS;
-        float along_y[4];
-        V(vec) part[WARP_VECTORS];
-        snow_scalar_store(along_y, cubic_weights(WARP_CUBIC, fraction_of(y)));
-        WARP_NAME(_along_x)(fraction_of(x), part);
-        store_pixel(WARP_NAME(_pixel)(run, plane->stride, along_y, part),
-                    WARP_CHANNELS, pixels + n * WARP_CHANNELS);
-    }
+    for (int n = 0; n < count; n++)
+        WARP_NAME(_place)
+        (plane, line->start[0] + (first + n) * line->step[0],
+         line->start[1] + (first + n) * line->step[1],
+         pixels + n * WARP_CHANNELS);
+}
+
+TARGET static void WARP_NAME(_places)(const snow_plane *plane,
+                                      const int64_t (*places)[2], int count,
+                                      float *pixels) {
+    for (int n = 0; n < count; n++)
+        WARP_NAME(_place)
+        (plane, places[n][0], places[n][1], pixels + n * WARP_CHANNELS);
 }
 
 #undef WARP_VECTORS

@@ -1,0 +1,48 @@
+/* classify/rays.c - the loops of classify/rays.h for all levels. */
+#include "classify/rays.h"
+
+/* By bytes of a code, channels, and whether shaded. */
+typedef snow_ray_sample_fn *ray_table[2][2][2];
+
+/* The places of a window as numbers, and beyond, for vectors. */
+static const float ray_places[SNOW_WINDOW_MOST + 17] = {
+    0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15,
+    16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31,
+    32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47,
+    48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63,
+    64, 65, 66, 67, 68, 69, 70, 71, 72, 73, 74, 75, 76, 77, 78, 79,
+};
+
+/* Lanes that repeat the first numbers of a vector. */
+static const int32_t ray_twice[] = {0, 0, 1, 1, 2, 2, 3, 3,
+                                    4, 4, 5, 5, 6, 6, 7, 7};
+static const int32_t ray_four_times[] = {0, 0, 0, 0, 1, 1, 1, 1,
+                                         2, 2, 2, 2, 3, 3, 3, 3};
+
+#define SELECT_SCALAR
+#include "simd/select.h"
+
+#include "classify/rays_levels.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "classify/rays_levels.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "classify/rays_levels.h"
+#endif
+
+snow_ray_sample_fn *snow_ray_sample_of(snow_isa isa, int code_bytes,
+                                       int channels, bool shaded) {
+    int bytes = code_bytes == 2, color = channels == 4;
+#if SNOW_HAS_AVX
+    if (isa == SNOW_ISA_AVX512)
+        return ray_samples_avx512[bytes][color][shaded];
+    if (isa == SNOW_ISA_AVX2)
+        return ray_samples_avx2[bytes][color][shaded];
+#endif
+    (void)isa;
+    return ray_samples_scalar[bytes][color][shaded];
+}

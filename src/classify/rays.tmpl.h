@@ -1,0 +1,79 @@
+/* classify/rays.tmpl.h - codes to samples, each with its own exponent.  Define
+ * before including, with simd/select.h's words in force:
+ *
+ *   RAY_CODE      C type of a code: uint8_t or uint16_t
+ *   RAY_EXPAND    V(expand8) or V(expand16), as the code
+ *   RAY_CHANNELS  floats of a sample: 2 or 4
+ *   RAY_SHADED    whether normals and gloss are used: 0 or 1
+ *   RAY_GATHER, RAY_SHINE, RAY_ALPHA, RAY_WITH_ALPHA
+ *                 as in classify/sample.tmpl.h
+ *   RAY_NAME      name of the function
+ *
+ * All are undefined at the end. */
+TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
+                            uint64_t bits, int count, const float *palette,
+                            const snow_gloss *gloss, const float square[3],
+                            float *samples) {
+    const float *entries = palette - RAY_CHANNELS;
+    uint32_t entry[SNOW_WINDOW_MOST + 17];
+    float exponents[SNOW_WINDOW_MOST + 33];
+    const RAY_CODE *code = codes;
+#if RAY_SHADED
+    const float *shines = &gloss[-1].factor;
+    uint32_t normal[SNOW_WINDOW_MOST + 17];
+#else
+    (void)normals, (void)gloss;
+#endif
+    for (int at = 0; at < count; at += 16) {
+        uint32_t here = (uint32_t)(bits >> at) & 0xFFFF;
+        RAY_EXPAND(code, here, entry + at);
+        code += V(popcount)(here);
+#if RAY_SHADED
+        V(expand16)(normals, here, normal + at);
+        normals += V(popcount)(here);
+#endif
+    }
+    for (int at = 0; at < count; at += LANES) {
+        V(vec) x = V(load)(ray_places + at);
+        V(vec) sum = V(fma)(V(set1)(square[2]), x, V(set1)(square[1]));
+        V(store)(exponents + at, V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
+    }
+    const V(places) spread =
+        V(places_of)(RAY_CHANNELS == 2 ? ray_twice : ray_four_times);
+    const V(vec) one = V(set1)(1), round = V(set1)(0x1.8p23f);
+    for (int i = 0; i < count; i += LANES / RAY_CHANNELS) {
+        V(vec) straight = RAY_GATHER(entries, entry + i);
+        V(vec)
+        power = V(mul)(RAY_ALPHA(straight), V(pick)(exponents + i, spread));
+        power = V(max)(power, V(set1)(-126));
+        /* 2^power as 2^k 2^f with |f| <= 1/2; 2^f - 1 by its series. */
+        V(vec) whole = V(add)(power, round);
+        V(vec) f = V(sub)(power, V(sub)(whole, round));
+        V(vec) series = V(set1)(0.00133335581464f);
+        series = V(fma)(series, f, V(set1)(0.00961812910763f));
+        series = V(fma)(series, f, V(set1)(0.0555041086648f));
+        series = V(fma)(series, f, V(set1)(0.240226506959f));
+        series = V(fma)(series, f, V(set1)(0.693147180560f));
+        V(vec) scale = V(power2)(whole);
+        V(vec) alpha = V(fnma)(V(mul)(scale, f), series, V(sub)(one, scale));
+        V(vec) color = straight;
+#if RAY_SHADED
+        V(vec) shine = RAY_SHINE(shines, normal + i);
+        color = V(fma)(straight, V(even)(shine), V(odd)(shine));
+        color = V(min)(color, one);
+#endif
+        V(store)
+        (samples + i * RAY_CHANNELS,
+         RAY_WITH_ALPHA(V(mul)(color, alpha), alpha));
+    }
+}
+
+#undef RAY_CODE
+#undef RAY_EXPAND
+#undef RAY_CHANNELS
+#undef RAY_SHADED
+#undef RAY_NAME
+#undef RAY_GATHER
+#undef RAY_SHINE
+#undef RAY_ALPHA
+#undef RAY_WITH_ALPHA

@@ -1,0 +1,89 @@
+/* classify/rays_levels.h - the sample functions of one level in perspective;
+ * simd/select.h's words are in force. */
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 2
+#define RAY_SHADED 0
+#define RAY_GATHER V(gather2)
+#define RAY_SHINE V(gather2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_byte2_plain)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 2
+#define RAY_SHADED 1
+#define RAY_GATHER V(gather2)
+#define RAY_SHINE V(gather2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_byte2_shaded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 4
+#define RAY_SHADED 0
+#define RAY_GATHER V(gather4)
+#define RAY_SHINE V(double2)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_byte4_plain)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 4
+#define RAY_SHADED 1
+#define RAY_GATHER V(gather4)
+#define RAY_SHINE V(double2)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_byte4_shaded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 2
+#define RAY_SHADED 0
+#define RAY_GATHER V(gather2)
+#define RAY_SHINE V(gather2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_word2_plain)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 2
+#define RAY_SHADED 1
+#define RAY_GATHER V(gather2)
+#define RAY_SHINE V(gather2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_word2_shaded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 4
+#define RAY_SHADED 0
+#define RAY_GATHER V(gather4)
+#define RAY_SHINE V(double2)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_word4_plain)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 4
+#define RAY_SHADED 1
+#define RAY_GATHER V(gather4)
+#define RAY_SHINE V(double2)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_word4_shaded)
+#include "classify/rays.tmpl.h"
+
+static const ray_table NAME(ray_samples) = {
+    {{NAME(ray_byte2_plain), NAME(ray_byte2_shaded)},
+     {NAME(ray_byte4_plain), NAME(ray_byte4_shaded)}},
+    {{NAME(ray_word2_plain), NAME(ray_word2_shaded)},
+     {NAME(ray_word4_plain), NAME(ray_word4_shaded)}},
+};

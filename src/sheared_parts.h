@@ -1,0 +1,61 @@
+/* sheared_parts.h - what the sheared method keeps from picture to picture, for
+ * its parallel (sheared.c) and its perspective half (sheared_seen.c). */
+#ifndef SNOW_SHEARED_PARTS_H
+#define SNOW_SHEARED_PARTS_H
+
+#include "classify/sample.h"
+#include "composite/tile.h"
+#include "encode/windows.h"
+#include "sheared.h"
+
+/* What the bands in memory were encoded from. */
+typedef struct snow_encoded_key {
+    uint64_t serial; /* of the volume; 0: nothing is encoded */
+    int slice_axis;
+    bool shaded, between;
+    snow_encoding encoding; /* as asked for */
+    snow_slab slab;
+} snow_encoded_key;
+
+struct snow_sheared {
+    snow_context *context;
+    snow_coder coder, next; /* of the bands; room for the next picture's */
+    snow_bands bands;
+    snow_encoded_key key;
+    snow_palette palette;
+    snow_gloss *gloss;    /* an entry of zeros, and SNOW_NORMALS */
+    snow_comb *combs;     /* of all slices, along u and v */
+    float *plane;         /* the intermediate image */
+    unsigned char *drawn; /* per band and tile */
+    char *scratch;        /* of all workers */
+    size_t gloss_capacity, combs_capacity, plane_capacity, drawn_capacity,
+        scratch_capacity; /* bytes */
+    /* In perspective: all slices, how they are resampled along u, and how far
+     * their kernels reach. */
+    struct snow_seen_slice *seen;
+    char *teeth;
+    double *reach;
+    size_t seen_capacity, teeth_capacity, reach_capacity; /* bytes */
+};
+
+/* Lines 04 to 06, unless the bands hold just that already: colours, light and
+ * the camera may change as they like as long as the slice axis stays. */
+snow_status snow_sheared_encode(snow_sheared *sheared,
+                                const snow_sheared_order *order,
+                                snow_stats *stats);
+
+/* The table of shading for a view and light.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_sheared_shade(snow_sheared *sheared,
+                               const snow_sheared_order *order);
+
+/* Counts of the encoding. */
+void snow_sheared_fill_figures(const snow_sheared *sheared, snow_stats *stats);
+
+/* The same method in perspective: sheared_seen.c. */
+bool snow_sheared_seen_fits(const snow_placement *placement,
+                            const snow_settings *settings);
+snow_status snow_sheared_seen_render(snow_sheared *sheared,
+                                     const snow_sheared_order *order,
+                                     float *pixels, snow_stats *stats);
+
+#endif

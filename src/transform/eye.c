@@ -1,0 +1,132 @@
+/* transform/eye.c - the eye of a perspective view in index space. */
+#include "transform/eye.h"
+#include "base/vec3.h"
+
+#include <math.h>
+
+#define RADIAN 0.017453292519943295769 /* pi / 180 */
+
+double snow_pixel_pitch(const snow_volume_info *info, const snow_view *view) {
+    double side = view->zoom * fmin(view->width, view->height);
+    double across = 2 * snow_volume_radius(info);
+    /* The cone of the field of view touches the sphere of radius R, and is
+     * R / cos(fov / 2) wide where the target is. */
+    return across / side / cos(view->fov / 2 * RADIAN);
+}
+
+static double determinant(double m[3][3]) {
+    double cross[3];
+    snow_cross(m[1], m[2], cross);
+    return snow_dot(m[0], cross);
+}
+
+/* Columns of `out`, read as rows, are the duals of m's rows. */
+static bool invert(double m[3][3], double out[3][3]) {
+    double volume = determinant(m);
+    for (int i = 0; i < 3; i++) {
+        double dual[3];
+        snow_cross(m[(i + 1) % 3], m[(i + 2) % 3], dual);
+        for (int j = 0; j < 3; j++) {
+            out[j][i] = dual[j] / volume;
+            if (!isfinite(out[j][i]))
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Right, down and forward parts of the world step of one voxel along u, v and
+ * across slices: camera[part][axis]. */
+static void carry_to_camera(const snow_volume_info *info,
+                            const snow_placement *p, double camera[3][3]) {
+    const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
+    for (int n = 0; n < 3; n++) {
+        double step[3];
+        for (int i = 0; i < 3; i++)
+            step[i] = info->matrix[i][axes[n]];
+        camera[0][n] = snow_dot(step, p->right);
+        camera[1][n] = -snow_dot(step, p->up);
+        camera[2][n] = -snow_dot(step, p->back);
+    }
+}
+
+bool snow_eye_place(const snow_volume_info *info, const snow_view *view,
+                    snow_placement *p) {
+    double pitch = snow_pixel_pitch(info, view);
+    double distance = snow_volume_radius(info) / sin(view->fov / 2 * RADIAN);
+    double camera[3][3], steps[3][3];
+    snow_eye eye;
+    carry_to_camera(info, p, camera);
+    if (!isfinite(distance) || !isfinite(pitch) || !invert(camera, steps))
+        return false;
+    const double middle[3] = {(double)(p->columns - 1) / 2,
+                              (double)(p->rows - 1) / 2,
+                              (double)(p->slices - 1) / 2};
+    const double half[2] = {p->width / 2.0, p->height / 2.0};
+    for (int i = 0; i < 3; i++) {
+        eye.at[i] = middle[i] - distance * steps[i][2];
+        eye.ray[i][1] = pitch * steps[i][0];
+        eye.ray[i][2] = pitch * steps[i][1];
+        eye.ray[i][0] = distance * steps[i][2] - half[0] * eye.ray[i][1] -
+                        half[1] * eye.ray[i][2];
+        eye.pixel[0][i] =
+            distance / pitch * camera[0][i] + half[0] * camera[2][i];
+        eye.pixel[1][i] =
+            distance / pitch * camera[1][i] + half[1] * camera[2][i];
+        eye.pixel[2][i] = camera[2][i];
+        for (int j = 0; j < 3; j++)
+            eye.metric[i][j] = camera[0][i] * camera[0][j] +
+                               camera[1][i] * camera[1][j] +
+                               camera[2][i] * camera[2][j];
+    }
+    p->perspective = true;
+    p->eye = eye;
+    return true;
+}
+
+bool snow_eye_sees(const snow_eye *eye, const double step[3], double pixel[2]) {
+    double depth = snow_dot(eye->pixel[2], step);
+    if (!(depth > 0))
+        return false;
+    pixel[0] = snow_dot(eye->pixel[0], step) / depth;
+    pixel[1] = snow_dot(eye->pixel[1], step) / depth;
+    return isfinite(pixel[0]) && isfinite(pixel[1]);
+}
+
+/* u = eu + (k - ek) ray_u / ray_k, and the same for v, by x and by y. */
+void snow_eye_pixel_width(const snow_placement *p, double slice,
+                          double width[2]) {
+    const snow_eye *eye = &p->eye;
+    double height = slice - eye->at[2];
+    const double step[3] = {(double)(p->columns - 1) / 2 - eye->at[0],
+                            (double)(p->rows - 1) / 2 - eye->at[1], height};
+    double pixel[2] = {0, 0}, ray[3];
+    snow_eye_sees(eye, step, pixel); /* as every point of the boxes */
+    snow_eye_ray(eye, pixel[0], pixel[1], ray);
+    for (int axis = 0; axis < 2; axis++) {
+        double by[2];
+        for (int n = 0; n < 2; n++)
+            by[n] = (eye->ray[axis][n + 1] * ray[2] -
+                     eye->ray[2][n + 1] * ray[axis]) /
+                    (ray[2] * ray[2]);
+        width[axis] = fabs(height) * hypot(by[0], by[1]);
+    }
+}
+
+double snow_eye_path(const snow_eye *eye, double u, double v, double slice) {
+    double height = slice - eye->at[2];
+    const double step[3] = {u - eye->at[0], v - eye->at[1], height};
+    const double carried[3] = {snow_dot(eye->metric[0], step),
+                               snow_dot(eye->metric[1], step),
+                               snow_dot(eye->metric[2], step)};
+    return sqrt(snow_dot(carried, step)) / fabs(height);
+}
+
+int64_t snow_eye_nth_slice(const snow_eye *eye, int64_t first, int64_t count,
+                           int64_t n) {
+    double split = ceil(eye->at[2]) - (double)first;
+    int64_t below = split > 0 ? count : 0;
+    if (split > 0 && split < (double)count)
+        below = (int64_t)split;
+    return first + (n < below ? below - 1 - n : n);
+}

@@ -1,0 +1,100 @@
+/* warp/perspective.c - lines of the picture in perspective.
+ *
+ * Along a line of the picture both places in the intermediate image are
+ * quotients of linear functions with one denominator: a division a pixel. */
+#include "warp/warp.h"
+
+#include <math.h>
+#include <string.h>
+
+#define CHUNK 16 /* pixels that are warped, or left out, together */
+
+/* Cuts [*low, *high] to the numbers x for which zero + x * slope is at least
+ * 0. */
+static void cut_below(double zero, double slope, double *low, double *high) {
+    double root = -zero / slope;
+    if (slope > 0)
+        *low = fmax(*low, root);
+    else if (slope < 0)
+        *high = fmin(*high, root);
+    else if (!(zero >= 0))
+        *high = *low - 1;
+}
+
+/* The pixels of a line whose place is within the plane, rounding included: the
+ * plane's border is wider than half a pixel. */
+static void cut_line(const snow_plane *plane, double line[3][2], int before,
+                     double *low, double *high) {
+    const int sides[2] = {plane->width, plane->height};
+    cut_below(line[2][0], line[2][1], low, high);
+    for (int i = 0; i < 2; i++) {
+        double least = before + 0.5, most = sides[i] - 2.5 - before;
+        cut_below(line[i][0] - least * line[2][0],
+                  line[i][1] - least * line[2][1], low, high);
+        cut_below(most * line[2][0] - line[i][0],
+                  most * line[2][1] - line[i][1], low, high);
+    }
+}
+
+static void place_pixels(double line[3][2], int first, int count,
+                         int64_t places[CHUNK][2]) {
+    for (int n = 0; n < count; n++) {
+        double x = first + n;
+        double scale = 0x1p32 / (line[2][0] + x * line[2][1]);
+        places[n][0] = (int64_t)((line[0][0] + x * line[0][1]) * scale);
+        places[n][1] = (int64_t)((line[1][0] + x * line[1][1]) * scale);
+    }
+}
+
+/* The blocks of `size` pixels, within 0 .. most, that are read between two
+ * places.  Along a line a place only rises or only falls. */
+static void blocks_between(int64_t a, int64_t b, int size, int most,
+                           int range[2]) {
+    int64_t low = ((a < b ? a : b) >> 32) - 1,
+            high = ((a < b ? b : a) >> 32) + 2;
+    range[0] = (int)(low < 0 ? 0 : low) / size;
+    range[1] = (int)(high > most ? most : high) / size;
+}
+
+static bool any_drawn(const snow_plane *plane, const int64_t first[2],
+                      const int64_t last[2]) {
+    int x[2], y[2];
+    blocks_between(first[0], last[0], plane->block_width, plane->width - 1, x);
+    blocks_between(first[1], last[1], plane->block_height, plane->height - 1,
+                   y);
+    for (int j = y[0]; j <= y[1]; j++)
+        for (int i = x[0]; i <= x[1]; i++)
+            if (plane->drawn[j * plane->blocks + i])
+                return true;
+    return false;
+}
+
+void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
+                        snow_filter filter, snow_warp_places_fn *warp, int y,
+                        int width, float *pixels) {
+    double line[3][2], low = 0, high = width - 1;
+    size_t pixel = (size_t)plane->channels;
+    for (int i = 0; i < 3; i++) {
+        line[i][1] = scaled->warp[i][1];
+        line[i][0] = scaled->warp[i][0] + 0.5 * line[i][1] +
+                     (y + 0.5) * scaled->warp[i][2];
+    }
+    cut_line(plane, line, filter == SNOW_CATMULL_ROM ? 1 : 0, &low, &high);
+    int first = (int)ceil(fmin(low, width));
+    int last = low <= high ? (int)floor(high) : first - 1;
+    if (last < first)
+        first = width, last = width - 1;
+    memset(pixels, 0, (size_t)first * pixel * sizeof *pixels);
+    for (int x = first; x <= last; x += CHUNK) {
+        int64_t places[CHUNK][2];
+        int count = last - x + 1 < CHUNK ? last - x + 1 : CHUNK;
+        place_pixels(line, x, count, places);
+        float *run = pixels + (size_t)x * pixel;
+        if (any_drawn(plane, places[0], places[count - 1]))
+            warp(plane, (const int64_t(*)[2])places, count, run);
+        else
+            memset(run, 0, (size_t)count * pixel * sizeof *run);
+    }
+    memset(pixels + (size_t)(last + 1) * pixel, 0,
+           (size_t)(width - 1 - last) * pixel * sizeof *pixels);
+}
