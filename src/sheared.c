@@ -53,9 +53,23 @@ typedef struct snow_pass {
     float *pixels;
 } snow_pass;
 
+/* Slices that pass over a tile together. */
+#ifndef SLICES_AT_ONCE
+#define SLICES_AT_ONCE 8
+#endif
+
+/* A slice of a band, decoded. */
+typedef struct slice_rows {
+    snow_mask_rows rows;
+    const snow_comb *u, *v;
+    int reach;         /* rows that a cell needs */
+    int64_t low, high; /* tiles that it may touch: low .. high - 1 */
+} slice_rows;
+
 /* A worker's own memory, laid out in snow_sheared.scratch. */
 typedef struct snow_scratch {
-    uint64_t *bits; /* of the rows of a slice */
+    slice_rows *slices;
+    uint64_t *bits; /* of the rows of the slices */
     uint32_t *rank;
     float *samples; /* windows of a tile */
     float *ring;    /* filtered rows of a tile */
@@ -68,14 +82,11 @@ typedef struct snow_scratch {
 typedef struct snow_stroke {
     const snow_pass *pass;
     snow_scratch scratch;
-    snow_mask_rows rows;
     int64_t first_cell;
     int cells;
-    bool finished;          /* a cell is not alive any more */
-    float *pixels;          /* of the plane */
-    unsigned char *drawn;   /* tiles of the band that were drawn on */
-    const snow_comb *u, *v; /* of the slice */
-    int reach;              /* rows that a cell needs */
+    bool finished;        /* a cell is not alive any more */
+    float *pixels;        /* of the plane */
+    unsigned char *drawn; /* tiles of the band that were drawn on */
 } snow_stroke;
 
 snow_status snow_sheared_new(snow_context *context, snow_sheared **out) {
@@ -92,6 +103,7 @@ void snow_sheared_free(snow_sheared *s) {
         return;
     snow_bands_fini(&s->bands);
     snow_coder_fini(s->context, &s->coder);
+    snow_coder_fini(s->context, &s->next);
     snow_palette_fini(s->context, &s->palette);
     snow_release(s->context, s->gloss);
     snow_release(s->context, s->combs);
@@ -164,12 +176,15 @@ snow_status snow_sheared_encode(snow_sheared *s,
         .encoding = settings->encoding,
         .slab = order->slab,
     };
-    snow_coder coder;
-    SNOW_TRY(snow_coder_init(s->context, order->volume, order->transfer,
-                             settings->threshold, &coder));
-    bool kept = same_key(&key, &s->key) && snow_coder_same(&coder, &s->coder);
-    snow_coder_fini(s->context, &s->coder);
-    s->coder = coder;
+    SNOW_TRY(snow_coder_make(s->context, order->volume, order->transfer,
+                             settings->threshold, &s->next));
+    bool kept = same_key(&key, &s->key) && snow_coder_same(&s->next, &s->coder);
+    snow_coder coder = s->coder;
+    s->coder = s->next;
+    s->next = coder;
+    if (!coder.native_runs) /* the first time: so that the second takes none */
+        SNOW_TRY(snow_coder_make(s->context, order->volume, order->transfer,
+                                 settings->threshold, &s->next));
     if (kept)
         return SNOW_OK;
     s->key.serial = 0; /* should the encoding fail half-way */
@@ -209,39 +224,40 @@ static uint64_t rows_of_cells(uint64_t cells, int stride, int reach) {
     return rows;
 }
 
-/* Lines 08 to 13 for one tile of the slice: the cells that can be seen and
- * have a voxel in reach. */
-static void draw_tile(snow_stroke *stroke, int64_t index) {
+/* Lines 08 to 13 for one tile of a slice: the cells that can be seen and have a
+ * voxel in reach. */
+static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
+                      int64_t index) {
     const snow_pass *pass = stroke->pass;
     const snow_scratch *scratch = &stroke->scratch;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     int64_t column =
         (u->first / u->phases + index * SNOW_TILE_COLUMNS) * u->stride +
-        stroke->u->offset;
+        slice->u->offset;
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
     uint64_t alive = scratch->alive[index];
-    held = pass->windows->windows(
-        &stroke->rows, rows_of_cells(alive, v->stride, stroke->reach), column,
-        pass->window, bits, before);
+    held = pass->windows->windows(&slice->rows,
+                                  rows_of_cells(alive, v->stride, slice->reach),
+                                  column, pass->window, bits, before);
     uint64_t cells =
-        cells_of_rows(held, stroke->cells, v->stride, stroke->reach) & alive;
+        cells_of_rows(held, stroke->cells, v->stride, slice->reach) & alive;
     if (!cells)
         return;
-    held &= rows_of_cells(cells, v->stride, stroke->reach);
+    held &= rows_of_cells(cells, v->stride, slice->reach);
     size_t pixel = (size_t)pass->channels, floats = pass->window_floats;
     for (uint64_t left = held; left; left &= left - 1) {
         int row = __builtin_ctzll(left);
-        const uint16_t *normals = stroke->rows.normals[row];
-        pass->sample(stroke->rows.codes[row] + before[row] * pass->code_bytes,
+        const uint16_t *normals = slice->rows.normals[row];
+        pass->sample(slice->rows.codes[row] + before[row] * pass->code_bytes,
                      normals ? normals + before[row] : NULL, bits[row],
                      pass->window, pass->palette, pass->gloss,
                      scratch->samples + (size_t)row * floats);
     }
     snow_tile tile = {u,
                       v,
-                      stroke->u,
-                      stroke->v,
+                      slice->u,
+                      slice->v,
                       pass->taps[0],
                       pass->taps[1],
                       scratch->samples,
@@ -259,30 +275,42 @@ static void draw_tile(snow_stroke *stroke, int64_t index) {
     stroke->drawn[index] = 1;
 }
 
-/* One slice of the band: its rows as masks, and each tile in turn that they
- * reach. */
-static void draw_slice(snow_stroke *stroke, int64_t slice) {
+/* Reads the band's rows of a slice as masks, and tells the tiles that they
+ * reach: those whose window overlaps the columns. */
+static void read_slice(snow_stroke *stroke, int64_t number, slice_rows *slice) {
     const snow_pass *pass = stroke->pass;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
-    stroke->u = &pass->combs[2 * slice];
-    stroke->v = &pass->combs[2 * slice + 1];
-    stroke->reach = stroke->v->lead[1] + pass->taps[1];
+    slice->u = &pass->combs[2 * number];
+    slice->v = &pass->combs[2 * number + 1];
+    slice->reach = slice->v->lead[1] + pass->taps[1];
     int64_t first = (v->first / v->phases + stroke->first_cell) * v->stride +
-                    stroke->v->offset;
-    pass->windows->read(&pass->sheared->bands, slice, first,
-                        (stroke->cells - 1) * v->stride + stroke->reach,
-                        stroke->scratch.spans, &stroke->rows);
-    if (!stroke->rows.held)
-        return;
-    /* Tiles whose window overlaps the columns. */
+                    slice->v->offset;
+    pass->windows->read(&pass->sheared->bands, number, first,
+                        (stroke->cells - 1) * v->stride + slice->reach,
+                        stroke->scratch.spans, &slice->rows);
     int64_t step = SNOW_TILE_COLUMNS * u->stride;
-    int64_t start = u->first / u->phases * u->stride + stroke->u->offset;
+    int64_t start = u->first / u->phases * u->stride + slice->u->offset;
     int64_t low = -start - pass->window + 1, high = pass->columns - start;
-    low = low > 0 ? (low + step - 1) / step : 0;
-    high = high > 0 ? (high + step - 1) / step : 0;
-    for (int64_t tile = low; tile < high && tile < pass->tiles; tile++)
-        if (stroke->scratch.alive[tile])
-            draw_tile(stroke, tile);
+    slice->low = low > 0 ? (low + step - 1) / step : 0;
+    slice->high = high > 0 ? (high + step - 1) / step : 0;
+    if (!slice->rows.held)
+        slice->high = 0;
+}
+
+/* Some slices of the band, the nearest first, tile by tile: a tile's pixels
+ * stay in the first-level cache while all of them pass over it. */
+static void draw_slices(snow_stroke *stroke, int64_t first, int count) {
+    const snow_pass *pass = stroke->pass;
+    slice_rows *slices = stroke->scratch.slices;
+    for (int n = 0; n < count; n++)
+        read_slice(stroke,
+                   pass->nearest_first ? first + n
+                                       : pass->slices - 1 - first - n,
+                   &slices[n]);
+    for (int64_t tile = 0; tile < pass->tiles; tile++)
+        for (int n = 0; n < count && stroke->scratch.alive[tile]; n++)
+            if (slices[n].low <= tile && tile < slices[n].high)
+                draw_tile(stroke, &slices[n], tile);
 }
 
 static bool any_alive(const snow_stroke *stroke) {
@@ -305,9 +333,11 @@ static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
         out->field = base ? (void *)(base + at) : NULL; \
         at += ((bytes) + 63) / 64 * 64;                 \
     } while (0)
-    PART(bits, words * sizeof *out->bits);
-    PART(rank, words * sizeof *out->rank);
-    PART(samples, SNOW_WINDOW_ROWS * pass->window_floats * sizeof(float));
+    PART(slices, SLICES_AT_ONCE * sizeof *out->slices);
+    PART(bits, SLICES_AT_ONCE * words * sizeof *out->bits);
+    PART(rank, SLICES_AT_ONCE * words * sizeof *out->rank);
+    PART(samples,
+         (SNOW_WINDOW_ROWS * pass->window_floats + 64) * sizeof(float));
     PART(ring, SNOW_WINDOW_ROWS * filtered);
     PART(zero, filtered);
     PART(alive, (size_t)pass->tiles * sizeof *out->alive);
@@ -325,9 +355,13 @@ static void splat_band(void *job, int64_t item, int worker) {
             &stroke.scratch);
     memset(stroke.scratch.zero, 0,
            2 * SNOW_TILE_COLUMNS * (size_t)pass->channels * sizeof(float));
-    stroke.rows.bits = stroke.scratch.bits;
-    stroke.rows.rank = stroke.scratch.rank;
-    stroke.rows.words = snow_window_words(pass->columns);
+    size_t words = snow_window_words(pass->columns);
+    for (size_t n = 0; n < SLICES_AT_ONCE; n++) {
+        snow_mask_rows *rows = &stroke.scratch.slices[n].rows;
+        rows->bits = stroke.scratch.bits + n * words * SNOW_WINDOW_ROWS;
+        rows->rank = stroke.scratch.rank + n * words * SNOW_WINDOW_ROWS;
+        rows->words = words;
+    }
     stroke.first_cell = item * pass->cells;
     int64_t cells = (v->count + v->phases - 1) / v->phases - stroke.first_cell;
     stroke.cells = cells < pass->cells ? (int)cells : pass->cells;
@@ -340,8 +374,11 @@ static void splat_band(void *job, int64_t item, int worker) {
     snow_tile_clear(stroke.pixels, pixels, pass->channels);
     for (int64_t tile = 0; tile < pass->tiles; tile++)
         stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.cells);
-    for (int64_t n = 0; n < pass->slices && any_alive(&stroke); n++)
-        draw_slice(&stroke, pass->nearest_first ? n : pass->slices - 1 - n);
+    for (int64_t n = 0; n < pass->slices && any_alive(&stroke);
+         n += SLICES_AT_ONCE)
+        draw_slices(&stroke, n,
+                    pass->slices - n < SLICES_AT_ONCE ? (int)(pass->slices - n)
+                                                      : SLICES_AT_ONCE);
     snow_tile_finish(stroke.pixels, pixels, pass->channels);
 }
 
@@ -404,8 +441,10 @@ static snow_status place_lattice(snow_pass *pass) {
     pass->stride = (size_t)((pass->tiles + 1) * columns * pass->channels);
     pass->window =
         (SNOW_TILE_COLUMNS - 1) * u->stride + pass->taps[0] + u->phases - 1;
+    /* Samples are made four at a time; what is beyond a window belongs to the
+     * next, which is made later. */
     pass->window_floats =
-        (size_t)(pass->window + SNOW_TILE_COLUMNS) * (size_t)pass->channels;
+        (size_t)((pass->window + 3) / 4 * 4) * (size_t)pass->channels;
     int rows = SNOW_WINDOW_ROWS - pass->taps[1] - v->phases + 1;
     pass->cells = rows / v->stride + 1;
     if (pass->cells > SNOW_TILE_CELLS)

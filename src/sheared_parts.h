@@ -19,7 +19,7 @@ typedef struct snow_encoded_key {
 
 struct snow_sheared {
     snow_context *context;
-    snow_coder coder; /* of the bands */
+    snow_coder coder, next; /* of the bands; room for the next picture's */
     snow_bands bands;
     snow_encoded_key key;
     snow_palette palette;

@@ -153,7 +153,7 @@ static scene make_scene(snow_context *context, snow_type type, int axis,
                      SNOW_OK);
     s.transfer = make_transfer(context, type, intervals);
     assert_int_equal(
-        snow_coder_init(context, s.volume, s.transfer, 10, &s.coder), SNOW_OK);
+        snow_coder_make(context, s.volume, s.transfer, 10, &s.coder), SNOW_OK);
     assert_int_equal(snow_normal_maker_init(context, s.volume, &s.maker),
                      SNOW_OK);
     place(&s.placement, info.dims, axis);

@@ -652,7 +652,7 @@ static void begin_bands(band_case *b, snow_encoding encoding,
     assert_int_equal(
         snow_transfer_new(b->context, white, 1, step, 2, &transfer), SNOW_OK);
     assert_int_equal(
-        snow_coder_init(b->context, b->volume, transfer, 0, &b->coder),
+        snow_coder_make(b->context, b->volume, transfer, 0, &b->coder),
         SNOW_OK);
     assert_int_equal(snow_view_named(b->context, "+z", &view), SNOW_OK);
     assert_int_equal(snow_placement_make(b->context,

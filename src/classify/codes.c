@@ -156,22 +156,23 @@ static snow_status find_native_runs(snow_context *context,
         s.first = -s.last;
         s.last = -first;
     }
-    uint64_t room = (uint64_t)transfer->opacity_count + 1;
-    place_run *runs = snow_allocate_array(context, room, sizeof *runs);
-    coder->native_runs =
-        snow_allocate_array(context, room, sizeof *coder->native_runs);
-    bool made = runs && coder->native_runs;
-    if (made)
-        store_native_runs(&s, runs, survey_all(&s, runs), coder);
-    snow_release(context, runs);
-    return made ? SNOW_OK : SNOW_NO_MEMORY;
+    size_t room = transfer->opacity_count + 1;
+    place_run *runs;
+    SNOW_TRY(snow_reserve(context, &coder->places, &coder->places_capacity, 0,
+                          room * sizeof *runs));
+    SNOW_TRY(snow_reserve(context, &coder->native_runs,
+                          &coder->native_runs_capacity, 0,
+                          room * sizeof *coder->native_runs));
+    runs = coder->places;
+    store_native_runs(&s, runs, survey_all(&s, runs), coder);
+    return SNOW_OK;
 }
 
 /* 8- and 16-bit types: the runs as codes, and the table of all codes. */
 static snow_status make_table(snow_context *context, snow_coder *coder) {
-    coder->keep = snow_allocate_clear(context, coder->codes);
-    if (!coder->keep)
-        return SNOW_NO_MEMORY;
+    SNOW_TRY(snow_reserve(context, &coder->keep, &coder->keep_capacity, 0,
+                          coder->codes));
+    memset(coder->keep, 0, coder->codes);
     bool fits = coder->native_run_count <= SNOW_KEPT_RUNS;
     coder->run_count = fits ? (int)coder->native_run_count : -1;
     for (size_t n = 0; n < coder->native_run_count; n++) {
@@ -208,11 +209,9 @@ static size_t merge_values(const snow_transfer *transfer, double *stops) {
 static snow_status make_stops(snow_context *context,
                               const snow_transfer *transfer,
                               snow_coder *coder) {
-    uint64_t points =
-        (uint64_t)transfer->color_count + (uint64_t)transfer->opacity_count;
-    coder->stops = snow_allocate_array(context, points, sizeof(double));
-    if (!coder->stops)
-        return SNOW_NO_MEMORY;
+    size_t points = transfer->color_count + transfer->opacity_count;
+    SNOW_TRY(snow_reserve(context, &coder->stops, &coder->stops_capacity, 0,
+                          points * sizeof *coder->stops));
     size_t count = merge_values(transfer, coder->stops);
     if (count > STRETCHES_MOST) {
         size_t step = (count - 1) / STRETCHES_MOST + 1, kept = 0;
@@ -282,39 +281,30 @@ static int32_t lowest_of(snow_type type) {
     return type == SNOW_INT8 ? INT8_MIN : type == SNOW_INT16 ? INT16_MIN : 0;
 }
 
-snow_status snow_coder_init(snow_context *context, const snow_volume *volume,
+snow_status snow_coder_make(snow_context *context, const snow_volume *volume,
                             const snow_transfer *transfer, double threshold,
-                            snow_coder *out) {
+                            snow_coder *coder) {
     const snow_volume_info *info = &volume->info;
-    bool wide = is_wide(info->type);
-    snow_coder coder = {
-        .type = info->type,
-        .slope = info->slope,
-        .intercept = info->intercept,
-        .threshold = threshold,
-        .bytes = snow_type_size(info->type) == 1 ? 1 : 2,
-        .codes = snow_type_size(info->type) == 1 ? 256 : 65536,
-        .lowest = lowest_of(info->type),
-    };
-    snow_status status = find_native_runs(context, transfer, &coder);
-    if (status == SNOW_OK)
-        status = wide ? make_stops(context, transfer, &coder)
-                      : make_table(context, &coder);
-    if (status != SNOW_OK) {
-        snow_coder_fini(context, &coder);
-        return status;
-    }
-    *out = coder;
-    return SNOW_OK;
+    coder->type = info->type;
+    coder->slope = info->slope;
+    coder->intercept = info->intercept;
+    coder->threshold = threshold;
+    coder->bytes = snow_type_size(info->type) == 1 ? 1 : 2;
+    coder->codes = snow_type_size(info->type) == 1 ? 256 : 65536;
+    coder->lowest = lowest_of(info->type);
+    coder->run_count = 0;
+    coder->stop_count = coder->stretch_codes = 0;
+    SNOW_TRY(find_native_runs(context, transfer, coder));
+    return is_wide(info->type) ? make_stops(context, transfer, coder)
+                               : make_table(context, coder);
 }
 
 void snow_coder_fini(snow_context *context, snow_coder *coder) {
     snow_release(context, coder->keep);
     snow_release(context, coder->native_runs);
+    snow_release(context, coder->places);
     snow_release(context, coder->stops);
-    coder->keep = NULL;
-    coder->native_runs = NULL;
-    coder->stops = NULL;
+    *coder = (snow_coder){.type = SNOW_TYPE_NONE};
 }
 
 bool snow_coder_same(const snow_coder *a, const snow_coder *b) {

@@ -51,10 +51,15 @@ typedef struct snow_coder {
      * how many codes lie between two of them.  Code 0 is below the first. */
     double *stops;
     size_t stop_count, stretch_codes;
+    void *places; /* where runs were looked for */
+    size_t keep_capacity, native_runs_capacity, places_capacity,
+        stops_capacity; /* bytes */
 } snow_coder;
 
-/* Errors: SNOW_NO_MEMORY.  Free with snow_coder_fini. */
-snow_status snow_coder_init(snow_context *context, const snow_volume *volume,
+/* Makes a coder, which was all zeros or made before; its memory is kept.
+ * Errors: SNOW_NO_MEMORY; then it is good for making and freeing only.  Free
+ * with snow_coder_fini. */
+snow_status snow_coder_make(snow_context *context, const snow_volume *volume,
                             const snow_transfer *transfer, double threshold,
                             snow_coder *out);
 void snow_coder_fini(snow_context *context, snow_coder *coder);

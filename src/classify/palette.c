@@ -106,9 +106,12 @@ static snow_status take_key(snow_context *context, const snow_coder *coder,
     size_t stops = coder->stop_count * sizeof *coder->stops;
     size_t colors = transfer->color_count * sizeof *transfer->colors;
     size_t opacities = transfer->opacity_count * sizeof *transfer->opacities;
+    size_t bytes = sizeof head + stops + colors + opacities;
+    /* Both at once, so that a second picture takes no memory. */
+    SNOW_TRY(snow_reserve(context, &palette->key, &palette->key_capacity,
+                          palette->key_count * sizeof *palette->key, bytes));
     SNOW_TRY(snow_reserve(context, &palette->next_key,
-                          &palette->next_key_capacity, 0,
-                          sizeof head + stops + colors + opacities));
+                          &palette->next_key_capacity, 0, bytes));
     double *key = palette->next_key;
     size_t count = add_numbers(key, 0, head, sizeof head);
     if (stops)

@@ -24,17 +24,24 @@ TILE_NAME(_single)(const float *samples, const V(vec) * weights, const int taps,
     }
 }
 
-/* Along u, two pixels a column, each phase with its own lead and weights. */
+/* Along u, two pixels a column, each phase with its own weights; the odd one
+ * begins `lead` voxels later.  A vector of voxels is loaded once for both:
+ * loads are what the loop waits for. */
 TARGET static inline __attribute__((always_inline)) void
-TILE_NAME(_double)(const float *samples, const float *late,
-                   const V(vec) * weights, const int taps, float *pixels) {
+TILE_NAME(_double)(const float *samples, const V(vec) * weights, const int taps,
+                   const int lead, float *pixels) {
     for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS; at += LANES) {
-        V(vec) a = V(mul)(weights[0], V(load)(samples + at));
-        V(vec) b = V(mul)(weights[taps], V(load)(late + at));
-        for (int m = 1; m < taps; m++) {
-            int next = at + m * TILE_CHANNELS;
-            a = V(fma)(weights[m], V(load)(samples + next), a);
-            b = V(fma)(weights[taps + m], V(load)(late + next), b);
+        V(vec) a = V(set1)(0), b = a;
+        for (int m = 0; m < taps + lead; m++) {
+            V(vec) voxels = V(load)(samples + at + m * TILE_CHANNELS);
+            if (m == 0)
+                a = V(mul)(weights[0], voxels);
+            else if (m < taps)
+                a = V(fma)(weights[m], voxels, a);
+            if (m == lead)
+                b = V(mul)(weights[taps], voxels);
+            else if (m > lead)
+                b = V(fma)(weights[taps + m - lead], voxels, b);
         }
         TILE_WEAVE(a, b, pixels + 2 * at);
     }
@@ -76,16 +83,51 @@ TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
     return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
 }
 
+/* Two lines of a cell at once, which share most of their rows; the second
+ * begins `lead` rows later. */
+TARGET static inline __attribute__((always_inline)) bool
+TILE_NAME(_lines)(float *line, float *below, const float *const *rows,
+                  const V(vec) * weights, const int taps, const int lead,
+                  const int phases) {
+    const float *row[SNOW_TAPS_MOST + 1];
+    V(vec) least = V(set1)(0);
+    for (int m = 0; m < taps + lead; m++)
+        row[m] = rows[m];
+    for (int at = 0; at < phases * SNOW_TILE_COLUMNS * TILE_CHANNELS;
+         at += LANES) {
+        V(vec) front = V(load)(line + at), next = V(load)(below + at);
+        V(vec) a = V(set1)(0), b = a;
+        for (int m = 0; m < taps + lead; m++) {
+            V(vec) pixels = V(load)(row[m] + at);
+            if (m == 0)
+                a = V(mul)(weights[0], pixels);
+            else if (m < taps)
+                a = V(fma)(weights[m], pixels, a);
+            if (m == lead)
+                b = V(mul)(weights[taps], pixels);
+            else if (m > lead)
+                b = V(fma)(weights[taps + m - lead], pixels, b);
+        }
+        front = V(fnma)(TILE_ALPHA(front), a, front);
+        next = V(fnma)(TILE_ALPHA(next), b, next);
+        V(store)(line + at, front);
+        V(store)(below + at, next);
+        least = V(min)(least, V(min)(front, next));
+    }
+    return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
+}
+
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_filter)(const snow_tile *t, int row, const V(vec) * weights,
-                   const int taps, const int phases, float *pixels) {
+                   const int taps, const int phases, const int lead,
+                   float *pixels) {
     const float *samples = t->samples + (size_t)row * t->window;
     if (phases == 2)
-        TILE_NAME(_double)
-    (samples, samples + t->u->lead[1] * TILE_CHANNELS, weights, taps, pixels);
+        TILE_NAME(_double)(samples, weights, taps, lead, pixels);
     else if (t->lattice_u->stride == 1)
         TILE_NAME(_single)(samples, weights, taps, pixels);
-    else TILE_NAME(_strided)(samples, t->u, taps, t->lattice_u->stride, pixels);
+    else
+        TILE_NAME(_strided)(samples, t->u, taps, t->lattice_u->stride, pixels);
 }
 
 /* Weights in all lanes, phase after phase. */
@@ -99,9 +141,9 @@ TILE_NAME(_weights)(const snow_comb *comb, int phases, const int taps,
 
 TARGET static inline __attribute__((always_inline)) uint64_t
 TILE_NAME(_cells)(const snow_tile *t, const int taps_u, const int taps_v,
-                  const int phases_u, const int phases_v) {
-    const int stride = t->lattice_v->stride;
-    const int reach = taps_v + (phases_v == 2 ? t->v->lead[1] : 0);
+                  const int phases_u, const int phases_v, const int lead_u,
+                  const int lead_v) {
+    const int stride = t->lattice_v->stride, reach = taps_v + lead_v;
     const float *rows[SNOW_TILE_ROWS];
     V(vec) along_u[2 * SNOW_TAPS_MOST], along_v[2 * SNOW_TAPS_MOST];
     uint64_t finished = 0;
@@ -110,22 +152,22 @@ TILE_NAME(_cells)(const snow_tile *t, const int taps_u, const int taps_v,
     TILE_NAME(_weights)(t->v, phases_v, taps_v, along_v);
     for (uint64_t cells = t->wanted; cells; cells &= cells - 1) {
         int cell = __builtin_ctzll(cells), first = cell * stride;
-        bool seen = false;
         for (next = next > first ? next : first; next < first + reach; next++) {
             float *filtered =
                 t->ring + next * 2 * SNOW_TILE_COLUMNS * TILE_CHANNELS;
             rows[next] = t->zero;
             if (t->held >> next & 1) {
                 TILE_NAME(_filter)
-                (t, next, along_u, taps_u, phases_u, filtered);
+                (t, next, along_u, taps_u, phases_u, lead_u, filtered);
                 rows[next] = filtered;
             }
         }
-        for (int phase = 0; phase < phases_v; phase++)
-            seen |= TILE_NAME(_line)(
-                t->pixels + (size_t)(cell * phases_v + phase) * t->line,
-                rows + first + t->v->lead[phase], along_v + phase * taps_v,
-                taps_v, phases_u);
+        float *line = t->pixels + (size_t)(cell * phases_v) * t->line;
+        bool seen = phases_v == 2
+                        ? TILE_NAME(_lines)(line, line + t->line, rows + first,
+                                            along_v, taps_v, lead_v, phases_u)
+                        : TILE_NAME(_line)(line, rows + first, along_v, taps_v,
+                                           phases_u);
         if (!seen)
             finished |= cells & -cells;
     }
@@ -136,15 +178,21 @@ TILE_NAME(_cells)(const snow_tile *t, const int taps_u, const int taps_v,
 TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
     const int u = t->taps_u, v = t->taps_v;
     const int pu = t->lattice_u->phases, pv = t->lattice_v->phases;
-    if (u == 4 && v == 4 && pu == 2 && pv == 2)
-        return TILE_NAME(_cells)(t, 4, 4, 2, 2);
+    const int lu = t->u->lead[1], lv = t->v->lead[1];
+    if (u == 4 && v == 4 && pu == 2 && pv == 2) {
+        if (lu)
+            return lv ? TILE_NAME(_cells)(t, 4, 4, 2, 2, 1, 1)
+                      : TILE_NAME(_cells)(t, 4, 4, 2, 2, 1, 0);
+        return lv ? TILE_NAME(_cells)(t, 4, 4, 2, 2, 0, 1)
+                  : TILE_NAME(_cells)(t, 4, 4, 2, 2, 0, 0);
+    }
     if (u == 4 && v == 4 && pu == 1 && pv == 1)
-        return TILE_NAME(_cells)(t, 4, 4, 1, 1);
+        return TILE_NAME(_cells)(t, 4, 4, 1, 1, 0, 0);
     if (u == 2 && v == 2 && pu == 1 && pv == 1)
-        return TILE_NAME(_cells)(t, 2, 2, 1, 1);
+        return TILE_NAME(_cells)(t, 2, 2, 1, 1, 0, 0);
     if (u == 6 && v == 6 && pu == 1 && pv == 1)
-        return TILE_NAME(_cells)(t, 6, 6, 1, 1);
-    return TILE_NAME(_cells)(t, u, v, pu, pv);
+        return TILE_NAME(_cells)(t, 6, 6, 1, 1, 0, 0);
+    return TILE_NAME(_cells)(t, u, v, pu, pv, lu, lv);
 }
 
 #undef TILE_CHANNELS
