@@ -45,7 +45,7 @@ static void each_view_stands_where_its_name_says(void **state) {
         assert_int_equal(view.width, 512);
         assert_int_equal(view.height, 512);
         assert_true(view.azimuth == 0 && view.elevation == 0 &&
-                    view.roll == 0 && view.zoom == 1);
+                    view.roll == 0 && view.zoom == 1 && view.fov == 0);
     }
     snow_context_free(context);
 }

@@ -1,6 +1,7 @@
 /* tests/test_perspective.c - pictures in perspective, by the reference's rules
  * and against the reference. */
 #include "support_model.h"
+#include "transform/eye.h"
 
 #include <math.h>
 #include <string.h>
@@ -227,6 +228,11 @@ static void slices_on_both_sides_of_the_eye(void **state) {
         scene.view.height = 18;
         model_turn(&scene, n < 4 ? 44 : 136, 2 * n, 10 * n, 1);
         scene.view.fov = 110 + n;
+        snow_placement p;
+        assert_int_equal(
+            snow_placement_make(stage.context, &scene.info, &scene.view, &p),
+            SNOW_OK);
+        assert_true(p.eye.at[2] > 0 && p.eye.at[2] < 30);
         scene.settings.method = (snow_method)(SNOW_METHOD_TESTED + n % 2);
         model_check(&stage, &scene, BOUND, &tally);
         model_free(&scene);

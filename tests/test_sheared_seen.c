@@ -464,6 +464,58 @@ static void threads_encodings_and_levels_do_not_matter(void **state) {
     model_close(&stage);
 }
 
+/* Counts what is asked of it. */
+static void *allocate_counted(void *user, size_t bytes) {
+    ++*(long *)user;
+    return malloc(bytes);
+}
+
+static void release(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+static void a_second_picture_takes_no_memory_but_its_own(void **state) {
+    (void)state;
+    for (int n = 0; n < 6; n++) {
+        long count = 0, before = 0;
+        snow_allocator functions = {allocate_counted, release, &count};
+        model_stage stage;
+        snow_volume *volume;
+        snow_transfer *transfer;
+        assert_int_equal(snow_context_new(&functions, &stage.context), SNOW_OK);
+        assert_int_equal(snow_frame_new(stage.context, &stage.frame), SNOW_OK);
+        reference_scene scene = model_scene((int64_t[]){40, 30, 50}, SNOW_UINT8,
+                                            n % 2 == 0, MODEL_OBLIQUE, 1);
+        stand_at(&scene, (size_t)n + 4, 1);
+        scene.view.fov = 40;
+        scene.settings.method = SNOW_METHOD_SHEARED;
+        scene.settings.quality = (snow_quality)(n / 2);
+        scene.settings.threads = n % 2 ? 1 : 3;
+        assert_int_equal(snow_volume_share(stage.context, &scene.info,
+                                           scene.voxels, &volume),
+                         SNOW_OK);
+        assert_int_equal(snow_transfer_new(stage.context, scene.colors,
+                                           scene.color_count, scene.opacities,
+                                           scene.opacity_count, &transfer),
+                         SNOW_OK);
+        for (int i = 0; i < 2; i++) {
+            snow_image *image;
+            before = count;
+            assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
+                                               &scene.view, &scene.settings,
+                                               &image),
+                             SNOW_OK);
+            snow_image_free(image);
+        }
+        assert_int_equal(count - before, 2); /* the image and its pixels */
+        snow_transfer_free(transfer);
+        snow_volume_close(volume);
+        model_free(&scene);
+        model_close(&stage);
+    }
+}
+
 static void an_eye_between_slices_is_left_to_footprints(void **state) {
     (void)state;
     model_stage stage = model_open();
@@ -521,6 +573,7 @@ int main(void) {
         cmocka_unit_test(pictures_are_those_of_the_method_in_double),
         cmocka_unit_test(smooth_scenes_are_near_the_exact_picture),
         cmocka_unit_test(threads_encodings_and_levels_do_not_matter),
+        cmocka_unit_test(a_second_picture_takes_no_memory_but_its_own),
         cmocka_unit_test(an_eye_between_slices_is_left_to_footprints),
         cmocka_unit_test(blends_leave_out_what_cannot_be_drawn),
     };
