@@ -60,7 +60,8 @@ double snow_eye_path(const snow_eye *eye, double u, double v, double slice);
 
 /* The n-th of `count` slices from `first` on, in an order in which no ray meets
  * one before another that is nearer: away from the eye on its lower side, then
- * on the upper one. */
+ * on the upper one.  Where the eye's plane cuts the volume no order of whole
+ * slabs is that of all rays, so that such views are not split into slabs. */
 int64_t snow_eye_nth_slice(const snow_eye *eye, int64_t first, int64_t count,
                            int64_t n);
 
