@@ -1,6 +1,6 @@
 /* tests/support_sheared_words.tmpl.h - every word of simd/select.h on sixteen
- * floats, for one level: what words do lane by lane, pixel by pixel and entry by
- * entry does not depend on how many floats a vector holds. */
+ * floats, for one level: what words do lane by lane, pixel by pixel and entry
+ * by entry does not depend on how many floats a vector holds. */
 
 TARGET static void NAME(words)(const word_input *in, word_output *out) {
     for (int at = 0; at < 16; at += LANES) {

@@ -208,8 +208,7 @@ static void rows_longer_than_a_crs_column_can_say_are_cut(void **state) {
 static void auto_goes_by_density_and_run_length(void **state) {
     (void)state;
     assert_int_equal(snow_encoding_choose(1000, 10, 1), SNOW_ENCODING_CRS);
-    assert_int_equal(snow_encoding_choose(1000, 400, 4),
-                     SNOW_ENCODING_BITMAP);
+    assert_int_equal(snow_encoding_choose(1000, 400, 4), SNOW_ENCODING_BITMAP);
     assert_int_equal(snow_encoding_choose(1000, 16, 1), SNOW_ENCODING_RLE);
     assert_int_equal(snow_encoding_choose(1000, 400, 200),
                      SNOW_ENCODING_BITMAP);

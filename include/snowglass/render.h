@@ -18,10 +18,10 @@ typedef struct snow_frame snow_frame;
 /* How voxels reach the picture. */
 typedef enum snow_method {
     SNOW_METHOD_AUTO = 0,
-    SNOW_METHOD_ORIGINAL, /* every voxel, no sparse matrix, whatever the
-                              threshold: the baseline */
-    SNOW_METHOD_TESTED,   /* as original, but each voxel's opacity is tested
-                             against the threshold first: the honest one */
+    SNOW_METHOD_ORIGINAL,  /* every voxel, no sparse matrix, whatever the
+                               threshold: the baseline */
+    SNOW_METHOD_TESTED,    /* as original, but each voxel's opacity is tested
+                              against the threshold first: the honest one */
     SNOW_METHOD_FOOTPRINT, /* interesting voxels only, through an encoding;
                               each onto the image itself: the exact one */
     SNOW_METHOD_SHEARED    /* interesting voxels only; slices are splatted and

@@ -23,8 +23,9 @@
 
 #define SNOW_TILE_COLUMNS 16
 #define SNOW_TILE_CELLS 32
-#define SNOW_TILE_ROWS 64 /* of voxels that the cells can need: a mask's bits \
-                           */
+#define SNOW_TILE_ROWS                                     \
+    64 /* of voxels that the cells can need: a mask's bits \
+        */
 
 /* What may still shine through where a cell is given up: half a step of an
  * 8-bit picture.  All that lies behind changes it by less. */

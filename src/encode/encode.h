@@ -116,9 +116,10 @@ extern const snow_scheme snow_scheme_rle;
 const snow_scheme *snow_scheme_of(snow_encoding encoding);
 
 /* The encoding that is read fastest, or else takes the fewest bytes: the
- * bit-map, whose cost does not depend on the data; below 5 % interesting voxels,
- * where it must look at what is empty, RLE when runs are long (16 voxels and
- * more), for a run takes fewer bytes than a few columns, else CRS. */
+ * bit-map, whose cost does not depend on the data; below 5 % interesting
+ * voxels, where it must look at what is empty, RLE when runs are long (16
+ * voxels and more), for a run takes fewer bytes than a few columns, else CRS.
+ */
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs);
 

@@ -105,9 +105,8 @@ LOCAL(cubic)(const snow_dense *d, const snow_places *p, snow_run run, int taps,
 #endif
     for (; n < run.end; n++)
         LOCAL(pixel)
-        (samples + p->window[n], stride, p->u + 4 * (size_t)n,
-         p->v + 4 * (size_t)n, taps, blocks,
-         pixels + (size_t)n * GATHER_CHANNELS);
+    (samples + p->window[n], stride, p->u + 4 * (size_t)n, p->v + 4 * (size_t)n,
+     taps, blocks, pixels + (size_t)n * GATHER_CHANNELS);
 }
 
 /* A run of pixels, the usual numbers of taps as constants. */
