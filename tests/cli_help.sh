@@ -52,6 +52,12 @@ for key in version formats phantoms presets colormaps kernels encodings \
     methods isa threads mpi memory; do
     prints "^$key +[^ ]"
 done
+# Processors that the process may not use are not counted.
+if command -v taskset >/dev/null; then
+    first=$(taskset -cp $$ | sed 's/.*: *\([0-9]*\).*/\1/')
+    run 0 "doctor on one processor" taskset -c "$first" "$TOOL" doctor
+    prints "^threads +1$"
+fi
 run 0 "doctor --json" "$TOOL" doctor --json
 prints '"encodings": \["crs", "bitmap", "rle"\]'
 prints '"formats": \[.*"nrrd".*\]'
