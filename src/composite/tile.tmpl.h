@@ -174,25 +174,33 @@ TILE_NAME(_cells)(const snow_tile *t, const int taps_u, const int taps_v,
     return finished;
 }
 
+/* Two phases on both axes: leads are constants, so that each case unrolls. */
+TARGET static inline __attribute__((always_inline)) uint64_t
+TILE_NAME(_fine)(const snow_tile *t, const int taps) {
+    const int u = t->u->lead[1], v = t->v->lead[1];
+    if (u)
+        return v ? TILE_NAME(_cells)(t, taps, taps, 2, 2, 1, 1)
+                 : TILE_NAME(_cells)(t, taps, taps, 2, 2, 1, 0);
+    return v ? TILE_NAME(_cells)(t, taps, taps, 2, 2, 0, 1)
+             : TILE_NAME(_cells)(t, taps, taps, 2, 2, 0, 0);
+}
+
 /* The cases that pictures are made of, unrolled; and any other. */
 TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
-    const int u = t->taps_u, v = t->taps_v;
+    const int taps = t->taps_u == t->taps_v ? t->taps_u : 0;
     const int pu = t->lattice_u->phases, pv = t->lattice_v->phases;
-    const int lu = t->u->lead[1], lv = t->v->lead[1];
-    if (u == 4 && v == 4 && pu == 2 && pv == 2) {
-        if (lu)
-            return lv ? TILE_NAME(_cells)(t, 4, 4, 2, 2, 1, 1)
-                      : TILE_NAME(_cells)(t, 4, 4, 2, 2, 1, 0);
-        return lv ? TILE_NAME(_cells)(t, 4, 4, 2, 2, 0, 1)
-                  : TILE_NAME(_cells)(t, 4, 4, 2, 2, 0, 0);
-    }
-    if (u == 4 && v == 4 && pu == 1 && pv == 1)
-        return TILE_NAME(_cells)(t, 4, 4, 1, 1, 0, 0);
-    if (u == 2 && v == 2 && pu == 1 && pv == 1)
+    if (pu == 2 && pv == 2 && taps == 4)
+        return TILE_NAME(_fine)(t, 4);
+    if (pu == 2 && pv == 2 && taps == 6)
+        return TILE_NAME(_fine)(t, 6);
+    if (pu == 1 && pv == 1 && taps == 2)
         return TILE_NAME(_cells)(t, 2, 2, 1, 1, 0, 0);
-    if (u == 6 && v == 6 && pu == 1 && pv == 1)
+    if (pu == 1 && pv == 1 && taps == 4)
+        return TILE_NAME(_cells)(t, 4, 4, 1, 1, 0, 0);
+    if (pu == 1 && pv == 1 && taps == 6)
         return TILE_NAME(_cells)(t, 6, 6, 1, 1, 0, 0);
-    return TILE_NAME(_cells)(t, u, v, pu, pv, lu, lv);
+    return TILE_NAME(_cells)(t, t->taps_u, t->taps_v, pu, pv, t->u->lead[1],
+                             t->v->lead[1]);
 }
 
 #undef TILE_CHANNELS
