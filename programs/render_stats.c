@@ -107,7 +107,7 @@ json_t *stats_json(const render_report *report) {
     json_object_set_new(o, "method",
                         json_string(snow_method_name(stats->method)));
     json_object_set_new(o, "kernel",
-                        json_string(snow_kernel_name(settings->kernel)));
+                        json_string(snow_kernel_name(stats->kernel)));
     json_object_set_new(o, "footprint", json_integer(stats->footprint));
     json_object_set_new(o, "threads", json_integer(stats->threads));
     json_object_set_new(o, "ranks", json_integer(1));

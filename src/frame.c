@@ -50,36 +50,15 @@ const snow_stats *snow_frame_stats(const snow_frame *frame) {
     return &frame->stats;
 }
 
-/* Leaves to footprints what the sheared method cannot make: along the best axis
- * or, in high quality, another that the picture may be blended of. */
-static snow_status check_sheared(snow_job *job, const snow_view *view) {
-    const snow_volume_info *info = &job->volume->info;
-    snow_settings *settings = &job->settings;
-    bool fits = snow_sheared_fits(&job->placement, settings);
-    double shares[3] = {0};
-    if (settings->quality == SNOW_QUALITY_HIGH)
-        snow_placement_shares(info, &job->placement, shares);
-    for (int axis = 0; axis < 3; axis++) {
-        snow_placement placement;
-        if (shares[axis] == 0)
-            continue;
-        SNOW_TRY(snow_placement_make_along(job->context, info, view, axis,
-                                           &placement));
-        fits = fits && snow_sheared_fits(&placement, settings);
-    }
-    if (!fits)
-        settings->method = SNOW_METHOD_FOOTPRINT;
-    return SNOW_OK;
-}
-
 /* Lines 01 and 02 for every method: settings, camera, slab. */
 static snow_status place(snow_job *job, const snow_view *view, int parts,
                          int part) {
     SNOW_TRY(snow_settings_resolve(job->context, job->volume, &job->settings));
     SNOW_TRY(snow_placement_make(job->context, &job->volume->info, view,
                                  &job->placement));
-    if (job->settings.method == SNOW_METHOD_SHEARED)
-        SNOW_TRY(check_sheared(job, view));
+    if (job->settings.method == SNOW_METHOD_SHEARED &&
+        !snow_sheared_fits(&job->placement, &job->settings))
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
     job->slab = snow_slab_equal(job->placement.slices, parts, part);
     return SNOW_OK;
 }
@@ -176,8 +155,11 @@ static snow_status fill_stats(snow_frame *frame, const snow_job *job) {
     stats->threads = job->settings.threads;
     stats->isa = job->settings.isa;
     stats->quality = job->settings.quality;
+    stats->kernel = job->settings.kernel;
     stats->voxels =
         job->placement.columns * job->placement.rows * job->slab.count;
+    if (stats->method == SNOW_METHOD_FOOTPRINT)
+        stats->encoded = 1; /* for every picture */
     if (stats->method != SNOW_METHOD_SHEARED && job->placement.perspective)
         return SNOW_OK; /* snow_perspective_render has counted */
     if (stats->method != SNOW_METHOD_SHEARED)

@@ -127,6 +127,12 @@ run 0 "the original method in perspective" \
     render -q -o eye6.npy --perspective --method original
 run 0 "is the exact picture" "$TOOL" compare eye5.npy eye6.npy
 
+# The smallest volumes there are; the sanitizers look on.
+for dims in 1x1x1 1x1x100 1x100x1 100x1x1; do
+    run 0 "a volume of $dims" \
+        "$TOOL" -q phantom:engine --dims $dims -s 32x32 -o tiny.npy -y
+done
+
 # Streams and formats.
 run 0 "the picture to standard output" render -q -o -
 check "is a PNG" is_png "$OUT"

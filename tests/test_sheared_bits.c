@@ -2,6 +2,8 @@
  * (threads, encodings, vector levels, what a frame did before), and when a
  * frame encodes anew. */
 #include <math.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "frame.h"
 #include "image/image.h"
@@ -432,6 +434,42 @@ static void a_second_frame_allocates_its_image_only(void **state) {
     }
 }
 
+/* A child of fork() has none of the threads that its parent made. */
+static void a_child_of_fork_draws_the_same_picture(void **state) {
+    (void)state;
+    studio s = open_studio(SNOW_UINT8, false, 3);
+    snow_image *image = shoot(&s);
+    uint64_t sum = snow_image_checksum(image);
+    pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        alarm(20);
+        snow_image *again = shoot(&s);
+        _exit(snow_image_checksum(again) == sum ? 0 : 1);
+    }
+    int status = -1;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    snow_image_free(image);
+    close_studio(&s);
+}
+
+/* Slices between are part of the encoding, not of the volume. */
+static void high_quality_counts_the_voxels_of_the_volume(void **state) {
+    (void)state;
+    studio s = open_studio(SNOW_UINT8, false, 4);
+    snow_image *image = shoot(&s);
+    int64_t interesting = snow_frame_stats(s.frame)->interesting;
+    double ratio = snow_frame_stats(s.frame)->sparse_ratio;
+    snow_image_free(image);
+    s.scene.settings.quality = SNOW_QUALITY_HIGH;
+    image = shoot(&s);
+    assert_int_equal(snow_frame_stats(s.frame)->interesting, interesting);
+    assert_true(snow_frame_stats(s.frame)->sparse_ratio == ratio);
+    snow_image_free(image);
+    close_studio(&s);
+}
+
 /* With an argument: the tests of that name, which may hold a *. */
 int main(int argc, char **argv) {
     if (argc > 1)
@@ -445,6 +483,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(another_volume_is_encoded_anew),
         cmocka_unit_test(slabs_are_encoded_each_for_itself),
         cmocka_unit_test(a_second_frame_allocates_its_image_only),
+        cmocka_unit_test(a_child_of_fork_draws_the_same_picture),
+        cmocka_unit_test(high_quality_counts_the_voxels_of_the_volume),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

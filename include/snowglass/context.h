@@ -3,7 +3,9 @@
  * The library has no global state: the allocator, the last error message and
  * the count of bytes live in a context that the caller makes first and frees
  * last.  A context and all objects made with it belong to one thread at a
- * time; different contexts are independent. */
+ * time; different contexts are independent.  A context keeps the threads that
+ * render (they sleep between pictures) until it is freed; after fork() the
+ * child makes its own. */
 #ifndef SNOWGLASS_CONTEXT_H
 #define SNOWGLASS_CONTEXT_H
 
@@ -18,7 +20,8 @@ extern "C" {
 typedef struct snow_context snow_context;
 
 /* The caller's allocator.  `allocate` returns memory aligned as malloc's, or
- * NULL; `release` accepts what `allocate` returned, never NULL. */
+ * NULL; `release` accepts what `allocate` returned, never NULL.  Neither is
+ * called by two threads at once, but threads that render call them too. */
 typedef struct snow_allocator {
     void *(*allocate)(void *user, size_t bytes);
     void (*release)(void *user, void *block);

@@ -47,9 +47,11 @@ typedef enum snow_kernel {
 
 /* How much work the sheared method puts into a picture. */
 typedef enum snow_quality {
-    SNOW_QUALITY_NORMAL = 0, /* two intermediate pixels a voxel */
+    SNOW_QUALITY_NORMAL = 0, /* two intermediate pixels a voxel, one where
+                                pixels are wide */
     SNOW_QUALITY_DRAFT,      /* one, and the tent kernel of 2 voxels in place of
-                                the default one: while a view is turned */
+                                the default one, also where a picture is left
+                                to footprints: while a view is turned */
     SNOW_QUALITY_HIGH        /* as normal, with a slice between each two, and
                                 both axes where the slice axis switches */
 } snow_quality;
@@ -109,6 +111,7 @@ typedef struct snow_stats {
     int slice_axis;           /* 0 x, 1 y, 2 z */
     int threads;              /* as chosen */
     snow_isa isa;             /* as chosen */
+    snow_kernel kernel;       /* as chosen */
     snow_quality quality;     /* as chosen; it matters to sheared only */
     int encoded;              /* 1: the volume was encoded for this picture, 0:
                                  the encoding of an earlier one was used, or

@@ -135,7 +135,7 @@ static block_header *header_of(void *block) {
 
 /* A block from the caller's allocator, which need not be safe for threads. */
 static void *allocate_counted(snow_context *context, size_t bytes,
-                              size_t with_header) {
+                              size_t with_header, uint64_t *held) {
     pthread_mutex_lock(&context->lock);
     void *raw =
         context->allocator.allocate(context->allocator.user, with_header);
@@ -143,20 +143,22 @@ static void *allocate_counted(snow_context *context, size_t bytes,
         context->bytes += bytes;
     if (context->bytes > context->peak)
         context->peak = context->bytes;
+    *held = context->bytes;
     pthread_mutex_unlock(&context->lock);
     return raw;
 }
 
 void *snow_allocate(snow_context *context, size_t bytes) {
     size_t extra = 2 * ALIGNMENT;
+    uint64_t held = 0;
     char *raw = NULL;
     if (bytes <= SIZE_MAX - extra)
-        raw = allocate_counted(context, bytes, bytes + extra);
+        raw = allocate_counted(context, bytes, bytes + extra, &held);
     if (!raw) {
         snow_fail(context, SNOW_NO_MEMORY,
                   "no memory for %zu bytes more (%llu are held); close other "
                   "programs or take a smaller volume",
-                  bytes, (unsigned long long)context->bytes);
+                  bytes, (unsigned long long)held);
         return NULL;
     }
     char *block = raw + extra - (uintptr_t)raw % ALIGNMENT;

@@ -8,6 +8,7 @@
 
 #include <stdatomic.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct snow_pool snow_pool;
 
@@ -20,6 +21,7 @@ typedef struct pool_thread {
 } pool_thread;
 
 struct snow_pool {
+    pid_t owner; /* the process that the threads are of */
     pthread_mutex_t lock;
     pthread_cond_t wake, rest;
     pool_thread *threads; /* worker n is threads[n - 1] */
@@ -80,8 +82,14 @@ static void *live(void *argument) {
     return NULL;
 }
 
+/* A child of fork() has the pool's memory but not its threads, and perhaps a
+ * lock that nobody will ever open: it leaves them alone. */
+static bool is_mine(const snow_pool *pool) {
+    return pool->owner == getpid();
+}
+
 static snow_pool *pool_of(snow_context *context) {
-    if (context->pool)
+    if (context->pool && is_mine(context->pool))
         return context->pool;
     snow_pool *pool = take(context, sizeof *pool);
     if (!pool)
@@ -92,6 +100,7 @@ static snow_pool *pool_of(snow_context *context) {
         give_back(context, pool);
         return NULL;
     }
+    pool->owner = getpid();
     context->pool = pool;
     return pool;
 }
@@ -153,7 +162,7 @@ void snow_parallel(snow_context *context, int threads, int64_t items,
 
 void snow_pool_free(snow_context *context) {
     snow_pool *pool = context->pool;
-    if (!pool)
+    if (!pool || !is_mine(pool))
         return;
     pthread_mutex_lock(&pool->lock);
     pool->quit = true;

@@ -65,7 +65,7 @@ static snow_status reserve_ia(snow_sparse *band, bool with_normals) {
     size = sizeof *band->normals;
     return snow_reserve(band->context, &band->normals, &band->normals_capacity,
                         band->ia_voxels * size,
-                        (band->ia_voxels + voxels) * size);
+                        (band->ia_voxels + voxels) * size + SNOW_ROW_MARGIN);
 }
 
 /* Rows that lie end to end, and fill their masks, are one long row. */
