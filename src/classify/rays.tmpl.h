@@ -19,7 +19,7 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
     float exponents[SNOW_WINDOW_MOST + 33];
     const RAY_CODE *code = codes;
 #if RAY_SHADED
-    const float *shines = &gloss[-1].factor;
+    const float *shines = (const float *)(const void *)(gloss - 1);
     uint32_t normal[SNOW_WINDOW_MOST + 17];
 #else
     (void)normals, (void)gloss;

@@ -43,7 +43,7 @@ TARGET static void SAMPLE_NAME(shaded)(const void *codes,
                                        const snow_gloss *gloss,
                                        float *samples) {
     const float *entries = palette - SAMPLE_CHANNELS;
-    const float *shines = &gloss[-1].factor;
+    const float *shines = (const float *)(const void *)(gloss - 1);
     uint32_t entry[SNOW_WINDOW_MOST + 17], normal[SNOW_WINDOW_MOST + 17];
     const SAMPLE_CODE *code = codes;
     for (int at = 0; at < count; at += 16) {
