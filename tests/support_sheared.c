@@ -104,8 +104,8 @@ static bool fits_along(const reference_scene *scene, int axis) {
 
 /* What share the pictures along the three axes have: the best axis' own, and in
  * high quality those of others whose turn is less than 5 degrees away, falling
- * off linearly.  Parts of a picture come along one axis.  Returns the best
- * axis. */
+ * off linearly, but for axes with too many voxels in reach.  Parts of a picture
+ * come along one axis.  Returns the best axis. */
 static int share_axes(const reference_scene *scene, int parts,
                       double shares[3]) {
     reference_camera camera;
@@ -125,7 +125,8 @@ static int share_axes(const reference_scene *scene, int parts,
     for (int n = 0; n < 3; n++) {
         double away = (cosine[best] - cosine[n]) / sqrt(2);
         double share = 1 - away / sin(acos(-1.0) / 36);
-        shares[n] = n == best ? 1 : blended ? fmax(0, share) : 0;
+        bool counts = blended && share > 0 && fits_along(scene, n);
+        shares[n] = n == best ? 1 : counts ? share : 0;
         sum += shares[n];
     }
     for (int n = 0; n < 3; n++)
@@ -133,13 +134,8 @@ static int share_axes(const reference_scene *scene, int parts,
     return best;
 }
 
-bool sheared_fits(const reference_scene *scene, int parts) {
-    double shares[3];
-    share_axes(scene, parts, shares);
-    for (int n = 0; n < 3; n++)
-        if (shares[n] > 0 && !fits_along(scene, n))
-            return false;
-    return true;
+bool sheared_fits(const reference_scene *scene) {
+    return fits_along(scene, -1);
 }
 
 /* The pixels that the picture looks up, but for those without a voxel in

@@ -30,7 +30,7 @@ typedef struct sheared_facts {
 
 /* Whether the method can make the picture: a lattice pixel has no more than 30
  * voxels in reach along u or v. */
-bool sheared_fits(const reference_scene *scene, int parts);
+bool sheared_fits(const reference_scene *scene);
 
 /* The picture: width * height * 4 doubles, premultiplied.  Free with free(). */
 double *sheared_render(const reference_scene *scene,

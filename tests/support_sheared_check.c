@@ -83,7 +83,7 @@ void sheared_check(const model_stage *stage, const reference_scene *scene,
     options = options ? options : &whole;
     float *picture =
         sheared_picture(stage, scene, options->parts, options->part);
-    if (!sheared_fits(scene, options->parts)) {
+    if (!sheared_fits(scene)) {
         check_fallback(stage, scene, picture, tally);
         free(picture);
         return;
