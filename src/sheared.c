@@ -20,9 +20,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Lines of the picture that are warped as one item of work. */
-#define WARP_LINES 16
-
 /* One picture in the making. */
 typedef struct snow_pass {
     const snow_sheared_order *order;
@@ -54,9 +51,7 @@ typedef struct snow_pass {
 } snow_pass;
 
 /* Slices that pass over a tile together. */
-#ifndef SLICES_AT_ONCE
 #define SLICES_AT_ONCE 8
-#endif
 
 /* A slice of a band, decoded. */
 typedef struct slice_rows {
@@ -313,15 +308,6 @@ static void draw_slices(snow_stroke *stroke, int64_t first, int count) {
                 draw_tile(stroke, &slices[n], tile);
 }
 
-static bool any_alive(const snow_stroke *stroke) {
-    if (!stroke->finished)
-        return true;
-    for (int64_t tile = 0; tile < stroke->pass->tiles; tile++)
-        if (stroke->scratch.alive[tile])
-            return true;
-    return false;
-}
-
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
 static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
@@ -374,7 +360,9 @@ static void splat_band(void *job, int64_t item, int worker) {
     snow_tile_clear(stroke.pixels, pixels, pass->channels);
     for (int64_t tile = 0; tile < pass->tiles; tile++)
         stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.cells);
-    for (int64_t n = 0; n < pass->slices && any_alive(&stroke);
+    for (int64_t n = 0; n < pass->slices &&
+                        (!stroke.finished ||
+                         snow_any_alive(stroke.scratch.alive, pass->tiles));
          n += SLICES_AT_ONCE)
         draw_slices(&stroke, n,
                     pass->slices - n < SLICES_AT_ONCE ? (int)(pass->slices - n)
@@ -396,7 +384,7 @@ static void warp_lines(void *job, int64_t item, int worker) {
                         SNOW_TILE_COLUMNS * u->phases,
                         pass->cells * v->phases,
                         (int)pass->tiles};
-    int first = (int)item * WARP_LINES, last = first + WARP_LINES;
+    int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
     for (int y = first; y < last && y < view->height; y++)
         snow_warp_row(&plane, &pass->shear, pass->filter, pass->warp, y,
                       view->width,
@@ -556,7 +544,8 @@ static void draw(snow_pass *pass, snow_stats *stats) {
     pass->warp =
         snow_warp_of(pass->order->settings->isa, pass->filter, pass->channels);
     snow_parallel(pass->sheared->context, threads,
-                  (pass->order->view->height + WARP_LINES - 1) / WARP_LINES,
+                  (pass->order->view->height + SNOW_WARP_LINES - 1) /
+                      SNOW_WARP_LINES,
                   warp_lines, pass);
     stats->seconds_splat += splatted - mark;
     stats->seconds_warp += snow_seconds() - splatted;

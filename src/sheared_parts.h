@@ -8,6 +8,17 @@
 #include "encode/windows.h"
 #include "sheared.h"
 
+/* Lines of the picture that are warped as one item of work. */
+#define SNOW_WARP_LINES 16
+
+/* Whether something shines through any of a band's tiles. */
+static inline bool snow_any_alive(const uint64_t *alive, int64_t tiles) {
+    for (int64_t tile = 0; tile < tiles; tile++)
+        if (alive[tile])
+            return true;
+    return false;
+}
+
 /* What the bands in memory were encoded from. */
 typedef struct snow_encoded_key {
     uint64_t serial; /* of the volume; 0: nothing is encoded */

@@ -13,9 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Lines of the picture that are warped as one item of work. */
-#define WARP_LINES 16
-
 /* The farthest slice is at most this many times as far from the eye as the
  * nearest one: near slices have that many more pixels a voxel than they need.
  */
@@ -382,15 +379,6 @@ static void draw_slice(seen_stroke *stroke, int64_t index) {
             draw_tile(stroke, tile);
 }
 
-static bool any_alive(const seen_stroke *stroke) {
-    if (!stroke->finished)
-        return true;
-    for (int64_t tile = 0; tile < stroke->pass->tiles; tile++)
-        if (stroke->scratch.alive[tile])
-            return true;
-    return false;
-}
-
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
 static size_t lay_out(const seen_pass *pass, char *base, seen_scratch *out) {
@@ -441,7 +429,10 @@ static void splat_band(void *job, int64_t item, int worker) {
     for (int64_t tile = 0; tile < pass->tiles; tile++)
         stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.lines);
     bool rising = pass->scaled.height > 0;
-    for (int64_t n = 0; n < pass->slice_count && any_alive(&stroke); n++)
+    for (int64_t n = 0; n < pass->slice_count &&
+                        (!stroke.finished ||
+                         snow_any_alive(stroke.scratch.alive, pass->tiles));
+         n++)
         draw_slice(&stroke, rising ? n : pass->slice_count - 1 - n);
     snow_tile_finish(stroke.pixels, pixels, pass->channels);
 }
@@ -454,7 +445,7 @@ static void warp_lines(void *job, int64_t item, int worker) {
         pass->sheared->plane, pass->stride,   pass->scaled.u.count,
         pass->scaled.v.count, pass->channels, pass->sheared->drawn,
         pass->columns,        pass->lines,    (int)pass->tiles};
-    int first = (int)item * WARP_LINES, last = first + WARP_LINES;
+    int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
     for (int y = first; y < last && y < view->height; y++)
         snow_warp_row_seen(&plane, &pass->scaled, pass->filter, pass->warp, y,
                            view->width,
@@ -517,7 +508,8 @@ static snow_status draw(seen_pass *pass, snow_stats *stats) {
                   pass);
     double splatted = snow_seconds();
     snow_parallel(pass->sheared->context, threads,
-                  (pass->order->view->height + WARP_LINES - 1) / WARP_LINES,
+                  (pass->order->view->height + SNOW_WARP_LINES - 1) /
+                      SNOW_WARP_LINES,
                   warp_lines, pass);
     stats->seconds_splat += splatted - mark;
     stats->seconds_warp += snow_seconds() - splatted;

@@ -56,6 +56,22 @@ void model_look(reference_scene *scene, const double back[3],
 void model_turn(reference_scene *scene, double azimuth, double elevation,
                 double roll, double zoom);
 
+/* Where a camera stands in a table of views, and the view "iso" in it. */
+typedef struct model_stand {
+    double back[3], up[3];
+    double azimuth, elevation, roll;
+} model_stand;
+
+#define MODEL_THIRD 0.57735026918962576 /* 1 / sqrt(3) */
+#define MODEL_SIXTH 0.40824829046386302 /* 1 / sqrt(6) */
+#define MODEL_ISO                                   \
+    {MODEL_THIRD, MODEL_THIRD, MODEL_THIRD}, {      \
+        -MODEL_SIXTH, -MODEL_SIXTH, 2 * MODEL_SIXTH \
+    }
+
+void model_stand_at(reference_scene *scene, const model_stand *stand,
+                    double zoom);
+
 /* The scene by snow_frame_render; the test fails unless that succeeds. */
 snow_image *model_image(const model_stage *stage, const reference_scene *scene);
 

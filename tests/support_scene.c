@@ -227,3 +227,9 @@ const char *model_words(const reference_scene *scene) {
              info->matrix[0][0], info->matrix[1][1], info->matrix[2][2]);
     return words;
 }
+
+void model_stand_at(reference_scene *scene, const model_stand *stand,
+                    double zoom) {
+    model_look(scene, stand->back, stand->up);
+    model_turn(scene, stand->azimuth, stand->elevation, stand->roll, zoom);
+}

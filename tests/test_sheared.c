@@ -11,15 +11,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-typedef struct stand {
-    double back[3], up[3];
-    double azimuth, elevation, roll;
-} stand;
-
-#define THIRD 0.57735026918962576
-#define SIXTH 0.40824829046386302
-
-static const stand stands[] = {
+static const model_stand stands[] = {
     {{0, 0, 1}, {0, 1, 0}, 0, 0, 0},
     {{0, 0, -1}, {0, 1, 0}, 0, 0, 0},
     {{0, 1, 0}, {0, 0, 1}, 0, 0, 0},
@@ -37,7 +29,7 @@ static const stand stands[] = {
     {{0, 1, 0}, {0, 0, 1}, -120, -35, 25},
     {{1, 0, 0}, {0, 0, 1}, 90, 45, 0},
     {{-1, 0, 0}, {0, 0, 1}, 20, -15, 200},
-    {{THIRD, THIRD, THIRD}, {-SIXTH, -SIXTH, 2 * SIXTH}, 0, 0, 0},
+    {MODEL_ISO, 0, 0, 0},
 };
 
 static const snow_type types[] = {
@@ -59,9 +51,7 @@ static size_t draw(uint64_t *state, size_t count) {
 }
 
 static void stand_at(reference_scene *scene, size_t n, double zoom) {
-    const stand *s = &stands[n % COUNT(stands)];
-    model_look(scene, s->back, s->up);
-    model_turn(scene, s->azimuth, s->elevation, s->roll, zoom);
+    model_stand_at(scene, &stands[n % COUNT(stands)], zoom);
 }
 
 /* Translucent and unshaded, by any encoding and number of threads. */

@@ -9,31 +9,16 @@
 #include <string.h>
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-#define THIRD 0.57735026918962576
-#define SIXTH 0.40824829046386302
-
-typedef struct stand {
-    double back[3], up[3];
-    double azimuth, elevation, roll;
-} stand;
-
-static const stand stands[] = {
-    {{0, 0, 1}, {0, 1, 0}, 0, 0, 0},
-    {{0, 0, -1}, {0, 1, 0}, 0, 0, 0},
-    {{0, 1, 0}, {0, 0, 1}, 0, 0, 0},
-    {{0, -1, 0}, {0, 0, 1}, 0, 0, 0},
-    {{1, 0, 0}, {0, 0, 1}, 0, 0, 0},
-    {{-1, 0, 0}, {0, 0, 1}, 0, 0, 90},
-    {{0, 0, 1}, {0, 1, 0}, 30, 20, 0},
-    {{0, 1, 0}, {0, 0, 1}, -120, -35, 25},
-    {{1, 0, 0}, {0, 0, 1}, 90, 40, 0},
-    {{THIRD, THIRD, THIRD}, {-SIXTH, -SIXTH, 2 * SIXTH}, 0, 0, 0},
+static const model_stand stands[] = {
+    {{0, 0, 1}, {0, 1, 0}, 0, 0, 0},   {{0, 0, -1}, {0, 1, 0}, 0, 0, 0},
+    {{0, 1, 0}, {0, 0, 1}, 0, 0, 0},   {{0, -1, 0}, {0, 0, 1}, 0, 0, 0},
+    {{1, 0, 0}, {0, 0, 1}, 0, 0, 0},   {{-1, 0, 0}, {0, 0, 1}, 0, 0, 90},
+    {{0, 0, 1}, {0, 1, 0}, 30, 20, 0}, {{0, 1, 0}, {0, 0, 1}, -120, -35, 25},
+    {{1, 0, 0}, {0, 0, 1}, 90, 40, 0}, {MODEL_ISO, 0, 0, 0},
 };
 
 static void stand_at(reference_scene *scene, size_t n, double zoom) {
-    const stand *s = &stands[n % COUNT(stands)];
-    model_look(scene, s->back, s->up);
-    model_turn(scene, s->azimuth, s->elevation, s->roll, zoom);
+    model_stand_at(scene, &stands[n % COUNT(stands)], zoom);
 }
 
 /* --- opacities and weights -------------------------------------------------
