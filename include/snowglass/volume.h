@@ -106,6 +106,25 @@ SNOW_API snow_status snow_volume_share(snow_context *context,
                                        const snow_volume_info *info,
                                        const void *voxels, snow_volume **out);
 
+/* A processor's part of a volume that many share: a box of voxels, with as many
+ * more around it as kernels and gradients reach. */
+typedef struct snow_part {
+    int64_t dims[3];   /* of the whole grid */
+    int64_t stored[3]; /* voxel of the whole that is the first one here */
+    int64_t first[3]; /* voxels of the whole that this processor answers for; */
+    int64_t count[3]; /*   the others here are its neighbours'.  0: none */
+} snow_part;
+
+/* Says that a volume is a part of a larger one: its dims are those of the
+ * voxels that it stores, its matrix takes their indices to the world.  A
+ * picture of it is the part's share of the whole picture, in its place there.
+ * Errors: SNOW_BAD_USAGE (boxes that do not lie in one another). */
+SNOW_API snow_status snow_volume_set_part(snow_volume *volume,
+                                          const snow_part *part);
+
+/* Where it lies in the whole; a volume that is no part is the whole. */
+SNOW_API void snow_volume_get_part(const snow_volume *volume, snow_part *out);
+
 /* Promises that shared voxels stay as they are now, until it is called again:
  * frames may keep what they encoded of them from picture to picture.  Without
  * it shared voxels are encoded anew for every picture, as they may change.

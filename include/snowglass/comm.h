@@ -1,0 +1,91 @@
+/* snowglass/comm.h - processors that work on one picture together.
+ *
+ * A communicator is a fixed group of processors, numbered from 0 (its ranks),
+ * that send each other messages.  Three makers: a group of one
+ * (snow_comm_self), threads of this process (snow_comm_threads), and MPI
+ * (snowglass/mpi.h, in a library of its own); anybody may add a transport by
+ * filling in snow_comm_ops.  Rank 0 is the paper's display processor.
+ *
+ * Collective calls, marked so, are made by all ranks of a communicator in the
+ * same order.  What fails on one rank fails on all: they agree on the status,
+ * and every rank's context has the message, which names the rank. */
+#ifndef SNOWGLASS_COMM_H
+#define SNOWGLASS_COMM_H
+
+#include <snowglass/context.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct snow_comm snow_comm;
+
+/* A message under way.  `handle` belongs to the transport: NULL once the
+ * message is done; `bytes` of a received one is then its length. */
+typedef struct snow_message {
+    void *handle;
+    size_t bytes;
+} snow_message;
+
+/* What a transport does.  All functions but free and work return a status and
+ * leave their reason in the context by the transport's own means, or none;
+ * they are called by the thread that the communicator belongs to. */
+typedef struct snow_comm_ops {
+    size_t size; /* bytes of this record */
+    /* Starts a message.  The bytes stay as they are until it is done.  Messages
+     * of one tag (0 to 32767) between two ranks arrive in order. */
+    snow_status (*send)(void *self, const void *bytes, size_t count, int to,
+                        int tag, snow_message *message);
+    /* Gets ready for one of at most `room` bytes. */
+    snow_status (*receive)(void *self, void *bytes, size_t room, int from,
+                           int tag, snow_message *message);
+    /* Waits until one of the messages that are still under way is done, and
+     * tells which; -1 when none is under way. */
+    snow_status (*wait_any)(void *self, snow_message *messages, int count,
+                            int *which);
+    /* Waits for all. */
+    snow_status (*wait_all)(void *self, snow_message *messages, int count);
+    /* Wall time in seconds, of whatever clock messages take time on. */
+    double (*seconds)(void *self);
+    /* Lets so much simulated time pass; NULL where time is real. */
+    void (*work)(void *self, double seconds);
+    void (*free)(void *self);
+} snow_comm_ops;
+
+/* A communicator over a transport.  `ops` is copied; `self` is handed to its
+ * functions, and freed by ops->free with the communicator.  Errors:
+ * SNOW_NO_MEMORY; then self is not freed. */
+SNOW_API snow_status snow_comm_new(snow_context *context,
+                                   const snow_comm_ops *ops, void *self,
+                                   int rank, int ranks, snow_comm **out);
+
+/* A group of one.  Errors: SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_comm_self(snow_context *context, snow_comm **out);
+
+/* Runs `body` on `ranks` threads, each with a communicator and a context of its
+ * own, and returns when all have ended: with SNOW_OK, or the status and (in
+ * `context`) the message of the lowest rank that failed.  Each rank's context
+ * takes its memory from malloc.  A body that fails without the others' knowing
+ * (outside a collective call) releases those that wait for it: their calls
+ * fail. Errors also: SNOW_BAD_USAGE (ranks below 1), SNOW_NO_MEMORY (threads).
+ */
+typedef snow_status snow_comm_body_fn(snow_comm *comm, void *user);
+SNOW_API snow_status snow_comm_threads(snow_context *context, int ranks,
+                                       snow_comm_body_fn *body, void *user);
+
+/* Frees it (collective for transports that need it); NULL is accepted. */
+SNOW_API void snow_comm_free(snow_comm *comm);
+
+SNOW_API int snow_comm_rank(const snow_comm *comm);  /* from 0 */
+SNOW_API int snow_comm_ranks(const snow_comm *comm); /* how many */
+SNOW_API snow_context *snow_comm_context(const snow_comm *comm);
+
+/* Collective.  The worst status of all ranks: SNOW_OK only where all are OK.
+ * Otherwise that of the lowest rank that failed, and its message in every
+ * context, with "rank N: " before it where there are several. */
+SNOW_API snow_status snow_comm_agree(snow_comm *comm, snow_status status);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,66 @@
+/* snowglass/ranks.h - one picture by many processors: section 4 of the paper.
+ *
+ * Every rank holds a part of the volume (snow_part), splats it into a local
+ * image, and the local images are combined.  All calls are collective
+ * (snowglass/comm.h): every rank makes them with the same arguments. */
+#ifndef SNOWGLASS_RANKS_H
+#define SNOWGLASS_RANKS_H
+
+#include <snowglass/comm.h>
+#include <snowglass/render.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How the volume is cut. */
+typedef enum snow_cut {
+    SNOW_CUT_AUTO = 0, /* by count; into bricks where slabs would be thin */
+    SNOW_CUT_EQUAL,    /* the paper's slabs: as equal as can be */
+    SNOW_CUT_COUNTED,  /* slabs of about equally many interesting voxels */
+    SNOW_CUT_BRICKS    /* boxes of about equally many interesting voxels */
+} snow_cut;
+
+/* How local images are combined. */
+typedef enum snow_combining {
+    SNOW_COMBINE_AUTO = 0, /* by the number of ranks and the image's size */
+    SNOW_COMBINE_TREE,     /* the paper's hierarchy */
+    SNOW_COMBINE_SWAP,     /* binary swap */
+    SNOW_COMBINE_DIRECT,   /* direct send */
+    SNOW_COMBINE_RADIX     /* radix-k */
+} snow_combining;
+
+/* Zeros are the defaults. */
+typedef struct snow_ranks_options {
+    size_t size; /* bytes of this record */
+    snow_cut cut;
+    snow_combining combining;
+    int radix;      /* of SNOW_COMBINE_RADIX, 2 to 64; 0: chosen */
+    int pixel_bits; /* 8: the picture's channels are rounded to whole steps of
+                       1/255 before they travel to rank 0 (a quarter of the
+                       bytes); 0: floats travel */
+} snow_ranks_options;
+
+/* Opens this rank's part of a volume: only its box of the file is read, where
+ * the format allows, with what kernels of the view and gradients need around
+ * it.  The cut depends on the view (slabs lie along its slice axis) and, where
+ * it is by count, on transfer function and threshold. */
+SNOW_API snow_status snow_ranks_open(
+    snow_comm *comm, const char *path, const snow_volume_options *options,
+    const snow_look *look, const snow_view *view, const snow_settings *settings,
+    const snow_ranks_options *how, snow_volume **volume,
+    snow_transfer **transfer);
+
+/* The picture, on rank 0; NULL on the others. */
+SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
+                                       const snow_volume *volume,
+                                       const snow_transfer *transfer,
+                                       const snow_view *view,
+                                       const snow_settings *settings,
+                                       const snow_ranks_options *how,
+                                       snow_image **image);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,58 @@
+/* comm/comm.h - the inside of a communicator: messages, and what ranks do
+ * together, made of messages alone so that every transport has it.
+ *
+ * Collectives take ceil(log2 ranks) rounds and are deterministic: numbers are
+ * reduced in the same order whatever arrives first. */
+#ifndef SNOW_COMM_H
+#define SNOW_COMM_H
+
+#include "base/base.h"
+
+#include <snowglass/comm.h>
+
+struct snow_comm {
+    snow_context *context;
+    snow_comm_ops ops;
+    void *self;
+    int rank, ranks;
+    /* What this rank has sent, for the figures of a benchmark. */
+    uint64_t messages_sent, bytes_sent;
+};
+
+/* Tags of the library's own messages; others may use tags below. */
+enum {
+    SNOW_TAG_COLLECTIVE = 32000,
+    SNOW_TAG_COMBINE,
+    SNOW_TAG_GATHER,
+    SNOW_TAG_VOXELS
+};
+
+/* The transport's functions, with counting.  A message to oneself is allowed.
+ */
+snow_status snow_comm_send(snow_comm *comm, const void *bytes, size_t count,
+                           int to, int tag, snow_message *message);
+snow_status snow_comm_receive(snow_comm *comm, void *bytes, size_t room,
+                              int from, int tag, snow_message *message);
+snow_status snow_comm_wait_any(snow_comm *comm, snow_message *messages,
+                               int count, int *which);
+snow_status snow_comm_wait_all(snow_comm *comm, snow_message *messages,
+                               int count);
+double snow_comm_seconds(snow_comm *comm);
+void snow_comm_work(snow_comm *comm, double seconds);
+
+/* Collective: element by element over all ranks; the result replaces `values`
+ * on every rank, and has the same bits there. */
+typedef enum snow_reduction { SNOW_SUM, SNOW_MIN, SNOW_MAX } snow_reduction;
+snow_status snow_comm_reduce_ints(snow_comm *comm, int64_t *values,
+                                  size_t count, snow_reduction by);
+snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,
+                                     size_t count, snow_reduction by);
+
+/* Collective: `count` bytes of rank `root` to all; of every rank to all, `all`
+ * having room for ranks * count bytes, in order of rank. */
+snow_status snow_comm_broadcast(snow_comm *comm, void *bytes, size_t count,
+                                int root);
+snow_status snow_comm_share(snow_comm *comm, const void *mine, size_t count,
+                            void *all);
+
+#endif
