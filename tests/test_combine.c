@@ -308,10 +308,411 @@ every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks(void **state) {
     snow_context_free(context);
 }
 
+/* --- what it costs -------------------------------------------------------- */
+
+/* An allocator that fails from some point on. */
+typedef struct stop {
+    bool stopped;
+    long asked;
+} stop;
+
+static void *allocate_until_stopped(void *user, size_t bytes) {
+    stop *s = user;
+    s->asked++;
+    return s->stopped ? NULL : malloc(bytes);
+}
+
+static void release_plain(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+/* Runs a body's work with the communicator's memory taken from `s`: only what
+ * is made meanwhile is, not the transport's own. */
+static snow_status with_memory(snow_comm *comm, stop *s,
+                               snow_status (*work)(snow_comm *, stop *)) {
+    const snow_allocator allocator = {allocate_until_stopped, release_plain, s};
+    snow_context *usual = comm->context, *own;
+    SNOW_TRY(snow_context_new(&allocator, &own));
+    comm->context = own;
+    snow_status status = work(comm, s);
+    comm->context = usual;
+    if (status != SNOW_OK)
+        status = snow_fail(usual, status, "%s", snow_context_message(own));
+    snow_context_free(own);
+    return status;
+}
+
+static snow_status combine_twice(snow_comm *comm, stop *s) {
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_status status = SNOW_OK;
+    for (size_t i = 0; i < COUNT_OF(ways) && status == SNOW_OK; i++) {
+        s->stopped = false;
+        for (int turn = 0; turn < 4 && status == SNOW_OK; turn++) {
+            job j = {.width = 61,
+                     .height = 33,
+                     .channels = 4,
+                     .seed = turn,
+                     .count = comm->ranks};
+            shuffle(&j);
+            snow_gather_radix(combiner, 3);
+            float *pixels = malloc(61 * 33 * 4 * sizeof *pixels);
+            fill_local(&j, comm->rank, pixels, 61 * 4);
+            snow_exchange_order order =
+                order_of(&j, comm->rank, pixels, 61 * 4);
+            order.method = ways[i].method;
+            order.radix = ways[i].radix;
+            order.whole = ways[i].whole;
+            order.pieces = SNOW_PIECES_COUNTED;
+            snow_piece piece;
+            status = snow_exchange(combiner, &order, &piece);
+            free(pixels);
+            if (status == SNOW_OK)
+                status = check_piece(comm, combiner, &j, &piece);
+            if (status == SNOW_OK)
+                status = check_gather(comm, combiner, &j, &piece);
+            s->stopped = true; /* the sizes stay from here on */
+        }
+    }
+    snow_combiner_free(combiner);
+    return status;
+}
+
+static snow_status combine_twice_with_memory_once(snow_comm *comm, void *user) {
+    stop s = {0};
+    (void)user;
+    return with_memory(comm, &s, combine_twice);
+}
+
+static void run_body(int ranks, snow_comm_body_fn *body, void *user) {
+    snow_context *context = support_context();
+    snow_status status = snow_comm_threads(context, ranks, body, user);
+    if (status != SNOW_OK)
+        print_message("%d ranks: %s\n", ranks, snow_context_message(context));
+    assert_int_equal(status, SNOW_OK);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+static void
+a_second_picture_takes_no_memory_though_the_view_changes(void **state) {
+    (void)state;
+    run_body(1, combine_twice_with_memory_once, NULL);
+    run_body(7, combine_twice_with_memory_once, NULL);
+    run_body(32, combine_twice_with_memory_once, NULL);
+}
+
+static snow_status send_whole(snow_comm *comm, void *user) {
+    const way *w = user;
+    job j = {.width = 64, .height = 64, .channels = 4, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    float *pixels = calloc(64 * 64 * 4, sizeof *pixels);
+    snow_exchange_order order = order_of(&j, comm->rank, pixels, 64 * 4);
+    order.method = w->method;
+    order.radix = w->radix;
+    order.whole = true;
+    snow_piece piece;
+    snow_status status = snow_exchange(combiner, &order, &piece);
+    uint64_t before = comm->bytes_sent;
+    if (status == SNOW_OK)
+        status = snow_exchange(combiner, &order, &piece);
+    uint64_t sent = comm->bytes_sent - before;
+    free(pixels);
+    snow_combiner_free(combiner);
+    SNOW_TRY(status);
+    uint64_t picture = 64 * 64 * 16;
+    if (w->method == SNOW_COMBINE_TREE)
+        CHECK(sent == (comm->rank ? picture : 0));
+    else
+        CHECK(sent == picture - picture / (uint64_t)comm->ranks);
+    return SNOW_OK;
+}
+
+/* Each rank must send all pixels but those of its own piece, and does not send
+ * more, by any method. */
+static void
+whole_pictures_cost_the_least_that_whole_pictures_can(void **state) {
+    static const way some[] = {{SNOW_COMBINE_SWAP, 0, true},
+                               {SNOW_COMBINE_RADIX, 8, true},
+                               {SNOW_COMBINE_RADIX, 4, true},
+                               {SNOW_COMBINE_DIRECT, 0, true},
+                               {SNOW_COMBINE_TREE, 0, true}};
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(some); i++) {
+        way w = some[i];
+        run_body(32, send_whole, &w);
+        run_body(8, send_whole, &w);
+    }
+}
+
+typedef struct seen_by {
+    const job *j;
+    int rank;
+} seen_by;
+
+static uint64_t active_of(void *user, int y, int x, int count) {
+    const seen_by *seen = user;
+    uint64_t bits = 0;
+    for (int i = 0; i < count; i++) {
+        float pixel[4];
+        pixel_of(seen->j, seen->rank, x + i, y, pixel);
+        for (int c = 0; c < seen->j->channels; c++)
+            if (pixel[c] != 0)
+                bits |= (uint64_t)1 << i;
+    }
+    return bits;
+}
+
+/* Sizes of what is sent, with pixels and without. */
+static snow_status rehearse(snow_comm *comm, void *user) {
+    const way *w = user;
+    job j = {.width = 67, .height = 31, .channels = 4, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    float *pixels = malloc(67 * 31 * 4 * sizeof *pixels);
+    fill_local(&j, comm->rank, pixels, 67 * 4);
+    seen_by seen = {&j, comm->rank};
+    const snow_rehearsal rehearsal = {active_of, &seen};
+    snow_exchange_order order = order_of(&j, comm->rank, pixels, 67 * 4);
+    order.method = w->method;
+    order.radix = w->radix;
+    order.whole = w->whole;
+    snow_status status = SNOW_OK;
+    uint64_t sent[2] = {0};
+    int64_t laid[2] = {0};
+    snow_piece piece;
+    status = snow_exchange(combiner, &order, &piece); /* agrees on memory */
+    for (int turn = 0; turn < 2 && status == SNOW_OK; turn++) {
+        sent[turn] = comm->bytes_sent;
+        status = snow_exchange(combiner, &order, &piece);
+        laid[turn] = snow_exchange_told(combiner)->laid;
+        order.rehearsal = &rehearsal;
+        order.pixels = NULL;
+        sent[turn] = comm->bytes_sent - sent[turn];
+    }
+    free(pixels);
+    snow_combiner_free(combiner);
+    SNOW_TRY(status);
+    CHECK(sent[0] == sent[1]);
+    CHECK(laid[0] == laid[1]);
+    return SNOW_OK;
+}
+
+static void a_rehearsal_sends_messages_of_the_same_length(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        way w = ways[i];
+        run_body(1, rehearse, &w);
+        run_body(13, rehearse, &w);
+        run_body(16, rehearse, &w);
+    }
+}
+
+/* --- pieces --------------------------------------------------------------- */
+
+/* All that is active lies in some lines: how many pixels of layers the busiest
+ * rank gets, against the mean. */
+static uint64_t active_in_band(void *user, int y, int x, int count) {
+    (void)user;
+    (void)x;
+    return y >= 80 && y < 120 ? ~(uint64_t)0 >> (64 - count) : 0;
+}
+
+static snow_status lay_band(snow_comm *comm, void *user) {
+    job j = {.width = 128, .height = 256, .channels = 4, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    const snow_rehearsal rehearsal = {active_in_band, NULL};
+    snow_exchange_order order = order_of(&j, comm->rank, NULL, 0);
+    order.drawn = (snow_rectangle){0, 0, 128, 256};
+    order.rehearsal = &rehearsal;
+    order.method = SNOW_COMBINE_DIRECT;
+    order.pieces = *(snow_pieces *)user;
+    snow_piece piece;
+    snow_status status = snow_exchange(combiner, &order, &piece);
+    int64_t laid[2] = {snow_exchange_told(combiner)->laid, 0};
+    snow_combiner_free(combiner);
+    SNOW_TRY(status);
+    laid[1] = laid[0];
+    SNOW_TRY(snow_comm_reduce_ints(comm, laid, 1, SNOW_SUM));
+    SNOW_TRY(snow_comm_reduce_ints(comm, laid + 1, 1, SNOW_MAX));
+    double ratio = (double)laid[1] * comm->ranks / (double)laid[0];
+    CHECK(order.pieces == SNOW_PIECES_EVEN ? ratio > 5 : ratio < 1.45);
+    return SNOW_OK;
+}
+
+static void counted_and_interlaced_pieces_are_balanced(void **state) {
+    snow_pieces pieces[] = {SNOW_PIECES_EVEN, SNOW_PIECES_COUNTED,
+                            SNOW_PIECES_INTERLACED};
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        run_body(16, lay_band, &pieces[i]);
+}
+
+/* --- plans of many ranks -------------------------------------------------- */
+
+/* How many messages go from seat to seat in each round, counted at both ends,
+ * as a sum that tells who, whom and when. */
+static void check_plan(snow_combining method, int radix, int seats) {
+    snow_rounds rounds;
+    snow_rounds_choose(&rounds, method, radix, seats, 1 << 20, 16);
+    assert_true(rounds.count <= SNOW_ROUNDS_MOST);
+    size_t room = snow_rounds_room(&rounds);
+    rounds.shares = calloc(room + 1, sizeof *rounds.shares);
+    int *table = calloc((size_t)seats, sizeof *table);
+    int *owners = calloc((size_t)seats, sizeof *owners);
+    uint64_t sent = 0, received = 0;
+    for (int seat = 0; seat < seats; seat++) {
+        snow_rounds_fill(&rounds, seat, seats / 3, table);
+        assert_true((size_t)rounds.share_count <= room);
+        for (int i = 0; i < rounds.count; i++) {
+            const snow_round *round = &rounds.rounds[i];
+            const snow_share *share = rounds.shares + round->first_send;
+            for (int k = 0; k < round->sends; k++)
+                sent += mix(mix(mix((uint64_t)i) + (uint64_t)seat) +
+                            (uint64_t)share[k].seat);
+            share = rounds.shares + round->first_receive;
+            for (int k = 0; k < round->receives; k++)
+                received +=
+                    mix(mix(mix((uint64_t)i) + (uint64_t)share[k].seat) +
+                        (uint64_t)seat);
+        }
+        int last = snow_rounds_last(&rounds, seat);
+        if (last >= 0)
+            owners[last]++;
+    }
+    assert_true(sent == received);
+    for (int i = 0; i < (method == SNOW_COMBINE_TREE ? 1 : seats); i++)
+        assert_int_equal(owners[i], 1);
+    free(rounds.shares);
+    free(table);
+    free(owners);
+}
+
+static void what_is_sent_is_waited_for_with_any_number_of_ranks(void **state) {
+    static const int many[] = {128, 257, 360};
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        for (int seats = 1; seats <= 70; seats++)
+            check_plan(ways[i].method, ways[i].radix, seats);
+        for (size_t k = 0; k < COUNT_OF(many); k++)
+            check_plan(ways[i].method, ways[i].radix, many[k]);
+    }
+}
+
+/* --- failures ------------------------------------------------------------- */
+
+static snow_status combine_bad_orders(snow_comm *comm, void *user) {
+    job j = {.width = 6, .height = 4, .channels = 4, .count = comm->ranks};
+    (void)user;
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_piece piece = {7, 7, NULL};
+    snow_exchange_order good = order_of(&j, comm->rank, NULL, 0), bad[6];
+    good.drawn = (snow_rectangle){-5, -5, -1, 90};
+    for (int i = 0; i < 6; i++)
+        bad[i] = good;
+    bad[0].width = 0;
+    bad[1].channels = 3;
+    bad[2].grain = 4;
+    bad[3].radix = 1;
+    bad[4].height = -1;
+    const int strangers[] = {8, 9, 10};
+    bad[5].ranks = strangers;
+    snow_status status = SNOW_OK;
+    for (int i = 0; i < 6; i++)
+        if (snow_exchange(combiner, &bad[i], &piece) != SNOW_BAD_USAGE ||
+            piece.first != 7)
+            status = snow_fail(comm->context, SNOW_FAILED, "order %d", i);
+    if (status == SNOW_OK)
+        status = snow_exchange(combiner, &good, &piece);
+    snow_combiner_free(combiner);
+    return status;
+}
+
+static void what_is_no_order_is_refused(void **state) {
+    (void)state;
+    run_body(3, combine_bad_orders, NULL);
+}
+
+static snow_status gather_bad_runs(snow_comm *comm, void *user) {
+    snow_combiner *combiner;
+    unsigned char picture[8 * 4] = {0}, pixels[64] = {0};
+    const snow_pixel_run wrong = {6, 1, 3}, right = {0, comm->rank, 8};
+    (void)user;
+    memset(pixels, comm->rank + 1, sizeof pixels);
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_status status =
+        snow_gather(combiner, 8, 4, comm->rank == 2 ? &wrong : &right, 1,
+                    pixels, 1, picture);
+    snow_combiner_free(combiner);
+    CHECK(status == (comm->rank == 2 ? SNOW_BAD_USAGE : SNOW_OK));
+    for (int i = 0; i < 8 && comm->rank == 0; i++) {
+        CHECK(picture[i] == 1 && picture[8 + i] == 2);
+        CHECK(picture[16 + i] == 0 && picture[24 + i] == 4);
+    }
+    return SNOW_OK;
+}
+
+static void wrong_runs_of_one_rank_fail_there_and_nobody_waits(void **state) {
+    (void)state;
+    run_body(4, gather_bad_runs, NULL);
+}
+
+static snow_status combine_until_stopped(snow_comm *comm, stop *s) {
+    job j = {.width = 16, .height = 16, .channels = 2, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_exchange_order order = order_of(&j, comm->rank, NULL, 0);
+    order.drawn = (snow_rectangle){0, 0, 0, 0};
+    snow_piece piece;
+    s->stopped = comm->rank == 1;
+    snow_status status = snow_exchange(combiner, &order, &piece);
+    s->stopped = false;
+    if (status == SNOW_NO_MEMORY) /* all is well with memory again */
+        status = snow_exchange(combiner, &order, &piece);
+    else
+        status = SNOW_FAILED;
+    s->stopped = comm->rank == 1;
+    unsigned char picture[256] = {0};
+    if (status == SNOW_OK && snow_gather(combiner, 16, 16, NULL, 0, NULL, 1,
+                                         picture) != SNOW_NO_MEMORY)
+        status = SNOW_FAILED;
+    snow_combiner_free(combiner);
+    return status;
+}
+
+static snow_status combine_with_little_memory(snow_comm *comm, void *user) {
+    stop s = {0};
+    (void)user;
+    return with_memory(comm, &s, combine_until_stopped);
+}
+
+static void one_rank_without_memory_fails_all_and_nobody_waits(void **state) {
+    (void)state;
+    run_body(5, combine_with_little_memory, NULL);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(
             every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks),
+        cmocka_unit_test(
+            a_second_picture_takes_no_memory_though_the_view_changes),
+        cmocka_unit_test(whole_pictures_cost_the_least_that_whole_pictures_can),
+        cmocka_unit_test(a_rehearsal_sends_messages_of_the_same_length),
+        cmocka_unit_test(counted_and_interlaced_pieces_are_balanced),
+        cmocka_unit_test(what_is_sent_is_waited_for_with_any_number_of_ranks),
+        cmocka_unit_test(what_is_no_order_is_refused),
+        cmocka_unit_test(wrong_runs_of_one_rank_fail_there_and_nobody_waits),
+        cmocka_unit_test(one_rank_without_memory_fails_all_and_nobody_waits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
