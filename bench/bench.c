@@ -3,6 +3,7 @@
  * It reads its own options, since they mean nothing to other verbs, and the
  * help of the tool shows its text as it stands. */
 #include "bench.h"
+#include "combine.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -15,6 +16,7 @@ static const char help[] =
     "\n"
     "  table1 table2 table3   the paper's tables\n"
     "  speed                  how fast pictures are made\n"
+    "  combine                pictures of many ranks (bench combine --help)\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -310,6 +312,8 @@ static int parse(int argc, char **argv, bench_options *options,
 }
 
 int bench_main(int argc, char **argv) {
+    if (argc > 1 && strcmp(argv[1], "combine") == 0)
+        return combine_main(argc - 1, argv + 1);
     bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};
     int code = parse(argc, argv, &options, &command);

@@ -79,12 +79,13 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
  *
  * snow_active_merge packs the result to `out` (NULL in a rehearsal) with its
  * mask in `words`, and returns how many active pixels it has; snow_active_lay
- * writes pixel n at out[(n - first) * channels], which are 0 before.  Both add
- * to *laid how many pixels of layers there were. */
+ * does the same but writes pixel n at out[(n - first) * channels], which are 0
+ * before.  Both add to *laid how many pixels of layers there were. */
 int64_t snow_active_merge(snow_active *layers, int count, int channels,
                           int64_t first, int64_t last, uint64_t *words,
                           float *out, int64_t *laid);
-void snow_active_lay(snow_active *layers, int count, int channels,
-                     int64_t first, int64_t last, float *out, int64_t *laid);
+int64_t snow_active_lay(snow_active *layers, int count, int channels,
+                        int64_t first, int64_t last, uint64_t *words,
+                        float *out, int64_t *laid);
 
 #endif

@@ -485,7 +485,7 @@ static void lay_piece(exchange *run, stretch piece) {
     if (out)
         memset(out, 0, (size_t)(piece.last - piece.first) * run->pixel_bytes);
     snow_active_lay(combiner->layers, run->layer_count, order->channels,
-                    piece.first, piece.last, out, &laid);
+                    piece.first, piece.last, combiner->part, out, &laid);
     combiner->figures.laid += laid;
     snow_comm_work(combiner->comm, (double)laid * order->blend_seconds);
 }
@@ -556,8 +556,10 @@ snow_status snow_exchange(snow_combiner *combiner,
             snow_comm_wait_all(combiner->comm, sent->messages, sent->count));
         sent->count = 0;
     }
-    *out = (snow_piece){mine.first, mine.last - mine.first,
-                        order.rehearsal ? NULL : combiner->piece};
+    combiner->blend_seconds = order.blend_seconds;
+    *out =
+        (snow_piece){mine.first, mine.last - mine.first,
+                     order.rehearsal ? NULL : combiner->piece, combiner->part};
     return SNOW_OK;
 }
 

@@ -37,11 +37,25 @@ static void drop_buffers(snow_combiner *combiner) {
     snow_release(context, state->slots);
     snow_release(context, state->messages);
     snow_release(context, state->places);
-    *state = (snow_gather_state){.radix = state->radix};
+    state->children = NULL;
+    state->bytes = state->slots = NULL;
+    state->messages = NULL;
+    state->places = NULL;
+    state->width = 0;
+}
+
+static void drop_packed(snow_combiner *combiner) {
+    snow_gather_state *state = &combiner->gather;
+    snow_release(combiner->comm->context, state->runs);
+    snow_release(combiner->comm->context, state->packed);
+    state->runs = NULL;
+    state->packed = NULL;
+    state->packed_room = 0;
 }
 
 void snow_gather_free(snow_combiner *combiner) {
     drop_buffers(combiner);
+    drop_packed(combiner);
 }
 
 /* --- the tree ------------------------------------------------------------- */
@@ -338,4 +352,120 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
     if (state->parent >= 0)
         SNOW_TRY(send_up(combiner, used - HEAD));
     return status;
+}
+
+/* --- a piece as it is ----------------------------------------------------- */
+
+/* Buffers for the piece of any seat, of the same size on all ranks but those
+ * without a piece in a tree; all ranks come here together. */
+static snow_status take_packed(snow_combiner *combiner, size_t pixel_bytes) {
+    snow_gather_state *state = &combiner->gather;
+    snow_context *context = combiner->comm->context;
+    const int pieces = combiner->rounds.tree ? 1 : combiner->comm->ranks;
+    const int64_t room = snow_border_room(&combiner->borders, pieces);
+    if (state->packed_room == room && state->packed_bytes == pixel_bytes)
+        return SNOW_OK;
+    drop_packed(combiner);
+    state->packed_room = room;
+    state->packed_bytes = pixel_bytes;
+    /* Every second pixel may be a run, and every line's first. */
+    uint64_t runs = (uint64_t)(room / 2 + room / combiner->shape.width + 3);
+    bool fine =
+        (combiner->rounds.tree && combiner->comm->rank) ||
+        ((state->runs =
+              snow_allocate_array(context, runs, sizeof *state->runs)) &&
+         (state->packed =
+              snow_allocate_array(context, (uint64_t)room, pixel_bytes)));
+    snow_status status =
+        snow_comm_agree(combiner->comm, fine ? SNOW_OK : SNOW_NO_MEMORY);
+    if (status != SNOW_OK)
+        drop_packed(combiner);
+    return status;
+}
+
+static void round_pixels(const float *pixels, int64_t floats,
+                         unsigned char *out) {
+    for (int64_t i = 0; i < floats; i++) {
+        float value = pixels[i] * 255 + 0.5f;
+        value = value > 0 ? value : 0;
+        out[i] = (unsigned char)(value < 255 ? value : 255);
+    }
+}
+
+/* Appends pixels first .. last - 1, of one line, to what is packed. */
+static void pack_run(snow_combiner *combiner, const snow_piece *piece,
+                     int64_t first, int64_t last, size_t *run_count,
+                     int64_t *packed) {
+    snow_gather_state *state = &combiner->gather;
+    const int channels = combiner->shape.channels;
+    const int width = combiner->shape.width;
+    const int64_t count = last - first;
+    unsigned char *out = state->packed + (size_t)*packed * state->packed_bytes;
+    state->runs[(*run_count)++] = (snow_pixel_run){
+        (int32_t)(first % width),
+        snow_exchange_line(combiner, (int)(first / width)), (int32_t)count};
+    if (piece->pixels) {
+        const float *from = piece->pixels + (first - piece->first) * channels;
+        if (state->packed_bytes == (size_t)channels)
+            round_pixels(from, count * channels, out);
+        else
+            memcpy(out, from, (size_t)count * state->packed_bytes);
+    }
+    *packed += count;
+}
+
+/* The next pixel from `at` on that is active, or is not; `end` at most. */
+static int64_t next_pixel(const snow_piece *piece, int64_t at, int64_t end,
+                          bool active) {
+    while (at < end) {
+        uint64_t word = piece->active[at / 64 - piece->first / 64];
+        word = (active ? word : ~word) >> (at % 64);
+        if (word) {
+            at += __builtin_ctzll(word);
+            break;
+        }
+        at = (at / 64 + 1) * 64;
+    }
+    return at < end ? at : end;
+}
+
+/* Packs the active pixels of a piece, line by line; gaps that are shorter than
+ * what a run costs are filled. */
+static size_t pack_piece(snow_combiner *combiner, const snow_piece *piece,
+                         int64_t *packed) {
+    const int64_t width = combiner->shape.width;
+    const int64_t gap = SNOW_RUN_BYTES / (int64_t)combiner->gather.packed_bytes;
+    const int64_t last = piece->first + piece->count;
+    size_t runs = 0;
+    for (int64_t line = piece->first; line < last;) {
+        int64_t end = (line / width + 1) * width;
+        end = end < last ? end : last;
+        int64_t at = next_pixel(piece, line, end, true);
+        while (at < end) {
+            int64_t stop = next_pixel(piece, at, end, false);
+            int64_t next = next_pixel(piece, stop, end, true);
+            while (next < end && next - stop <= gap) {
+                stop = next_pixel(piece, next, end, false);
+                next = next_pixel(piece, stop, end, true);
+            }
+            pack_run(combiner, piece, at, stop, &runs, packed);
+            at = next;
+        }
+        line = end;
+    }
+    return runs;
+}
+
+snow_status snow_gather_piece(snow_combiner *combiner, const snow_piece *piece,
+                              int bits, void *picture) {
+    const snow_exchange_shape *shape = &combiner->shape;
+    const size_t pixel_bytes =
+        (size_t)shape->channels * (bits == 8 ? 1 : sizeof(float));
+    int64_t packed = 0;
+    SNOW_TRY(take_packed(combiner, pixel_bytes));
+    size_t runs = pack_piece(combiner, piece, &packed);
+    snow_comm_work(combiner->comm, (double)packed * combiner->blend_seconds);
+    return snow_gather(
+        combiner, shape->width, shape->height, combiner->gather.runs, runs,
+        piece->pixels ? combiner->gather.packed : NULL, pixel_bytes, picture);
 }
