@@ -51,13 +51,13 @@ static const char help[] =
 typedef enum kind { WORD, WHOLE_NUMBER, NUMBER, CHOICE } kind;
 
 /* An option: where its value goes, and what values there are. */
-typedef struct option {
+typedef struct setting {
     const char *name;
     kind kind;
     void *value;
     double low, high;
     const char *const *choices; /* of a CHOICE, NULL at the end */
-} option;
+} setting;
 
 static const char *const methods[] = {"auto",   "tree",  "swap",
                                       "direct", "radix", NULL};
@@ -75,7 +75,7 @@ static bool parse_number(const char *text, double low, double high,
 }
 
 /* Takes a value; false when it is none. */
-static bool take(const option *o, const char *text) {
+static bool take(const setting *o, const char *text) {
     double number;
     if (o->kind == CHOICE) {
         for (int i = 0; o->choices[i]; i++)
@@ -119,7 +119,7 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
                              .beta = 1 / 12.125e9,
                              .scan = 0.1e-9,
                              .blend = 0.25e-9};
-    const option options[] = {
+    const setting settings[] = {
         {"--ranks", WHOLE_NUMBER, &out->ranks, 1, 4096, NULL},
         {"--size", WHOLE_NUMBER, &out->size, 1, 32768, NULL},
         {"--method", CHOICE, &method, 0, 0, methods},
@@ -145,10 +145,10 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
         {"--help", WORD, &helps, 0, 0, NULL},
     };
     for (int i = 1; i < argc; i++) {
-        const option *o = NULL;
-        for (size_t k = 0; k < sizeof options / sizeof *options; k++)
-            if (strcmp(argv[i], options[k].name) == 0)
-                o = &options[k];
+        const setting *o = NULL;
+        for (size_t k = 0; k < sizeof settings / sizeof *settings; k++)
+            if (strcmp(argv[i], settings[k].name) == 0)
+                o = &settings[k];
         if (!o)
             return usage_error(said, "there is no option", argv[i]);
         if (o->kind == WORD)
