@@ -209,6 +209,22 @@ static void values_that_are_no_numbers_are_left_out_on_all_ranks(void **state) {
     snow_context_free(context);
 }
 
+/* Slices of padding, and slices with no voxel of it. */
+static void padding_is_counted_where_it_is(void **state) {
+    (void)state;
+    static float values[VOXELS];
+    snow_context *context = support_context();
+    uint64_t random = 5;
+    whole w = {.info = {.dims = {13, 11, 9}, .type = SNOW_FLOAT32},
+               .voxels = (unsigned char *)values};
+    fill(SNOW_FLOAT32, (unsigned char *)values, VOXELS, &random);
+    for (int i = 0; i < VOXELS; i++)
+        values[i] = i < VOXELS / 3 ? -1 : values[i] < 50 ? 3 : values[i];
+    for (int i = 0; i < 20; i++)
+        check(context, &w, 6, &random);
+    snow_context_free(context);
+}
+
 /* 2^25 voxels and some: every second block of 1024 voxels is looked at, the
  * same ones by whomever. */
 static void a_sample_of_a_large_volume_is_the_same_one(void **state) {
@@ -266,6 +282,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_type_gives_the_same_function_for_any_cut),
         cmocka_unit_test(values_that_are_no_numbers_are_left_out_on_all_ranks),
+        cmocka_unit_test(padding_is_counted_where_it_is),
         cmocka_unit_test(a_sample_of_a_large_volume_is_the_same_one),
         cmocka_unit_test(a_look_that_is_none_fails_on_all_ranks),
     };
