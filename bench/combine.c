@@ -36,7 +36,7 @@ static const char help[] =
     "\n"
     "  --azimuth DEG    of the cube (30)\n"
     "  --elevation DEG  (20)\n"
-    "  --cube X         its side, of the picture's (0.645)\n"
+    "  --cube X         its side, of the picture's (0.68)\n"
     "  --fill X         part of a 32nd's footprint that is active (0.3)\n"
     "  --grain N        pixels that are active together (1)\n"
     "\n"
@@ -113,7 +113,7 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
                              .azimuth = 30,
                              .elevation = 20,
                              .fill = 0.3,
-                             .cube = 0.645,
+                             .cube = 0.68,
                              .grain = 1,
                              .alpha = 1.5e-6,
                              .beta = 1 / 12.125e9,

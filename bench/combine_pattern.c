@@ -92,25 +92,31 @@ void combine_pattern_make(const combine_options *options, int slab, int slabs,
 
 /* --- pixels --------------------------------------------------------------- */
 
-/* Four grains of a line share a random number of 64 bits. */
-static uint64_t number_of(const combine_pattern *pattern, int y, int four) {
-    return mix(
-        mix((uint64_t)pattern->slab * 0x9e3779b97f4a7c15u + (uint64_t)y) +
-        (uint64_t)four);
+/* What all random numbers of a line have in common. */
+static uint64_t line_of(const combine_pattern *pattern, int y) {
+    return mix((uint64_t)pattern->slab * 0x9e3779b97f4a7c15u + (uint64_t)y);
+}
+
+/* The four bits of grains 4 * four .. 4 * four + 3, which share a number. */
+static uint64_t four_bits(uint64_t line, int four, uint32_t threshold) {
+    uint64_t number = mix(line + (uint64_t)four), bits = 0;
+    for (int i = 0; i < 4; i++)
+        bits |= (uint64_t)((number >> (16 * i) & 65535) < threshold) << i;
+    return bits;
 }
 
 uint64_t combine_pattern_active(void *user, int y, int x, int count) {
     const combine_pattern *pattern = user;
-    const int *span = pattern->spans + 2 * y;
+    const int *span = pattern->spans + 2 * y, grain = pattern->grain;
     const int from = x > span[0] ? x : span[0];
     const int to = x + count < span[1] ? x + count : span[1];
-    uint64_t bits = 0, number = 0;
-    for (int at = from, four = -1; at < to; at++) {
-        int grain = at / pattern->grain;
-        if (grain / 4 != four)
-            number = number_of(pattern, y, four = grain / 4);
-        uint32_t part = (uint32_t)(number >> (grain % 4 * 16)) & 65535;
-        bits |= (uint64_t)(part < pattern->threshold) << (at - x);
+    const uint64_t line = line_of(pattern, y);
+    uint64_t bits = 0;
+    for (int at = from; at < to;) {
+        int four = at / grain / 4;
+        uint64_t some = four_bits(line, four, pattern->threshold);
+        for (int end = (four + 1) * 4 * grain; at < end && at < to; at++)
+            bits |= (some >> (at / grain % 4) & 1) << (at - x);
     }
     return bits;
 }
@@ -124,7 +130,7 @@ void combine_pattern_pixel(const combine_pattern *pattern, int x, int y,
     combine_pattern copy = *pattern;
     if (!combine_pattern_active(&copy, y, x, 1))
         return;
-    uint64_t number = mix(number_of(pattern, y, x) + 1);
+    uint64_t number = mix(line_of(pattern, y) ^ (uint64_t)x << 32);
     out[last] = 0.05f + 0.5f * (float)(number & 1023) / 1024;
     for (int c = 0; c < last; c++)
         out[c] = out[last] * (float)(number >> (10 + 10 * c) & 1023) / 1024;

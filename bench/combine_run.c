@@ -106,7 +106,9 @@ static int64_t count_shown(const snow_piece *piece) {
     return shown;
 }
 
-static snow_status run_once(rank_state *state, combine_figures *out) {
+/* Local images are as drawn, or, to take memory, empty. */
+static snow_status run_once(rank_state *state, bool drawn,
+                            combine_figures *out) {
     const combine_options *options = state->options;
     snow_comm *comm = state->comm;
     const snow_rehearsal rehearsal = {combine_pattern_active, &state->pattern};
@@ -116,7 +118,7 @@ static snow_status run_once(rank_state *state, combine_figures *out) {
         .channels = options->channels,
         .pixels = state->pixels,
         .stride = (size_t)options->size * (size_t)options->channels,
-        .drawn = state->pattern.drawn,
+        .drawn = drawn ? state->pattern.drawn : (snow_rectangle){0},
         .ranks = state->order,
         .method = options->method,
         .radix = options->radix,
@@ -126,7 +128,8 @@ static snow_status run_once(rank_state *state, combine_figures *out) {
         .rehearsal = options->sizes_only ? &rehearsal : NULL,
         .scan_seconds = options->scan,
         .blend_seconds = options->blend};
-    SNOW_TRY(line_up(comm));
+    if (drawn)
+        SNOW_TRY(line_up(comm));
     const uint64_t bytes = comm->bytes_sent, messages = comm->messages_sent;
     const double start = snow_comm_seconds(comm), cpu = cpu_seconds();
     SNOW_TRY(snow_exchange(state->combiner, &order, &state->piece));
@@ -217,40 +220,44 @@ static snow_status compare_picture(rank_state *state, double *out) {
 
 /* --- all ranks ------------------------------------------------------------ */
 
-#define TIMES 5
-#define COUNTERS 8
+/* All figures as numbers of one kind: counters are far below 2^53. */
+#define FIGURES 13
 
-static void reduce_lists(const combine_figures *f, double times[TIMES],
-                         int64_t counters[COUNTERS]) {
-    const double t[TIMES] = {f->exchange, f->gather, f->total, f->exchange_cpu,
-                             f->gather_cpu};
-    const int64_t n[COUNTERS] = {
-        f->bytes_sent,     f->messages,          f->active, f->scanned, f->laid,
-        f->exchange_bytes, f->exchange_messages, f->shown};
-    memcpy(times, t, sizeof t);
-    memcpy(counters, n, sizeof n);
+static void list_figures(const combine_figures *f, double list[FIGURES]) {
+    const double all[FIGURES] = {f->exchange,
+                                 f->gather,
+                                 f->total,
+                                 f->exchange_cpu,
+                                 f->gather_cpu,
+                                 (double)f->bytes_sent,
+                                 (double)f->messages,
+                                 (double)f->active,
+                                 (double)f->scanned,
+                                 (double)f->laid,
+                                 (double)f->exchange_bytes,
+                                 (double)f->exchange_messages,
+                                 (double)f->shown};
+    memcpy(list, all, sizeof all);
 }
 
 static snow_status reduce_by(snow_comm *comm, const combine_figures *mine,
                              snow_reduction by, combine_figures *out) {
-    double t[TIMES];
-    int64_t n[COUNTERS];
-    reduce_lists(mine, t, n);
-    SNOW_TRY(snow_comm_reduce_doubles(comm, t, TIMES, by));
-    SNOW_TRY(snow_comm_reduce_ints(comm, n, COUNTERS, by));
-    *out = (combine_figures){.exchange = t[0],
-                             .gather = t[1],
-                             .total = t[2],
-                             .exchange_cpu = t[3],
-                             .gather_cpu = t[4],
-                             .bytes_sent = n[0],
-                             .messages = n[1],
-                             .active = n[2],
-                             .scanned = n[3],
-                             .laid = n[4],
-                             .exchange_bytes = n[5],
-                             .exchange_messages = n[6],
-                             .shown = n[7],
+    double f[FIGURES];
+    list_figures(mine, f);
+    SNOW_TRY(snow_comm_reduce_doubles(comm, f, FIGURES, by));
+    *out = (combine_figures){.exchange = f[0],
+                             .gather = f[1],
+                             .total = f[2],
+                             .exchange_cpu = f[3],
+                             .gather_cpu = f[4],
+                             .bytes_sent = (int64_t)f[5],
+                             .messages = (int64_t)f[6],
+                             .active = (int64_t)f[7],
+                             .scanned = (int64_t)f[8],
+                             .laid = (int64_t)f[9],
+                             .exchange_bytes = (int64_t)f[10],
+                             .exchange_messages = (int64_t)f[11],
+                             .shown = (int64_t)f[12],
                              .difference = mine->difference};
     return SNOW_OK;
 }
@@ -263,11 +270,12 @@ static snow_status measure(rank_state *state, combine_result *out) {
     for (int i = 0; i <= state->options->runs; i++) {
         combine_figures mine = {.difference = -1};
         combine_result this = {.ranks = comm->ranks};
-        SNOW_TRY(run_once(state, &mine));
+        SNOW_TRY(run_once(state, i > 0, &mine));
+        if (i == 0)
+            continue;
         this.told = *snow_exchange_told(state->combiner);
         SNOW_TRY(reduce_by(comm, &mine, SNOW_MAX, &this.most));
         SNOW_TRY(reduce_by(comm, &mine, SNOW_SUM, &this.sum));
-        /* The first run takes memory. */
         if (i > 0 && (best.most.total < 0 || this.most.total < best.most.total))
             best = this;
     }
