@@ -35,5 +35,11 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
     out->lane_count = LANES;
     V(expand8)(in->bytes, in->bits, out->expand8);
     V(expand16)(in->shorts, in->bits, out->expand16);
+    V(widen8)(in->bytes, out->widen8);
+    V(widen16)(in->shorts, out->widen16);
+    V(spread2)(in->table, in->bits, 16, out->spread2);
+    V(spread4)(in->table, in->bits, 16, out->spread4);
+    out->found =
+        V(windows)(in->low, in->high, in->shift, in->within, out->windows);
     out->popcount = V(popcount)(in->mask);
 }

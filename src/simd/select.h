@@ -28,6 +28,17 @@
  *                                    16 places: the next of the numbers at p,
  *                                    and 1 more, where a bit is set, else 0;
  *                                    may read 16 numbers beyond the last
+ *   V(widen8)(p, out), V(widen16)    16 numbers at p
+ *   V(spread2)(p, bits, count, out), V(spread4)
+ *                                    `count` places of 2 or 4 floats: the next
+ *                                    of those at p where a bit is set, else
+ *                                    zeros; may read and write 16 floats beyond
+ *                                    the last
+ *   V(windows)(low, high, shift, within, out)
+ *                                    of eight pairs of words, `low` the lower
+ *                                    one, the 64 bits from bit `shift` (0 to 63)
+ *                                    on which are in `within` too; returns a bit
+ *                                    for each that is not 0
  *   V(popcount)(x)                   bits that are set in a uint64_t
  *   V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4 floats) of a
  *                                    and b in turns: a0 b0 a1 b1 ...

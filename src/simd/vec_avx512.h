@@ -126,24 +126,18 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather4(const float *p,
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather2(const float *p,
                                                        const uint32_t *n) {
-    __m512d v = _mm512_setzero_pd();
-    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
-    v = SNOW_AVX512_PAIR(v, 0x02, p, n[1]);
-    v = SNOW_AVX512_PAIR(v, 0x04, p, n[2]);
-    v = SNOW_AVX512_PAIR(v, 0x08, p, n[3]);
-    v = SNOW_AVX512_PAIR(v, 0x10, p, n[4]);
-    v = SNOW_AVX512_PAIR(v, 0x20, p, n[5]);
-    v = SNOW_AVX512_PAIR(v, 0x40, p, n[6]);
-    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0x80, p, n[7]));
+    __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)n);
+    return _mm512_castpd_ps(_mm512_i32gather_pd(places, p, 8));
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_double2(const float *p,
                                                        const uint32_t *n) {
-    __m512d v = _mm512_setzero_pd();
-    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
-    v = SNOW_AVX512_PAIR(v, 0x0C, p, n[1]);
-    v = SNOW_AVX512_PAIR(v, 0x30, p, n[2]);
-    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0xC0, p, n[3]));
+    __m128i places = _mm_loadu_si128((const __m128i *)(const void *)n);
+    __m256d pairs =
+        _mm256_i32gather_pd((const double *)(const void *)p, places, 8);
+    return _mm512_castpd_ps(
+        _mm512_permutexvar_pd(_mm512_setr_epi64(0, 0, 1, 1, 2, 2, 3, 3),
+                              _mm512_castpd256_pd512(pairs)));
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_even(snow_avx512_vec v) {
@@ -182,6 +176,48 @@ SNOW_AVX512_INLINE void snow_avx512_expand16(const uint16_t *p, uint32_t bits,
     _mm512_storeu_si512(
         out, _mm512_maskz_add_epi32(here, _mm512_cvtepu16_epi32(codes),
                                     _mm512_set1_epi32(1)));
+}
+
+SNOW_AVX512_INLINE unsigned snow_avx512_windows(const uint64_t *low,
+                                                const uint64_t *high,
+                                                unsigned shift, uint64_t within,
+                                                uint64_t *out) {
+    __m512i right = _mm512_set1_epi64((long long)shift);
+    __m512i window = _mm512_shrdv_epi64(_mm512_loadu_si512(low),
+                                        _mm512_loadu_si512(high), right);
+    window = _mm512_and_si512(window, _mm512_set1_epi64((long long)within));
+    _mm512_storeu_si512(out, window);
+    return _mm512_test_epi64_mask(window, window);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_widen8(const uint8_t *p, uint32_t *out) {
+    _mm512_storeu_si512(out, _mm512_cvtepu8_epi32(_mm_loadu_si128(
+                                 (const __m128i *)(const void *)p)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_widen16(const uint16_t *p, uint32_t *out) {
+    _mm512_storeu_si512(out, _mm512_cvtepu16_epi32(_mm256_loadu_si256(
+                                 (const __m256i *)(const void *)p)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_spread2(const float *p, uint64_t bits,
+                                            int count, float *out) {
+    for (int at = 0; at < count; at += 8, bits >>= 8) {
+        _mm512_storeu_pd(out + 2 * at, _mm512_maskz_expand_pd(
+                                           (__mmask8)bits, _mm512_loadu_pd(p)));
+        p += 2 * __builtin_popcount((unsigned)bits & 0xFF);
+    }
+}
+
+SNOW_AVX512_INLINE void snow_avx512_spread4(const float *p, uint64_t bits,
+                                            int count, float *out) {
+    for (int at = 0; at < count; at += 4, bits >>= 4) {
+        uint32_t lanes = _pdep_u32((uint32_t)bits, 0x1111) * 15;
+        _mm512_storeu_ps(
+            out + 4 * at,
+            _mm512_maskz_expand_ps((__mmask16)lanes, _mm512_loadu_ps(p)));
+        p += 4 * __builtin_popcount((unsigned)bits & 0xF);
+    }
 }
 
 SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {

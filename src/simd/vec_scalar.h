@@ -151,6 +151,46 @@ static inline void snow_scalar_expand16(const uint16_t *p, uint32_t bits,
     }
 }
 
+/* As told in simd/select.h; in two steps, since a shift by 64 is none. */
+static inline unsigned snow_scalar_windows(const uint64_t *low,
+                                           const uint64_t *high, unsigned shift,
+                                           uint64_t within, uint64_t *out) {
+    unsigned found = 0;
+    for (unsigned i = 0; i < 8; i++) {
+        out[i] = (low[i] >> shift | high[i] << 1 << (63 - shift)) & within;
+        found |= (unsigned)(out[i] != 0) << i;
+    }
+    return found;
+}
+
+static inline void snow_scalar_widen8(const uint8_t *p, uint32_t *out) {
+    for (int i = 0; i < 16; i++)
+        out[i] = p[i];
+}
+
+static inline void snow_scalar_widen16(const uint16_t *p, uint32_t *out) {
+    for (int i = 0; i < 16; i++)
+        out[i] = p[i];
+}
+
+static inline void snow_scalar_spread2(const float *p, uint64_t bits, int count,
+                                       float *out) {
+    static const float zeros[2];
+    for (int i = 0; i < count; i++, bits >>= 1) {
+        memcpy(out + 2 * i, bits & 1 ? p : zeros, sizeof zeros);
+        p += 2 * (bits & 1);
+    }
+}
+
+static inline void snow_scalar_spread4(const float *p, uint64_t bits, int count,
+                                       float *out) {
+    static const float zeros[4];
+    for (int i = 0; i < count; i++, bits >>= 1) {
+        memcpy(out + 4 * i, bits & 1 ? p : zeros, sizeof zeros);
+        p += 4 * (bits & 1);
+    }
+}
+
 /* By adding neighbouring groups of bits (Wilkes, Wheeler and Gill 1957). */
 static inline int snow_scalar_popcount(uint64_t x) {
     x -= x >> 1 & UINT64_C(0x5555555555555555);
