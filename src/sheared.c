@@ -474,7 +474,7 @@ snow_status snow_sheared_shade(snow_sheared *s,
         return SNOW_OK;
     SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
                           (SNOW_NORMALS + 1) * sizeof *s->gloss));
-    s->gloss[0] = (snow_gloss){0, 0};
+    s->gloss[0] = 0;
     snow_gloss_table(s->context, settings, order->placement, settings->threads,
                      s->gloss + 1);
     return SNOW_OK;

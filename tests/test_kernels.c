@@ -425,10 +425,10 @@ static void plain_sample(const sample_case *s, int row, int place,
     if (!s->shaded)
         return;
     snow_gloss gloss = s->gloss[s->normals[row][voxel]];
-    double alpha = out[s->channels - 1];
+    double alpha = out[s->channels - 1], one = (double)SNOW_GLOSS_ONE;
     for (int c = 0; c < s->channels - 1; c++)
         out[c] = alpha *
-                 fmin(1, out[c] * (double)gloss.factor + (double)gloss.white);
+                 fmin(1, out[c] * (gloss & 0xFFFF) / one + (gloss >> 16) / one);
 }
 
 /* Makes the samples of a case by a level. */
@@ -503,8 +503,7 @@ static void make_tables(sample_case *s, uint64_t *random) {
     for (size_t n = 0; n < floats; n++)
         s->palette[n] = value_of(s->kind, random);
     for (size_t n = 0; n < SNOW_NORMALS; n++)
-        s->gloss[n] = (snow_gloss){(float)support_uniform(random) * 1.2f,
-                                   (float)support_uniform(random) * 0.4f};
+        s->gloss[n] = (snow_gloss)(support_random(random) >> 32);
 }
 
 static void free_tables(sample_case *s) {
@@ -963,13 +962,10 @@ enum word {
     SET1,
     ALPHA2,
     ALPHA4,
-    EVEN,
-    ODD,
     WITH_ALPHA2,
     WITH_ALPHA4,
     GATHER4,
     GATHER2,
-    DOUBLE2,
     WORDS
 };
 
@@ -978,7 +974,7 @@ enum word {
 typedef struct word_input {
     float a[16], b[16], c[16];
     float table[ENTRIES * 4];
-    uint32_t entries[8];
+    uint32_t pairs[ENTRIES], entries[16];
     uint8_t bytes[32];
     uint16_t shorts[32];
     uint32_t bits;
@@ -993,7 +989,7 @@ typedef struct word_output {
     bool less[4];
     int lane_count, popcount;
     uint32_t expand8[16], expand16[16], widen8[16], widen16[16];
-    float spread2[16 * 2 + 16], spread4[16 * 4 + 16];
+    float low[16], high[16], spread2[16 * 2 + 16], spread4[16 * 4 + 16];
     uint64_t windows[8];
     unsigned found;
 } word_output;
@@ -1051,20 +1047,14 @@ static float plain_word(const word_input *in, enum word word, int i,
         return in->a[i | 1];
     case ALPHA4:
         return in->a[i | 3];
-    case EVEN:
-        return in->a[i & ~1];
-    case ODD:
-        return in->a[i | 1];
     case WITH_ALPHA2:
         return i % 2 == 1 ? b : a;
     case WITH_ALPHA4:
         return i % 4 == 3 ? b : a;
     case GATHER4:
         return in->table[in->entries[i / 4] * 4 + (uint32_t)i % 4];
-    case GATHER2:
-        return in->table[in->entries[i / 2] * 2 + (uint32_t)i % 2];
     default:
-        return in->table[in->entries[i / 4] * 2 + (uint32_t)i % 2];
+        return in->table[in->entries[i / 2] * 2 + (uint32_t)i % 2];
     }
 }
 
@@ -1132,6 +1122,9 @@ static void check_bits(const word_input *in, const word_output *out,
             assert_true((c >= 2 || out->spread2[2 * i + c] == two) &&
                         out->spread4[4 * i + c] == four);
         }
+        uint32_t pair = in->pairs[in->entries[i]];
+        assert_true(out->low[i] == (float)(pair & 0xFFFF) &&
+                    out->high[i] == (float)(pair >> 16));
         assert_true(out->widen8[i] == in->bytes[i] &&
                     out->widen16[i] == in->shorts[i]);
         next += here;
@@ -1172,7 +1165,9 @@ static void draw_words(word_input *in, uint64_t *random) {
     }
     for (int i = 0; i < ENTRIES * 4; i++)
         in->table[i] = (float)i;
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < ENTRIES; i++)
+        in->pairs[i] = (uint32_t)(support_random(random) >> 32);
+    for (int i = 0; i < 16; i++)
         in->entries[i] = (uint32_t)draw(random, ENTRIES);
     for (int i = 0; i < 32; i++) {
         in->bytes[i] = (uint8_t)draw(random, 256);

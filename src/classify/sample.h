@@ -12,15 +12,17 @@
 #define SNOW_WINDOW_MOST 63
 #define SNOW_SAMPLE_MARGIN 64
 
-#define SNOW_SAMPLE_ROWS 64 /* of windows at most: a mask of rows is one word \
-                             */
+#define SNOW_SAMPLE_ROWS                                 \
+    64 /* of windows at most: a mask of rows is one word \
+        */
 #define SNOW_SAMPLES_MOST (SNOW_SAMPLE_ROWS * (SNOW_WINDOW_MOST + 1))
 
 /* Memory for the voxels of some windows, one after another. */
 typedef struct snow_sample_room {
-    uint32_t entries[SNOW_SAMPLES_MOST + 16]; /* of the palette */
-    uint32_t normals[SNOW_SAMPLES_MOST + 16];
-    float samples[4 * (SNOW_SAMPLES_MOST + 16)];
+    uint16_t codes[SNOW_SAMPLES_MOST + 64], normals[SNOW_SAMPLES_MOST + 64];
+    uint32_t entries[SNOW_SAMPLES_MOST + 64]; /* of the palette */
+    float factors[SNOW_SAMPLES_MOST + 64], whites[SNOW_SAMPLES_MOST + 64];
+    float samples[4 * (SNOW_SAMPLES_MOST + 64)];
 } snow_sample_room;
 
 /* Windows of `count` places, of which samples are to be made: premultiplied, 2

@@ -4,7 +4,7 @@
 #define SAMPLE_WIDEN V(widen8)
 #define SAMPLE_CHANNELS 2
 #define SAMPLE_GATHER V(gather2)
-#define SAMPLE_SHINE V(gather2)
+#define SAMPLE_REPEAT V(repeat2)
 #define SAMPLE_ALPHA V(alpha2)
 #define SAMPLE_WITH_ALPHA V(with_alpha2)
 #define SAMPLE_SPREAD V(spread2)
@@ -14,7 +14,7 @@
 #define SAMPLE_WIDEN V(widen8)
 #define SAMPLE_CHANNELS 4
 #define SAMPLE_GATHER V(gather4)
-#define SAMPLE_SHINE V(double2)
+#define SAMPLE_REPEAT V(repeat4)
 #define SAMPLE_ALPHA V(alpha4)
 #define SAMPLE_WITH_ALPHA V(with_alpha4)
 #define SAMPLE_SPREAD V(spread4)
@@ -24,7 +24,7 @@
 #define SAMPLE_WIDEN V(widen16)
 #define SAMPLE_CHANNELS 2
 #define SAMPLE_GATHER V(gather2)
-#define SAMPLE_SHINE V(gather2)
+#define SAMPLE_REPEAT V(repeat2)
 #define SAMPLE_ALPHA V(alpha2)
 #define SAMPLE_WITH_ALPHA V(with_alpha2)
 #define SAMPLE_SPREAD V(spread2)
@@ -34,7 +34,7 @@
 #define SAMPLE_WIDEN V(widen16)
 #define SAMPLE_CHANNELS 4
 #define SAMPLE_GATHER V(gather4)
-#define SAMPLE_SHINE V(double2)
+#define SAMPLE_REPEAT V(repeat4)
 #define SAMPLE_ALPHA V(alpha4)
 #define SAMPLE_WITH_ALPHA V(with_alpha4)
 #define SAMPLE_SPREAD V(spread4)

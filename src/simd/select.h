@@ -20,9 +20,8 @@
  *   V(any_less)(a, b)                whether a < b in any lane
  *   V(gather4)(p, n), V(gather2)     entries n[0], n[1] ... of a table of 4 or 2
  *                                    floats each, as many as a vector holds
- *   V(double2)(p, n)                 entries of 2 floats, each twice
- *   V(even)(v), V(odd)(v)            the first or second of each two lanes, in
- *                                    both of them
+ *   V(pairs16)(p, n, low, high)      the lower and the upper halves of 16 entries
+ *                                    of a table of uint32_t, as floats
  *   V(with_alpha2)(a, b), V(with_alpha4)  a with the last channels of b
  *   V(expand8)(p, bits, out), V(expand16)
  *                                    16 places: the next of the numbers at p,

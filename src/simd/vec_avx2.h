@@ -114,20 +114,6 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_gather2(const float *p,
     return _mm256_castpd_ps(_mm256_blend_pd(low, high, 12));
 }
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_double2(const float *p,
-                                                 const uint32_t *n) {
-    return _mm256_castpd_ps(
-        _mm256_blend_pd(snow_avx2_pair(p, n, 0), snow_avx2_pair(p, n, 1), 12));
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_even(snow_avx2_vec v) {
-    return _mm256_moveldup_ps(v);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_odd(snow_avx2_vec v) {
-    return _mm256_movehdup_ps(v);
-}
-
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_with_alpha2(snow_avx2_vec a,
                                                      snow_avx2_vec b) {
     return _mm256_blend_ps(a, b, 0xAA);
@@ -192,6 +178,20 @@ SNOW_AVX2_INLINE void snow_avx2_widen16(const uint16_t *p, uint32_t *out) {
         _mm256_storeu_si256((__m256i *)(void *)(out + i),
                             _mm256_cvtepu16_epi32(_mm_loadu_si128(
                                 (const __m128i *)(const void *)(p + i))));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_pairs16(const uint32_t *p, const uint32_t *n,
+                                        float *first, float *second) {
+    for (int i = 0; i < 16; i += 8) {
+        __m256i places =
+            _mm256_loadu_si256((const __m256i *)(const void *)(n + i));
+        __m256i pairs =
+            _mm256_i32gather_epi32((const int *)(const void *)p, places, 4);
+        _mm256_storeu_ps(first + i, _mm256_cvtepi32_ps(_mm256_and_si256(
+                                        pairs, _mm256_set1_epi32(0xFFFF))));
+        _mm256_storeu_ps(second + i,
+                         _mm256_cvtepi32_ps(_mm256_srli_epi32(pairs, 16)));
+    }
 }
 
 /* The next lanes of p where a byte of `bytes`, all ones or zeros, has ones. */

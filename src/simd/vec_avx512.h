@@ -108,11 +108,7 @@ SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
-/* Puts what is at p + n floats into the places of the mask, or of 16 bytes. */
-#define SNOW_AVX512_PAIR(v, mask, p, n) \
-    _mm512_mask_broadcastsd_pd(         \
-        v, mask,                        \
-        _mm_load_sd((const double *)(const void *)((p) + 2 * (size_t)(n))))
+/* Puts the 16 bytes of an entry into a place. */
 #define SNOW_AVX512_FOUR(v, place, p, n) \
     _mm512_insertf32x4(v, _mm_loadu_ps((p) + 4 * (size_t)(n)), place)
 
@@ -128,24 +124,6 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather2(const float *p,
                                                        const uint32_t *n) {
     __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)n);
     return _mm512_castpd_ps(_mm512_i32gather_pd(places, p, 8));
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_double2(const float *p,
-                                                       const uint32_t *n) {
-    __m128i places = _mm_loadu_si128((const __m128i *)(const void *)n);
-    __m256d pairs =
-        _mm256_i32gather_pd((const double *)(const void *)p, places, 8);
-    return _mm512_castpd_ps(
-        _mm512_permutexvar_pd(_mm512_setr_epi64(0, 0, 1, 1, 2, 2, 3, 3),
-                              _mm512_castpd256_pd512(pairs)));
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_even(snow_avx512_vec v) {
-    return _mm512_moveldup_ps(v);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_odd(snow_avx512_vec v) {
-    return _mm512_movehdup_ps(v);
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_with_alpha2(snow_avx512_vec a,
@@ -198,6 +176,15 @@ SNOW_AVX512_INLINE void snow_avx512_widen8(const uint8_t *p, uint32_t *out) {
 SNOW_AVX512_INLINE void snow_avx512_widen16(const uint16_t *p, uint32_t *out) {
     _mm512_storeu_si512(out, _mm512_cvtepu16_epi32(_mm256_loadu_si256(
                                  (const __m256i *)(const void *)p)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_pairs16(const uint32_t *p,
+                                            const uint32_t *n, float *first,
+                                            float *second) {
+    __m512i pairs = _mm512_i32gather_epi32(_mm512_loadu_si512(n), p, 4);
+    _mm512_storeu_ps(first, _mm512_cvtepi32_ps(_mm512_and_si512(
+                                pairs, _mm512_set1_epi32(0xFFFF))));
+    _mm512_storeu_ps(second, _mm512_cvtepi32_ps(_mm512_srli_epi32(pairs, 16)));
 }
 
 SNOW_AVX512_INLINE void snow_avx512_spread2(const float *p, uint64_t bits,

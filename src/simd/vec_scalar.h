@@ -109,20 +109,6 @@ static inline snow_scalar_vec snow_scalar_gather2(const float *p,
     return (snow_scalar_vec){a[0], a[1], b[0], b[1]};
 }
 
-static inline snow_scalar_vec snow_scalar_double2(const float *p,
-                                                  const uint32_t *n) {
-    const float *a = p + (size_t)n[0] * 2;
-    return (snow_scalar_vec){a[0], a[1], a[0], a[1]};
-}
-
-static inline snow_scalar_vec snow_scalar_even(snow_scalar_vec v) {
-    return (snow_scalar_vec){v[0], v[0], v[2], v[2]};
-}
-
-static inline snow_scalar_vec snow_scalar_odd(snow_scalar_vec v) {
-    return (snow_scalar_vec){v[1], v[1], v[3], v[3]};
-}
-
 static inline snow_scalar_vec snow_scalar_with_alpha2(snow_scalar_vec a,
                                                       snow_scalar_vec b) {
     return (snow_scalar_vec){a[0], b[1], a[2], b[3]};
@@ -171,6 +157,14 @@ static inline void snow_scalar_widen8(const uint8_t *p, uint32_t *out) {
 static inline void snow_scalar_widen16(const uint16_t *p, uint32_t *out) {
     for (int i = 0; i < 16; i++)
         out[i] = p[i];
+}
+
+static inline void snow_scalar_pairs16(const uint32_t *p, const uint32_t *n,
+                                       float *first, float *second) {
+    for (int i = 0; i < 16; i++) {
+        first[i] = (float)(p[n[i]] & 0xFFFF);
+        second[i] = (float)(p[n[i]] >> 16);
+    }
 }
 
 static inline void snow_scalar_spread2(const float *p, uint64_t bits, int count,
