@@ -3,17 +3,25 @@
  * fill the vectors of the level, so that Catmull-Rom's short runs are left to
  * levels with shorter ones (warp/warp.c). */
 #include "warp/linear.tmpl.h"
+#define WARP_CHANNELS 2
+#define WARP_BEFORE 0
+#define WARP_NAME(part) NAME(linear2##part)
+#include "warp/lines.tmpl.h"
 #define WARP_CHANNELS 4
-#define WARP_TAPS 4
+#define WARP_BEFORE 0
+#define WARP_NAME(part) NAME(linear4##part)
+#include "warp/lines.tmpl.h"
+#define WARP_CHANNELS 4
+#define WARP_BEFORE 1
 #define WARP_FOLD V(fold4)
-#define WARP_CUBIC catmull_rom
 #define WARP_NAME(part) NAME(cubic4##part)
-#include "warp/warp.tmpl.h"
+#include "warp/cubic.tmpl.h"
+#include "warp/lines.tmpl.h"
 #if LANES <= 8
 #define WARP_CHANNELS 2
-#define WARP_TAPS 4
+#define WARP_BEFORE 1
 #define WARP_FOLD V(fold2)
-#define WARP_CUBIC catmull_rom
 #define WARP_NAME(part) NAME(cubic2##part)
-#include "warp/warp.tmpl.h"
+#include "warp/cubic.tmpl.h"
+#include "warp/lines.tmpl.h"
 #endif

@@ -23,25 +23,6 @@ static inline float fraction_of(int64_t place) {
     return (float)(int32_t)((uint32_t)place >> 8) * 0x1p-24f;
 }
 
-static inline snow_scalar_vec cubic_weights(const float cubic[4][4], float f) {
-    snow_scalar_vec at = snow_scalar_set1(f);
-    snow_scalar_vec w = snow_scalar_load(cubic[3]);
-    for (int power = 2; power >= 0; power--)
-        w = snow_scalar_fma(w, at, snow_scalar_load(cubic[power]));
-    return w;
-}
-
-/* Holds a pixel to the laws of premultiplied ones, and stores it. */
-static inline void store_pixel(snow_scalar_vec pixel, int channels,
-                               float *out) {
-    const snow_scalar_vec zero = {0, 0, 0, 0}, one = {1, 1, 1, 1};
-    pixel = snow_scalar_min(snow_scalar_max(pixel, zero), one);
-    snow_scalar_vec alpha =
-        channels == 4 ? snow_scalar_alpha4(pixel) : snow_scalar_alpha2(pixel);
-    pixel = snow_scalar_min(pixel, alpha);
-    memcpy(out, &pixel, (size_t)channels * sizeof *out);
-}
-
 /* (1 - part) a + part b */
 static inline snow_scalar_vec mixed(snow_scalar_vec a, snow_scalar_vec b,
                                     snow_scalar_vec part) {
@@ -58,11 +39,12 @@ static inline snow_scalar_vec two_pixels(const float *a, const float *b) {
 #define GROUP 16
 
 /* Where the pixels of a group lie. */
-typedef struct linear_group {
-    int64_t at[GROUP];       /* floats from the plane's first pixel */
+typedef struct warp_group {
+    int64_t at[GROUP];       /* the first one that is read, in floats from the
+                                plane's first */
     float across[2 * GROUP]; /* fractions, each twice */
     float down[2 * GROUP];
-} linear_group;
+} warp_group;
 
 #define SELECT_SCALAR
 #include "simd/select.h"
