@@ -5,7 +5,6 @@
  * voxels in the order of memory are read straight into place.  All others come
  * through a buffer, from which they are put where they belong. */
 #include "volume/array.h"
-#include "base/source_codes.h"
 #include "volume/numbers.h"
 
 #include <string.h>
@@ -299,9 +298,8 @@ snow_status snow_array_read(snow_source *source, const snow_volume_info *info,
     snow_status status = read_voxels(&reader);
     if (status == SNOW_OK)
         status = go_to(&reader, array->all);
-    if (status == SNOW_OK)
-        status = array->more ? snow_source_verify(source)
-                             : snow_source_finish(source);
+    if (status == SNOW_OK && !array->more)
+        status = snow_source_finish(source);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;

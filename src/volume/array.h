@@ -27,8 +27,8 @@ typedef struct snow_array {
     uint64_t first;
     uint64_t all; /* bytes of all that belongs to the data; the source is read
                      to their end */
-    bool more;    /* other things follow in the file, of which no remark is
-                     made */
+    bool more;    /* other things follow in the file: the source is left behind
+                     the data, not finished */
 } snow_array;
 
 /* Bytes of a stored value. */
@@ -42,7 +42,8 @@ bool snow_array_steps(const int64_t *sizes, int rank, uint64_t value,
 
 /* Makes the volume: info->dims voxels of info->type, in the order of memory
  * that all volumes have.  Checks the info and that the source can hold the
- * bytes before memory is taken, and finishes the source.
+ * bytes before memory is taken, and finishes the source
+ * unless more follows.
  * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
 snow_status snow_array_read(snow_source *source, const snow_volume_info *info,
                             const snow_array *array, snow_volume **out);

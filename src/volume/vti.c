@@ -1,5 +1,6 @@
 /* volume/vti.c - image data of VTK's XML files: .vti. */
 #include "volume/vti.h"
+#include "base/source_codes.h"
 
 #include <string.h>
 
@@ -15,7 +16,15 @@ static snow_status read_vti(snow_source *source,
     SNOW_TRY(snow_volume_pick_channel(context, options, header.array.channels,
                                       &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, &info));
-    return snow_vti_read_data(source, &header, &info, channel, out);
+    snow_volume *volume;
+    SNOW_TRY(snow_vti_read_data(source, &header, &info, channel, &volume));
+    snow_status status = snow_source_verify(source);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    *out = volume;
+    return SNOW_OK;
 }
 
 /* By the element that all XML files of VTK have near their front, whatever

@@ -122,11 +122,9 @@ snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
     if (!snow_array_steps(sizes, 4, size, steps, &array.all))
         return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
                          "its extent is larger than any file; write it again");
-    if (header->form == VTI_ASCII) {
-        SNOW_TRY(snow_array_read_text(source, info, header->array.channels,
-                                      channel, out));
-        return snow_source_verify(source);
-    }
+    if (header->form == VTI_ASCII)
+        return snow_array_read_text(source, info, header->array.channels,
+                                    channel, out);
     SNOW_TRY(begin_bytes(source, header, array.all));
     memcpy(array.step, steps + 1, sizeof array.step);
     return snow_array_read(source, info, &array, out);

@@ -12,7 +12,8 @@
  *     VECTORS, FIELD and others, numbers
  *
  * Arrays are walked through in the order of the file, up to the one that is
- * asked for, or else the first. */
+ * asked for, or else the first of points; without such the first of cells,
+ * which VTK writes before those of points. */
 #include "volume/vtk.h"
 #include "base/source_codes.h"
 #include "volume/numbers.h"
@@ -36,6 +37,7 @@ typedef struct vtk_reader {
     int64_t tuples; /* the number behind it */
     char seen[512]; /* names of arrays so far, for messages */
     snow_volume *volume;
+    bool done; /* it is no better one's stand-in */
     char line[LINE_BYTES];
     char *words[MOST_WORDS];
     int count; /* of words */
@@ -145,11 +147,11 @@ static snow_status read_array(vtk_reader *reader, const vtk_array *array,
     uint64_t steps[4];
     snow_array bytes = {.big_endian = true, .more = true};
     size_t size = snow_type_size(array->type);
-    if (!reader->binary) {
-        SNOW_TRY(snow_array_read_text(reader->source, info, array->channels,
-                                      channel, &reader->volume));
-        return snow_source_verify(reader->source);
-    }
+    snow_volume_close(reader->volume);
+    reader->volume = NULL;
+    if (!reader->binary)
+        return snow_array_read_text(reader->source, info, array->channels,
+                                    channel, &reader->volume);
     const int64_t sizes[4] = {array->channels, info->dims[0], info->dims[1],
                               info->dims[2]};
     if (!snow_array_steps(sizes, 4, size, steps, &bytes.all))
@@ -185,7 +187,8 @@ static snow_status take_array(vtk_reader *reader, const char *name,
     if (type == SNOW_TYPE_NONE || channels < 1 || tuples < 0)
         return fail_line(reader);
     const char *asked = reader->options->dataset;
-    bool wanted = reader->placed && (!asked || !strcmp(asked, array.name));
+    bool wanted = reader->placed && (asked ? !strcmp(asked, array.name)
+                                           : !reader->cells || !reader->volume);
     if (reader->placed)
         remember(reader, array.name);
     if (!wanted)
@@ -205,6 +208,7 @@ static snow_status take_array(vtk_reader *reader, const char *name,
                                       channels, &channel));
     SNOW_TRY(snow_volume_pick_time(reader->context, "time step",
                                    reader->options, &info));
+    reader->done = asked || !reader->cells;
     return read_array(reader, &array, &info, channel);
 }
 
@@ -222,7 +226,7 @@ static snow_status take_field(vtk_reader *reader) {
     int64_t count, channels, tuples;
     if (reader->count < 3 || !snow_parse_int64(reader->words[2], &count))
         return fail_line(reader);
-    for (int64_t i = 0; i < count && !reader->volume; i++) {
+    for (int64_t i = 0; i < count && !reader->done; i++) {
         SNOW_TRY(next_line(reader));
         if (starts(reader, "METADATA", 1)) { /* of the array before */
             SNOW_TRY(skip_metadata(reader));
@@ -323,7 +327,7 @@ static snow_status walk(vtk_reader *reader) {
         bool known;
         SNOW_TRY(next_line(reader));
         if (!reader->count)
-            return fail_unfound(reader);
+            return reader->volume ? SNOW_OK : fail_unfound(reader);
         if (take_geometry(reader))
             continue;
         if (starts(reader, "METADATA", 1)) {
@@ -333,7 +337,7 @@ static snow_status walk(vtk_reader *reader) {
         SNOW_TRY(take_attribute(reader, &known));
         if (!known)
             return fail_line(reader);
-        if (reader->volume)
+        if (reader->done)
             return SNOW_OK;
     }
 }
@@ -368,6 +372,8 @@ static snow_status read_vtk(snow_source *source,
                          .grid = snow_vtk_grid_default()};
     SNOW_TRY(take_head(&reader));
     snow_status status = walk(&reader);
+    if (status == SNOW_OK)
+        status = snow_source_verify(source);
     if (status != SNOW_OK) {
         snow_volume_close(reader.volume);
         return status;
