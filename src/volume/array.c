@@ -23,10 +23,11 @@ typedef struct walk {
 typedef struct array_reader {
     snow_source *source;
     const snow_array *array;
-    size_t size;  /* of a stored value */
-    size_t wide;  /* of a voxel in memory */
-    uint64_t at;  /* bytes taken of the array */
-    walk axis[3]; /* the shortest step in the file first */
+    size_t size;    /* of a stored value */
+    size_t wide;    /* of a voxel in memory */
+    uint64_t first; /* byte of the first voxel wanted */
+    uint64_t at;    /* bytes taken of the array */
+    walk axis[3];   /* the shortest step in the file first */
     unsigned char *voxels;
     unsigned char *buffer;
     uint64_t room; /* bytes of the buffer */
@@ -77,12 +78,14 @@ float snow_half_to_float(uint16_t half) {
 
 /* Goes to a byte of the array, which is never behind. */
 static snow_status go_to(array_reader *reader, uint64_t byte) {
+    snow_source_plan(reader->source, 0);
     SNOW_TRY(snow_source_skip(reader->source, byte - reader->at, "the voxels"));
     reader->at = byte;
     return SNOW_OK;
 }
 
 static snow_status take(array_reader *reader, void *to, uint64_t bytes) {
+    snow_source_plan(reader->source, bytes);
     SNOW_TRY(
         snow_source_read_all(reader->source, to, (size_t)bytes, "the voxels"));
     reader->at += bytes;
@@ -200,7 +203,7 @@ static snow_status read_through_buffer(array_reader *reader) {
     for (i[2] = 0; i[2] < axis[2].count; i[2] += block[2].count)
         for (i[1] = 0; i[1] < axis[1].count; i[1] += block[1].count)
             for (i[0] = 0; i[0] < axis[0].count; i[0] += block[0].count) {
-                uint64_t from = reader->array->first, to = 0;
+                uint64_t from = reader->first, to = 0;
                 for (int a = 0; a < 3; a++) {
                     some[a] = block[a];
                     if (some[a].count > axis[a].count - i[a])
@@ -220,7 +223,7 @@ static snow_status read_rows(array_reader *reader) {
     const walk *axis = reader->axis;
     for (uint64_t k = 0; k < axis[2].count; k++)
         for (uint64_t j = 0; j < axis[1].count; j++) {
-            SNOW_TRY(go_to(reader, reader->array->first + k * axis[2].from +
+            SNOW_TRY(go_to(reader, reader->first + k * axis[2].from +
                                        j * axis[1].from));
             SNOW_TRY(take(reader,
                           reader->voxels + k * axis[2].to + j * axis[1].to,
@@ -281,78 +284,124 @@ static snow_status read_voxels(array_reader *reader) {
     return status;
 }
 
+/* True when the voxels lie as in memory, without a gap. */
+static bool is_natural(const snow_array *array, const snow_window *window) {
+    uint64_t step = window->value;
+    for (int i = 0; i < 3; i++) {
+        if (array->step[i] != step && window->dims[i] > 1)
+            return false;
+        step *= (uint64_t)window->dims[i];
+    }
+    return array->coding == SNOW_CODING_PLAIN;
+}
+
 /* Halves have their byte order undone when they are widened. */
-snow_status snow_array_read(snow_source *source, const snow_volume_info *info,
-                            const snow_array *array, snow_volume **out) {
+static snow_status fill(snow_source *source, const snow_array *array,
+                        uint64_t first, snow_volume *volume) {
+    array_reader reader = {
+        .source = source,
+        .array = array,
+        .first = first,
+        .size = snow_coding_size(array->coding, volume->info.type),
+        .wide = snow_type_size(volume->info.type),
+        .voxels = volume->owned};
+    sort_axes(&reader, volume->info.dims);
+    SNOW_TRY(read_voxels(&reader));
+    SNOW_TRY(go_to(&reader, array->all));
+    snow_source_plan(source, UINT64_MAX);
+    return SNOW_OK;
+}
+
+/* A box is an array too, which begins later and has gaps. */
+snow_status snow_array_read(snow_source *source,
+                            const snow_volume_options *options,
+                            const snow_array *array, snow_volume_info *info,
+                            snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    SNOW_TRY(snow_volume_info_check(context, info));
-    SNOW_TRY(snow_source_expect(source, array->all, "the voxels"));
+    snow_window window;
     snow_volume *volume;
+    SNOW_TRY(snow_window_lay(context, options, info, &window));
+    SNOW_TRY(snow_source_expect(source, array->all, "the voxels"));
+    if (!out)
+        return SNOW_OK;
+    uint64_t first = array->first;
+    for (int i = 0; i < 3; i++)
+        first += (uint64_t)window.first[i] * array->step[i];
     SNOW_TRY(snow_volume_new(context, info, &volume));
-    array_reader reader = {.source = source,
-                           .array = array,
-                           .size = snow_coding_size(array->coding, info->type),
-                           .wide = snow_type_size(info->type),
-                           .voxels = volume->owned};
-    sort_axes(&reader, info->dims);
-    snow_status status = read_voxels(&reader);
-    if (status == SNOW_OK)
-        status = go_to(&reader, array->all);
+    snow_status status;
+    if (is_natural(array, &window)) {
+        window.before = array->first;
+        const snow_file_part part = {&window, 0, array->all};
+        status = snow_file_part_read(source, &part, volume->owned);
+    } else {
+        status = fill(source, array, first, volume);
+    }
     if (status == SNOW_OK && !array->more)
         status = snow_source_finish(source);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;
     }
-    if (array->coding == SNOW_CODING_PLAIN &&
-        array->big_endian != snow_machine_big_endian())
-        snow_swap_bytes(volume->owned,
-                        (uint64_t)info->dims[0] * (uint64_t)info->dims[1] *
-                            (uint64_t)info->dims[2],
-                        reader.size);
+    if (array->coding == SNOW_CODING_PLAIN)
+        snow_volume_order_bytes(volume, array->big_endian);
     *out = volume;
     return SNOW_OK;
 }
 
-/* Reads `all` numbers, from which every `channels`th is kept. */
-static snow_status read_some_numbers(snow_source *source,
-                                     const snow_number_window *all,
-                                     int64_t channels, int64_t channel,
-                                     snow_volume *volume) {
+/* Takes all numbers of all channels, and keeps the box of one. */
+static snow_status read_channel(snow_source *source, const snow_window *window,
+                                int64_t channels, int64_t channel,
+                                snow_volume *volume) {
     snow_context *context = snow_source_context(source);
     snow_type type = volume->info.type;
     size_t size = snow_type_size(type);
-    unsigned char *numbers = snow_allocate_array(context, all->all, size);
+    uint64_t bytes = window->all * (uint64_t)channels;
+    unsigned char *numbers = snow_allocate_array(context, bytes, 1);
     if (!numbers)
         return SNOW_NO_MEMORY;
-    snow_status status = snow_read_numbers(source, type, false, all, numbers);
-    if (status == SNOW_OK)
-        put_plain(numbers + (size_t)channel * size, (uint64_t)channels * size,
-                  volume->owned, size, all->all / (uint64_t)channels, size);
+    const int64_t count = (int64_t)(bytes / size);
+    const snow_window whole = {.all = bytes,
+                               .value = size,
+                               .dims = {count, 1, 1},
+                               .count = {count, 1, 1}};
+    const snow_file_part all = {&whole, 0, bytes};
+    snow_status status = snow_read_numbers(source, type, false, &all, numbers);
+    unsigned char *to = volume->owned;
+    for (int64_t run = 0; status == SNOW_OK && run < snow_window_runs(window);
+         run++) {
+        uint64_t begin, end, step = (uint64_t)channels * size;
+        snow_window_run(window, run, &begin, &end);
+        put_plain(numbers + begin / size * step + (uint64_t)channel * size,
+                  step, to, size, (end - begin) / size, size);
+        to += end - begin;
+    }
     snow_release(context, numbers);
     return status;
 }
 
 /* A number takes a digit and a blank at least. */
 snow_status snow_array_read_text(snow_source *source,
-                                 const snow_volume_info *info, int64_t channels,
-                                 int64_t channel, snow_volume **out) {
+                                 const snow_volume_options *options,
+                                 int64_t channels, int64_t channel,
+                                 snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    int64_t voxels;
-    uint64_t bytes, count;
-    SNOW_TRY(snow_volume_info_check(context, info));
-    snow_volume_count(info->dims, info->type, &voxels, &bytes);
-    if (!snow_mul_u64((uint64_t)voxels, (uint64_t)channels, &count) ||
-        count > (uint64_t)INT64_MAX / 8)
-        count = INT64_MAX / 8; /* expect refuses it */
-    SNOW_TRY(snow_source_expect(source, 2 * count - 1, "the voxels"));
+    snow_window window;
     snow_volume *volume;
+    uint64_t bytes;
+    SNOW_TRY(snow_window_lay(context, options, info, &window));
+    if (!snow_mul_u64(window.all, (uint64_t)channels, &bytes) ||
+        bytes > (uint64_t)INT64_MAX)
+        bytes = INT64_MAX; /* expect refuses it */
+    SNOW_TRY(snow_source_expect(source, 2 * (bytes / window.value) - 1,
+                                "the voxels"));
+    if (!out)
+        return SNOW_OK;
+    const snow_file_part all = {&window, 0, window.all};
     SNOW_TRY(snow_volume_new(context, info, &volume));
-    const snow_number_window all = {0, count, count};
     snow_status status =
         channels == 1
             ? snow_read_numbers(source, info->type, false, &all, volume->owned)
-            : read_some_numbers(source, &all, channels, channel, volume);
+            : read_channel(source, &window, channels, channel, volume);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;

@@ -40,19 +40,22 @@ size_t snow_coding_size(snow_coding coding, snow_type type);
 bool snow_array_steps(const int64_t *sizes, int rank, uint64_t value,
                       uint64_t *steps, uint64_t *all);
 
-/* Makes the volume: info->dims voxels of info->type, in the order of memory
- * that all volumes have.  Checks the info and that the source can hold the
- * bytes before memory is taken, and finishes the source
- * unless more follows.
- * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
-snow_status snow_array_read(snow_source *source, const snow_volume_info *info,
-                            const snow_array *array, snow_volume **out);
+/* The end of a reader, as snow_volume_read: lays the window of the options,
+ * checks that the source can hold the bytes, makes the volume unless `out` is
+ * NULL, in the order of memory that all volumes have, reads it, and finishes
+ * the source unless more follows.  Errors: SNOW_BAD_INPUT, SNOW_BAD_USAGE,
+ * SNOW_NO_MEMORY. */
+snow_status snow_array_read(snow_source *source,
+                            const snow_volume_options *options,
+                            const snow_array *array, snow_volume_info *info,
+                            snow_volume **out);
 
 /* The same for decimal numbers in text, `channels` for each voxel, of which one
  * is wanted.  What follows them stays in the source, which is not finished. */
 snow_status snow_array_read_text(snow_source *source,
-                                 const snow_volume_info *info, int64_t channels,
-                                 int64_t channel, snow_volume **out);
+                                 const snow_volume_options *options,
+                                 int64_t channels, int64_t channel,
+                                 snow_volume_info *info, snow_volume **out);
 
 /* The value of an IEEE 754 binary16 number; exact. */
 float snow_half_to_float(uint16_t half);

@@ -251,30 +251,30 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
 
 static snow_status read_mrc(snow_source *source,
                             const snow_volume_options *options,
-                            snow_volume **out) {
+                            snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     unsigned char bytes[HEADER_BYTES];
     uint64_t extended = 0, steps[4];
     int64_t channel;
     snow_array array = {0};
-    snow_volume_info info = snow_volume_info_default("mrc");
+    *info = snow_volume_info_default("mrc");
     SNOW_TRY(snow_source_read_all(source, bytes, sizeof bytes, "the header"));
     const mrc_header header = header_of(bytes);
-    SNOW_TRY(parse_header(context, &header, &info, &array, &extended));
+    SNOW_TRY(parse_header(context, &header, info, &array, &extended));
     SNOW_TRY(snow_volume_check_dataset(context, options, ""));
     SNOW_TRY(snow_volume_pick_channel(context, options, 1, &channel));
-    SNOW_TRY(snow_volume_pick_time(context, "volume", options, &info));
-    const int64_t sizes[4] = {info.dims[0], info.dims[1], info.dims[2],
-                              info.times};
-    if (!snow_array_steps(sizes, 4, snow_coding_size(array.coding, info.type),
+    SNOW_TRY(snow_volume_pick_time(context, "volume", options, info));
+    const int64_t sizes[4] = {info->dims[0], info->dims[1], info->dims[2],
+                              info->times};
+    if (!snow_array_steps(sizes, 4, snow_coding_size(array.coding, info->type),
                           steps, &array.all))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "its sizes are larger than any file; correct the "
                          "header");
     memcpy(array.step, steps, sizeof array.step);
-    array.first = (uint64_t)info.time * steps[3];
+    array.first = (uint64_t)info->time * steps[3];
     SNOW_TRY(snow_source_skip(source, extended, "the extended header"));
-    return snow_array_read(source, &info, &array, out);
+    return snow_array_read(source, options, &array, info, out);
 }
 
 const snow_format snow_format_mrc = {
@@ -282,5 +282,6 @@ const snow_format snow_format_mrc = {
     .text = "MRC and CCP4 density maps (.mrc, .map, .rec, .ccp4)",
     .suffixes = {".mrc", ".map", ".rec", ".ccp4", ".mrc.gz", ".map.gz"},
     .probe = probe_mrc,
+    .crops = true,
     .read = read_mrc,
 };

@@ -105,15 +105,15 @@ static snow_status pick(snow_context *context,
 
 static snow_status read_npy(snow_source *source,
                             const snow_volume_options *options,
-                            snow_volume **out) {
+                            snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    snow_volume_info info = snow_volume_info_default("npy");
     npy_header header;
     snow_array array;
     layout lay;
+    *info = snow_volume_info_default("npy");
     SNOW_TRY(refuse_archive(source));
     SNOW_TRY(snow_npy_read_header(source, &header));
-    if (!parse_type(header.type, &info.type, &array))
+    if (!parse_type(header.type, &info->type, &array))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "values of the NumPy type \"%s\" are not read; save "
                          "the array with .astype('float32')",
@@ -123,15 +123,15 @@ static snow_status read_npy(snow_source *source,
                          "an array of %d axes is no volume; save one of the "
                          "shape (z, y, x), or with time before these",
                          header.axes);
-    if (!lay_out(&header, snow_coding_size(array.coding, info.type), &lay))
+    if (!lay_out(&header, snow_coding_size(array.coding, info->type), &lay))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "its shape is empty or larger than any file; save "
                          "the array again");
-    memcpy(info.dims, lay.size, sizeof info.dims);
+    memcpy(info->dims, lay.size, sizeof info->dims);
     memcpy(array.step, lay.step, sizeof array.step);
     array.all = lay.all;
-    SNOW_TRY(pick(context, options, header.axes, &lay, &info, &array));
-    return snow_array_read(source, &info, &array, out);
+    SNOW_TRY(pick(context, options, header.axes, &lay, info, &array));
+    return snow_array_read(source, options, &array, info, out);
 }
 
 const snow_format snow_format_npy = {
@@ -139,5 +139,6 @@ const snow_format snow_format_npy = {
     .text = "NumPy arrays (.npy)",
     .suffixes = {".npy", ".npy.gz", ".npz"},
     .probe = snow_npy_probe,
+    .crops = true,
     .read = read_npy,
 };

@@ -6,18 +6,21 @@
 
 static snow_status read_vti(snow_source *source,
                             const snow_volume_options *options,
-                            snow_volume **out) {
+                            snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    snow_volume_info info = snow_volume_info_default("vti");
     vti_header header;
     int64_t channel;
+    *info = snow_volume_info_default("vti");
     SNOW_TRY(snow_vti_read_header(source, options, &header));
-    SNOW_TRY(snow_vtk_describe(context, &header.grid, &header.array, &info));
+    SNOW_TRY(snow_vtk_describe(context, &header.grid, &header.array, info));
     SNOW_TRY(snow_volume_pick_channel(context, options, header.array.channels,
                                       &channel));
-    SNOW_TRY(snow_volume_pick_time(context, "time step", options, &info));
-    snow_volume *volume;
-    SNOW_TRY(snow_vti_read_data(source, &header, &info, channel, &volume));
+    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    snow_volume *volume = NULL;
+    SNOW_TRY(snow_vti_read_data(source, &header, options, channel, info,
+                                out ? &volume : NULL));
+    if (!out)
+        return SNOW_OK;
     snow_status status = snow_source_verify(source);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
@@ -45,5 +48,6 @@ const snow_format snow_format_vti = {
     .text = "VTK image data in XML (.vti)",
     .suffixes = {".vti", ".vti.gz"},
     .probe = probe_vti,
+    .crops = true,
     .read = read_vti,
 };

@@ -35,7 +35,8 @@ snow_status snow_vti_read_header(snow_source *source,
 
 /* Makes the volume from where the header left the source. */
 snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
-                               const snow_volume_info *info, int64_t channel,
+                               const snow_volume_options *options,
+                               int64_t channel, snow_volume_info *info,
                                snow_volume **out);
 
 #endif

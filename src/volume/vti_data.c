@@ -110,7 +110,8 @@ static snow_status begin_bytes(snow_source *source, const vti_header *header,
 }
 
 snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
-                               const snow_volume_info *info, int64_t channel,
+                               const snow_volume_options *options,
+                               int64_t channel, snow_volume_info *info,
                                snow_volume **out) {
     uint64_t steps[4];
     size_t size = snow_type_size(info->type);
@@ -123,9 +124,9 @@ snow_status snow_vti_read_data(snow_source *source, const vti_header *header,
         return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
                          "its extent is larger than any file; write it again");
     if (header->form == VTI_ASCII)
-        return snow_array_read_text(source, info, header->array.channels,
-                                    channel, out);
+        return snow_array_read_text(source, options, header->array.channels,
+                                    channel, info, out);
     SNOW_TRY(begin_bytes(source, header, array.all));
     memcpy(array.step, steps + 1, sizeof array.step);
-    return snow_array_read(source, info, &array, out);
+    return snow_array_read(source, options, &array, info, out);
 }

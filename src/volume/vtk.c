@@ -36,8 +36,11 @@ typedef struct vtk_reader {
     bool cells;     /* the latter */
     int64_t tuples; /* the number behind it */
     char seen[512]; /* names of arrays so far, for messages */
-    snow_volume *volume;
-    bool done; /* it is no better one's stand-in */
+    snow_volume_info *info;
+    snow_volume *volume; /* NULL, too, when none is to be made */
+    bool inspect;
+    bool shares;      /* numbers 0 to 1 stand for bytes 0 to 255 */
+    bool found, done; /* an array; one that no better one can follow */
     char line[LINE_BYTES];
     char *words[MOST_WORDS];
     int count; /* of words */
@@ -138,27 +141,58 @@ static snow_status skip_array(vtk_reader *reader, snow_type type,
     if (reader->binary)
         return snow_source_skip(reader->source, count * snow_type_size(type),
                                 "an array");
-    const snow_number_window none = {0, 0, count};
-    return snow_read_numbers(reader->source, type, false, &none, NULL);
+    const snow_window none = {.all = bytes, .value = 8};
+    const snow_file_part all = {&none, 0, bytes};
+    return snow_read_numbers(reader->source, type, false, &all, NULL);
 }
 
+/* Colours in text are shares of 255, which VTK makes of bytes.  In place: a
+ * byte never overtakes the number that it comes from. */
+static void make_bytes(vtk_reader *reader) {
+    reader->info->type = SNOW_UINT8;
+    if (reader->inspect)
+        return;
+    snow_volume *volume = reader->volume;
+    const int64_t *dims = volume->info.dims;
+    unsigned char *bytes = volume->owned;
+    for (int64_t i = 0; i < dims[0] * dims[1] * dims[2]; i++) {
+        float share;
+        memcpy(&share, bytes + (size_t)i * sizeof share, sizeof share);
+        bytes[i] = share > 0
+                       ? share < 1 ? (unsigned char)(share * 255 + 0.5F) : 255
+                       : 0;
+    }
+    volume->info.type = SNOW_UINT8;
+}
+
+/* Of an array that may be a stand-in what follows it is read as well. */
 static snow_status read_array(vtk_reader *reader, const vtk_array *array,
-                              const snow_volume_info *info, int64_t channel) {
+                              int64_t channel) {
     uint64_t steps[4];
     snow_array bytes = {.big_endian = true, .more = true};
     size_t size = snow_type_size(array->type);
-    snow_volume_close(reader->volume);
-    reader->volume = NULL;
-    if (!reader->binary)
-        return snow_array_read_text(reader->source, info, array->channels,
-                                    channel, &reader->volume);
+    snow_volume_info *info = reader->info;
+    snow_volume **out = reader->inspect ? NULL : &reader->volume;
     const int64_t sizes[4] = {array->channels, info->dims[0], info->dims[1],
                               info->dims[2]};
+    int64_t tuples = info->dims[0] * info->dims[1] * info->dims[2];
+    snow_volume_close(reader->volume);
+    reader->volume = NULL;
     if (!snow_array_steps(sizes, 4, size, steps, &bytes.all))
         return fail_line(reader);
     memcpy(bytes.step, steps + 1, sizeof bytes.step);
     bytes.first = (uint64_t)channel * size;
-    return snow_array_read(reader->source, info, &bytes, &reader->volume);
+    snow_status status =
+        reader->binary
+            ? snow_array_read(reader->source, reader->options, &bytes, info,
+                              out)
+            : snow_array_read_text(reader->source, reader->options,
+                                   array->channels, channel, info, out);
+    if (status == SNOW_OK && reader->shares)
+        make_bytes(reader);
+    if (status == SNOW_OK && reader->inspect && !reader->done)
+        status = skip_array(reader, array->type, array->channels, tuples);
+    return status;
 }
 
 /* Keeps the name for the message that lists them. */
@@ -188,16 +222,17 @@ static snow_status take_array(vtk_reader *reader, const char *name,
         return fail_line(reader);
     const char *asked = reader->options->dataset;
     bool wanted = reader->placed && (asked ? !strcmp(asked, array.name)
-                                           : !reader->cells || !reader->volume);
+                                           : !reader->cells || !reader->found);
     if (reader->placed)
         remember(reader, array.name);
     if (!wanted)
         return skip_array(reader, type, channels, tuples);
-    snow_volume_info info = snow_volume_info_default("vtk");
+    snow_volume_info *info = reader->info;
     int64_t voxels, channel;
     uint64_t bytes;
-    SNOW_TRY(snow_vtk_describe(reader->context, &reader->grid, &array, &info));
-    snow_volume_count(info.dims, type, &voxels, &bytes);
+    *info = snow_volume_info_default("vtk");
+    SNOW_TRY(snow_vtk_describe(reader->context, &reader->grid, &array, info));
+    snow_volume_count(info->dims, type, &voxels, &bytes);
     if (tuples != voxels)
         return snow_fail(reader->context, SNOW_BAD_INPUT,
                          "%.100s has %lld values where the grid has %lld "
@@ -207,9 +242,10 @@ static snow_status take_array(vtk_reader *reader, const char *name,
     SNOW_TRY(snow_volume_pick_channel(reader->context, reader->options,
                                       channels, &channel));
     SNOW_TRY(snow_volume_pick_time(reader->context, "time step",
-                                   reader->options, &info));
+                                   reader->options, info));
+    reader->found = true;
     reader->done = asked || !reader->cells;
-    return read_array(reader, &array, &info, channel);
+    return read_array(reader, &array, channel);
 }
 
 /* Blocks of METADATA end with an empty line. */
@@ -267,6 +303,7 @@ static snow_status take_attribute(vtk_reader *reader, bool *known) {
                   {"PEDIGREE_IDS", 1}};
     int64_t number = 0;
     *known = true;
+    reader->shares = false;
     for (size_t i = 0; i < sizeof simple / sizeof *simple; i++)
         if (starts(reader, simple[i].keyword, 3))
             return take_array(reader, reader->words[1],
@@ -277,6 +314,8 @@ static snow_status take_attribute(vtk_reader *reader, bool *known) {
     if (starts(reader, "FIELD", 3))
         return take_field(reader);
     *known = reader->count >= 3 && snow_parse_int64(reader->words[2], &number);
+    reader->shares =
+        *known && !reader->binary && is_word(reader->words[0], "COLOR_SCALARS");
     if (*known && is_word(reader->words[0], "COLOR_SCALARS"))
         return take_array(reader, reader->words[1],
                           reader->binary ? SNOW_UINT8 : SNOW_FLOAT32, number,
@@ -327,7 +366,7 @@ static snow_status walk(vtk_reader *reader) {
         bool known;
         SNOW_TRY(next_line(reader));
         if (!reader->count)
-            return reader->volume ? SNOW_OK : fail_unfound(reader);
+            return reader->found ? SNOW_OK : fail_unfound(reader);
         if (take_geometry(reader))
             continue;
         if (starts(reader, "METADATA", 1)) {
@@ -365,20 +404,23 @@ static snow_status take_head(vtk_reader *reader) {
 
 static snow_status read_vtk(snow_source *source,
                             const snow_volume_options *options,
-                            snow_volume **out) {
+                            snow_volume_info *info, snow_volume **out) {
     vtk_reader reader = {.source = source,
                          .context = snow_source_context(source),
                          .options = options,
-                         .grid = snow_vtk_grid_default()};
+                         .grid = snow_vtk_grid_default(),
+                         .info = info,
+                         .inspect = !out};
     SNOW_TRY(take_head(&reader));
     snow_status status = walk(&reader);
-    if (status == SNOW_OK)
+    if (status == SNOW_OK && out)
         status = snow_source_verify(source);
     if (status != SNOW_OK) {
         snow_volume_close(reader.volume);
         return status;
     }
-    *out = reader.volume;
+    if (out)
+        *out = reader.volume;
     return SNOW_OK;
 }
 
@@ -393,5 +435,6 @@ const snow_format snow_format_vtk = {
     .text = "VTK structured points, older files (.vtk)",
     .suffixes = {".vtk", ".vtk.gz"},
     .probe = probe_vtk,
+    .crops = true,
     .read = read_vtk,
 };
