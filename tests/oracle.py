@@ -56,9 +56,18 @@ def near(a, b, scale):
 
 def expect(path, voxels, matrix=None, options=(), dtype=None, unit=None,
            name=None):
-    """The file is these voxels (z, y, x), of this type, in this place."""
+    """The file is these voxels (z, y, x), of this type, in this place; and so
+    is a box of it, when nothing else was wrong."""
     global checked
     checked += 1
+    before = wrong
+    matrix = np.eye(4) if matrix is None else np.asarray(matrix, float)
+    if "--crop" not in options:
+        expect(path, voxels, matrix, [*options, "--crop", ":,:,:"], dtype,
+               unit, name)
+        if wrong == before:
+            expect_box(path, voxels, matrix, options, dtype, unit, name)
+        return
     name = name or " ".join([os.path.basename(path), *map(str, options)])
     done = run(path, *options)
     if done.returncode:
@@ -73,11 +82,23 @@ def expect(path, voxels, matrix=None, options=(), dtype=None, unit=None,
     for key in ("min", "max", "sum", "wsum", "finite"):
         if not near(told[key], wanted[key], wanted["scale"]):
             fail(name, f"{key} {told[key]}, not {wanted[key]}")
-    matrix = np.eye(4) if matrix is None else np.asarray(matrix, float)
     if not np.allclose(told["matrix"], matrix, rtol=1e-6, atol=1e-7):
         fail(name, f"matrix\n{np.array(told['matrix'])}, not\n{matrix}")
     if unit is not None and told["unit"] != unit:
         fail(name, f"unit {told['unit']!r}, not {unit!r}")
+
+
+def expect_box(path, voxels, matrix, options, dtype, unit, name):
+    """A box in the middle of the file, where it was."""
+    first = [size // 3 for size in voxels.shape[::-1]]
+    end = [max(size - size // 4, low + 1)
+           for size, low in zip(voxels.shape[::-1], first)]
+    box = ",".join(f"{low}:{high}" for low, high in zip(first, end))
+    (x, y, z), (i, j, k) = first, end
+    moved = matrix.copy()
+    moved[:3, 3] += matrix[:3, :3] @ first
+    expect(path, voxels[z:k, y:j, x:i], moved, [*options, "--crop", box],
+           dtype, unit, f"{name or os.path.basename(path)} box {box}")
 
 
 def refuse(path, part, options=(), status=3):
