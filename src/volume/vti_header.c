@@ -337,7 +337,8 @@ static snow_status feed(snow_source *source, vti_text *text) {
         char bytes[SNOW_PEEK_BYTES];
         size_t got;
         SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &got));
-        int answer = XML_Parse(text->parser, bytes, (int)got, got == 0);
+        enum XML_Status answer =
+            XML_Parse(text->parser, bytes, (int)got, got == 0);
         if (text->status != SNOW_OK)
             return text->status;
         if (text->done)
