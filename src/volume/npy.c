@@ -108,7 +108,7 @@ static snow_status read_npy(snow_source *source,
                             snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     npy_header header;
-    snow_array array;
+    snow_array array = {0};
     layout lay;
     *info = snow_volume_info_default("npy");
     SNOW_TRY(refuse_archive(source));
