@@ -37,7 +37,7 @@ static int check(const options *asked) {
 
 int cmd_turntable(const options *asked) {
     double begin = seconds_now();
-    shot_list list = {NULL, 0};
+    shot_list list = {.shots = NULL};
     sequence *s = NULL;
     serial_renderer serial = {.asked = asked};
     int done = check(asked);

@@ -28,6 +28,8 @@ typedef struct movie_shot {
 typedef struct shot_list {
     movie_shot *shots;
     int64_t count; /* at least 1 */
+    bool together; /* each frame depends on all shots, by the look: another
+                      list of them is another movie */
 } shot_list;
 
 /* Figures of one or more frames, and of the renderer. */

@@ -78,6 +78,8 @@ static const char *kernels(const options *asked) {
 }
 
 static void print_shots(FILE *out, const shot_list *list) {
+    if (list->together)
+        fprintf(out, "look of %" PRId64 " steps\n", list->count);
     for (int64_t i = 0; i < list->count; i++) {
         const movie_shot *shot = &list->shots[i];
         fprintf(out, "frame %" PRId64 " azimuth %.17g time %" PRId64 " ", i,

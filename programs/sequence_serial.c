@@ -21,10 +21,17 @@ void serial_close(serial_renderer *serial) {
     snow_context_free(serial->context);
 }
 
-/* The camera is placed by the volume: on another grid it would jump. */
-static int check_grid(serial_renderer *serial) {
+/* A step is one volume, and on the grid of the others: the camera is placed by
+ * the volume, and would jump. */
+static int check_step(serial_renderer *serial) {
     const snow_volume_info *info = snow_volume_describe(serial->volume);
     const snow_volume_info *first = &serial->grid;
+    if (serial->whole_files && info->times > 1) {
+        say("%s: holds %" PRId64 " time steps; give it alone for a movie of "
+            "them, or --time for one of each file",
+            serial->path, info->times);
+        return SNOW_BAD_INPUT;
+    }
     if (first->dims[0] == 0) {
         serial->grid = *info;
         return GO_ON;
@@ -61,7 +68,7 @@ int serial_volume(serial_renderer *serial, const movie_shot *shot) {
     serial->times.read += seconds_now() - begin;
     serial->path = name_of_input(shot->path);
     serial->time = shot->time;
-    return done == GO_ON ? check_grid(serial) : done;
+    return done == GO_ON ? check_step(serial) : done;
 }
 
 static int choose_look(serial_renderer *serial) {

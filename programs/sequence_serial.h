@@ -17,6 +17,8 @@ typedef struct serial_renderer {
     snow_frame *frame;
     snow_settings settings;
     snow_volume_info grid; /* of the first volume */
+    bool whole_files;      /* a file with several time steps is an error: it is
+                              one of many, and nobody said which step */
     bool drawn;            /* a picture has been made, and choices told */
     render_times times;    /* read and look are sums */
 } serial_renderer;
