@@ -143,19 +143,35 @@ static size_t line_length(const char *text) {
     return length + (text[length] == '\n');
 }
 
-/* Walks along both texts as far as they agree.  True when all that the old one
- * says still holds: it may be shorter by frames. */
-static bool agree(const char **old, const char **now) {
-    while (**old && **now) {
+/* Walks along both texts, as far as the lines before the first frame agree.
+ * True when all of them do. */
+static bool agree_on_settings(const char **old, const char **now) {
+    while (**old && **now && !begins(*now, "frame ")) {
         size_t length = line_length(*old);
         if (length != line_length(*now) || strncmp(*old, *now, length) != 0)
-            break;
+            return false;
         *old += length;
         *now += length;
     }
-    bool old_ended = !**old || begins(*old, "done ");
-    bool now_ended = !**now || begins(*now, "frame ");
-    return old_ended && now_ended;
+    return begins(*old, "frame ") && begins(*now, "frame ");
+}
+
+/* Goes on along the frames, which are made each by itself: one that is not kept
+ * may have changed (a step that was broken is put right), and there may be more
+ * than there were.  `changed` tells whether anything has. */
+static bool agree_on_frames(const char **old, const char **now,
+                            const bool *kept, bool *changed) {
+    for (; begins(*old, "frame ") && **now; kept++) {
+        size_t length = line_length(*old), other = line_length(*now);
+        bool same = length == other && strncmp(*old, *now, length) == 0;
+        if (!same && *kept)
+            return false;
+        *changed |= !same;
+        *old += length;
+        *now += other;
+    }
+    *changed |= begins(*old, "frame ") || **now;
+    return true;
 }
 
 /* Marks the frames of the "done" lines that still have their bytes.  A line
@@ -216,29 +232,42 @@ static int check_strangers(const options *asked, const sequence_place *place) {
                        path);
 }
 
-/* A record that ends before the first frame is as good as none. */
+/* Whether what lies there can be gone on with; then marks the frames that are
+ * kept.  Where not, `old` and `now` are left at the first lines that differ. */
+static bool fits(const shot_list *list, const sequence_place *place,
+                 const char **old, const char **now, const char *done,
+                 frame_record *out) {
+    bool changed = false;
+    mark_kept(done, place, list->count, out);
+    if (!agree_on_settings(old, now) ||
+        !agree_on_frames(old, now, out->kept, &changed))
+        return false;
+    if (out->done > list->count || (changed && list->together && out->keeps))
+        return false;
+    out->anew = changed;
+    return true;
+}
+
+/* A record without a frame that is done is as good as none. */
 static int compare(const options *asked, const shot_list *list,
                    const sequence_place *place, const char *old_text,
                    frame_record *out) {
     const char *old = old_text, *now = out->text;
     const char *done = strstr(old_text, "\ndone ");
-    bool same = agree(&old, &now);
-    if (asked->resume && same) {
-        out->anew = *now != '\0';
-        mark_kept(begins(old, "done ") ? old : "", place, list->count, out);
+    done = done ? done + 1 : "";
+    if (asked->resume && fits(list, place, &old, &now, done, out))
         return GO_ON;
-    }
-    if (done && asked->resume && !asked->overwrite)
+    if (asked->resume && *done && !asked->overwrite)
         return fail_other(place, old, now);
-    if (!done && asked->resume)
+    memset(out->kept, 0, (size_t)list->count * sizeof *out->kept);
+    out->keeps = 0;
+    mark_kept(done, place, 0, out); /* how many frames there were */
+    if (asked->resume && !*done)
         return GO_ON;
-    if (done) {
-        mark_kept(done + 1, place, 0, out);
-        if (!asked->overwrite && place->format)
-            return fail_output("%s: an unfinished movie is in %s; give "
-                               "--resume to go on or --overwrite to begin anew",
-                               place->output, place->folder);
-    }
+    if (*done && !asked->overwrite && place->format)
+        return fail_output("%s: an unfinished movie is in %s; give --resume to "
+                           "go on or --overwrite to begin anew",
+                           place->output, place->folder);
     return check_strangers(asked, place);
 }
 
