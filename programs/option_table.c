@@ -41,7 +41,7 @@ const option_row option_table[] = {
     {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
      FIELD(background), 0, 0, "",
      "lay the PNG on a colour: a name, #rgb, #rrggbb or r,g,b of 0 to 1 (none: "
-     "it stays transparent)"},
+     "it stays transparent, a movie black)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
      "", "bits a channel of the PNG (8)"},
     {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM, read_flag,
@@ -149,7 +149,7 @@ const option_row option_table[] = {
     {"offset", 0, "BYTES", TOPIC_DATA, INPUT, read_count, FIELD(offset), 0, 0,
      "", "bytes before the voxels of raw data (0)"},
     {"time", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(time), 0, 9e15, "",
-     "time step of a file with several, from 0 (0)"},
+     "time step of a file with several, from 0 (0; movie: all of them)"},
     LATER("dataset", 0, "PATH", TOPIC_DATA, "HDF5 is not read yet"),
     LATER("channel", 0, "N", TOPIC_DATA, "give a file with one channel"),
     LATER("series", 0, "UID|N", TOPIC_DATA, "DICOM is not read yet"),
@@ -171,7 +171,8 @@ const option_row option_table[] = {
     {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
      FIELD(progress), 0, 0, "",
      "only names each stage on stderr as it begins, without a bar (auto: on a "
-     "terminal)"},
+     "terminal); movies tell frames a second and the time left, without a "
+     "terminal every 10 s"},
     {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
      "write figures of the run as JSON; - is standard output; a file that "
      "exists needs --overwrite"},
@@ -210,8 +211,8 @@ const verb_row verb_table[] = {
     {"render", VERB_RENDER, 1, "INPUT -o OUT", "one picture; the default verb"},
     {"turntable", VERB_TURNTABLE, 1, "INPUT -o OUT [--frames N]",
      "a movie around the volume"},
-    {"movie", VERB_MOVIE, -1, "INPUT... -o OUT",
-     "a movie over time steps: files, run_%04d.nrrd, or the steps in one file"},
+    {"movie", VERB_MOVIE, -1, "INPUT...|run_%04d.nrrd -o OUT",
+     "a movie over time steps"},
     {"info", VERB_INFO, 1, "INPUT [--json]",
      "geometry, type, range, histogram, sparse ratio"},
     {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},

@@ -72,17 +72,23 @@ bool names_path(const frame_names *names, int64_t index, char *out,
 /* A number is written in one way only: no zeros before it but those that fill
  * it up, so that two files never stand for one frame. */
 int64_t names_index(const frame_names *names, const char *file) {
-    size_t before = strlen(names->before);
-    if (strncmp(file, names->before, before) != 0)
+    size_t before = strlen(names->before), after = strlen(names->after);
+    size_t length = strlen(file);
+    size_t least = names->digits ? (size_t)names->digits : 1;
+    if (length < before + least + after ||
+        strncmp(file, names->before, before) != 0 ||
+        strcmp(file + length - after, names->after) != 0)
         return -1;
     const char *number = file + before;
-    size_t digits = 0, least = names->digits ? (size_t)names->digits : 1;
+    size_t digits = length - before - after;
     int64_t index = 0;
-    while (digits < NUMBER_LONGEST && isdigit((unsigned char)number[digits]))
-        index = 10 * index + (number[digits++] - '0');
-    if (digits < least || (digits > least && number[0] == '0') ||
-        strcmp(number + digits, names->after) != 0)
+    if (digits > NUMBER_LONGEST || (digits > least && number[0] == '0'))
         return -1;
+    for (size_t i = 0; i < digits; i++) {
+        if (!isdigit((unsigned char)number[i]))
+            return -1;
+        index = 10 * index + (number[i] - '0');
+    }
     return index;
 }
 

@@ -84,7 +84,6 @@ void sequence_figures_add(sequence_figures *figures, const snow_stats *stats) {
     sums->seconds_composite += stats->seconds_composite;
     sums->seconds_warp += stats->seconds_warp;
     sums->seconds_frame += stats->seconds_frame;
-    sums->cpu_frame += stats->cpu_frame;
 }
 
 void sequence_figures_end(sequence_figures *figures) {
@@ -159,9 +158,8 @@ json_t *sequence_stats_json(const sequence_figures *figures,
 
 void sequence_tell(const sequence_figures *figures, const render_times *times) {
     double frame = median(figures->seconds, figures->rendered);
-    say("frames: %" PRId64 " rendered, %" PRId64 " kept; %.3f s each (median), "
-        "%.3f of the processors' time in all; writing %.3f s beside them; "
-        "total %.3f s",
-        figures->rendered, figures->kept, frame, figures->sums.cpu_frame,
+    say("frames: %" PRId64 " rendered, %" PRId64 " kept; %.4f s each (median), "
+        "%.3f s in all; writing %.3f s beside them; total %.3f s",
+        figures->rendered, figures->kept, frame, figures->sums.seconds_frame,
         times->write, times->total);
 }
