@@ -47,6 +47,8 @@ int cmd_turntable(const options *asked) {
         done = sequence_open(asked, &list, &s);
     if (done == GO_ON)
         done = serial_open(asked, &serial);
+    if (done == GO_ON) /* here, where an interruption ends it at once */
+        done = serial_volume(&serial, &list.shots[0]);
     if (done == GO_ON) {
         serial.count = list.count;
         sequence_renderer renderer = serial_renderer_of(&serial);

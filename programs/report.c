@@ -76,8 +76,13 @@ int fail_volume(const snow_context *context, snow_status status,
     return (int)status;
 }
 
+/* The steps of one file all have the same to say: once is enough. */
 static void hear_notice(void *user, const char *text) {
+    static char last[256];
     (void)user;
+    if (strncmp(last, text, sizeof last - 1) == 0)
+        return;
+    snprintf(last, sizeof last, "%s", text);
     say("note: %s", text);
 }
 

@@ -276,7 +276,7 @@ static int begin_parts(sequence *s) {
     s->begun = !s->record.anew;
     if (s->place.format && encoder_is_there())
         done = start_encoder(s);
-    else if (s->place.format)
+    else if (s->place.format && s->asked->verbosity >= 0)
         say("%s: no ffmpeg is on the PATH: only frames are made, in %s",
             s->place.output, s->place.folder);
     if (done != GO_ON)

@@ -315,5 +315,7 @@ int steps_look(const shot_list *list, serial_renderer *serial) {
         return fail_memory();
     int done = pool_steps(list, serial, &pool);
     free(pool.values);
+    /* All steps will be opened once more, and say the same again. */
+    snow_context_set_notice(serial->context, NULL, NULL);
     return done;
 }

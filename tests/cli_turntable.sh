@@ -25,6 +25,22 @@ started() { # started COUNT FILES...: waits until so many of them are there
 }
 if command -v ffmpeg >/dev/null; then has_ffmpeg=1; else has_ffmpeg=; fi
 
+# Stands for ffmpeg: keeps the bytes, or fails as FAKE says.
+mkdir bin
+cat >bin/ffmpeg <<'END'
+#!/bin/bash
+for last; do :; done
+case ${FAKE-} in
+start) echo "the codec is not there" >&2; exit 1 ;;
+middle) head -c 20000 >/dev/null; echo "no more, thanks" >&2; exit 3 ;;
+die) head -c 20000 >/dev/null; kill -9 $$ ;;
+end) cat >"${last#file:}"; echo "cannot finish" >&2; exit 1 ;;
+*) cat >"${last#file:}" ;;
+esac
+END
+chmod +x bin/ffmpeg
+fake() { env PATH="$WORK/bin:$PATH" FAKE="$1" "${@:2}"; }
+
 # Every frame is the picture of its azimuth.
 for kind in png npy pfm; do
     run 0 "a turn of .$kind" turn --frames 5 --azimuth 10 -o "f_%03d.$kind"
@@ -105,7 +121,7 @@ refused 4 "--resume of fewer frames" "--elevation 3" \
     turn --frames 6 --elevation 3 -o 'a/%d.png' --resume
 check "all of that changed nothing" [ "$(cat a/*.png | sha256sum)" = "$sum" ]
 rm a/2.png
-head -c 100 a/4.png >cut && mv cut a/4.png
+head -c 100 a/4.png >short && mv short a/4.png
 run 0 "--resume with a frame gone and one cut" turn --frames 6 -o 'a/%d.png' \
     --resume --stats -
 prints '"rendered": 2, "kept": 4'
@@ -149,6 +165,23 @@ for moment in 1 5 12; do
     check "the frames are the same bytes" same_frames whole killed
     check "nothing else is left" clean
 done
+
+# Killed again and again, at any moment.
+rm -rf killed && mkdir killed
+kills=0
+for _ in $(seq 25); do
+    # shellcheck disable=SC2086
+    timeout -s KILL 0.$((RANDOM % 20 + 3)) "$TOOL" $big -o 'killed/%02d.png' \
+        --resume 2>/dev/null && break
+    kills=$((kills + 1))
+done
+for f in killed/*.png; do
+    cmp -s "$f" "whole/${f#killed/}" || fail "frame $f after $kills kills"
+done
+# shellcheck disable=SC2086
+run 0 "resumed after $kills kills" "$TOOL" $big -o 'killed/%02d.png' --resume
+check "the frames are the same bytes" same_frames whole killed
+check "nothing else is left" clean
 
 # Interrupted: 130, whole frames, resumed.
 for signal in INT TERM; do
@@ -196,6 +229,13 @@ if mount -t tmpfs -o size=200k none disk 2>/dev/null; then
     check "gets nothing" [ "$(ls -A disk)" = "$before" ]
     run 4 "nor the movie's folder" turn -s 200x200 -o disk/z.mp4
     check "is left there" [ "$(ls -A disk)" = "$before" ]
+    rm -f disk/* disk/.*frames
+    run 4 "a disk that fills while a movie is made" env \
+        PATH="$WORK/bin:$PATH" "$TOOL" turntable phantom:engine -q \
+        -s 200x200 --frames 40 -o disk/m.mp4
+    check "has no movie" absent disk/m.mp4
+    check "nor anything half" [ -z "$(find disk ! -name '[0-9]*.png' \
+        ! -name record -type f)" ]
     umount disk
 else
     echo "skip   a full disk: no tmpfs can be mounted"
@@ -221,21 +261,7 @@ run 0 "the line of choices" "$TOOL" turntable phantom:engine --dims 16x16x16 \
 check "is one" [ "$(wc -l <"$ERR")" -eq 1 ]
 says "2 frames of 9x9 to t%d.png"
 
-# Movies, by a program that says what it gets.
-mkdir bin
-cat >bin/ffmpeg <<'END'
-#!/bin/bash
-for last; do :; done
-case ${FAKE-} in
-start) echo "the codec is not there" >&2; exit 1 ;;
-middle) head -c 20000 >/dev/null; echo "no more, thanks" >&2; exit 3 ;;
-die) head -c 20000 >/dev/null; kill -9 $$ ;;
-end) cat >"${last#file:}"; echo "cannot finish" >&2; exit 1 ;;
-*) cat >"${last#file:}" ;;
-esac
-END
-chmod +x bin/ffmpeg
-fake() { env PATH="$WORK/bin:$PATH" FAKE="$1" "${@:2}"; }
+# Movies.
 film="$TOOL turntable $small -q --frames 9"
 # shellcheck disable=SC2086
 {
@@ -260,6 +286,15 @@ film="$TOOL turntable $small -q --frames 9"
         check "the folder is gone" absent n.mp4.frames
         rm n.mp4
     done
+    env PATH="$WORK/bin:$PATH" "$TOOL" $big --frames 3000 -o i.mp4 2>"$ERR" &
+    job=$!
+    started 3 'i.mp4.frames/0*.png'
+    kill -TERM $job
+    wait $job
+    check "an interrupted movie ends with 130" [ $? -eq 130 ]
+    check "is not there" absent i.mp4
+    check "and nothing half in its folder" [ -z "$(find i.mp4.frames \
+        ! -name '[0-9]*.png' ! -name record -type f)" ]
     refused 4 "without ffmpeg" "no ffmpeg is on the PATH" \
         env PATH=/nonexistent $film -o p.webm
     check "there are frames" [ "$(ls p.webm.frames/*.png | wc -l)" -eq 9 ]
