@@ -79,6 +79,10 @@ uint64_t snow_context_peak_bytes(const snow_context *context) {
     return context->peak;
 }
 
+uint64_t snow_context_bytes_read(const snow_context *context) {
+    return context->bytes_read;
+}
+
 const char *snow_status_text(snow_status status) {
     switch (status) {
 #define STATUS_TEXT(name, value, text) \
@@ -90,13 +94,27 @@ const char *snow_status_text(snow_status status) {
     return "unknown status";
 }
 
+static void set_message(snow_context *context, const char *format,
+                        va_list arguments) {
+    pthread_mutex_lock(&context->lock);
+    vsnprintf(context->message, sizeof context->message, format, arguments);
+    pthread_mutex_unlock(&context->lock);
+}
+
 snow_status snow_fail(snow_context *context, snow_status status,
                       const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    pthread_mutex_lock(&context->lock);
-    vsnprintf(context->message, sizeof context->message, format, arguments);
-    pthread_mutex_unlock(&context->lock);
+    set_message(context, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+snow_status snow_context_fail(snow_context *context, snow_status status,
+                              const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set_message(context, format, arguments);
     va_end(arguments);
     return status;
 }
@@ -118,15 +136,26 @@ snow_status snow_fail_within(snow_context *context, snow_status status,
     return status;
 }
 
-void snow_notify(snow_context *context, const char *format, ...) {
-    if (!context->notice)
-        return;
+static void tell(snow_context *context, const char *format, va_list arguments) {
     char text[SNOW_MESSAGE_BYTES];
+    vsnprintf(text, sizeof text, format, arguments);
+    context->notice(context->notice_user, text);
+}
+
+void snow_notify(snow_context *context, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    if (context->notice)
+        tell(context, format, arguments);
     va_end(arguments);
-    context->notice(context->notice_user, text);
+}
+
+void snow_context_remark(snow_context *context, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    if (context->notice)
+        tell(context, format, arguments);
+    va_end(arguments);
 }
 
 static block_header *header_of(void *block) {
@@ -213,4 +242,12 @@ void snow_release(snow_context *context, void *block) {
     context->bytes -= header.bytes;
     context->allocator.release(context->allocator.user, header.raw);
     pthread_mutex_unlock(&context->lock);
+}
+
+void *snow_context_allocate(snow_context *context, size_t bytes) {
+    return snow_allocate(context, bytes);
+}
+
+void snow_context_release(snow_context *context, void *block) {
+    snow_release(context, block);
 }

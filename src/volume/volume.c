@@ -127,6 +127,64 @@ void snow_volume_freeze(snow_volume *volume) {
     volume->serial = ++volume->context->serials;
 }
 
+/* Whether `count` voxels from `first` on lie within `room` from `begin` on;
+ * written so that nothing overflows. */
+static bool lies_within(int64_t first, int64_t count, int64_t begin,
+                        int64_t room) {
+    return first >= begin && first - begin <= room && count >= 0 &&
+           count <= room - (first - begin);
+}
+
+static snow_status check_part(const snow_volume *volume,
+                              const snow_part *part) {
+    bool none = !part->count[0] || !part->count[1] || !part->count[2];
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t stored = volume->info.dims[axis];
+        if (part->dims[axis] < 1 ||
+            !lies_within(part->stored[axis], stored, 0, part->dims[axis]) ||
+            (!none && !lies_within(part->first[axis], part->count[axis],
+                                   part->stored[axis], stored)))
+            return snow_fail(
+                volume->context, SNOW_BAD_USAGE,
+                "along axis %d a part of %lld voxels from %lld, stored as %lld "
+                "from %lld, does not lie in %lld voxels; correct its boxes",
+                axis, (long long)part->count[axis],
+                (long long)part->first[axis], (long long)stored,
+                (long long)part->stored[axis], (long long)part->dims[axis]);
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_volume_set_part(snow_volume *volume, const snow_part *part) {
+    SNOW_TRY(check_part(volume, part));
+    volume->part = *part;
+    volume->is_part = true;
+    if (volume->serial) /* what was encoded of it was of other slices */
+        snow_volume_freeze(volume);
+    return SNOW_OK;
+}
+
+void snow_volume_get_part(const snow_volume *volume, snow_part *out) {
+    if (volume->is_part) {
+        *out = volume->part;
+        return;
+    }
+    *out = (snow_part){0};
+    memcpy(out->dims, volume->info.dims, sizeof out->dims);
+    memcpy(out->count, volume->info.dims, sizeof out->count);
+}
+
+void snow_volume_whole(const snow_volume *volume, snow_volume_info *out) {
+    *out = volume->info;
+    if (!volume->is_part)
+        return;
+    memcpy(out->dims, volume->part.dims, sizeof out->dims);
+    for (int row = 0; row < 3; row++)
+        for (int axis = 0; axis < 3; axis++)
+            out->matrix[row][3] -=
+                out->matrix[row][axis] * (double)volume->part.stored[axis];
+}
+
 /* Voxels of the caller come without a file: no source is checked against the
  * sizes, whose truth is the caller's word. */
 snow_status snow_volume_share(snow_context *context,
@@ -152,45 +210,44 @@ snow_status snow_volume_share(snow_context *context,
     return wrap(context, &own, voxels, out);
 }
 
-/* skip + bytes + rest, all that the source must hold. */
-static bool add_up(uint64_t skip, uint64_t bytes, uint64_t rest,
-                   uint64_t *out) {
-    return snow_add_u64(skip, bytes, out) && snow_add_u64(*out, rest, out);
-}
-
 /* The bytes are held against the source before the voxels get their memory: a
  * header of 400 bytes must not cost gigabytes. */
-snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
-                             bool big_endian, uint64_t skip, uint64_t rest,
-                             snow_volume **out) {
+snow_status snow_volume_read(snow_source *source,
+                             const snow_volume_options *options,
+                             bool big_endian, uint64_t skip,
+                             snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    int64_t count;
-    uint64_t bytes, all;
-    SNOW_TRY(snow_volume_info_check(context, info));
-    snow_volume_count(info->dims, info->type, &count, &bytes);
+    snow_window window;
+    uint64_t all;
+    SNOW_TRY(snow_window_lay(context, options, info, &window));
     /* More than 64 bits can count: expect refuses it with its usual words. */
-    if (!add_up(skip, bytes, rest, &all))
+    if (!snow_add_u64(skip, window.all, &all))
         all = UINT64_MAX;
     SNOW_TRY(snow_source_expect(source, all, "the voxels"));
+    if (!out)
+        return SNOW_OK;
+    const snow_file_part part = {&window, 0, window.all};
     snow_volume *volume;
     SNOW_TRY(snow_volume_new(context, info, &volume));
     snow_status status = snow_source_skip(source, skip, "the voxels");
     if (status == SNOW_OK)
-        status = snow_source_read_all(source, volume->owned, (size_t)bytes,
-                                      "the voxels");
-    if (status == SNOW_OK)
-        status = snow_source_skip(source, rest, "the voxels");
+        status = snow_file_part_read(source, &part, volume->owned);
     if (status == SNOW_OK)
         status = snow_source_finish(source);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;
     }
-    if (big_endian != snow_machine_big_endian())
-        snow_swap_bytes(volume->owned, (uint64_t)count,
-                        snow_type_size(info->type));
+    snow_volume_order_bytes(volume, big_endian);
     *out = volume;
     return SNOW_OK;
+}
+
+void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
+    const int64_t *dims = volume->info.dims;
+    if (big_endian != snow_machine_big_endian())
+        snow_swap_bytes(volume->owned, (uint64_t)(dims[0] * dims[1] * dims[2]),
+                        snow_type_size(volume->info.type));
 }
 
 /* Told even for step 0: a picture of one of many steps must not pass for all
