@@ -22,6 +22,12 @@ for suffix in png npy; do
     done
 done
 
+mkdir slices
+head -c 4096 /dev/zero >slices/notes.txt
+for i in 0001 0002 0003; do
+    "$tool" render phantom:shells --dims 16x16x16 -q -s 16x16 -o slices/ct_$i.png || exit 1
+done
+
 # The indented lines that begin with the tool's name, continued lines joined.
 commands() {
     sed -e ':a' -e '/\\$/N; s/\\\n *//; ta' "$root/README.md" \

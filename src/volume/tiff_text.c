@@ -78,6 +78,7 @@ static void take_unit(const char *text, char unit[16]) {
                                         "\xb5m",      "\\u00B5m",  "\\u00b5m",
                                         "&#181;m",    "um"};
     *unit = 0;
+    text += strspn(text, " \t");
     if (!strcmp(text, "pixel") || !strcmp(text, "pixels"))
         return;
     for (size_t i = 0; i < sizeof micro / sizeof *micro; i++)
