@@ -53,7 +53,8 @@ const snow_stats *snow_frame_stats(const snow_frame *frame) {
 /* Lines 01 and 02 for every method: settings, camera, slab. */
 static snow_status place(snow_job *job, const snow_view *view, int parts,
                          int part) {
-    SNOW_TRY(snow_settings_resolve(job->context, job->volume, &job->settings));
+    SNOW_TRY(snow_settings_resolve(job->context, &job->volume->info,
+                                   &job->settings));
     SNOW_TRY(snow_placement_make(job->context, &job->volume->info, view,
                                  &job->placement));
     if (job->settings.method == SNOW_METHOD_SHEARED &&

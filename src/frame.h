@@ -30,7 +30,7 @@ snow_settings snow_settings_known(const snow_settings *asked);
  * this volume, but for the encoding, which is measured later.
  * Errors: SNOW_BAD_USAGE with the setting's name and range. */
 snow_status snow_settings_resolve(snow_context *context,
-                                  const snow_volume *volume,
+                                  const snow_volume_info *info,
                                   snow_settings *settings);
 
 /* Renders the slab `part` of `parts` (decompose/slab.h), in the place where it

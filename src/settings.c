@@ -3,7 +3,6 @@
 #include "frame.h"
 #include "simd/isa.h"
 #include "splat/kernel.h"
-#include "volume/volume.h"
 
 #include <math.h>
 #include <snowglass/snowglass.h>
@@ -139,7 +138,8 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
 }
 
 snow_status snow_settings_resolve(snow_context *context,
-                                  const snow_volume *volume, snow_settings *s) {
+                                  const snow_volume_info *info,
+                                  snow_settings *s) {
     if (s->size < sizeof s->size)
         return snow_fail(context, SNOW_BAD_USAGE,
                          "settings of %zu bytes are none; fill them with "
@@ -165,7 +165,7 @@ snow_status snow_settings_resolve(snow_context *context,
         s->kernel = SNOW_KERNEL_TENT;
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
-    const double *spacing = volume->info.spacing;
+    const double *spacing = info->spacing;
     if (s->opacity_length == 0)
         s->opacity_length = fmin(spacing[0], fmin(spacing[1], spacing[2]));
     return SNOW_OK;

@@ -127,6 +127,66 @@ void snow_volume_freeze(snow_volume *volume) {
     volume->serial = ++volume->context->serials;
 }
 
+/* Whether `count` voxels from `first` on lie within `room` from `begin` on;
+ * written so that nothing overflows. */
+static bool lies_within(int64_t first, int64_t count, int64_t begin,
+                        int64_t room) {
+    return first >= begin && first - begin <= room && count >= 0 &&
+           count <= room - (first - begin);
+}
+
+static snow_status check_part(const snow_volume *volume,
+                              const snow_part *part) {
+    bool none = !part->count[0] || !part->count[1] || !part->count[2];
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t stored = volume->info.dims[axis];
+        if (part->dims[axis] < 1 ||
+            !lies_within(part->stored[axis], stored, 0, part->dims[axis]) ||
+            (!none && !lies_within(part->first[axis], part->count[axis],
+                                   part->stored[axis], stored)))
+            return snow_fail(
+                volume->context, SNOW_BAD_USAGE,
+                "along axis %d a part of voxels %lld to %lld, stored %lld to "
+                "%lld, does not lie in %lld voxels; correct its boxes",
+                axis, (long long)part->first[axis],
+                (long long)(part->first[axis] + part->count[axis] - 1),
+                (long long)part->stored[axis],
+                (long long)(part->stored[axis] + stored - 1),
+                (long long)part->dims[axis]);
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_volume_set_part(snow_volume *volume, const snow_part *part) {
+    SNOW_TRY(check_part(volume, part));
+    volume->part = *part;
+    volume->is_part = true;
+    if (volume->serial) /* what was encoded of it was of other slices */
+        snow_volume_freeze(volume);
+    return SNOW_OK;
+}
+
+void snow_volume_get_part(const snow_volume *volume, snow_part *out) {
+    if (volume->is_part) {
+        *out = volume->part;
+        return;
+    }
+    *out = (snow_part){0};
+    memcpy(out->dims, volume->info.dims, sizeof out->dims);
+    memcpy(out->count, volume->info.dims, sizeof out->count);
+}
+
+void snow_volume_whole(const snow_volume *volume, snow_volume_info *out) {
+    *out = volume->info;
+    if (!volume->is_part)
+        return;
+    memcpy(out->dims, volume->part.dims, sizeof out->dims);
+    for (int row = 0; row < 3; row++)
+        for (int axis = 0; axis < 3; axis++)
+            out->matrix[row][3] -=
+                out->matrix[row][axis] * (double)volume->part.stored[axis];
+}
+
 /* Voxels of the caller come without a file: no source is checked against the
  * sizes, whose truth is the caller's word. */
 snow_status snow_volume_share(snow_context *context,

@@ -19,7 +19,13 @@ struct snow_volume {
     /* A number that no other volume of the context ever had, by which a frame
      * knows that it has encoded this one; 0 while the voxels may change. */
     uint64_t serial;
+    bool is_part;
+    snow_part part; /* where is_part */
 };
+
+/* What is known of the whole that a volume is a part of: its dims, and its
+ * matrix, whose last column is that of the part but for rounding. */
+void snow_volume_whole(const snow_volume *volume, snow_volume_info *out);
 
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and
  * makes the volume; its messages need not name the file, and its options are

@@ -1,0 +1,202 @@
+/* ghosts.c - how many layers of its neighbours' voxels a part needs.
+ *
+ * A part that owns voxels a to b along an axis makes the samples of sheets at
+ * grid positions [a - 1/2, b + 1/2) (section 4 of the paper, with boxes in the
+ * place of slabs).  A kernel that reaches h voxels sums voxels down to
+ * a - 1/2 - h, and a gradient takes one more:
+ *
+ *        a - 3   a - 2   a - 1 |  a    a + 1
+ *          o       o       o   |  *      *        h = 2: layers a - 1, a - 2,
+ *         grad   <------ h --->                   and a - 3 with shading
+ *
+ * Along the slice axis kernels do not reach; a slice half-way to the next one
+ * (quality high) does.  A pixel wider than a voxel widens the kernel, and how
+ * wide it is depends on the view. */
+#include "ghosts.h"
+
+#include "base/vec3.h"
+#include "frame.h"
+#include "splat/kernel.h"
+#include "transform/eye.h"
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What is asked. */
+typedef struct question {
+    snow_context *context;
+    const snow_volume_info *whole;
+    const snow_view *view;
+    const snow_settings *settings; /* resolved */
+} question;
+
+static void at_least(int64_t *layers, double wanted, int64_t most) {
+    if (wanted >= (double)most) /* perhaps far beyond what an integer holds */
+        *layers = most;
+    else if (wanted > (double)*layers)
+        *layers = (int64_t)wanted;
+}
+
+/* Layers for kernels of pixels that are `width` voxels wide along an axis that
+ * lies in the slices. */
+static double layers_of(const question *q, double width) {
+    const snow_settings *settings = q->settings;
+    snow_taper taper =
+        snow_taper_make(settings->kernel, settings->footprint, width);
+    return floor(snow_taper_reach(&taper) + 0.5) +
+           (settings->shade == SNOW_SHADE_PHONG);
+}
+
+/* Those across slices. */
+static double layers_across(const question *q) {
+    return (q->settings->shade == SNOW_SHADE_PHONG) +
+           (q->settings->quality == SNOW_QUALITY_HIGH &&
+            q->settings->method == SNOW_METHOD_SHEARED);
+}
+
+/* The widest pixel on any slice of a placement, voxels along u and v. */
+static void widest_pixel(const snow_placement *p, double width[2]) {
+    for (int axis = 0; axis < 2; axis++)
+        width[axis] = hypot(p->inverse[axis][0], p->inverse[axis][1]);
+    if (!p->perspective)
+        return;
+    width[0] = width[1] = 0;
+    for (int64_t n = 0; n < 2 * p->slices - 1; n++) {
+        double here[2];
+        snow_eye_pixel_width(p, (double)n / 2, here);
+        for (int axis = 0; axis < 2; axis++)
+            width[axis] = fmax(width[axis], here[axis]);
+    }
+}
+
+/* The view's own needs, with slices along one axis. */
+static void ask_placement(const question *q, const snow_placement *p,
+                          int64_t layers[3]) {
+    const int64_t *dims = q->whole->dims;
+    const int axes[2] = {p->u_axis, p->v_axis};
+    double width[2];
+    widest_pixel(p, width);
+    for (int n = 0; n < 2; n++)
+        at_least(&layers[axes[n]], layers_of(q, width[n]), dims[axes[n]] - 1);
+    at_least(&layers[p->slice_axis], layers_across(q), dims[p->slice_axis] - 1);
+}
+
+static snow_status ask_view(const question *q, int64_t layers[3]) {
+    snow_placement p;
+    double shares[3] = {0, 0, 0};
+    SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &p));
+    if (q->settings->quality == SNOW_QUALITY_HIGH)
+        snow_placement_shares(q->whole, &p, shares);
+    shares[p.slice_axis] = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        if (shares[axis] == 0)
+            continue;
+        SNOW_TRY(
+            snow_placement_make_along(q->context, q->whole, q->view, axis, &p));
+        ask_placement(q, &p, layers);
+    }
+    return SNOW_OK;
+}
+
+/* --- every turn -----------------------------------------------------------
+ *
+ * On slices of unit normal n, a pixel of pitch s seen along d (|d| = 1) is
+ *
+ *   s |d x (g x n)| / |d . n|   <=   s |g x n| / |d . n|
+ *
+ * voxels wide along a grid axis whose index has the world gradient g, and so
+ * many times that as the slice is farther than the target.  The slice axis is
+ * the one of the largest |d . n|, which is at least the least of max |d . n|
+ * over all d; for axes at right angles 1 / sqrt 3. */
+
+/* World gradients of the three indices; their directions are the slices'
+ * normals. */
+static bool index_gradients(const snow_volume_info *info,
+                            double gradients[3][3]) {
+    return snow_matrix_invert3(info->matrix, gradients);
+}
+
+/* A lower bound of max |d . n| over the axes, for every unit vector d: that is
+ * at least |N d| / sqrt 3, with the normals as N's rows, and |d| = |N^-1 N d|
+ * is at most |N^-1| |N d|.  The norm is Frobenius' but for right angles, where
+ * N turns only. */
+static double least_cosine(double gradients[3][3]) {
+    double normals[3][3], skew = 0, square = 0;
+    memcpy(normals, gradients, sizeof normals);
+    for (int n = 0; n < 3; n++)
+        snow_normalize(normals[n]);
+    for (int n = 0; n < 3; n++)
+        skew = fmax(skew, fabs(snow_dot(normals[n], normals[(n + 1) % 3])));
+    if (skew < 1e-6)
+        return 0.999 / sqrt(3.0);
+    double cross[3], volume;
+    snow_cross(normals[1], normals[2], cross);
+    volume = snow_dot(normals[0], cross);
+    for (int n = 0; n < 3; n++) {
+        snow_cross(normals[(n + 1) % 3], normals[(n + 2) % 3], cross);
+        square += snow_dot(cross, cross) / (volume * volume);
+    }
+    return 1 / sqrt(3 * square);
+}
+
+/* How obliquely a slice may be seen: the least |d . n|; 0 where there is no
+ * bound. */
+static double least_slant(const question *q, double gradients[3][3]) {
+    double cosine = least_cosine(gradients);
+    if (q->settings->quality == SNOW_QUALITY_HIGH) /* blends of axes */
+        cosine -= sqrt(2.0) * sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
+    /* A ray leaves the line of sight by half the field of view at most where it
+     * meets the volume. */
+    double angle =
+        acos(fmax(cosine, 0)) + q->view->fov / 2 * 0.017453292519943295769;
+    return angle < 1.57 ? cos(angle) : 0;
+}
+
+/* The largest |g x n| of an axis, n being normal to the slices along another.
+ */
+static double steepest(double gradients[3][3], int axis) {
+    double most = 0;
+    for (int other = 1; other < 3; other++) {
+        double normal[3], cross[3];
+        memcpy(normal, gradients[(axis + other) % 3], sizeof normal);
+        snow_normalize(normal);
+        snow_cross(gradients[axis], normal, cross);
+        most = fmax(most, snow_length(cross));
+    }
+    return most;
+}
+
+static snow_status ask_all(const question *q, int64_t layers[3]) {
+    double gradients[3][3];
+    snow_placement checked;
+    SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &checked));
+    if (!index_gradients(q->whole, gradients))
+        return snow_fail(q->context, SNOW_BAD_INPUT,
+                         "the volume's matrix cannot be inverted");
+    double slant = least_slant(q, gradients);
+    double pitch = snow_pixel_pitch(q->whole, q->view) *
+                   (1 + sin(q->view->fov / 2 * 0.017453292519943295769));
+    for (int axis = 0; axis < 3; axis++) {
+        double width =
+            slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;
+        double wanted = width < 1e9 ? layers_of(q, width) : 1e9;
+        int64_t most = q->whole->dims[axis] - 1;
+        at_least(&layers[axis], fmax(wanted, layers_across(q)), most);
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_ghosts_needed(snow_context *context,
+                               const snow_volume_info *whole,
+                               const snow_view *view,
+                               const snow_settings *settings, bool any_turn,
+                               int64_t layers[3]) {
+    snow_settings resolved = snow_settings_known(settings);
+    int64_t found[3] = {0, 0, 0};
+    SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
+    question q = {context, whole, view, &resolved};
+    SNOW_TRY(any_turn ? ask_all(&q, found) : ask_view(&q, found));
+    memcpy(layers, found, sizeof found);
+    return SNOW_OK;
+}

@@ -1,0 +1,24 @@
+/* ghosts.h - how far a processor's voxels must reach beyond those that it
+ * answers for. */
+#ifndef SNOW_GHOSTS_H
+#define SNOW_GHOSTS_H
+
+#include "base/base.h"
+
+#include <snowglass/render.h>
+
+/* Layers of ghost voxels that a part of the volume `whole` must have on either
+ * side along each axis, but beyond the grid, for a picture by these settings,
+ * which need not be resolved; no more than dims - 1.
+ *
+ * With `any_turn` for every direction that the camera may look in, at the zoom,
+ * field of view and image size of the view: an upper bound.  Errors:
+ * SNOW_BAD_USAGE (view, settings), SNOW_BAD_INPUT (a geometry that no float can
+ * hold). */
+snow_status snow_ghosts_needed(snow_context *context,
+                               const snow_volume_info *whole,
+                               const snow_view *view,
+                               const snow_settings *settings, bool any_turn,
+                               int64_t layers[3]);
+
+#endif
