@@ -175,13 +175,19 @@ static void free_traffic(snow_context *context, traffic *t) {
     snow_release(context, t->buffer);
 }
 
-void snow_voxels_free(snow_voxels *voxels) {
-    if (!voxels)
-        return;
+void snow_voxels_clear(snow_voxels *voxels) {
     free_traffic(voxels->context, &voxels->sent);
     free_traffic(voxels->context, &voxels->received);
     free_traffic(voxels->context, &voxels->kept);
     snow_release(voxels->context, voxels->messages);
+    *voxels =
+        (snow_voxels){.comm = voxels->comm, .context = voxels->context};
+}
+
+void snow_voxels_free(snow_voxels *voxels) {
+    if (!voxels)
+        return;
+    snow_voxels_clear(voxels);
     snow_release(voxels->context, voxels);
 }
 

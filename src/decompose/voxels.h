@@ -40,6 +40,9 @@ typedef struct snow_voxels snow_voxels;
 snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out);
 void snow_voxels_free(snow_voxels *voxels);
 
+/* Forgets the plan and frees its buffers. */
+void snow_voxels_clear(snow_voxels *voxels);
+
 /* Collective.  Plans what goes where when this rank holds `count` boxes and
  * wants one; any of them may be empty.  Statuses are agreed on.  Errors:
  * SNOW_BAD_USAGE (boxes that overlap, wanted voxels that nobody holds),
