@@ -13,6 +13,7 @@
 #define SNOWGLASS_COMM_H
 
 #include <snowglass/context.h>
+#include <stdbool.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -27,16 +28,21 @@ typedef struct snow_message {
     size_t bytes;
 } snow_message;
 
-/* What a transport does.  All functions but free and work return a status and
- * leave their reason in the context by the transport's own means, or none;
- * they are called by the thread that the communicator belongs to. */
+/* What a transport does.  Its functions are called by the thread that the
+ * communicator belongs to.  Those that return a status leave their reason with
+ * snow_context_fail, or none, and after a failure none is called but `end`: the
+ * communicator is broken (snow_comm_broken). */
 typedef struct snow_comm_ops {
     size_t size; /* bytes of this record */
-    /* Starts a message.  The bytes stay as they are until it is done.  Messages
-     * of one tag (0 to 32767) between two ranks arrive in order. */
+    /* Starts a message of 0 or more bytes, which stay as they are until it is
+     * done; it may be done at once.  It does not wait for its receiver: two
+     * ranks may first send to each other and then receive, in one wait.
+     * Messages of one tag (0 to 32767) between two ranks arrive in order.  A
+     * rank may send to itself. */
     snow_status (*send)(void *self, const void *bytes, size_t count, int to,
                         int tag, snow_message *message);
-    /* Gets ready for one of at most `room` bytes. */
+    /* Gets ready for one of at most `room` bytes; a longer one is a failure.
+     * Done only when a wait says so. */
     snow_status (*receive)(void *self, void *bytes, size_t room, int from,
                            int tag, snow_message *message);
     /* Waits until one of the messages that are still under way is done, and
@@ -49,12 +55,14 @@ typedef struct snow_comm_ops {
     double (*seconds)(void *self);
     /* Lets so much simulated time pass; NULL where time is real. */
     void (*work)(void *self, double seconds);
-    void (*free)(void *self);
+    /* Frees self. */
+    void (*end)(void *self);
 } snow_comm_ops;
 
 /* A communicator over a transport.  `ops` is copied; `self` is handed to its
- * functions, and freed by ops->free with the communicator.  Errors:
- * SNOW_NO_MEMORY; then self is not freed. */
+ * functions, and ended with the communicator.  Errors, where self is not ended:
+ * SNOW_BAD_USAGE (a record of another size, a rank that is none of `ranks`),
+ * SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_comm_new(snow_context *context,
                                    const snow_comm_ops *ops, void *self,
                                    int rank, int ranks, snow_comm **out);
@@ -64,26 +72,38 @@ SNOW_API snow_status snow_comm_self(snow_context *context, snow_comm **out);
 
 /* Runs `body` on `ranks` threads, each with a communicator and a context of its
  * own, and returns when all have ended: with SNOW_OK, or the status and (in
- * `context`) the message of the lowest rank that failed.  Each rank's context
- * takes its memory from malloc.  A body that fails without the others' knowing
- * (outside a collective call) releases those that wait for it: their calls
- * fail. Errors also: SNOW_BAD_USAGE (ranks below 1), SNOW_NO_MEMORY (threads).
- */
+ * `context`) the message of the lowest rank that failed of itself.  The ranks'
+ * memory comes from `context`, which counts it; its listener hears rank 0.
+ * Communicators and contexts end with the call: a body frees what it made with
+ * them, but not them.  A body that returns releases all who wait for it, and
+ * where all ranks wait for one another all are released: their calls fail.
+ * Errors also: SNOW_BAD_USAGE (ranks below 1), SNOW_NO_MEMORY (threads too). */
 typedef snow_status snow_comm_body_fn(snow_comm *comm, void *user);
 SNOW_API snow_status snow_comm_threads(snow_context *context, int ranks,
                                        snow_comm_body_fn *body, void *user);
 
-/* Frees it (collective for transports that need it); NULL is accepted. */
+/* Frees it, after the objects made with it (collective for transports that need
+ * it); NULL is accepted. */
 SNOW_API void snow_comm_free(snow_comm *comm);
 
 SNOW_API int snow_comm_rank(const snow_comm *comm);  /* from 0 */
 SNOW_API int snow_comm_ranks(const snow_comm *comm); /* how many */
 SNOW_API snow_context *snow_comm_context(const snow_comm *comm);
 
-/* Collective.  The worst status of all ranks: SNOW_OK only where all are OK.
- * Otherwise that of the lowest rank that failed, and its message in every
- * context, with "rank N: " before it where there are several. */
+/* Collective.  What became of all ranks: SNOW_OK only where all are OK.
+ * Otherwise the status of the lowest rank that failed, and its message in every
+ * context, with "rank N: " before it where there are several.  On a broken
+ * communicator it fails at once. */
 SNOW_API snow_status snow_comm_agree(snow_comm *comm, snow_status status);
+
+/* Whether the transport itself has failed on this rank (a peer is gone, say).
+ * All further calls on the communicator fail with the same status, and the
+ * other ranks may not know: a program of several processes ends them all. */
+SNOW_API bool snow_comm_broken(const snow_comm *comm);
+
+/* Messages and bytes that this rank has sent so far. */
+SNOW_API void snow_comm_sent(const snow_comm *comm, uint64_t *messages,
+                             uint64_t *bytes);
 
 #ifdef __cplusplus
 }

@@ -49,6 +49,15 @@ SNOW_API const char *snow_context_message(const snow_context *context);
 SNOW_API void snow_context_set_notice(snow_context *context,
                                       snow_notice_fn *notice, void *user);
 
+/* For those who extend the library (snowglass/comm.h): leaves a message of a
+ * failure and returns `status`; tells the listener a remark, if there is one.
+ * Text as of printf, one line without its end. */
+SNOW_API snow_status snow_context_fail(snow_context *context,
+                                       snow_status status, const char *format,
+                                       ...) SNOW_PRINTF(3, 4);
+SNOW_API void snow_context_remark(snow_context *context, const char *format,
+                                  ...) SNOW_PRINTF(2, 3);
+
 /* Bytes that objects of this context hold now, and the most they ever held. */
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);
 SNOW_API uint64_t snow_context_peak_bytes(const snow_context *context);

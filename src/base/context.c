@@ -90,13 +90,27 @@ const char *snow_status_text(snow_status status) {
     return "unknown status";
 }
 
+static void set_message(snow_context *context, const char *format,
+                        va_list arguments) {
+    pthread_mutex_lock(&context->lock);
+    vsnprintf(context->message, sizeof context->message, format, arguments);
+    pthread_mutex_unlock(&context->lock);
+}
+
 snow_status snow_fail(snow_context *context, snow_status status,
                       const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    pthread_mutex_lock(&context->lock);
-    vsnprintf(context->message, sizeof context->message, format, arguments);
-    pthread_mutex_unlock(&context->lock);
+    set_message(context, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+snow_status snow_context_fail(snow_context *context, snow_status status,
+                              const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    set_message(context, format, arguments);
     va_end(arguments);
     return status;
 }
@@ -118,15 +132,26 @@ snow_status snow_fail_within(snow_context *context, snow_status status,
     return status;
 }
 
-void snow_notify(snow_context *context, const char *format, ...) {
-    if (!context->notice)
-        return;
+static void tell(snow_context *context, const char *format, va_list arguments) {
     char text[SNOW_MESSAGE_BYTES];
+    vsnprintf(text, sizeof text, format, arguments);
+    context->notice(context->notice_user, text);
+}
+
+void snow_notify(snow_context *context, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    if (context->notice)
+        tell(context, format, arguments);
     va_end(arguments);
-    context->notice(context->notice_user, text);
+}
+
+void snow_context_remark(snow_context *context, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    if (context->notice)
+        tell(context, format, arguments);
+    va_end(arguments);
 }
 
 static block_header *header_of(void *block) {

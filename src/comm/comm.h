@@ -1,14 +1,18 @@
 /* comm/comm.h - the inside of a communicator: messages, and what ranks do
  * together, made of messages alone so that every transport has it.
  *
- * Collectives take ceil(log2 ranks) rounds and are deterministic: numbers are
- * reduced in the same order whatever arrives first. */
+ * Collectives take about log2(ranks) rounds and are deterministic: numbers are
+ * reduced in the same order whatever arrives first.  They fail only with the
+ * transport, so that what one rank finds out alone is never a reason for the
+ * others to wait.  Local work may fail on one rank: then snow_comm_agree. */
 #ifndef SNOW_COMM_H
 #define SNOW_COMM_H
 
 #include "base/base.h"
 
 #include <snowglass/comm.h>
+
+#define SNOW_COMM_SCRATCH 2048
 
 struct snow_comm {
     snow_context *context;
@@ -17,6 +21,12 @@ struct snow_comm {
     int rank, ranks;
     /* What this rank has sent, for the figures of a benchmark. */
     uint64_t messages_sent, bytes_sent;
+    snow_status broken; /* how the transport failed: the answer of all calls
+                           from then on */
+    bool agreed;        /* the context's message is one of all ranks */
+    uint64_t scratch[SNOW_COMM_SCRATCH]; /* another rank's numbers: a
+                           collective call takes no memory, which could fail
+                           on one rank alone */
 };
 
 /* Tags of the library's own messages; others may use tags below. */
@@ -27,8 +37,10 @@ enum {
     SNOW_TAG_VOXELS
 };
 
-/* The transport's functions, with counting.  A message to oneself is allowed.
- */
+/* The transport's functions, with counting.  A message to oneself is allowed;
+ * a send to somebody who sends first too needs no care, as the wait for both
+ * comes after.  Errors: those of the transport; SNOW_BAD_USAGE (a rank or tag
+ * that there is not).  Any of them breaks the communicator. */
 snow_status snow_comm_send(snow_comm *comm, const void *bytes, size_t count,
                            int to, int tag, snow_message *message);
 snow_status snow_comm_receive(snow_comm *comm, void *bytes, size_t room,

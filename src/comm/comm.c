@@ -1,0 +1,114 @@
+/* comm/comm.c - a communicator: a transport's functions behind a count of what
+ * is sent and a memory of failures.
+ *
+ * A transport that has failed once is not used again.  Its state is unknown,
+ * and the ranks that still work would wait for messages of a round that this
+ * rank has left. */
+#include "comm/comm.h"
+
+snow_status snow_comm_new(snow_context *context, const snow_comm_ops *ops,
+                          void *self, int rank, int ranks, snow_comm **out) {
+    if (ops->size != sizeof *ops)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a transport's record of %zu bytes where this library "
+                         "has %zu; build both of one version",
+                         ops->size, sizeof *ops);
+    if (ranks < 1 || rank < 0 || rank >= ranks)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "rank %d is none of %d; ranks count from 0", rank,
+                         ranks);
+    snow_comm *comm = snow_allocate(context, sizeof *comm);
+    if (!comm)
+        return SNOW_NO_MEMORY;
+    *comm = (snow_comm){.context = context,
+                        .ops = *ops,
+                        .self = self,
+                        .rank = rank,
+                        .ranks = ranks};
+    *out = comm;
+    return SNOW_OK;
+}
+
+void snow_comm_free(snow_comm *comm) {
+    if (comm) {
+        comm->ops.end(comm->self);
+        snow_release(comm->context, comm);
+    }
+}
+
+int snow_comm_rank(const snow_comm *comm) {
+    return comm->rank;
+}
+
+int snow_comm_ranks(const snow_comm *comm) {
+    return comm->ranks;
+}
+
+snow_context *snow_comm_context(const snow_comm *comm) {
+    return comm->context;
+}
+
+bool snow_comm_broken(const snow_comm *comm) {
+    return comm->broken != SNOW_OK;
+}
+
+void snow_comm_sent(const snow_comm *comm, uint64_t *messages,
+                    uint64_t *bytes) {
+    *messages = comm->messages_sent;
+    *bytes = comm->bytes_sent;
+}
+
+/* Passes a transport's answer on, and keeps it where it is a failure. */
+static snow_status heed(snow_comm *comm, snow_status status) {
+    if (status != SNOW_OK)
+        comm->broken = status;
+    return status;
+}
+
+/* Whether a message may go: not on what is broken, nor where nobody is. */
+static snow_status check(snow_comm *comm, int rank, int tag) {
+    SNOW_TRY(comm->broken);
+    if (rank < 0 || rank >= comm->ranks || tag < 0 || tag > 32767)
+        return heed(comm, snow_fail(comm->context, SNOW_BAD_USAGE,
+                                    "a message of tag %d with rank %d of %d",
+                                    tag, rank, comm->ranks));
+    return SNOW_OK;
+}
+
+snow_status snow_comm_send(snow_comm *comm, const void *bytes, size_t count,
+                           int to, int tag, snow_message *message) {
+    SNOW_TRY(check(comm, to, tag));
+    SNOW_TRY(
+        heed(comm, comm->ops.send(comm->self, bytes, count, to, tag, message)));
+    comm->messages_sent++;
+    comm->bytes_sent += count;
+    return SNOW_OK;
+}
+
+snow_status snow_comm_receive(snow_comm *comm, void *bytes, size_t room,
+                              int from, int tag, snow_message *message) {
+    SNOW_TRY(check(comm, from, tag));
+    return heed(comm,
+                comm->ops.receive(comm->self, bytes, room, from, tag, message));
+}
+
+snow_status snow_comm_wait_any(snow_comm *comm, snow_message *messages,
+                               int count, int *which) {
+    SNOW_TRY(comm->broken);
+    return heed(comm, comm->ops.wait_any(comm->self, messages, count, which));
+}
+
+snow_status snow_comm_wait_all(snow_comm *comm, snow_message *messages,
+                               int count) {
+    SNOW_TRY(comm->broken);
+    return heed(comm, comm->ops.wait_all(comm->self, messages, count));
+}
+
+double snow_comm_seconds(snow_comm *comm) {
+    return comm->ops.seconds(comm->self);
+}
+
+void snow_comm_work(snow_comm *comm, double seconds) {
+    if (comm->ops.work)
+        comm->ops.work(comm->self, seconds);
+}
