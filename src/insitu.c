@@ -165,8 +165,10 @@ snow_status snow_insitu_set_grid(snow_insitu *insitu, const int64_t dims[3],
     info.type = SNOW_UINT8; /* any, for the check */
     for (int i = 0; i < 3; i++)
         if (!(info.spacing[i] > 0))
-            return refuse(insitu, "a spacing of %g is none; give a length "
-                          "above 0", info.spacing[i]);
+            return refuse(insitu,
+                          "a spacing of %g is none; give a length "
+                          "above 0",
+                          info.spacing[i]);
     if (snow_volume_info_check(insitu->context, &info) != SNOW_OK)
         return answer(insitu, SNOW_BAD_USAGE);
     insitu->whole = info;
@@ -207,8 +209,10 @@ static snow_status check_brick(snow_insitu *insitu, int id,
                           (long long)(first[i] + count[i] - 1), i,
                           (long long)(dims[i] - 1));
         if (halo->low[i] < 0 || halo->high[i] < 0)
-            return refuse(insitu, "brick %d has a halo below 0; give the "
-                                  "ghost voxels that lie around it", id);
+            return refuse(insitu,
+                          "brick %d has a halo below 0; give the "
+                          "ghost voxels that lie around it",
+                          id);
     }
     return SNOW_OK;
 }
@@ -238,8 +242,10 @@ snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id, snow_type type,
                                    const int64_t stride[3]) {
     if (id < 0 || id >= insitu->brick_count ||
         !snow_box_voxels(&insitu->bricks[id].box))
-        return refuse(insitu, "there is no brick %d; call "
-                              "snow_insitu_set_brick first", id);
+        return refuse(insitu,
+                      "there is no brick %d; call "
+                      "snow_insitu_set_brick first",
+                      id);
     if (!voxels || !snow_type_size(type))
         return refuse(insitu, "brick %d has no voxels or no type; give both",
                       id);
@@ -278,9 +284,8 @@ static const char *keep_name(const char *name, char out[64]) {
 
 snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
     snow_own_look *own = &insitu->look;
-    size_t bytes = look->opacities
-                       ? look->opacity_count * sizeof *own->opacities
-                       : 0;
+    size_t bytes =
+        look->opacities ? look->opacity_count * sizeof *own->opacities : 0;
     if ((look->preset && snow_preset_named(look->preset) < 0) ||
         (look->colormap && snow_colormap_named(look->colormap) < 0))
         return refuse(insitu,
@@ -303,8 +308,9 @@ snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
 
 snow_status snow_insitu_set_view(snow_insitu *insitu, const snow_view *view) {
     if (view->width < 1 || view->height < 1)
-        return refuse(insitu, "a picture of %dx%d pixels is none; set width "
-                              "and height of the view",
+        return refuse(insitu,
+                      "a picture of %dx%d pixels is none; set width "
+                      "and height of the view",
                       view->width, view->height);
     insitu->view = *view;
     insitu->has_view = true;
@@ -344,8 +350,9 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
     int digits;
     size_t end, bytes = strlen(pattern) + 1;
     if (!find_number(pattern, &digits, &end))
-        return refuse(insitu, "%.200s: a movie's path has one %%d or %%04d for "
-                              "the number of the step",
+        return refuse(insitu,
+                      "%.200s: a movie's path has one %%d or %%04d for "
+                      "the number of the step",
                       pattern);
     char *copy = snow_allocate(insitu->context, bytes);
     if (!copy)

@@ -22,13 +22,13 @@
 
 /* What ranks tell each other before voxels are taken; reduced to the least. */
 enum {
-    FACT_TYPE,        /* of the voxels; the greatest number where none */
-    FACT_TYPE_MOST,   /* minus the type; 0 where none */
-    FACT_PRINT,       /* of all that must be the same on all ranks */
-    FACT_PRINT_MOST,  /* minus that */
-    FACT_UNCHANGED,   /* 1: what was planned still holds */
-    FACT_UNITED,      /* 1: the bricks are one box together, or none */
-    FACT_HALOS,       /* 1: halos are as wide as the layers */
+    FACT_TYPE,       /* of the voxels; the greatest number where none */
+    FACT_TYPE_MOST,  /* minus the type; 0 where none */
+    FACT_PRINT,      /* of all that must be the same on all ranks */
+    FACT_PRINT_MOST, /* minus that */
+    FACT_UNCHANGED,  /* 1: what was planned still holds */
+    FACT_UNITED,     /* 1: the bricks are one box together, or none */
+    FACT_HALOS,      /* 1: halos are as wide as the layers */
     FACTS
 };
 
@@ -64,9 +64,8 @@ static snow_status list_bricks(snow_insitu *insitu) {
                          "there is no grid; call snow_insitu_set_grid");
     SNOW_TRY(snow_reserve(insitu->context, &insitu->held, &insitu->held_bytes,
                           0, count * sizeof *insitu->held));
-    SNOW_TRY(snow_reserve(insitu->context, &insitu->moved,
-                          &insitu->moved_bytes, 0,
-                          count * sizeof *insitu->moved));
+    SNOW_TRY(snow_reserve(insitu->context, &insitu->moved, &insitu->moved_bytes,
+                          0, count * sizeof *insitu->moved));
     for (int id = 0; id < insitu->brick_count; id++)
         if (snow_box_voxels(&insitu->bricks[id].box))
             SNOW_TRY(add_brick(insitu, id));
@@ -126,8 +125,7 @@ static bool halos_suffice(const snow_insitu *insitu, const int64_t layers[3]) {
             continue;
         snow_box has = grow(&brick->box, brick->halo.low, brick->halo.high,
                             insitu->whole.dims);
-        snow_box needs =
-            grow(&brick->box, layers, layers, insitu->whole.dims);
+        snow_box needs = grow(&brick->box, layers, layers, insitu->whole.dims);
         if (!holds(&has, &needs))
             return false;
     }
@@ -149,10 +147,9 @@ static uint64_t add_print(uint64_t print, const void *bytes, size_t count) {
 static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
     const snow_settings *s = &insitu->settings;
     const double reals[] = {
-        view->back[0],     view->back[1],        view->back[2],
-        view->up[0],       view->up[1],          view->up[2],
-        view->azimuth,     view->elevation,      view->roll,
-        view->zoom,        view->fov,            s->threshold,
+        view->back[0],     view->back[1],        view->back[2], view->up[0],
+        view->up[1],       view->up[2],          view->azimuth, view->elevation,
+        view->roll,        view->zoom,           view->fov,     s->threshold,
         s->opacity_length, insitu->limit_seconds};
     const int64_t wholes[] = {view->width,
                               view->height,
@@ -219,8 +216,8 @@ static snow_status slab_axis(const snow_insitu *insitu, const snow_view *view,
     snow_settings settings = insitu->settings;
     snow_placement placement;
     SNOW_TRY(snow_settings_resolve(insitu->context, &insitu->whole, &settings));
-    SNOW_TRY(snow_placement_make(insitu->context, &insitu->whole, view,
-                                 &placement));
+    SNOW_TRY(
+        snow_placement_make(insitu->context, &insitu->whole, view, &placement));
     bool any = settings.method == SNOW_METHOD_SHEARED &&
                snow_sheared_fits(&placement, &settings);
     *out = any ? -1 : placement.slice_axis;
@@ -249,8 +246,7 @@ static snow_box cut_equal(const int64_t dims[3], int ranks, int rank) {
     return box;
 }
 
-static snow_box cut_slab(const int64_t dims[3], int axis, int ranks,
-                         int rank) {
+static snow_box cut_slab(const int64_t dims[3], int axis, int ranks, int rank) {
     snow_box box = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
     snow_slab slab = snow_slab_equal(dims[axis], ranks, rank);
     box.first[axis] = slab.first;
@@ -290,9 +286,9 @@ static snow_status plan(snow_insitu *insitu, const snow_insitu_layout *wanted,
         l.exchanged = l.recut;
     insitu->layout.planned = false;
     if (l.exchanged)
-        SNOW_TRY(snow_voxels_plan(
-            insitu->voxels, insitu->held, insitu->held_count,
-            snow_box_voxels(&l.owned) ? &l.stored : &nothing));
+        SNOW_TRY(
+            snow_voxels_plan(insitu->voxels, insitu->held, insitu->held_count,
+                             snow_box_voxels(&l.owned) ? &l.stored : &nothing));
     l.planned = true;
     insitu->layout = l;
     insitu->changed = false;
@@ -375,8 +371,8 @@ static snow_status reserve_dense(snow_insitu *insitu, size_t value) {
     uint64_t bytes;
     if (!snow_volume_count(count, insitu->type, &voxels, &bytes))
         bytes = UINT64_MAX;
-    SNOW_TRY(snow_reserve(insitu->context, &insitu->dense,
-                          &insitu->dense_bytes, 0, (size_t)bytes));
+    SNOW_TRY(snow_reserve(insitu->context, &insitu->dense, &insitu->dense_bytes,
+                          0, (size_t)bytes));
     if (!snow_box_voxels(&insitu->layout.owned))
         memset(insitu->dense, 0, value);
     return SNOW_OK;
@@ -398,8 +394,8 @@ static snow_status wrap(snow_insitu *insitu, const void *voxels,
     }
     snow_volume_close(insitu->volume);
     insitu->volume = NULL;
-    SNOW_TRY(snow_volume_share(insitu->context, &info, voxels,
-                               &insitu->volume));
+    SNOW_TRY(
+        snow_volume_share(insitu->context, &info, voxels, &insitu->volume));
     SNOW_TRY(snow_volume_set_part(insitu->volume, &part));
     snow_volume_freeze(insitu->volume); /* until the next update */
     return SNOW_OK;

@@ -38,10 +38,10 @@ typedef struct snow_insitu_seconds {
  * on all ranks. */
 typedef struct snow_insitu_layout {
     bool planned, exchanged, recut;
-    int64_t layers[3];  /* ghost voxels around the owned box */
-    snow_box owned;     /* what this rank draws; may be empty */
-    snow_box stored;    /* with its ghosts; of one voxel where owned is empty */
-    int recut_axis;     /* of slabs, -1: bricks */
+    int64_t layers[3]; /* ghost voxels around the owned box */
+    snow_box owned;    /* what this rank draws; may be empty */
+    snow_box stored;   /* with its ghosts; of one voxel where owned is empty */
+    int recut_axis;    /* of slabs, -1: bricks */
 } snow_insitu_layout;
 
 struct snow_insitu {
@@ -92,8 +92,8 @@ struct snow_insitu {
 
     /* The limits: the same on all ranks. */
     snow_lowering lowering;
-    int64_t to_skip; /* pictures still to be left out */
-    bool left_out;   /* the last update was */
+    int64_t to_skip;                   /* pictures still to be left out */
+    bool left_out;                     /* the last update was */
     double cost[SNOW_LOWERED_SKIPPED]; /* seconds when last drawn so */
 
     /* Figures. */

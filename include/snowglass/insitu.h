@@ -193,7 +193,7 @@ typedef struct snow_insitu_figures {
     snow_spread seconds_render; /* the local image: stages of snow_stats */
     snow_spread seconds_encode; /* of them, with classification and shading */
     snow_spread seconds_draw;   /* render and combine, until it lies on rank 0
-                                   */
+                                 */
     snow_spread seconds_write;
     snow_spread seconds_step; /* all of a step */
     snow_spread bytes_sent;   /* in that step */

@@ -180,8 +180,7 @@ void snow_voxels_clear(snow_voxels *voxels) {
     free_traffic(voxels->context, &voxels->received);
     free_traffic(voxels->context, &voxels->kept);
     snow_release(voxels->context, voxels->messages);
-    *voxels =
-        (snow_voxels){.comm = voxels->comm, .context = voxels->context};
+    *voxels = (snow_voxels){.comm = voxels->comm, .context = voxels->context};
 }
 
 void snow_voxels_free(snow_voxels *voxels) {
