@@ -82,6 +82,25 @@ typedef snow_status snow_comm_body_fn(snow_comm *comm, void *user);
 SNOW_API snow_status snow_comm_threads(snow_context *context, int ranks,
                                        snow_comm_body_fn *body, void *user);
 
+/* A cluster to be modelled: one processor a node, a port each way, and a
+ * network between the ports that never is the bottleneck (a crossbar). */
+typedef struct snow_network {
+    double latency;   /* seconds from port to port */
+    double bandwidth; /* bytes per second of a port, above 0 */
+    double overhead;  /* seconds of the processor per message, at both ends */
+    double slowness;  /* seconds of the modelled processor per second of this
+                         one's, above 0 */
+} snow_network;
+
+/* As snow_comm_threads, in modelled time: a rank's clock (snow_comm_seconds)
+ * runs with the processor time of its own thread, and messages take the
+ * network's. Ranks compute one at a time, so that they do not disturb one
+ * another: times are meant to be read, not waited for.  A body that shares its
+ * work with other threads is modelled wrongly. */
+SNOW_API snow_status snow_comm_modelled(snow_context *context, int ranks,
+                                        const snow_network *network,
+                                        snow_comm_body_fn *body, void *user);
+
 /* Frees it, after the objects made with it (collective for transports that need
  * it); NULL is accepted. */
 SNOW_API void snow_comm_free(snow_comm *comm);
@@ -100,6 +119,10 @@ SNOW_API snow_status snow_comm_agree(snow_comm *comm, snow_status status);
  * All further calls on the communicator fail with the same status, and the
  * other ranks may not know: a program of several processes ends them all. */
 SNOW_API bool snow_comm_broken(const snow_comm *comm);
+
+/* The time that messages of this communicator take time on, in seconds from
+ * any beginning: wall time, but where time is modelled. */
+SNOW_API double snow_comm_seconds(snow_comm *comm);
 
 /* Messages and bytes that this rank has sent so far. */
 SNOW_API void snow_comm_sent(const snow_comm *comm, uint64_t *messages,

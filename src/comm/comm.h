@@ -49,7 +49,6 @@ snow_status snow_comm_wait_any(snow_comm *comm, snow_message *messages,
                                int count, int *which);
 snow_status snow_comm_wait_all(snow_comm *comm, snow_message *messages,
                                int count);
-double snow_comm_seconds(snow_comm *comm);
 void snow_comm_work(snow_comm *comm, double seconds);
 
 /* Collective: element by element over all ranks; the result replaces `values`
