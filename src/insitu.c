@@ -3,7 +3,9 @@
  * Nothing here speaks to other ranks but snow_insitu_begin, which makes a
  * setter's failure on one rank the failure of all: a program may then check its
  * collective calls alone. */
+#include "frame.h"
 #include "insitu_parts.h"
+#include "volume/volume.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -12,6 +12,7 @@
  *
  * All ranks decide alike, from one reduction of a few numbers; only whether a
  * brick is shared or copied is a rank's own affair. */
+#include "frame.h"
 #include "ghosts.h"
 #include "insitu_parts.h"
 #include "sheared.h"
@@ -158,6 +159,7 @@ static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
                               s->footprint,
                               (int64_t)s->quality,
                               s->deterministic,
+                              (int64_t)insitu->limit_bytes,
                               (int64_t)insitu->ghosts,
                               (int64_t)insitu->balance,
                               insitu->pattern != NULL,
@@ -170,11 +172,24 @@ static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
     return (int64_t)(print >> 2);
 }
 
+static snow_status check_prints(snow_insitu *insitu, int64_t least,
+                                int64_t most) {
+    if (least == most)
+        return SNOW_OK;
+    return snow_fail(insitu->context, SNOW_BAD_USAGE,
+                     "ranks were told different grids, views, settings or "
+                     "limits; call the setters alike on all of them");
+}
+
+snow_status snow_insitu_check(snow_insitu *insitu) {
+    snow_view view = snow_insitu_view(insitu);
+    int64_t print = print_of(insitu, &view), prints[2] = {print, -print};
+    SNOW_TRY(snow_comm_reduce_ints(insitu->comm, prints, 2, SNOW_MIN));
+    return check_prints(insitu, prints[0], -prints[1]);
+}
+
 static snow_status check_facts(snow_insitu *insitu, const int64_t *facts) {
-    if (facts[FACT_PRINT] != -facts[FACT_PRINT_MOST])
-        return snow_fail(insitu->context, SNOW_BAD_USAGE,
-                         "ranks were told different grids, views, settings or "
-                         "limits; call the setters alike on all of them");
+    SNOW_TRY(check_prints(insitu, facts[FACT_PRINT], -facts[FACT_PRINT_MOST]));
     if (facts[FACT_TYPE] == INT64_MAX)
         return snow_fail(insitu->context, SNOW_BAD_USAGE,
                          "no rank has a brick; call snow_insitu_set_brick");

@@ -28,8 +28,7 @@ typedef struct snow_own_look {
     size_t opacity_bytes;
 } snow_own_look;
 
-/* What must not differ between ranks, and what they must tell each other
- * before anything is planned. */
+/* Of the last picture. */
 typedef struct snow_insitu_seconds {
     double update, look, render, encode, draw, write, step;
 } snow_insitu_seconds;
@@ -103,9 +102,6 @@ struct snow_insitu {
     snow_lowering last_lowering;
 };
 
-/* Keeps the context's message; answers the status. */
-snow_status snow_insitu_fail(snow_insitu *insitu, snow_status status);
-
 /* A remark, on rank 0. */
 void snow_insitu_tell(snow_insitu *insitu, const char *format, ...)
     SNOW_PRINTF(2, 3);
@@ -123,7 +119,21 @@ void snow_insitu_forget(snow_insitu *insitu);
 /* The view of the picture: as told, or the default one. */
 snow_view snow_insitu_view(const snow_insitu *insitu);
 
-/* insitu_data.c: collective, statuses agreed. */
+/* The path of a step's picture; false where it is too long. */
+bool snow_insitu_path(const snow_insitu *insitu, int64_t step, char *out,
+                      size_t room);
+
+/* Collective: the voxels, as they are now, become the ranks' parts of a volume
+ * (insitu_data.c). */
 snow_status snow_insitu_take(snow_insitu *insitu);
+
+/* Collective: refuses a view, settings or limits that differ from rank to rank
+ * (insitu_data.c). */
+snow_status snow_insitu_check(snow_insitu *insitu);
+
+/* Collective: the transfer function of a look for a volume of which every rank
+ * has a part (insitu_look.c). */
+snow_status snow_insitu_choose(snow_comm *comm, const snow_volume *volume,
+                               const snow_look *look, snow_transfer **out);
 
 #endif

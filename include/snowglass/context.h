@@ -58,6 +58,10 @@ SNOW_API snow_status snow_context_fail(snow_context *context,
 SNOW_API void snow_context_remark(snow_context *context, const char *format,
                                   ...) SNOW_PRINTF(2, 3);
 
+/* The most bytes that objects of this context may hold together from now on; 0:
+ * as many as there are.  What would exceed it fails with SNOW_NO_MEMORY. */
+SNOW_API void snow_context_set_limit(snow_context *context, uint64_t bytes);
+
 /* Bytes that objects of this context hold now, and the most they ever held. */
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);
 SNOW_API uint64_t snow_context_peak_bytes(const snow_context *context);
