@@ -11,7 +11,10 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: snowglass bench table1|table2|table3|speed [options]\n"
+    "usage: snowglass bench NAME [options]\n"
+    "\n"
+    "  table1 table2 table3   the paper's tables\n"
+    "  speed                  how fast pictures are made\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -68,13 +71,16 @@ static const char help[] =
 static const struct bench_entry {
     const char *name;
     int (*run)(snow_context *context, const bench_options *options);
-    bool table; /* of the paper */
+    const char *letters; /* its options beside those of all: none is ignored */
+    bool needs_data;     /* all three volumes, when --data is given */
 } entries[] = {
-    {"table1", bench_table1, true},
-    {"table2", bench_table2, true},
-    {"table3", bench_table3, true},
-    {"speed", bench_speed, false},
+    {"table1", bench_table1, "kae", true},
+    {"table2", bench_table2, "kae", true},
+    {"table3", bench_table3, "kae", true},
+    {"speed", bench_speed, "qlvocwst", false},
 };
+
+#define OF_ALL "djrh"
 
 #define ENTRY_COUNT (sizeof entries / sizeof entries[0])
 
@@ -193,27 +199,38 @@ static const char *option_word(char **argv) {
     return argv[optind - (apart ? 2 : 1)];
 }
 
-/* What an option belongs to: nothing is ignored. */
-#define OF_TABLES "kae"
-#define OF_SPEED "qlvocwst"
+#define OPTIONS_MOST 32
 
+/* The words of a command line, as they were written. */
 typedef struct bench_command {
     const char *name;
-    const char *table_word, *speed_word; /* an option of the one kind, NULL */
+    int count;
+    char letters[OPTIONS_MOST]; /* of the options, and their words */
+    const char *words[OPTIONS_MOST];
 } bench_command;
 
-static int check_kinds(const bench_command *command,
-                       const bench_options *options) {
-    for (size_t i = 0; i < ENTRY_COUNT; i++) {
-        if (strcmp(command->name, entries[i].name) != 0)
-            continue;
-        if (entries[i].table && command->speed_word)
-            return usage_error("this is an option of bench speed:",
-                               command->speed_word);
-        if (!entries[i].table && command->table_word)
-            return usage_error("this is an option of the tables:",
-                               command->table_word);
-    }
+static const struct bench_entry *find_entry(const char *name) {
+    for (size_t i = 0; i < ENTRY_COUNT; i++)
+        if (strcmp(name, entries[i].name) == 0)
+            return &entries[i];
+    return NULL;
+}
+
+static int check_letters(const bench_command *command,
+                         const struct bench_entry *entry) {
+    for (int i = 0; i < command->count; i++)
+        if (!strchr(entry->letters, command->letters[i]) &&
+            !strchr(OF_ALL, command->letters[i])) {
+            char what[64];
+            snprintf(what, sizeof what,
+                     "this is no option of bench %s:", entry->name);
+            return usage_error(what, command->words[i]);
+        }
+    return -1;
+}
+
+/* Sweeps and the quick run have volumes of their own. */
+static int check_speed(const bench_options *options) {
     bool own = options->quick || options->sweep || options->chart;
     bool by_size = options->sweep && strcmp(options->sweep, "size") == 0;
     if ((options->chart || options->sweep) && options->large && !by_size)
@@ -230,6 +247,17 @@ static int check_kinds(const bench_command *command,
                            "out",
                            options->data ? "--data" : "--volumes");
     return -1;
+}
+
+static int check_command(const bench_command *command,
+                         const bench_options *options) {
+    const struct bench_entry *entry = find_entry(command->name);
+    if (!entry)
+        return usage_error("there is no benchmark", command->name);
+    int code = check_letters(command, entry);
+    if (code < 0 && entry->run == bench_speed)
+        code = check_speed(options);
+    return code;
 }
 
 /* Parses the command line into options and `*name`; an exit code, or -1 to go
@@ -268,17 +296,17 @@ static int parse(int argc, char **argv, bench_options *options,
         }
         if (!take_option(option, optarg, options))
             return usage_error("this value is not possible:", optarg);
-        if (strchr(OF_TABLES, option))
-            command->table_word = option_word(argv);
-        if (strchr(OF_SPEED, option))
-            command->speed_word = option_word(argv);
+        if (command->count == OPTIONS_MOST)
+            return usage_error("too many options:", option_word(argv));
+        command->letters[command->count] = (char)option;
+        command->words[command->count++] = option_word(argv);
     }
     /* getopt has moved the words that are no options behind the others. */
     if (optind + 1 != argc)
-        return usage_error("give one table to measure, not",
+        return usage_error("give one thing to measure, not",
                            optind < argc ? argv[optind + 1] : "none");
     command->name = argv[optind];
-    return check_kinds(command, options);
+    return check_command(command, options);
 }
 
 int bench_main(int argc, char **argv) {
@@ -289,17 +317,13 @@ int bench_main(int argc, char **argv) {
         return code;
     if (!options.runs)
         options.runs = options.quick ? 1 : 7;
-    for (size_t i = 0; i < ENTRY_COUNT; i++) {
-        if (strcmp(command.name, entries[i].name) != 0)
-            continue;
-        if (entries[i].table && !bench_data_found(&options))
-            return SNOW_BAD_INPUT;
-        snow_context *context;
-        if (snow_context_new(NULL, &context) != SNOW_OK)
-            return SNOW_NO_MEMORY;
-        code = entries[i].run(context, &options);
-        snow_context_free(context);
-        return code;
-    }
-    return usage_error("there is no benchmark", command.name);
+    const struct bench_entry *entry = find_entry(command.name);
+    if (entry->needs_data && !bench_data_found(&options))
+        return SNOW_BAD_INPUT;
+    snow_context *context;
+    if (snow_context_new(NULL, &context) != SNOW_OK)
+        return SNOW_NO_MEMORY;
+    code = entry->run(context, &options);
+    snow_context_free(context);
+    return code;
 }

@@ -67,6 +67,10 @@ snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out);
 void bench_volume_close(bench_volume *volume);
 
+/* The paper's look: the opacity of a voxel is its value of 0 to 255, whatever
+ * values the volume happens to have. */
+extern const snow_look bench_linear_look;
+
 /* The same for any source; *out has no transfer function then. */
 const bench_source *bench_source_of(bench_set set);
 bool bench_source_found(const bench_source *source,
@@ -89,6 +93,9 @@ typedef enum bench_way {
     BENCH_RLE,
     BENCH_WAYS
 } bench_way;
+
+/* Sets method and encoding. */
+void bench_way_settings(bench_way way, snow_settings *settings);
 
 /* Medians over the runs, in milliseconds. */
 typedef struct bench_time {

@@ -24,6 +24,11 @@ static const struct {
     [BENCH_RLE] = {SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE},
 };
 
+void bench_way_settings(bench_way way, snow_settings *settings) {
+    settings->method = ways[way].method;
+    settings->encoding = ways[way].encoding;
+}
+
 /* One picture after the other of one row. */
 typedef struct bench_run {
     const bench_volume *volume;
@@ -62,8 +67,7 @@ static snow_status begin_run(snow_context *context, const bench_volume *volume,
 static snow_status render(bench_run *run, bench_way way, double threshold,
                           uint64_t *checksum) {
     snow_image *image;
-    run->settings.method = ways[way].method;
-    run->settings.encoding = ways[way].encoding;
+    bench_way_settings(way, &run->settings);
     run->settings.threshold = threshold;
     snow_status status = snow_frame_render(run->frame, run->volume->volume,
                                            run->volume->transfer, &run->view,

@@ -130,16 +130,16 @@ snow_status bench_source_open(snow_context *context, const bench_source *source,
     return status;
 }
 
-/* The look is the paper's: the opacity of a voxel is its value of 0 to 255,
- * whatever values the volume happens to have. */
+const snow_look bench_linear_look = {
+    .preset = "linear", .range = SNOW_RANGE_VALUES, .low = 0, .high = 255};
+
 snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out) {
-    static const snow_look linear = {
-        .preset = "linear", .range = SNOW_RANGE_VALUES, .low = 0, .high = 255};
     snow_status status =
         bench_source_open(context, &sources[set], options, out);
     if (status == SNOW_OK) {
-        status = snow_transfer_make(out->volume, &linear, &out->transfer);
+        status =
+            snow_transfer_make(out->volume, &bench_linear_look, &out->transfer);
         if (status != SNOW_OK)
             bench_volume_close(out);
     }

@@ -15,6 +15,8 @@ static snow_volume_options data_options(const options *asked) {
     for (int i = 0; i < 3; i++) {
         data.dims[i] = asked->dims[i];
         data.spacing[i] = asked->spacing[i];
+        data.crop[i][0] = asked->crop[i][0];
+        data.crop[i][1] = asked->crop[i][1];
     }
     if (asked->endian)
         data.endian = strcmp(asked->endian, "big") == 0 ? SNOW_ENDIAN_BIG

@@ -147,11 +147,12 @@ const option_row option_table[] = {
      "", "bytes before the voxels of raw data (0)"},
     {"time", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(time), 0, 9e15, "",
      "time step of a file with several, from 0 (0)"},
+    {"crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA, INPUT, read_crop, FIELD(crop),
+     0, 0, "", "a box of the volume, all that is read: first voxel and one past "
+     "the last; one left out is the volume's end"},
     LATER("dataset", 0, "PATH", TOPIC_DATA, "HDF5 is not read yet"),
     LATER("channel", 0, "N", TOPIC_DATA, "give a file with one channel"),
     LATER("series", 0, "UID|N", TOPIC_DATA, "DICOM is not read yet"),
-    LATER("crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA,
-          "give a smaller file, or --zoom"),
     LATER("mask", 0, "FILE", TOPIC_DATA, "give a masked file"),
     LATER("labels", 0, "LIST", TOPIC_DATA, "give a masked file"),
 

@@ -165,6 +165,19 @@ bool read_dims(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* The library knows the sizes, and so what lies outside. */
+bool read_crop(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    (void)row;
+    int64_t crop[3][2];
+    if (!value_crop(text, crop))
+        return refuse(wrong, "is no box; give the first voxel and one past the "
+                             "last along x, y and z, such as 0:64,16:48,5:6 "
+                             "(a number left out is the volume's end)");
+    memcpy(field, crop, sizeof crop);
+    return true;
+}
+
 /* NaN and inf do not pass value_reals, so above 0 is all that is left. */
 bool read_spacing(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {

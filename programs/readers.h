@@ -16,6 +16,7 @@ option_read read_integer;    /* int64_t within low..high */
 option_read read_count;      /* uint64_t */
 option_read read_size;       /* int64_t[2] */
 option_read read_dims;       /* int64_t[3] */
+option_read read_crop;       /* int64_t[3][2] */
 option_read read_spacing;    /* double[3] */
 option_read read_type;       /* snow_type */
 option_read read_preset;     /* const char * */

@@ -114,6 +114,37 @@ bool value_integers(const char *text, char separator, int count, int64_t *out) {
     return true;
 }
 
+/* "16:48", "16:", ":48", ":"; an end of 0 that is written out is no box. */
+static bool read_ends(const char *text, int64_t out[2]) {
+    char part[NUMBER_BYTES];
+    int64_t ends[2] = {0, 0};
+    bool more;
+    if (!(text = next_part(text, ':', part, &more)) || !more ||
+        (*part && !value_integer(part, &ends[0])) || ends[0] < 0)
+        return false;
+    if (*text && (!value_integer(text, &ends[1]) || ends[0] >= ends[1]))
+        return false;
+    memcpy(out, ends, sizeof ends);
+    return true;
+}
+
+bool value_crop(const char *text, int64_t out[3][2]) {
+    int64_t crop[3][2];
+    for (int i = 0; i < 3; i++) {
+        char axis[2 * NUMBER_BYTES];
+        size_t length = strcspn(text, ",");
+        if (length >= sizeof axis || (i < 2) != (text[length] == ','))
+            return false;
+        memcpy(axis, text, length);
+        axis[length] = '\0';
+        if (!read_ends(axis, crop[i]))
+            return false;
+        text += length + 1; /* behind the last one it is not looked at */
+    }
+    memcpy(out, crop, sizeof crop);
+    return true;
+}
+
 /* The names of CSS that a background is likely to have. */
 static const struct {
     const char *name;

@@ -39,6 +39,10 @@ bool value_quotient(const char *text, double *out);
 bool value_reals(const char *text, char separator, int count, double *out);
 bool value_integers(const char *text, char separator, int count, int64_t *out);
 
+/* "first:end,first:end,first:end"; a number left out is 0, the end of the
+ * volume.  first < end where both are told. */
+bool value_crop(const char *text, int64_t out[3][2]);
+
 /* "none", a name, #rgb, #rrggbb, or red,green,blue of 0 to 1. */
 bool value_color(const char *text, color_value *out);
 

@@ -156,11 +156,11 @@ speed --sweep sparse --large|leave out '--large'
 speed --sweep size --sizes 64,32|all but one of '--sizes'
 speed --quick --data x|leave out '--data'
 speed --chart x.svg --data x|leave out '--data'
-speed --kernel tent|an option of the tables: '--kernel'
-speed --azimuth=3|an option of the tables: '--azimuth=3'
-table1 --quick|an option of bench speed: '--quick'
-table2 --threads 2|an option of bench speed: '--threads'
-speed table1|give one table
+speed --kernel tent|no option of bench speed: '--kernel'
+speed --azimuth=3|no option of bench speed: '--azimuth=3'
+table1 --quick|no option of bench table1: '--quick'
+table2 --threads 2|no option of bench table2: '--threads'
+speed table1|give one thing
 END
 
 # VTK's files, as far as the bench reads them: right, and damaged.

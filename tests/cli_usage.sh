@@ -55,7 +55,7 @@ info --perspective x|no option of info
 --mask m x|--mask is not built yet
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint
---crop 0:1,0:1,0:1 x|--crop is not built yet
+--crop 0:1,0:1 x|--crop: 
 --dataset d x|--dataset is not built yet
 --channel 1 x|--channel is not built yet
 --series 1 x|--series is not built yet

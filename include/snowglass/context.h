@@ -66,6 +66,10 @@ SNOW_API void snow_context_set_limit(snow_context *context, uint64_t bytes);
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);
 SNOW_API uint64_t snow_context_peak_bytes(const snow_context *context);
 
+/* Bytes that this context has read from files so far, packed ones as they are
+ * packed. */
+SNOW_API uint64_t snow_context_bytes_read(const snow_context *context);
+
 #ifdef __cplusplus
 }
 #endif

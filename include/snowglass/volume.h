@@ -76,18 +76,29 @@ typedef struct snow_volume_options {
                            replaces the file's spacing, 0 keeps it */
     uint64_t offset;    /* raw only: bytes to skip before the voxels */
     int64_t time;       /* time step of a file with several, from 0 */
+    int64_t crop[3][2]; /* along x, y, z: the first voxel and one past the last
+                           one, 0 for the end; all 0: the whole volume */
 } snow_volume_options;
 
 /* Opens a volume file.  The format is found from the first bytes, then from
  * the name; gzip around any single file is undone.  A file that no reader
  * knows is raw and needs `dims` and `type`.  "phantom:NAME" makes a built-in
  * volume (options->dims then gives its size; 0 for the default).  `options`
- * may be NULL.  Errors: SNOW_BAD_INPUT (missing, damaged, contradictory,
+ * may be NULL.  Of a volume that is cropped little more than the box is read
+ * and kept; it is a volume of its own, whose matrix puts it where it was.  Errors: SNOW_BAD_INPUT (missing, damaged, contradictory,
  * unsupported; nothing is kept), SNOW_BAD_USAGE (options that do not fit the
  * format), SNOW_NO_MEMORY.  Close with snow_volume_close. */
 SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
                                       const snow_volume_options *options,
                                       snow_volume **out);
+
+/* What snow_volume_open would make, without its voxels: of the file's little
+ * more than the header is read, and what is behind it is not verified.
+ * Standard input is used up.  Errors: as snow_volume_open. */
+SNOW_API snow_status snow_volume_inspect(snow_context *context,
+                                         const char *path,
+                                         const snow_volume_options *options,
+                                         snow_volume_info *out);
 
 /* The same on a file's bytes in memory; `name` serves messages and the choice
  * by suffix.  Files beside it (detached data) are refused.  `bytes` is read

@@ -29,6 +29,7 @@ struct snow_context {
     uint64_t limit;         /* of bytes; 0: none */
     struct snow_pool *pool; /* threads (base/parallel.h), NULL until needed */
     uint64_t serials;       /* given out so far, to tell objects apart */
+    uint64_t bytes_read;    /* from files */
     char message[SNOW_MESSAGE_BYTES];
 };
 

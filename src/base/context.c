@@ -83,6 +83,10 @@ uint64_t snow_context_peak_bytes(const snow_context *context) {
     return context->peak;
 }
 
+uint64_t snow_context_bytes_read(const snow_context *context) {
+    return context->bytes_read;
+}
+
 const char *snow_status_text(snow_status status) {
     switch (status) {
 #define STATUS_TEXT(name, value, text) \

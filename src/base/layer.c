@@ -29,6 +29,7 @@ void *snow_layer_allocate(snow_context *context, size_t bytes) {
         return NULL;
     memset(layer, 0, bytes);
     layer->context = context;
+    layer->horizon = UINT64_MAX;
     layer->buffer = (unsigned char *)layer + bytes;
     return layer;
 }
@@ -44,6 +45,17 @@ void snow_layer_close(snow_layer *layer) {
     }
 }
 
+/* How much to pull into the rest of the buffer: what is missing of `size`
+ * bytes, and what lies before the horizon. */
+static size_t room_ahead(const snow_layer *layer, size_t size) {
+    size_t room = SNOW_LAYER_BYTES - layer->end, least = size - layer->end;
+    uint64_t reach = snow_layer_reach(layer);
+    uint64_t ahead = layer->horizon > reach ? layer->horizon - reach : 0;
+    if (ahead < least)
+        ahead = least;
+    return ahead < room ? (size_t)ahead : room;
+}
+
 /* What is buffered moves to the front first, so that the room behind it is one
  * piece. Callers ask for little more than a header's line, so that little is
  * moved. */
@@ -57,7 +69,7 @@ snow_status snow_layer_fill(snow_layer *layer, size_t size) {
     while (layer->end < size) {
         size_t got;
         SNOW_TRY(layer->pull(layer, layer->buffer + layer->end,
-                             SNOW_LAYER_BYTES - layer->end, &got));
+                             room_ahead(layer, size), &got));
         if (!got)
             break;
         layer->end += got;
@@ -131,6 +143,7 @@ static snow_status pull_file(snow_layer *layer, void *bytes, size_t size,
                          "permissions",
                          layer->name, why);
     }
+    layer->context->bytes_read += (uint64_t)count;
     *got = (size_t)count;
     return SNOW_OK;
 }

@@ -27,6 +27,7 @@ struct snow_layer {
     void (*fini)(snow_layer *layer);
     int64_t size;      /* of all its bytes; -1 when that is not known */
     uint64_t taken;    /* bytes handed out so far */
+    uint64_t horizon;  /* reading ahead ends at this byte, if it lies ahead */
     size_t begin, end; /* of the buffered bytes */
     unsigned char *buffer;
 };
@@ -51,8 +52,13 @@ void snow_layer_close(snow_layer *layer);
 void *snow_layer_allocate(snow_context *context, size_t bytes);
 
 /* Buffers at least `size` (at most SNOW_LAYER_BYTES) bytes unless the data end
- * before. */
+ * before, and more up to the horizon where one is set. */
 snow_status snow_layer_fill(snow_layer *layer, size_t size);
+
+/* The byte at which a pull would begin. */
+static inline uint64_t snow_layer_reach(const snow_layer *layer) {
+    return layer->taken + (layer->end - layer->begin);
+}
 
 /* Takes `count` buffered bytes away. */
 void snow_layer_drop(snow_layer *layer, size_t count);

@@ -79,22 +79,35 @@ static bool pass_by(snow_layer *layer, uint64_t size) {
     return true;
 }
 
+/* Whether to read what is skipped, with what follows it, costs more than to
+ * jump: it lies beyond the horizon, or fills a buffer. */
+static bool worth_a_jump(const snow_layer *layer, uint64_t size) {
+    return size >= SNOW_LAYER_BYTES || layer->taken >= layer->horizon ||
+           size >= layer->horizon - layer->taken;
+}
+
 snow_status snow_source_skip(snow_source *source, uint64_t size,
                              const char *what) {
     snow_layer *top = source->top;
-    while (size) {
-        SNOW_TRY(snow_layer_fill(top, 1));
+    for (;;) {
         uint64_t count = top->end - top->begin;
-        if (!count)
-            return fail_short(source, what, size);
         if (count > size)
             count = size;
         snow_layer_drop(top, (size_t)count);
         size -= count;
-        if (size && pass_by(top, size))
+        if (!size || (worth_a_jump(top, size) && pass_by(top, size)))
             return SNOW_OK;
+        SNOW_TRY(snow_layer_fill(top, 1));
+        if (top->begin == top->end)
+            return fail_short(source, what, size);
     }
-    return SNOW_OK;
+}
+
+/* A stream that cannot be jumped in is read with full buffers all the same. */
+void snow_source_plan(snow_source *source, uint64_t bytes) {
+    snow_layer *top = source->top;
+    if (!top->jump || !snow_add_u64(top->taken, bytes, &top->horizon))
+        top->horizon = UINT64_MAX;
 }
 
 /* Takes `count` buffered bytes that belong to a line to its end at `*used`. */

@@ -65,6 +65,11 @@ snow_status snow_source_read_all(snow_source *source, void *bytes, size_t size,
 snow_status snow_source_skip(snow_source *source, uint64_t size,
                              const char *what);
 
+/* Says that of the bytes to come only the next `bytes` are wanted before long:
+ * reading ahead ends there, and what is skipped beyond is not read, where the
+ * source is a file that can be jumped in.  UINT64_MAX: all, as at first. */
+void snow_source_plan(snow_source *source, uint64_t bytes);
+
 /* Takes one line of text without its end (\n or \r\n) as a string into `line`,
  * which has room for `size` bytes.  *got is false at the end of the data.
  * A longer line, and a NUL byte in it, is SNOW_BAD_INPUT. */

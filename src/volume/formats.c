@@ -3,6 +3,7 @@
  * The first bytes decide, then the name; the sizes that a user gives make
  * everything else raw data.  The name of the file is put before every message
  * here, so that no reader has to. */
+#include "volume/phantom.h"
 #include "volume/volume.h"
 
 #include <math.h>
@@ -87,30 +88,84 @@ static snow_status check_options(snow_context *context,
 }
 
 /* Stretches the matrix' columns to the spacing that the user gave. */
-static snow_status replace_spacing(snow_volume *volume,
-                                   const snow_volume_options *options) {
-    snow_volume_info info = volume->info;
+static snow_status replace_spacing(snow_context *context,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info) {
+    snow_volume_info changed = *info;
     for (int j = 0; j < 3; j++)
         for (int i = 0; i < 3 && options->spacing[j] > 0; i++)
-            info.matrix[i][j] *= options->spacing[j] / info.spacing[j];
+            changed.matrix[i][j] *= options->spacing[j] / info->spacing[j];
     /* The file's own matrix was checked: the option alone can be at fault. */
-    if (snow_volume_info_check(volume->context, &info) != SNOW_OK)
-        return snow_fail(volume->context, SNOW_BAD_USAGE,
+    if (snow_volume_info_check(context, &changed) != SNOW_OK)
+        return snow_fail(context, SNOW_BAD_USAGE,
                          "--spacing %gx%gx%g makes voxels too small, too large "
                          "or too flat to compute with; give lengths in "
                          "another unit",
                          options->spacing[0], options->spacing[1],
                          options->spacing[2]);
-    snow_volume_info_measure(&info);
-    volume->info = info;
+    snow_volume_info_measure(&changed);
+    *info = changed;
     return SNOW_OK;
+}
+
+/* What holds for all formats: the spacing first, then the way to the first
+ * voxel of the box, which is so many spacings. */
+static snow_status finish_info(snow_context *context,
+                               const snow_volume_options *options,
+                               snow_volume_info *info) {
+    snow_volume_info_measure(info);
+    SNOW_TRY(replace_spacing(context, options, info));
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            info->matrix[i][3] +=
+                info->matrix[i][j] * (double)options->crop[j][0];
+    return SNOW_OK;
+}
+
+/* Cuts the box out of a volume that was read whole. */
+static snow_status crop_volume(const snow_volume_options *options,
+                               snow_volume **volume) {
+    snow_context *context = (*volume)->context;
+    snow_volume_info info = (*volume)->info;
+    int64_t time = info.time, times = info.times;
+    snow_window window;
+    snow_volume *box;
+    info.time = 0;
+    info.times = 1;
+    SNOW_TRY(snow_window_lay(context, options, &info, &window));
+    const snow_file_part all = {&window, 0, window.all};
+    if (snow_file_part_is_all(&all))
+        return SNOW_OK;
+    info.time = time;
+    info.times = times;
+    SNOW_TRY(snow_volume_new(context, &info, &box));
+    snow_file_part_copy(&all, (*volume)->voxels, box->owned);
+    snow_volume_close(*volume);
+    *volume = box;
+    return SNOW_OK;
+}
+
+/* With a format that cannot stop behind the header, or in the middle. */
+static snow_status read_whole(const snow_format *format, snow_source *source,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_volume *volume;
+    SNOW_TRY(format->read(source, options, info, &volume));
+    snow_status status = crop_volume(options, &volume);
+    if (status == SNOW_OK)
+        *info = volume->info;
+    if (status == SNOW_OK && out)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
 }
 
 /* Options that describe raw data are refused with other formats rather than
  * ignored: they would contradict the header. */
 static snow_status read_with(const snow_format *format, snow_source *source,
                              const snow_volume_options *options,
-                             snow_volume **out) {
+                             snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     if (format != &snow_format_raw && tells_raw(options))
         return snow_fail(context, SNOW_BAD_USAGE,
@@ -118,21 +173,27 @@ static snow_status read_with(const snow_format *format, snow_source *source,
                          "itself; leave out --dims, --type, --endian and "
                          "--offset",
                          format->name);
-    snow_volume *volume;
-    SNOW_TRY(format->read(source, options, &volume));
-    snow_status status = replace_spacing(volume, options);
+    snow_volume *volume = NULL;
+    SNOW_TRY(
+        format->crops
+            ? format->read(source, options, info, out ? &volume : NULL)
+            : read_whole(format, source, options, info, out ? &volume : NULL));
+    snow_status status = finish_info(context, options, info);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;
     }
-    *out = volume;
+    if (out) {
+        volume->info = *info;
+        *out = volume;
+    }
     return SNOW_OK;
 }
 
 /* An empty file has its own words: each format would miss something else. */
 static snow_status read_source(snow_source *source,
                                const snow_volume_options *options,
-                               snow_volume **out) {
+                               snow_volume_info *info, snow_volume **out) {
     unsigned char bytes[SNOW_PEEK_BYTES];
     size_t size;
     SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
@@ -140,7 +201,7 @@ static snow_status read_source(snow_source *source,
         return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
                          "is empty; fetch or write the file again");
     return read_with(choose(snow_source_name(source), bytes, size, options),
-                     source, options, out);
+                     source, options, info, out);
 }
 
 /* Puts the file's name before a failure's message, unless a source has done
@@ -159,61 +220,83 @@ static snow_status name_failure(snow_context *context, snow_status status,
     return status;
 }
 
+static const snow_volume_options no_options;
+
 /* Owns the source from here on: every way out closes it after the message has
  * taken its name. */
 static snow_status open_source(snow_source *source,
                                const snow_volume_options *options,
-                               snow_volume **out) {
-    static const snow_volume_options none;
-    if (!options)
-        options = &none;
+                               snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
+    snow_volume_info told;
     snow_status status = check_options(context, options);
     if (status == SNOW_OK)
-        status = read_source(source, options, out);
-    if (status != SNOW_OK)
+        status = read_source(source, options, &told, out);
+    if (status == SNOW_OK)
+        *info = told;
+    else
         name_failure(context, status, snow_source_name(source));
     snow_source_close(source);
     return status;
 }
 
-/* A phantom is no file; of the options its sizes and spacing make sense. The
- * seed is not among the options and is 0 here. */
+/* A phantom is no file; of the options its sizes, spacing and box make sense.
+ * The seed is not among the options and is 0 here. */
 static snow_status open_phantom(snow_context *context, const char *name,
                                 const snow_volume_options *options,
-                                snow_volume **out) {
-    if (!options)
-        return snow_volume_phantom(context, name, NULL, 0, out);
+                                snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(check_options(context, options));
     if (options->type || options->endian || options->offset || options->time)
         return snow_fail(context, SNOW_BAD_USAGE,
                          PHANTOM "%s: a phantom has its own type; leave out "
                                  "--type, --endian, --offset and --time",
                          name);
-    snow_volume *volume;
-    SNOW_TRY(snow_volume_phantom(context, name, options->dims, 0, &volume));
-    snow_status status = replace_spacing(volume, options);
+    snow_volume *volume = NULL;
+    snow_volume_info told;
+    SNOW_TRY(snow_phantom_make(context, name, options, 0, &told,
+                               out ? &volume : NULL));
+    snow_status status = finish_info(context, options, &told);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;
     }
-    *out = volume;
+    *info = told;
+    if (out) {
+        volume->info = told;
+        *out = volume;
+    }
     return SNOW_OK;
 }
 
 /* The prefix comes before any file of that name: "./phantom:x" still reaches
  * one. */
-snow_status snow_volume_open(snow_context *context, const char *path,
+static snow_status open_path(snow_context *context, const char *path,
                              const snow_volume_options *options,
-                             snow_volume **out) {
+                             snow_volume_info *info, snow_volume **out) {
+    if (!options)
+        options = &no_options;
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
-        return open_phantom(context, path + strlen(PHANTOM), options, out);
+        return open_phantom(context, path + strlen(PHANTOM), options, info,
+                            out);
     snow_source *source;
     snow_status status = snow_source_open(context, path, &source);
     if (status != SNOW_OK)
         return name_failure(context, status,
                             strcmp(path, "-") ? path : "standard input");
-    return open_source(source, options, out);
+    return open_source(source, options, info, out);
+}
+
+snow_status snow_volume_open(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             snow_volume **out) {
+    snow_volume_info info;
+    return open_path(context, path, options, &info, out);
+}
+
+snow_status snow_volume_inspect(snow_context *context, const char *path,
+                                const snow_volume_options *options,
+                                snow_volume_info *out) {
+    return open_path(context, path, options, out, NULL);
 }
 
 snow_status snow_volume_open_memory(snow_context *context, const char *name,
@@ -221,9 +304,10 @@ snow_status snow_volume_open_memory(snow_context *context, const char *name,
                                     const snow_volume_options *options,
                                     snow_volume **out) {
     snow_source *source;
+    snow_volume_info info;
     snow_status status =
         snow_source_open_memory(context, name, bytes, size, &source);
     if (status != SNOW_OK)
         return name_failure(context, status, name);
-    return open_source(source, options, out);
+    return open_source(source, options ? options : &no_options, &info, out);
 }

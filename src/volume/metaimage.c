@@ -14,24 +14,25 @@
 /* More files than any folder has, few enough for sums of their numbers. */
 #define MOST_FILES INT64_C(1000000000)
 
-/* A part of the wanted time step, in one file. */
-typedef struct part {
-    uint64_t bytes; /* of voxels in the file, as binary */
-    uint64_t skip;  /* of them before the wanted ones */
-    uint64_t take;  /* wanted */
-} part;
-
 /* A run of files that hold the volume. */
 typedef struct series {
     int64_t count;      /* files, all time steps */
     uint64_t bytes;     /* voxels in each */
-    int64_t first, end; /* the files of the wanted time step */
+    int64_t first, end; /* the files that hold a part of the box */
 } series;
 
-/* Puts the source before the voxels and checks that they can be there. */
+/* The window on the volume, its header, and the source of that. */
+typedef struct reading {
+    snow_source *source;
+    const metaimage_header *header;
+    const snow_volume_info *info; /* of the box */
+    snow_window window;
+} reading;
+
+/* Puts the source before the voxels and checks that `bytes` of them, as
+ * binary, can be there. */
 static snow_status begin_part(snow_source *source,
-                              const metaimage_header *header,
-                              const part *wanted) {
+                              const metaimage_header *header, uint64_t bytes) {
     uint64_t skip = (uint64_t)header->header_size;
     if (header->header_size < 0) {
         int64_t remaining = snow_source_remaining(source);
@@ -40,13 +41,13 @@ static snow_status begin_part(snow_source *source,
                              "HeaderSize = -1 counts from the end, which a "
                              "compressed file or pipe does not tell; unpack "
                              "it");
-        SNOW_TRY(snow_source_expect(source, wanted->bytes, "the voxels"));
-        skip = (uint64_t)remaining - wanted->bytes;
+        SNOW_TRY(snow_source_expect(source, bytes, "the voxels"));
+        skip = (uint64_t)remaining - bytes;
     }
     SNOW_TRY(snow_source_skip(source, skip, "what HeaderSize counts"));
     if (header->compressed)
         SNOW_TRY(snow_source_unpack(source));
-    uint64_t least = wanted->bytes;
+    uint64_t least = bytes;
     if (header->text) /* a digit and a blank for each, but for the last */
         least = 2 * (least / snow_type_size(header->info.type)) - 1;
     return snow_source_expect(source, least, "the voxels");
@@ -54,34 +55,23 @@ static snow_status begin_part(snow_source *source,
 
 /* Reads the wanted voxels and verifies the rest. */
 static snow_status read_part(snow_source *source,
-                             const metaimage_header *header, const part *wanted,
-                             void *out) {
-    if (header->text) {
-        size_t size = snow_type_size(header->info.type);
-        const snow_number_window numbers = {
-            wanted->skip / size, wanted->take / size, wanted->bytes / size};
+                             const metaimage_header *header,
+                             const snow_file_part *part, void *voxels) {
+    if (header->text)
         SNOW_TRY(
-            snow_read_numbers(source, header->info.type, false, &numbers, out));
-    } else {
-        SNOW_TRY(snow_source_skip(source, wanted->skip, "the voxels"));
-        SNOW_TRY(snow_source_read_all(source, out, (size_t)wanted->take,
-                                      "the voxels"));
-        SNOW_TRY(snow_source_skip(
-            source, wanted->bytes - wanted->skip - wanted->take, "the voxels"));
-    }
+            snow_read_numbers(source, header->info.type, false, part, voxels));
+    else
+        SNOW_TRY(snow_file_part_read(source, part, voxels));
     return snow_source_finish(source);
 }
 
 /* One file with all voxels, header or not. */
-static snow_status read_whole(snow_source *source,
-                              const metaimage_header *header,
+static snow_status read_whole(snow_source *source, const reading *r,
                               snow_volume **out) {
-    uint64_t step = header->step_bytes;
-    part all = {step * (uint64_t)header->info.times,
-                step * (uint64_t)header->info.time, step};
-    SNOW_TRY(begin_part(source, header, &all));
-    SNOW_TRY(snow_volume_new(snow_source_context(source), &header->info, out));
-    return read_part(source, header, &all, (*out)->owned);
+    const snow_file_part all = {&r->window, 0, r->window.all};
+    SNOW_TRY(begin_part(source, r->header, r->window.all));
+    SNOW_TRY(snow_volume_new(snow_source_context(source), r->info, out));
+    return read_part(source, r->header, &all, (*out)->owned);
 }
 
 /* Opens a data file; packed data inside it are the header's business. */
@@ -93,42 +83,41 @@ static snow_status open_data(snow_source *source,
                : snow_source_open_sibling(source, name, out);
 }
 
-/* One file of a series into its place; the first makes the volume, since only
- * then it is known that there is one. */
-static snow_status read_member(snow_source *source,
-                               const metaimage_header *header, const char *name,
-                               uint64_t bytes, uint64_t at, snow_volume **out) {
+/* File `index` of a series into its place; the first makes the volume, since
+ * only then it is known that there is one. */
+static snow_status read_member(const reading *r, const char *name,
+                               const series *files, int64_t index,
+                               snow_volume **out) {
     snow_source *data;
-    part all = {bytes, 0, bytes};
-    SNOW_TRY(open_data(source, header, name, &data));
-    snow_status status = begin_part(data, header, &all);
+    uint64_t begin = (uint64_t)index * files->bytes;
+    const snow_file_part part = {&r->window, begin, begin + files->bytes};
+    if (!snow_file_part_wanted(&part))
+        return SNOW_OK;
+    SNOW_TRY(open_data(r->source, r->header, name, &data));
+    snow_status status = begin_part(data, r->header, files->bytes);
     if (status == SNOW_OK && !*out)
-        status =
-            snow_volume_new(snow_source_context(source), &header->info, out);
+        status = snow_volume_new(snow_source_context(data), r->info, out);
     if (status == SNOW_OK)
-        status =
-            read_part(data, header, &all, (unsigned char *)(*out)->owned + at);
+        status = read_part(data, r->header, &part, (*out)->owned);
     snow_source_close(data);
     return status;
 }
 
 /* Refuses a series whose last file is missing or too small, before memory is
  * taken for all. */
-static snow_status check_member(snow_source *source,
-                                const metaimage_header *header,
-                                const char *name, uint64_t bytes) {
+static snow_status check_member(const reading *r, const char *name,
+                                uint64_t bytes) {
     snow_source *data;
-    part all = {bytes, 0, bytes};
-    SNOW_TRY(open_data(source, header, name, &data));
-    snow_status status = begin_part(data, header, &all);
+    SNOW_TRY(open_data(r->source, r->header, name, &data));
+    snow_status status = begin_part(data, r->header, bytes);
     snow_source_close(data);
     return status;
 }
 
 /* Files that each hold the first `axes` axes. */
-static snow_status plan_series(snow_context *context,
-                               const metaimage_header *header, int axes,
-                               series *out) {
+static snow_status plan_series(const reading *r, int axes, series *out) {
+    const metaimage_header *header = r->header;
+    snow_context *context = snow_source_context(r->source);
     if (axes < 1 || axes > 3 || axes > header->axes)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "a LIST of files with %d axes each does not make %d "
@@ -136,30 +125,30 @@ static snow_status plan_series(snow_context *context,
                          axes, header->axes);
     out->bytes = snow_type_size(header->info.type);
     out->count = 1;
-    int64_t step = 1; /* files a time step */
     for (int i = 0; i < 4; i++) {
         if (i < axes)
             out->bytes *= (uint64_t)header->dims[i];
         else
             out->count *= header->dims[i];
-        if (i >= axes && i < 3)
-            step *= header->dims[i];
     }
-    out->first = header->info.time * step;
-    out->end = out->first + step;
+    uint64_t begin, end, last;
+    snow_window_run(&r->window, 0, &begin, &end);
+    snow_window_run(&r->window, snow_window_runs(&r->window) - 1, &last, &end);
+    out->first = (int64_t)(begin / out->bytes);
+    out->end = (int64_t)((end - 1) / out->bytes) + 1;
     return SNOW_OK;
 }
 
 /* "LIST", "LIST 2" or "LIST 2D": the number of axes in each file, by default
  * all but the last. */
-static snow_status read_list(snow_source *source,
-                             const metaimage_header *header,
-                             snow_volume **out) {
+static snow_status read_list(const reading *r, snow_volume **out) {
+    snow_source *source = r->source;
+    const metaimage_header *header = r->header;
     snow_context *context = snow_source_context(source);
     int axes = header->axes - 1;
     series files;
     sscanf(header->data, "%*s %1d", &axes);
-    SNOW_TRY(plan_series(context, header, axes, &files));
+    SNOW_TRY(plan_series(r, axes, &files));
     /* A name takes a letter and an end of line at least. */
     SNOW_TRY(snow_source_expect(source, 2 * (uint64_t)files.count - 1,
                                 "the names of the files"));
@@ -179,9 +168,7 @@ static snow_status read_list(snow_source *source,
         if (!*name)
             continue;
         if (i >= files.first && i < files.end)
-            SNOW_TRY(read_member(source, header, name, files.bytes,
-                                 (uint64_t)(i - files.first) * files.bytes,
-                                 out));
+            SNOW_TRY(read_member(r, name, &files, i, out));
         i++;
     }
     return snow_source_finish(source);
@@ -209,14 +196,13 @@ static bool name_of(const char *pattern, int64_t number, char *name,
 }
 
 /* "pattern first last step"; what is left out is 1, what fits, and 1. */
-static snow_status read_pattern(snow_source *source,
-                                const metaimage_header *header,
-                                snow_volume **out) {
-    snow_context *context = snow_source_context(source);
+static snow_status read_pattern(const reading *r, snow_volume **out) {
+    const metaimage_header *header = r->header;
+    snow_context *context = snow_source_context(r->source);
     char pattern[METAIMAGE_VALUE_BYTES], name[METAIMAGE_VALUE_BYTES + 64];
     long long first = 1, last = 0, step = 1;
     series files;
-    SNOW_TRY(plan_series(context, header, header->axes - 1, &files));
+    SNOW_TRY(plan_series(r, header->axes - 1, &files));
     int words = sscanf(header->data, "%1023s %18lld %18lld %18lld", pattern,
                        &first, &last, &step);
     bool possible = words >= 1 && files.count <= MOST_FILES;
@@ -230,22 +216,20 @@ static snow_status read_pattern(snow_source *source,
                          "like slice%%03d.raw with first number, last and "
                          "step",
                          header->data, (long long)files.count);
-    SNOW_TRY(check_member(source, header, name, files.bytes));
+    SNOW_TRY(check_member(r, name, files.bytes));
     for (int64_t i = files.first; i < files.end; i++) {
         if (!name_of(pattern, first + i * step, name, sizeof name))
             return snow_fail(context, SNOW_BAD_INPUT,
                              "the names of the files are too long");
-        SNOW_TRY(read_member(source, header, name, files.bytes,
-                             (uint64_t)(i - files.first) * files.bytes, out));
+        SNOW_TRY(read_member(r, name, &files, i, out));
     }
     return SNOW_OK;
 }
 
 /* A name in the header: a path from the header's folder, or an absolute one. */
-static snow_status read_detached(snow_source *source,
-                                 const metaimage_header *header,
-                                 snow_volume **out) {
-    snow_source *data;
+static snow_status read_detached(const reading *r, snow_volume **out) {
+    snow_source *source = r->source, *data;
+    const metaimage_header *header = r->header;
     snow_status status = open_data(source, header, header->data, &data);
     /* The name of a file, as far as the header goes. */
     if (status == SNOW_BAD_INPUT && *header->data &&
@@ -255,7 +239,7 @@ static snow_status read_detached(snow_source *source,
                          "may be cut within LOCAL",
                          header->data);
     SNOW_TRY(status);
-    status = read_whole(data, header, out);
+    status = read_whole(data, r, out);
     snow_source_close(data);
     return status;
 }
@@ -269,37 +253,38 @@ static bool is_word(const char *text, const char *word, const char *also) {
 
 /* ElementDataFile's special words, which stand before any file of that
  * name ("./LOCAL" still reaches one). */
-static snow_status read_data(snow_source *source,
-                             const metaimage_header *header,
-                             snow_volume **out) {
-    const char *data = header->data;
+static snow_status read_data(const reading *r, snow_volume **out) {
+    const char *data = r->header->data;
     if (is_word(data, "LOCAL", "Local") || is_word(data, "local", "local"))
-        return read_whole(source, header, out);
+        return read_whole(r->source, r, out);
     if (is_word(data, "LIST", "List"))
-        return read_list(source, header, out);
+        return read_list(r, out);
     if (strchr(data, '%'))
-        return read_pattern(source, header, out);
-    return read_detached(source, header, out);
+        return read_pattern(r, out);
+    return read_detached(r, out);
 }
 
 /* Bytes are swapped once at the end, whichever way the voxels came in. */
 static snow_status read_metaimage(snow_source *source,
                                   const snow_volume_options *options,
-                                  snow_volume **out) {
+                                  snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     metaimage_header header;
+    reading r = {.source = source, .header = &header, .info = info};
     SNOW_TRY(metaimage_read_header(source, &header));
-    SNOW_TRY(
-        snow_volume_pick_time(context, "time step", options, &header.info));
+    *info = header.info;
+    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    SNOW_TRY(snow_window_lay(context, options, info, &r.window));
+    if (!out)
+        return SNOW_OK;
     snow_volume *volume = NULL;
-    snow_status status = read_data(source, &header, &volume);
+    snow_status status = read_data(&r, &volume);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;
     }
-    size_t size = snow_type_size(header.info.type);
-    if (!header.text && header.big_endian != snow_machine_big_endian())
-        snow_swap_bytes(volume->owned, header.step_bytes / size, size);
+    if (!header.text)
+        snow_volume_order_bytes(volume, header.big_endian);
     *out = volume;
     return SNOW_OK;
 }
@@ -309,6 +294,7 @@ const snow_format snow_format_metaimage = {
     .text = "MetaImage (.mha, .mhd with .raw or .zraw)",
     .suffixes = {".mha", ".mhd", ".mha.gz"},
     .probe = metaimage_probe,
+    .crops = true,
     .read = read_metaimage,
     .write = snow_metaimage_write,
 };

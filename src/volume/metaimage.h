@@ -9,11 +9,10 @@
 
 typedef struct metaimage_header {
     snow_volume_info info;
-    int axes;            /* NDims, 1 to 4 */
-    int64_t dims[4];     /* 1 beyond `axes` */
-    uint64_t step_bytes; /* one time step as binary voxels */
-    bool text;           /* the voxels are decimal numbers */
-    bool compressed;     /* as a zlib or gzip stream */
+    int axes;        /* NDims, 1 to 4 */
+    int64_t dims[4]; /* 1 beyond `axes` */
+    bool text;       /* the voxels are decimal numbers */
+    bool compressed; /* as a zlib or gzip stream */
     bool big_endian;
     int64_t header_size; /* bytes before the voxels; -1: voxels end the file */
     char data[METAIMAGE_VALUE_BYTES]; /* ElementDataFile */

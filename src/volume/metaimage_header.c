@@ -333,11 +333,10 @@ static snow_status read_sizes(snow_context *context, const fields *f,
     for (int i = 0; i < 4; i++)
         if (header->dims[i] < 1)
             return fail_value(context, f, DIMS, "sizes of at least 1");
-    uint64_t all;
+    uint64_t step, all;
     memcpy(header->info.dims, header->dims, sizeof header->info.dims);
-    if (!snow_volume_count(header->dims, header->info.type, &voxels,
-                           &header->step_bytes) ||
-        !snow_mul_u64(header->step_bytes, (uint64_t)header->dims[3], &all) ||
+    if (!snow_volume_count(header->dims, header->info.type, &voxels, &step) ||
+        !snow_mul_u64(step, (uint64_t)header->dims[3], &all) ||
         all > (uint64_t)INT64_MAX)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "%s is \"%.60s\", too large for any file; correct "

@@ -14,11 +14,12 @@ static bool probe_nifti(const unsigned char *bytes, size_t size) {
     return nifti_header_size(bytes, size) != 0;
 }
 
-/* Fills what the header says of the volume, and the bytes of one time step. */
+/* Fills what the header says of the volume. */
 static snow_status describe(snow_context *context, const nifti_header *header,
                             const snow_volume_options *options,
-                            snow_volume_info *info, uint64_t *step_bytes) {
+                            snow_volume_info *info) {
     int64_t voxels;
+    uint64_t step;
     *info = snow_volume_info_default("nifti");
     memcpy(info->dims, header->dim + 1, sizeof info->dims);
     info->type = nifti_type(header->datatype);
@@ -27,11 +28,11 @@ static snow_status describe(snow_context *context, const nifti_header *header,
     nifti_geometry(context, header, info);
     uint64_t times = 1, all;
     /* Five products of numbers that a header of 348 bytes makes up. */
-    bool fits = snow_volume_count(info->dims, info->type, &voxels, step_bytes);
+    bool fits = snow_volume_count(info->dims, info->type, &voxels, &step);
     for (int i = 4; i < 8; i++)
         fits = fits && snow_mul_u64(times, (uint64_t)header->dim[i], &times);
-    fits = fits && snow_mul_u64(times, *step_bytes, &all) &&
-           all <= (uint64_t)INT64_MAX;
+    fits =
+        fits && snow_mul_u64(times, step, &all) && all <= (uint64_t)INT64_MAX;
     if (!fits)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "its sizes (dim) are larger than any file; correct "
@@ -43,21 +44,14 @@ static snow_status describe(snow_context *context, const nifti_header *header,
                                  options, info);
 }
 
-/* Reads the voxels from a source that stands `taken` bytes behind its start.
- * An offset and sizes may overflow together; UINT64_MAX is then refused as
- * more than the file holds. */
+/* Reads the voxels from a source that stands `taken` bytes behind its start. */
 static snow_status read_voxels(snow_source *source, const nifti_header *header,
                                const snow_volume_options *options,
-                               uint64_t taken, snow_volume **out) {
-    snow_context *context = snow_source_context(source);
-    snow_volume_info info;
-    uint64_t step, skip;
-    SNOW_TRY(describe(context, header, options, &info, &step));
-    if (!snow_add_u64(header->vox_offset - taken, (uint64_t)info.time * step,
-                      &skip))
-        skip = UINT64_MAX;
-    uint64_t rest = (uint64_t)(info.times - 1 - info.time) * step;
-    return snow_volume_read(source, &info, header->big_endian, skip, rest, out);
+                               uint64_t taken, snow_volume_info *info,
+                               snow_volume **out) {
+    SNOW_TRY(describe(snow_source_context(source), header, options, info));
+    return snow_volume_read(source, options, header->big_endian,
+                            header->vox_offset - taken, info, out);
 }
 
 /* Takes the header from the front of a source. */
@@ -125,10 +119,10 @@ static snow_status open_other(const snow_source *source, const char *wanted,
 /* The header came first: its voxels are in the .img file. */
 static snow_status read_beside(snow_source *source, const nifti_header *header,
                                const snow_volume_options *options,
-                               snow_volume **out) {
+                               snow_volume_info *info, snow_volume **out) {
     snow_source *image;
     SNOW_TRY(open_other(source, "img", &image));
-    snow_status status = read_voxels(image, header, options, 0, out);
+    snow_status status = read_voxels(image, header, options, 0, info, out);
     snow_source_close(image);
     return status;
 }
@@ -136,7 +130,7 @@ static snow_status read_beside(snow_source *source, const nifti_header *header,
 /* The .img file was opened: its header is beside it. */
 static snow_status read_image(snow_source *image,
                               const snow_volume_options *options,
-                              snow_volume **out) {
+                              snow_volume_info *info, snow_volume **out) {
     snow_source *source;
     nifti_header header;
     uint64_t taken;
@@ -148,7 +142,7 @@ static snow_status read_image(snow_source *image,
         return snow_fail(snow_source_context(image), SNOW_BAD_INPUT,
                          "its header says that the voxels are in the .hdr "
                          "file; open that");
-    return read_voxels(image, &header, options, 0, out);
+    return read_voxels(image, &header, options, 0, info, out);
 }
 
 /* The voxels of a pair have no magic: only the name tells. */
@@ -160,7 +154,7 @@ static bool is_image_name(const char *name) {
  */
 static snow_status read_nifti(snow_source *source,
                               const snow_volume_options *options,
-                              snow_volume **out) {
+                              snow_volume_info *info, snow_volume **out) {
     unsigned char bytes[NIFTI1_BYTES];
     size_t size;
     nifti_header header;
@@ -168,11 +162,11 @@ static snow_status read_nifti(snow_source *source,
     SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
     if (is_image_name(snow_source_name(source)) &&
         !nifti_header_size(bytes, size))
-        return read_image(source, options, out);
+        return read_image(source, options, info, out);
     SNOW_TRY(read_header(source, &header, &taken));
     if (header.pair)
-        return read_beside(source, &header, options, out);
-    return read_voxels(source, &header, options, taken, out);
+        return read_beside(source, &header, options, info, out);
+    return read_voxels(source, &header, options, taken, info, out);
 }
 
 const snow_format snow_format_nifti = {
@@ -180,6 +174,7 @@ const snow_format snow_format_nifti = {
     .text = "NIfTI-1 and NIfTI-2 (.nii, .nii.gz, .hdr with .img)",
     .suffixes = {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"},
     .probe = probe_nifti,
+    .crops = true,
     .read = read_nifti,
     .write = snow_nifti_write,
 };

@@ -14,26 +14,28 @@ static bool looks_nrrd(const unsigned char *bytes, size_t size) {
  * the voxels get their memory: a header costs nothing that it does not back. */
 static snow_status read_parsed(snow_source *source, const nrrd_text *text,
                                const snow_volume_options *options,
-                               snow_volume **out) {
+                               snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     nrrd_header header;
     nrrd_files files;
-    nrrd_window window;
-    snow_volume_info info = snow_volume_info_default("nrrd");
+    snow_window window;
+    *info = snow_volume_info_default("nrrd");
     SNOW_TRY(snow_nrrd_parse_header(context, text, &header));
-    SNOW_TRY(snow_nrrd_lay_out(context, &header, options, &info, &window));
+    SNOW_TRY(snow_nrrd_lay_out(context, &header, options, info, &window));
     SNOW_TRY(snow_nrrd_find_files(context, text, &header, &files));
-    return snow_nrrd_read_data(source, &header, &files, &info, &window, out);
+    if (!out)
+        return SNOW_OK;
+    return snow_nrrd_read_data(source, &header, &files, info, &window, out);
 }
 
 /* Owns the text, so that each early return below leaves nothing behind. */
 static snow_status read_nrrd(snow_source *source,
                              const snow_volume_options *options,
-                             snow_volume **out) {
+                             snow_volume_info *info, snow_volume **out) {
     nrrd_text text;
     snow_status status = snow_nrrd_read_text(source, &text);
     if (status == SNOW_OK)
-        status = read_parsed(source, &text, options, out);
+        status = read_parsed(source, &text, options, info, out);
     snow_release(snow_source_context(source), text.block);
     return status;
 }
@@ -43,6 +45,7 @@ const snow_format snow_format_nrrd = {
     .text = "NRRD, attached or detached; raw, gzip, ascii (.nrrd, .nhdr)",
     .suffixes = {".nrrd", ".nhdr", ".nrrd.gz"},
     .probe = looks_nrrd,
+    .crops = true,
     .read = read_nrrd,
     .write = snow_nrrd_write,
 };

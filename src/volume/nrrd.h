@@ -105,11 +105,6 @@ typedef struct nrrd_header {
     int64_t byte_skip; /* -1: the data are the last bytes */
 } nrrd_header;
 
-/* Where the voxels are that are wanted, in bytes of the whole array. */
-typedef struct nrrd_window {
-    uint64_t skip, count, all;
-} nrrd_window;
-
 typedef enum nrrd_place {
     NRRD_ATTACHED, /* behind the header */
     NRRD_SINGLE,
@@ -138,10 +133,10 @@ snow_status snow_nrrd_parse_header(snow_context *context, const nrrd_text *text,
                                    nrrd_header *out);
 
 /* Fills dims, matrix, times and what else the info holds; takes the time step
- * of the options, and tells its place in the array. */
+ * and the box of the options, and tells their place in the array. */
 snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
                               const snow_volume_options *options,
-                              snow_volume_info *info, nrrd_window *window);
+                              snow_volume_info *info, snow_window *window);
 
 snow_status snow_nrrd_find_files(snow_context *context, const nrrd_text *text,
                                  const nrrd_header *header, nrrd_files *out);
@@ -157,6 +152,6 @@ snow_status snow_nrrd_file_name(snow_context *context, const nrrd_files *files,
 snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,
-                                const nrrd_window *window, snow_volume **out);
+                                const snow_window *window, snow_volume **out);
 
 #endif

@@ -51,9 +51,7 @@ static snow_status refuse_other_format(snow_source *source) {
  * be found without reading (*at_end), to where reading begins; checks that
  * `size` bytes can be there. */
 static snow_status go_to_data(snow_source *source, const nrrd_header *header,
-                              bool attached, const nrrd_window *window,
-                              bool *at_end) {
-    uint64_t size = window->all;
+                              bool attached, uint64_t size, bool *at_end) {
     *at_end = false;
     SNOW_TRY(skip_lines(source, header->line_skip));
     if (header->encoding == NRRD_GZIP)
@@ -106,61 +104,47 @@ static snow_status read_into_ring(snow_source *source, unsigned char *ring,
     return SNOW_OK;
 }
 
-/* A time step among the last bytes: where it lies is known only when all have
- * passed, so that all steps are kept for a moment. */
+/* A box or a time step among the last bytes: where it lies is known only when
+ * all have passed, so that all are kept for a moment. */
 static snow_status read_last_bytes(snow_source *source,
-                                   const nrrd_window *window, void *to) {
-    if (window->count == window->all)
-        return read_into_ring(source, to, window->all);
+                                   const snow_file_part *part, void *voxels) {
+    uint64_t size = part->end - part->begin;
+    if (snow_file_part_is_all(part))
+        return read_into_ring(source, voxels, size);
     snow_context *context = snow_source_context(source);
-    unsigned char *ring = snow_allocate_array(context, window->all, 1);
+    unsigned char *ring = snow_allocate_array(context, size, 1);
     if (!ring)
         return SNOW_NO_MEMORY;
-    snow_status status = read_into_ring(source, ring, window->all);
+    snow_status status = read_into_ring(source, ring, size);
     if (status == SNOW_OK)
-        memcpy(to, ring + window->skip, (size_t)window->count);
+        snow_file_part_copy(part, ring, voxels);
     snow_release(context, ring);
     return status;
 }
 
-/* The window counts bytes of the array as it is in memory; a text has numbers.
- */
-static snow_status read_ascii(snow_source *source, const nrrd_header *header,
-                              const nrrd_window *window, void *to) {
-    size_t size = snow_type_size(header->type);
-    const snow_number_window numbers = {
-        window->skip / size, window->count / size, window->all / size};
-    return snow_read_numbers(source, header->type, true, &numbers, to);
-}
-
-/* Reads one file's part of the window from where go_to_data left it. */
-static snow_status read_window(snow_source *source, const nrrd_header *header,
-                               const nrrd_window *window, bool at_end,
-                               void *to) {
+/* Reads what one file has from where go_to_data left it. */
+static snow_status read_part(snow_source *source, const nrrd_header *header,
+                             const snow_file_part *part, bool at_end,
+                             void *voxels) {
     if (header->encoding == NRRD_ASCII)
-        SNOW_TRY(read_ascii(source, header, window, to));
+        SNOW_TRY(snow_read_numbers(source, header->type, true, part, voxels));
     else if (at_end)
-        SNOW_TRY(read_last_bytes(source, window, to));
-    else {
-        SNOW_TRY(snow_source_skip(source, window->skip, "the voxels"));
-        SNOW_TRY(snow_source_read_all(source, to, (size_t)window->count,
-                                      "the voxels"));
-        SNOW_TRY(snow_source_skip(
-            source, window->all - window->skip - window->count, "the voxels"));
-    }
+        SNOW_TRY(read_last_bytes(source, part, voxels));
+    else
+        SNOW_TRY(snow_file_part_read(source, part, voxels));
     return snow_source_finish(source);
 }
 
 /* All data behind one another in one file. */
 static snow_status read_single(snow_source *source, const nrrd_header *header,
                                bool attached, const snow_volume_info *info,
-                               const nrrd_window *window, snow_volume **out) {
+                               const snow_window *window, snow_volume **out) {
     bool at_end;
-    SNOW_TRY(go_to_data(source, header, attached, window, &at_end));
+    const snow_file_part all = {window, 0, window->all};
+    SNOW_TRY(go_to_data(source, header, attached, window->all, &at_end));
     snow_volume *volume;
     SNOW_TRY(snow_volume_new(snow_source_context(source), info, &volume));
-    snow_status status =
-        read_window(source, header, window, at_end, volume->owned);
+    snow_status status = read_part(source, header, &all, at_end, volume->owned);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;
@@ -169,51 +153,36 @@ static snow_status read_single(snow_source *source, const nrrd_header *header,
     return SNOW_OK;
 }
 
-/* The part of the window that lies in file `index`, in that file's bytes;
- * false when there is none. */
-static bool cut_window(const nrrd_window *window, uint64_t piece,
-                       uint64_t index, nrrd_window *out) {
-    uint64_t begin = index * piece, end = begin + piece;
-    uint64_t from = window->skip > begin ? window->skip : begin;
-    uint64_t to = window->skip + window->count;
-    if (to > end)
-        to = end;
-    *out = (nrrd_window){from - begin, to - from, piece};
-    return from < to;
-}
-
-/* Only the files that hold a part of the window are looked at: a pattern may
- * stand for 2^60 of them.  Names in a list follow one another, so that there
- * the walk begins with the first.
+/* Only the files that hold a part of the box are looked at, from that of its
+ * first voxel to that of its last: a pattern may stand for 2^60 of them.  Names
+ * in a list follow one another, so that there the walk begins with the first.
  *
  * Opens each file that is needed and measures it; with `voxels` reads it too.
  * Two passes over the files make sure that all are there before any memory is
  * taken. */
 static snow_status walk_files(snow_source *source, const nrrd_header *header,
                               const nrrd_files *files,
-                              const nrrd_window *window,
-                              unsigned char *voxels) {
+                              const snow_window *window, void *voxels) {
     char name[MOST_NAME_BYTES];
     const char *at = NULL;
-    uint64_t piece = window->all / files->count;
-    uint64_t first = files->place == NRRD_LIST ? 0 : window->skip / piece;
-    uint64_t last = (window->skip + window->count - 1) / piece;
-    for (uint64_t i = first; i <= last; i++) {
-        nrrd_window part;
+    uint64_t piece = window->all / files->count, begin, last, end;
+    snow_window_run(window, 0, &begin, &end);
+    snow_window_run(window, snow_window_runs(window) - 1, &last, &end);
+    uint64_t first = files->place == NRRD_LIST ? 0 : begin / piece;
+    for (uint64_t i = first; i <= (end - 1) / piece; i++) {
+        const snow_file_part part = {window, i * piece, (i + 1) * piece};
         SNOW_TRY(snow_nrrd_file_name(snow_source_context(source), files, i, &at,
                                      name, sizeof name));
-        if (!cut_window(window, piece, i, &part))
+        if (!snow_file_part_wanted(&part))
             continue;
         snow_source *file;
         bool at_end;
         SNOW_TRY(snow_source_open_sibling_as_is(source, name, &file));
-        snow_status status = go_to_data(file, header, false, &part, &at_end);
+        snow_status status = go_to_data(file, header, false, piece, &at_end);
         if (status == SNOW_OK && voxels)
-            status = read_window(file, header, &part, at_end, voxels);
+            status = read_part(file, header, &part, at_end, voxels);
         snow_source_close(file);
         SNOW_TRY(status);
-        if (voxels)
-            voxels += part.count;
     }
     return SNOW_OK;
 }
@@ -223,7 +192,7 @@ static snow_status walk_files(snow_source *source, const nrrd_header *header,
 static snow_status read_files(snow_source *source, const nrrd_header *header,
                               const nrrd_files *files,
                               const snow_volume_info *info,
-                              const nrrd_window *window, snow_volume **out) {
+                              const snow_window *window, snow_volume **out) {
     SNOW_TRY(walk_files(source, header, files, window, NULL));
     snow_volume *volume;
     SNOW_TRY(snow_volume_new(snow_source_context(source), info, &volume));
@@ -242,7 +211,7 @@ static snow_status read_files(snow_source *source, const nrrd_header *header,
 static snow_status read_sibling(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,
-                                const nrrd_window *window, snow_volume **out) {
+                                const snow_window *window, snow_volume **out) {
     snow_source *file;
     SNOW_TRY(snow_source_open_sibling_as_is(source, files->name, &file));
     snow_status status = read_single(file, header, false, info, window, out);
@@ -254,7 +223,7 @@ static snow_status read_sibling(snow_source *source, const nrrd_header *header,
 snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,
-                                const nrrd_window *window, snow_volume **out) {
+                                const snow_window *window, snow_volume **out) {
     snow_volume *volume;
     if (files->place == NRRD_ATTACHED)
         SNOW_TRY(read_single(source, header, true, info, window, &volume));
@@ -262,11 +231,8 @@ snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
         SNOW_TRY(read_sibling(source, header, files, info, window, &volume));
     else
         SNOW_TRY(read_files(source, header, files, info, window, &volume));
-    if (header->encoding != NRRD_ASCII &&
-        header->big_endian != snow_machine_big_endian()) {
-        size_t size = snow_type_size(info->type);
-        snow_swap_bytes(volume->owned, window->count / size, size);
-    }
+    if (header->encoding != NRRD_ASCII)
+        snow_volume_order_bytes(volume, header->big_endian);
     *out = volume;
     return SNOW_OK;
 }

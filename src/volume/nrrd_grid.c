@@ -136,7 +136,7 @@ static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
  * one of the options. */
 snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
                               const snow_volume_options *options,
-                              snow_volume_info *info, nrrd_window *window) {
+                              snow_volume_info *info, snow_window *window) {
     axis_choice choice;
     SNOW_TRY(choose_axes(context, header, &choice));
     info->type = header->type;
@@ -149,15 +149,7 @@ snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
     fill_matrix(header, &choice, info->matrix);
     SNOW_TRY(snow_volume_info_check(context, info));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
-    int64_t voxels;
-    snow_volume_count(info->dims, info->type, &voxels, &window->count);
-    if (!snow_mul_u64(window->count, (uint64_t)info->times, &window->all) ||
-        window->all > (uint64_t)INT64_MAX)
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "%lld time steps are larger than any file; check the "
-                         "sizes",
-                         (long long)info->times);
-    window->skip = window->count * (uint64_t)info->time;
+    SNOW_TRY(snow_window_lay(context, options, info, window));
     if (header->turn[2] < 0)
         snow_notify(context,
                     "the world is left-handed; z is turned, so that nothing "

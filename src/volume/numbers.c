@@ -142,27 +142,43 @@ static snow_status next_word(word_reader *reader, bool *got) {
     return SNOW_OK;
 }
 
+/* Where the number at byte `at` of the array goes, NULL when it is not wanted;
+ * `run`, the first one that does not end before it, goes along. */
+static void *place_of(const snow_window *window, uint64_t at, int64_t *run,
+                      unsigned char *voxels) {
+    uint64_t begin = 0, end = 0;
+    for (; *run < snow_window_runs(window); ++*run) {
+        snow_window_run(window, *run, &begin, &end);
+        if (at < end)
+            break;
+    }
+    if (at < begin || at >= end)
+        return NULL;
+    return voxels + (uint64_t)*run * (end - begin) + (at - begin);
+}
+
 /* The numbers outside the window must be numbers too: a fault there says that
  * those inside are not where they should be. */
 static snow_status read_words(word_reader *reader, snow_type type,
-                              const snow_number_window *window,
-                              unsigned char *out) {
+                              const snow_file_part *part,
+                              unsigned char *voxels) {
     snow_context *context = snow_source_context(reader->source);
     const char *name = snow_source_name(reader->source);
+    uint64_t size = part->window->value;
+    uint64_t all = (part->end - part->begin) / size;
+    int64_t run = snow_window_run_at(part->window, part->begin);
     bool got;
-    for (uint64_t i = 0; i < window->all; i++) {
+    for (uint64_t i = 0; i < all; i++) {
         uint64_t unwanted; /* room for one of any type */
-        void *at = &unwanted;
-        if (i >= window->skip && i - window->skip < window->count)
-            at = out + (i - window->skip) * snow_type_size(type);
+        void *at = place_of(part->window, part->begin + i * size, &run, voxels);
         SNOW_TRY(next_word(reader, &got));
         if (!got)
             return snow_fail(context, SNOW_BAD_INPUT,
                              "%s: ends after %llu of %llu numbers; the file is "
                              "cut, or its sizes are wrong",
                              name, (unsigned long long)i,
-                             (unsigned long long)window->all);
-        if (!snow_store_number(type, reader->word, at))
+                             (unsigned long long)all);
+        if (!snow_store_number(type, reader->word, at ? at : &unwanted))
             return snow_fail(context, SNOW_BAD_INPUT,
                              "%s: its number %llu, \"%.40s\", is no %s; "
                              "correct it or the type",
@@ -176,7 +192,7 @@ static snow_status read_words(word_reader *reader, snow_type type,
 
 /* The reader lives on the stack: some 5 KB, and nothing to free. */
 snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
-                              const snow_number_window *window, void *out) {
+                              const snow_file_part *part, void *voxels) {
     word_reader reader = {.source = source, .commas = commas};
-    return read_words(&reader, type, window, out);
+    return read_words(&reader, type, part, voxels);
 }

@@ -5,21 +5,16 @@
 
 #include "volume/volume.h"
 
-/* Which numbers of a text are wanted: `count` after the first `skip` of
- * `all`. */
-typedef struct snow_number_window {
-    uint64_t skip, count, all;
-} snow_number_window;
-
 /* Writes the number that the word is to `at`, which needs no alignment; false
  * when it is none of the type, exactly for whole numbers, by range for real
  * ones. */
 bool snow_store_number(snow_type type, const char *word, void *at);
 
-/* Takes window->all numbers and the blanks behind them from the source, and
- * keeps those in the window.  `commas` separate as blanks do.
+/* Takes the numbers of a part, as if each was written in its bytes, and the
+ * blanks behind them from the source, and puts those
+ * wanted where they belong in `voxels`.  `commas` separate as blanks do.
  * Errors: SNOW_BAD_INPUT for too few, and for what is no number of the type. */
 snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
-                              const snow_number_window *window, void *out);
+                              const snow_file_part *part, void *voxels);
 
 #endif

@@ -54,13 +54,13 @@ static snow_status refuse_name(snow_context *context, const char *name) {
                      names);
 }
 
-/* The grid of a phantom at the sizes asked for, 0 or no array for its own. */
+/* The grid of a phantom at the sizes asked for, 0 for its own. */
 static snow_status lay_grid(snow_context *context, const snow_phantom *phantom,
                             const int64_t dims[3], uint64_t seed,
                             snow_phantom_grid *grid) {
     *grid = (snow_phantom_grid){.seed = seed};
     for (int axis = 0; axis < 3; axis++) {
-        int64_t count = dims ? dims[axis] : 0;
+        int64_t count = dims[axis];
         if (count < 0)
             return snow_fail(
                 context, SNOW_BAD_USAGE,
@@ -94,28 +94,66 @@ static snow_volume_info describe(const snow_phantom *phantom,
     return info;
 }
 
+/* Row by row: what the row's y and z decide is decided once.  Rows are made
+ * whole, and of a box narrower than the volume a part is kept. */
+static snow_status fill(const snow_phantom *phantom,
+                        const snow_phantom_grid *grid, const snow_window *box,
+                        snow_volume *volume) {
+    size_t kept = (size_t)(box->count[0]) * box->value;
+    bool whole = box->count[0] == box->dims[0];
+    char *row = volume->owned, *wide = NULL;
+    if (!whole) {
+        wide = snow_allocate_array(volume->context, (uint64_t)box->dims[0],
+                                   box->value);
+        if (!wide)
+            return SNOW_NO_MEMORY;
+    }
+    for (int64_t k = 0; k < box->count[2]; k++)
+        for (int64_t j = 0; j < box->count[1]; j++, row += kept) {
+            phantom->row(grid, box->first[1] + j, box->first[2] + k,
+                         whole ? row : wide);
+            if (!whole)
+                memcpy(row, wide + (size_t)box->first[0] * box->value, kept);
+        }
+    snow_release(volume->context, wide);
+    return SNOW_OK;
+}
+
 /* A size that is too large is the caller's wish, no file's fault: usage. */
-snow_status snow_volume_phantom(snow_context *context, const char *name,
-                                const int64_t dims[3], uint64_t seed,
-                                snow_volume **out) {
+snow_status snow_phantom_make(snow_context *context, const char *name,
+                              const snow_volume_options *options, uint64_t seed,
+                              snow_volume_info *info, snow_volume **out) {
     const snow_phantom *phantom = find(name);
     if (!phantom)
         return refuse_name(context, name);
     snow_phantom_grid grid;
-    SNOW_TRY(lay_grid(context, phantom, dims, seed, &grid));
-    snow_volume_info info = describe(phantom, &grid);
-    snow_volume *volume;
-    snow_status status = snow_volume_new(context, &info, &volume);
-    if (status != SNOW_OK)
+    SNOW_TRY(lay_grid(context, phantom, options->dims, seed, &grid));
+    snow_volume_info told = describe(phantom, &grid);
+    snow_window box;
+    snow_volume *volume = NULL;
+    snow_status status = snow_window_lay(context, options, &told, &box);
+    if (status == SNOW_OK && out)
+        status = snow_volume_new(context, &told, &volume);
+    if (status == SNOW_OK && out)
+        status = fill(phantom, &grid, &box, volume);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
         return snow_fail_within(
             context, status == SNOW_BAD_INPUT ? SNOW_BAD_USAGE : status,
             "phantom %s", phantom->name);
-    /* Row by row: what the row's y and z decide is decided once. */
-    char *row = volume->owned;
-    size_t pitch = (size_t)grid.dims[0] * snow_type_size(phantom->type);
-    for (int64_t k = 0; k < grid.dims[2]; k++)
-        for (int64_t j = 0; j < grid.dims[1]; j++, row += pitch)
-            phantom->row(&grid, j, k, row);
-    *out = volume;
+    }
+    *info = told;
+    if (out)
+        *out = volume;
     return SNOW_OK;
+}
+
+snow_status snow_volume_phantom(snow_context *context, const char *name,
+                                const int64_t dims[3], uint64_t seed,
+                                snow_volume **out) {
+    snow_volume_options options = {0};
+    snow_volume_info info;
+    if (dims)
+        memcpy(options.dims, dims, sizeof options.dims);
+    return snow_phantom_make(context, name, &options, seed, &info, out);
 }

@@ -39,6 +39,12 @@ extern const snow_phantom snow_phantom_engine;
 extern const snow_phantom snow_phantom_shells;
 extern const snow_phantom snow_phantom_signal;
 
+/* snow_volume_phantom, with the box of the options; where `out` is NULL only
+ * the info, whose matrix is that of the whole, as with snow_format.read. */
+snow_status snow_phantom_make(snow_context *context, const char *name,
+                              const snow_volume_options *options, uint64_t seed,
+                              snow_volume_info *info, snow_volume **out);
+
 /* World coordinate of an index along an axis. */
 double snow_phantom_place(const snow_phantom_grid *grid, int axis,
                           int64_t index);

@@ -120,7 +120,7 @@ static snow_status refuse_untold(snow_context *context, const char *name,
  * them; snow_volume_read sees to that, and tells of too many. */
 static snow_status read_raw(snow_source *source,
                             const snow_volume_options *options,
-                            snow_volume **out) {
+                            snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     snow_volume_options all = *options;
     if (!all.dims[0] || !all.type || !all.endian)
@@ -134,12 +134,12 @@ static snow_status read_raw(snow_source *source,
         return snow_fail(context, SNOW_BAD_INPUT,
                          "is not gzip, as its name says; fetch it again, or "
                          "rename it if the voxels are not packed");
-    snow_volume_info info = snow_volume_info_default("raw");
-    memcpy(info.dims, all.dims, sizeof info.dims);
-    info.type = all.type;
-    SNOW_TRY(snow_volume_pick_time(context, "time step", &all, &info));
-    return snow_volume_read(source, &info, all.endian == SNOW_ENDIAN_BIG,
-                            all.offset, 0, out);
+    *info = snow_volume_info_default("raw");
+    memcpy(info->dims, all.dims, sizeof info->dims);
+    info->type = all.type;
+    SNOW_TRY(snow_volume_pick_time(context, "time step", &all, info));
+    return snow_volume_read(source, &all, all.endian == SNOW_ENDIAN_BIG,
+                            all.offset, info, out);
 }
 
 /* No probe: any bytes can be raw data, so that it is never found, only left. */
@@ -147,6 +147,7 @@ const snow_format snow_format_raw = {
     .name = "raw",
     .text = "voxels alone, described by options (.raw, .raw.gz, any name)",
     .suffixes = {".raw", ".raw.gz", ".bin", ".bin.gz"},
+    .crops = true,
     .read = read_raw,
     .write = snow_raw_write,
 };

@@ -212,45 +212,44 @@ snow_status snow_volume_share(snow_context *context,
     return wrap(context, &own, voxels, out);
 }
 
-/* skip + bytes + rest, all that the source must hold. */
-static bool add_up(uint64_t skip, uint64_t bytes, uint64_t rest,
-                   uint64_t *out) {
-    return snow_add_u64(skip, bytes, out) && snow_add_u64(*out, rest, out);
-}
-
 /* The bytes are held against the source before the voxels get their memory: a
  * header of 400 bytes must not cost gigabytes. */
-snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
-                             bool big_endian, uint64_t skip, uint64_t rest,
-                             snow_volume **out) {
+snow_status snow_volume_read(snow_source *source,
+                             const snow_volume_options *options,
+                             bool big_endian, uint64_t skip,
+                             snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
-    int64_t count;
-    uint64_t bytes, all;
-    SNOW_TRY(snow_volume_info_check(context, info));
-    snow_volume_count(info->dims, info->type, &count, &bytes);
+    snow_window window;
+    uint64_t all;
+    SNOW_TRY(snow_window_lay(context, options, info, &window));
     /* More than 64 bits can count: expect refuses it with its usual words. */
-    if (!add_up(skip, bytes, rest, &all))
+    if (!snow_add_u64(skip, window.all, &all))
         all = UINT64_MAX;
     SNOW_TRY(snow_source_expect(source, all, "the voxels"));
+    if (!out)
+        return SNOW_OK;
+    const snow_file_part part = {&window, 0, window.all};
     snow_volume *volume;
     SNOW_TRY(snow_volume_new(context, info, &volume));
     snow_status status = snow_source_skip(source, skip, "the voxels");
     if (status == SNOW_OK)
-        status = snow_source_read_all(source, volume->owned, (size_t)bytes,
-                                      "the voxels");
-    if (status == SNOW_OK)
-        status = snow_source_skip(source, rest, "the voxels");
+        status = snow_file_part_read(source, &part, volume->owned);
     if (status == SNOW_OK)
         status = snow_source_finish(source);
     if (status != SNOW_OK) {
         snow_volume_close(volume);
         return status;
     }
-    if (big_endian != snow_machine_big_endian())
-        snow_swap_bytes(volume->owned, (uint64_t)count,
-                        snow_type_size(info->type));
+    snow_volume_order_bytes(volume, big_endian);
     *out = volume;
     return SNOW_OK;
+}
+
+void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
+    const int64_t *dims = volume->info.dims;
+    if (big_endian != snow_machine_big_endian())
+        snow_swap_bytes(volume->owned, (uint64_t)(dims[0] * dims[1] * dims[2]),
+                        snow_type_size(volume->info.type));
 }
 
 /* Told even for step 0: a picture of one of many steps must not pass for all

@@ -8,6 +8,7 @@
 #include "base/base.h"
 #include "base/source.h"
 #include "base/writer.h"
+#include "volume/window.h"
 
 #include <snowglass/volume.h>
 
@@ -30,14 +31,20 @@ void snow_volume_whole(const snow_volume *volume, snow_volume_info *out);
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and
  * makes the volume; its messages need not name the file, and its options are
  * never NULL; `probe` says whether the first `size` bytes look like the
- * format; `write` may be NULL. */
+ * format; `write` may be NULL.
+ *
+ * A format that `crops` reads no more than the box of its options: it lays a
+ * window (volume/window.h) before the volume, and where `out` is NULL it stops
+ * there, with all but the voxels in *info.  Other formats read all, and are
+ * cropped afterwards; they leave *info alone. */
 typedef struct snow_format {
     const char *name;        /* "nrrd" */
     const char *text;        /* one line for people */
     const char *suffixes[8]; /* ".nrrd", ".nhdr", NULL */
     bool (*probe)(const unsigned char *bytes, size_t size);
+    bool crops;
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
-                        snow_volume **out);
+                        snow_volume_info *info, snow_volume **out);
     snow_status (*write)(const snow_volume *volume, const char *path,
                          snow_writer *writer);
 } snow_format;
@@ -72,13 +79,18 @@ snow_status snow_volume_info_check(snow_context *context,
 snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
                             snow_volume **out);
 
-/* The usual end of a binary reader: checks that the source can hold the
- * voxels, makes the volume, reads them, swaps bytes when `big_endian` differs
- * from the machine, finishes the source.  `skip` bytes (other time steps) lie
- * before the voxels and `rest` after them, both within the data. */
-snow_status snow_volume_read(snow_source *source, const snow_volume_info *info,
-                             bool big_endian, uint64_t skip, uint64_t rest,
-                             snow_volume **out);
+/* The usual end of a binary reader whose time steps follow one another behind
+ * `skip` bytes: lays the window, checks that the source can hold all, makes the
+ * volume unless `out` is NULL, reads it, swaps bytes when `big_endian` differs
+ * from the machine, finishes the source. */
+snow_status snow_volume_read(snow_source *source,
+                             const snow_volume_options *options,
+                             bool big_endian, uint64_t skip,
+                             snow_volume_info *info, snow_volume **out);
+
+/* Swaps the bytes of the voxels as read when the file's order is not the
+ * machine's. */
+void snow_volume_order_bytes(snow_volume *volume, bool big_endian);
 
 /* For a reader that has set info->times: takes the time step of the options
  * into info->time and tells the listener when there are several.  `what` the
