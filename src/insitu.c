@@ -368,10 +368,12 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
 
 bool snow_insitu_path(const snow_insitu *insitu, int64_t step, char *out,
                       size_t room) {
-    int digits;
-    size_t end;
+    int digits = 0;
+    size_t end = 0;
     const char *pattern = insitu->pattern;
     const char *at = find_number(pattern, &digits, &end);
+    if (!at)
+        return false;
     int length = snprintf(out, room, "%.*s%0*lld%s", (int)(at - pattern),
                           pattern, digits, (long long)step, pattern + end);
     return length > 0 && (size_t)length < room;

@@ -1,6 +1,7 @@
 /* recipe/keys.c - each key of a recipe, and how JSON becomes its field. */
 #include "recipe/keys.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -164,6 +165,32 @@ static json_t *write_told_longs(const recipe_key *key, const void *field) {
     for (int i = 0; i < key->count; i++)
         json_array_append_new(array, json_integer(numbers[i]));
     return array;
+}
+
+/* [[first, one past the last], ...] along x, y, z; 0 for the end. */
+static bool read_crop(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    int64_t crop[3][3];
+    bool good = json_array_size(value) == 3;
+    for (size_t i = 0; i < 3 && good; i++)
+        good = read_longs(key, json_array_get(value, i), crop[i], wrong) &&
+               (crop[i][1] == 0 || crop[i][0] < crop[i][1]);
+    if (!good)
+        return refuse(wrong, "[[x0, x1], [y0, y1], [z0, z1]]: from the first "
+                             "voxel to one past the last, 0 for the end");
+    for (int i = 0; i < 3; i++)
+        memcpy((int64_t *)field + 2 * i, crop[i], 2 * sizeof(int64_t));
+    return true;
+}
+
+static json_t *write_crop(const recipe_key *key, const void *field) {
+    (void)key;
+    const int64_t *c = field;
+    if (!c[0] && !c[1] && !c[2] && !c[3] && !c[4] && !c[5])
+        return NULL;
+    return json_pack("[[I,I],[I,I],[I,I]]", (json_int_t)c[0], (json_int_t)c[1],
+                     (json_int_t)c[2], (json_int_t)c[3], (json_int_t)c[4],
+                     (json_int_t)c[5]);
 }
 
 /* Width and height, which follow each other. */
@@ -357,6 +384,10 @@ typedef struct range_fields {
     double low, high;
 } range_fields;
 
+static_assert(offsetof(snow_recipe, high) - offsetof(snow_recipe, range) ==
+                  offsetof(range_fields, high),
+              "the record's fields lie as they are read");
+
 static bool read_range(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     (void)key;
@@ -405,6 +436,11 @@ typedef struct point_fields {
     size_t count;
     snow_opacity_point points[SNOW_RECIPE_POINTS];
 } point_fields;
+
+static_assert(offsetof(snow_recipe, opacities) -
+                      offsetof(snow_recipe, opacity_count) ==
+                  offsetof(point_fields, points),
+              "the record's fields lie as they are read");
 
 static bool read_point(const json_t *pair, const snow_opacity_point *before,
                        snow_opacity_point *out) {
@@ -545,6 +581,7 @@ const recipe_key recipe_keys[] = {
      endian_name, endian_named},
     {"offset", read_long, write_told_long, AT(data.offset), 0, 9e15, 0, NULL,
      NULL},
+    MADE("crop", crop, data.crop, 0, 9e15, 2),
     {"time", read_long, write_told_long, AT(data.time), 0, 9e15, 0, NULL, NULL},
     {NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };
