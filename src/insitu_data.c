@@ -290,7 +290,24 @@ static void place_boxes(const snow_insitu *insitu, snow_insitu_layout *l,
     }
 }
 
-/* Collective.  A new layout, and the plan of its exchange. */
+/* Collective.  Bricks do not overlap, as is known by then: counting tells
+ * whether they are the whole grid. */
+static snow_status check_whole(const snow_insitu *insitu) {
+    const int64_t *dims = insitu->whole.dims;
+    int64_t held = 0, all = dims[0] * dims[1] * dims[2];
+    for (int n = 0; n < insitu->held_count; n++)
+        held += snow_box_voxels(&insitu->held[n]);
+    SNOW_TRY(snow_comm_reduce_ints(insitu->comm, &held, 1, SNOW_SUM));
+    if (held == all)
+        return SNOW_OK;
+    return snow_fail(insitu->context, SNOW_BAD_USAGE,
+                     "no rank holds %lld of the %lld voxels of the grid; give "
+                     "each to a brick",
+                     (long long)(all - held), (long long)all);
+}
+
+/* Collective.  A new layout, and the plan of its exchange; one of nothing finds
+ * bricks that overlap as well. */
 static snow_status plan(snow_insitu *insitu, const snow_insitu_layout *wanted,
                         const snow_box *united, const int64_t facts[FACTS]) {
     snow_insitu_layout l = *wanted;
@@ -300,10 +317,10 @@ static snow_status plan(snow_insitu *insitu, const snow_insitu_layout *wanted,
     if (insitu->ghosts == SNOW_GHOSTS_NONE)
         l.exchanged = l.recut;
     insitu->layout.planned = false;
-    if (l.exchanged)
-        SNOW_TRY(
-            snow_voxels_plan(insitu->voxels, insitu->held, insitu->held_count,
-                             snow_box_voxels(&l.owned) ? &l.stored : &nothing));
+    bool moves = l.exchanged && snow_box_voxels(&l.owned);
+    SNOW_TRY(snow_voxels_plan(insitu->voxels, insitu->held, insitu->held_count,
+                              moves ? &l.stored : &nothing));
+    SNOW_TRY(check_whole(insitu));
     l.planned = true;
     insitu->layout = l;
     insitu->changed = false;
