@@ -39,8 +39,9 @@ snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out) {
     return status;
 }
 
-void snow_insitu_adopt_comm(snow_insitu *insitu) {
-    insitu->adopted = true;
+void snow_insitu_adopt_comm(snow_insitu *insitu, bool with_context) {
+    insitu->owns_comm = true;
+    insitu->owns_context = with_context;
 }
 
 void snow_insitu_forget(snow_insitu *insitu) {
@@ -61,7 +62,8 @@ void snow_insitu_free(snow_insitu *insitu) {
         return;
     snow_comm *comm = insitu->comm;
     snow_context *context = insitu->context;
-    bool adopted = insitu->adopted;
+    bool owns_comm = insitu->owns_comm;
+    bool owns_context = insitu->owns_context;
     if (insitu->voxels)
         snow_insitu_forget(insitu);
     snow_transfer_free(insitu->transfer);
@@ -72,10 +74,10 @@ void snow_insitu_free(snow_insitu *insitu) {
     snow_release(context, insitu->look.opacities);
     snow_release(context, insitu->pattern);
     snow_release(context, insitu);
-    if (adopted) {
+    if (owns_comm)
         snow_comm_free(comm);
+    if (owns_context)
         snow_context_free(context);
-    }
 }
 
 const char *snow_insitu_message(const snow_insitu *insitu) {
@@ -117,6 +119,10 @@ static snow_status answer(snow_insitu *insitu, snow_status status) {
     insitu->told = status;
     keep_message(insitu);
     return status;
+}
+
+snow_status snow_insitu_set_failure(snow_insitu *insitu, snow_status status) {
+    return answer(insitu, status);
 }
 
 static snow_status refuse(snow_insitu *insitu, const char *format, ...)

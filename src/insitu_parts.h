@@ -46,7 +46,7 @@ typedef struct snow_insitu_layout {
 struct snow_insitu {
     snow_comm *comm;
     snow_context *context;
-    bool adopted;
+    bool owns_comm, owns_context;
     snow_notice_fn *notice;
     void *notice_user;
     char message[SNOW_INSITU_MESSAGE];

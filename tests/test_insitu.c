@@ -829,7 +829,7 @@ static void an_adopted_communicator_goes_with_it(void **state) {
     assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
     assert_int_equal(snow_comm_self(context, &comm), SNOW_OK);
     assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_OK);
-    snow_insitu_adopt_comm(insitu);
+    snow_insitu_adopt_comm(insitu, true);
     snow_insitu_free(insitu);
     assert_int_equal(count.blocks, 0);
 }

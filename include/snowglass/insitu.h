@@ -37,14 +37,21 @@ typedef struct snow_insitu snow_insitu;
  * snowglass/mpi.h.  Errors: SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out);
 
-/* Hands the communicator and its context over: they are freed with it. */
-SNOW_API void snow_insitu_adopt_comm(snow_insitu *insitu);
+/* Hands the communicator over, and its context with it or not: they are freed
+ * when it is. */
+SNOW_API void snow_insitu_adopt_comm(snow_insitu *insitu, bool with_context);
 
 /* Collective where the communicator's own free is.  NULL is accepted. */
 SNOW_API void snow_insitu_free(snow_insitu *insitu);
 
 /* The message of the last call that failed; "" before any. */
 SNOW_API const char *snow_insitu_message(const snow_insitu *insitu);
+
+/* A failure of the caller's own on this rank, as if a setter's: the next
+ * collective call fails on all ranks with the message that the context has.
+ * SNOW_OK is none.  Returns the status. */
+SNOW_API snow_status snow_insitu_set_failure(snow_insitu *insitu,
+                                             snow_status status);
 
 /* The communicator that it was made over. */
 SNOW_API snow_comm *snow_insitu_comm(const snow_insitu *insitu);

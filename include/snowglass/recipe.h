@@ -88,6 +88,12 @@ SNOW_API snow_status snow_recipe_settings(snow_context *context,
 SNOW_API snow_status snow_recipe_apply(const snow_recipe *recipe,
                                        snow_insitu *insitu);
 
+/* Loads a recipe, applies it, and clears it: for a rank each, or for programs
+ * in Fortran.  A failure of one rank is that of all at the next collective
+ * call. */
+SNOW_API snow_status snow_recipe_apply_file(snow_insitu *insitu,
+                                            const char *path);
+
 #ifdef __cplusplus
 }
 #endif

@@ -85,9 +85,10 @@ typedef struct snow_volume_options {
  * knows is raw and needs `dims` and `type`.  "phantom:NAME" makes a built-in
  * volume (options->dims then gives its size; 0 for the default).  `options`
  * may be NULL.  Of a volume that is cropped little more than the box is read
- * and kept; it is a volume of its own, whose matrix puts it where it was.  Errors: SNOW_BAD_INPUT (missing, damaged, contradictory,
- * unsupported; nothing is kept), SNOW_BAD_USAGE (options that do not fit the
- * format), SNOW_NO_MEMORY.  Close with snow_volume_close. */
+ * and kept; it is a volume of its own, whose matrix puts it where it was.
+ * Errors: SNOW_BAD_INPUT (missing, damaged, contradictory, unsupported; nothing
+ * is kept), SNOW_BAD_USAGE (options that do not fit the format),
+ * SNOW_NO_MEMORY.  Close with snow_volume_close. */
 SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
                                       const snow_volume_options *options,
                                       snow_volume **out);

@@ -229,3 +229,14 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
         status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
     return status;
 }
+
+snow_status snow_recipe_apply_file(snow_insitu *insitu, const char *path) {
+    snow_recipe recipe;
+    snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
+    snow_status status = snow_recipe_load(context, path, &recipe);
+    if (status == SNOW_OK) {
+        status = snow_recipe_apply(&recipe, insitu);
+        snow_recipe_clear(&recipe);
+    }
+    return snow_insitu_set_failure(insitu, status);
+}
