@@ -100,6 +100,25 @@ SNOW_API snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id,
                                             snow_type type, const void *voxels,
                                             const int64_t stride[3]);
 
+/* A brick that is known by its place in the world. */
+typedef struct snow_world_brick {
+    double origin[3]; /* of its first voxel, behind the halo */
+    int64_t count[3]; /* voxels; 0: none */
+    snow_halo halo;
+} snow_world_brick;
+
+/* Collective.  Grid and bricks in one, for those who do not know the grid: it
+ * is what the bricks of all ranks span together.  This rank's get the numbers 0
+ * .. count - 1.  Where bricks share the voxels of their borders, as meshes do
+ * that have values at the corners of cells, the higher one keeps them, and they
+ * are the other's halo.  Grid and bricks that are as they were need not be
+ * planned anew.  Errors: SNOW_BAD_USAGE (spacings that differ, a brick between
+ * the voxels of the others), SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_insitu_place_bricks(snow_insitu *insitu,
+                                              const snow_world_brick *bricks,
+                                              int count,
+                                              const double spacing[3]);
+
 /* Where ghost voxels come from. */
 typedef enum snow_ghosts {
     SNOW_GHOSTS_AUTO = 0, /* the bricks' halos, else from their owners */
