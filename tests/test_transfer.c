@@ -273,7 +273,7 @@ static void quantiles_are_those_of_sorted_values(void **state) {
     const double shares[4] = {0, 0.01, 0.5, 1};
     double found[4];
     snow_census census;
-    assert_int_equal(snow_census_new(volume, &census), SNOW_OK);
+    assert_int_equal(snow_census_new(volume, NULL, &census), SNOW_OK);
     assert_int_equal(snow_quantiles(&census, SNOW_EXACT, shares, 4, found),
                      SNOW_OK);
     snow_census_free(&census);

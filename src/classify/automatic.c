@@ -137,8 +137,8 @@ snow_status snow_part_histogram(const snow_census *census, snow_parting *out) {
         ends[0] = census->min;
         ends[1] = census->max;
     }
-    uint64_t counts[BINS];
-    uint64_t all = snow_count_bins(census, ends[0], ends[1], BINS, counts);
+    uint64_t counts[BINS], all;
+    SNOW_TRY(snow_count_bins(census, ends[0], ends[1], BINS, counts, &all));
     read_counts(counts, all, ends[0], ends[1], &parting);
     *out = parting;
     return SNOW_OK;

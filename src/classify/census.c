@@ -5,7 +5,11 @@
  * the same order and the wanted one is found 16 bits at a time, most
  * significant first, by counting (radix selection): four passes over the voxels
  * whatever the range of values, which equal bins could not do for data from
- * 1e-3 to 1e38. */
+ * 1e-3 to 1e38.
+ *
+ * Everything that is said of a volume is a count, a minimum or a maximum.  Many
+ * ranks find them each of the voxels that it answers for, add them up, and know
+ * the same of the whole to the bit as one rank would, however it is cut. */
 #include "classify/look.h"
 
 #include <math.h>
@@ -18,26 +22,98 @@
 /* Voxels that a sampled pass reads at least, when there are as many. */
 #define SAMPLE (INT64_C(1) << 24)
 
-static int64_t voxel_count(const snow_volume *volume) {
-    const int64_t *dims = volume->info.dims;
-    return dims[0] * dims[1] * dims[2];
+/* A walk over the voxels that this rank answers for, in the order of the whole
+ * volume, in runs that have no gap there. */
+typedef struct walk {
+    const snow_volume *volume;
+    snow_window box; /* of the whole, in voxels */
+    int64_t stored[3];
+    int64_t runs, run; /* all; the next one */
+    uint64_t at, end;  /* of the run that is walked: voxels of the whole */
+    int64_t ahead;     /* from a voxel of the whole to the same one in memory */
+    uint64_t stride;   /* from one sampled block of the whole to the next */
+} walk;
+
+static walk walk_begin(const snow_volume *volume, snow_effort effort) {
+    snow_part part;
+    snow_volume_get_part(volume, &part);
+    walk w = {.volume = volume, .box = {.value = 1}};
+    memcpy(w.stored, part.stored, sizeof w.stored);
+    memcpy(w.box.dims, part.dims, sizeof w.box.dims);
+    memcpy(w.box.first, part.first, sizeof w.box.first);
+    memcpy(w.box.count, part.count, sizeof w.box.count);
+    if (part.count[0] && part.count[1] && part.count[2])
+        w.runs = snow_window_runs(&w.box);
+    int64_t skip = part.dims[0] * part.dims[1] * part.dims[2] / SAMPLE;
+    w.stride = BLOCK;
+    if (effort == SNOW_SAMPLED && skip > 1)
+        w.stride *= (uint64_t)skip;
+    return w;
 }
 
-/* From block to block, in voxels. */
-static int64_t stride_of(const snow_volume *volume, snow_effort effort) {
-    int64_t skip = voxel_count(volume) / SAMPLE;
-    return effort == SNOW_EXACT || skip < 1 ? BLOCK : BLOCK * skip;
+/* A run is one in memory too: what spans whole rows or slices of the volume is
+ * stored with nothing between them. */
+static bool next_run(walk *w) {
+    if (w->run == w->runs)
+        return false;
+    const int64_t *dims = w->box.dims, *own = w->volume->info.dims;
+    snow_window_run(&w->box, w->run++, &w->at, &w->end);
+    int64_t row = (int64_t)w->at / dims[0], x = (int64_t)w->at % dims[0];
+    int64_t y = row % dims[1] - w->stored[1], z = row / dims[1] - w->stored[2];
+    w->ahead = (z * own[1] + y) * own[0] + x - w->stored[0] - (int64_t)w->at;
+    return true;
 }
 
-/* Data values from voxel `first` on; returns how many. */
-static size_t read_block(const snow_volume *volume, int64_t first,
-                         double values[BLOCK]) {
-    int64_t left = voxel_count(volume) - first;
-    size_t count = left < BLOCK ? (size_t)left : BLOCK;
-    snow_volume_natives(volume, first, count, values);
-    for (size_t i = 0; i < count; i++)
-        values[i] = volume->info.slope * values[i] + volume->info.intercept;
-    return count;
+/* The data values of up to BLOCK voxels that a sampled block of the whole has
+ * of a run; 0 at the end. */
+static size_t next_block(walk *w, double values[BLOCK]) {
+    for (;;) {
+        if (w->at >= w->end && !next_run(w))
+            return 0;
+        uint64_t offset = w->at % w->stride;
+        if (offset < BLOCK) {
+            uint64_t count = BLOCK - offset;
+            if (count > w->end - w->at)
+                count = w->end - w->at;
+            const snow_volume_info *info = &w->volume->info;
+            snow_volume_natives(w->volume, (int64_t)w->at + w->ahead,
+                                (size_t)count, values);
+            for (size_t i = 0; i < count; i++)
+                values[i] = info->slope * values[i] + info->intercept;
+            w->at += count;
+            return (size_t)count;
+        }
+        w->at += w->stride - offset;
+    }
+}
+
+/* Adds up what all ranks have counted. */
+static snow_status sum_up(const snow_census *census, uint64_t *counts,
+                          size_t count) {
+    if (!census->comm)
+        return SNOW_OK;
+    return snow_comm_reduce_ints(census->comm, (int64_t *)counts, count,
+                                 SNOW_SUM);
+}
+
+/* The same for a table of DIGITS counts, of which most are seldom used: only
+ * those between the first and the last one that any rank has are sent. */
+static snow_status sum_up_table(const snow_census *census, uint64_t *counts) {
+    int64_t ends[2] = {0, 1 - DIGITS}; /* the first; the last, negative */
+    if (!census->comm)
+        return SNOW_OK;
+    while (ends[0] < DIGITS && !counts[ends[0]])
+        ends[0]++;
+    while (ends[1] < 0 && !counts[-ends[1]])
+        ends[1]++;
+    SNOW_TRY(snow_comm_reduce_ints(census->comm, ends, 2, SNOW_MIN));
+    if (ends[0] == DIGITS)
+        return SNOW_OK;
+    return sum_up(census, counts + ends[0], (size_t)(1 - ends[1] - ends[0]));
+}
+
+static snow_status agree(const snow_census *census, snow_status status) {
+    return census->comm ? snow_comm_agree(census->comm, status) : status;
 }
 
 /* --- 8 and 16 bit types ----------------------------------------------------
@@ -53,14 +129,16 @@ static bool counted_type(snow_type type, int *smallest) {
 }
 
 static void count_natives(const snow_volume *volume, uint64_t *counts) {
-    int64_t n = voxel_count(volume);
-    memset(counts, 0, DIGITS * sizeof *counts);
-#define COUNT_TYPE(name, c_type, smallest)     \
-    case name: {                               \
-        const c_type *voxels = volume->voxels; \
-        for (int64_t i = 0; i < n; i++)        \
-            counts[voxels[i] - (smallest)]++;  \
-        break;                                 \
+    walk w = walk_begin(volume, SNOW_EXACT);
+#define COUNT_TYPE(name, c_type, smallest)                          \
+    case name: {                                                    \
+        const c_type *voxels = volume->voxels;                      \
+        while (next_run(&w)) {                                      \
+            const c_type *first = voxels + (int64_t)w.at + w.ahead; \
+            for (uint64_t i = 0; i < w.end - w.at; i++)             \
+                counts[first[i] - (smallest)]++;                    \
+        }                                                           \
+        break;                                                      \
     }
     switch (volume->info.type) {
         COUNT_TYPE(SNOW_INT8, int8_t, INT8_MIN)
@@ -117,9 +195,8 @@ static double counted_quantile(const snow_census *census, uint64_t rank) {
 static void measure_values(snow_census *census) {
     double values[BLOCK];
     size_t count;
-    for (int64_t at = 0; at < voxel_count(census->volume);
-         at += (int64_t)count) {
-        count = read_block(census->volume, at, values);
+    walk w = walk_begin(census->volume, SNOW_EXACT);
+    while ((count = next_block(&w, values))) {
         for (size_t i = 0; i < count; i++) {
             double value = values[i];
             if (!isfinite(value))
@@ -137,20 +214,59 @@ static void measure_values(snow_census *census) {
     }
 }
 
-snow_status snow_census_new(const snow_volume *volume, snow_census *out) {
-    snow_census census = {.volume = volume, .min = NAN, .max = NAN};
-    int smallest;
-    if (!counted_type(volume->info.type, &smallest)) {
-        measure_values(&census);
-        *out = census;
+/* What all ranks have measured; one without a finite voxel has no say. */
+static snow_status join_measures(snow_census *census) {
+    if (!census->comm)
         return SNOW_OK;
+    double ends[2] = {INFINITY, INFINITY};
+    if (census->finite) {
+        ends[0] = census->min;
+        ends[1] = -census->max;
     }
-    census.counts =
-        snow_allocate(volume->context, DIGITS * sizeof *census.counts);
-    if (!census.counts)
-        return SNOW_NO_MEMORY;
-    count_natives(volume, census.counts);
-    measure_counts(&census);
+    SNOW_TRY(snow_comm_reduce_doubles(census->comm, ends, 2, SNOW_MIN));
+    uint64_t counts[2] = {census->finite, 0};
+    if (census->finite && census->min == ends[0])
+        counts[1] = census->at_min;
+    SNOW_TRY(sum_up(census, counts, 2));
+    if (counts[0]) {
+        census->min = ends[0];
+        census->max = -ends[1];
+        census->finite = counts[0];
+        census->at_min = counts[1];
+    }
+    return SNOW_OK;
+}
+
+/* Ranks agree that each has a table before they count. */
+static snow_status count_all(snow_census *census) {
+    census->counts = snow_allocate_clear(census->volume->context,
+                                         DIGITS * sizeof *census->counts);
+    SNOW_TRY(agree(census, census->counts ? SNOW_OK : SNOW_NO_MEMORY));
+    count_natives(census->volume, census->counts);
+    SNOW_TRY(sum_up_table(census, census->counts));
+    measure_counts(census);
+    return SNOW_OK;
+}
+
+snow_status snow_census_new(const snow_volume *volume, snow_comm *comm,
+                            snow_census *out) {
+    snow_census census = {
+        .volume = volume, .comm = comm, .min = NAN, .max = NAN};
+    int smallest;
+    snow_status status;
+    if (counted_type(volume->info.type, &smallest))
+        status = count_all(&census);
+    else {
+        measure_values(&census);
+        status = join_measures(&census);
+    }
+    if (status != SNOW_OK) {
+        snow_census_free(&census);
+        return status;
+    }
+    /* Of zeros of both signs it is chance which one was met first. */
+    census.min += 0.0;
+    census.max += 0.0;
     *out = census;
     return SNOW_OK;
 }
@@ -170,30 +286,38 @@ static int bin_of(double value, double low, double high, int bins) {
     return bin < bins ? bin : bins - 1;
 }
 
-uint64_t snow_count_bins(const snow_census *census, double low, double high,
-                         int bins, uint64_t *counts) {
-    double values[BLOCK], value;
-    uint64_t all = 0;
-    int64_t stride = stride_of(census->volume, SNOW_SAMPLED);
+static void count_sampled(const snow_census *census, double low, double high,
+                          int bins, uint64_t *counts, uint64_t *all) {
+    double values[BLOCK];
+    size_t got;
+    walk w = walk_begin(census->volume, SNOW_SAMPLED);
+    while ((got = next_block(&w, values)))
+        for (size_t i = 0; i < got; i++) {
+            int bin = bin_of(values[i], low, high, bins);
+            *all += isfinite(values[i]) != 0;
+            if (bin >= 0)
+                counts[bin]++;
+        }
+}
+
+snow_status snow_count_bins(const snow_census *census, double low, double high,
+                            int bins, uint64_t *counts, uint64_t *all) {
     memset(counts, 0, (size_t)bins * sizeof *counts);
-    for (int n = 0; census->counts && n < DIGITS; n++) {
+    if (!census->counts) {
+        *all = 0;
+        count_sampled(census, low, high, bins, counts, all);
+        SNOW_TRY(sum_up(census, counts, (size_t)bins));
+        return sum_up(census, all, 1);
+    }
+    for (int n = 0; n < DIGITS; n++) {
+        double value;
         uint64_t count = nth_value(census, n, &value);
         int bin = count ? bin_of(value, low, high, bins) : -1;
         if (bin >= 0)
             counts[bin] += count;
     }
-    if (census->counts)
-        return census->finite;
-    for (int64_t at = 0; at < voxel_count(census->volume); at += stride) {
-        size_t got = read_block(census->volume, at, values);
-        for (size_t i = 0; i < got; i++) {
-            int bin = bin_of(values[i], low, high, bins);
-            all += isfinite(values[i]) != 0;
-            if (bin >= 0)
-                counts[bin]++;
-        }
-    }
-    return all;
+    *all = census->finite;
+    return SNOW_OK;
 }
 
 /* A key with the order of doubles: negative ones have all bits turned, others
@@ -222,14 +346,15 @@ typedef struct search {
 
 /* Counts the next digit of all values that begin as a search's prefix does;
  * returns how many values there are. */
-static uint64_t count_digits(const snow_volume *volume, int64_t stride,
+static uint64_t count_digits(const snow_volume *volume, snow_effort effort,
                              search *searches, size_t count, int shift) {
     double values[BLOCK];
     uint64_t all = 0;
     uint64_t above =
         shift + DIGIT_BITS < 64 ? ~UINT64_C(0) << (shift + DIGIT_BITS) : 0;
-    for (int64_t at = 0; at < voxel_count(volume); at += stride) {
-        size_t got = read_block(volume, at, values);
+    size_t got;
+    walk w = walk_begin(volume, effort);
+    while ((got = next_block(&w, values))) {
         for (size_t i = 0; i < got; i++) {
             if (!isfinite(values[i]))
                 continue;
@@ -258,37 +383,47 @@ static uint64_t rank_of(double fraction, uint64_t all) {
     return rank < (double)(all - 1) ? (uint64_t)rank : all - 1;
 }
 
-static snow_status select_keys(const snow_census *census, int64_t stride,
-                               const double *fractions, size_t count,
-                               double *out) {
-    search searches[SNOW_QUANTILES_MOST] = {{0}};
-    size_t bytes = count * DIGITS * sizeof(uint64_t);
-    uint64_t *counts = snow_allocate(census->volume->context, bytes);
-    if (!counts)
-        return SNOW_NO_MEMORY;
-    for (size_t n = 0; n < count; n++)
-        searches[n].counts = counts + n * DIGITS;
+/* Digit after digit; `counts` has a table for each search. */
+static snow_status select_digits(const snow_census *census, snow_effort effort,
+                                 const double *fractions, size_t count,
+                                 search *searches, uint64_t *counts) {
     for (int shift = 64 - DIGIT_BITS; shift >= 0; shift -= DIGIT_BITS) {
-        memset(counts, 0, bytes);
+        memset(counts, 0, count * DIGITS * sizeof *counts);
         uint64_t all =
-            count_digits(census->volume, stride, searches, count, shift);
+            count_digits(census->volume, effort, searches, count, shift);
+        SNOW_TRY(sum_up(census, &all, 1));
         for (size_t n = 0; n < count && all; n++) {
+            SNOW_TRY(sum_up_table(census, searches[n].counts));
             if (shift == 64 - DIGIT_BITS)
                 searches[n].rank = rank_of(fractions[n], all);
             take_digit(&searches[n], shift);
         }
     }
-    for (size_t n = 0; n < count; n++)
-        out[n] = value_of(searches[n].prefix);
-    snow_release(census->volume->context, counts);
     return SNOW_OK;
+}
+
+static snow_status select_keys(const snow_census *census, snow_effort effort,
+                               const double *fractions, size_t count,
+                               double *out) {
+    snow_context *context = census->volume->context;
+    search searches[SNOW_QUANTILES_MOST] = {{0}};
+    uint64_t *counts = snow_allocate(context, count * DIGITS * sizeof *counts);
+    snow_status status = agree(census, counts ? SNOW_OK : SNOW_NO_MEMORY);
+    for (size_t n = 0; n < count && counts; n++)
+        searches[n].counts = counts + n * DIGITS;
+    if (status == SNOW_OK)
+        status =
+            select_digits(census, effort, fractions, count, searches, counts);
+    for (size_t n = 0; n < count && status == SNOW_OK; n++)
+        out[n] = value_of(searches[n].prefix);
+    snow_release(context, counts);
+    return status;
 }
 
 snow_status snow_quantiles(const snow_census *census, snow_effort effort,
                            const double *fractions, size_t count, double *out) {
     if (!census->counts)
-        return select_keys(census, stride_of(census->volume, effort), fractions,
-                           count, out);
+        return select_keys(census, effort, fractions, count, out);
     for (size_t n = 0; n < count; n++)
         out[n] =
             counted_quantile(census, rank_of(fractions[n], census->finite));

@@ -4,6 +4,7 @@
 #define SNOW_LOOK_H
 
 #include "classify/transfer.h"
+#include "comm/comm.h"
 #include "volume/volume.h"
 
 #define SNOW_DRAFT_POINTS 32
@@ -22,6 +23,8 @@ typedef struct snow_draft {
 /* How often a volume's values occur: range, order statistics, histogram. */
 typedef struct snow_census {
     const snow_volume *volume;
+    snow_comm *comm;  /* the ranks whose parts are counted together; NULL: the
+                         part of this one alone */
     uint64_t *counts; /* of each native value of 8 and 16 bit types, from the
                          type's smallest on; NULL for other types */
     uint64_t finite;
@@ -29,8 +32,12 @@ typedef struct snow_census {
     uint64_t at_min; /* how many have the smallest value */
 } snow_census;
 
-/* Errors: SNOW_NO_MEMORY.  Free with snow_census_free. */
-snow_status snow_census_new(const snow_volume *volume, snow_census *out);
+/* Counts the voxels that a volume answers for; with a communicator, which is
+ * collective, those of all its ranks' volumes, as if they were one; so does all
+ * that is asked of the census later.  Errors: SNOW_NO_MEMORY (on all ranks),
+ * those of the transport.  Free with snow_census_free. */
+snow_status snow_census_new(const snow_volume *volume, snow_comm *comm,
+                            snow_census *out);
 
 void snow_census_free(snow_census *census);
 
@@ -47,9 +54,10 @@ snow_status snow_quantiles(const snow_census *census, snow_effort effort,
                            const double *fractions, size_t count, double *out);
 
 /* A histogram in `bins` equal bins of low..high; what lies outside is left
- * out.  low < high.  Returns how many values there were, outside included. */
-uint64_t snow_count_bins(const snow_census *census, double low, double high,
-                         int bins, uint64_t *counts);
+ * out.  low < high.  `all` is how many values there were, outside included.
+ * Errors: those of the transport. */
+snow_status snow_count_bins(const snow_census *census, double low, double high,
+                            int bins, uint64_t *counts, uint64_t *all);
 
 /* Where the histogram parts background from object. */
 typedef struct snow_parting {
@@ -77,6 +85,12 @@ snow_status snow_draft_preset(int preset, const snow_census *census,
 
 /* Smallest to largest finite value, made apart when they are one. */
 void snow_full_range(const snow_census *census, double *low, double *high);
+
+/* snow_transfer_make for the whole of which the volumes of a communicator's
+ * ranks are parts; NULL: for one volume.  Collective, errors agreed on. */
+snow_status snow_transfer_make_among(snow_comm *comm, const snow_volume *volume,
+                                     const snow_look *look,
+                                     snow_transfer **out);
 
 /* Replaces a draft's colours by a map over low..high. */
 void snow_draft_colormap(snow_draft *draft, int colormap, double low,

@@ -157,27 +157,47 @@ static void describe(snow_transfer *transfer, const snow_draft *draft,
     tell_reason(draft, look, text + used, room - used);
 }
 
-snow_status snow_transfer_make(const snow_volume *volume, const snow_look *look,
-                               snow_transfer **out) {
+/* The same on all ranks, but for the memory that it takes. */
+static snow_status build(const snow_volume *volume, const snow_draft *draft,
+                         const snow_look *look, snow_transfer **out) {
+    snow_transfer *transfer;
+    SNOW_TRY(snow_transfer_new(
+        volume->context, draft->colors, draft->color_count,
+        look->opacities ? look->opacities : draft->opacities,
+        look->opacities ? look->opacity_count : draft->opacity_count,
+        &transfer));
+    describe(transfer, draft, look);
+    *out = transfer;
+    return SNOW_OK;
+}
+
+snow_status snow_transfer_make_among(snow_comm *comm, const snow_volume *volume,
+                                     const snow_look *look,
+                                     snow_transfer **out) {
     static const snow_look automatic;
     snow_draft draft;
     snow_census census;
-    snow_transfer *transfer;
+    snow_transfer *transfer = NULL;
     if (!look)
         look = &automatic;
     SNOW_TRY(check_look(volume->context, look));
-    SNOW_TRY(snow_census_new(volume, &census));
+    SNOW_TRY(snow_census_new(volume, comm, &census));
     snow_status status = draft_look(&census, look, &draft);
     snow_census_free(&census);
     if (status != SNOW_OK)
         return status;
-    const snow_opacity_point *opacities =
-        look->opacities ? look->opacities : draft.opacities;
-    size_t opacity_count =
-        look->opacities ? look->opacity_count : draft.opacity_count;
-    SNOW_TRY(snow_transfer_new(volume->context, draft.colors, draft.color_count,
-                               opacities, opacity_count, &transfer));
-    describe(transfer, &draft, look);
+    status = build(volume, &draft, look, &transfer);
+    if (comm)
+        status = snow_comm_agree(comm, status);
+    if (status != SNOW_OK) {
+        snow_transfer_free(transfer);
+        return status;
+    }
     *out = transfer;
     return SNOW_OK;
+}
+
+snow_status snow_transfer_make(const snow_volume *volume, const snow_look *look,
+                               snow_transfer **out) {
+    return snow_transfer_make_among(NULL, volume, look, out);
 }

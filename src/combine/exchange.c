@@ -1,0 +1,584 @@
+/* combine/exchange.c - the combining stage (lines 14 to 18 of figure 8), by any
+ * of the methods of rounds.h.
+ *
+ * Before the first round each rank's combined image is its local image.  In a
+ * round it is cut into parts, each looked through (or, later, merged from what
+ * came in the round before) only when it is sent, so that computing and sending
+ * overlap.  Pixels are read and written once a round, packed; only the last
+ * round unpacks them.
+ *
+ * Memory is taken when the order's shape changes and at no other time, and all
+ * ranks agree on whether there was enough: a rank that fails alone would leave
+ * the others waiting. */
+#include "combine/combiner.h"
+
+#include <string.h>
+
+/* --- memory --------------------------------------------------------------- */
+
+/* A message begins at a multiple of so many bytes. */
+#define ALIGNMENT 64
+
+static size_t align(size_t bytes) {
+    return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+}
+
+snow_status snow_combiner_new(snow_comm *comm, snow_combiner **out) {
+    snow_combiner *combiner =
+        snow_allocate_clear(comm->context, sizeof *combiner);
+    if (!combiner)
+        return SNOW_NO_MEMORY;
+    combiner->comm = comm;
+    *out = combiner;
+    return SNOW_OK;
+}
+
+static void drop_buffers(snow_combiner *combiner) {
+    snow_context *context = combiner->comm->context;
+    for (int i = 0; i < 2; i++) {
+        snow_traffic *both[] = {&combiner->in[i], &combiner->out[i]};
+        for (int k = 0; k < 2; k++) {
+            snow_release(context, both[k]->bytes);
+            snow_release(context, both[k]->messages);
+            *both[k] = (snow_traffic){0};
+        }
+    }
+    snow_release(context, combiner->rounds.shares);
+    snow_release(context, combiner->lines);
+    snow_release(context, combiner->ranks);
+    snow_release(context, combiner->table);
+    snow_release(context, combiner->layers);
+    snow_release(context, combiner->words);
+    snow_release(context, combiner->part);
+    snow_release(context, combiner->piece);
+    combiner->rounds.shares = NULL;
+    combiner->lines = combiner->ranks = combiner->table = NULL;
+    combiner->layers = NULL;
+    combiner->words = combiner->part = NULL;
+    combiner->piece = NULL;
+    combiner->shape = (snow_exchange_shape){0};
+}
+
+void snow_combiner_free(snow_combiner *combiner) {
+    if (!combiner)
+        return;
+    drop_buffers(combiner);
+    snow_gather_free(combiner);
+    snow_release(combiner->comm->context, combiner);
+}
+
+/* What the busiest seat of all needs in its busiest round: views change seats,
+ * and seats alone shall change no buffer. */
+typedef struct needs {
+    size_t in, out, words; /* bytes, bytes, words */
+    int peers;
+    int64_t piece; /* pixels of the last one */
+} needs;
+
+static int64_t most(int64_t a, int64_t b) {
+    return a > b ? a : b;
+}
+
+/* The most pixels that a rank holds after `level` rounds.  Pieces are largest
+ * in the smallest group. */
+static int64_t held(const snow_combiner *combiner, int level) {
+    const snow_rounds *rounds = &combiner->rounds;
+    const snow_borders *borders = &combiner->borders;
+    int group = rounds->seats;
+    for (int i = rounds->count - 1; i >= level && group > 1; i--)
+        group = group / rounds->radices[i] > 1 ? group / rounds->radices[i] : 1;
+    return snow_border_room(borders, rounds->tree || level == 0 ? 1 : group);
+}
+
+static void count_needs(const snow_combiner *combiner, needs *out) {
+    const snow_rounds *rounds = &combiner->rounds;
+    const size_t pixel_bytes = (size_t)combiner->shape.channels * sizeof(float);
+    *out = (needs){.peers = 8, .piece = held(combiner, rounds->count)};
+    out->out = align(snow_active_room(held(combiner, 0), pixel_bytes));
+    for (int i = 0; i < rounds->count; i++) {
+        int64_t before = held(combiner, i), after = held(combiner, i + 1);
+        int radix = rounds->radices[i] < rounds->seats ? rounds->radices[i]
+                                                       : rounds->seats;
+        size_t peers = 2 * (size_t)radix + 4; /* see snow_rounds_room */
+        size_t spare = peers * (ALIGNMENT + snow_active_room(0, pixel_bytes));
+        size_t sent = snow_active_room(before, pixel_bytes) + spare;
+        size_t came =
+            (size_t)(radix - 1) * snow_active_room(after, pixel_bytes) + spare;
+        size_t words = (size_t)radix * ((size_t)after / 64 + 2) + 2 * peers;
+        out->out = sent > out->out ? sent : out->out;
+        out->in = came > out->in ? came : out->in;
+        out->words = words > out->words ? words : out->words;
+        out->peers = (int)most(out->peers, (int64_t)peers);
+    }
+    out->words += (size_t)held(combiner, 0) / 64 + 2; /* where no round is */
+    if (rounds->tree && combiner->comm->rank != 0)
+        out->piece = 0;
+}
+
+static snow_status take_buffers(snow_combiner *combiner) {
+    snow_context *context = combiner->comm->context;
+    const size_t seats = (size_t)combiner->comm->ranks;
+    needs need;
+    count_needs(combiner, &need);
+    const size_t peers = (size_t)need.peers;
+    bool fine = true;
+    for (int i = 0; i < 2; i++) {
+        snow_traffic *in = &combiner->in[i], *out = &combiner->out[i];
+        fine = fine && (in->bytes = snow_allocate(context, need.in)) &&
+               (out->bytes = snow_allocate(context, need.out)) &&
+               (in->messages = snow_allocate_array(context, peers,
+                                                   sizeof *in->messages)) &&
+               (out->messages =
+                    snow_allocate_array(context, peers, sizeof *out->messages));
+    }
+    fine =
+        fine &&
+        (combiner->rounds.shares =
+             snow_allocate_array(context, snow_rounds_room(&combiner->rounds),
+                                 sizeof(snow_share))) &&
+        (combiner->ranks = snow_allocate_array(context, seats, sizeof(int))) &&
+        (combiner->table = snow_allocate_array(context, seats, sizeof(int))) &&
+        (combiner->layers =
+             snow_allocate_array(context, peers, sizeof(snow_active))) &&
+        (combiner->words =
+             snow_allocate_array(context, need.words, sizeof(uint64_t))) &&
+        (combiner->part =
+             snow_allocate_array(context, (uint64_t)held(combiner, 0) / 64 + 2,
+                                 sizeof(uint64_t))) &&
+        (combiner->piece = snow_allocate_array(
+             context, (uint64_t)need.piece,
+             (size_t)combiner->shape.channels * sizeof(float)));
+    if (fine && combiner->shape.pieces == SNOW_PIECES_INTERLACED)
+        fine = (combiner->lines = snow_allocate_array(
+                    context, (uint64_t)combiner->shape.height, sizeof(int)));
+    return fine ? SNOW_OK : SNOW_NO_MEMORY;
+}
+
+/* --- the plan ------------------------------------------------------------- */
+
+/* AUTO counts where messages are so large that unequal pieces cost more than
+ * the reduction: about 2 us for each doubling of ranks, against a tenth of the
+ * picture's pixels at 12 GB/s, a third of which can be saved. */
+static bool counts_pieces(const snow_exchange_order *order, int ranks) {
+    double bytes = (double)order->width * order->height * order->channels * 4;
+    int doublings = 0;
+    while (((int64_t)1 << doublings) < ranks)
+        doublings++;
+    if (order->method == SNOW_COMBINE_TREE || ranks < 3)
+        return false;
+    if (order->pieces == SNOW_PIECES_AUTO)
+        return !order->whole && bytes > 720e3 * doublings;
+    return order->pieces == SNOW_PIECES_COUNTED;
+}
+
+static snow_combining chosen_method(const snow_exchange_order *order) {
+    return order->method == SNOW_COMBINE_AUTO ? SNOW_COMBINE_RADIX
+                                              : order->method;
+}
+
+static snow_exchange_shape shape_of(const snow_exchange_order *order) {
+    return (snow_exchange_shape){.width = order->width,
+                                 .height = order->height,
+                                 .channels = order->channels,
+                                 .radix = order->radix,
+                                 .grain = order->grain,
+                                 .method = order->method,
+                                 .pieces = order->pieces,
+                                 .whole = order->whole};
+}
+
+static bool same_shape(const snow_exchange_shape *a,
+                       const snow_exchange_shape *b) {
+    return a->width == b->width && a->height == b->height &&
+           a->channels == b->channels && a->radix == b->radix &&
+           a->grain == b->grain && a->method == b->method &&
+           a->pieces == b->pieces && a->whole == b->whole;
+}
+
+/* Buffers for the order; all ranks come here together. */
+static snow_status take_shape(snow_combiner *combiner,
+                              const snow_exchange_order *order) {
+    snow_comm *comm = combiner->comm;
+    drop_buffers(combiner);
+    combiner->filled = false;
+    combiner->shape = shape_of(order);
+    snow_borders_even(&combiner->borders, order->width, order->height,
+                      order->grain);
+    combiner->borders.counted = counts_pieces(order, comm->ranks);
+    snow_rounds_choose(&combiner->rounds, chosen_method(order), order->radix,
+                       comm->ranks, (int64_t)order->width * order->height,
+                       (size_t)order->channels * sizeof(float));
+    snow_status status = snow_comm_agree(comm, take_buffers(combiner));
+    if (status != SNOW_OK)
+        drop_buffers(combiner);
+    else if (combiner->lines)
+        snow_order_lines(combiner->lines, order->height);
+    return status;
+}
+
+static snow_status check_order(const snow_combiner *combiner,
+                               const snow_exchange_order *order) {
+    snow_context *context = combiner->comm->context;
+    if (order->width < 1 || order->height < 1 ||
+        (order->channels != 2 && order->channels != 4))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a picture of %d x %d pixels and %d channels cannot "
+                         "be combined; it has 2 or 4 channels",
+                         order->width, order->height, order->channels);
+    if (order->grain < 1 || order->width % order->grain != 0 ||
+        order->radix < 0 || order->radix == 1)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "pieces of whole %d pixels by radix %d; grain is 1 or "
+                         "the width, radix 0 or at least 2",
+                         order->grain, order->radix);
+    return SNOW_OK;
+}
+
+/* Lists for this rank's seat. */
+static snow_status take_seats(snow_combiner *combiner,
+                              const snow_exchange_order *order) {
+    snow_rounds *rounds = &combiner->rounds;
+    int seat = -1, display = -1;
+    for (int i = 0; i < rounds->seats; i++) {
+        if (order->ranks[i] == combiner->comm->rank)
+            seat = i;
+        if (order->ranks[i] == 0)
+            display = i;
+    }
+    if (seat < 0 || display < 0)
+        return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
+                         "rank %d is not in the order from front to back; name "
+                         "every rank once",
+                         seat < 0 ? combiner->comm->rank : 0);
+    bool same = combiner->filled && rounds->seat == seat &&
+                (rounds->display == display || !rounds->tree);
+    if (!same)
+        snow_rounds_fill(rounds, seat, display, combiner->table);
+    combiner->filled = true;
+    memcpy(combiner->ranks, order->ranks,
+           (size_t)rounds->seats * sizeof *order->ranks);
+    return SNOW_OK;
+}
+
+/* Counts active pixels, in every line of a small picture and in some lines of a
+ * large one: what is saved by exact counts is less than what they take. */
+#define LINES_COUNTED 128
+
+static snow_status count_pieces(snow_combiner *combiner,
+                                const snow_exchange_order *order) {
+    snow_borders *borders = &combiner->borders;
+    int64_t counts[SNOW_BINS_MOST] = {0}, scanned = 0;
+    int step =
+        order->height / LINES_COUNTED > 1 ? order->height / LINES_COUNTED : 1;
+    int bin = 0;
+    for (int y = step / 2; y < order->height; y += step) {
+        while (y >= snow_borders_line(borders, bin + 1))
+            bin++;
+        counts[bin] += snow_active_in_line(order, y);
+        if (y >= order->drawn.y0 && y < order->drawn.y1)
+            scanned += order->drawn.x1 - order->drawn.x0;
+    }
+    combiner->figures.scanned += scanned;
+    snow_comm_work(combiner->comm, (double)scanned * order->scan_seconds);
+    SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts,
+                                   (size_t)borders->bins, SNOW_SUM));
+    snow_borders_count(borders, counts);
+    return SNOW_OK;
+}
+
+/* --- one part ------------------------------------------------------------- */
+
+/* Pixels first .. last - 1. */
+typedef struct stretch {
+    int64_t first, last;
+} stretch;
+
+static stretch stretch_of(const snow_combiner *combiner,
+                          const snow_share *share) {
+    if (share->piece < 0)
+        return (stretch){0, 0};
+    return (stretch){
+        snow_border(&combiner->borders, share->piece, share->pieces),
+        snow_border(&combiner->borders, share->piece + 1, share->pieces)};
+}
+
+static stretch overlap(stretch a, stretch b) {
+    stretch both = {most(a.first, b.first), a.last < b.last ? a.last : b.last};
+    return both.last > both.first ? both : (stretch){0, 0};
+}
+
+/* All that is the same during one exchange. */
+typedef struct exchange {
+    snow_combiner *combiner;
+    const snow_exchange_order *order;
+    size_t pixel_bytes;
+    int layer_count;          /* of combiner->layers, to be merged */
+    const unsigned char *own; /* the message to oneself */
+    size_t own_bytes;
+} exchange;
+
+/* Writes the part of this rank's combined image that is in `part` as a message
+ * to `out`; its length. */
+static size_t write_part(exchange *run, int level, stretch part,
+                         unsigned char *out) {
+    snow_combiner *combiner = run->combiner;
+    const snow_exchange_order *order = run->order;
+    snow_exchange_figures *figures = &combiner->figures;
+    float *pixels = order->rehearsal ? NULL : (float *)(void *)out;
+    int64_t scanned = 0, laid = 0, count;
+    if (level == 0) {
+        count = snow_active_scan(order, combiner->lines, part.first, part.last,
+                                 combiner->part, pixels, &scanned);
+        figures->active += count;
+    } else {
+        count = snow_active_merge(combiner->layers, run->layer_count,
+                                  order->channels, part.first, part.last,
+                                  combiner->part, pixels, &laid);
+    }
+    figures->scanned += scanned;
+    figures->laid += laid;
+    snow_comm_work(combiner->comm, (double)scanned * order->scan_seconds +
+                                       (double)laid * order->blend_seconds);
+    if (order->whole)
+        return (size_t)count * run->pixel_bytes;
+    return snow_active_close(out, combiner->part, part.first, part.last, count,
+                             run->pixel_bytes);
+}
+
+/* --- rounds --------------------------------------------------------------- */
+
+static const snow_share *share_at(const snow_combiner *combiner, int index) {
+    return &combiner->rounds.shares[index];
+}
+
+/* What this rank holds before a round. */
+static stretch held_before(const snow_combiner *combiner, int level) {
+    const snow_share all = {combiner->rounds.seat, 0, 1};
+    return stretch_of(combiner,
+                      level ? &combiner->rounds.rounds[level - 1].mine : &all);
+}
+
+/* Gets ready for what comes in a round: its messages are numbered as its list
+ * is, and those that do not come stay done. */
+static snow_status begin_receives(exchange *run, int level) {
+    snow_combiner *combiner = run->combiner;
+    const snow_round *round = &combiner->rounds.rounds[level];
+    snow_traffic *in = &combiner->in[level & 1];
+    const stretch mine = stretch_of(combiner, &round->mine);
+    size_t at = 0;
+    in->count = round->receives;
+    for (int i = 0; i < round->receives; i++) {
+        const snow_share *share = share_at(combiner, round->first_receive + i);
+        stretch part = overlap(mine, stretch_of(combiner, share));
+        in->messages[i] = (snow_message){0};
+        if (part.first >= part.last || share->seat == combiner->rounds.seat)
+            continue;
+        size_t room =
+            snow_active_room(part.last - part.first, run->pixel_bytes);
+        SNOW_TRY(snow_comm_receive(combiner->comm, in->bytes + at, room,
+                                   run->order->ranks[share->seat],
+                                   SNOW_TAG_COMBINE, &in->messages[i]));
+        at += align(room);
+    }
+    return SNOW_OK;
+}
+
+/* Sends what this rank holds to the owners of new pieces, and keeps its own. */
+static snow_status send_round(exchange *run, int level) {
+    snow_combiner *combiner = run->combiner;
+    const snow_round *round = &combiner->rounds.rounds[level];
+    snow_traffic *out = &combiner->out[level & 1];
+    const stretch holds = held_before(combiner, level);
+    size_t at = 0;
+    int from = 0;
+    SNOW_TRY(snow_comm_wait_all(combiner->comm, out->messages, out->count));
+    out->count = 0;
+    run->own_bytes = 0;
+    /* Ranks begin with different parts, lest all send to one; merged parts come
+     * in rising order. */
+    for (int i = 0; i < round->sends && level == 0; i++)
+        if (share_at(combiner, round->first_send + i)->seat ==
+            combiner->rounds.seat)
+            from = i + 1;
+    for (int i = 0; i < round->sends; i++) {
+        const snow_share *share =
+            share_at(combiner, round->first_send + (from + i) % round->sends);
+        stretch part = overlap(holds, stretch_of(combiner, share));
+        if (part.first >= part.last)
+            continue;
+        size_t bytes = write_part(run, level, part, out->bytes + at);
+        if (share->seat == combiner->rounds.seat) {
+            run->own = out->bytes + at;
+            run->own_bytes = bytes;
+        } else {
+            SNOW_TRY(snow_comm_send(combiner->comm, out->bytes + at, bytes,
+                                    run->order->ranks[share->seat],
+                                    SNOW_TAG_COMBINE,
+                                    &out->messages[out->count++]));
+        }
+        at += align(snow_active_room(part.last - part.first, run->pixel_bytes));
+    }
+    return SNOW_OK;
+}
+
+/* Makes a layer of a message. */
+static bool open_layer(const exchange *run, const unsigned char *bytes,
+                       size_t count, stretch part, uint64_t *words,
+                       snow_active *out) {
+    bool good = true;
+    if (run->order->whole) {
+        *out = (snow_active){.first = part.first, .last = part.last};
+        out->pixels = out->next = (const float *)(const void *)bytes;
+        good = count == (size_t)(part.last - part.first) * run->pixel_bytes;
+    } else {
+        good = snow_active_open(bytes, count, part.first, part.last,
+                                run->pixel_bytes, words, out);
+    }
+    if (run->order->rehearsal)
+        out->pixels = NULL;
+    return good;
+}
+
+/* Waits for what comes in a round, and makes layers of it. */
+static snow_status end_receives(exchange *run, int level) {
+    snow_combiner *combiner = run->combiner;
+    const snow_round *round = &combiner->rounds.rounds[level];
+    snow_traffic *in = &combiner->in[level & 1];
+    const stretch mine = stretch_of(combiner, &round->mine);
+    uint64_t *words = combiner->words;
+    size_t at = 0;
+    run->layer_count = 0;
+    SNOW_TRY(snow_comm_wait_all(combiner->comm, in->messages, in->count));
+    for (int i = 0; i < round->receives; i++) {
+        const snow_share *share = share_at(combiner, round->first_receive + i);
+        stretch part = overlap(mine, stretch_of(combiner, share));
+        if (part.first >= part.last)
+            continue;
+        const unsigned char *bytes = in->bytes + at;
+        size_t count = in->messages[i].bytes;
+        if (share->seat == combiner->rounds.seat) {
+            bytes = run->own;
+            count = run->own_bytes;
+        } else {
+            at += align(
+                snow_active_room(part.last - part.first, run->pixel_bytes));
+        }
+        if ((int64_t)count > combiner->figures.receive_largest)
+            combiner->figures.receive_largest = (int64_t)count;
+        if (!open_layer(run, bytes, count, part, words,
+                        &combiner->layers[run->layer_count++]))
+            return snow_fail(combiner->comm->context, SNOW_FAILED,
+                             "rank %d sent what is no part of this picture; "
+                             "give all ranks the same order",
+                             run->order->ranks[share->seat]);
+        words += snow_active_words(part.first, part.last);
+    }
+    return SNOW_OK;
+}
+
+/* The layers of the last round, unpacked. */
+static void lay_piece(exchange *run, stretch piece) {
+    snow_combiner *combiner = run->combiner;
+    const snow_exchange_order *order = run->order;
+    float *out = order->rehearsal ? NULL : combiner->piece;
+    int64_t laid = 0;
+    if (out)
+        memset(out, 0, (size_t)(piece.last - piece.first) * run->pixel_bytes);
+    snow_active_lay(combiner->layers, run->layer_count, order->channels,
+                    piece.first, piece.last, out, &laid);
+    combiner->figures.laid += laid;
+    snow_comm_work(combiner->comm, (double)laid * order->blend_seconds);
+}
+
+static snow_status run_rounds(exchange *run) {
+    snow_combiner *combiner = run->combiner;
+    const int count = combiner->rounds.count;
+    for (int level = 0; level < count; level++) {
+        SNOW_TRY(begin_receives(run, level));
+        SNOW_TRY(send_round(run, level));
+        SNOW_TRY(end_receives(run, level));
+    }
+    return SNOW_OK;
+}
+
+/* One rank: its local image is the picture. */
+static snow_status run_alone(exchange *run, stretch all) {
+    snow_combiner *combiner = run->combiner;
+    unsigned char *out = combiner->out[0].bytes;
+    size_t bytes = write_part(run, 0, all, out);
+    run->layer_count = 1;
+    open_layer(run, out, bytes, all, combiner->words, combiner->layers);
+    return SNOW_OK;
+}
+
+static void clip_drawn(snow_exchange_order *order) {
+    snow_rectangle *drawn = &order->drawn;
+    drawn->x0 = drawn->x0 > 0 ? drawn->x0 : 0;
+    drawn->y0 = drawn->y0 > 0 ? drawn->y0 : 0;
+    drawn->x1 = drawn->x1 < order->width ? drawn->x1 : order->width;
+    drawn->y1 = drawn->y1 < order->height ? drawn->y1 : order->height;
+    if (drawn->x0 >= drawn->x1 || drawn->y0 >= drawn->y1)
+        *drawn = (snow_rectangle){0, 0, 0, 0};
+}
+
+static void begin_figures(snow_combiner *combiner,
+                          const snow_exchange_order *order) {
+    snow_exchange_figures *figures = &combiner->figures;
+    *figures = (snow_exchange_figures){.method = chosen_method(order),
+                                       .rounds = combiner->rounds.count,
+                                       .counted = combiner->borders.counted};
+    memcpy(figures->radices, combiner->rounds.radices, sizeof figures->radices);
+}
+
+snow_status snow_exchange(snow_combiner *combiner,
+                          const snow_exchange_order *asked, snow_piece *out) {
+    snow_exchange_order order = *asked;
+    exchange run = {.combiner = combiner,
+                    .order = &order,
+                    .pixel_bytes = (size_t)order.channels * sizeof(float)};
+    const snow_exchange_shape shape = shape_of(&order);
+    SNOW_TRY(check_order(combiner, &order));
+    clip_drawn(&order);
+    if (!same_shape(&shape, &combiner->shape))
+        SNOW_TRY(take_shape(combiner, &order));
+    SNOW_TRY(take_seats(combiner, &order));
+    begin_figures(combiner, &order);
+    if (combiner->borders.counted)
+        SNOW_TRY(count_pieces(combiner, &order));
+    stretch mine = held_before(combiner, combiner->rounds.count);
+    snow_status status =
+        combiner->rounds.count ? run_rounds(&run) : run_alone(&run, mine);
+    SNOW_TRY(status);
+    lay_piece(&run, mine);
+    for (int i = 0; i < 2; i++) {
+        snow_traffic *sent = &combiner->out[i];
+        SNOW_TRY(
+            snow_comm_wait_all(combiner->comm, sent->messages, sent->count));
+        sent->count = 0;
+    }
+    *out = (snow_piece){mine.first, mine.last - mine.first,
+                        order.rehearsal ? NULL : combiner->piece};
+    return SNOW_OK;
+}
+
+/* --- what is told afterwards ---------------------------------------------- */
+
+const snow_exchange_figures *snow_exchange_told(const snow_combiner *combiner) {
+    return &combiner->figures;
+}
+
+void snow_exchange_pieces(const snow_combiner *combiner, int64_t *firsts,
+                          int64_t *counts) {
+    const snow_rounds *rounds = &combiner->rounds;
+    for (int i = 0; i < rounds->seats; i++) {
+        snow_share share = {i, snow_rounds_last(rounds, i),
+                            rounds->tree ? 1 : rounds->seats};
+        stretch piece = stretch_of(combiner, &share);
+        firsts[combiner->ranks[i]] = piece.first;
+        counts[combiner->ranks[i]] = piece.last - piece.first;
+    }
+}
+
+int snow_exchange_line(const snow_combiner *combiner, int place) {
+    return combiner->lines ? combiner->lines[place] : place;
+}

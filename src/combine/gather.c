@@ -1,0 +1,341 @@
+/* combine/gather.c - pieces of the picture brought to the display processor.
+ *
+ * A tree of ranks: 0 .. n - 1 are split into near-equal runs, the first rank of
+ * each leads it, and so on; each rank sends what it has got from those below
+ * once, with its own, as it came:
+ *
+ *   block:  | u64 runs | u64 bytes of pixels | x y count, u16 each ... | pixels
+ * |
+ *
+ * Wide trees have few steps, narrow ones few messages for one rank; with as
+ * many branches as ranks all send to the display processor directly.
+ *
+ * Nobody knows how long a message will be, so it begins with its length and has
+ * at most SLOT bytes; where it is longer, a second message has the rest, which
+ * the receiver then has the right room for.  Runs of all ranks are apart, which
+ * bounds what can come: no memory is taken on the way. */
+#include "combine/combiner.h"
+
+#include <string.h>
+
+#define SLOT 4096
+#define HEAD 8 /* bytes of a message's length */
+
+typedef struct block_head {
+    uint64_t runs, bytes;
+} block_head;
+
+void snow_gather_radix(snow_combiner *combiner, int radix) {
+    combiner->gather.radix = radix;
+}
+
+static void drop_buffers(snow_combiner *combiner) {
+    snow_gather_state *state = &combiner->gather;
+    snow_context *context = combiner->comm->context;
+    snow_release(context, state->children);
+    snow_release(context, state->bytes);
+    snow_release(context, state->slots);
+    snow_release(context, state->messages);
+    snow_release(context, state->places);
+    *state = (snow_gather_state){.radix = state->radix};
+}
+
+void snow_gather_free(snow_combiner *combiner) {
+    drop_buffers(combiner);
+}
+
+/* --- the tree ------------------------------------------------------------- */
+
+/* Part i of `parts` of count ranks from first on. */
+static int part_first(int first, int count, int parts, int i) {
+    return first + (int)((int64_t)count * i / parts);
+}
+
+/* Goes down the tree to where `rank` leads nothing more: counts its children,
+ * and lists them unless `children` is NULL. */
+static int walk_tree(int rank, int ranks, int radix, int *children,
+                     int *parent) {
+    int first = 0, count = ranks, found = 0;
+    *parent = -1;
+    while (count > 1) {
+        int parts = count < radix ? count : radix, mine = 0;
+        while (part_first(first, count, parts, mine + 1) <= rank)
+            mine++;
+        if (rank == first) {
+            for (int i = 1; i < parts; i++, found++)
+                if (children)
+                    children[found] = part_first(first, count, parts, i);
+        }
+        int start = part_first(first, count, parts, mine);
+        int end = part_first(first, count, parts, mine + 1);
+        if (mine > 0 && rank == start)
+            *parent = first;
+        first = start;
+        count = end - start;
+    }
+    return found;
+}
+
+/* Measured on simulated networks: see docs/scaling.md. */
+static int chosen_radix(const snow_combiner *combiner) {
+    const int ranks = combiner->comm->ranks;
+    if (combiner->gather.radix >= 2)
+        return combiner->gather.radix;
+    return ranks <= 32 ? (ranks > 2 ? ranks : 2) : 8;
+}
+
+/* --- memory --------------------------------------------------------------- */
+
+static snow_status take_buffers(snow_combiner *combiner) {
+    snow_gather_state *state = &combiner->gather;
+    snow_context *context = combiner->comm->context;
+    const int ranks = combiner->comm->ranks;
+    int count = walk_tree(combiner->comm->rank, ranks, state->used_radix, NULL,
+                          &state->parent);
+    uint64_t pixels = (uint64_t)state->width * (uint64_t)state->height;
+    /* Every pixel a run of its own, and every rank a block. */
+    state->room = (size_t)(pixels * (state->pixel_bytes + SNOW_RUN_BYTES)) +
+                  (size_t)(ranks + 2) * (HEAD + sizeof(block_head)) + SLOT;
+    size_t some = (size_t)count + 1;
+    bool fine =
+        (state->children = snow_allocate_array(context, some, sizeof(int))) &&
+        (state->bytes = snow_allocate(context, state->room)) &&
+        (state->slots = snow_allocate_array(context, some, SLOT)) &&
+        (state->messages =
+             snow_allocate_array(context, 2 * some, sizeof(snow_message))) &&
+        (state->places = snow_allocate_array(context, some, sizeof(size_t)));
+    if (!fine)
+        return SNOW_NO_MEMORY;
+    state->child_count =
+        walk_tree(combiner->comm->rank, ranks, state->used_radix,
+                  state->children, &state->parent);
+    return SNOW_OK;
+}
+
+static snow_status take_shape(snow_combiner *combiner, int width, int height,
+                              size_t pixel_bytes) {
+    snow_gather_state *state = &combiner->gather;
+    const int radix = chosen_radix(combiner);
+    if (width < 1 || height < 1 || width > 65535 || height > 65535 ||
+        pixel_bytes < 1 || pixel_bytes > 1024)
+        return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
+                         "a picture of %d x %d pixels of %zu bytes cannot be "
+                         "gathered; sides go to 65535",
+                         width, height, pixel_bytes);
+    if (state->width == width && state->height == height &&
+        state->pixel_bytes == pixel_bytes && state->used_radix == radix)
+        return SNOW_OK;
+    drop_buffers(combiner);
+    state->width = width;
+    state->height = height;
+    state->pixel_bytes = pixel_bytes;
+    state->used_radix = radix;
+    snow_status status =
+        snow_comm_agree(combiner->comm, take_buffers(combiner));
+    if (status != SNOW_OK)
+        drop_buffers(combiner);
+    return status;
+}
+
+/* --- blocks --------------------------------------------------------------- */
+
+/* Whether a run lies in the picture. */
+static bool run_fits(const snow_gather_state *state,
+                     const snow_pixel_run *run) {
+    return run->x >= 0 && run->y >= 0 && run->count >= 0 &&
+           run->y < state->height && run->x < state->width &&
+           run->count <= state->width - run->x;
+}
+
+/* This rank's own runs may be wrong without the others' knowing: it goes on
+ * with none then, and fails in the end. */
+static snow_status check_runs(const snow_combiner *combiner,
+                              const snow_pixel_run *runs, size_t count) {
+    const snow_gather_state *state = &combiner->gather;
+    int64_t left = (int64_t)state->width * state->height;
+    bool good = count <= (uint64_t)left;
+    for (size_t i = 0; i < count && good; i++) {
+        good = run_fits(state, &runs[i]) && runs[i].count <= left;
+        left -= runs[i].count;
+    }
+    if (good)
+        return SNOW_OK;
+    return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
+                     "runs lie outside the picture of %d x %d pixels, or have "
+                     "more pixels than it",
+                     state->width, state->height);
+}
+
+/* Copies one run into the picture. */
+static void place_run(const snow_gather_state *state, const snow_pixel_run *run,
+                      const unsigned char *pixels, unsigned char *picture) {
+    size_t at = (size_t)run->y * (size_t)state->width + (size_t)run->x;
+    memcpy(picture + at * state->pixel_bytes, pixels,
+           (size_t)run->count * state->pixel_bytes);
+}
+
+/* A block of this rank's runs at `out`; its length.  Pixels are not touched
+ * where there are none (a rehearsal). */
+static size_t write_block(const snow_gather_state *state,
+                          const snow_pixel_run *runs, size_t run_count,
+                          const void *pixels, unsigned char *out) {
+    int64_t count = 0;
+    unsigned char *at = out + sizeof(block_head);
+    for (size_t i = 0; i < run_count; i++) {
+        const uint16_t packed[3] = {(uint16_t)runs[i].x, (uint16_t)runs[i].y,
+                                    (uint16_t)runs[i].count};
+        memcpy(at, packed, sizeof packed);
+        at += sizeof packed;
+        count += runs[i].count;
+    }
+    size_t bytes = (size_t)count * state->pixel_bytes;
+    const block_head head = {run_count, bytes};
+    memcpy(out, &head, sizeof head);
+    if (pixels && bytes)
+        memcpy(at, pixels, bytes);
+    return (size_t)(at - out) + bytes;
+}
+
+/* Copies the pixels of blocks into the picture; false where they are none. */
+static bool place_blocks(const snow_gather_state *state,
+                         const unsigned char *at, size_t bytes,
+                         unsigned char *picture) {
+    const unsigned char *end = at + bytes;
+    while (at < end) {
+        block_head head;
+        if ((size_t)(end - at) < sizeof head)
+            return false;
+        memcpy(&head, at, sizeof head);
+        at += sizeof head;
+        const uint64_t left = (uint64_t)(end - at);
+        if (head.runs > left / SNOW_RUN_BYTES ||
+            head.bytes > left - head.runs * SNOW_RUN_BYTES)
+            return false;
+        const unsigned char *pixels = at + (size_t)head.runs * SNOW_RUN_BYTES;
+        const unsigned char *pixels_end = pixels + head.bytes;
+        for (uint64_t i = 0; i < head.runs; i++, at += SNOW_RUN_BYTES) {
+            uint16_t packed[3];
+            memcpy(packed, at, sizeof packed);
+            const snow_pixel_run run = {packed[0], packed[1], packed[2]};
+            size_t length = (size_t)run.count * state->pixel_bytes;
+            if (!run_fits(state, &run) ||
+                length > (size_t)(pixels_end - pixels))
+                return false;
+            place_run(state, &run, pixels, picture);
+            pixels += length;
+        }
+        at = pixels_end;
+    }
+    return true;
+}
+
+/* --- messages ------------------------------------------------------------- */
+
+static snow_status begin_receives(snow_combiner *combiner) {
+    snow_gather_state *state = &combiner->gather;
+    for (int i = 0; i < state->child_count; i++) {
+        state->messages[state->child_count + i] = (snow_message){0};
+        SNOW_TRY(snow_comm_receive(
+            combiner->comm, state->slots + (size_t)i * SLOT, SLOT,
+            state->children[i], SNOW_TAG_GATHER, &state->messages[i]));
+    }
+    return SNOW_OK;
+}
+
+/* The beginning of a child's message is there: it goes behind what is there
+ * already, and the rest is asked for. */
+static snow_status take_beginning(snow_combiner *combiner, int child,
+                                  size_t *used) {
+    snow_gather_state *state = &combiner->gather;
+    const unsigned char *slot = state->slots + (size_t)child * SLOT;
+    uint64_t length = 0;
+    size_t here = state->messages[child].bytes;
+    if (here >= HEAD)
+        memcpy(&length, slot, HEAD);
+    if (here < HEAD || length < here - HEAD || length > state->room - *used)
+        return snow_fail(combiner->comm->context, SNOW_FAILED,
+                         "rank %d sent more pixels than the picture has; runs "
+                         "of ranks must be apart",
+                         state->children[child]);
+    here -= HEAD;
+    memcpy(state->bytes + *used, slot + HEAD, here);
+    state->places[child] = *used;
+    *used += (size_t)length;
+    if (length == here)
+        return SNOW_OK;
+    return snow_comm_receive(
+        combiner->comm, state->bytes + state->places[child] + here,
+        (size_t)length - here, state->children[child], SNOW_TAG_GATHER,
+        &state->messages[state->child_count + child]);
+}
+
+/* A message of `length` bytes, whose own length stands before them. */
+static snow_status send_up(snow_combiner *combiner, size_t length) {
+    snow_gather_state *state = &combiner->gather;
+    snow_message messages[2] = {{0}};
+    const uint64_t told = length;
+    memcpy(state->bytes, &told, HEAD);
+    size_t all = length + HEAD, beginning = all < SLOT ? all : SLOT;
+    SNOW_TRY(snow_comm_send(combiner->comm, state->bytes, beginning,
+                            state->parent, SNOW_TAG_GATHER, &messages[0]));
+    if (all > beginning)
+        SNOW_TRY(snow_comm_send(combiner->comm, state->bytes + beginning,
+                                all - beginning, state->parent, SNOW_TAG_GATHER,
+                                &messages[1]));
+    return snow_comm_wait_all(combiner->comm, messages, 2);
+}
+
+/* What children send, in the order of its coming, behind the first `used` bytes
+ * that are there; the display processor places it as it comes. */
+static snow_status take_children(snow_combiner *combiner, size_t *used,
+                                 unsigned char *picture) {
+    snow_gather_state *state = &combiner->gather;
+    const int count = state->child_count;
+    bool good = true;
+    for (;;) {
+        int which;
+        SNOW_TRY(snow_comm_wait_any(combiner->comm, state->messages, 2 * count,
+                                    &which));
+        if (which < 0)
+            break;
+        int child = which % count;
+        if (which < count)
+            SNOW_TRY(take_beginning(combiner, child, used));
+        if (!picture || state->messages[count + child].handle)
+            continue;
+        uint64_t length;
+        memcpy(&length, state->slots + (size_t)child * SLOT, HEAD);
+        good = good && place_blocks(state, state->bytes + state->places[child],
+                                    (size_t)length, picture);
+    }
+    if (!good)
+        return snow_fail(combiner->comm->context, SNOW_FAILED,
+                         "runs lie outside the picture of %d x %d pixels",
+                         state->width, state->height);
+    return SNOW_OK;
+}
+
+snow_status snow_gather(snow_combiner *combiner, int width, int height,
+                        const snow_pixel_run *runs, size_t run_count,
+                        const void *pixels, size_t pixel_bytes, void *picture) {
+    snow_gather_state *state = &combiner->gather;
+    const unsigned char *from = pixels;
+    size_t used = HEAD;
+    SNOW_TRY(take_shape(combiner, width, height, pixel_bytes));
+    snow_status status = check_runs(combiner, runs, run_count);
+    if (status != SNOW_OK)
+        run_count = 0;
+    SNOW_TRY(begin_receives(combiner));
+    if (state->parent >= 0)
+        used +=
+            write_block(state, runs, run_count, pixels, state->bytes + used);
+    for (size_t i = 0; i < run_count && picture && state->parent < 0; i++) {
+        place_run(state, &runs[i], from, picture);
+        from += (size_t)runs[i].count * pixel_bytes;
+    }
+    SNOW_TRY(
+        take_children(combiner, &used, state->parent < 0 ? picture : NULL));
+    if (state->parent >= 0)
+        SNOW_TRY(send_up(combiner, used - HEAD));
+    return status;
+}

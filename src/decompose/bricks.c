@@ -1,0 +1,218 @@
+/* decompose/bricks.c - boxes of about equally many interesting voxels, by
+ * halving: a k-d tree over blocks of the grid.
+ *
+ * A node has a box of blocks and some ranks.  It is cut where both sides have,
+ * for each of their ranks, as equal a cost as a border of blocks allows; how
+ * many ranks a side gets is free within limits, which makes the upper cuts
+ * almost perfect.  What is left over comes from the last cuts, of boxes few
+ * blocks wide.
+ *
+ * The cost of a box comes from the sums of all blocks before a corner (F. C.
+ * Crow, "Summed-area tables for texture mapping", SIGGRAPH 1984) in eight
+ * looks, however large it is. */
+#include "decompose/cut.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Blocks: so many for each rank, but no more and no fewer in all than these. */
+#define BLOCKS_A_RANK 16384
+#define LEAST_BLOCKS (INT64_C(1) << 18)
+#define MOST_BLOCKS (INT64_C(1) << 22)
+
+/* Another axis than the longest must be better by so much to be cut: long thin
+ * boxes have many ghost voxels around them. */
+#define LONGEST_BONUS 1.01
+
+/* And so must a cut whose larger side has all ranks, not half of them. */
+#define HALVES_BONUS 0.01
+
+/* Along the axis of the slices blocks are multiples of `multiple` thick. */
+static void lay_blocks(int64_t edge, int axis, int64_t multiple,
+                       snow_tally *tally) {
+    for (int i = 0; i < 3; i++) {
+        int64_t step = i == axis ? multiple : 1;
+        int64_t block = (edge + step - 1) / step * step;
+        tally->block[i] = block < tally->dims[i] ? block : tally->dims[i];
+        tally->blocks[i] = (tally->dims[i] - 1) / tally->block[i] + 1;
+    }
+}
+
+snow_tally snow_tally_for_bricks(const int64_t dims[3], int axis,
+                                 int64_t multiple, int ranks) {
+    snow_tally tally = {.blocks = {1, 1, 1}};
+    int64_t most = (int64_t)ranks * BLOCKS_A_RANK;
+    if (most < LEAST_BLOCKS)
+        most = LEAST_BLOCKS;
+    if (most > MOST_BLOCKS)
+        most = MOST_BLOCKS;
+    memcpy(tally.dims, dims, sizeof tally.dims);
+    int64_t edge = 1;
+    for (;; edge *= 2) {
+        uint64_t blocks = 1;
+        bool fits = true;
+        lay_blocks(edge, axis, multiple, &tally);
+        for (int i = 0; i < 3; i++)
+            fits = fits &&
+                   snow_mul_u64(blocks, (uint64_t)tally.blocks[i], &blocks);
+        if (fits && blocks <= (uint64_t)most)
+            return tally;
+    }
+}
+
+/* A box of blocks: first .. end - 1. */
+typedef struct node {
+    int64_t first[3], end[3];
+    int rank, ranks;
+} node;
+
+/* sums[corner] is of the blocks before it along all axes. */
+typedef struct tree {
+    const snow_tally *tally;
+    int64_t *sums;
+    size_t step[3];   /* from corner to corner */
+    double emptiness; /* cost of a voxel, in interesting ones */
+    snow_box *boxes;
+} tree;
+
+static void sum_up(tree *t) {
+    const int64_t *blocks = t->tally->blocks, *count = t->tally->counts;
+    t->step[0] = 1;
+    t->step[1] = (size_t)blocks[0] + 1;
+    t->step[2] = t->step[1] * ((size_t)blocks[1] + 1);
+    memset(t->sums, 0, t->step[2] * sizeof *t->sums);
+    for (int64_t z = 1; z <= blocks[2]; z++)
+        for (int64_t y = 0; y <= blocks[1]; y++) {
+            int64_t *row =
+                t->sums + (size_t)z * t->step[2] + (size_t)y * t->step[1];
+            const int64_t *before = row - t->step[2];
+            int64_t sum = 0;
+            memset(row, 0, t->step[1] * sizeof *row);
+            for (int64_t x = 1; y && x <= blocks[0]; x++) {
+                sum += *count++;
+                row[x] = sum + before[x] + row[x - (int64_t)t->step[1]] -
+                         before[x - (int64_t)t->step[1]];
+            }
+        }
+}
+
+static snow_box voxels_of(const snow_tally *tally, const node *n) {
+    snow_box box;
+    for (int i = 0; i < 3; i++) {
+        int64_t end = n->end[i] * tally->block[i];
+        box.first[i] = n->first[i] * tally->block[i];
+        box.count[i] =
+            (end < tally->dims[i] ? end : tally->dims[i]) - box.first[i];
+    }
+    return box;
+}
+
+static double cost_of(const tree *t, const node *n) {
+    int64_t count = 0;
+    for (int corner = 0; corner < 8; corner++) {
+        size_t at = 0;
+        int ends = 0;
+        for (int i = 0; i < 3; i++) {
+            bool end = corner >> i & 1;
+            at += (size_t)(end ? n->end[i] : n->first[i]) * t->step[i];
+            ends += end;
+        }
+        count += ends % 2 ? t->sums[at] : -t->sums[at];
+    }
+    snow_box box = voxels_of(t->tally, n);
+    return (double)count + t->emptiness * (double)box.count[0] *
+                               (double)box.count[1] * (double)box.count[2];
+}
+
+/* A cut of a node: its parts, and how bad it is: the larger cost a rank over
+ * the mean, and what is put on it for the sake of shape. */
+typedef struct cut {
+    node low, high;
+    double score;
+} cut;
+
+/* Cuts before block `at` of an axis, and deals out the ranks by cost; no side
+ * has less than a third of them where there are three. */
+static cut cut_at(const tree *t, const node *n, double cost, int axis,
+                  int64_t at) {
+    cut c = {*n, *n, 0};
+    c.low.end[axis] = c.high.first[axis] = at;
+    double low = cost_of(t, &c.low), high = cost - low;
+    double wanted = n->ranks * (low / cost);
+    int least = n->ranks > 3 ? n->ranks / 3 : 1;
+    int ranks = (int)(wanted + 0.5);
+    if (ranks < least)
+        ranks = least;
+    if (ranks > n->ranks - least)
+        ranks = n->ranks - least;
+    c.low.ranks = ranks;
+    c.high.rank += ranks;
+    c.high.ranks -= ranks;
+    double a = low / ranks, b = high / c.high.ranks;
+    c.score = (a > b ? a : b) * n->ranks / cost;
+    c.score *= 1 + HALVES_BONUS * abs(2 * ranks - n->ranks) / n->ranks;
+    return c;
+}
+
+/* The best cut of a node with two blocks at least. */
+static cut best_cut(const tree *t, const node *n) {
+    snow_box box = voxels_of(t->tally, n);
+    double cost = cost_of(t, n);
+    int longest = -1;
+    cut best = {.score = 0};
+    for (int axis = 0; axis < 3; axis++)
+        if (n->end[axis] - n->first[axis] > 1 &&
+            (longest < 0 || box.count[axis] > box.count[longest]))
+            longest = axis;
+    for (int i = 0; i < 3; i++) {
+        int axis = (longest + i) % 3;
+        double bonus = i ? LONGEST_BONUS : 1;
+        for (int64_t at = n->first[axis] + 1; at < n->end[axis]; at++) {
+            cut c = cut_at(t, n, cost, axis, at);
+            if (best.score == 0 || c.score * bonus < best.score) {
+                best = c;
+                best.score *= bonus;
+            }
+        }
+    }
+    return best;
+}
+
+/* Recursive: the ranks at least shrink by a third, so that it ends soon.  A
+ * single block goes to the first of its ranks. */
+static void cut_node(const tree *t, const node *n) {
+    bool single = true;
+    for (int i = 0; i < 3; i++)
+        single = single && n->end[i] - n->first[i] == 1;
+    if (n->ranks == 1 || single) {
+        snow_box box = voxels_of(t->tally, n), none = box;
+        memset(none.count, 0, sizeof none.count);
+        for (int i = 0; i < n->ranks; i++)
+            t->boxes[n->rank + i] = i ? none : box;
+        return;
+    }
+    cut c = best_cut(t, n);
+    cut_node(t, &c.low);
+    cut_node(t, &c.high);
+}
+
+snow_status snow_cut_bricks(snow_context *context, const snow_tally *tally,
+                            int ranks, snow_box *boxes) {
+    const int64_t *blocks = tally->blocks;
+    tree t = {.tally = tally, .boxes = boxes};
+    uint64_t corners = (uint64_t)(blocks[0] + 1) * (uint64_t)(blocks[1] + 1) *
+                       (uint64_t)(blocks[2] + 1);
+    t.sums = snow_allocate_array(context, corners, sizeof *t.sums);
+    if (!t.sums)
+        return SNOW_NO_MEMORY;
+    sum_up(&t);
+    node root = {.ranks = ranks};
+    memcpy(root.end, blocks, sizeof root.end);
+    double voxels = (double)tally->dims[0] * (double)tally->dims[1] *
+                    (double)tally->dims[2];
+    int64_t all = t.sums[corners - 1];
+    t.emptiness = all ? (double)all / (SNOW_EMPTINESS * voxels) : 1;
+    cut_node(&t, &root);
+    snow_release(context, t.sums);
+    return SNOW_OK;
+}

@@ -1,0 +1,308 @@
+/* tests/test_cut.c - cuts of a grid: nothing twice, nothing left out, and how
+ * equal the loads are. */
+#include "support.h"
+
+#include "decompose/cut.h"
+
+#include <math.h>
+
+typedef enum kind { EQUAL, COUNTED, BRICKS } kind;
+
+/* A tally as a cut needs it, with counts of `inside` by voxel (NULL: none). */
+typedef int64_t inside_fn(const int64_t dims[3], const snow_box *block);
+
+static snow_tally count(kind how, const int64_t dims[3], int axis,
+                        int64_t multiple, int ranks, inside_fn *inside) {
+    snow_tally t = how == BRICKS
+                       ? snow_tally_for_bricks(dims, axis, multiple, ranks)
+                       : snow_tally_for_slabs(dims, axis, multiple);
+    t.counts = calloc(snow_tally_blocks(&t), sizeof *t.counts);
+    assert_non_null(t.counts);
+    int64_t *to = t.counts;
+    for (int64_t z = 0; z < t.blocks[2]; z++)
+        for (int64_t y = 0; y < t.blocks[1]; y++)
+            for (int64_t x = 0; x < t.blocks[0]; x++, to++) {
+                const int64_t at[3] = {x, y, z};
+                snow_box box;
+                for (int i = 0; i < 3; i++) {
+                    int64_t end = (at[i] + 1) * t.block[i];
+                    box.first[i] = at[i] * t.block[i];
+                    box.count[i] =
+                        (end < dims[i] ? end : dims[i]) - box.first[i];
+                }
+                *to = inside ? inside(dims, &box) : 0;
+            }
+    return t;
+}
+
+static void cut(snow_context *context, kind how, const snow_tally *tally,
+                int axis, int64_t multiple, int ranks, snow_box *boxes) {
+    if (how == EQUAL)
+        snow_cut_equal(tally->dims, axis, multiple, ranks, boxes);
+    else if (how == COUNTED)
+        assert_int_equal(snow_cut_counted(context, tally, axis, ranks, boxes),
+                         SNOW_OK);
+    else
+        assert_int_equal(snow_cut_bricks(context, tally, ranks, boxes),
+                         SNOW_OK);
+}
+
+/* The voxels of an ellipsoid that fills the grid: of a row those between two
+ * roots. */
+static int64_t ellipsoid(const int64_t dims[3], const snow_box *block) {
+    int64_t sum = 0;
+    for (int64_t z = 0; z < block->count[2]; z++)
+        for (int64_t y = 0; y < block->count[1]; y++) {
+            double v =
+                2 * ((double)(block->first[1] + y) + 0.5) / (double)dims[1] - 1;
+            double w =
+                2 * ((double)(block->first[2] + z) + 0.5) / (double)dims[2] - 1;
+            double square = 1 - v * v - w * w;
+            if (square <= 0)
+                continue;
+            double half = (double)dims[0] / 2, reach = half * sqrt(square);
+            double low = ceil(half - reach - 0.5),
+                   high = floor(half + reach - 0.5) + 1;
+            low = fmax(low, (double)block->first[0]);
+            high = fmin(high, (double)(block->first[0] + block->count[0]));
+            sum += high > low ? (int64_t)(high - low) : 0;
+        }
+    return sum;
+}
+
+/* Each voxel in exactly one box; borders along the axis at multiples. */
+static void check_cover(const int64_t dims[3], int axis, int64_t multiple,
+                        const snow_box *boxes, int ranks) {
+    static unsigned char seen[64 * 64 * 64];
+    memset(seen, 0, sizeof seen);
+    for (int rank = 0; rank < ranks; rank++) {
+        const snow_box *b = &boxes[rank];
+        int64_t end = b->first[axis] + b->count[axis];
+        for (int i = 0; i < 3; i++)
+            assert_true(b->first[i] >= 0 && b->count[i] >= 0 &&
+                        b->first[i] + b->count[i] <= dims[i]);
+        if (!snow_box_voxels(b))
+            continue;
+        assert_int_equal(b->first[axis] % multiple, 0);
+        assert_true(end % multiple == 0 || end == dims[axis]);
+        for (int64_t z = 0; z < b->count[2]; z++)
+            for (int64_t y = 0; y < b->count[1]; y++)
+                for (int64_t x = 0; x < b->count[0]; x++)
+                    seen[((b->first[2] + z) * dims[1] + b->first[1] + y) *
+                             dims[0] +
+                         b->first[0] + x]++;
+    }
+    for (int64_t i = 0; i < dims[0] * dims[1] * dims[2]; i++)
+        assert_int_equal(seen[i], 1);
+}
+
+static uint64_t random_state = 17;
+
+static int64_t noise(const int64_t dims[3], const snow_box *block) {
+    (void)dims;
+    return support_random(&random_state) % 4
+               ? 0
+               : (int64_t)(support_random(&random_state) %
+                           (uint64_t)(snow_box_voxels(block) + 1));
+}
+
+static void every_voxel_is_in_exactly_one_box(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    static snow_box boxes[4096];
+    static int64_t loads[4096];
+    static const int some_ranks[] = {1, 2, 3, 5, 7, 8, 16, 31, 64, 500, 4096};
+    for (int round = 0; round < 400; round++) {
+        kind how = (kind)(round % 3);
+        int64_t dims[3], sum = 0;
+        for (int i = 0; i < 3; i++)
+            dims[i] = 1 + (int64_t)(support_random(&random_state) % 30);
+        int axis = (int)(support_random(&random_state) % 3);
+        int64_t multiple = 1 + (int64_t)(support_random(&random_state) % 9);
+        int ranks = some_ranks[support_random(&random_state) % 11];
+        snow_tally tally =
+            count(how, dims, axis, multiple, ranks, round % 5 ? noise : NULL);
+        cut(context, how, &tally, axis, multiple, ranks, boxes);
+        check_cover(dims, axis, multiple, boxes, ranks);
+        snow_cut_loads(&tally, boxes, ranks, loads);
+        for (int rank = 0; rank < ranks; rank++)
+            sum += loads[rank];
+        for (size_t i = 0; i < snow_tally_blocks(&tally); i++)
+            sum -= tally.counts[i];
+        assert_int_equal(sum, 0);
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+/* The largest load over the mean one, of an ellipsoid. */
+static double imbalance(kind how, const int64_t dims[3], int64_t multiple,
+                        int ranks) {
+    snow_context *context = support_context();
+    static snow_box boxes[4096];
+    static int64_t loads[4096];
+    snow_tally tally = count(how, dims, 2, multiple, ranks, ellipsoid);
+    cut(context, how, &tally, 2, multiple, ranks, boxes);
+    snow_cut_loads(&tally, boxes, ranks, loads);
+    free(tally.counts);
+    snow_context_free(context);
+    return snow_cut_imbalance(loads, ranks);
+}
+
+/* Of a slab through the middle the area is 3/2 of the mean one. */
+static void equal_slabs_of_an_ellipsoid_are_half_again_as_loaded(void **state) {
+    (void)state;
+    const int64_t dims[3] = {200, 240, 1024};
+    for (int ranks = 32; ranks <= 1024; ranks *= 2) {
+        double most = imbalance(EQUAL, dims, 1, ranks);
+        assert_true(most > 1.49 && most < 1.51);
+    }
+}
+
+static void counted_slabs_of_an_ellipsoid_are_about_equal(void **state) {
+    (void)state;
+    const int64_t dims[3] = {200, 240, 1024};
+    static const struct {
+        int ranks;
+        double most;
+    } rows[] = {{2, 1.002}, {8, 1.02}, {32, 1.05}, {128, 1.13}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double most = imbalance(COUNTED, dims, 1, rows[i].ranks);
+        print_message("counted slabs, %4d ranks: %.4f\n", rows[i].ranks, most);
+        assert_true(most >= 1 && most <= rows[i].most);
+    }
+}
+
+static void bricks_of_an_ellipsoid_are_about_equal(void **state) {
+    (void)state;
+    const int64_t dims[3] = {256, 256, 256};
+    static const struct {
+        int ranks;
+        double most;
+    } rows[] = {{8, 1.05}, {33, 1.05}, {128, 1.1}, {1024, 1.15}, {4096, 1.25}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double most = imbalance(BRICKS, dims, 1, rows[i].ranks);
+        print_message("bricks, %4d ranks: %.4f\n", rows[i].ranks, most);
+        assert_true(most >= 1 && most <= rows[i].most);
+    }
+}
+
+/* The least possible maximum by dynamic programming. */
+static int64_t least_by_trying(const int64_t *costs, int items, int parts) {
+    int64_t best[2][64];
+    for (int end = 0; end <= items; end++)
+        best[0][end] = end ? INT64_MAX : 0;
+    for (int part = 0; part < parts; part++) {
+        int64_t *from = best[part % 2], *to = best[1 - part % 2];
+        for (int end = 0; end <= items; end++) {
+            int64_t sum = 0;
+            to[end] = from[end];
+            for (int begin = end; begin-- > 0;) {
+                sum += costs[begin];
+                int64_t most = from[begin] > sum ? from[begin] : sum;
+                if (most < to[end])
+                    to[end] = most;
+            }
+        }
+    }
+    return best[parts % 2][items];
+}
+
+static void no_slabs_are_cheaper_than_counted_ones(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    for (int round = 0; round < 300; round++) {
+        int items = 1 + (int)(support_random(&random_state) % 40);
+        int ranks = 1 + (int)(support_random(&random_state) % 12);
+        const int64_t dims[3] = {50, 40, items};
+        int64_t costs[64], all = 0, dearest = 0;
+        snow_box boxes[12];
+        snow_tally tally = count(COUNTED, dims, 2, 1, ranks, noise);
+        for (int i = 0; i < items; i++)
+            all += tally.counts[i];
+        for (int i = 0; i < items; i++)
+            costs[i] = SNOW_EMPTINESS * tally.counts[i] + 1 +
+                       (int64_t)((double)all * (1.0 / items));
+        cut(context, COUNTED, &tally, 2, 1, ranks, boxes);
+        for (int rank = 0; rank < ranks; rank++) {
+            int64_t cost = 0;
+            for (int64_t i = 0; i < boxes[rank].count[2]; i++)
+                cost += costs[boxes[rank].first[2] + i];
+            if (cost > dearest)
+                dearest = cost;
+        }
+        assert_int_equal(dearest, least_by_trying(costs, items, ranks));
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+/* All that is interesting lies in slice 500. */
+static int64_t one_slice(const int64_t dims[3], const snow_box *block) {
+    (void)dims;
+    return block->first[2] <= 500 && 500 < block->first[2] + block->count[2]
+               ? block->count[0] * block->count[1]
+               : 0;
+}
+
+static void no_rank_stores_all_that_is_empty(void **state) {
+    (void)state;
+    const int64_t dims[3] = {64, 64, 1000};
+    snow_context *context = support_context();
+    snow_box boxes[100];
+    for (kind how = COUNTED; how <= BRICKS; how++) {
+        snow_tally tally = count(how, dims, 2, 1, 100, one_slice);
+        cut(context, how, &tally, 2, 1, 100, boxes);
+        for (int rank = 0; rank < 100; rank++)
+            assert_true(snow_box_voxels(&boxes[rank]) <=
+                        (SNOW_EMPTINESS + 2) * 64 * 64 * 10);
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+static void a_grid_without_interesting_voxels_is_cut_equally(void **state) {
+    (void)state;
+    const int64_t dims[3] = {64, 64, 128};
+    snow_context *context = support_context();
+    snow_box boxes[32];
+    for (kind how = COUNTED; how <= BRICKS; how++) {
+        snow_tally tally = count(how, dims, 2, 1, 32, NULL);
+        cut(context, how, &tally, 2, 1, 32, boxes);
+        for (int rank = 0; rank < 32; rank++)
+            assert_int_equal(snow_box_voxels(&boxes[rank]), 64 * 64 * 4);
+        int64_t loads[32];
+        snow_cut_loads(&tally, boxes, 32, loads);
+        assert_true(snow_cut_imbalance(loads, 32) == 1);
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+/* 10^15 voxels: no count of blocks depends on them. */
+static void blocks_of_a_huge_grid_fit_the_memory(void **state) {
+    (void)state;
+    const int64_t dims[3] = {100000, 100000, 100000};
+    for (int ranks = 1; ranks <= 4096; ranks *= 8) {
+        snow_tally tally = snow_tally_for_bricks(dims, 1, 6, ranks);
+        assert_in_range(snow_tally_blocks(&tally), ranks, 1 << 22);
+        assert_int_equal(tally.block[1] % 6, 0);
+        for (int i = 0; i < 3; i++)
+            assert_int_equal(tally.blocks[i],
+                             (dims[i] - 1) / tally.block[i] + 1);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_voxel_is_in_exactly_one_box),
+        cmocka_unit_test(equal_slabs_of_an_ellipsoid_are_half_again_as_loaded),
+        cmocka_unit_test(counted_slabs_of_an_ellipsoid_are_about_equal),
+        cmocka_unit_test(bricks_of_an_ellipsoid_are_about_equal),
+        cmocka_unit_test(no_slabs_are_cheaper_than_counted_ones),
+        cmocka_unit_test(no_rank_stores_all_that_is_empty),
+        cmocka_unit_test(a_grid_without_interesting_voxels_is_cut_equally),
+        cmocka_unit_test(blocks_of_a_huge_grid_fit_the_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
