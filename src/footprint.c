@@ -130,9 +130,9 @@ static int64_t parts_of(int64_t whole, int64_t part) {
 
 /* How the picture is cut for threads. */
 static void cut(snow_exact *exact, const snow_job *job) {
-    const snow_placement *p = &job->placement;
+    const snow_placement *p = &job->stored;
     int64_t threads = job->settings.threads;
-    exact->groups_used = parts_of(job->slab.count, GROUP_SLICES);
+    exact->groups_used = parts_of(job->stored_slab.count, GROUP_SLICES);
     exact->bands = 1;
     exact->dense_used = 0;
     if (exact->gathers) {
@@ -141,7 +141,7 @@ static void cut(snow_exact *exact, const snow_job *job) {
         /* Threads wait for each other between spreading and gathering: seldom
          * where slices are spread by the dozen.  One thread has no one to wait
          * for, and finds a single slice in its cache. */
-        int64_t wanted = threads > 1 ? job->slab.count : 1;
+        int64_t wanted = threads > 1 ? job->stored_slab.count : 1;
         exact->dense_used = fit > 1 ? smaller(wanted, (int64_t)fit) : 1;
     } else if (threads > 1)
         exact->bands = (int)smaller(BANDS_PER_THREAD * threads, p->height);
@@ -153,7 +153,7 @@ static void cut(snow_exact *exact, const snow_job *job) {
 static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
                                   worker *w) {
     snow_context *context = exact->context;
-    const snow_placement *p = &job->placement;
+    const snow_placement *p = &job->stored;
     w->kept = 0;
     w->status = SNOW_OK;
     memset(w->seconds, 0, sizeof w->seconds);
@@ -187,7 +187,7 @@ static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
     exact->over = snow_over_pick(settings->isa, job->channels);
     if (settings->method != SNOW_METHOD_FOOTPRINT)
         return SNOW_OK;
-    return snow_gatherer_make(exact->context, &job->placement, settings->kernel,
+    return snow_gatherer_make(exact->context, &job->stored, settings->kernel,
                               settings->footprint, job->channels, settings->isa,
                               &exact->gatherer, &exact->gathers);
 }
@@ -196,7 +196,7 @@ static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
 static snow_status prepare(snow_exact *exact, const snow_job *job) {
     snow_context *context = exact->context;
     const snow_settings *settings = &job->settings;
-    const snow_placement *p = &job->placement;
+    const snow_placement *p = &job->stored;
     snow_classify_options options = {
         .threshold = settings->threshold,
         .opacity_exponent = p->path / settings->opacity_length,
@@ -275,8 +275,8 @@ static snow_status run(pass *work, int64_t items, snow_work_fn *one) {
 
 /* The slab's n-th slice from the viewer. */
 static int64_t nth_slice(const snow_job *job, int64_t n) {
-    snow_slab slab = job->slab;
-    return slab.first + (job->placement.nearest_first ? n : slab.count - 1 - n);
+    snow_slab slab = job->stored_slab;
+    return slab.first + (job->stored.nearest_first ? n : slab.count - 1 - n);
 }
 
 /* Classifies and shades `rows` rows of a slice, or as many as a strip holds,
@@ -285,7 +285,7 @@ static void classify_and_shade(const pass *work, worker *w, int64_t slice,
                                int64_t row, int64_t rows) {
     const snow_exact *exact = work->exact;
     double mark = snow_seconds();
-    snow_classify_strip(&exact->classifier, &work->job->placement, slice, row,
+    snow_classify_strip(&exact->classifier, &work->job->stored, slice, row,
                         smaller(rows, w->strip.room_rows), &w->strip);
     lap(&mark, &w->seconds[CLASSIFY]);
     if (work->job->settings.shade == SNOW_SHADE_PHONG)
@@ -316,7 +316,7 @@ static snow_encoding choose_encoding(const snow_exact *exact,
 /* Lines 04 to 06: one slice into the sparse matrix of its group. */
 static snow_status encode_slice(const pass *work, worker *w,
                                 snow_sparse *sparse, int64_t slice) {
-    const snow_placement *p = &work->job->placement;
+    const snow_placement *p = &work->job->stored;
     snow_strip *strip = &w->strip;
     float *samples = strip->samples;
     snow_status status = snow_sparse_begin_slice(sparse);
@@ -340,11 +340,11 @@ static snow_status encode_group(const pass *work, int64_t group, worker *w) {
     const snow_job *job = work->job;
     snow_sparse *sparse = &work->exact->groups[group];
     SNOW_TRY(snow_sparse_begin(sparse, snow_scheme_of(work->encoding),
-                               &job->placement, job->channels));
+                               &job->stored, job->channels));
     int64_t first = group * GROUP_SLICES;
-    int64_t end = smaller(first + GROUP_SLICES, job->slab.count);
+    int64_t end = smaller(first + GROUP_SLICES, job->stored_slab.count);
     for (int64_t n = first; n < end; n++)
-        SNOW_TRY(encode_slice(work, w, sparse, job->slab.first + n));
+        SNOW_TRY(encode_slice(work, w, sparse, job->stored_slab.first + n));
     return SNOW_OK;
 }
 
@@ -357,7 +357,7 @@ static void encode_item(void *data, int64_t item, int number) {
 
 /* Sets a walk to the beginning of a slice of the volume. */
 static void walk_slice(const pass *work, int64_t slice, snow_walk *walk) {
-    int64_t n = slice - work->job->slab.first;
+    int64_t n = slice - work->job->stored_slab.first;
     snow_walk_begin(walk, &work->exact->groups[n / GROUP_SLICES],
                     n % GROUP_SLICES);
 }
@@ -417,7 +417,7 @@ static void throw_classified(const pass *work, worker *w, int64_t slice,
  * sheet into the local image; for one band of its rows. */
 static snow_status throw_band(const pass *work, int64_t band, worker *w) {
     const snow_job *job = work->job;
-    const snow_placement *p = &job->placement;
+    const snow_placement *p = &job->stored;
     int64_t bands = work->exact->bands;
     int top = (int)(p->height * band / bands);
     int bottom = (int)(p->height * (band + 1) / bands);
@@ -425,7 +425,7 @@ static snow_status throw_band(const pass *work, int64_t band, worker *w) {
     SNOW_TRY(snow_sheet_begin(work->exact->context, p, job->channels, top,
                               bottom, &w->sheet));
     lap(&mark, &w->seconds[COMPOSITE]);
-    for (int64_t n = 0; n < job->slab.count; n++) {
+    for (int64_t n = 0; n < job->stored_slab.count; n++) {
         int64_t slice = nth_slice(job, n), first = 0, end = p->rows;
         snow_splatter_begin_slice(&w->splatter, slice);
         if (bands > 1) /* one band takes every row, as the paper does */
@@ -435,6 +435,7 @@ static snow_status throw_band(const pass *work, int64_t band, worker *w) {
         else
             throw_classified(work, w, slice, first, end);
         mark = snow_seconds();
+        snow_job_clip_sheet(job, slice, &w->sheet);
         snow_composite_sheet(job->pixels, &w->sheet);
         lap(&mark, &w->seconds[COMPOSITE]);
     }
@@ -461,7 +462,7 @@ static void spread_item(void *data, int64_t item, int number) {
     snow_walk walk;
     walk_slice(work, nth_slice(work->job, work->first + item), &walk);
     snow_dense_begin(dense);
-    for (int64_t row = 0; row < work->job->placement.rows; row++) {
+    for (int64_t row = 0; row < work->job->stored.rows; row++) {
         size_t spans;
         const float *samples = walk_row(work, &walk, w, &spans);
         snow_dense_add_row(dense, w->spans, spans, samples);
@@ -480,7 +481,7 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
     int64_t slice = nth_slice(job, work->first + n);
     size_t channels = (size_t)job->channels,
            room = w->runs_capacity / sizeof *w->runs / GATHER_ROWS;
-    size_t stride = (size_t)job->placement.width * channels;
+    size_t stride = (size_t)job->stored.width * channels;
     int first, end, counts[GATHER_ROWS];
     snow_gather_rows(&exact->gatherer, dense, slice, &first, &end);
     first = first > top ? first : top;
@@ -500,6 +501,11 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
         const snow_run *runs = w->runs + line * room;
         for (int i = 0; i < counts[line]; i++) {
             size_t at = (size_t)runs[i].first * channels;
+            if (job->clip.cuts)
+                snow_clip_pixels(&job->clip, &job->placement,
+                                 slice + job->clip.stored[2], runs[i].first, y,
+                                 runs[i].end - runs[i].first, job->channels,
+                                 w->sheet.pixels + line * stride + at);
             exact->over(job->pixels + (size_t)y * stride + at,
                         w->sheet.pixels + line * stride + at,
                         (size_t)(runs[i].end - runs[i].first));
@@ -511,14 +517,14 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
 static void gather_item(void *data, int64_t item, int number) {
     pass *work = data;
     int top = (int)item * GATHER_ROWS;
-    int bottom = (int)smaller(top + GATHER_ROWS, work->job->placement.height);
+    int bottom = (int)smaller(top + GATHER_ROWS, work->job->stored.height);
     for (int64_t n = 0; n < work->count; n++)
         gather_slice(work, &work->exact->workers[number], n, top, bottom);
 }
 
 /* Line 07, from front to back: some slices at a time. */
 static snow_status gather_slab(pass *work) {
-    int64_t slices = work->job->slab.count;
+    int64_t slices = work->job->stored_slab.count;
     for (work->first = 0; work->first < slices; work->first += work->count) {
         work->count = smaller(work->exact->dense_used, slices - work->first);
         SNOW_TRY(run(work, work->count, spread_item));
@@ -535,7 +541,7 @@ snow_status snow_exact_render(snow_exact *exact, const snow_job *job) {
     pass work = {exact, job, job->settings.encoding, 0, 0};
     if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
         if (work.encoding == SNOW_ENCODING_AUTO)
-            work.encoding = choose_encoding(exact, &job->placement);
+            work.encoding = choose_encoding(exact, &job->stored);
         job->stats->encoding = work.encoding;
         /* 04 - 06 */ SNOW_TRY(run(&work, exact->groups_used, encode_item));
     }
@@ -550,12 +556,12 @@ snow_status snow_exact_render(snow_exact *exact, const snow_job *job) {
 static void count_item(void *data, int64_t item, int number) {
     const pass *work = data;
     const snow_exact *exact = work->exact;
-    const snow_placement *p = &work->job->placement;
+    const snow_placement *p = &work->job->stored;
     worker *w = &exact->workers[number];
     for (int64_t row = 0; row < p->rows; row += w->strip.room_rows) {
-        snow_classify_strip(&exact->classifier, p, work->job->slab.first + item,
-                            row, smaller(p->rows - row, w->strip.room_rows),
-                            &w->strip);
+        snow_classify_strip(
+            &exact->classifier, p, work->job->stored_slab.first + item, row,
+            smaller(p->rows - row, w->strip.room_rows), &w->strip);
         w->kept += (int64_t)w->strip.count;
     }
 }
@@ -577,7 +583,7 @@ static snow_status count_classified(snow_exact *exact, const snow_job *job,
         SNOW_TRY(snow_classifier_make(exact->context, job->volume,
                                       job->transfer, &options,
                                       &exact->classifier));
-        snow_parallel(exact->context, exact->threads, job->slab.count,
+        snow_parallel(exact->context, exact->threads, job->stored_slab.count,
                       count_item, &work);
     }
     for (int n = 0; n < exact->threads; n++)

@@ -6,6 +6,7 @@
 #include "classify/transfer.h"
 #include "combine/combine.h"
 #include "footprint.h"
+#include "ghosts.h"
 #include "image/image.h"
 #include "perspective.h"
 #include "sheared.h"
@@ -50,28 +51,64 @@ const snow_stats *snow_frame_stats(const snow_frame *frame) {
     return &frame->stats;
 }
 
+/* Slab `part` of `parts` of the slices that the volume answers for. */
+static void cut_slab(snow_job *job, int parts, int part) {
+    snow_clip *clip = &job->clip;
+    snow_clip_make(job->volume, &job->placement, clip);
+    snow_clip_placement(clip, &job->placement, &job->stored);
+    job->slab = snow_slab_equal(clip->count[2], parts, part);
+    job->stored_slab = job->slab;
+    job->slab.first += clip->first[2];
+    job->stored_slab.first += clip->first[2] - clip->stored[2];
+    job->all = job->slab.count == clip->count[2];
+}
+
 /* Lines 01 and 02 for every method: settings, camera, slab. */
 static snow_status place(snow_job *job, const snow_view *view, int parts,
                          int part) {
+    snow_volume_info whole;
+    snow_volume_whole(job->volume, &whole);
     SNOW_TRY(snow_settings_resolve(job->context, &job->volume->info,
                                    &job->settings));
-    SNOW_TRY(snow_placement_make(job->context, &job->volume->info, view,
-                                 &job->placement));
+    SNOW_TRY(snow_placement_make(job->context, &whole, view, &job->placement));
     if (job->settings.method == SNOW_METHOD_SHEARED &&
         !snow_sheared_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
-    job->slab = snow_slab_equal(job->placement.slices, parts, part);
+    if (job->volume->is_part)
+        SNOW_TRY(
+            snow_ghosts_check(job->context, job->volume, view, &job->settings));
+    cut_slab(job, parts, part);
     return SNOW_OK;
 }
 
-/* Lines 03 to 13 by the sheared method, with slices as `placement` says. */
+void snow_job_clip_sheet(const snow_job *job, int64_t slice,
+                         snow_sheet *sheet) {
+    if (!job->clip.cuts || sheet->x0 >= sheet->x1)
+        return;
+    for (int y = sheet->y0; y < sheet->y1; y++)
+        snow_clip_pixels(
+            &job->clip, &job->placement, slice + job->clip.stored[2], sheet->x0,
+            y, sheet->x1 - sheet->x0, job->channels,
+            sheet->pixels + ((size_t)(y - sheet->top) * (size_t)sheet->width +
+                             (size_t)sheet->x0) *
+                                (size_t)job->channels);
+}
+
+/* Lines 03 to 13 by the sheared method, with slices as `placement` says: those
+ * of the job's slab, or all that the volume answers for. */
 static snow_status render_sheared(snow_job *job, const snow_view *view,
                                   const snow_placement *placement,
-                                  snow_slab slab, snow_sheared **sheared,
-                                  float *pixels) {
-    snow_sheared_order order = {job->volume,    job->transfer, view,
-                                &job->settings, placement,     slab,
-                                job->channels};
+                                  snow_sheared **sheared, float *pixels) {
+    snow_sheared_order order = {.volume = job->volume,
+                                .transfer = job->transfer,
+                                .view = view,
+                                .settings = &job->settings,
+                                .placement = placement,
+                                .slab = job->slab,
+                                .channels = job->channels};
+    snow_clip_make(job->volume, placement, &order.clip);
+    if (job->all)
+        order.slab = (snow_slab){order.clip.first[2], order.clip.count[2]};
     if (!*sheared)
         SNOW_TRY(snow_sheared_new(job->context, sheared));
     return snow_sheared_render(*sheared, &order, pixels, job->stats);
@@ -88,14 +125,15 @@ static void blend(float *pixels, const float *layer, float share,
  */
 static snow_status share_axes(const snow_job *job, const snow_view *view,
                               double shares[3]) {
-    const snow_volume_info *info = &job->volume->info;
+    snow_volume_info info;
     double left = 1;
-    snow_placement_shares(info, &job->placement, shares);
+    snow_volume_whole(job->volume, &info);
+    snow_placement_shares(&info, &job->placement, shares);
     for (int axis = 0; axis < 3; axis++) {
         snow_placement placement;
         if (shares[axis] == 0 || axis == job->placement.slice_axis)
             continue;
-        SNOW_TRY(snow_placement_make_along(job->context, info, view, axis,
+        SNOW_TRY(snow_placement_make_along(job->context, &info, view, axis,
                                            &placement));
         if (!snow_sheared_fits(&placement, &job->settings)) {
             left -= shares[axis];
@@ -111,10 +149,11 @@ static snow_status share_axes(const snow_job *job, const snow_view *view,
  * the picture is a blend of theirs, so that a turning one does not jump. */
 static snow_status render_blended(snow_frame *frame, snow_job *job,
                                   const snow_view *view) {
-    const snow_volume_info *info = &job->volume->info;
+    snow_volume_info info;
     size_t floats =
         (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     double shares[3];
+    snow_volume_whole(job->volume, &info);
     SNOW_TRY(share_axes(job, view, shares));
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
                           0, floats * sizeof *frame->layer));
@@ -122,11 +161,10 @@ static snow_status render_blended(snow_frame *frame, snow_job *job,
         snow_placement placement;
         if (shares[axis] == 0)
             continue;
-        SNOW_TRY(snow_placement_make_along(frame->context, info, view, axis,
+        SNOW_TRY(snow_placement_make_along(frame->context, &info, view, axis,
                                            &placement));
-        SNOW_TRY(render_sheared(job, view, &placement,
-                                snow_slab_equal(placement.slices, 1, 0),
-                                &frame->sheared[axis], frame->layer));
+        SNOW_TRY(render_sheared(job, view, &placement, &frame->sheared[axis],
+                                frame->layer));
         blend(job->pixels, frame->layer, (float)shares[axis], floats);
     }
     return SNOW_OK;
@@ -140,11 +178,10 @@ static snow_status render_slab(snow_frame *frame, snow_job *job,
         return snow_perspective_render(job);
     if (job->settings.method != SNOW_METHOD_SHEARED)
         return snow_exact_render(frame->exact, job);
-    if (job->settings.quality == SNOW_QUALITY_HIGH &&
-        job->slab.count == job->placement.slices)
+    if (job->settings.quality == SNOW_QUALITY_HIGH && job->all)
         return render_blended(frame, job, view);
-    return render_sheared(job, view, &job->placement, job->slab,
-                          &frame->sheared[0], job->pixels);
+    return render_sheared(job, view, &job->placement, &frame->sheared[0],
+                          job->pixels);
 }
 
 /* What was chosen for the picture, and counts of voxels and bytes. */
@@ -157,8 +194,7 @@ static snow_status fill_stats(snow_frame *frame, const snow_job *job) {
     stats->isa = job->settings.isa;
     stats->quality = job->settings.quality;
     stats->kernel = job->settings.kernel;
-    stats->voxels =
-        job->placement.columns * job->placement.rows * job->slab.count;
+    stats->voxels = job->stored.columns * job->stored.rows * job->slab.count;
     if (stats->method == SNOW_METHOD_FOOTPRINT)
         stats->encoded = 1; /* for every picture */
     if (stats->method != SNOW_METHOD_SHEARED && job->placement.perspective)

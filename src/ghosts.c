@@ -200,3 +200,36 @@ snow_status snow_ghosts_needed(snow_context *context,
     memcpy(layers, found, sizeof found);
     return SNOW_OK;
 }
+
+/* A part without voxels of its own makes no samples. */
+snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
+                              const snow_view *view,
+                              const snow_settings *settings) {
+    const char names[] = "xyz";
+    int64_t layers[3] = {0, 0, 0};
+    snow_volume_info whole;
+    snow_part part;
+    snow_volume_whole(volume, &whole);
+    snow_volume_get_part(volume, &part);
+    if (!part.count[0] || !part.count[1] || !part.count[2])
+        return SNOW_OK;
+    question q = {context, &whole, view, settings};
+    SNOW_TRY(ask_view(&q, layers));
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t below = part.first[axis] - part.stored[axis];
+        int64_t end = part.first[axis] + part.count[axis];
+        int64_t above = part.stored[axis] + volume->info.dims[axis] - end;
+        int64_t few = below < above ? below : above;
+        bool enough_below = below >= layers[axis] || part.stored[axis] == 0;
+        bool enough_above =
+            above >= layers[axis] || end + above == whole.dims[axis];
+        if (!enough_below || !enough_above)
+            return snow_fail(context, SNOW_BAD_USAGE,
+                             "this view needs %lld layers of ghost voxels "
+                             "along %c, and a part of the volume has %lld; "
+                             "open it for this view, or with more",
+                             (long long)layers[axis], names[axis],
+                             (long long)few);
+    }
+    return SNOW_OK;
+}

@@ -21,4 +21,10 @@ snow_status snow_ghosts_needed(snow_context *context,
                                const snow_settings *settings, bool any_turn,
                                int64_t layers[3]);
 
+/* Whether a part has as many as a view needs, settings being resolved.  Errors:
+ * SNOW_BAD_USAGE (it has not). */
+snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
+                              const snow_view *view,
+                              const snow_settings *settings);
+
 #endif

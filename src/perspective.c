@@ -47,17 +47,16 @@ static snow_status prepare(pass *s) {
     };
     SNOW_TRY(snow_classifier_make(s->context, o->volume, o->transfer, &options,
                                   &s->classifier));
-    SNOW_TRY(snow_shader_init(s->context, o->volume, &o->placement, settings,
+    SNOW_TRY(snow_shader_init(s->context, o->volume, &o->stored, settings,
                               &s->shader));
-    SNOW_TRY(
-        snow_strip_make(s->context, &o->placement, o->channels, &s->strip));
-    SNOW_TRY(snow_eye_splatter_init(s->context, &o->placement, settings->kernel,
+    SNOW_TRY(snow_strip_make(s->context, &o->stored, o->channels, &s->strip));
+    SNOW_TRY(snow_eye_splatter_init(s->context, &o->stored, settings->kernel,
                                     settings->footprint, o->channels,
                                     &s->splatter));
-    SNOW_TRY(snow_sheet_begin(s->context, &o->placement, o->channels, 0,
-                              o->placement.height, &s->sheet));
+    SNOW_TRY(snow_sheet_begin(s->context, &o->stored, o->channels, 0,
+                              o->stored.height, &s->sheet));
     s->spans = snow_allocate_array(
-        s->context, (uint64_t)o->placement.columns / 2 + 1, sizeof *s->spans);
+        s->context, (uint64_t)o->stored.columns / 2 + 1, sizeof *s->spans);
     return s->spans ? SNOW_OK : SNOW_NO_MEMORY;
 }
 
@@ -74,16 +73,16 @@ static void finish(pass *s) {
 static void classify_and_shade(pass *s, int64_t slice, int64_t row) {
     const snow_job *o = s->job;
     snow_strip *strip = &s->strip;
-    int64_t rows = o->placement.rows - row;
+    int64_t rows = o->stored.rows - row;
     double mark = snow_seconds();
-    snow_classify_strip(&s->classifier, &o->placement, slice, row,
+    snow_classify_strip(&s->classifier, &o->stored, slice, row,
                         rows < strip->room_rows ? rows : strip->room_rows,
                         strip);
     lap(&mark, &s->stats->seconds_classify);
     if (o->settings.shade == SNOW_SHADE_PHONG)
         snow_shade_strip(&s->shader, o->channels, strip);
     lap(&mark, &s->stats->seconds_shade);
-    snow_lengthen_strip(&o->placement, o->settings.opacity_length, o->channels,
+    snow_lengthen_strip(&o->stored, o->settings.opacity_length, o->channels,
                         strip);
     lap(&mark, &s->stats->seconds_classify);
 }
@@ -91,7 +90,7 @@ static void classify_and_shade(pass *s, int64_t slice, int64_t row) {
 /* Lines 04 to 06: one slice into the sparse matrix. */
 static snow_status encode_slice(pass *s, int64_t slice) {
     SNOW_TRY(snow_sparse_begin_slice(&s->sparse));
-    for (int64_t row = 0; row < s->job->placement.rows;
+    for (int64_t row = 0; row < s->job->stored.rows;
          row += s->strip.room_rows) {
         classify_and_shade(s, slice, row);
         double mark = snow_seconds();
@@ -103,7 +102,7 @@ static snow_status encode_slice(pass *s, int64_t slice) {
 
 /* Density and runs on every 8th row of every 8th slice. */
 static snow_encoding choose_encoding(pass *s) {
-    const snow_placement *p = &s->job->placement;
+    const snow_placement *p = &s->job->stored;
     uint64_t voxels = 0, interesting = 0, runs = 0;
     for (int64_t slice = 0; slice < p->slices; slice += 8)
         for (int64_t row = slice / 8 % 8; row < p->rows; row += 8) {
@@ -122,9 +121,9 @@ static snow_status encode_slab(pass *s) {
         encoding = choose_encoding(s);
     s->stats->encoding = encoding;
     SNOW_TRY(snow_sparse_begin(&s->sparse, snow_scheme_of(encoding),
-                               &s->job->placement, s->job->channels));
-    for (int64_t n = 0; n < s->job->slab.count; n++)
-        SNOW_TRY(encode_slice(s, s->job->slab.first + n));
+                               &s->job->stored, s->job->channels));
+    for (int64_t n = 0; n < s->job->stored_slab.count; n++)
+        SNOW_TRY(encode_slice(s, s->job->stored_slab.first + n));
     return SNOW_OK;
 }
 
@@ -132,8 +131,8 @@ static snow_status encode_slab(pass *s) {
 static void splat_encoded_slice(pass *s, int64_t slice) {
     snow_walk walk;
     double mark = snow_seconds();
-    snow_walk_begin(&walk, &s->sparse, slice - s->job->slab.first);
-    for (int64_t row = 0; row < s->job->placement.rows; row++) {
+    snow_walk_begin(&walk, &s->sparse, slice - s->job->stored_slab.first);
+    for (int64_t row = 0; row < s->job->stored.rows; row++) {
         size_t voxel, count = snow_walk_row(&walk, s->spans, &voxel);
         snow_eye_splat_row(&s->splatter, &s->sheet, row, s->spans, count,
                            s->sparse.ia + voxel * (size_t)s->job->channels);
@@ -144,8 +143,7 @@ static void splat_encoded_slice(pass *s, int64_t slice) {
 /* The same row by row out of the volume: original and tested splatting. */
 static void splat_classified_slice(pass *s, int64_t slice) {
     snow_strip *strip = &s->strip;
-    for (int64_t row = 0; row < s->job->placement.rows;
-         row += strip->room_rows) {
+    for (int64_t row = 0; row < s->job->stored.rows; row += strip->room_rows) {
         classify_and_shade(s, slice, row);
         double mark = snow_seconds();
         size_t begin = 0;
@@ -167,9 +165,9 @@ static void splat_classified_slice(pass *s, int64_t slice) {
  * into the local image. */
 static snow_status splat_and_composite(pass *s) {
     const snow_job *o = s->job;
-    for (int64_t n = 0; n < o->slab.count; n++) {
-        int64_t slice = snow_eye_nth_slice(&o->placement.eye, o->slab.first,
-                                           o->slab.count, n);
+    for (int64_t n = 0; n < o->stored_slab.count; n++) {
+        int64_t slice = snow_eye_nth_slice(&o->stored.eye, o->stored_slab.first,
+                                           o->stored_slab.count, n);
         bool seen;
         SNOW_TRY(snow_eye_splatter_begin_slice(s->context, &s->splatter, slice,
                                                &seen));
@@ -180,6 +178,7 @@ static snow_status splat_and_composite(pass *s) {
         else
             splat_classified_slice(s, slice);
         double mark = snow_seconds();
+        snow_job_clip_sheet(o, slice, &s->sheet);
         snow_composite_sheet(s->pixels, &s->sheet);
         lap(&mark, &s->stats->seconds_composite);
     }
@@ -190,8 +189,8 @@ static snow_status count(const pass *s) {
     const snow_job *o = s->job;
     const snow_sparse *sparse = &s->sparse;
     snow_stats *stats = s->stats;
-    double voxels = (double)o->placement.columns * (double)o->placement.rows *
-                    (double)o->slab.count;
+    double voxels = (double)o->stored.columns * (double)o->stored.rows *
+                    (double)o->stored_slab.count;
     if (o->settings.method == SNOW_METHOD_ORIGINAL) {
         SNOW_TRY(snow_transfer_sparse_ratio(o->transfer, o->volume,
                                             o->settings.threshold,

@@ -28,8 +28,11 @@ typedef struct snow_pass {
     snow_taper taper[2];     /* along u and v */
     int taps[2];             /* of the tapers */
     const snow_comb *combs;  /* [2 * slice + axis] */
-    int64_t columns, slices; /* of the bands */
+    int64_t columns, slices; /* of the bands; that are drawn */
     bool nearest_first;
+    bool lazy; /* tiles are cleared when they are first drawn on */
+    double first_slice, slice_step; /* where the drawn ones lie in the whole */
+    snow_grouping grouping;
     int channels;
     size_t code_bytes;
     const float *palette;
@@ -37,8 +40,6 @@ typedef struct snow_pass {
     const snow_window_fns *windows;
     snow_sample_fn *sample;
     snow_tile_fn *tile;
-    snow_warp_fn *warp;
-    snow_filter filter;
     int cells;     /* of a band */
     int64_t tiles; /* of a band */
     int64_t bands;
@@ -47,7 +48,7 @@ typedef struct snow_pass {
     size_t window_floats;
     size_t stride; /* floats of a line of the plane */
     size_t scratch_bytes;
-    float *pixels;
+    snow_sheared_image image;
 } snow_pass;
 
 /* Slices that pass over a tile together. */
@@ -57,8 +58,11 @@ typedef struct snow_pass {
 typedef struct slice_rows {
     snow_mask_rows rows;
     const snow_comb *u, *v;
-    int reach;         /* rows that a cell needs */
-    int64_t low, high; /* tiles that it may touch: low .. high - 1 */
+    int reach;                  /* rows that a cell needs */
+    int64_t low, high;          /* tiles that it may touch: low .. high - 1 */
+    uint64_t cells;             /* cells that it may touch */
+    int u_range[2], v_range[2]; /* a part's pixels of the plane; where it cuts
+                                 */
 } slice_rows;
 
 /* A worker's own memory, laid out in snow_sheared.scratch. */
@@ -71,6 +75,9 @@ typedef struct snow_scratch {
     float *zero;
     uint64_t *alive; /* per tile: cells that something shines through */
     snow_span *spans;
+    float *kept;         /* a cut tile's pixels */
+    float *spare_pixels; /* of bands to be combined */
+    unsigned char *spare_drawn;
 } snow_scratch;
 
 /* A band on its way through the slices. */
@@ -79,9 +86,11 @@ typedef struct snow_stroke {
     snow_scratch scratch;
     int64_t first_cell;
     int cells;
-    bool finished;        /* a cell is not alive any more */
+    bool finished; /* a cell is not alive any more */
+    snow_band_shape shape;
     float *pixels;        /* of the plane */
     unsigned char *drawn; /* tiles of the band that were drawn on */
+    int64_t first, count; /* slices that are drawn */
 } snow_stroke;
 
 snow_status snow_sheared_new(snow_context *context, snow_sheared **out) {
@@ -138,21 +147,44 @@ static bool same_key(const snow_encoded_key *a, const snow_encoded_key *b) {
            a->slab.first == b->slab.first && a->slab.count == b->slab.count;
 }
 
+int64_t snow_sheared_slices(const snow_sheared_order *order) {
+    snow_slab slab = order->slab;
+    if (order->settings->quality != SNOW_QUALITY_HIGH || slab.count == 0)
+        return slab.count;
+    bool last = slab.first + slab.count == order->placement->slices;
+    return 2 * slab.count - last;
+}
+
+/* The stored slices that the drawn ones are made of: the one behind the last
+ * has a share in the slice between. */
+static snow_slab encoded_slab(const snow_sheared_order *order, bool between) {
+    snow_slab slab = order->slab;
+    if (slab.count == 0)
+        return (snow_slab){0, 0};
+    if (between && slab.first + slab.count < order->placement->slices)
+        slab.count++;
+    slab.first -= order->clip.stored[2];
+    return slab;
+}
+
 static snow_status encode_bands(snow_sheared *s,
-                                const snow_sheared_order *order, bool between) {
+                                const snow_sheared_order *order,
+                                const snow_encoded_key *key) {
     snow_normal_maker maker;
+    snow_placement stored;
+    snow_clip_placement(&order->clip, order->placement, &stored);
     bool shaded = order->settings->shade == SNOW_SHADE_PHONG;
     if (shaded)
         SNOW_TRY(snow_normal_maker_init(s->context, order->volume, &maker));
     snow_bands_order bands = {
         .volume = order->volume,
-        .placement = order->placement,
+        .placement = &stored,
         .coder = &s->coder,
         .maker = shaded ? &maker : NULL,
         .encoding = order->settings->encoding,
-        .first_slice = order->slab.first,
-        .slice_count = order->slab.count,
-        .between = between,
+        .first_slice = key->slab.first,
+        .slice_count = key->slab.count,
+        .between = key->between,
         .isa = order->settings->isa,
         .threads = order->settings->threads,
     };
@@ -169,8 +201,8 @@ snow_status snow_sheared_encode(snow_sheared *s,
         .shaded = settings->shade == SNOW_SHADE_PHONG,
         .between = settings->quality == SNOW_QUALITY_HIGH,
         .encoding = settings->encoding,
-        .slab = order->slab,
     };
+    key.slab = encoded_slab(order, key.between);
     SNOW_TRY(snow_coder_make(s->context, order->volume, order->transfer,
                              settings->threshold, &s->next));
     bool kept = same_key(&key, &s->key) && snow_coder_same(&s->next, &s->coder);
@@ -183,7 +215,7 @@ snow_status snow_sheared_encode(snow_sheared *s,
     if (kept)
         return SNOW_OK;
     s->key.serial = 0; /* should the encoding fail half-way */
-    SNOW_TRY(encode_bands(s, order, key.between));
+    SNOW_TRY(encode_bands(s, order, &key));
     s->key = key;
     stats->encoded = 1;
     return SNOW_OK;
@@ -219,6 +251,38 @@ static uint64_t rows_of_cells(uint64_t cells, int stride, int reach) {
     return rows;
 }
 
+static int between_ends(int64_t at, int end) {
+    if (at < 0)
+        return 0;
+    return at < end ? (int)at : end;
+}
+
+/* A tile that the border of a part may cross. */
+static uint64_t draw_cut_tile(const snow_stroke *stroke,
+                              const slice_rows *slice, int64_t index,
+                              const snow_tile *tile) {
+    const snow_band_shape *shape = &stroke->shape;
+    int64_t left = index * shape->width;
+    int64_t top = stroke->first_cell * tile->lattice_v->phases;
+    const snow_cut_tile cut = {
+        .pixels = tile->pixels,
+        .stride = shape->stride,
+        .width = shape->width,
+        .lines = tile->lattice_v->phases,
+        .channels = shape->channels,
+        .x0 = between_ends(slice->u_range[0] - left, shape->width),
+        .x1 = between_ends(slice->u_range[1] - left, shape->width),
+        .y0 = between_ends(slice->v_range[0] - top, shape->lines),
+        .y1 = between_ends(slice->v_range[1] - top, shape->lines),
+        .kept = stroke->scratch.kept,
+    };
+    if (cut.x0 == 0 && cut.x1 == shape->width && cut.y0 == 0 &&
+        cut.y1 == shape->lines)
+        return stroke->pass->tile(tile);
+    snow_cut_keep(&cut, tile->wanted);
+    return snow_cut_restore(&cut, tile->wanted, stroke->pass->tile(tile));
+}
+
 /* Lines 08 to 13 for one tile of a slice: the cells that can be seen and have a
  * voxel in reach. */
 static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
@@ -228,10 +292,10 @@ static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     int64_t column =
         (u->first / u->phases + index * SNOW_TILE_COLUMNS) * u->stride +
-        slice->u->offset;
+        slice->u->offset - pass->order->clip.stored[0];
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
-    uint64_t alive = scratch->alive[index];
+    uint64_t alive = scratch->alive[index] & slice->cells;
     held = pass->windows->windows(&slice->rows,
                                   rows_of_cells(alive, v->stride, slice->reach),
                                   column, pass->window, bits, before);
@@ -264,30 +328,78 @@ static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
                       stroke->pixels + (size_t)index * SNOW_TILE_COLUMNS *
                                            (size_t)u->phases * pixel,
                       pass->stride};
-    uint64_t finished = pass->tile(&tile);
+    if (pass->lazy && !stroke->drawn[index])
+        snow_band_clear_tile(
+            &stroke->shape, &(snow_band){stroke->pixels, stroke->drawn}, index);
+    uint64_t finished = pass->order->clip.cuts
+                            ? draw_cut_tile(stroke, slice, index, &tile)
+                            : pass->tile(&tile);
     scratch->alive[index] &= ~finished;
     stroke->finished |= finished != 0;
     stroke->drawn[index] = 1;
+}
+
+/* The part's pixels on a slice, and the cells of the band that hold some.
+ * Pixels beyond the plane, which tiles have, count as its last. */
+static void cut_slice(const snow_stroke *stroke, int64_t number,
+                      slice_rows *slice) {
+    const snow_pass *pass = stroke->pass;
+    const snow_clip *clip = &pass->order->clip;
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
+    double place = pass->first_slice + pass->slice_step * (double)number;
+    snow_clip_lattice(clip, 0, u, place, slice->u_range);
+    snow_clip_lattice(clip, 1, v, place, slice->v_range);
+    if (slice->u_range[1] == u->count)
+        slice->u_range[1] = (int)pass->tiles * stroke->shape.width;
+    if (slice->v_range[1] == v->count)
+        slice->v_range[1] += v->phases;
+    int64_t first = slice->v_range[0] / v->phases - stroke->first_cell;
+    int64_t end = (slice->v_range[1] + v->phases - 1) / v->phases;
+    int from = between_ends(first, stroke->cells);
+    int to = between_ends(end - stroke->first_cell, stroke->cells);
+    slice->cells = 0;
+    if (from < to && slice->u_range[0] < slice->u_range[1] &&
+        slice->v_range[0] < slice->v_range[1])
+        slice->cells = ~UINT64_C(0) >> (64 - (to - from)) << from;
+}
+
+/* Tiles that the part's pixels on a slice reach. */
+static void cut_tiles(const snow_stroke *stroke, slice_rows *slice) {
+    int width = stroke->shape.width;
+    int64_t low = slice->u_range[0] / width;
+    int64_t high = (slice->u_range[1] + width - 1) / width;
+    slice->low = slice->low > low ? slice->low : low;
+    slice->high = slice->high < high ? slice->high : high;
 }
 
 /* Reads the band's rows of a slice as masks, and tells the tiles that they
  * reach: those whose window overlaps the columns. */
 static void read_slice(snow_stroke *stroke, int64_t number, slice_rows *slice) {
     const snow_pass *pass = stroke->pass;
+    const snow_clip *clip = &pass->order->clip;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     slice->u = &pass->combs[2 * number];
     slice->v = &pass->combs[2 * number + 1];
     slice->reach = slice->v->lead[1] + pass->taps[1];
+    slice->cells = ~UINT64_C(0);
+    slice->low = slice->high = 0;
+    if (clip->cuts)
+        cut_slice(stroke, number, slice);
+    if (!slice->cells)
+        return;
     int64_t first = (v->first / v->phases + stroke->first_cell) * v->stride +
-                    slice->v->offset;
+                    slice->v->offset - clip->stored[1];
     pass->windows->read(&pass->sheared->bands, number, first,
                         (stroke->cells - 1) * v->stride + slice->reach,
                         stroke->scratch.spans, &slice->rows);
     int64_t step = SNOW_TILE_COLUMNS * u->stride;
-    int64_t start = u->first / u->phases * u->stride + slice->u->offset;
+    int64_t start =
+        u->first / u->phases * u->stride + slice->u->offset - clip->stored[0];
     int64_t low = -start - pass->window + 1, high = pass->columns - start;
     slice->low = low > 0 ? (low + step - 1) / step : 0;
     slice->high = high > 0 ? (high + step - 1) / step : 0;
+    if (clip->cuts)
+        cut_tiles(stroke, slice);
     if (!slice->rows.held)
         slice->high = 0;
 }
@@ -299,13 +411,19 @@ static void draw_slices(snow_stroke *stroke, int64_t first, int count) {
     slice_rows *slices = stroke->scratch.slices;
     for (int n = 0; n < count; n++)
         read_slice(stroke,
-                   pass->nearest_first ? first + n
-                                       : pass->slices - 1 - first - n,
+                   pass->nearest_first
+                       ? stroke->first + first + n
+                       : stroke->first + stroke->count - 1 - first - n,
                    &slices[n]);
     for (int64_t tile = 0; tile < pass->tiles; tile++)
         for (int n = 0; n < count && stroke->scratch.alive[tile]; n++)
             if (slices[n].low <= tile && tile < slices[n].high)
                 draw_tile(stroke, &slices[n], tile);
+}
+
+/* Floats of a band that groups are combined in. */
+static size_t spare_floats(const snow_pass *pass) {
+    return (size_t)(pass->cells * pass->shear.v.phases) * pass->stride;
 }
 
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
@@ -328,11 +446,76 @@ static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
     PART(zero, filtered);
     PART(alive, (size_t)pass->tiles * sizeof *out->alive);
     PART(spans, ((size_t)pass->columns / 2 + 1) * sizeof *out->spans);
+    if (pass->order->clip.cuts)
+        PART(kept, (size_t)pass->cells * 2 * filtered);
+    if (pass->grouping.on) {
+        PART(spare_pixels,
+             SNOW_GROUP_RANKS * spare_floats(pass) * sizeof(float));
+        PART(spare_drawn, SNOW_GROUP_RANKS * (size_t)pass->tiles);
+    }
 #undef PART
     return at;
 }
 
-/* Line 07 for one band of lines: all slices, front to back. */
+/* Line 07 for one band of lines: slices from front to back. */
+static void draw_slab(void *of, int64_t first, int64_t count,
+                      const snow_band *band) {
+    snow_stroke *stroke = of;
+    uint64_t *alive = stroke->scratch.alive;
+    int64_t tiles = stroke->pass->tiles;
+    stroke->finished = false;
+    stroke->pixels = band->pixels;
+    stroke->drawn = band->drawn;
+    stroke->first = first;
+    stroke->count = count;
+    for (int64_t tile = 0; tile < tiles; tile++)
+        alive[tile] = ~UINT64_C(0) >> (64 - stroke->cells);
+    for (int64_t n = 0;
+         n < count && (!stroke->finished || snow_any_alive(alive, tiles));
+         n += SLICES_AT_ONCE)
+        draw_slices(stroke, n,
+                    count - n < SLICES_AT_ONCE ? (int)(count - n)
+                                               : SLICES_AT_ONCE);
+}
+
+/* Groups of slices, each by itself and then together. */
+static void draw_groups(snow_stroke *stroke, const snow_band *band) {
+    const snow_pass *pass = stroke->pass;
+    const snow_sheared_image *image = &pass->image;
+    snow_band spare[SNOW_GROUP_RANKS], layer = *band;
+    for (int n = 0; n < SNOW_GROUP_RANKS; n++) {
+        spare[n].pixels =
+            stroke->scratch.spare_pixels + (size_t)n * spare_floats(pass);
+        spare[n].drawn =
+            stroke->scratch.spare_drawn + (size_t)n * (size_t)pass->tiles;
+    }
+    for (int n = 0; n < image->layers; n++) {
+        snow_grouping_draw(&pass->grouping, pass->grouping.nodes[n],
+                           &stroke->shape, draw_slab, stroke, &layer, spare);
+        layer.pixels += image->layer_floats;
+        layer.drawn += image->layer_tiles;
+    }
+}
+
+/* One band of lines of the intermediate image. */
+static void draw_band(snow_stroke *stroke, const snow_band *band) {
+    const snow_pass *pass = stroke->pass;
+    size_t pixels =
+        (size_t)stroke->shape.lines * pass->stride / (size_t)pass->channels;
+    if (pass->grouping.on) {
+        draw_groups(stroke, band);
+        return;
+    }
+    memset(band->drawn, 0, (size_t)pass->tiles);
+    if (!pass->lazy)
+        snow_tile_clear(band->pixels, pixels, pass->channels);
+    draw_slab(stroke, 0, pass->slices, band);
+    if (pass->lazy)
+        snow_band_finish(&stroke->shape, band);
+    else
+        snow_tile_finish(band->pixels, pixels, pass->channels);
+}
+
 static void splat_band(void *job, int64_t item, int worker) {
     const snow_pass *pass = job;
     const snow_lattice *v = &pass->shear.v;
@@ -351,48 +534,17 @@ static void splat_band(void *job, int64_t item, int worker) {
     stroke.first_cell = item * pass->cells;
     int64_t cells = (v->count + v->phases - 1) / v->phases - stroke.first_cell;
     stroke.cells = cells < pass->cells ? (int)cells : pass->cells;
-    size_t lines = (size_t)(stroke.cells * v->phases);
-    size_t pixels = lines * pass->stride / (size_t)pass->channels;
-    stroke.pixels = pass->sheared->plane +
-                    (size_t)(stroke.first_cell * v->phases) * pass->stride;
-    stroke.drawn = pass->sheared->drawn + item * pass->tiles;
-    memset(stroke.drawn, 0, (size_t)pass->tiles);
-    snow_tile_clear(stroke.pixels, pixels, pass->channels);
-    for (int64_t tile = 0; tile < pass->tiles; tile++)
-        stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.cells);
-    for (int64_t n = 0; n < pass->slices &&
-                        (!stroke.finished ||
-                         snow_any_alive(stroke.scratch.alive, pass->tiles));
-         n += SLICES_AT_ONCE)
-        draw_slices(&stroke, n,
-                    pass->slices - n < SLICES_AT_ONCE ? (int)(pass->slices - n)
-                                                      : SLICES_AT_ONCE);
-    snow_tile_finish(stroke.pixels, pixels, pass->channels);
+    stroke.shape = (snow_band_shape){
+        pass->tiles, SNOW_TILE_COLUMNS * pass->shear.u.phases,
+        stroke.cells * v->phases, pass->channels, pass->stride};
+    const snow_band band = {pass->image.pixels +
+                                (size_t)(stroke.first_cell * v->phases) *
+                                    pass->stride,
+                            pass->image.drawn + item * pass->tiles};
+    draw_band(&stroke, &band);
 }
 
-static void warp_lines(void *job, int64_t item, int worker) {
-    const snow_pass *pass = job;
-    (void)worker;
-    const snow_view *view = pass->order->view;
-    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
-    snow_plane plane = {pass->sheared->plane,
-                        pass->stride,
-                        u->count,
-                        v->count,
-                        pass->channels,
-                        pass->sheared->drawn,
-                        SNOW_TILE_COLUMNS * u->phases,
-                        pass->cells * v->phases,
-                        (int)pass->tiles};
-    int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
-    for (int y = first; y < last && y < view->height; y++)
-        snow_warp_row(&plane, &pass->shear, pass->filter, pass->warp, y,
-                      view->width,
-                      pass->pixels + (size_t)y * (size_t)view->width *
-                                         (size_t)pass->channels);
-}
-
-/* --- a picture -------------------------------------------------------------
+/* --- setting up ------------------------------------------------------------
  */
 
 /* Pixels a voxel, or voxels a pixel, along one axis.  A kernel that is widened
@@ -421,7 +573,6 @@ static snow_status place_lattice(snow_pass *pass) {
     }
     SNOW_TRY(
         snow_shear_make(pass->sheared->context, p, &options, &pass->shear));
-    pass->filter = draft ? SNOW_BILINEAR : SNOW_CATMULL_ROM;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     int columns = SNOW_TILE_COLUMNS * u->phases;
     pass->tiles = (u->count + columns - 1) / columns;
@@ -450,12 +601,11 @@ static snow_status place_slices(snow_pass *pass) {
     size_t slices = (size_t)pass->slices;
     SNOW_TRY(snow_reserve(s->context, &s->combs, &s->combs_capacity, 0,
                           2 * slices * sizeof *s->combs));
-    double step = s->key.between ? 0.5 : 1;
     const snow_lattice *lattices[2] = {&pass->shear.u, &pass->shear.v};
     for (size_t n = 0; n < slices; n++)
         for (size_t axis = 0; axis < 2; axis++)
             snow_comb_make(&pass->taper[axis], lattices[axis],
-                           (double)pass->order->slab.first + step * (double)n,
+                           pass->first_slice + pass->slice_step * (double)n,
                            &s->combs[2 * n + axis]);
     pass->combs = s->combs;
     return SNOW_OK;
@@ -499,17 +649,43 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     return SNOW_OK;
 }
 
+snow_status snow_sheared_make_layers(snow_sheared *s, int layers, int64_t bands,
+                                     size_t lines, snow_sheared_image *image) {
+    uint64_t floats, bytes;
+    image->layers = layers;
+    image->layer_tiles = (size_t)(bands * image->tiles);
+    SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
+                          image->layer_tiles * (size_t)layers));
+    image->layer_floats = lines * image->stride;
+    if (!snow_mul_u64(image->layer_floats, (uint64_t)layers, &floats) ||
+        !snow_mul_u64(floats, sizeof *s->plane, &bytes) || bytes > SIZE_MAX)
+        return snow_fail(s->context, SNOW_NO_MEMORY,
+                         "no memory for %d intermediate images", layers);
+    SNOW_TRY(snow_reserve(s->context, &s->plane, &s->plane_capacity, 0,
+                          (size_t)bytes));
+    image->pixels = s->plane;
+    image->drawn = s->drawn;
+    return SNOW_OK;
+}
+
 static snow_status reserve_buffers(snow_pass *pass) {
     snow_sheared *s = pass->sheared;
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     snow_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    size_t lines = (size_t)pass->shear.v.count + 1;
     SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
                           pass->scratch_bytes * (size_t)pass->threads));
-    SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
-                          (size_t)(pass->bands * pass->tiles)));
-    return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0,
-                        lines * pass->stride * sizeof *s->plane);
+    pass->image =
+        (snow_sheared_image){.width = u->count,
+                             .height = v->count,
+                             .channels = pass->channels,
+                             .stride = pass->stride,
+                             .tile_width = SNOW_TILE_COLUMNS * u->phases,
+                             .tile_height = pass->cells * v->phases,
+                             .tiles = (int)pass->tiles};
+    memcpy(pass->image.nodes, pass->grouping.nodes, sizeof pass->image.nodes);
+    return snow_sheared_make_layers(s, pass->grouping.node_count, pass->bands,
+                                    (size_t)v->count + 1, &pass->image);
 }
 
 /* The interesting voxels of the volume: without those of slices between. */
@@ -534,47 +710,107 @@ void snow_sheared_fill_figures(const snow_sheared *s, snow_stats *stats) {
     stats->pa_bytes += s->bands.pa_bytes;
 }
 
-/* Lines 07 to 13, and the warp. */
-static void draw(snow_pass *pass, snow_stats *stats) {
-    int threads = pass->order->settings->threads;
+/* --- the warp --------------------------------------------------------------
+ */
+
+/* What the warp has to know of a picture. */
+static void keep_warping(snow_sheared *s, const snow_pass *pass) {
+    const snow_settings *settings = pass->order->settings;
+    snow_sheared_warping *w = &s->warping;
+    w->perspective = false;
+    w->shear = pass->shear;
+    w->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
+                                                        : SNOW_CATMULL_ROM;
+    w->warp = snow_warp_of(settings->isa, w->filter, pass->channels);
+}
+
+/* --- a picture -------------------------------------------------------------
+ */
+
+/* Tells of an empty image, the same for all parts. */
+static bool nothing_in_view(const snow_pass *pass) {
+    return pass->shear.u.count == 0 || pass->shear.v.count == 0;
+}
+
+static snow_status place(snow_pass *pass) {
+    const snow_sheared_order *order = pass->order;
+    bool between = order->settings->quality == SNOW_QUALITY_HIGH;
+    pass->slices = snow_sheared_slices(order);
+    pass->columns = pass->sheared->bands.columns;
+    pass->nearest_first = order->placement->nearest_first;
+    pass->first_slice = (double)order->slab.first;
+    pass->slice_step = between ? 0.5 : 1;
+    SNOW_TRY(snow_grouping_make(
+        pass->sheared->context, order->placement->slices, order->slab,
+        between ? 2 : 1, pass->slices, pass->nearest_first,
+        order->settings->deterministic != 0, &pass->grouping));
+    pass->lazy = pass->grouping.on || order->volume->is_part;
+    return place_lattice(pass);
+}
+
+/* Lines 07 to 13 of a parallel view. */
+static snow_status splat_sheared(snow_sheared *s,
+                                 const snow_sheared_order *order,
+                                 snow_stats *stats, snow_sheared_image *out) {
+    snow_pass pass = {.order = order, .sheared = s};
+    SNOW_TRY(classify_and_shade(&pass, stats));
+    SNOW_TRY(place(&pass));
+    keep_warping(s, &pass);
+    if (nothing_in_view(&pass)) {
+        *out = (snow_sheared_image){.channels = order->channels};
+        return SNOW_OK;
+    }
     double mark = snow_seconds();
-    snow_parallel(pass->sheared->context, threads, pass->bands, splat_band,
-                  pass);
-    double splatted = snow_seconds();
-    pass->warp =
-        snow_warp_of(pass->order->settings->isa, pass->filter, pass->channels);
-    snow_parallel(pass->sheared->context, threads,
-                  (pass->order->view->height + SNOW_WARP_LINES - 1) /
-                      SNOW_WARP_LINES,
-                  warp_lines, pass);
-    stats->seconds_splat += splatted - mark;
-    stats->seconds_warp += snow_seconds() - splatted;
+    SNOW_TRY(place_slices(&pass));
+    SNOW_TRY(reserve_buffers(&pass));
+    snow_parallel(s->context, order->settings->threads, pass.bands, splat_band,
+                  &pass);
+    *out = pass.image;
+    stats->seconds_splat += snow_seconds() - mark;
+    return SNOW_OK;
+}
+
+snow_status snow_sheared_splat(snow_sheared *s, const snow_sheared_order *order,
+                               snow_stats *stats, snow_sheared_image *out) {
+    snow_sheared_image image;
+    double mark = snow_seconds();
+    SNOW_TRY(snow_sheared_encode(s, order, stats));
+    stats->seconds_encode += snow_seconds() - mark;
+    SNOW_TRY(order->placement->perspective
+                 ? snow_sheared_seen_splat(s, order, stats, &image)
+                 : splat_sheared(s, order, stats, &image));
+    snow_sheared_fill_figures(s, stats);
+    s->warping.width = order->view->width;
+    s->warping.height = order->view->height;
+    s->warping.plane =
+        (snow_plane){image.pixels,     image.stride,      image.width,
+                     image.height,     image.channels,    image.drawn,
+                     image.tile_width, image.tile_height, image.tiles};
+    *out = image;
+    return SNOW_OK;
 }
 
 snow_status snow_sheared_render(snow_sheared *s,
                                 const snow_sheared_order *order, float *pixels,
                                 snow_stats *stats) {
-    if (order->placement->perspective)
-        return snow_sheared_seen_render(s, order, pixels, stats);
-    snow_pass pass = {.order = order, .sheared = s, .pixels = pixels};
+    snow_sheared_image image;
+    SNOW_TRY(snow_sheared_splat(s, order, stats, &image));
+    if (image.layers > 1)
+        return snow_fail(s->context, SNOW_BAD_USAGE,
+                         "a deterministic picture of one part of many is none; "
+                         "render all of them with snow_ranks_render");
+    const snow_view *view = order->view;
     double mark = snow_seconds();
-    SNOW_TRY(snow_sheared_encode(s, order, stats));
-    stats->seconds_encode += snow_seconds() - mark;
-    pass.slices = s->bands.slices;
-    pass.columns = s->bands.columns;
-    pass.nearest_first = order->placement->nearest_first;
-    SNOW_TRY(classify_and_shade(&pass, stats));
-    SNOW_TRY(place_lattice(&pass));
-    snow_sheared_fill_figures(s, stats);
-    if (pass.shear.u.count == 0 || pass.shear.v.count == 0 ||
-        pass.slices == 0) {
+    if (image.width == 0) {
         memset(pixels, 0,
-               (size_t)order->view->width * (size_t)order->view->height *
+               (size_t)view->width * (size_t)view->height *
                    (size_t)order->channels * sizeof *pixels);
         return SNOW_OK;
     }
-    SNOW_TRY(place_slices(&pass));
-    SNOW_TRY(reserve_buffers(&pass));
-    draw(&pass, stats);
+    if (order->volume->is_part || order->settings->deterministic)
+        snow_sheared_clear(&image, 0, 0, 0, image.tiles,
+                           (int)(image.layer_tiles / (size_t)image.tiles));
+    snow_sheared_warp_all(s, order->settings->threads, pixels);
+    stats->seconds_warp += snow_seconds() - mark;
     return SNOW_OK;
 }

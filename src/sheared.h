@@ -4,8 +4,8 @@
 #define SNOW_SHEARED_H
 
 #include "base/base.h"
-#include "decompose/slab.h"
-#include "transform/transform.h"
+#include "decompose/part.h"
+#include "transform/clip.h"
 
 #include <snowglass/render.h>
 
@@ -22,10 +22,25 @@ typedef struct snow_sheared_order {
     const snow_transfer *transfer;
     const snow_view *view;
     const snow_settings *settings;
-    const snow_placement *placement;
-    snow_slab slab;
-    int channels; /* 2 or 4 */
+    const snow_placement *placement; /* of the whole */
+    snow_clip clip;                  /* of the volume's part */
+    snow_slab slab; /* slices of the whole that are drawn, within the part */
+    int channels;   /* 2 or 4 */
 } snow_sheared_order;
+
+/* The intermediate image of a part.  Where a tile was not drawn on, its pixels
+ * are anything until snow_sheared_clear.  A deterministic one has a layer for
+ * each of some nodes of the tree of groups (decompose/part.h). */
+typedef struct snow_sheared_image {
+    int width, height, channels; /* 0 x 0: nothing is in view */
+    float *pixels;               /* of the frame's, until it draws again */
+    size_t stride;               /* floats from line to line */
+    unsigned char *drawn;        /* per tile, line of tiles by line of tiles */
+    int tile_width, tile_height, tiles; /* pixels; tiles of a line */
+    int layers;                         /* 1, or as many as nodes */
+    snow_group_node nodes[SNOW_NODES_MOST];
+    size_t layer_floats, layer_tiles; /* from layer to layer */
+} snow_sheared_image;
 
 /* Whether the method can make this picture.  Where a kernel, widened for
  * pixels that are many voxels wide, has more than SNOW_TAPS_MOST voxels in
@@ -40,5 +55,38 @@ bool snow_sheared_fits(const snow_placement *placement,
 snow_status snow_sheared_render(snow_sheared *sheared,
                                 const snow_sheared_order *order, float *pixels,
                                 snow_stats *stats);
+
+/* The same in steps, for processors that exchange intermediate images between
+ * them.  All have images of one size.  First the slab up to its image: */
+snow_status snow_sheared_splat(snow_sheared *sheared,
+                               const snow_sheared_order *order,
+                               snow_stats *stats, snow_sheared_image *out);
+
+/* Clears what was not drawn on of tiles x0 .. x1 - 1 of tile lines y0 .. y1 - 1
+ * of a layer. */
+void snow_sheared_clear(const snow_sheared_image *image, int layer, int x0,
+                        int y0, int x1, int y1);
+
+/* Lines `first` to `first` + `count` - 1 in the place of the image's, packed;
+ * all others become empty. */
+void snow_sheared_take_lines(const snow_sheared_image *image, int first,
+                             int count, const float *pixels);
+
+/* Pixels of a line of the picture whose place in the image is in its lines
+ * first .. end - 1: x range[0] .. range[1] - 1.  Of lines that follow one
+ * another each pixel is in one range. */
+void snow_sheared_pixels_of(const snow_sheared *sheared, int y, int first,
+                            int end, int range[2]);
+
+/* How many lines before and behind the one that a pixel is in its warp may
+ * read; with one to spare for rounding. */
+#define SNOW_WARP_BEFORE 2
+#define SNOW_WARP_BEHIND 3
+
+/* Warps the image, or what was put in its place, to line y of the picture; or
+ * to all of it. */
+void snow_sheared_warp(const snow_sheared *sheared, int y, float *pixels);
+void snow_sheared_warp_all(const snow_sheared *sheared, int threads,
+                           float *pixels);
 
 #endif

@@ -7,9 +7,8 @@
 #include "composite/tile.h"
 #include "encode/windows.h"
 #include "sheared.h"
-
-/* Lines of the picture that are warped as one item of work. */
-#define SNOW_WARP_LINES 16
+#include "sheared_bands.h"
+#include "warp/warp.h"
 
 /* Whether something shines through any of a band's tiles. */
 static inline bool snow_any_alive(const uint64_t *alive, int64_t tiles) {
@@ -18,6 +17,18 @@ static inline bool snow_any_alive(const uint64_t *alive, int64_t tiles) {
             return true;
     return false;
 }
+
+/* How the image of the last picture is warped. */
+typedef struct snow_sheared_warping {
+    snow_plane plane;
+    bool perspective;
+    snow_shear shear;   /* or */
+    snow_scaled scaled; /* in perspective */
+    snow_filter filter;
+    snow_warp_fn *warp;
+    snow_warp_places_fn *places; /* in perspective */
+    int width, height;           /* of the picture */
+} snow_sheared_warping;
 
 /* What the bands in memory were encoded from. */
 typedef struct snow_encoded_key {
@@ -47,7 +58,12 @@ struct snow_sheared {
     char *teeth;
     double *reach;
     size_t seen_capacity, teeth_capacity, reach_capacity; /* bytes */
+    snow_sheared_warping warping;
 };
+
+/* Slices that are drawn of an order: with those between, but for the one behind
+ * the volume's last. */
+int64_t snow_sheared_slices(const snow_sheared_order *order);
 
 /* Lines 04 to 06, unless the bands hold just that already: colours, light and
  * the camera may change as they like as long as the slice axis stays. */
@@ -62,11 +78,16 @@ snow_status snow_sheared_shade(snow_sheared *sheared,
 /* Counts of the encoding. */
 void snow_sheared_fill_figures(const snow_sheared *sheared, snow_stats *stats);
 
+/* Makes room for layers of so many bands of `tiles` tiles, and tells of it. */
+snow_status snow_sheared_make_layers(snow_sheared *sheared, int layers,
+                                     int64_t bands, size_t lines,
+                                     snow_sheared_image *image);
+
 /* The same method in perspective: sheared_seen.c. */
 bool snow_sheared_seen_fits(const snow_placement *placement,
                             const snow_settings *settings);
-snow_status snow_sheared_seen_render(snow_sheared *sheared,
-                                     const snow_sheared_order *order,
-                                     float *pixels, snow_stats *stats);
+snow_status snow_sheared_seen_splat(snow_sheared *sheared,
+                                    const snow_sheared_order *order,
+                                    snow_stats *stats, snow_sheared_image *out);
 
 #endif

@@ -33,9 +33,14 @@ typedef struct seen_pass {
     snow_sheared *sheared;
     snow_scaled scaled;
     snow_seen_slice *slices;
-    int64_t slice_count, voxel_columns, voxel_rows; /* of the bands */
-    int taps[2];                  /* the most of a slice, along u and v */
-    double step[2];               /* the most of a slice, voxels a pixel */
+    int64_t slice_count;               /* that are drawn */
+    int64_t voxel_columns, voxel_rows; /* of the bands */
+    int64_t stored[2]; /* the bands' first voxel in the whole, along u, v */
+    bool lazy;         /* tiles are cleared when they are first drawn on */
+    double first_slice, slice_step; /* where the drawn ones lie in the whole */
+    snow_grouping grouping;
+    int taps[2];    /* the most of a slice of the whole, along u and v */
+    double step[2]; /* the same, voxels a pixel */
     int channels, columns, lines; /* of a tile */
     int64_t tiles;                /* of a band */
     int64_t bands;
@@ -50,9 +55,7 @@ typedef struct seen_pass {
     const snow_window_fns *windows;
     snow_ray_sample_fn *sample;
     snow_ray_tile_fn *tile;
-    snow_warp_places_fn *warp;
-    snow_filter filter;
-    float *pixels;
+    snow_sheared_image image;
 } seen_pass;
 
 /* A worker's own memory, laid out in snow_sheared.scratch. */
@@ -66,6 +69,9 @@ typedef struct seen_scratch {
     snow_span *spans;
     int32_t *first; /* along v, of the band's lines */
     float *weights;
+    float *kept;         /* a cut tile's pixels */
+    float *spare_pixels; /* of bands to be combined */
+    unsigned char *spare_drawn;
 } seen_scratch;
 
 /* A band on its way through the slices. */
@@ -74,10 +80,12 @@ typedef struct seen_stroke {
     seen_scratch scratch;
     snow_mask_rows rows;
     int first_line, lines;
-    bool finished;        /* a line is not alive any more */
+    bool finished; /* a line is not alive any more */
+    snow_band_shape shape;
     float *pixels;        /* of the plane */
     unsigned char *drawn; /* tiles of the band that were drawn on */
     const snow_seen_slice *slice;
+    int u_range[2], v_range[2];              /* a part's pixels on the slice */
     int64_t row;                             /* the voxel row of mask row 0 */
     uint64_t lines_of_row[SNOW_WINDOW_ROWS]; /* that need a mask row */
 } seen_stroke;
@@ -137,22 +145,31 @@ static snow_status place_lattice(seen_pass *pass) {
             double pitch = widest_pitch(taper[axis].wide, draft) / step;
             options.pitch[axis] = fmin(options.pitch[axis], pitch);
             s->reach[axis * slices + k] = snow_taper_reach(&taper[axis]);
+            int taps = snow_comb_taps(&taper[axis]);
+            if (taps > pass->taps[axis])
+                pass->taps[axis] = taps;
         }
     }
-    return snow_scaled_make(s->context, p, &options, &pass->scaled);
+    SNOW_TRY(snow_scaled_make(s->context, p, &options, &pass->scaled));
+    for (int end = 0; end < 2; end++) {
+        double step =
+            snow_scaled_step(&pass->scaled, end ? (double)(slices - 1) : 0);
+        pass->step[0] = fmax(pass->step[0], pass->scaled.u.pitch * step);
+        pass->step[1] = fmax(pass->step[1], pass->scaled.v.pitch * step);
+    }
+    return SNOW_OK;
 }
 
 /* How every slice of the bands lies on the lattice. */
 static snow_status place_slices(seen_pass *pass) {
     const snow_sheared_order *order = pass->order;
     snow_sheared *s = pass->sheared;
-    double spacing = s->key.between ? 0.5 : 1;
     SNOW_TRY(snow_reserve(s->context, &s->seen, &s->seen_capacity, 0,
                           (size_t)pass->slice_count * sizeof *s->seen));
     pass->slices = s->seen;
     for (int64_t n = 0; n < pass->slice_count; n++) {
         snow_seen_slice *slice = &pass->slices[n];
-        double k = (double)order->slab.first + spacing * (double)n;
+        double k = pass->first_slice + pass->slice_step * (double)n;
         double step = snow_scaled_step(&pass->scaled, k);
         const snow_scaled_axis *axes[2] = {&pass->scaled.u, &pass->scaled.v};
         snow_rake *rakes[2] = {&slice->u, &slice->v};
@@ -164,9 +181,6 @@ static snow_status place_slices(seen_pass *pass) {
                 (snow_rake){taper[axis], snow_comb_taps(&taper[axis]),
                             snow_scaled_start(axes[axis], step),
                             axes[axis]->pitch * step, axes[axis]->count};
-            if (rakes[axis]->taps > pass->taps[axis])
-                pass->taps[axis] = rakes[axis]->taps;
-            pass->step[axis] = fmax(pass->step[axis], rakes[axis]->step);
         }
     }
     return SNOW_OK;
@@ -200,9 +214,10 @@ static void fill_slice(void *job, int64_t item, int worker) {
     snow_seen_slice *slice = &pass->slices[item];
     const snow_rake *rake = &slice->u;
     (void)worker;
-    double low = (-rake->taps - rake->start) / rake->step;
+    double start = rake->start - (double)pass->stored[0];
+    double low = (-rake->taps - start) / rake->step;
     double high =
-        ((double)pass->voxel_columns + rake->taps - rake->start) / rake->step;
+        ((double)pass->voxel_columns + rake->taps - start) / rake->step;
     int from = low > 0 ? (int)fmin(low, (double)pass->width) : 0;
     int to = high > 0 ? (int)fmin(high + 1, (double)pass->width) : 0;
     /* Whole tiles, which read all of their weights. */
@@ -291,6 +306,41 @@ static void sample_rows(const seen_stroke *stroke, uint64_t held, int column,
     }
 }
 
+static int between_ends(int64_t at, int end) {
+    if (at < 0)
+        return 0;
+    return at < end ? (int)at : end;
+}
+
+/* The band's lines that hold pixels of the part. */
+static uint64_t own_lines(const seen_stroke *stroke) {
+    int from = stroke->v_range[0], to = stroke->v_range[1];
+    return from < to ? ~UINT64_C(0) >> (64 - (to - from)) << from : 0;
+}
+
+/* A tile that the border of a part may cross. */
+static uint64_t draw_cut_tile(const seen_stroke *stroke, int64_t index,
+                              const snow_ray_tile *tile) {
+    const snow_band_shape *shape = &stroke->shape;
+    int64_t left = index * shape->width;
+    const snow_cut_tile cut = {
+        .pixels = tile->pixels,
+        .stride = shape->stride,
+        .width = shape->width,
+        .lines = 1,
+        .channels = shape->channels,
+        .x0 = between_ends(stroke->u_range[0] - left, shape->width),
+        .x1 = between_ends(stroke->u_range[1] - left, shape->width),
+        .y0 = stroke->v_range[0],
+        .y1 = stroke->v_range[1],
+        .kept = stroke->scratch.kept,
+    };
+    if (cut.x0 == 0 && cut.x1 == shape->width)
+        return stroke->pass->tile(tile); /* own lines only are wanted */
+    snow_cut_keep(&cut, tile->wanted);
+    return snow_cut_restore(&cut, tile->wanted, stroke->pass->tile(tile));
+}
+
 /* Lines 08 to 13 for one tile of the slice: the lines that can be seen and have
  * a voxel in reach. */
 static void draw_tile(seen_stroke *stroke, int64_t index) {
@@ -301,13 +351,14 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
     int column = slice->first[at];
     int count =
         slice->first[at + (size_t)pass->columns - 1] - column + slice->u.taps;
-    if (column <= -count || column >= pass->voxel_columns)
+    int64_t here = column - pass->stored[0];
+    if (here <= -count || here >= pass->voxel_columns)
         return;
     uint64_t bits[SNOW_WINDOW_ROWS];
     uint32_t before[SNOW_WINDOW_ROWS];
-    uint64_t alive = scratch->alive[index];
+    uint64_t alive = scratch->alive[index] & own_lines(stroke);
     uint64_t held = pass->windows->windows(
-        &stroke->rows, rows_of_lines(stroke, stroke->rows.held, alive), column,
+        &stroke->rows, rows_of_lines(stroke, stroke->rows.held, alive), here,
         count, bits, before);
     uint64_t lines = lines_of_rows(stroke, held) & alive;
     if (!lines)
@@ -331,7 +382,12 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
         .pixels = stroke->pixels + at * (size_t)pass->channels,
         .line = pass->stride,
     };
-    uint64_t finished = pass->tile(&tile);
+    if (pass->lazy && !stroke->drawn[index])
+        snow_band_clear_tile(
+            &stroke->shape, &(snow_band){stroke->pixels, stroke->drawn}, index);
+    uint64_t finished = pass->order->clip.cuts
+                            ? draw_cut_tile(stroke, index, &tile)
+                            : pass->tile(&tile);
     scratch->alive[index] &= ~finished;
     stroke->finished |= finished != 0;
     stroke->drawn[index] = 1;
@@ -351,32 +407,78 @@ static void fill_lines(seen_stroke *stroke) {
                 UINT64_C(1) << n;
 }
 
+/* The part's pixels on a slice: columns of the image, lines of the band.  False
+ * where there are none.  Pixels beyond the image, which tiles have, count as
+ * its last. */
+static bool cut_slice(seen_stroke *stroke, int64_t index) {
+    const seen_pass *pass = stroke->pass;
+    const snow_clip *clip = &pass->order->clip;
+    double place = pass->first_slice + pass->slice_step * (double)index;
+    int v[2];
+    stroke->v_range[0] = 0;
+    stroke->v_range[1] = stroke->lines;
+    if (!clip->cuts)
+        return true;
+    snow_clip_scaled(clip, 0, &pass->scaled, place, stroke->u_range);
+    snow_clip_scaled(clip, 1, &pass->scaled, place, v);
+    if (stroke->u_range[1] == pass->scaled.u.count)
+        stroke->u_range[1] = (int)pass->width;
+    for (int n = 0; n < 2; n++)
+        stroke->v_range[n] =
+            between_ends(v[n] - stroke->first_line, stroke->lines);
+    return stroke->u_range[0] < stroke->u_range[1] &&
+           stroke->v_range[0] < stroke->v_range[1];
+}
+
+/* Tiles from range[0] to range[1] - 1, whose pixels can reach a column;
+ * draw_tile looks closer. */
+static void tiles_of_slice(const seen_stroke *stroke, int64_t range[2]) {
+    const seen_pass *pass = stroke->pass;
+    const snow_rake *u = &stroke->slice->u;
+    double start = u->start - (double)pass->stored[0];
+    double low = (-u->taps - start) / u->step / pass->columns;
+    double high = ((double)pass->voxel_columns + u->taps - start) / u->step /
+                  pass->columns;
+    range[0] = low > 0 ? (int64_t)fmin(low, (double)pass->tiles) : 0;
+    range[1] = high > 0 ? (int64_t)fmin(ceil(high), (double)pass->tiles) : 0;
+    if (!pass->order->clip.cuts)
+        return;
+    int64_t first = stroke->u_range[0] / pass->columns;
+    int64_t end = (stroke->u_range[1] + pass->columns - 1) / pass->columns;
+    range[0] = range[0] > first ? range[0] : first;
+    range[1] = range[1] < end ? range[1] : end;
+}
+
 /* One slice of the band: its rows as masks, and each tile in turn. */
 static void draw_slice(seen_stroke *stroke, int64_t index) {
     const seen_pass *pass = stroke->pass;
     const snow_seen_slice *slice = &pass->slices[index];
     snow_rake of_band = slice->v;
     of_band.start += slice->v.step * stroke->first_line;
+    if (!cut_slice(stroke, index))
+        return;
     stroke->slice = slice;
     stroke->row = snow_rake_first(&of_band, 0);
     int64_t end = snow_rake_first(&of_band, stroke->lines - 1) + slice->v.taps;
-    if (end <= 0 || stroke->row >= pass->voxel_rows)
+    int64_t here = stroke->row - pass->stored[1];
+    if (end <= pass->stored[1] || here >= pass->voxel_rows)
         return;
-    pass->windows->read(&pass->sheared->bands, index, stroke->row,
+    pass->windows->read(&pass->sheared->bands, index, here,
                         (int)(end - stroke->row), stroke->scratch.spans,
                         &stroke->rows);
     if (!stroke->rows.held)
         return;
     fill_lines(stroke);
-    /* Tiles whose pixels can reach a column; draw_tile looks closer. */
-    const snow_rake *u = &slice->u;
-    double low = (-u->taps - u->start) / u->step / pass->columns;
-    double high = ((double)pass->voxel_columns + u->taps - u->start) / u->step /
-                  pass->columns;
-    int64_t tile = low > 0 ? (int64_t)fmin(low, (double)pass->tiles) : 0;
-    for (; tile < pass->tiles && (double)tile < high; tile++)
+    int64_t tiles[2];
+    tiles_of_slice(stroke, tiles);
+    for (int64_t tile = tiles[0]; tile < tiles[1]; tile++)
         if (stroke->scratch.alive[tile])
             draw_tile(stroke, tile);
+}
+
+/* Floats of a band that groups are combined in. */
+static size_t spare_floats(const seen_pass *pass) {
+    return (size_t)pass->lines * pass->stride;
 }
 
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
@@ -400,11 +502,73 @@ static size_t lay_out(const seen_pass *pass, char *base, seen_scratch *out) {
     PART(first, SNOW_RAY_TILE_LINES * sizeof *out->first);
     PART(weights,
          (size_t)pass->taps[1] * SNOW_RAY_TILE_LINES * sizeof *out->weights);
+    if (pass->order->clip.cuts)
+        PART(kept, SNOW_RAY_TILE_LINES * filtered);
+    if (pass->grouping.on) {
+        PART(spare_pixels,
+             SNOW_GROUP_RANKS * spare_floats(pass) * sizeof(float));
+        PART(spare_drawn, SNOW_GROUP_RANKS * (size_t)pass->tiles);
+    }
 #undef PART
     return at;
 }
 
-/* Line 07 for one band of lines: all slices, front to back. */
+/* Line 07 for one band of lines: slices from front to back. */
+static void draw_slab(void *of, int64_t first, int64_t count,
+                      const snow_band *band) {
+    seen_stroke *stroke = of;
+    const seen_pass *pass = stroke->pass;
+    uint64_t *alive = stroke->scratch.alive;
+    stroke->finished = false;
+    stroke->pixels = band->pixels;
+    stroke->drawn = band->drawn;
+    for (int64_t tile = 0; tile < pass->tiles; tile++)
+        alive[tile] = ~UINT64_C(0) >> (64 - stroke->lines);
+    bool rising = pass->scaled.height > 0;
+    for (int64_t n = 0;
+         n < count && (!stroke->finished || snow_any_alive(alive, pass->tiles));
+         n++)
+        draw_slice(stroke, first + (rising ? n : count - 1 - n));
+}
+
+/* Groups of slices, each by itself and then together. */
+static void draw_groups(seen_stroke *stroke, const snow_band *band) {
+    const seen_pass *pass = stroke->pass;
+    const snow_sheared_image *image = &pass->image;
+    snow_band spare[SNOW_GROUP_RANKS], layer = *band;
+    for (int n = 0; n < SNOW_GROUP_RANKS; n++) {
+        spare[n].pixels =
+            stroke->scratch.spare_pixels + (size_t)n * spare_floats(pass);
+        spare[n].drawn =
+            stroke->scratch.spare_drawn + (size_t)n * (size_t)pass->tiles;
+    }
+    for (int n = 0; n < image->layers; n++) {
+        snow_grouping_draw(&pass->grouping, pass->grouping.nodes[n],
+                           &stroke->shape, draw_slab, stroke, &layer, spare);
+        layer.pixels += image->layer_floats;
+        layer.drawn += image->layer_tiles;
+    }
+}
+
+/* One band of lines of the intermediate image. */
+static void draw_band(seen_stroke *stroke, const snow_band *band) {
+    const seen_pass *pass = stroke->pass;
+    size_t pixels =
+        (size_t)stroke->lines * pass->stride / (size_t)pass->channels;
+    if (pass->grouping.on) {
+        draw_groups(stroke, band);
+        return;
+    }
+    memset(band->drawn, 0, (size_t)pass->tiles);
+    if (!pass->lazy)
+        snow_tile_clear(band->pixels, pixels, pass->channels);
+    draw_slab(stroke, 0, pass->slice_count, band);
+    if (pass->lazy)
+        snow_band_finish(&stroke->shape, band);
+    else
+        snow_tile_finish(band->pixels, pixels, pass->channels);
+}
+
 static void splat_band(void *job, int64_t item, int worker) {
     const seen_pass *pass = job;
     seen_stroke stroke = {.pass = pass};
@@ -417,40 +581,14 @@ static void splat_band(void *job, int64_t item, int worker) {
     stroke.lines = pass->scaled.v.count - stroke.first_line;
     if (stroke.lines > pass->lines)
         stroke.lines = pass->lines;
-    size_t pixels =
-        (size_t)stroke.lines * pass->stride / (size_t)pass->channels;
-    stroke.pixels =
-        pass->sheared->plane + (size_t)stroke.first_line * pass->stride;
-    stroke.drawn = pass->sheared->drawn + item * pass->tiles;
-    memset(stroke.drawn, 0, (size_t)pass->tiles);
     memset(stroke.scratch.zero, 0,
            SNOW_RAY_TILE_COLUMNS * (size_t)pass->channels * sizeof(float));
-    snow_tile_clear(stroke.pixels, pixels, pass->channels);
-    for (int64_t tile = 0; tile < pass->tiles; tile++)
-        stroke.scratch.alive[tile] = ~UINT64_C(0) >> (64 - stroke.lines);
-    bool rising = pass->scaled.height > 0;
-    for (int64_t n = 0; n < pass->slice_count &&
-                        (!stroke.finished ||
-                         snow_any_alive(stroke.scratch.alive, pass->tiles));
-         n++)
-        draw_slice(&stroke, rising ? n : pass->slice_count - 1 - n);
-    snow_tile_finish(stroke.pixels, pixels, pass->channels);
-}
-
-static void warp_lines(void *job, int64_t item, int worker) {
-    const seen_pass *pass = job;
-    (void)worker;
-    const snow_view *view = pass->order->view;
-    snow_plane plane = {
-        pass->sheared->plane, pass->stride,   pass->scaled.u.count,
-        pass->scaled.v.count, pass->channels, pass->sheared->drawn,
-        pass->columns,        pass->lines,    (int)pass->tiles};
-    int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
-    for (int y = first; y < last && y < view->height; y++)
-        snow_warp_row_seen(&plane, &pass->scaled, pass->filter, pass->warp, y,
-                           view->width,
-                           pass->pixels + (size_t)y * (size_t)view->width *
-                                              (size_t)pass->channels);
+    stroke.shape = (snow_band_shape){pass->tiles, pass->columns, stroke.lines,
+                                     pass->channels, pass->stride};
+    const snow_band band = {pass->image.pixels +
+                                (size_t)stroke.first_line * pass->stride,
+                            pass->image.drawn + item * pass->tiles};
+    draw_band(&stroke, &band);
 }
 
 /* --- a picture -------------------------------------------------------------
@@ -478,10 +616,6 @@ static snow_status classify_and_shade(seen_pass *pass, snow_stats *stats) {
                                       pass->channels, shaded);
     pass->tile = snow_ray_tile_of(settings->isa, pass->channels);
     pass->windows = snow_window_fns_of(settings->isa);
-    pass->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
-                                                           : SNOW_CATMULL_ROM;
-    pass->warp =
-        snow_warp_places_of(settings->isa, pass->filter, pass->channels);
     return SNOW_OK;
 }
 
@@ -489,54 +623,71 @@ static snow_status reserve_buffers(seen_pass *pass) {
     snow_sheared *s = pass->sheared;
     seen_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    size_t lines = (size_t)pass->scaled.v.count + 1;
     SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
                           pass->scratch_bytes * (size_t)pass->threads));
-    SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
-                          (size_t)(pass->bands * pass->tiles)));
-    return snow_reserve(s->context, &s->plane, &s->plane_capacity, 0,
-                        lines * pass->stride * sizeof *s->plane);
+    pass->image = (snow_sheared_image){.width = pass->scaled.u.count,
+                                       .height = pass->scaled.v.count,
+                                       .channels = pass->channels,
+                                       .stride = pass->stride,
+                                       .tile_width = pass->columns,
+                                       .tile_height = pass->lines,
+                                       .tiles = (int)pass->tiles};
+    memcpy(pass->image.nodes, pass->grouping.nodes, sizeof pass->image.nodes);
+    return snow_sheared_make_layers(s, pass->grouping.node_count, pass->bands,
+                                    (size_t)pass->scaled.v.count + 1,
+                                    &pass->image);
 }
 
-/* Lines 07 to 13, and the warp. */
-static snow_status draw(seen_pass *pass, snow_stats *stats) {
-    int threads = pass->order->settings->threads;
-    double mark = snow_seconds();
-    SNOW_TRY(fill_slices(pass));
-    SNOW_TRY(reserve_buffers(pass));
-    snow_parallel(pass->sheared->context, threads, pass->bands, splat_band,
-                  pass);
-    double splatted = snow_seconds();
-    snow_parallel(pass->sheared->context, threads,
-                  (pass->order->view->height + SNOW_WARP_LINES - 1) /
-                      SNOW_WARP_LINES,
-                  warp_lines, pass);
-    stats->seconds_splat += splatted - mark;
-    stats->seconds_warp += snow_seconds() - splatted;
+/* Which slices are drawn, and where they lie. */
+static snow_status choose_slices(seen_pass *pass) {
+    const snow_sheared_order *order = pass->order;
+    bool between = order->settings->quality == SNOW_QUALITY_HIGH;
+    pass->slice_count = snow_sheared_slices(order);
+    pass->voxel_columns = pass->sheared->bands.columns;
+    pass->voxel_rows = pass->sheared->bands.rows;
+    pass->first_slice = (double)order->slab.first;
+    pass->slice_step = between ? 0.5 : 1;
+    memcpy(pass->stored, order->clip.stored, sizeof pass->stored);
+    SNOW_TRY(snow_grouping_make(
+        pass->sheared->context, order->placement->slices, order->slab,
+        between ? 2 : 1, pass->slice_count, pass->scaled.height > 0,
+        order->settings->deterministic != 0, &pass->grouping));
+    pass->lazy = pass->grouping.on || order->volume->is_part;
     return SNOW_OK;
 }
 
-snow_status snow_sheared_seen_render(snow_sheared *s,
-                                     const snow_sheared_order *order,
-                                     float *pixels, snow_stats *stats) {
-    seen_pass pass = {.order = order, .sheared = s, .pixels = pixels};
-    double mark = snow_seconds();
-    SNOW_TRY(snow_sheared_encode(s, order, stats));
-    stats->seconds_encode += snow_seconds() - mark;
-    pass.slice_count = s->bands.slices;
-    pass.voxel_columns = s->bands.columns;
-    pass.voxel_rows = s->bands.rows;
+/* What the warp has to know of a picture. */
+static void keep_warping(snow_sheared *s, const seen_pass *pass) {
+    const snow_settings *settings = pass->order->settings;
+    snow_sheared_warping *w = &s->warping;
+    w->perspective = true;
+    w->scaled = pass->scaled;
+    w->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
+                                                        : SNOW_CATMULL_ROM;
+    w->places = snow_warp_places_of(settings->isa, w->filter, pass->channels);
+}
+
+snow_status snow_sheared_seen_splat(snow_sheared *s,
+                                    const snow_sheared_order *order,
+                                    snow_stats *stats,
+                                    snow_sheared_image *out) {
+    seen_pass pass = {.order = order, .sheared = s};
     SNOW_TRY(classify_and_shade(&pass, stats));
     SNOW_TRY(place_lattice(&pass));
-    snow_sheared_fill_figures(s, stats);
-    if (pass.scaled.u.count == 0 || pass.scaled.v.count == 0 ||
-        pass.slice_count == 0) {
-        memset(pixels, 0,
-               (size_t)order->view->width * (size_t)order->view->height *
-                   (size_t)order->channels * sizeof *pixels);
+    SNOW_TRY(choose_slices(&pass));
+    keep_warping(s, &pass);
+    if (pass.scaled.u.count == 0 || pass.scaled.v.count == 0) {
+        *out = (snow_sheared_image){.channels = order->channels};
         return SNOW_OK;
     }
+    double mark = snow_seconds();
     SNOW_TRY(place_slices(&pass));
     choose_tiles(&pass);
-    return draw(&pass, stats);
+    SNOW_TRY(fill_slices(&pass));
+    SNOW_TRY(reserve_buffers(&pass));
+    snow_parallel(s->context, order->settings->threads, pass.bands, splat_band,
+                  &pass);
+    *out = pass.image;
+    stats->seconds_splat += snow_seconds() - mark;
+    return SNOW_OK;
 }

@@ -426,8 +426,10 @@ static void place_slab(sheared_job *job) {
         job->count = slices / parts + (n < slices % parts);
     }
     job->sheets = job->count;
+    /* The sheet behind the slab's last slice is its own, but for the volume's.
+     */
     if (job->between && job->count)
-        job->sheets = 2 * job->count - 1;
+        job->sheets = 2 * job->count - (job->first + job->count == slices);
 }
 
 static void tell(const sheared_job *job, sheared_facts *facts) {

@@ -75,10 +75,12 @@ static snow_status add_samples(snow_sparse *s, const float *samples,
                                size_t count) {
     size_t sample = (size_t)s->channels * sizeof *samples;
     size_t bytes = s->ia_voxels * sample;
+    if (!count) /* and perhaps no IA yet */
+        return SNOW_OK;
     SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity, bytes,
                           bytes + count * sample));
     float *end = s->ia + s->ia_voxels * (size_t)s->channels;
-    if (count && samples != end)
+    if (samples != end)
         memcpy(end, samples, count * sample);
     s->ia_voxels += count;
     return SNOW_OK;

@@ -64,6 +64,7 @@ bool snow_eye_place(const snow_volume_info *info, const snow_view *view,
                               (double)(p->slices - 1) / 2};
     const double half[2] = {p->width / 2.0, p->height / 2.0};
     for (int i = 0; i < 3; i++) {
+        eye.middle[i] = middle[i];
         eye.at[i] = middle[i] - distance * steps[i][2];
         eye.ray[i][1] = pitch * steps[i][0];
         eye.ray[i][2] = pitch * steps[i][1];
@@ -98,8 +99,8 @@ void snow_eye_pixel_width(const snow_placement *p, double slice,
                           double width[2]) {
     const snow_eye *eye = &p->eye;
     double height = slice - eye->at[2];
-    const double step[3] = {(double)(p->columns - 1) / 2 - eye->at[0],
-                            (double)(p->rows - 1) / 2 - eye->at[1], height};
+    const double step[3] = {eye->middle[0] - eye->at[0],
+                            eye->middle[1] - eye->at[1], height};
     double pixel[2] = {0, 0}, ray[3];
     snow_eye_sees(eye, step, pixel); /* as every point of the boxes */
     snow_eye_ray(eye, pixel[0], pixel[1], ray);

@@ -20,6 +20,7 @@
  * slice). */
 typedef struct snow_eye {
     double at[3];        /* place: voxel (u, v) of slice k, not whole numbers */
+    double middle[3];    /* of the whole volume */
     double ray[3][3];    /* through pixel position (x, y), away from the eye:
                             ray[i][0] + x ray[i][1] + y ray[i][2] */
     double pixel[3][3];  /* a step from the eye to x and y times its depth, and

@@ -146,13 +146,11 @@ static snow_status check_part(const snow_volume *volume,
                                    part->stored[axis], stored)))
             return snow_fail(
                 volume->context, SNOW_BAD_USAGE,
-                "along axis %d a part of voxels %lld to %lld, stored %lld to "
-                "%lld, does not lie in %lld voxels; correct its boxes",
-                axis, (long long)part->first[axis],
-                (long long)(part->first[axis] + part->count[axis] - 1),
-                (long long)part->stored[axis],
-                (long long)(part->stored[axis] + stored - 1),
-                (long long)part->dims[axis]);
+                "along axis %d a part of %lld voxels from %lld, stored as %lld "
+                "from %lld, does not lie in %lld voxels; correct its boxes",
+                axis, (long long)part->count[axis],
+                (long long)part->first[axis], (long long)stored,
+                (long long)part->stored[axis], (long long)part->dims[axis]);
     }
     return SNOW_OK;
 }

@@ -1,0 +1,113 @@
+/* decompose/order.c - see order.h.
+ *
+ * Two boxes that are apart along an axis are met by a ray in the order in which
+ * it runs along that axis.  Where two axes differ no ray meets both boxes, and
+ * where all agree some rays may: that is the relation which is sorted
+ * topologically.  Boxes of a grid, of a k-d tree and of slabs have no rings;
+ * three boxes around a corner may have one. */
+#include "decompose/order.h"
+
+#include <string.h>
+
+/* 1 where rays run from `a` to `b` along an axis on which they are apart, with
+ * `a` lower; -1 from `b` to `a`; 0 where none does. */
+static int runs_upward(const snow_sight *sight, int axis, int64_t a_end,
+                       int64_t b_first) {
+    if (!sight->perspective)
+        return (sight->along[axis] > 0) - (sight->along[axis] < 0);
+    /* An eye between the two sees one or the other. */
+    if (sight->eye[axis] <= (double)a_end - 0.5)
+        return 1;
+    return sight->eye[axis] >= (double)b_first - 0.5 ? -1 : 0;
+}
+
+/* The same with the boxes in either order; 2 where they are not apart. */
+static int before_along(const snow_box *a, const snow_box *b,
+                        const snow_sight *sight, int axis) {
+    int64_t a_end = a->first[axis] + a->count[axis];
+    int64_t b_end = b->first[axis] + b->count[axis];
+    if (a_end <= b->first[axis])
+        return runs_upward(sight, axis, a_end, b->first[axis]);
+    if (b_end <= a->first[axis])
+        return -runs_upward(sight, axis, b_end, a->first[axis]);
+    return 2;
+}
+
+int snow_box_before(const snow_box *a, const snow_box *b,
+                    const snow_sight *sight) {
+    int found = 2;
+    for (int axis = 0; axis < 3; axis++) {
+        int here = before_along(a, b, sight, axis);
+        if (here == 2)
+            continue;
+        if (here == 0 || (found != 2 && found != here))
+            return 0;
+        found = here;
+    }
+    return found == 2 ? 0 : found;
+}
+
+static bool is_empty(const snow_box *box) {
+    return !box->count[0] || !box->count[1] || !box->count[2];
+}
+
+/* Counts for each box those before it; false where two overlap. */
+static bool count_before(const snow_box *boxes, int count,
+                         const snow_sight *sight, int *before) {
+    for (int a = 0; a < count; a++)
+        for (int b = a + 1; b < count; b++) {
+            if (is_empty(&boxes[a]) || is_empty(&boxes[b]))
+                continue;
+            snow_box shared;
+            if (snow_box_intersect(&boxes[a], &boxes[b], &shared))
+                return false;
+            int order = snow_box_before(&boxes[a], &boxes[b], sight);
+            before[b] += order > 0;
+            before[a] += order < 0;
+        }
+    return true;
+}
+
+/* Takes boxes that nothing lies before any more, the lowest number first;
+ * returns how many there were.  Each is looked for once and compared with all:
+ * count^2 steps. */
+static int take_boxes(const snow_box *boxes, int count, const snow_sight *sight,
+                      int *before, int *order) {
+    int taken = 0, ready = 0;
+    for (int n = 0; n < count; n++)
+        if (!is_empty(&boxes[n]) && before[n] == 0)
+            order[ready++] = n;
+    for (; taken < ready; taken++) {
+        const snow_box *box = &boxes[order[taken]];
+        for (int n = 0; n < count; n++)
+            if (n != order[taken] && !is_empty(&boxes[n]) &&
+                snow_box_before(box, &boxes[n], sight) > 0 && --before[n] == 0)
+                order[ready++] = n;
+    }
+    for (int n = 0; n < count; n++)
+        if (is_empty(&boxes[n]))
+            order[ready++] = n;
+    return ready;
+}
+
+snow_status snow_order_boxes(snow_context *context, const snow_box *boxes,
+                             int count, const snow_sight *sight, int *order) {
+    int *work = snow_allocate_array(context, (uint64_t)count * 2, sizeof *work);
+    if (!work)
+        return SNOW_NO_MEMORY;
+    int *before = work, *found = work + count;
+    memset(work, 0, (size_t)count * 2 * sizeof *work);
+    snow_status status = SNOW_OK;
+    if (!count_before(boxes, count, sight, before))
+        status = snow_fail(context, SNOW_BAD_USAGE,
+                           "parts of the volume overlap; let each voxel be "
+                           "one processor's own");
+    else if (take_boxes(boxes, count, sight, before, found) < count)
+        status = snow_fail(context, SNOW_BAD_USAGE,
+                           "parts of the volume lie before one another in a "
+                           "ring; cut it into slabs, a grid or a k-d tree");
+    if (status == SNOW_OK)
+        memcpy(order, found, (size_t)count * sizeof *order);
+    snow_release(context, work);
+    return status;
+}

@@ -1,0 +1,142 @@
+/* sheared_warp.c - the sheared method's last step: the intermediate image, or
+ * the lines of it that a processor was given by the exchange (section 4 of the
+ * paper), to the picture.
+ *
+ * Each pixel of the picture is warped by the processor that has the line of the
+ * intermediate image which the pixel falls on.  Along a line of the picture
+ * that line only rises or only falls, so that a processor's pixels are a run.
+ */
+#include "base/parallel.h"
+#include "sheared_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Lines of the picture that are warped as one item of work. */
+#define SNOW_WARP_LINES 16
+
+void snow_sheared_warp(const snow_sheared *s, int y, float *pixels) {
+    const snow_sheared_warping *w = &s->warping;
+    if (w->perspective)
+        snow_warp_row_seen(&w->plane, &w->scaled, w->filter, w->places, y,
+                           w->width, pixels);
+    else
+        snow_warp_row(&w->plane, &w->shear, w->filter, w->warp, y, w->width,
+                      pixels);
+}
+
+/* A picture to be filled. */
+typedef struct warp_job {
+    const snow_sheared *sheared;
+    float *pixels;
+} warp_job;
+
+static void warp_lines(void *of, int64_t item, int worker) {
+    const warp_job *job = of;
+    const snow_sheared_warping *w = &job->sheared->warping;
+    (void)worker;
+    int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
+    for (int y = first; y < last && y < w->height; y++)
+        snow_sheared_warp(job->sheared, y,
+                          job->pixels + (size_t)y * (size_t)w->width *
+                                            (size_t)w->plane.channels);
+}
+
+void snow_sheared_warp_all(const snow_sheared *s, int threads, float *pixels) {
+    warp_job job = {s, pixels};
+    snow_parallel(s->context, threads,
+                  (s->warping.height + SNOW_WARP_LINES - 1) / SNOW_WARP_LINES,
+                  warp_lines, &job);
+}
+
+/* --- pieces ---------------------------------------------------------------
+ */
+
+void snow_sheared_clear(const snow_sheared_image *image, int layer, int x0,
+                        int y0, int x1, int y1) {
+    size_t block = (size_t)(image->tile_width * image->channels);
+    for (int y = y0; y < y1; y++) {
+        int first = y * image->tile_height, left = image->height - first;
+        int lines = left < image->tile_height ? left : image->tile_height;
+        float *pixels = image->pixels + (size_t)layer * image->layer_floats +
+                        (size_t)first * image->stride;
+        const unsigned char *drawn = image->drawn +
+                                     (size_t)layer * image->layer_tiles +
+                                     (size_t)y * (size_t)image->tiles;
+        for (int x = x0; x < x1; x++)
+            for (int n = 0; !drawn[x] && n < lines; n++)
+                memset(pixels + (size_t)n * image->stride + (size_t)x * block,
+                       0, block * sizeof *pixels);
+    }
+}
+
+void snow_sheared_take_lines(const snow_sheared_image *image, int first,
+                             int count, const float *pixels) {
+    size_t floats = (size_t)image->width * (size_t)image->channels;
+    for (int n = 0; n < count; n++)
+        memcpy(image->pixels + (size_t)(first + n) * image->stride,
+               pixels + (size_t)n * floats, floats * sizeof *pixels);
+    memset(image->drawn, 0, image->layer_tiles);
+    if (!count)
+        return;
+    size_t from = (size_t)(first / image->tile_height);
+    size_t to = (size_t)((first + count - 1) / image->tile_height) + 1;
+    memset(image->drawn + from * (size_t)image->tiles, 1,
+           (to - from) * (size_t)image->tiles);
+}
+
+/* Where pixel x of a line of the picture falls in the intermediate image. */
+static double line_of_pixel(const snow_sheared_warping *w, int x, int y) {
+    if (!w->perspective)
+        return floor(w->shear.start[1] + x * w->shear.along_x[1] +
+                     y * w->shear.along_y[1]);
+    const double *row = w->scaled.warp[1], *depth = w->scaled.warp[2];
+    double across = x + 0.5, down = y + 0.5;
+    return floor((row[0] + across * row[1] + down * row[2]) /
+                 (depth[0] + across * depth[1] + down * depth[2]));
+}
+
+/* In perspective: the pixels of a line that see the plane of the image, which
+ * are a run. */
+static void seeing_pixels(const snow_sheared_warping *w, int y, int range[2]) {
+    range[0] = 0;
+    range[1] = w->width;
+    if (!w->perspective)
+        return;
+    const double *depth = w->scaled.warp[2];
+    double zero = depth[0] + (y + 0.5) * depth[2];
+    while (range[0] < range[1] && !(zero + (range[0] + 0.5) * depth[1] > 0))
+        range[0]++;
+    while (range[0] < range[1] && !(zero + (range[1] - 0.5) * depth[1] > 0))
+        range[1]--;
+}
+
+/* The first pixel of `seen` that falls on line `line` or beyond, where lines
+ * rise; where they fall, on one before it. */
+static int first_pixel(const snow_sheared_warping *w, int y, const int seen[2],
+                       bool rising, int line) {
+    int low = seen[0], high = seen[1];
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if ((line_of_pixel(w, middle, y) >= line) == rising)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+/* Borders are found from the line alone, so that two who share one agree. */
+void snow_sheared_pixels_of(const snow_sheared *s, int y, int first, int end,
+                            int range[2]) {
+    const snow_sheared_warping *w = &s->warping;
+    int seen[2];
+    seeing_pixels(w, y, seen);
+    range[0] = range[1] = seen[0];
+    if (seen[0] >= seen[1] || first >= end)
+        return;
+    bool rising =
+        line_of_pixel(w, seen[0], y) <= line_of_pixel(w, seen[1] - 1, y);
+    range[0] = first_pixel(w, y, seen, rising, rising ? first : end);
+    range[1] = first_pixel(w, y, seen, rising, rising ? end : first);
+}

@@ -1,0 +1,139 @@
+/* transform/clip.c - see clip.h.
+ *
+ * Where a border falls between pixels moves one way only from slice to slice,
+ * rounding included: each step from a slice's number to a pixel is monotone. */
+#include "transform/clip.h"
+
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+void snow_clip_make(const snow_volume *volume, const snow_placement *whole,
+                    snow_clip *out) {
+    const int axes[3] = {whole->u_axis, whole->v_axis, whole->slice_axis};
+    snow_part part;
+    *out = (snow_clip){0};
+    snow_volume_get_part(volume, &part);
+    bool none = !part.count[0] || !part.count[1] || !part.count[2];
+    for (int n = 0; n < 3; n++) {
+        out->stored[n] = part.stored[axes[n]];
+        out->size[n] = volume->info.dims[axes[n]];
+        out->first[n] = none ? out->stored[n] : part.first[axes[n]];
+        out->count[n] = none ? 0 : part.count[axes[n]];
+    }
+    for (int n = 0; n < 2; n++) {
+        int64_t end = out->first[n] + out->count[n];
+        bool at_start = out->first[n] == 0;
+        bool at_end = end == part.dims[axes[n]];
+        out->low[n] = at_start ? -INFINITY : (double)out->first[n] - 0.5;
+        out->high[n] = at_end ? INFINITY : (double)end - 0.5;
+        out->cuts = out->cuts || !at_start || !at_end;
+    }
+}
+
+void snow_clip_placement(const snow_clip *clip, const snow_placement *whole,
+                         snow_placement *out) {
+    snow_placement p = *whole;
+    const double *steps[3] = {whole->step_u, whole->step_v, whole->step_slice};
+    p.columns = clip->size[0];
+    p.rows = clip->size[1];
+    p.slices = clip->size[2];
+    for (int n = 0; n < 3; n++) {
+        for (int i = 0; i < 2; i++)
+            p.origin[i] += (double)clip->stored[n] * steps[n][i];
+        p.eye.at[n] -= (double)clip->stored[n];
+        p.eye.middle[n] -= (double)clip->stored[n];
+    }
+    *out = p;
+}
+
+/* --- the intermediate image -----------------------------------------------
+ */
+
+static int within(double pixel, int count) {
+    if (!(pixel > 0))
+        return 0;
+    return pixel < count ? (int)pixel : count;
+}
+
+/* The first pixel at grid position `at` or beyond: P pitch - k slope >= at. */
+static int first_on_lattice(const snow_lattice *lattice, double at,
+                            double slice) {
+    double pitch = (double)lattice->stride / lattice->phases;
+    double pixel = ceil((at + slice * lattice->slope) / pitch);
+    return within(pixel - (double)lattice->first, lattice->count);
+}
+
+void snow_clip_lattice(const snow_clip *clip, int axis,
+                       const snow_lattice *lattice, double slice,
+                       int range[2]) {
+    range[0] = first_on_lattice(lattice, clip->low[axis], slice);
+    range[1] = first_on_lattice(lattice, clip->high[axis], slice);
+}
+
+/* The same in perspective: the eye sees position `at` of the slice at
+ * eye + (at - eye) / step of slice k0. */
+static int first_on_scaled(const snow_scaled_axis *axis, double at,
+                           double step) {
+    double seen = axis->eye + (at - axis->eye) / step;
+    return within(ceil(seen / axis->pitch) - (double)axis->first, axis->count);
+}
+
+void snow_clip_scaled(const snow_clip *clip, int axis,
+                      const snow_scaled *scaled, double slice, int range[2]) {
+    const snow_scaled_axis *of = axis == 0 ? &scaled->u : &scaled->v;
+    double step = snow_scaled_step(scaled, slice);
+    range[0] = first_on_scaled(of, clip->low[axis], step);
+    range[1] = first_on_scaled(of, clip->high[axis], step);
+}
+
+/* --- the picture ----------------------------------------------------------
+ */
+
+/* How far u or v moves back from slice to slice along a ray. */
+static double slope_of(const snow_placement *p, int axis) {
+    const double *row = p->inverse[axis];
+    return row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
+}
+
+/* Grid position on a slice of the ray through a place in the picture. */
+static double position_of(const snow_placement *p, int axis, double slice,
+                          double x, double y) {
+    if (!p->perspective) {
+        const double *row = p->inverse[axis];
+        double zero = row[0] * (x - p->origin[0]) + row[1] * (y - p->origin[1]);
+        return zero - slice * slope_of(p, axis);
+    }
+    double ray[3];
+    snow_eye_ray(&p->eye, x, y, ray);
+    return p->eye.at[axis] + (slice - p->eye.at[2]) * (ray[axis] / ray[2]);
+}
+
+void snow_clip_pixels(const snow_clip *clip, const snow_placement *whole,
+                      int64_t slice, int x, int y, int count, int channels,
+                      float *pixels) {
+    size_t pixel = (size_t)channels;
+    for (int n = 0; n < count; n++) {
+        bool own = true;
+        for (int axis = 0; axis < 2; axis++) {
+            double at =
+                position_of(whole, axis, (double)slice, x + n + 0.5, y + 0.5);
+            own = own && at >= clip->low[axis] && at < clip->high[axis];
+        }
+        if (!own)
+            memset(pixels + (size_t)n * pixel, 0, pixel * sizeof *pixels);
+    }
+}
+
+void snow_clip_sight(const snow_placement *p, snow_sight *out) {
+    const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
+    double away = p->nearest_first ? 1 : -1;
+    const double along[3] = {-slope_of(p, 0) * away, -slope_of(p, 1) * away,
+                             away};
+    *out = (snow_sight){.perspective = p->perspective};
+    for (int n = 0; n < 3; n++) {
+        out->along[axes[n]] = along[n];
+        out->eye[axes[n]] = p->eye.at[n];
+    }
+}
