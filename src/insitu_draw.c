@@ -5,6 +5,7 @@
  * those of the slowest.  A rung is left upwards only if the picture there,
  * judged by the ratio that was seen when it was left downwards, would keep the
  * limit with room to spare: so that pictures do not change to and fro. */
+#include "classify/look.h"
 #include "image/image.h"
 #include "insitu_parts.h"
 #include "volume/volume.h"
@@ -195,8 +196,8 @@ static snow_status choose_look(snow_insitu *insitu) {
     double start = snow_comm_seconds(insitu->comm);
     if (insitu->transfer)
         return SNOW_OK;
-    SNOW_TRY(snow_insitu_choose(insitu->comm, insitu->volume,
-                                &insitu->look.look, &insitu->transfer));
+    SNOW_TRY(snow_transfer_make_among(insitu->comm, insitu->volume,
+                                      &insitu->look.look, &insitu->transfer));
     insitu->seconds.look = snow_comm_seconds(insitu->comm) - start;
     return SNOW_OK;
 }

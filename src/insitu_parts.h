@@ -131,9 +131,4 @@ snow_status snow_insitu_take(snow_insitu *insitu);
  * (insitu_data.c). */
 snow_status snow_insitu_check(snow_insitu *insitu);
 
-/* Collective: the transfer function of a look for a volume of which every rank
- * has a part (insitu_look.c). */
-snow_status snow_insitu_choose(snow_comm *comm, const snow_volume *volume,
-                               const snow_look *look, snow_transfer **out);
-
 #endif
