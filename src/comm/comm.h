@@ -37,10 +37,12 @@ enum {
     SNOW_TAG_VOXELS
 };
 
-/* The transport's functions, with counting.  A message to oneself is allowed;
- * a send to somebody who sends first too needs no care, as the wait for both
- * comes after.  Errors: those of the transport; SNOW_BAD_USAGE (a rank or tag
- * that there is not).  Any of them breaks the communicator. */
+/* The transport's functions, with counting.  A message to oneself is allowed.
+ * A send may be done only when its receiver has asked for it, as with MPI, and
+ * always is so between threads, where it is tested: start a send and what the
+ * other side waits for, then wait for both.  Errors: those of the transport;
+ * SNOW_BAD_USAGE (a rank or tag that there is not).  Any of them breaks the
+ * communicator. */
 snow_status snow_comm_send(snow_comm *comm, const void *bytes, size_t count,
                            int to, int tag, snow_message *message);
 snow_status snow_comm_receive(snow_comm *comm, void *bytes, size_t room,
