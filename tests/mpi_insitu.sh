@@ -9,19 +9,20 @@ for ranks in $COUNTS; do
     [ "$ranks" -le 4 ] || continue
     rm -f v_*.png v.raw
     run 0 "gray_scott on $ranks ranks" \
-        launch "$ranks" "$EXAMPLES/gray_scott" 40 200 100 v_%04d.png v.raw
-    check "two frames" test -s v_0100.png -a -s v_0200.png
+        launch "$ranks" "$EXAMPLES/gray_scott" 40 600 300 v_%04d.png v.raw
+    check "two frames" test -s v_0300.png -a -s v_0600.png
     run 0 "the tool draws its field" "$TOOL" render v.raw --dims 40x40x40 \
         --type float64 -o tool.png -y -q --preset linear -c viridis \
-        --range 0.05,0.35 --opacity 0.08:0,0.15:0.15,0.3:0.6
+        --range 0.05,0.35 --opacity 0.08:0,0.15:0.15,0.3:0.6 --view iso
+    check "something is seen" test "$(wc -c <v_0600.png)" -gt 8000
     run 0 "$ranks ranks: frame and picture differ by rounding" \
-        "$TOOL" compare v_0200.png tool.png --tolerance 1/255
-    [ "$ranks" -eq 1 ] && cp v_0200.png one.png
+        "$TOOL" compare v_0600.png tool.png --tolerance 1/255
+    [ "$ranks" -eq 1 ] && cp v_0600.png one.png
     run 0 "$ranks ranks: and from that of one rank" \
-        "$TOOL" compare v_0200.png one.png --tolerance 1/255
+        "$TOOL" compare v_0600.png one.png --tolerance 1/255
 done
 run 1 "frames of an earlier run are kept" \
-    launch 2 "$EXAMPLES/gray_scott" 16 10 10 v_0200.png%d /dev/null
+    launch 2 "$EXAMPLES/gray_scott" 16 10 10 v_0600.png%d /dev/null
 touch v_0010.png
 run 1 "and the message names the file" \
     launch 2 "$EXAMPLES/gray_scott" 16 10 10 v_%04d.png

@@ -1,9 +1,8 @@
 /* examples/insitu/gray_scott.c - a simulation that makes a movie of itself.
  *
- * The reaction-diffusion system of P. Gray and S. K. Scott, with the constants
- * of J. E. Pearson ("Complex patterns in a simple system", Science 261, 1993),
- * on a periodic grid that is cut into boxes along all three axes, one for each
- * rank of MPI:
+ * The reaction-diffusion system of P. Gray and S. K. Scott (see J. E. Pearson,
+ * "Complex patterns in a simple system", Science 261, 1993) on a periodic grid
+ * that is cut into boxes along all three axes, one for each rank of MPI:
  *
  *   u' = Du lap u - u v^2 + F (1 - u)
  *   v' = Dv lap v + u v^2 - (F + k) v
@@ -21,10 +20,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define DU 0.2
-#define DV 0.1
-#define FEED 0.025
-#define KILL 0.055
+#define DU (0.2 / 6)
+#define DV (0.1 / 6)
+#define FEED 0.02
+#define KILL 0.048
 #define STEP 1.0
 
 /* A rank's box of the grid, with one layer of ghosts around it. */
@@ -189,11 +188,14 @@ static snow_insitu *open_movie(const box *b, const char *pattern) {
                             .opacities = opacities,
                             .opacity_count = 3};
     snow_insitu *movie = NULL;
+    snow_view view;
     if (snow_insitu_new_mpi(NULL, b->comm, &movie) != SNOW_OK)
         return NULL;
     snow_insitu_set_grid(movie, b->dims, NULL, NULL);
     snow_insitu_set_brick(movie, 0, b->first, b->count, NULL);
     snow_insitu_set_look(movie, &look);
+    snow_view_named(snow_comm_context(snow_insitu_comm(movie)), "iso", &view);
+    snow_insitu_set_view(movie, &view);
     snow_insitu_set_output(movie, pattern, NULL);
     return movie;
 }
