@@ -68,6 +68,7 @@ void snow_insitu_free(snow_insitu *insitu) {
         snow_insitu_forget(insitu);
     snow_transfer_free(insitu->transfer);
     snow_voxels_free(insitu->voxels);
+    snow_release(context, insitu->boxes);
     snow_release(context, insitu->held);
     snow_release(context, insitu->moved);
     snow_release(context, insitu->bricks);

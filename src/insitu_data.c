@@ -12,11 +12,11 @@
  *
  * All ranks decide alike, from one reduction of a few numbers; only whether a
  * brick is shared or copied is a rank's own affair. */
+#include "decompose/part.h"
 #include "frame.h"
 #include "ghosts.h"
 #include "insitu_parts.h"
-#include "sheared.h"
-#include "transform/transform.h"
+#include "transform/clip.h"
 #include "volume/volume.h"
 
 #include <string.h>
@@ -224,18 +224,32 @@ static snow_status share_facts(snow_insitu *insitu, const snow_view *view,
 
 /* --- who draws what ------------------------------------------------------- */
 
-/* Methods that lay splats on the picture itself can share it only in slabs
- * along its slice axis, which is answered; -1 where any boxes will do. */
-static snow_status slab_axis(const snow_insitu *insitu, const snow_view *view,
-                             int *out) {
-    snow_settings settings = insitu->settings;
-    snow_placement placement;
-    SNOW_TRY(snow_settings_resolve(insitu->context, &insitu->whole, &settings));
-    SNOW_TRY(
-        snow_placement_make(insitu->context, &insitu->whole, view, &placement));
-    bool any = settings.method == SNOW_METHOD_SHEARED &&
-               snow_sheared_fits(&placement, &settings);
-    *out = any ? -1 : placement.slice_axis;
+/* A picture that is the same bit for bit however many ranks make it is made of
+ * slabs across the view's slices, whose axis is answered; -1 where any boxes
+ * will do. */
+static int slab_axis(const snow_insitu *insitu,
+                     const snow_placement *placement) {
+    bool any =
+        !insitu->settings.deterministic || snow_comm_ranks(insitu->comm) == 1;
+    return any ? -1 : placement->slice_axis;
+}
+
+/* Whether the boxes of all ranks can be drawn in place: bars that lie in a ring
+ * have no order from front to back. */
+static snow_status have_order(snow_insitu *insitu,
+                              const snow_placement *placement, bool *out) {
+    snow_sight sight;
+    size_t ranks = (size_t)snow_comm_ranks(insitu->comm);
+    int *order = snow_allocate_array(insitu->context, ranks, sizeof *order);
+    if (!order)
+        return SNOW_NO_MEMORY;
+    snow_clip_sight(placement, &sight);
+    snow_status status = snow_order_boxes(insitu->context, insitu->boxes,
+                                          (int)ranks, &sight, order);
+    snow_release(insitu->context, order);
+    if (status == SNOW_NO_MEMORY)
+        return status;
+    *out = status == SNOW_OK;
     return SNOW_OK;
 }
 
@@ -263,7 +277,7 @@ static snow_box cut_equal(const int64_t dims[3], int ranks, int rank) {
 
 static snow_box cut_slab(const int64_t dims[3], int axis, int ranks, int rank) {
     snow_box box = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
-    snow_slab slab = snow_slab_equal(dims[axis], ranks, rank);
+    snow_slab slab = snow_slab_grouped(dims[axis], ranks, rank);
     box.first[axis] = slab.first;
     box.count[axis] = slab.count;
     return box;
@@ -327,24 +341,63 @@ static snow_status plan(snow_insitu *insitu, const snow_insitu_layout *wanted,
     return SNOW_OK;
 }
 
+/* What this rank finds out by itself: its bricks, how the view lies, how wide
+ * ghosts must be. */
+static snow_status look_around(snow_insitu *insitu, const snow_view *view,
+                               snow_placement *placement, int64_t layers[3]) {
+    snow_settings settings = insitu->settings;
+    SNOW_TRY(list_bricks(insitu));
+    SNOW_TRY(snow_settings_resolve(insitu->context, &insitu->whole, &settings));
+    SNOW_TRY(
+        snow_placement_make(insitu->context, &insitu->whole, view, placement));
+    if (insitu->ghosts == SNOW_GHOSTS_NONE)
+        return SNOW_OK;
+    return snow_ghosts_needed(insitu->context, &insitu->whole, view, &settings,
+                              true, layers);
+}
+
+/* Collective.  Every rank's united bricks, when they have changed. */
+static snow_status share_boxes(snow_insitu *insitu, const snow_box *united) {
+    size_t ranks = (size_t)snow_comm_ranks(insitu->comm);
+    SNOW_TRY(snow_comm_agree(insitu->comm,
+                             snow_reserve(insitu->context, &insitu->boxes,
+                                          &insitu->boxes_bytes, 0,
+                                          ranks * sizeof *insitu->boxes)));
+    return snow_comm_share(insitu->comm, united, sizeof *united, insitu->boxes);
+}
+
+/* Collective.  Whether the work is done where the voxels are not. */
+static snow_status decide_recut(snow_insitu *insitu,
+                                const snow_placement *placement,
+                                const snow_box *united,
+                                const int64_t facts[FACTS], bool *out) {
+    bool ordered = true;
+    *out = true;
+    if (insitu->balance == SNOW_BALANCE_RECUT || !facts[FACT_UNITED] ||
+        slab_axis(insitu, placement) >= 0)
+        return SNOW_OK;
+    if (!facts[FACT_UNCHANGED])
+        SNOW_TRY(share_boxes(insitu, united));
+    SNOW_TRY(
+        snow_comm_agree(insitu->comm, have_order(insitu, placement, &ordered)));
+    *out = !ordered;
+    return SNOW_OK;
+}
+
 /* Collective.  Looks whether the plan still holds, and makes a new one where it
  * does not. */
 static snow_status lay_out(snow_insitu *insitu) {
     snow_view view = snow_insitu_view(insitu);
-    snow_insitu_layout l = {.recut_axis = -1};
+    snow_insitu_layout l = {.planned = false};
     snow_box united = {{0, 0, 0}, {0, 0, 0}};
+    snow_placement placement;
     int64_t facts[FACTS];
-    snow_status status = list_bricks(insitu);
-    if (status == SNOW_OK && insitu->ghosts != SNOW_GHOSTS_NONE)
-        status = snow_ghosts_needed(insitu->context, &insitu->whole, &view,
-                                    &insitu->settings, true, l.layers);
-    if (status == SNOW_OK)
-        status = slab_axis(insitu, &view, &l.recut_axis);
+    snow_status status = look_around(insitu, &view, &placement, l.layers);
     SNOW_TRY(snow_comm_agree(insitu->comm, status));
     bool is_united = unite(insitu, &united);
     SNOW_TRY(share_facts(insitu, &view, l.layers, is_united, facts));
-    l.recut = insitu->balance == SNOW_BALANCE_RECUT || !facts[FACT_UNITED] ||
-              (l.recut_axis >= 0 && snow_comm_ranks(insitu->comm) > 1);
+    SNOW_TRY(decide_recut(insitu, &placement, &united, facts, &l.recut));
+    l.recut_axis = slab_axis(insitu, &placement);
     if (facts[FACT_UNCHANGED] && l.recut == insitu->layout.recut &&
         l.recut_axis == insitu->layout.recut_axis)
         return SNOW_OK;

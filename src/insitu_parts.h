@@ -75,9 +75,10 @@ struct snow_insitu {
     bool changed; /* bricks or sharing, since they were planned with */
     snow_type type;
     snow_voxels *voxels;
-    snow_box *held; /* the bricks' boxes, and the bricks, in one order */
+    snow_box *boxes; /* every rank's bricks united, where they are boxes */
+    snow_box *held;  /* the bricks' boxes, and the bricks, in one order */
     snow_brick *moved;
-    size_t held_bytes, moved_bytes;
+    size_t boxes_bytes, held_bytes, moved_bytes;
     int held_count;
     char *dense;
     size_t dense_bytes;

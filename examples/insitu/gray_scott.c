@@ -13,12 +13,11 @@
  * mpirun -n 4 ./a.out 64 400 40 v_%04d.png [FIELD]
  *
  * makes 400 steps on a 64^3 grid, a picture of v after every 40, and writes the
- * last v as raw float64 to FILE. */
+ * last v as raw float64 to FIELD. */
 #include <snowglass/mpi.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define DU (0.2 / 6)
 #define DV (0.1 / 6)
