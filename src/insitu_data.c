@@ -33,6 +33,27 @@ enum {
     FACTS
 };
 
+/* --- what the picture is made with -----------------------------------------
+ */
+
+static int shrink(int side, snow_lowering lowering) {
+    int by = lowering == SNOW_LOWERED_HALF      ? 2
+             : lowering == SNOW_LOWERED_QUARTER ? 4
+                                                : 1;
+    return (side + by - 1) / by;
+}
+
+void snow_insitu_lowered(const snow_insitu *insitu, snow_view *view,
+                         snow_settings *settings) {
+    snow_lowering lowering = insitu->layout.lowering;
+    *view = snow_insitu_view(insitu);
+    *settings = insitu->settings;
+    view->width = shrink(view->width, lowering);
+    view->height = shrink(view->height, lowering);
+    if (lowering != SNOW_LOWERED_NOT)
+        settings->quality = SNOW_QUALITY_DRAFT;
+}
+
 /* --- this rank's bricks --------------------------------------------------- */
 
 static snow_status add_brick(snow_insitu *insitu, int id) {
@@ -342,17 +363,17 @@ static snow_status plan(snow_insitu *insitu, const snow_insitu_layout *wanted,
 }
 
 /* What this rank finds out by itself: its bricks, how the view lies, how wide
- * ghosts must be. */
-static snow_status look_around(snow_insitu *insitu, const snow_view *view,
-                               snow_placement *placement, int64_t layers[3]) {
-    snow_settings settings = insitu->settings;
+ * ghosts must be, which grow as pictures get smaller. */
+static snow_status look_around(snow_insitu *insitu, snow_placement *placement,
+                               int64_t layers[3]) {
+    snow_view view;
+    snow_settings settings;
+    snow_insitu_lowered(insitu, &view, &settings);
     SNOW_TRY(list_bricks(insitu));
     SNOW_TRY(snow_settings_resolve(insitu->context, &insitu->whole, &settings));
     SNOW_TRY(
-        snow_placement_make(insitu->context, &insitu->whole, view, placement));
-    if (insitu->ghosts == SNOW_GHOSTS_NONE)
-        return SNOW_OK;
-    return snow_ghosts_needed(insitu->context, &insitu->whole, view, &settings,
+        snow_placement_make(insitu->context, &insitu->whole, &view, placement));
+    return snow_ghosts_needed(insitu->context, &insitu->whole, &view, &settings,
                               true, layers);
 }
 
@@ -388,11 +409,12 @@ static snow_status decide_recut(snow_insitu *insitu,
  * does not. */
 static snow_status lay_out(snow_insitu *insitu) {
     snow_view view = snow_insitu_view(insitu);
-    snow_insitu_layout l = {.planned = false};
+    insitu->layout.lowering = insitu->lowering;
+    snow_insitu_layout l = {.lowering = insitu->lowering};
     snow_box united = {{0, 0, 0}, {0, 0, 0}};
     snow_placement placement;
     int64_t facts[FACTS];
-    snow_status status = look_around(insitu, &view, &placement, l.layers);
+    snow_status status = look_around(insitu, &placement, l.layers);
     SNOW_TRY(snow_comm_agree(insitu->comm, status));
     bool is_united = unite(insitu, &united);
     SNOW_TRY(share_facts(insitu, &view, l.layers, is_united, facts));
@@ -413,7 +435,8 @@ static const void *in_place(const snow_insitu *insitu, snow_box *memory) {
     for (int id = 0; id < insitu->brick_count; id++)
         if (snow_box_voxels(&insitu->bricks[id].box))
             brick = &insitu->bricks[id];
-    if (insitu->layout.exchanged || insitu->held_count != 1)
+    if (insitu->layout.exchanged || insitu->held_count != 1 ||
+        insitu->ghosts == SNOW_GHOSTS_NONE)
         return NULL;
     int64_t step = 1, back = 0;
     for (int i = 0; i < 3; i++) {
@@ -432,21 +455,53 @@ static const void *in_place(const snow_insitu *insitu, snow_box *memory) {
            (size_t)back * snow_type_size(insitu->type);
 }
 
-/* The bricks and their halos, into the dense box. */
+/* Repeats the outermost own voxels of the dense box in place of its ghosts. */
+static void repeat_border(const snow_insitu *insitu, size_t value) {
+    const snow_box *own = &insitu->layout.owned,
+                   *stored = &insitu->layout.stored;
+    int64_t low[3], high[3];
+    for (int i = 0; i < 3; i++) {
+        low[i] = own->first[i] - stored->first[i];
+        high[i] = low[i] + own->count[i] - 1;
+    }
+    size_t row = (size_t)stored->count[0] * value;
+    for (int64_t z = 0; z < stored->count[2]; z++)
+        for (int64_t y = 0; y < stored->count[1]; y++) {
+            char *to = insitu->dense + (size_t)(z * stored->count[1] + y) * row;
+            int64_t near_z = z < low[2] ? low[2] : z > high[2] ? high[2] : z;
+            int64_t near_y = y < low[1] ? low[1] : y > high[1] ? high[1] : y;
+            const char *from =
+                insitu->dense +
+                (size_t)(near_z * stored->count[1] + near_y) * row;
+            for (int64_t x = 0; x < stored->count[0]; x++) {
+                int64_t near = x < low[0] ? low[0] : x > high[0] ? high[0] : x;
+                if (near != x || from != to)
+                    memcpy(to + (size_t)x * value, from + (size_t)near * value,
+                           value);
+            }
+        }
+}
+
+/* The bricks and, where they count, their halos, into the dense box. */
 static void copy_bricks(const snow_insitu *insitu, size_t value) {
+    static const snow_halo none;
     const snow_box *stored = &insitu->layout.stored;
+    bool haloes = insitu->ghosts != SNOW_GHOSTS_NONE;
     for (int id = 0; id < insitu->brick_count; id++) {
         const snow_insitu_brick *brick = &insitu->bricks[id];
         if (!snow_box_voxels(&brick->box))
             continue;
-        snow_box has = grow(&brick->box, brick->halo.low, brick->halo.high,
-                            insitu->whole.dims);
+        const snow_halo *halo = haloes ? &brick->halo : &none;
+        snow_box has =
+            grow(&brick->box, halo->low, halo->high, insitu->whole.dims);
         snow_brick from = {.box = brick->box, .voxels = brick->voxels};
         memcpy(from.stride, brick->stride, sizeof from.stride);
         snow_box box;
         if (snow_box_intersect(&has, stored, &box))
             snow_brick_copy(&from, value, &box, stored, insitu->dense);
     }
+    if (!haloes && snow_box_voxels(&insitu->layout.owned))
+        repeat_border(insitu, value);
 }
 
 /* Room for the dense box. */

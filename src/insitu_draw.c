@@ -18,25 +18,7 @@
 
 #define PATH_BYTES 4096
 
-/* --- what is drawn -------------------------------------------------------- */
-
-static int shrink(int side, snow_lowering lowering) {
-    int by = lowering == SNOW_LOWERED_HALF      ? 2
-             : lowering == SNOW_LOWERED_QUARTER ? 4
-                                                : 1;
-    return (side + by - 1) / by;
-}
-
-/* View and settings of the rung. */
-static void lower(const snow_insitu *insitu, snow_view *view,
-                  snow_settings *settings) {
-    *view = snow_insitu_view(insitu);
-    *settings = insitu->settings;
-    view->width = shrink(view->width, insitu->lowering);
-    view->height = shrink(view->height, insitu->lowering);
-    if (insitu->lowering != SNOW_LOWERED_NOT)
-        settings->quality = SNOW_QUALITY_DRAFT;
-}
+/* --- the size that was asked for ------------------------------------------ */
 
 /* Where pixel `at` of `to` lies among `from` pixels: between `low` and the next
  * one, `share` of the way. */
@@ -128,8 +110,8 @@ static double expect_above(const snow_insitu *insitu, double seconds) {
 /* Goes by the seconds of the slowest rank, the same on all. */
 static void steer(snow_insitu *insitu, double seconds) {
     snow_lowering at = insitu->lowering;
-    if (insitu->limit_seconds <= 0)
-        return;
+    if (insitu->limit_seconds <= 0 || at != insitu->layout.lowering)
+        return; /* a further picture of voxels that were taken before */
     if (insitu->cost[at] <= 0)
         insitu->cost[at] = seconds;
     if (seconds > insitu->limit_seconds) {
@@ -208,7 +190,7 @@ static snow_status make_picture(snow_insitu *insitu, snow_image **out) {
     snow_settings settings;
     snow_image *image = NULL;
     snow_status status = SNOW_OK;
-    lower(insitu, &view, &settings);
+    snow_insitu_lowered(insitu, &view, &settings);
     if (!insitu->frame)
         status = snow_frame_new(insitu->context, &insitu->frame);
     SNOW_TRY(snow_comm_agree(insitu->comm, status));
@@ -245,7 +227,7 @@ static snow_status draw(snow_insitu *insitu, snow_image **out) {
                          "there are no voxels to draw; call "
                          "snow_insitu_update first");
     SNOW_TRY(snow_insitu_check(insitu));
-    insitu->last_lowering = insitu->lowering;
+    insitu->last_lowering = insitu->layout.lowering;
     snow_context_set_limit(insitu->context, insitu->limit_bytes);
     SNOW_TRY(settle(insitu, make_picture(insitu, &image)));
     if (!insitu->left_out) {

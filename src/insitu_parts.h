@@ -37,10 +37,11 @@ typedef struct snow_insitu_seconds {
  * on all ranks. */
 typedef struct snow_insitu_layout {
     bool planned, exchanged, recut;
-    int64_t layers[3]; /* ghost voxels around the owned box */
-    snow_box owned;    /* what this rank draws; may be empty */
-    snow_box stored;   /* with its ghosts; of one voxel where owned is empty */
-    int recut_axis;    /* of slabs, -1: bricks */
+    snow_lowering lowering; /* that pictures of these voxels are made with */
+    int64_t layers[3];      /* ghost voxels around the owned box */
+    snow_box owned;         /* what this rank draws; may be empty */
+    snow_box stored; /* with its ghosts; of one voxel where owned is empty */
+    int recut_axis;  /* of slabs, -1: bricks */
 } snow_insitu_layout;
 
 struct snow_insitu {
@@ -123,6 +124,11 @@ snow_view snow_insitu_view(const snow_insitu *insitu);
 /* The path of a step's picture; false where it is too long. */
 bool snow_insitu_path(const snow_insitu *insitu, int64_t step, char *out,
                       size_t room);
+
+/* View and settings of pictures of the voxels last taken, lowered for limits
+ * (insitu_data.c). */
+void snow_insitu_lowered(const snow_insitu *insitu, snow_view *view,
+                         snow_settings *settings);
 
 /* Collective: the voxels, as they are now, become the ranks' parts of a volume
  * (insitu_data.c). */

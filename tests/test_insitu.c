@@ -371,6 +371,17 @@ static void wide_halos_are_used_in_place_of_messages(void **state) {
     assert_true(s.figures.exchanged);
 }
 
+static void without_ghosts_there_are_seams_and_no_messages(void **state) {
+    (void)state;
+    scene s = make_scene(4, 2, 2, 1);
+    s.ghosts = SNOW_GHOSTS_NONE;
+    s.halo = 1;
+    run_scene(&s);
+    assert_false(s.figures.exchanged);
+    assert_true(s.difference > 2.0 / 255); /* seams */
+    assert_true(s.difference < 0.3);       /* but no holes */
+}
+
 static void voxels_that_lie_as_wanted_are_not_copied(void **state) {
     (void)state;
     scene s = make_scene(1, 1, 1, 1);
@@ -559,6 +570,8 @@ static void run_movie(movie *m, const char *folder) {
     m->status = snow_comm_threads(context, m->scene.ranks, movie_rank, m);
     snprintf(m->message, sizeof m->message, "%s",
              snow_context_message(context));
+    if (m->status != SNOW_OK)
+        print_message("%s\n", m->message);
     snow_context_free(context);
     assert_int_equal(count.blocks, 0);
 }
@@ -883,6 +896,7 @@ int main(void) {
         cmocka_unit_test(every_view_does),
         cmocka_unit_test(every_type_and_layout_does),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
+        cmocka_unit_test(without_ghosts_there_are_seams_and_no_messages),
         cmocka_unit_test(voxels_that_lie_as_wanted_are_not_copied),
         cmocka_unit_test(several_bricks_of_a_rank_are_one_part),
         cmocka_unit_test(bricks_that_are_no_box_are_recut),

@@ -122,8 +122,9 @@ SNOW_API snow_status snow_insitu_place_bricks(snow_insitu *insitu,
 /* Where ghost voxels come from. */
 typedef enum snow_ghosts {
     SNOW_GHOSTS_AUTO = 0, /* the bricks' halos, else from their owners */
-    SNOW_GHOSTS_NONE      /* from nowhere: nothing is exchanged, and where parts
-                             meet the picture shows seams */
+    SNOW_GHOSTS_NONE      /* from nowhere: each rank repeats its outermost
+                             voxels; no message, and faint seams where parts
+                             meet */
 } snow_ghosts;
 
 /* Where the work is done. */
