@@ -280,10 +280,10 @@ static const double turns[][3] = {
 #define TURNS (int)(sizeof turns / sizeof *turns)
 
 /* A play of a scene, of which everything varies with `n`. */
-static play play_of(int n, reference_scene *scene) {
+static play play_of(int n, int64_t depth, reference_scene *scene) {
     static const double zooms[] = {1, 0.3, 2, 0.6, 6};
     const double *turn = turns[n % TURNS];
-    *scene = model_scene((int64_t[]){21, 18, 24},
+    *scene = model_scene((int64_t[]){21, 18, depth},
                          n % 3 ? SNOW_UINT8 : SNOW_INT16, n % 4 == 0,
                          (model_matrix)(n % MODEL_MATRICES), (uint64_t)n + 1);
     model_turn(scene, turn[0], turn[1], turn[2], zooms[n % 5]);
@@ -310,7 +310,7 @@ static void sweep(const char *title, int scenes, double fov,
         reference_scene scene;
         snow_transfer *transfer = NULL;
         double strongest;
-        play p = play_of(n, &scene);
+        play p = play_of(n, 24, &scene);
         p.view.fov = fov;
         p.settings.method = methods[n % method_count];
         assert_int_equal(snow_transfer_new(context, scene.colors,
@@ -352,11 +352,190 @@ static void so_it_does_by_the_exact_methods(void **state) {
     sweep("exact, perspective", 6, 50, exact, 3);
 }
 
+/* --- deterministic pictures -----------------------------------------------
+ */
+
+/* Bits, over methods and views. */
+static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    static const snow_method methods[] = {
+        SNOW_METHOD_SHEARED, SNOW_METHOD_SHEARED, SNOW_METHOD_FOOTPRINT,
+        SNOW_METHOD_SHEARED, SNOW_METHOD_TESTED};
+    int pictures = 0;
+    double moved = 0;
+    for (int n = 0; n < 24; n++) {
+        reference_scene scene;
+        snow_transfer *transfer = NULL;
+        double strongest;
+        play p = play_of(n, n % 2 ? 24 : 70, &scene);
+        if (n % TURNS == 8) /* a blend of two axes */
+            p.settings.quality = SNOW_QUALITY_NORMAL;
+        p.view.fov = n % 3 == 2 ? 40 : 0;
+        p.settings.method = methods[n % 5];
+        assert_int_equal(snow_transfer_new(context, scene.colors,
+                                           scene.color_count, scene.opacities,
+                                           scene.opacity_count, &transfer),
+                         SNOW_OK);
+        p.transfer = transfer;
+        float *usual = serial_picture(context, &p, &strongest);
+        p.settings.deterministic = 1;
+        float *serial = serial_picture(context, &p, &strongest);
+        for (size_t i = 0; i < floats_of(&p); i++)
+            moved = fmax(moved, fabs((double)usual[i] - (double)serial[i]));
+        p.cut = GROUPED;
+        for (int i = 0; i < COUNTS; i++) {
+            enact(context, &p, rank_counts[i]);
+            if (memcmp(p.picture, serial, floats_of(&p) * sizeof(float)) != 0)
+                fail_msg("%d ranks: scene %d, %g", rank_counts[i], n,
+                         largest_gap(&p, serial));
+            free(p.picture);
+            pictures++;
+        }
+        free(usual);
+        free(serial);
+        snow_transfer_free(transfer);
+        model_free(&scene);
+    }
+    print_message("             %d pictures are the same; the usual ones "
+                  "differ by up to %.2g\n",
+                  pictures, moved);
+    assert_true(moved < BOUND_OPAQUE);
+    snow_context_free(context);
+}
+
+/* --- what goes wrong ------------------------------------------------------
+ */
+
+/* A mistake that one rank makes, or all. */
+typedef struct mishap {
+    play play;
+    const char *expected; /* part of the message */
+    int wrong;            /* rank; -1: none but what the play has */
+    void (*spoil)(play *p, snow_volume *volume);
+    bool again; /* a second picture, without the mistake, is made */
+} mishap;
+
+static snow_status stumble(snow_comm *comm, void *user) {
+    const mishap *m = user;
+    play p = m->play;
+    snow_context *context = snow_comm_context(comm);
+    int rank = snow_comm_rank(comm);
+    void *voxels = NULL;
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_image *image = NULL;
+    SNOW_TRY(open_part(context, &p, &p.boxes[rank], &voxels, &volume));
+    SNOW_TRY(copy_transfer(context, p.transfer, &transfer));
+    SNOW_TRY(snow_frame_new(context, &frame));
+    if (rank == m->wrong)
+        m->spoil(&p, volume);
+    snow_status status = snow_ranks_render(
+        frame, comm, volume, transfer, &p.view, &p.settings, &p.how, &image);
+    char message[300];
+    snprintf(message, sizeof message, "%s", snow_context_message(context));
+    bool told = strstr(message, m->expected) != NULL;
+    if (status != SNOW_BAD_USAGE || !told || image)
+        status = snow_fail(context, SNOW_BAD_OUTPUT, "rank %d: %d, \"%s\"",
+                           rank, (int)status, message);
+    else
+        status = SNOW_OK;
+    if (status == SNOW_OK && m->again) {
+        status = snow_ranks_render(frame, comm, volume, transfer, &m->play.view,
+                                   &m->play.settings, &p.how, &image);
+        snow_image_free(image);
+    }
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    free(voxels);
+    return status;
+}
+
+static void other_view(play *p, snow_volume *volume) {
+    (void)volume;
+    p->view.azimuth += 1;
+}
+
+static void bad_threshold(play *p, snow_volume *volume) {
+    (void)volume;
+    p->settings.threshold = 300;
+}
+
+/* Leaves some of its voxels to nobody. */
+static void modest(play *p, snow_volume *volume) {
+    snow_part part;
+    (void)p;
+    snow_volume_get_part(volume, &part);
+    for (int axis = 0; axis < 3; axis++)
+        part.count[axis]--;
+    assert_int_equal(snow_volume_set_part(volume, &part), SNOW_OK);
+}
+
+/* The part without its ghosts: refused by that rank alone. */
+static void ghostless(play *p, snow_volume *volume) {
+    snow_part part;
+    (void)p;
+    snow_volume_get_part(volume, &part);
+    for (int axis = 0; axis < 3; axis++) {
+        part.first[axis] = part.stored[axis];
+        part.count[axis] = volume->info.dims[axis];
+    }
+    assert_int_equal(snow_volume_set_part(volume, &part), SNOW_OK);
+}
+
+static void what_one_rank_finds_wrong_all_are_told(void **state) {
+    (void)state;
+    static const struct {
+        void (*spoil)(play *p, snow_volume *volume);
+        const char *expected;
+        bool deterministic, again;
+        int bits;
+        cutting cut;
+    } cases[] = {
+        {other_view, "different pictures", false, true, 0, BRICKS},
+        {bad_threshold, "rank 2: threshold is 300", false, true, 0, ACROSS},
+        {modest, "voxels do not make up", false, false, 0, BESIDE},
+        {ghostless, "rank 2: this view needs", false, false, 0, BESIDE},
+        {NULL, "deterministic pictures are made of slabs", true, false, 0,
+         BESIDE},
+        {NULL, "whole groups", true, false, 0, ACROSS},
+        {NULL, "pixels of 7 bits", false, false, 7, ACROSS},
+    };
+    snow_context *context = support_context();
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        reference_scene scene;
+        snow_transfer *transfer = NULL;
+        mishap m = {.play = play_of(0, 70, &scene),
+                    .expected = cases[n].expected,
+                    .spoil = cases[n].spoil,
+                    .wrong = cases[n].spoil ? 2 : -1,
+                    .again = cases[n].again};
+        assert_int_equal(snow_transfer_new(context, scene.colors,
+                                           scene.color_count, scene.opacities,
+                                           scene.opacity_count, &transfer),
+                         SNOW_OK);
+        m.play.transfer = transfer;
+        m.play.cut = cases[n].cut;
+        m.play.settings.deterministic = cases[n].deterministic;
+        m.play.how.pixel_bits = cases[n].bits;
+        cut_up(context, &m.play, 5);
+        if (snow_comm_threads(context, 5, stumble, &m) != SNOW_OK)
+            fail_msg("case %zu: %s", n, snow_context_message(context));
+        snow_transfer_free(transfer);
+        model_free(&scene);
+    }
+    snow_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_ranks_makes_the_serial_picture),
         cmocka_unit_test(so_it_does_in_perspective),
         cmocka_unit_test(so_it_does_by_the_exact_methods),
+        cmocka_unit_test(deterministic_pictures_are_the_same_bit_for_bit),
+        cmocka_unit_test(what_one_rank_finds_wrong_all_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
