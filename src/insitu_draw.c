@@ -215,6 +215,14 @@ static void note_stages(snow_insitu *insitu) {
                              stats->seconds_composite + stats->seconds_warp;
 }
 
+/* Collective.  What the picture took on the slowest rank steers the next. */
+static snow_status agree_seconds(snow_insitu *insitu) {
+    double seconds = insitu->seconds.draw + insitu->seconds.update;
+    SNOW_TRY(snow_comm_reduce_doubles(insitu->comm, &seconds, 1, SNOW_MAX));
+    steer(insitu, seconds);
+    return SNOW_OK;
+}
+
 static snow_status draw(snow_insitu *insitu, snow_image **out) {
     double start = snow_comm_seconds(insitu->comm);
     snow_image *image = NULL;
@@ -234,9 +242,11 @@ static snow_status draw(snow_insitu *insitu, snow_image **out) {
         insitu->pictures++;
         note_stages(insitu);
         insitu->seconds.draw = snow_comm_seconds(insitu->comm) - start;
-        double seconds = insitu->seconds.draw + insitu->seconds.update;
-        SNOW_TRY(snow_comm_reduce_doubles(insitu->comm, &seconds, 1, SNOW_MAX));
-        steer(insitu, seconds);
+        snow_status status = agree_seconds(insitu);
+        if (status != SNOW_OK) {
+            snow_image_free(image);
+            return status;
+        }
     }
     *out = image;
     return SNOW_OK;

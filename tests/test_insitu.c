@@ -730,6 +730,75 @@ static void a_limit_of_memory_is_kept_and_told(void **state) {
     support_folder_remove(folder);
 }
 
+/* --- memory that fails ---------------------------------------------------- */
+
+/* An allocator that refuses one block, and counts those that are there. */
+typedef struct miser {
+    int64_t until, blocks;
+} miser;
+
+static void *miser_allocate(void *user, size_t bytes) {
+    miser *m = user;
+    void *block = m->until-- == 0 ? NULL : malloc(bytes);
+    m->blocks += block != NULL;
+    return block;
+}
+
+static void miser_release(void *user, void *block) {
+    ((miser *)user)->blocks--;
+    free(block);
+}
+
+/* A rank that draws one picture of scattered bricks. */
+static snow_status draw_once(snow_comm *comm, void *user) {
+    const scene *s = user;
+    rank_memory m = {.count = 0};
+    snow_insitu *insitu = NULL;
+    snow_image *image = NULL;
+    SNOW_TRY(snow_insitu_new(comm, &insitu));
+    tell_picture(insitu, s);
+    tell_bricks(insitu, s, snow_comm_rank(comm), 0, &m);
+    snow_status status = snow_insitu_update(insitu);
+    if (status == SNOW_OK)
+        status = snow_insitu_draw(insitu, &image);
+    snow_image_free(image);
+    snow_insitu_free(insitu);
+    free_memory(&m);
+    return status;
+}
+
+/* Whichever block is refused on whichever rank: all fail alike, nobody waits
+ * for ever, and nothing is left. */
+static void no_block_that_is_refused_hangs_or_leaks(void **state) {
+    (void)state;
+    scene s = make_scene(3, 3, 1, 2);
+    snow_status status = SNOW_NO_MEMORY;
+    int64_t refused = 0;
+    for (int n = 0; n < s.bricks; n++)
+        s.owner[n] = n % 3 == 0 ? 2 : n / 3;
+    for (int64_t n = 1; status != SNOW_OK; n++) {
+        miser m = {.until = n};
+        const snow_allocator allocator = {miser_allocate, miser_release, &m};
+        snow_context *context = NULL;
+        assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+        status = snow_comm_threads(context, s.ranks, draw_once, &s);
+        refused += m.until < 0;
+        if (status != SNOW_OK && status != SNOW_NO_MEMORY)
+            fail_msg("block %lld: %s", (long long)n,
+                     snow_context_message(context));
+        if (m.until >= 0) /* there were no more */
+            assert_int_equal(status, SNOW_OK);
+        else if (status != SNOW_OK)
+            assert_int_equal(status, SNOW_NO_MEMORY);
+        status = m.until >= 0 ? SNOW_OK : SNOW_NO_MEMORY;
+        snow_context_free(context);
+        if (m.blocks)
+            fail_msg("block %lld: %lld are left", (long long)n,
+                     (long long)m.blocks);
+    }
+    assert_true(refused > 50);
+}
+
 /* --- errors --------------------------------------------------------------- */
 
 /* One way to be wrong on one rank. */
@@ -912,6 +981,7 @@ int main(void) {
             a_limit_of_time_lowers_pictures_and_then_leaves_some_out),
         cmocka_unit_test(a_limit_that_suffices_lowers_nothing),
         cmocka_unit_test(a_limit_of_memory_is_kept_and_told),
+        cmocka_unit_test(no_block_that_is_refused_hangs_or_leaks),
         cmocka_unit_test(what_is_wrong_on_one_rank_is_told_to_all),
         cmocka_unit_test(setters_refuse_what_cannot_be),
         cmocka_unit_test(an_adopted_communicator_goes_with_it),
