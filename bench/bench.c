@@ -15,6 +15,7 @@ static const char help[] =
     "\n"
     "  table1 table2 table3   the paper's tables\n"
     "  speed                  how fast pictures are made\n"
+    "  balance                how equal the work of many processors is\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -28,6 +29,11 @@ static const char help[] =
     "colours, shading, sizes, methods, encodings and threads, against "
     "original and\n"
     "tested splatting with the same kernel.  It takes many minutes.\n"
+    "\n"
+    "balance prints the interesting voxels of the processor that has most, "
+    "over "
+    "the\n"
+    "mean, for equal slabs, slabs by count, and bricks.\n"
     "\n"
     "Every row is verified before its times are printed.\n"
     "\n"
@@ -78,6 +84,7 @@ static const struct bench_entry {
     {"table2", bench_table2, "kae", true},
     {"table3", bench_table3, "kae", true},
     {"speed", bench_speed, "qlvocwst", false},
+    {"balance", bench_balance, "", true},
 };
 
 #define OF_ALL "djrh"
