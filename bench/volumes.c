@@ -102,11 +102,12 @@ static bool is_vti(const char *path) {
 static snow_status open_file(snow_context *context, const bench_source *source,
                              const bench_options *options, bench_volume *out) {
     if (!options->data || !source->file) {
-        /* Its type is its own, whatever that of the file is. */
-        snow_volume_options sizes = {.type = SNOW_TYPE_NONE};
-        memcpy(sizes.dims, source->options.dims, sizeof sizes.dims);
         snprintf(out->source, sizeof out->source, "%s", source->phantom);
-        return snow_volume_open(context, source->phantom, &sizes, &out->file);
+        /* The rest of the options is the file's. */
+        snow_volume_options size = {.dims = {source->options.dims[0],
+                                             source->options.dims[1],
+                                             source->options.dims[2]}};
+        return snow_volume_open(context, source->phantom, &size, &out->file);
     }
     char path[PATH_BYTES];
     spell_path(options, source->file, path, sizeof path);

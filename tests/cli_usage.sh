@@ -56,8 +56,6 @@ info --perspective x|no option of info
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint
 --crop 0:1,0:1 x|--crop: 
---dataset d x|--dataset is not built yet
---channel 1 x|--channel is not built yet
 --series 1 x|--series is not built yet
 --quality best x|'best' is unknown
 --frames 3 x|--frames: no option of render; it belongs to turntable
