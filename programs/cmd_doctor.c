@@ -2,6 +2,7 @@
  * the library's own lists, so that the answer cannot grow old. */
 #include "commands.h"
 #include "report.h"
+#include "sequence_encoder.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -91,6 +92,7 @@ static int tell_json(void) {
         json_object_set_new(o, lists[i].key, list_json(lists[i].at));
     json_object_set_new(o, "volume_outputs", words_json(volume_suffixes));
     json_object_set_new(o, "picture_outputs", words_json(picture_suffixes));
+    json_object_set_new(o, "ffmpeg", json_boolean(encoder_is_there()));
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
     json_object_set_new(o, "isa", json_string(snow_isa_used()));
     json_object_set_new(o, "threads", json_integer(snow_processors()));
@@ -116,6 +118,9 @@ static int tell_text(void) {
     }
     print_row("volume outputs", volume_suffixes);
     print_row("picture outputs", picture_suffixes);
+    print_row("movie outputs", encoder_is_there()
+                                   ? ".mp4 .webm .gif, by ffmpeg"
+                                   : "frames only: there is no ffmpeg");
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
     printf("%-16s%d\n", "threads", snow_processors());

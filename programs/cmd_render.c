@@ -25,6 +25,14 @@ static bool is_png(const char *path) {
            (length >= 4 && strcmp(path + length - 4, ".PNG") == 0);
 }
 
+int check_settings(const options *asked) {
+    if (strcmp(asked->method, "original") == 0 &&
+        strcmp(asked->encoding, "auto") != 0)
+        return fail_usage("--encoding: method original encodes nothing; leave "
+                          "one of the two out");
+    return check_look(asked);
+}
+
 /* Needs no file, so it comes before everything else. */
 static int check_combination(const options *asked) {
     if (!asked->output)
@@ -33,17 +41,13 @@ static int check_combination(const options *asked) {
         return fail_usage("%s: --background and --bits are for PNG files; "
                           "leave them out or name a .png",
                           asked->output);
-    if (strcmp(asked->method, "original") == 0 &&
-        strcmp(asked->encoding, "auto") != 0)
-        return fail_usage("--encoding: method original encodes nothing; leave "
-                          "one of the two out");
     if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
                          same_place(asked->stats, asked->output)))
         return fail_usage("--stats: goes where --output goes; name two places");
     if (is_stream(asked->output) && isatty(STDOUT_FILENO))
         return fail_usage("--output: '-' is a terminal; send it to a pipe or a "
                           "file");
-    return check_look(asked);
+    return check_settings(asked);
 }
 
 /* A long rendering must not end in an output that could have been refused at
@@ -81,8 +85,8 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
 
 /* The texts were checked against the choices of the table, so that every name
  * is known to the library. */
-static int make_settings(const options *asked, const snow_volume *volume,
-                         snow_settings *out) {
+int make_settings(const options *asked, const snow_volume *volume,
+                  snow_settings *out) {
     snow_settings_init(out);
     out->threshold = asked->threshold < 0 ? 0 : asked->threshold;
     out->method = (snow_method)snow_method_named(asked->method);
@@ -106,8 +110,8 @@ static int make_settings(const options *asked, const snow_volume *volume,
 }
 
 /* A named view sets size and angles too, hence it comes before them. */
-static int make_view(snow_context *context, const options *asked,
-                     const snow_volume *volume, snow_view *out) {
+int make_view(snow_context *context, const options *asked,
+              const snow_volume *volume, snow_view *out) {
     snow_view_default(volume, out);
     if (asked->view) {
         snow_status status = snow_view_named(context, asked->view, out);

@@ -40,6 +40,10 @@ static int run_verb(const verb_row *verb, const options *asked) {
     switch (verb->bit) {
     case VERB_RENDER:
         return cmd_render(asked);
+    case VERB_TURNTABLE:
+        return cmd_turntable(asked);
+    case VERB_MOVIE:
+        return cmd_movie(asked);
     case VERB_INFO:
         return cmd_info(asked);
     case VERB_PHANTOM:

@@ -11,9 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define ROWS_MAX                                                \
-    96 /* more than option_table has: rows beyond would be lost \
-        */
+#define ROWS_MAX OPTION_ROWS_MOST
 
 /* Beyond all characters, so that long options do not collide with letters. */
 #define FIRST_LONG 256
@@ -42,6 +40,8 @@ void options_init(options *out) {
         .progress = "auto",
         .isa = "auto",
         .quality = "normal",
+        .frames = 120,
+        .fps = 25,
     };
 }
 
@@ -168,6 +168,7 @@ static int take(options *out, const option_row *row, const verb_row *verb,
     if (!(row->verbs & verb->bit))
         return refuse_foreign(row, verb);
     char wrong[WRONG_BYTES];
+    out->told[row - option_table] = text ? text : "";
     if (row->read(row, text ? text : "", (char *)out + row->field, wrong))
         return GO_ON;
     return fail_usage("--%s: '%s' %s", row->name, text, wrong);

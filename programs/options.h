@@ -23,7 +23,9 @@ enum {
     VERB_COMPARE = 1 << 3,
     VERB_BENCH = 1 << 4,
     VERB_DOCTOR = 1 << 5,
-    VERB_HELP = 1 << 6
+    VERB_HELP = 1 << 6,
+    VERB_TURNTABLE = 1 << 7,
+    VERB_MOVIE = 1 << 8
 };
 
 typedef enum topic {
@@ -39,6 +41,9 @@ typedef enum topic {
     TOPIC_RUN,
     TOPIC_MORE /* of single verbs */
 } topic;
+
+/* More than option_table has: rows beyond would be lost. */
+#define OPTION_ROWS_MOST 96
 
 /* Everything that can be asked.  Texts point into argv. */
 typedef struct options {
@@ -74,6 +79,10 @@ typedef struct options {
     int64_t crop[3][2]; /* 0: the end */
     uint64_t seed;
 
+    int64_t frames; /* of a turn */
+    double fps;
+    bool resume;
+
     double tolerance;
     bool json;
     const char *stats; /* NULL: none */
@@ -86,6 +95,8 @@ typedef struct options {
     const char *help_word; /* the topic or verb asked for, or NULL */
     char **operands;
     int operand_count;
+    const char *told[OPTION_ROWS_MOST]; /* the text of each row of the table as
+                                           it was given, NULL: not told */
 } options;
 
 typedef struct option_row option_row;

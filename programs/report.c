@@ -76,8 +76,13 @@ int fail_volume(const snow_context *context, snow_status status,
     return (int)status;
 }
 
+/* The steps of one file all have the same to say: once is enough. */
 static void hear_notice(void *user, const char *text) {
+    static char last[256];
     (void)user;
+    if (strncmp(last, text, sizeof last - 1) == 0)
+        return;
+    snprintf(last, sizeof last, "%s", text);
     say("note: %s", text);
 }
 
@@ -97,17 +102,21 @@ double seconds_now(void) {
 }
 
 /* "dumb" terminals (editors, logs) cannot wipe a line. */
-static bool is_terminal(void) {
+bool progress_is_live(void) {
     const char *term = getenv("TERM");
     return isatty(STDERR_FILENO) && term && strcmp(term, "dumb") != 0;
 }
 
+bool progress_is_wanted(const options *asked) {
+    return asked->verbosity >= 0 && strcmp(asked->progress, "never") != 0;
+}
+
 void progress(const options *asked, const char *stage) {
-    if (asked->verbosity < 0 || strcmp(asked->progress, "never") == 0)
+    if (!progress_is_wanted(asked))
         return;
     bool always = strcmp(asked->progress, "always") == 0;
     wipe_stage();
-    if (is_terminal()) {
+    if (progress_is_live()) {
         fputs(stage ? stage : "", stderr);
         stage_shown = stage != NULL;
     } else if (always && stage) {

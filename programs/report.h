@@ -31,6 +31,11 @@ double seconds_now(void);
 /* Names a stage on standard error as --progress says; NULL ends the last. */
 void progress(const options *asked, const char *stage);
 
+/* Whether --progress may say anything, and whether it goes to a terminal, where
+ * a line is written over. */
+bool progress_is_wanted(const options *asked);
+bool progress_is_live(void);
+
 /* Ends standard output: what could not be written is an error.
  * Answers an exit code. */
 int finish_stdout(void);

@@ -27,8 +27,8 @@ phantom cube|no output is named
 phantom:cube -o x.jpg|x.jpg
 phantom snowman -o x.nrrd|snowman
 phantom cube -o x.txt|x.txt
-turntable x -o y.mp4|turntable is not built yet
-movie x|movie is not built yet
+turntable -o y.mp4|give snowglass turntable INPUT -o OUT
+turntable x y -o y.mp4|one word too many for turntable
 convert a b|convert is not built yet
 tf list|tf is not built yet
 serve x|serve is not built yet
@@ -60,8 +60,10 @@ info --perspective x|no option of info
 --channel 1 x|--channel is not built yet
 --series 1 x|--series is not built yet
 --quality best x|'best' is unknown
---frames 3 x|--frames is not built yet
---resume x|--resume is not built yet
+--frames 3 x|--frames: no option of render; it belongs to turntable
+movie --frames 3 x -o y.mp4|--frames: no option of movie
+--resume x|--resume: no option of render; it belongs to turntable
+turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
 -m mip x|'mip' is not built yet; choose from: over
 --mode iso x|'iso' is not built yet
 --mode best x|'best' is unknown
