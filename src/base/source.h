@@ -20,6 +20,9 @@ typedef struct snow_source snow_source;
 snow_status snow_source_open(snow_context *context, const char *path,
                              snow_source **out);
 
+/* Whether a path can be read only once, and by one: "-", a pipe. */
+bool snow_source_is_stream(const char *path);
+
 /* Bytes in memory, which must outlive the source; gzip is unpacked as well.
  * It has no siblings. */
 snow_status snow_source_open_memory(snow_context *context, const char *name,

@@ -115,10 +115,9 @@ static snow_status finish_info(snow_context *context,
                                snow_volume_info *info) {
     snow_volume_info_measure(info);
     SNOW_TRY(replace_spacing(context, options, info));
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++)
-            info->matrix[i][3] +=
-                info->matrix[i][j] * (double)options->crop[j][0];
+    const int64_t first[3] = {options->crop[0][0], options->crop[1][0],
+                              options->crop[2][0]};
+    *info = snow_volume_info_of_box(info, first, info->dims);
     return SNOW_OK;
 }
 

@@ -22,11 +22,22 @@ struct snow_volume {
     uint64_t serial;
     bool is_part;
     snow_part part; /* where is_part */
+    bool knows_origin;
+    double origin[3]; /* the last column of the whole's matrix, where known */
 };
 
-/* What is known of the whole that a volume is a part of: its dims, and its
- * matrix, whose last column is that of the part but for rounding. */
+/* What is known of the whole that a volume is a part of: its dims and its
+ * matrix, whose last column is computed back from that of the part, and so
+ * differs by rounding from rank to rank, unless it was told. */
 void snow_volume_whole(const snow_volume *volume, snow_volume_info *out);
+
+/* Tells a part, which it has been made by now, the matrix of its whole. */
+void snow_volume_set_whole(snow_volume *volume, const snow_volume_info *whole);
+
+/* What a box of a whole is as a volume of its own. */
+snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
+                                         const int64_t first[3],
+                                         const int64_t count[3]);
 
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and
  * makes the volume; its messages need not name the file, and its options are
