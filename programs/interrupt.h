@@ -28,4 +28,7 @@ void interrupt_hold_movie(void);
 /* Whether a signal has come since. */
 bool interrupt_seen(void);
 
+/* Of ranks only the first says that it was interrupted. */
+void interrupt_mute(void);
+
 #endif

@@ -334,7 +334,7 @@ static void pass(run *r, int64_t index) {
 static void hand_over(run *r, int64_t index, snow_image *image) {
     render_report report = {0};
     r->renderer->report(r->renderer->self, &report);
-    sequence_figures_add(&r->figures, snow_frame_stats(report.frame));
+    sequence_figures_add(&r->figures, report.stats);
     (void)frames_put(r->s->queue, index, image);
     snow_image_free(r->last);
     r->last = image;

@@ -92,7 +92,7 @@ static void tell_choices(const serial_renderer *serial) {
                                               : "+z";
     bool encoded = stats->encoding != SNOW_ENCODING_AUTO;
     char volume[256];
-    describe_volume(serial->volume, volume, sizeof volume);
+    describe_volume(&serial->grid, volume, sizeof volume);
     say("%s: %s; %s; view %s; method %s%s%s; %" PRId64
         " frames of %lldx%lld to %s",
         serial->path, volume, snow_transfer_text(serial->transfer), view,
@@ -108,9 +108,12 @@ static int render(void *self, const movie_shot *shot, snow_image **image) {
     if (done == GO_ON)
         done = choose_look(serial);
     if (done == GO_ON)
-        done = make_view(serial->context, serial->asked, serial->volume, &view);
+        done = make_view(serial->context, serial->asked,
+                         snow_volume_describe(serial->volume), &view);
     if (done == GO_ON)
-        done = make_settings(serial->asked, serial->volume, &serial->settings);
+        done =
+            make_settings(serial->asked, snow_volume_describe(serial->volume),
+                          &serial->settings);
     if (done != GO_ON)
         return done;
     view.azimuth = shot->azimuth;
@@ -131,9 +134,10 @@ static int render(void *self, const movie_shot *shot, snow_image **image) {
 
 static void report(void *self, render_report *out) {
     const serial_renderer *serial = self;
-    *out = (render_report){.context = serial->context,
-                           .volume = serial->volume,
-                           .frame = serial->frame,
+    *out = (render_report){.volume = snow_volume_describe(serial->volume),
+                           .stats = snow_frame_stats(serial->frame),
+                           .peak = snow_context_peak_bytes(serial->context),
+                           .load = 1,
                            .settings = &serial->settings,
                            .times = &serial->times};
 }
