@@ -84,6 +84,16 @@ static json_t *list_json(const char *(*at)(size_t)) {
     return list;
 }
 
+/* Optional libraries: the build's version, or null. */
+static json_t *libraries_json(void) {
+    json_t *object = json_object();
+    const char *name, *version, *formats;
+    for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
+        json_object_set_new(object, name,
+                            version ? json_string(version) : json_null());
+    return object;
+}
+
 /* What is not built is told too, as false or 1, so that a script that asks need
  * not change when it is. */
 static int tell_json(void) {
@@ -94,6 +104,7 @@ static int tell_json(void) {
     json_object_set_new(o, "volume_outputs", words_json(volume_suffixes));
     json_object_set_new(o, "picture_outputs", words_json(picture_suffixes));
     json_object_set_new(o, "ffmpeg", json_boolean(encoder_is_there()));
+    json_object_set_new(o, "libraries", libraries_json());
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
     json_object_set_new(o, "isa", json_string(snow_isa_used()));
     json_object_set_new(o, "threads", json_integer(snow_processors()));
@@ -111,6 +122,13 @@ static void print_row(const char *key, const char *text) {
     printf("%-16s%s\n", key, text);
 }
 
+static void print_libraries(void) {
+    const char *name, *version, *formats;
+    for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
+        printf("%-16s%s %s (%s)\n", i ? "" : "libraries", name,
+               version ? version : "is not in this build", formats);
+}
+
 static int tell_text(void) {
     print_row("version", snow_version());
     for (size_t i = 0; i < LISTS; i++) {
@@ -124,6 +142,7 @@ static int tell_text(void) {
     print_row("movie outputs", encoder_is_there()
                                    ? ".mp4 .webm .gif, by ffmpeg"
                                    : "frames only: there is no ffmpeg");
+    print_libraries();
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
     printf("%-16s%d\n", "threads", snow_processors());

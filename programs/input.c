@@ -10,8 +10,11 @@
 /* What was not told stays 0: the library refuses what does not fit a format,
  * and must see the difference between told and default. */
 snow_volume_options data_options(const options *asked) {
-    snow_volume_options data = {
-        .type = asked->type, .offset = asked->offset, .time = asked->time};
+    snow_volume_options data = {.type = asked->type,
+                                .offset = asked->offset,
+                                .time = asked->time,
+                                .channel = asked->channel,
+                                .dataset = asked->dataset};
     for (int i = 0; i < 3; i++) {
         data.dims[i] = asked->dims[i];
         data.spacing[i] = asked->spacing[i];

@@ -77,6 +77,8 @@ typedef struct options {
     const char *endian; /* NULL: not told */
     uint64_t offset;
     int64_t time;
+    int64_t channel;
+    const char *dataset; /* NULL: not told */
     int64_t crop[3][2]; /* 0: the end */
     uint64_t seed;
 

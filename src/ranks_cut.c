@@ -31,12 +31,12 @@ static snow_cut choose_cut(const snow_cut_order *order, snow_method method) {
     return SNOW_CUT_BRICKS;
 }
 
-/* The groups that have slices (decompose/slab.h deals out the larger first). */
+/* The groups that have slices, which come first. */
 static void set_borders(snow_cut_order *order) {
     snow_cut_grid *grid = &order->grid;
     int64_t slices = grid->dims[grid->axis];
-    for (int group = 0; group < SNOW_CUT_GROUPS; group++) {
-        snow_slab slab = snow_slab_equal(slices, SNOW_CUT_GROUPS, group);
+    for (int group = 0; group < SNOW_GROUPS; group++) {
+        snow_slab slab = snow_group_slab(slices, group);
         if (!slab.count)
             break;
         order->borders[grid->count++] = slab.first;

@@ -4,18 +4,17 @@
 
 #include "comm/comm.h"
 #include "decompose/cut.h"
+#include "decompose/part.h"
 
 #include <snowglass/ranks.h>
-
-/* Slices are in so many groups where pictures are to have the same bits for any
- * number of ranks. */
-#define SNOW_CUT_GROUPS 32
 
 typedef struct snow_cut_order {
     snow_cut cut; /* EQUAL, COUNTED or BRICKS */
     int ranks;
-    snow_cut_grid grid; /* its borders are those below, or NULL */
-    int64_t borders[SNOW_CUT_GROUPS + 1];
+    snow_cut_grid grid; /* its borders are those below, of groups of slices,
+                           where pictures are to have the same bits for any
+                           number of ranks; else NULL */
+    int64_t borders[SNOW_GROUPS + 1];
     int64_t layers[3]; /* of ghost voxels */
     bool slabs_only;   /* along the slices' axis: boxes of another kind would
                           not give the picture, or were not asked for */

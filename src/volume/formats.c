@@ -13,10 +13,9 @@
 
 /* Raw, which recognises nothing, is the last. */
 static const snow_format *const formats[] = {
-    &snow_format_nrrd,
-    &snow_format_nifti,
-    &snow_format_metaimage,
-    &snow_format_raw,
+    &snow_format_nrrd, &snow_format_nifti, &snow_format_metaimage,
+    &snow_format_npy,  &snow_format_vtk,   &snow_format_vti,
+    &snow_format_mrc,  &snow_format_raw,
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
@@ -245,11 +244,14 @@ static snow_status open_phantom(snow_context *context, const char *name,
                                 const snow_volume_options *options,
                                 snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(check_options(context, options));
-    if (options->type || options->endian || options->offset || options->time)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         PHANTOM "%s: a phantom has its own type; leave out "
-                                 "--type, --endian, --offset and --time",
-                         name);
+    if (options->type || options->endian || options->offset || options->time ||
+        options->channel || options->dataset)
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            PHANTOM
+            "%s: a phantom has its own type; leave out "
+            "--type, --endian, --offset, --time, --channel and --dataset",
+            name);
     snow_volume *volume = NULL;
     snow_volume_info told;
     SNOW_TRY(snow_phantom_make(context, name, options, 0, &told,

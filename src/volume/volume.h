@@ -64,6 +64,10 @@ extern const snow_format snow_format_raw;
 extern const snow_format snow_format_nrrd;
 extern const snow_format snow_format_nifti;
 extern const snow_format snow_format_metaimage;
+extern const snow_format snow_format_npy;
+extern const snow_format snow_format_mrc;
+extern const snow_format snow_format_vtk;
+extern const snow_format snow_format_vti;
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */
