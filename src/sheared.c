@@ -653,6 +653,8 @@ snow_status snow_sheared_make_layers(snow_sheared *s, int layers, int64_t bands,
                                      size_t lines, snow_sheared_image *image) {
     uint64_t floats, bytes;
     image->layers = layers;
+    if (layers < 1) /* room for lines that others made */
+        layers = 1;
     image->layer_tiles = (size_t)(bands * image->tiles);
     SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
                           image->layer_tiles * (size_t)layers));

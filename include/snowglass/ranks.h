@@ -93,7 +93,26 @@ SNOW_API snow_status snow_ranks_plan(const snow_volume *volume,
                                      int slice_axis, int ranks,
                                      snow_part *parts, int64_t *loads);
 
-/* The picture, on rank 0; NULL on the others. */
+/* Collective.  The picture, on rank 0; NULL on the others.
+ *
+ * Every rank's volume is its part (snow_volume_set_part) of one whole, with
+ * the ghost voxels that the view needs; each voxel is one rank's own, and a
+ * rank may own none.  Parts may be any boxes that have an order from front to
+ * back: slabs, a grid, a k-d tree.  The picture is that of snow_frame_render of
+ * the whole but for rounding; where it is opaque, by up to half a step of 8
+ * bits, which is what may shine through where the sheared method gives up a
+ * pixel.  Where quality high blends pictures along several axes, floats travel
+ * and the blend is rank 0's.
+ *
+ * With settings->deterministic it is the same bit for bit as
+ * snow_frame_render's, for any number of ranks: parts then are slabs across the
+ * view's slices, cut at borders of groups of slices (1/32 of them each), and a
+ * blend of several axes is refused where there are several ranks.
+ *
+ * The frame belongs to the communicator's context, keeps buffers for it, and is
+ * freed before it.  Errors, on all ranks alike: those of snow_frame_render, and
+ * SNOW_BAD_USAGE (parts that overlap, leave voxels out, have too few ghosts or
+ * no order). */
 SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
                                        const snow_volume *volume,
                                        const snow_transfer *transfer,

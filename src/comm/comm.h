@@ -34,7 +34,9 @@ enum {
     SNOW_TAG_COLLECTIVE = 32000,
     SNOW_TAG_COMBINE,
     SNOW_TAG_GATHER,
-    SNOW_TAG_VOXELS
+    SNOW_TAG_VOXELS,
+    SNOW_TAG_LINES,
+    SNOW_TAG_LAYERS
 };
 
 /* The transport's functions, with counting.  A message to oneself is allowed.
