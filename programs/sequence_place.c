@@ -88,15 +88,15 @@ bool place_aside(const sequence_place *place, int64_t index, char *out,
     return length >= 0 && (size_t)length < size;
 }
 
-/* The library knows which names it can write, and where: it is asked about a
- * name aside, which may be overwritten. */
+/* The library knows which names it can write, and where.  Whether frames are
+ * there already is asked later. */
 static int check_pattern(snow_context *context, const sequence_place *place) {
     char aside[PATH_MAX];
-    if (!place_aside(place, INT64_C(1000000000), aside, sizeof aside))
+    char frame[PATH_MAX];
+    if (!place_aside(place, INT64_C(1000000000), aside, sizeof aside) ||
+        !place_frame(place, 0, frame, sizeof frame))
         return fail_length(place->output);
-    if (!place_aside(place, 0, aside, sizeof aside))
-        return fail_length(place->output);
-    snow_status status = snow_image_check_path(context, aside, true);
+    snow_status status = snow_image_check_path(context, frame, true);
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
