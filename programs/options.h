@@ -79,7 +79,7 @@ typedef struct options {
     int64_t time;
     int64_t channel;
     const char *dataset; /* NULL: not told */
-    int64_t crop[3][2]; /* 0: the end */
+    int64_t crop[3][2];  /* 0: the end */
     uint64_t seed;
 
     int64_t frames; /* of a turn */

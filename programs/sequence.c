@@ -482,6 +482,7 @@ int sequence_run(sequence *s, const options *asked, const shot_list *list,
              .renderer = renderer};
     if (r.s)
         return run_writer(&r, begin);
+    interrupt_hold_movie(); /* the rank that writes hears of it, and says so */
     int done = share(&r, GO_ON);
     if (done == GO_ON)
         done = render_frames(&r);
