@@ -114,5 +114,8 @@ int tool_run(int argc, char **argv, const launch *how) {
     fill_standard_streams();
     launch_begin(how);
     interrupt_install();
-    return launch_agree(dispatch(argc, argv));
+    int done = launch_agree(dispatch(argc, argv));
+    if (launch_ranks() > 1) /* whose launcher ends all with the first to fail */
+        interrupt_mute();
+    return done;
 }

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Where launchers tell how many processes they started, and which one this is.
  */
@@ -38,7 +39,11 @@ static int check_launcher(const char *library) {
         long told = number_of(launchers[i].ranks);
         if (told <= 1)
             continue;
-        if (number_of(launchers[i].rank) == 0)
+        /* The others wait until it was told: the launcher may end all with
+         * the first one that fails. */
+        if (number_of(launchers[i].rank) != 0)
+            sleep(1);
+        else
             fprintf(stderr,
                     "snowglass: started as one of %ld processes by %s, but "
                     "alone for %s; use the mpirun of the MPI that "
