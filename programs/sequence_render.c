@@ -19,12 +19,10 @@ void shots_close(shot_renderer *shots) {
     scene_free(&shots->scene);
 }
 
-/* A step is one volume, and on the grid of the others: the camera is placed by
- * the volume, and would jump. */
-static int check_step(shot_renderer *shots) {
-    const snow_volume_info *info = &shots->scene.whole;
+/* The camera is placed by the volume, and would jump. */
+int shots_check(shot_renderer *shots, const char *path,
+                const snow_volume_info *info) {
     const snow_volume_info *first = &shots->grid;
-    const char *path = name_of_input(shots->scene.path);
     if (shots->whole_files && info->times > 1) {
         say("%s: holds %" PRId64 " time steps; give it alone for a movie of "
             "them, or --time for one of each file",
@@ -60,7 +58,9 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
         progress(s->asked, "reading");
     shots->time = shot->time;
     int done = scene_open(s, shot->path, shot->time);
-    return done == GO_ON ? check_step(shots) : done;
+    return done == GO_ON
+               ? shots_check(shots, name_of_input(shot->path), &s->whole)
+               : done;
 }
 
 /* What was chosen where nothing was told: as render says it, of all frames. */

@@ -20,6 +20,11 @@ typedef struct shot_renderer {
 int shots_open(const options *asked, shot_renderer *out);
 void shots_close(shot_renderer *shots);
 
+/* Whether a volume is one step, and on the grid of the first one that was asked
+ * about.  Answers GO_ON or an exit code. */
+int shots_check(shot_renderer *shots, const char *path,
+                const snow_volume_info *info);
+
 /* Makes a shot's volume the present one.  Answers GO_ON or an exit code. */
 int shots_volume(shot_renderer *shots, const movie_shot *shot);
 

@@ -182,19 +182,16 @@ static bool look_is_fixed(const options *asked) {
     return values || own;
 }
 
-/* How many time steps a file holds. */
-static int count_times(shot_renderer *shots, const movie_shot *shot,
-                       int64_t *out) {
+/* What is known of a shot's volume without reading it. */
+static int inspect(const shot_renderer *shots, const movie_shot *shot,
+                   snow_volume_info *out) {
     options step = *shots->scene.asked;
     step.time = shot->time;
     snow_volume_options data = data_options(&step);
-    snow_volume_info info;
     snow_status status =
-        snow_volume_inspect(shots->scene.context, shot->path, &data, &info);
-    if (status != SNOW_OK)
-        return fail_status(shots->scene.context, status);
-    *out = info.times;
-    return GO_ON;
+        snow_volume_inspect(shots->scene.context, shot->path, &data, out);
+    return status == SNOW_OK ? GO_ON
+                             : fail_status(shots->scene.context, status);
 }
 
 int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
@@ -202,9 +199,11 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     movie_shot first = {files->paths[0], asked->time, asked->azimuth};
     out->count = files->count;
     if (files->count == 1 && !was_told(asked, "time")) {
-        int done = count_times(shots, &first, &out->count);
+        snow_volume_info info;
+        int done = inspect(shots, &first, &info);
         if (done != GO_ON)
             return done;
+        out->count = info.times;
     }
     shots->whole_files = files->count > 1 && !was_told(asked, "time");
     out->together = out->count > 1 && !look_is_fixed(asked);
@@ -307,12 +306,16 @@ static void tell_step(const options *asked, int64_t step, int64_t count) {
         progress(asked, line);
 }
 
-static int read_step(scene *s, const movie_shot *shot, value_pool *pool) {
+static int read_step(shot_renderer *shots, const movie_shot *shot,
+                     value_pool *pool) {
+    scene *s = &shots->scene;
     double begin = seconds_now();
     snow_volume *volume = NULL;
     options step = *s->asked;
     step.time = shot->time;
     int done = open_input(s->context, &step, shot->path, &volume);
+    if (done == GO_ON)
+        done = shots_check(shots, shot->path, snow_volume_describe(volume));
     if (done == GO_ON)
         pool_step(pool, volume);
     snow_volume_close(volume);
@@ -339,12 +342,12 @@ static int append_step(value_pool *pool, int rank) {
 }
 
 /* Steps from `first` on, one for each rank. */
-static int pool_round(const shot_list *list, int64_t first, scene *s,
-                      value_pool *pool) {
+static int pool_round(const shot_list *list, int64_t first,
+                      shot_renderer *shots, value_pool *pool) {
     int64_t mine = first + launch_rank(), left = list->count - first;
     int done = GO_ON;
     if (mine < list->count)
-        done = read_step(s, &list->shots[mine], pool);
+        done = read_step(shots, &list->shots[mine], pool);
     done = launch_agree(done);
     for (int rank = 0; rank < launch_ranks() && rank < left; rank++)
         if (done == GO_ON)
@@ -352,14 +355,20 @@ static int pool_round(const shot_list *list, int64_t first, scene *s,
     return done;
 }
 
-static int pool_steps(const shot_list *list, scene *s, value_pool *pool) {
-    for (int64_t i = 0; i < list->count; i += launch_ranks()) {
-        tell_step(s->asked, i, list->count);
-        int done = pool_round(list, i, s, pool);
-        if (done != GO_ON)
-            return done;
+/* All ranks compare their steps with the first. */
+static int pool_steps(const shot_list *list, shot_renderer *shots,
+                      value_pool *pool) {
+    snow_volume_info first;
+    int done = inspect(shots, &list->shots[0], &first);
+    if (done == GO_ON)
+        done = shots_check(shots, list->shots[0].path, &first);
+    done = launch_agree(done);
+    for (int64_t i = 0; i < list->count && done == GO_ON; i += launch_ranks()) {
+        tell_step(shots->scene.asked, i, list->count);
+        done = pool_round(list, i, shots, pool);
     }
-    return launch_agree(look_at_pool(s, pool));
+    return done == GO_ON ? launch_agree(look_at_pool(&shots->scene, pool))
+                         : done;
 }
 
 int steps_look(const shot_list *list, shot_renderer *shots) {
@@ -374,7 +383,7 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     int done = launch_agree(pool.values ? GO_ON : fail_memory());
     if (done == GO_ON) {
         pool.step = pool.values + room * list->count;
-        done = pool_steps(list, &shots->scene, &pool);
+        done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
     /* All steps will be opened once more, and say the same again. */
