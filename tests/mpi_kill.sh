@@ -36,7 +36,8 @@ killed() {
     if is_open_mpi; then
         check "$name: mpirun names the rank" grep -q 'rank 2 .*Killed' "$ERR"
     else # MPICH's names the process and the machine
-        check "$name: mpirun tells of it" grep -q 'BAD TERMINATION' "$ERR"
+        check "$name: mpirun tells of it" \
+            grep -q 'BAD TERMINATION' "$OUT" "$ERR"
     fi
     check "$name: nothing half written" \
         [ -z "$(find . -name '*snow-*' -o -name out.png)" ]
