@@ -1,7 +1,9 @@
 /* cmd_doctor.c - what this build and this machine can do.  The names come from
  * the library's own lists, so that the answer cannot grow old. */
 #include "commands.h"
+#include "launch.h"
 #include "report.h"
+#include "sequence_encoder.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -82,6 +84,16 @@ static json_t *list_json(const char *(*at)(size_t)) {
     return list;
 }
 
+/* Optional libraries: the build's version, or null. */
+static json_t *libraries_json(void) {
+    json_t *object = json_object();
+    const char *name, *version, *formats;
+    for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
+        json_object_set_new(object, name,
+                            version ? json_string(version) : json_null());
+    return object;
+}
+
 /* What is not built is told too, as false or 1, so that a script that asks need
  * not change when it is. */
 static int tell_json(void) {
@@ -91,10 +103,14 @@ static int tell_json(void) {
         json_object_set_new(o, lists[i].key, list_json(lists[i].at));
     json_object_set_new(o, "volume_outputs", words_json(volume_suffixes));
     json_object_set_new(o, "picture_outputs", words_json(picture_suffixes));
+    json_object_set_new(o, "ffmpeg", json_boolean(encoder_is_there()));
+    json_object_set_new(o, "libraries", libraries_json());
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
     json_object_set_new(o, "isa", json_string(snow_isa_used()));
     json_object_set_new(o, "threads", json_integer(snow_processors()));
-    json_object_set_new(o, "mpi", json_false());
+    json_object_set_new(
+        o, "mpi", launch_mpi() ? json_string(launch_mpi()) : json_false());
+    json_object_set_new(o, "ranks", json_integer(launch_ranks()));
     json_object_set_new(o, "display", json_false());
     json_object_set_new(o, "memory_bytes",
                         json_integer((json_int_t)memory_bytes()));
@@ -104,6 +120,13 @@ static int tell_json(void) {
 
 static void print_row(const char *key, const char *text) {
     printf("%-16s%s\n", key, text);
+}
+
+static void print_libraries(void) {
+    const char *name, *version, *formats;
+    for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
+        printf("%-16s%s %s (%s)\n", i ? "" : "libraries", name,
+               version ? version : "is not in this build", formats);
 }
 
 static int tell_text(void) {
@@ -116,10 +139,18 @@ static int tell_text(void) {
     }
     print_row("volume outputs", volume_suffixes);
     print_row("picture outputs", picture_suffixes);
+    print_row("movie outputs", encoder_is_there()
+                                   ? ".mp4 .webm .gif, by ffmpeg"
+                                   : "frames only: there is no ffmpeg");
+    print_libraries();
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
     printf("%-16s%d\n", "threads", snow_processors());
-    print_row("mpi", "no (not built yet)");
+    if (launch_mpi())
+        printf("%-16s%s, %d rank%s\n", "mpi", launch_mpi(), launch_ranks(),
+               launch_ranks() > 1 ? "s" : "");
+    else
+        print_row("mpi", "no; snowglass-mpi has it");
     print_row("display", "not needed");
     printf("%-16s%.1f GiB\n", "memory",
            (double)memory_bytes() / (double)(1 << 30));

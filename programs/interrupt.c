@@ -2,24 +2,35 @@
 #include "interrupt.h"
 #include "options.h"
 
+#include <errno.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <unistd.h>
 
-/* Whether a file is being written, and whether a signal has come since. */
-static volatile sig_atomic_t held, pending;
+/* Whether a file is being written, whether that is one of many, and whether a
+ * signal has come since.  Atomic, not only sig_atomic_t: the handler may run in
+ * any thread. */
+static atomic_int held, movie, mute, pending;
 
 /* Only write and _exit here: printf and exit could meet a lock or a buffer that
  * the interrupted code has in hand. */
 static void leave(int signal_number) {
     static const char text[] = "snowglass: interrupted\n";
+    static const char later[] = "snowglass: interrupted; the frame in hand is "
+                                "ended first (a second signal: at once)\n";
+    int number = errno;
+    ssize_t told = 0;
     (void)signal_number;
-    if (held && !pending) {
-        pending = 1;
-        return;
+    if (!held || atomic_exchange(&pending, 1)) {
+        if (!mute)
+            told = write(STDERR_FILENO, text, sizeof text - 1);
+        (void)told;
+        _exit(EXIT_INTERRUPTED);
     }
-    ssize_t told = write(STDERR_FILENO, text, sizeof text - 1);
+    if (movie && !mute)
+        told = write(STDERR_FILENO, later, sizeof later - 1);
     (void)told;
-    _exit(EXIT_INTERRUPTED);
+    errno = number;
 }
 
 /* A signal that the parent has switched off (nohup) stays so. */
@@ -44,4 +55,17 @@ void interrupt_install(void) {
 
 void interrupt_hold(void) {
     held = 1;
+}
+
+void interrupt_hold_movie(void) {
+    movie = 1;
+    held = 1;
+}
+
+bool interrupt_seen(void) {
+    return pending != 0;
+}
+
+void interrupt_mute(void) {
+    mute = 1;
 }

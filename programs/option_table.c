@@ -17,14 +17,16 @@
 
 /* Shorter names for sets of verbs: the rows are dense enough. */
 enum {
-    RENDER = VERB_RENDER,
+    TURNTABLE = VERB_TURNTABLE,
+    MOVIES = VERB_TURNTABLE | VERB_MOVIE,
+    RENDER = VERB_RENDER | MOVIES, /* all that render */
     INFO = VERB_INFO,
     PHANTOM = VERB_PHANTOM,
     COMPARE = VERB_COMPARE,
     DOCTOR = VERB_DOCTOR,
-    INPUT = VERB_RENDER | VERB_INFO,
-    EVERY = VERB_RENDER | VERB_INFO | VERB_PHANTOM | VERB_COMPARE |
-            VERB_DOCTOR | VERB_HELP
+    INPUT = RENDER | VERB_INFO,
+    EVERY = RENDER | VERB_INFO | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR |
+            VERB_HELP
 };
 
 /* clang-format off */
@@ -32,13 +34,14 @@ const option_row option_table[] = {
     {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM, read_text,
      FIELD(output), 0, 0, "",
      "where to write: .png .npy .pfm, or - for a PNG on standard output; a "
+     "movie: .mp4 .webm .gif, or frames by a pattern such as f_%04d.png; a "
      "phantom: .nrrd .nii .nii.gz .mha .raw .raw.gz"},
     {"size", 's', "WxH", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
      "pixels of the picture (512x512)"},
     {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
      FIELD(background), 0, 0, "",
      "lay the PNG on a colour: a name, #rgb, #rrggbb or r,g,b of 0 to 1 (none: "
-     "it stays transparent)"},
+     "it stays transparent, a movie black)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
      "", "bits a channel of the PNG (8)"},
     {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM, read_flag,
@@ -146,12 +149,14 @@ const option_row option_table[] = {
     {"offset", 0, "BYTES", TOPIC_DATA, INPUT, read_count, FIELD(offset), 0, 0,
      "", "bytes before the voxels of raw data (0)"},
     {"time", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(time), 0, 9e15, "",
-     "time step of a file with several, from 0 (0)"},
+     "time step of a file with several, from 0 (0; movie: all of them)"},
+    {"dataset", 0, "PATH", TOPIC_DATA, INPUT, read_text, FIELD(dataset), 0, 0,
+     "", "array of a file with several: its path or name (the only or first)"},
+    {"channel", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(channel), 0,
+     9e15, "", "of voxels with several values, from 0 (0)"},
     {"crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA, INPUT, read_crop, FIELD(crop),
      0, 0, "", "a box of the volume, all that is read: first voxel and one past "
      "the last; one left out is the volume's end"},
-    LATER("dataset", 0, "PATH", TOPIC_DATA, "HDF5 is not read yet"),
-    LATER("channel", 0, "N", TOPIC_DATA, "give a file with one channel"),
     LATER("series", 0, "UID|N", TOPIC_DATA, "DICOM is not read yet"),
     LATER("mask", 0, "FILE", TOPIC_DATA, "give a masked file"),
     LATER("labels", 0, "LIST", TOPIC_DATA, "give a masked file"),
@@ -169,7 +174,8 @@ const option_row option_table[] = {
     {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
      FIELD(progress), 0, 0, "",
      "only names each stage on stderr as it begins, without a bar (auto: on a "
-     "terminal)"},
+     "terminal); movies tell frames a second and the time left, without a "
+     "terminal every 10 s"},
     {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
      "write figures of the run as JSON; - is standard output; a file that "
      "exists needs --overwrite"},
@@ -182,6 +188,24 @@ const option_row option_table[] = {
     LATER("config", 0, "FILE", TOPIC_RUN, "give the options themselves"),
     LATER("save-config", 0, "FILE", TOPIC_RUN, "keep the command line"),
 
+    {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
+     1000000, "", "pictures of one turn (120)"},
+    {"fps", 0, "N", TOPIC_MORE, MOVIES, read_real, FIELD(fps), 0.01, 1000, "",
+     "frames a second of .mp4, .webm and .gif (25)"},
+    {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
+     "go on where an earlier run was ended, with the frames that it left whole; "
+     "the other options must be the same"},
+    {"cut", 0, "auto|equal|counted|bricks", TOPIC_RANKS, RENDER, read_choice,
+     FIELD(cut), 0, 0, "", "the parts of the volume: equal slabs as in the "
+     "paper, slabs or bricks of equally many interesting voxels (auto: counted, "
+     "and bricks where slabs would be thin)"},
+    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, RENDER,
+     read_choice, FIELD(combine), 0, 0, "", "how the ranks' pictures become "
+     "one: the paper's tree, binary swap, direct send or radix-k (auto: by "
+     "ranks and size)"},
+    {"radix", 0, "K", TOPIC_RANKS, RENDER, read_integer, FIELD(radix), 2, 64,
+     "", "ranks that exchange at once, of --combine radix (chosen)"},
+
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR, read_flag,
      FIELD(json), 0, 0, "", "write one JSON object"},
     {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
@@ -193,14 +217,16 @@ const option_row option_table[] = {
      "this help, or that of a topic or a verb"},
     {"version", 0, NULL, TOPIC_MORE, EVERY, read_flag, FIELD(version), 0, 0, "",
      "the version"},
-    LATER("frames", 0, "N", TOPIC_MORE, "render pictures one by one"),
-    LATER("resume", 0, NULL, TOPIC_MORE, "render pictures one by one"),
     {.name = NULL},
 };
 
 /* A verb without a bit is not built; its last text is then the advice. */
 const verb_row verb_table[] = {
     {"render", VERB_RENDER, 1, "INPUT -o OUT", "one picture; the default verb"},
+    {"turntable", VERB_TURNTABLE, 1, "INPUT -o OUT [--frames N]",
+     "a movie around the volume"},
+    {"movie", VERB_MOVIE, -1, "INPUT...|run_%04d.nrrd -o OUT",
+     "a movie over time steps"},
     {"info", VERB_INFO, 1, "INPUT [--json]",
      "geometry, type, range, histogram, sparse ratio"},
     {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},
@@ -210,8 +236,6 @@ const verb_row verb_table[] = {
      "the paper's tables, measured; how fast pictures are made"},
     {"doctor", VERB_DOCTOR, 0, "[--json]", "what this build and machine can do"},
     {"help", VERB_HELP, -1, "[TOPIC|VERB]", "help on a topic or a verb"},
-    {"turntable", 0, 0, "", "render pictures one by one with --azimuth"},
-    {"movie", 0, 0, "", "render time steps one by one with --time"},
     {"convert", 0, 0, "", "phantom writes volumes, other tools convert them"},
     {"tf", 0, 0, "", "snowglass help look lists presets and colour maps"},
     {"serve", 0, 0, "", "render writes pictures"},
@@ -233,6 +257,7 @@ const topic_row topic_table[] = {
      "none yet: the picture shows the volume alone"},
     {"data", "raw files, time steps", NULL},
     {"run", "threads, figures, talk", NULL},
+    {"ranks", "many processors: parts of the volume, one picture", NULL},
     {"more", "options of single verbs", NULL},
     {NULL, NULL, NULL},
 };

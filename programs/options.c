@@ -3,6 +3,7 @@
  * Options may follow operands, "--" ends them, a repeated one counts as told
  * last.  What is unknown, of another verb, or not built yet is refused. */
 #include "options.h"
+#include "launch.h"
 #include "report.h"
 
 #include <getopt.h>
@@ -11,9 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#define ROWS_MAX                                                \
-    96 /* more than option_table has: rows beyond would be lost \
-        */
+#define ROWS_MAX OPTION_ROWS_MOST
 
 /* Beyond all characters, so that long options do not collide with letters. */
 #define FIRST_LONG 256
@@ -42,7 +41,31 @@ void options_init(options *out) {
         .progress = "auto",
         .isa = "auto",
         .quality = "normal",
+        .cut = "auto",
+        .combine = "auto",
+        .frames = 120,
+        .fps = 25,
     };
+}
+
+bool topic_is_here(topic which) {
+    return which != TOPIC_RANKS || launch_mpi() != NULL;
+}
+
+/* The words before it in the row, of which it is one. */
+int option_choice(const char *name, const char *text) {
+    const option_row *row = option_table;
+    size_t length = strlen(text);
+    int index = 0;
+    while (strcmp(row->name, name) != 0)
+        row++;
+    for (const char *at = row->argument; *at; index++) {
+        size_t word = strcspn(at, "|");
+        if (word == length && strncmp(at, text, word) == 0)
+            break;
+        at += word + (at[word] == '|');
+    }
+    return index;
 }
 
 /* Verbs count in full only, as options do. */
@@ -110,7 +133,8 @@ static const char *nearest_option(const char *name, unsigned verb) {
     int least = (int)strlen(name) / 3 + 2;
     for (const option_row *row = option_table; row->name; row++) {
         int distance = value_distance(name, row->name);
-        if ((row->verbs & verb) && row->read && distance < least) {
+        if ((row->verbs & verb) && row->read && distance < least &&
+            topic_is_here(row->topic)) {
             least = distance;
             best = row->name;
         }
@@ -165,9 +189,14 @@ static int take(options *out, const option_row *row, const verb_row *verb,
                 const char *text) {
     if (!row->read)
         return fail_usage("--%s is not built yet; %s", row->name, row->text);
+    if (!topic_is_here(row->topic))
+        return fail_usage("--%s: is for many ranks; give it to snowglass-mpi, "
+                          "under mpirun",
+                          row->name);
     if (!(row->verbs & verb->bit))
         return refuse_foreign(row, verb);
     char wrong[WRONG_BYTES];
+    out->told[row - option_table] = text ? text : "";
     if (row->read(row, text ? text : "", (char *)out + row->field, wrong))
         return GO_ON;
     return fail_usage("--%s: '%s' %s", row->name, text, wrong);

@@ -23,7 +23,9 @@ enum {
     VERB_COMPARE = 1 << 3,
     VERB_BENCH = 1 << 4,
     VERB_DOCTOR = 1 << 5,
-    VERB_HELP = 1 << 6
+    VERB_HELP = 1 << 6,
+    VERB_TURNTABLE = 1 << 7,
+    VERB_MOVIE = 1 << 8
 };
 
 typedef enum topic {
@@ -37,8 +39,12 @@ typedef enum topic {
     TOPIC_LABELS,
     TOPIC_DATA,
     TOPIC_RUN,
-    TOPIC_MORE /* of single verbs */
+    TOPIC_RANKS, /* of the program under MPI only */
+    TOPIC_MORE   /* of single verbs */
 } topic;
+
+/* More than option_table has: rows beyond would be lost. */
+#define OPTION_ROWS_MOST 96
 
 /* Everything that can be asked.  Texts point into argv. */
 typedef struct options {
@@ -71,14 +77,22 @@ typedef struct options {
     const char *endian; /* NULL: not told */
     uint64_t offset;
     int64_t time;
-    int64_t crop[3][2]; /* 0: the end */
+    int64_t channel;
+    const char *dataset; /* NULL: not told */
+    int64_t crop[3][2];  /* 0: the end */
     uint64_t seed;
+
+    int64_t frames; /* of a turn */
+    double fps;
+    bool resume;
 
     double tolerance;
     bool json;
     const char *stats; /* NULL: none */
     const char *progress, *isa, *quality;
     int64_t threads; /* 0: not told */
+    const char *cut, *combine;
+    int64_t radix; /* 0: chosen */
     bool deterministic, no_labels;
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 
@@ -86,6 +100,8 @@ typedef struct options {
     const char *help_word; /* the topic or verb asked for, or NULL */
     char **operands;
     int operand_count;
+    const char *told[OPTION_ROWS_MOST]; /* the text of each row of the table as
+                                           it was given, NULL: not told */
 } options;
 
 typedef struct option_row option_row;
@@ -135,6 +151,12 @@ typedef struct topic_row {
     const char *built;
 } topic_row;
 extern const topic_row topic_table[];
+
+/* Whether a topic is one of this program. */
+bool topic_is_here(topic which);
+
+/* Which of its choices an option has, from 0. */
+int option_choice(const char *name, const char *text);
 
 const verb_row *verb_named(const char *name);
 const verb_row *verb_of(unsigned bit);

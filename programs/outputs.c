@@ -30,8 +30,7 @@ bool is_special(const char *path) {
            !S_ISDIR(what.st_mode);
 }
 
-/* Where the last part of a path begins. */
-static size_t folder_length(const char *path) {
+size_t folder_length(const char *path) {
     const char *slash = strrchr(path, '/');
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
@@ -140,6 +139,23 @@ static void sync_folder(const char *path) {
         return;
     (void)fsync(folder);
     close(folder);
+}
+
+int name_output(const char *aside, const char *path, bool overwrite) {
+    return place(aside, path, overwrite) == 0 ? 0 : errno;
+}
+
+int place_output(const char *aside, const char *path, bool overwrite) {
+    int file = open(aside, O_RDWR | O_CLOEXEC);
+    if (file < 0)
+        return errno;
+    int number = fsync(file) != 0 && errno != EINVAL ? errno : 0;
+    close(file);
+    if (number == 0 && place(aside, path, overwrite) != 0)
+        number = errno;
+    if (number == 0)
+        sync_folder(path);
+    return number;
 }
 
 /* A link stays one: what it points to is replaced. */

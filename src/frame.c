@@ -5,24 +5,16 @@
 #include "base/base.h"
 #include "classify/transfer.h"
 #include "combine/combine.h"
+#include "composite/over.h"
 #include "footprint.h"
 #include "ghosts.h"
 #include "image/image.h"
 #include "perspective.h"
+#include "ranks_parts.h"
 #include "sheared.h"
 #include "volume/volume.h"
 
-struct snow_frame {
-    snow_context *context;
-    snow_stats stats;
-    /* Buffers of the methods, kept from picture to picture.  Those of sheared
-     * are made when it is first used; one for each axis where a picture is
-     * blended of several, else the first. */
-    snow_exact *exact;
-    snow_sheared *sheared[3];
-    float *layer; /* a picture to be blended */
-    size_t layer_capacity;
-};
+#include <string.h>
 
 snow_status snow_frame_new(snow_context *context, snow_frame **out) {
     snow_frame *frame = snow_allocate_clear(context, sizeof *frame);
@@ -40,9 +32,12 @@ snow_status snow_frame_new(snow_context *context, snow_frame **out) {
 void snow_frame_free(snow_frame *frame) {
     if (!frame)
         return;
+    snow_ranks_free(frame->ranks);
     snow_exact_free(frame->exact);
     for (int axis = 0; axis < 3; axis++)
         snow_sheared_free(frame->sheared[axis]);
+    for (int n = 0; n < SNOW_GROUP_RANKS; n++)
+        snow_release(frame->context, frame->spare[n]);
     snow_release(frame->context, frame->layer);
     snow_release(frame->context, frame);
 }
@@ -63,22 +58,48 @@ static void cut_slab(snow_job *job, int parts, int part) {
     job->all = job->slab.count == clip->count[2];
 }
 
-/* Lines 01 and 02 for every method: settings, camera, slab. */
-static snow_status place(snow_job *job, const snow_view *view, int parts,
-                         int part) {
+/* A deterministic picture is one of whole slices. */
+static snow_status check_part(const snow_job *job) {
+    if (!job->volume->is_part)
+        return SNOW_OK;
+    if (job->settings.deterministic && job->clip.cuts)
+        return snow_fail(job->context, SNOW_BAD_USAGE,
+                         "deterministic pictures are made of slabs along %c; "
+                         "this part of the volume is none",
+                         "xyz"[job->placement.slice_axis]);
+    return snow_ghosts_check(job->context, job->volume, job->view,
+                             &job->settings);
+}
+
+static snow_status place(snow_job *job, int parts, int part) {
     snow_volume_info whole;
     snow_volume_whole(job->volume, &whole);
     SNOW_TRY(snow_settings_resolve(job->context, &job->volume->info,
                                    &job->settings));
-    SNOW_TRY(snow_placement_make(job->context, &whole, view, &job->placement));
+    SNOW_TRY(
+        snow_placement_make(job->context, &whole, job->view, &job->placement));
     if (job->settings.method == SNOW_METHOD_SHEARED &&
         !snow_sheared_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
-    if (job->volume->is_part)
-        SNOW_TRY(
-            snow_ghosts_check(job->context, job->volume, view, &job->settings));
     cut_slab(job, parts, part);
-    return SNOW_OK;
+    return check_part(job);
+}
+
+snow_status snow_job_begin(snow_frame *frame, const snow_volume *volume,
+                           const snow_transfer *transfer, const snow_view *view,
+                           const snow_settings *settings, int parts, int part,
+                           snow_job *job) {
+    frame->stats = (snow_stats){.ranks = 1};
+    *job = (snow_job){
+        .context = frame->context,
+        .volume = volume,
+        .transfer = transfer,
+        .view = view,
+        .settings = snow_settings_known(settings),
+        .channels = transfer->grey ? 2 : 4,
+        .stats = &frame->stats,
+    };
+    return place(job, parts, part);
 }
 
 void snow_job_clip_sheet(const snow_job *job, int64_t slice,
@@ -94,21 +115,35 @@ void snow_job_clip_sheet(const snow_job *job, int64_t slice,
                                 (size_t)job->channels);
 }
 
-/* Lines 03 to 13 by the sheared method, with slices as `placement` says: those
- * of the job's slab, or all that the volume answers for. */
-static snow_status render_sheared(snow_job *job, const snow_view *view,
-                                  const snow_placement *placement,
-                                  snow_sheared **sheared, float *pixels) {
-    snow_sheared_order order = {.volume = job->volume,
-                                .transfer = job->transfer,
-                                .view = view,
-                                .settings = &job->settings,
-                                .placement = placement,
-                                .slab = job->slab,
-                                .channels = job->channels};
-    snow_clip_make(job->volume, placement, &order.clip);
+/* --- the sheared method ---------------------------------------------------
+ */
+
+snow_status snow_job_order(const snow_job *job, int axis,
+                           snow_placement *placement,
+                           snow_sheared_order *order) {
+    snow_volume_info whole;
+    snow_volume_whole(job->volume, &whole);
+    SNOW_TRY(snow_placement_make_along(job->context, &whole, job->view, axis,
+                                       placement));
+    *order = (snow_sheared_order){.volume = job->volume,
+                                  .transfer = job->transfer,
+                                  .view = job->view,
+                                  .settings = &job->settings,
+                                  .placement = placement,
+                                  .slab = job->slab,
+                                  .channels = job->channels};
+    snow_clip_make(job->volume, placement, &order->clip);
     if (job->all)
-        order.slab = (snow_slab){order.clip.first[2], order.clip.count[2]};
+        order->slab = (snow_slab){order->clip.first[2], order->clip.count[2]};
+    return SNOW_OK;
+}
+
+/* Lines 03 to 13 with slices along an axis. */
+static snow_status render_sheared(snow_job *job, int axis,
+                                  snow_sheared **sheared, float *pixels) {
+    snow_placement placement;
+    snow_sheared_order order;
+    SNOW_TRY(snow_job_order(job, axis, &placement, &order));
     if (!*sheared)
         SNOW_TRY(snow_sheared_new(job->context, sheared));
     return snow_sheared_render(*sheared, &order, pixels, job->stats);
@@ -121,19 +156,20 @@ static void blend(float *pixels, const float *layer, float share,
         pixels[i] += share * layer[i];
 }
 
-/* The axes' shares; one that the method cannot draw leaves its to the others.
- */
-static snow_status share_axes(const snow_job *job, const snow_view *view,
-                              double shares[3]) {
+snow_status snow_job_shares(const snow_job *job, double shares[3]) {
     snow_volume_info info;
     double left = 1;
+    shares[0] = shares[1] = shares[2] = 0;
+    shares[job->placement.slice_axis] = 1;
+    if (job->settings.quality != SNOW_QUALITY_HIGH)
+        return SNOW_OK;
     snow_volume_whole(job->volume, &info);
     snow_placement_shares(&info, &job->placement, shares);
     for (int axis = 0; axis < 3; axis++) {
         snow_placement placement;
         if (shares[axis] == 0 || axis == job->placement.slice_axis)
             continue;
-        SNOW_TRY(snow_placement_make_along(job->context, &info, view, axis,
+        SNOW_TRY(snow_placement_make_along(job->context, &info, job->view, axis,
                                            &placement));
         if (!snow_sheared_fits(&placement, &job->settings)) {
             left -= shares[axis];
@@ -147,46 +183,122 @@ static snow_status share_axes(const snow_job *job, const snow_view *view,
 
 /* High quality of a whole volume: where two or three axes are nearly as good,
  * the picture is a blend of theirs, so that a turning one does not jump. */
-static snow_status render_blended(snow_frame *frame, snow_job *job,
-                                  const snow_view *view) {
-    snow_volume_info info;
-    size_t floats =
-        (size_t)view->width * (size_t)view->height * (size_t)job->channels;
+static snow_status render_blended(snow_frame *frame, snow_job *job) {
+    size_t floats = (size_t)job->view->width * (size_t)job->view->height *
+                    (size_t)job->channels;
     double shares[3];
-    snow_volume_whole(job->volume, &info);
-    SNOW_TRY(share_axes(job, view, shares));
+    SNOW_TRY(snow_job_shares(job, shares));
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
                           0, floats * sizeof *frame->layer));
     for (int axis = 0; axis < 3; axis++) {
-        snow_placement placement;
         if (shares[axis] == 0)
             continue;
-        SNOW_TRY(snow_placement_make_along(frame->context, &info, view, axis,
-                                           &placement));
-        SNOW_TRY(render_sheared(job, view, &placement, &frame->sheared[axis],
-                                frame->layer));
+        SNOW_TRY(
+            render_sheared(job, axis, &frame->sheared[axis], frame->layer));
         blend(job->pixels, frame->layer, (float)shares[axis], floats);
     }
     return SNOW_OK;
 }
 
+/* --- the exact methods ----------------------------------------------------
+ */
+
+snow_status snow_job_render_exact(snow_frame *frame, snow_job *job) {
+    return job->placement.perspective ? snow_perspective_render(job)
+                                      : snow_exact_render(frame->exact, job);
+}
+
+/* What the exact methods know of a slab only when it is made; outside of the
+ * frame's seconds. */
+static snow_status count_exact(snow_frame *frame, const snow_job *job) {
+    if (job->placement.perspective) /* snow_perspective_render has counted */
+        return SNOW_OK;
+    return snow_exact_count(frame->exact, job);
+}
+
+/* One group, as a slab: what is counted of it is added to what was. */
+static snow_status render_group(snow_frame *frame, const snow_job *job,
+                                snow_slab slab, float *pixels) {
+    snow_stats *stats = job->stats, before = *stats;
+    snow_job group = *job;
+    group.slab = group.stored_slab = slab;
+    group.stored_slab.first -= job->clip.stored[2];
+    group.pixels = pixels;
+    stats->interesting = 0;
+    stats->ea_bytes = stats->ia_bytes = stats->pa_bytes = 0;
+    SNOW_TRY(snow_job_render_exact(frame, &group));
+    SNOW_TRY(count_exact(frame, &group));
+    stats->interesting += before.interesting;
+    stats->ea_bytes += before.ea_bytes;
+    stats->ia_bytes += before.ia_bytes;
+    stats->pa_bytes += before.pa_bytes;
+    return SNOW_OK;
+}
+
+bool snow_group_rises(const snow_placement *p, snow_group_node node) {
+    if (!p->perspective)
+        return p->nearest_first;
+    int middle = (2 * node.index + 1) << (node.rank - 1);
+    return p->eye.at[2] <
+           (double)snow_group_slab(p->slices, middle).first - 0.5;
+}
+
+/* A node into `pixels`, which are transparent. */
+static snow_status render_node(snow_frame *frame, const snow_job *job,
+                               snow_group_node node, float *pixels) {
+    size_t count = (size_t)job->view->width * (size_t)job->view->height;
+    size_t bytes = count * (size_t)job->channels * sizeof *pixels;
+    int64_t slices = job->placement.slices;
+    snow_slab first = snow_group_slab(slices, node.index << node.rank);
+    if (first.count == 0)
+        return SNOW_OK; /* as all behind it */
+    if (node.rank == 0)
+        return render_group(frame, job, first, pixels);
+    float **spare = &frame->spare[node.rank - 1];
+    SNOW_TRY(snow_reserve(frame->context, spare,
+                          &frame->spare_capacity[node.rank - 1], 0, bytes));
+    memset(*spare, 0, bytes);
+    bool rises = snow_group_rises(&job->placement, node);
+    snow_group_node near = {node.rank - 1, 2 * node.index + !rises};
+    snow_group_node far = {node.rank - 1, 2 * node.index + rises};
+    SNOW_TRY(render_node(frame, job, near, pixels));
+    SNOW_TRY(render_node(frame, job, far, *spare));
+    snow_over_row(pixels, *spare, count, job->channels);
+    return SNOW_OK;
+}
+
+snow_status snow_job_render_node(snow_frame *frame, snow_job *job,
+                                 snow_group_node node) {
+    return render_node(frame, job, node, job->pixels);
+}
+
+/* Deterministic: all groups, for a part of a volume is no picture. */
+static snow_status render_groups(snow_frame *frame, snow_job *job) {
+    const snow_group_node root = {SNOW_GROUP_RANKS, 0};
+    if (job->slab.count != job->placement.slices)
+        return snow_fail(job->context, SNOW_BAD_USAGE,
+                         "a deterministic picture of one part of many is none; "
+                         "render all of them with snow_ranks_render");
+    return snow_job_render_node(frame, job, root);
+}
+
+/* --- a picture ------------------------------------------------------------
+ */
+
 /* Lines 03 to 13, by the picture's method. */
-static snow_status render_slab(snow_frame *frame, snow_job *job,
-                               const snow_view *view) {
-    if (job->settings.method != SNOW_METHOD_SHEARED &&
-        job->placement.perspective)
-        return snow_perspective_render(job);
+static snow_status render_slab(snow_frame *frame, snow_job *job) {
     if (job->settings.method != SNOW_METHOD_SHEARED)
-        return snow_exact_render(frame->exact, job);
+        return job->settings.deterministic ? render_groups(frame, job)
+                                           : snow_job_render_exact(frame, job);
     if (job->settings.quality == SNOW_QUALITY_HIGH && job->all)
-        return render_blended(frame, job, view);
-    return render_sheared(job, view, &job->placement, &frame->sheared[0],
+        return render_blended(frame, job);
+    return render_sheared(job, job->placement.slice_axis, &frame->sheared[0],
                           job->pixels);
 }
 
-/* What was chosen for the picture, and counts of voxels and bytes. */
-static snow_status fill_stats(snow_frame *frame, const snow_job *job) {
+snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
+    bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
     stats->method = job->settings.method;
     stats->footprint = job->settings.footprint;
     stats->slice_axis = job->placement.slice_axis;
@@ -196,11 +308,9 @@ static snow_status fill_stats(snow_frame *frame, const snow_job *job) {
     stats->kernel = job->settings.kernel;
     stats->voxels = job->stored.columns * job->stored.rows * job->slab.count;
     if (stats->method == SNOW_METHOD_FOOTPRINT)
-        stats->encoded = 1; /* for every picture */
-    if (stats->method != SNOW_METHOD_SHEARED && job->placement.perspective)
-        return SNOW_OK; /* snow_perspective_render has counted */
-    if (stats->method != SNOW_METHOD_SHEARED)
-        return snow_exact_count(frame->exact, job);
+        stats->encoded = 1;                       /* for every picture */
+    if (!sheared && !job->settings.deterministic) /* groups have counted */
+        SNOW_TRY(count_exact(frame, job));
     if (stats->voxels > 0)
         stats->sparse_ratio =
             1 - (double)stats->interesting / (double)stats->voxels;
@@ -213,25 +323,18 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
                                    const snow_settings *settings, int parts,
                                    int part, snow_image **out) {
     double start = snow_seconds(), cpu = snow_cpu_seconds();
-    frame->stats = (snow_stats){0};
-    snow_job job = {
-        .context = frame->context,
-        .volume = volume,
-        .transfer = transfer,
-        .settings = snow_settings_known(settings),
-        .channels = transfer->grey ? 2 : 4,
-        .stats = &frame->stats,
-    };
+    snow_job job;
     snow_image *image = NULL;
-    /* 01 */ SNOW_TRY(place(&job, view, parts, part));
+    /* 01 - 02 */ SNOW_TRY(snow_job_begin(frame, volume, transfer, view,
+                                          settings, parts, part, &job));
     SNOW_TRY(snow_image_new(frame->context, view->width, view->height,
                             job.channels, &image));
     job.pixels = snow_image_pixels(image);
-    snow_status status = render_slab(frame, &job, view);
+    snow_status status = render_slab(frame, &job);
     frame->stats.seconds_frame = snow_seconds() - start;
     frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
     if (status == SNOW_OK)
-        status = fill_stats(frame, &job);
+        status = snow_job_finish(frame, &job);
     if (status == SNOW_OK)
         *out = image;
     else

@@ -5,16 +5,36 @@
 
 #include "base/base.h"
 #include "decompose/slab.h"
+#include "sheared.h"
 #include "splat/splat.h"
 #include "transform/clip.h"
 
 #include <snowglass/render.h>
+
+typedef struct snow_exact snow_exact; /* footprint.h */
+typedef struct snow_ranks snow_ranks; /* ranks_parts.h */
+
+/* Buffers of the methods, kept from picture to picture. */
+struct snow_frame {
+    snow_context *context;
+    snow_stats stats;
+    snow_exact *exact;
+    /* Made when first used; one for each axis where a picture is blended of
+     * several, else the first. */
+    snow_sheared *sheared[3];
+    float *layer; /* a picture to be blended */
+    size_t layer_capacity;
+    float *spare[SNOW_GROUP_RANKS]; /* pictures of groups, to be combined */
+    size_t spare_capacity[SNOW_GROUP_RANKS];
+    snow_ranks *ranks; /* of snow_ranks_render; NULL until needed */
+};
 
 /* What one picture is made from; lives as long as the call that makes it. */
 typedef struct snow_job {
     snow_context *context;
     const snow_volume *volume;
     const snow_transfer *transfer;
+    const snow_view *view;
     snow_settings settings;   /* resolved, but perhaps for the encoding */
     snow_placement placement; /* of the whole that the volume is a part of */
     snow_clip clip;           /* what of it the part has and answers for */
@@ -27,6 +47,36 @@ typedef struct snow_job {
     float *pixels; /* the local image: transparent, to be filled */
     snow_stats *stats;
 } snow_job;
+
+/* Lines 01 and 02 for every method: settings, camera, and slab `part` of
+ * `parts` of the slices that the volume answers for.  Fills a job. */
+snow_status snow_job_begin(snow_frame *frame, const snow_volume *volume,
+                           const snow_transfer *transfer, const snow_view *view,
+                           const snow_settings *settings, int parts, int part,
+                           snow_job *job);
+
+/* What snow_sheared_splat wants, with slices along an axis: those of the job's
+ * slab, or all that the volume answers for.  `placement` is filled and must
+ * last as long as the order. */
+snow_status snow_job_order(const snow_job *job, int axis,
+                           snow_placement *placement,
+                           snow_sheared_order *order);
+
+/* The axes' shares in the picture; only the job's own has one but in quality
+ * high.  One that the method cannot draw leaves its share to the others. */
+snow_status snow_job_shares(const snow_job *job, double shares[3]);
+
+/* Lines 03 to 13 by an exact method, into job->pixels; deterministic ones group
+ * by group (decompose/part.h), a node of them. */
+snow_status snow_job_render_exact(snow_frame *frame, snow_job *job);
+snow_status snow_job_render_node(snow_frame *frame, snow_job *job,
+                                 snow_group_node node);
+
+/* Whether of a node's two halves the one of lower slices is in front. */
+bool snow_group_rises(const snow_placement *placement, snow_group_node node);
+
+/* What was chosen for the picture, and counts of voxels and bytes. */
+snow_status snow_job_finish(snow_frame *frame, const snow_job *job);
 
 /* Clears what a sheet of slice `slice` of the stored ones holds of samples that
  * are not the part's. */

@@ -67,10 +67,12 @@ snow_status snow_sheared_splat(snow_sheared *sheared,
 void snow_sheared_clear(const snow_sheared_image *image, int layer, int x0,
                         int y0, int x1, int y1);
 
-/* Lines `first` to `first` + `count` - 1 in the place of the image's, packed;
- * all others become empty. */
-void snow_sheared_take_lines(const snow_sheared_image *image, int first,
-                             int count, const float *pixels);
+/* Makes all of an image's first layer empty, for lines that others made: */
+void snow_sheared_empty(const snow_sheared_image *image);
+
+/* puts `count` packed lines from `first` on in their places. */
+void snow_sheared_put_lines(const snow_sheared_image *image, int first,
+                            int count, const float *pixels);
 
 /* Pixels of a line of the picture whose place in the image is in its lines
  * first .. end - 1: x range[0] .. range[1] - 1.  Of lines that follow one

@@ -70,19 +70,34 @@ void snow_sheared_clear(const snow_sheared_image *image, int layer, int x0,
     }
 }
 
-void snow_sheared_take_lines(const snow_sheared_image *image, int first,
-                             int count, const float *pixels) {
-    size_t floats = (size_t)image->width * (size_t)image->channels;
-    for (int n = 0; n < count; n++)
-        memcpy(image->pixels + (size_t)(first + n) * image->stride,
-               pixels + (size_t)n * floats, floats * sizeof *pixels);
+void snow_sheared_empty(const snow_sheared_image *image) {
     memset(image->drawn, 0, image->layer_tiles);
-    if (!count)
-        return;
-    size_t from = (size_t)(first / image->tile_height);
-    size_t to = (size_t)((first + count - 1) / image->tile_height) + 1;
-    memset(image->drawn + from * (size_t)image->tiles, 1,
-           (to - from) * (size_t)image->tiles);
+}
+
+/* Whether `count` floats are all 0. */
+static bool all_zero(const float *values, size_t count) {
+    for (size_t n = 0; n < count; n++)
+        if (values[n] != 0)
+            return false;
+    return true;
+}
+
+void snow_sheared_put_lines(const snow_sheared_image *image, int first,
+                            int count, const float *pixels) {
+    size_t floats = (size_t)(image->width * image->channels);
+    size_t block = (size_t)(image->tile_width * image->channels);
+    for (int line = first; line < first + count; line++, pixels += floats) {
+        unsigned char *drawn =
+            image->drawn + line / image->tile_height * image->tiles;
+        memcpy(image->pixels + (size_t)line * image->stride, pixels,
+               floats * sizeof *pixels);
+        for (size_t x = 0; x * block < floats; x++) {
+            size_t left = floats - x * block;
+            if (!drawn[x])
+                drawn[x] =
+                    !all_zero(pixels + x * block, left < block ? left : block);
+        }
+    }
 }
 
 /* Where pixel x of a line of the picture falls in the intermediate image. */

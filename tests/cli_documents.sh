@@ -13,6 +13,10 @@ for name in head.nii.gz ct.nii.gz ct.nrrd sim.nrrd volume.mha; do
     "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
 done
 "$tool" phantom engine -q -o engine.raw.gz || exit 1
+for step in 0 1 2; do
+    "$tool" phantom shells --dims 16x16x16 --seed $step -q \
+        -o run_000$step.nrrd || exit 1
+done
 head -c $((2 * 256 * 256 * 113)) /dev/zero | gzip -1 >CThead.raw.gz
 "$tool" phantom:shells -q -s 64x64 --dims 32x32x32 -o a.png || exit 1
 for suffix in png npy; do
@@ -22,11 +26,21 @@ for suffix in png npy; do
     done
 done
 
+mkdir slices
+head -c 4096 /dev/zero >slices/notes.txt
+for i in 0001 0002 0003; do
+    "$tool" render phantom:shells --dims 16x16x16 -q -s 16x16 -o slices/ct_$i.png || exit 1
+done
+
+# Movies need a program of its own.
+without='^$'
+command -v ffmpeg >/dev/null || without='-o [^ ]*\.(mp4|webm|gif)'
+
 # The indented lines that begin with the tool's name, continued lines joined.
 commands() {
     sed -e ':a' -e '/\\$/N; s/\\\n *//; ta' "$root/README.md" \
         "$root"/docs/*.md | sed -n 's/^    \(snowglass .*\)/\1/p' |
-        grep -v 'snowglass bench' | sort -u
+        grep -v 'snowglass bench' | grep -Ev "$without" | sort -u
 }
 
 ran=0 failed=0 words=()

@@ -27,8 +27,8 @@ phantom cube|no output is named
 phantom:cube -o x.jpg|x.jpg
 phantom snowman -o x.nrrd|snowman
 phantom cube -o x.txt|x.txt
-turntable x -o y.mp4|turntable is not built yet
-movie x|movie is not built yet
+turntable -o y.mp4|give snowglass turntable INPUT -o OUT
+turntable x y -o y.mp4|one word too many for turntable
 convert a b|convert is not built yet
 tf list|tf is not built yet
 serve x|serve is not built yet
@@ -56,12 +56,12 @@ info --perspective x|no option of info
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint
 --crop 0:1,0:1 x|--crop: 
---dataset d x|--dataset is not built yet
---channel 1 x|--channel is not built yet
 --series 1 x|--series is not built yet
 --quality best x|'best' is unknown
---frames 3 x|--frames is not built yet
---resume x|--resume is not built yet
+--frames 3 x|--frames: no option of render; it belongs to turntable
+movie --frames 3 x -o y.mp4|--frames: no option of movie
+--resume x|--resume: no option of render; it belongs to turntable
+turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
 -m mip x|'mip' is not built yet; choose from: over
 --mode iso x|'iso' is not built yet
 --mode best x|'best' is unknown
@@ -165,8 +165,8 @@ table1 --runs|unknown option or missing value '--runs'
 table1 --runs 4|this value is not possible: '4'
 table1 --kernel cube|this value is not possible: 'cube'
 table4|there is no benchmark 'table4'
-table1 table2|give one table
---json|give one table
+table1 table2|give one thing to measure
+--json|give one thing to measure
 END
 for table in table1 table2 table3; do
     refused 3 "bench $table without its files" \

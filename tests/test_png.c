@@ -176,6 +176,25 @@ static void grey_on_grey_stays_grey(void **state) {
                         6);
 }
 
+/* As encoders of movies get them; libpng reads the file, not our reader. */
+static void bytes_for_encoders_are_those_of_a_file(void **state) {
+    image_fixture *f = *state;
+    const snow_image_options flat = {.flatten = true,
+                                     .background = {0.2, 0.4, 1}};
+    for (int channels = 2; channels <= 4; channels += 2) {
+        unsigned char rgb[700 * 3];
+        snow_image *image = support_picture(f->context, 700, 1, channels, 5);
+        if (channels == 4)
+            snow_image_pixels(image)[4 * 300] = NAN;
+        decoded d =
+            store_row(f, snow_image_pixels(image), 700, channels, &flat);
+        assert_int_equal(d.row_bytes, sizeof rgb);
+        snow_image_bytes(image, flat.background, rgb);
+        assert_memory_equal(rgb, d.bytes, sizeof rgb);
+        snow_image_free(image);
+    }
+}
+
 static void not_a_number_is_transparent(void **state) {
     const float pixels[] = {NAN, 1, 1, 1, 1, 1, NAN, 1, 1, 1, 1, NAN};
     decoded d = store_row(*state, pixels, 3, 4, NULL);
@@ -571,6 +590,7 @@ int main(void) {
         TEST(grey_pictures_are_stored_as_grey),
         TEST(a_background_shows_through_and_takes_alpha_away),
         TEST(grey_on_grey_stays_grey),
+        TEST(bytes_for_encoders_are_those_of_a_file),
         TEST(not_a_number_is_transparent),
         TEST(values_out_of_range_are_limited),
         TEST(every_level_is_the_nearest),

@@ -34,15 +34,14 @@ typedef struct snow_message {
  * communicator is broken (snow_comm_broken). */
 typedef struct snow_comm_ops {
     size_t size; /* bytes of this record */
-    /* Starts a message of 0 or more bytes, which stay as they are until it is
-     * done; it may be done at once.  It does not wait for its receiver: two
-     * ranks may first send to each other and then receive, in one wait.
+    /* Starts a message of 0 or more bytes, which stay as they are until a wait
+     * says that it is done: at once, or when its receiver has asked for it.
+     * Two ranks that send to each other start both messages, then wait.
      * Messages of one tag (0 to 32767) between two ranks arrive in order.  A
      * rank may send to itself. */
     snow_status (*send)(void *self, const void *bytes, size_t count, int to,
                         int tag, snow_message *message);
-    /* Gets ready for one of at most `room` bytes; a longer one is a failure.
-     * Done only when a wait says so. */
+    /* Gets ready for one of at most `room` bytes; a longer one is a failure. */
     snow_status (*receive)(void *self, void *bytes, size_t room, int from,
                            int tag, snow_message *message);
     /* Waits until one of the messages that are still under way is done, and
@@ -114,6 +113,14 @@ SNOW_API snow_context *snow_comm_context(const snow_comm *comm);
  * context, with "rank N: " before it where there are several.  On a broken
  * communicator it fails at once. */
 SNOW_API snow_status snow_comm_agree(snow_comm *comm, snow_status status);
+
+/* Collective.  `count` bytes of rank `root` to all; of every rank to all, `all`
+ * having room for ranks * count bytes, in order of rank.  Errors: those of the
+ * transport. */
+SNOW_API snow_status snow_comm_broadcast(snow_comm *comm, void *bytes,
+                                         size_t count, int root);
+SNOW_API snow_status snow_comm_share(snow_comm *comm, const void *mine,
+                                     size_t count, void *all);
 
 /* Whether the transport itself has failed on this rank (a peer is gone, say).
  * All further calls on the communicator fail with the same status, and the

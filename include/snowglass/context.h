@@ -49,14 +49,27 @@ SNOW_API const char *snow_context_message(const snow_context *context);
 SNOW_API void snow_context_set_notice(snow_context *context,
                                       snow_notice_fn *notice, void *user);
 
-/* For those who extend the library (snowglass/comm.h): leaves a message of a
- * failure and returns `status`; tells the listener a remark, if there is one.
- * Text as of printf, one line without its end. */
+/* --- for those who extend the library, as by a transport (comm.h) --------- */
+
+/* Leaves a message of a failure and returns `status`; tells the listener a
+ * remark, if there is one.  Text as of printf, one line without its end. */
 SNOW_API snow_status snow_context_fail(snow_context *context,
                                        snow_status status, const char *format,
                                        ...) SNOW_PRINTF(3, 4);
 SNOW_API void snow_context_remark(snow_context *context, const char *format,
                                   ...) SNOW_PRINTF(2, 3);
+
+/* A block of the context's memory, aligned to 64, or NULL and a message that
+ * gives the size; NULL is accepted by the other. */
+SNOW_API void *snow_context_allocate(snow_context *context, size_t bytes);
+SNOW_API void snow_context_release(snow_context *context, void *block);
+
+/* --- figures ---------------------------------------------------------------
+ */
+
+/* The most bytes that objects of this context may hold together from now on; 0:
+ * as many as there are.  What would exceed it fails with SNOW_NO_MEMORY. */
+SNOW_API void snow_context_set_limit(snow_context *context, uint64_t bytes);
 
 /* Bytes that objects of this context hold now, and the most they ever held. */
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);

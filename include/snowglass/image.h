@@ -55,6 +55,12 @@ typedef struct snow_image_options {
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
 
+/* The picture on a background (red, green, blue, 0 to 1) as rows of bytes, red,
+ * green, blue for each pixel: width * height * 3 of them, with the levels that
+ * a PNG of 8 bits on that background stores. */
+SNOW_API void snow_image_bytes(const snow_image *image,
+                               const double background[3], unsigned char *rgb);
+
 /* Whether a path's suffix (or "-") is one that snow_image_save writes: asked
  * before a long rendering.  Errors: SNOW_BAD_USAGE, SNOW_BAD_OUTPUT (it exists
  * and `overwrite` is false; its folder is missing or not writable). */

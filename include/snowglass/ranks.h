@@ -39,19 +39,80 @@ typedef struct snow_ranks_options {
     int pixel_bits; /* 8: the picture's channels are rounded to whole steps of
                        1/255 before they travel to rank 0 (a quarter of the
                        bytes); 0: floats travel */
+    int turns;      /* not 0: pictures from other sides will follow, at this
+                       zoom; parts get ghost voxels enough for all of them */
 } snow_ranks_options;
 
-/* Opens this rank's part of a volume: only its box of the file is read, where
- * the format allows, with what kernels of the view and gradients need around
- * it.  The cut depends on the view (slabs lie along its slice axis) and, where
- * it is by count, on transfer function and threshold. */
+/* Opens this rank's part of a volume (snow_volume_get_part), with the ghost
+ * voxels around it that kernels of the view and gradients reach.  The cut
+ * depends on the view (slabs lie along its slice axis) and, where it is by
+ * count, on transfer function and threshold.
+ *
+ * No rank reads or stores the whole.  For equal slabs each reads its box of the
+ * file; for other cuts each reads an equal share of the slices, which is
+ * counted, and then voxels change hands, so that the file is read once.  A
+ * packed file is unpacked by all, each keeping its share.  A pipe or standard
+ * input is read by rank 0, which then needs the memory for all.
+ *
+ * The transfer function is the one that `look` asks for on the whole volume, to
+ * the bit, on all ranks.  All results are new, and the caller's.  Errors, on
+ * all ranks: those of snow_volume_open, snow_transfer_make and
+ * snow_frame_render; SNOW_BAD_INPUT where ranks see different files. */
 SNOW_API snow_status snow_ranks_open(
     snow_comm *comm, const char *path, const snow_volume_options *options,
     const snow_look *look, const snow_view *view, const snow_settings *settings,
     const snow_ranks_options *how, snow_volume **volume,
     snow_transfer **transfer);
 
-/* The picture, on rank 0; NULL on the others. */
+/* Sees to it that the parts serve another view, or other settings: where slabs
+ * lie along another axis than its slices, or ghost voxels are too few, the
+ * volume is cut anew and voxels change hands; no file is read.  *volume is then
+ * closed and replaced.  Where nothing has to change, nothing but one small
+ * message round is done.  `transfer` is the same on all ranks. */
+SNOW_API snow_status snow_ranks_recut(snow_comm *comm,
+                                      const snow_transfer *transfer,
+                                      const snow_view *view,
+                                      const snow_settings *settings,
+                                      const snow_ranks_options *how,
+                                      snow_volume **volume);
+
+/* snow_transfer_make for the whole that the ranks' volumes are parts of. */
+SNOW_API snow_status snow_ranks_transfer(snow_comm *comm,
+                                         const snow_volume *volume,
+                                         const snow_look *look,
+                                         snow_transfer **out);
+
+/* Not collective: how a whole volume would be cut for `ranks` ranks with slices
+ * along `slice_axis` (0 to 2).  `parts` (without ghosts) and `loads`, the
+ * interesting voxels of each, have as many entries; either may be NULL.
+ * Errors: SNOW_BAD_USAGE (ranks below 1, no such axis or cut), SNOW_NO_MEMORY.
+ */
+SNOW_API snow_status snow_ranks_plan(const snow_volume *volume,
+                                     const snow_transfer *transfer,
+                                     double threshold, snow_cut cut,
+                                     int slice_axis, int ranks,
+                                     snow_part *parts, int64_t *loads);
+
+/* Collective.  The picture, on rank 0; NULL on the others.
+ *
+ * Every rank's volume is its part (snow_volume_set_part) of one whole, with
+ * the ghost voxels that the view needs; each voxel is one rank's own, and a
+ * rank may own none.  Parts may be any boxes that have an order from front to
+ * back: slabs, a grid, a k-d tree.  The picture is that of snow_frame_render of
+ * the whole but for rounding, and where it is opaque within one step of 8 bits:
+ * half a step may shine through where the sheared method gives up a pixel,
+ * which parts do later than the whole.  Where quality high blends pictures
+ * along several axes, floats travel and the blend is rank 0's.
+ *
+ * With settings->deterministic it is the same bit for bit as
+ * snow_frame_render's, for any number of ranks: parts then are slabs across the
+ * view's slices, cut at borders of groups of slices (1/32 of them each), and a
+ * blend of several axes is refused where there are several ranks.
+ *
+ * The frame belongs to the communicator's context, keeps buffers for it, and is
+ * freed before it.  Errors, on all ranks alike: those of snow_frame_render, and
+ * SNOW_BAD_USAGE (parts that overlap, leave voxels out, have too few ghosts or
+ * no order). */
 SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
                                        const snow_volume *volume,
                                        const snow_transfer *transfer,

@@ -130,6 +130,11 @@ typedef struct snow_stats {
     double seconds_warp;      /* the intermediate image into the picture */
     double seconds_frame;     /* the whole picture */
     double cpu_frame;         /* the same in processor time of the process */
+    /* Of snow_ranks_render (snowglass/ranks.h), where all else is what this
+     * rank did: */
+    int ranks;              /* that made the picture; else 1 */
+    double seconds_combine; /* local images laid over one another */
+    double seconds_gather;  /* the picture brought to rank 0 */
 } snow_stats;
 
 /* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */

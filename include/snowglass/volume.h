@@ -55,7 +55,8 @@ typedef struct snow_volume_info {
                             superior */
     char unit[16];       /* of spacing and matrix: "mm", "um", ... or "" */
     const char *format;  /* constant: "raw", "nrrd", "nifti", "metaimage",
-                            "phantom", "memory" */
+                            "npy", "mrc", "vtk", "vti", "tiff", "png",
+                            "hdf5", "netcdf", "phantom", "memory" */
     int64_t times;       /* time steps in the file, at least 1 */
     int64_t time;        /* the one that was read, from 0 */
 } snow_volume_info;
@@ -69,15 +70,19 @@ typedef enum snow_endian {
 
 /* How to open a volume.  Zero everywhere is right for every format but raw. */
 typedef struct snow_volume_options {
-    int64_t dims[3];    /* raw only: voxels along x, y, z; 0: not told */
-    snow_type type;     /* raw only: scalar type */
-    snow_endian endian; /* raw only: byte order */
-    double spacing[3];  /* raw: voxel size in mm, 0 for 1; other formats:
-                           replaces the file's spacing, 0 keeps it */
-    uint64_t offset;    /* raw only: bytes to skip before the voxels */
-    int64_t time;       /* time step of a file with several, from 0 */
-    int64_t crop[3][2]; /* along x, y, z: the first voxel and one past the last
-                           one, 0 for the end; all 0: the whole volume */
+    int64_t dims[3];     /* raw only: voxels along x, y, z; 0: not told */
+    snow_type type;      /* raw only: scalar type */
+    snow_endian endian;  /* raw only: byte order */
+    double spacing[3];   /* raw: voxel size in mm, 0 for 1; other formats:
+                            replaces the file's spacing, 0 keeps it */
+    uint64_t offset;     /* raw only: bytes to skip before the voxels */
+    int64_t time;        /* time step of a file with several, from 0 */
+    int64_t crop[3][2];  /* along x, y, z: the first voxel and one past the last
+                            one, 0 for the end; all 0: the whole volume */
+    int64_t channel;     /* of voxels with several values, from 0 */
+    const char *dataset; /* of a file with several data sets, the one to read:
+                            a path in HDF5, a name in VTK, VTI and NetCDF; NULL:
+                            the only one, or the file's own choice */
 } snow_volume_options;
 
 /* Opens a volume file.  The format is found from the first bytes, then from
@@ -85,9 +90,10 @@ typedef struct snow_volume_options {
  * knows is raw and needs `dims` and `type`.  "phantom:NAME" makes a built-in
  * volume (options->dims then gives its size; 0 for the default).  `options`
  * may be NULL.  Of a volume that is cropped little more than the box is read
- * and kept; it is a volume of its own, whose matrix puts it where it was.  Errors: SNOW_BAD_INPUT (missing, damaged, contradictory,
- * unsupported; nothing is kept), SNOW_BAD_USAGE (options that do not fit the
- * format), SNOW_NO_MEMORY.  Close with snow_volume_close. */
+ * and kept; it is a volume of its own, whose matrix puts it where it was.
+ * Errors: SNOW_BAD_INPUT (missing, damaged, contradictory, unsupported; nothing
+ * is kept), SNOW_BAD_USAGE (options that do not fit the format),
+ * SNOW_NO_MEMORY.  Close with snow_volume_close. */
 SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
                                       const snow_volume_options *options,
                                       snow_volume **out);
@@ -159,6 +165,12 @@ SNOW_API const char *snow_phantom_text(size_t index);
 /* Name and description of input format `index` (from 0); NULL past the end. */
 SNOW_API const char *snow_format_name(size_t index);
 SNOW_API const char *snow_format_text(size_t index);
+
+/* Name of optional library `index` (from 0) that input formats are read with;
+ * NULL past the end.  *version is that of the build, NULL where it was built
+ * without; *formats names the formats that need it. */
+SNOW_API const char *snow_library_name(size_t index, const char **version,
+                                       const char **formats);
 
 /* Closes a volume and frees its voxels unless they are shared; NULL is
  * accepted. */

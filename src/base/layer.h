@@ -24,6 +24,12 @@ struct snow_layer {
                         size_t *got);
     /* Passes by `count` bytes that are there and not buffered; may be NULL. */
     bool (*jump)(snow_layer *layer, uint64_t count);
+    /* The most bytes that can still come where `size` is not known; NULL: as
+     * deflate packs those below. */
+    uint64_t (*limit)(const snow_layer *layer);
+    /* Copies bytes from any place without taking them, as many as are there;
+     * NULL where that cannot be done. */
+    size_t (*look)(snow_layer *layer, uint64_t from, void *bytes, size_t size);
     void (*fini)(snow_layer *layer);
     int64_t size;      /* of all its bytes; -1 when that is not known */
     uint64_t taken;    /* bytes handed out so far */
@@ -43,6 +49,23 @@ snow_status snow_layer_open_memory(snow_context *context, const char *name,
 
 /* Puts a layer that unpacks gzip or zlib on top; owns `below` on success. */
 snow_status snow_layer_open_inflate(snow_layer *below, snow_layer **out);
+
+/* Puts a layer that reads base64 (RFC 4648) on top, up to the first letter that
+ * is none of its; blanks are passed by, and what follows padding is read on. */
+snow_status snow_layer_open_base64(snow_layer *below, snow_layer **out);
+
+/* Zlib streams one behind the other, each unpacking to `whole` bytes but for
+ * the last, which makes `last`; `packed` are their packed sizes. */
+typedef struct snow_blocks {
+    uint64_t count; /* at least 1 */
+    uint64_t whole, last;
+    uint64_t *packed; /* from snow_allocate */
+} snow_blocks;
+
+/* Puts a layer that unpacks them on top, which owns the sizes on success.
+ * Refuses sizes that the bytes below or deflate cannot make true. */
+snow_status snow_layer_open_blocks(snow_layer *below, const snow_blocks *blocks,
+                                   snow_layer **out);
 
 /* Closes a layer and those below; NULL is accepted. */
 void snow_layer_close(snow_layer *layer);

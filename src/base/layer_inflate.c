@@ -5,11 +5,9 @@
  * layer passes on its end only after that.  A gzip file may be several members
  * one after the other, whose bytes are joined. */
 #include "base/layer.h"
+#include "base/source.h"
 
 #include <zlib.h>
-
-/* Deflate's shortest code for its longest run: 258 bytes for 2 bits. */
-#define LARGEST_RATIO 1032
 
 /* What inflate may have swallowed without having given it out: its bit buffer
  * and a started run.  In packed bytes, generously. */
@@ -141,11 +139,13 @@ snow_status snow_layer_open_inflate(snow_layer *below, snow_layer **out) {
 uint64_t snow_layer_limit(const snow_layer *layer) {
     if (layer->size >= 0)
         return (uint64_t)snow_layer_remaining(layer);
+    if (layer->limit)
+        return layer->limit(layer);
     if (!layer->below)
         return UINT64_MAX;
     uint64_t limit = snow_layer_limit(layer->below);
     if (!snow_add_u64(limit, INFLATE_SLACK, &limit) ||
-        !snow_mul_u64(limit, LARGEST_RATIO, &limit) ||
+        !snow_mul_u64(limit, SNOW_DEFLATE_RATIO, &limit) ||
         !snow_add_u64(limit, layer->end - layer->begin, &limit))
         return UINT64_MAX;
     return limit;

@@ -10,6 +10,9 @@
 
 typedef struct snow_source snow_source;
 
+/* Deflate's shortest code for its longest run: 258 bytes for 2 bits. */
+#define SNOW_DEFLATE_RATIO 1032
+
 /* The most that snow_source_peek can show. */
 #define SNOW_PEEK_BYTES 4096
 
@@ -19,6 +22,9 @@ typedef struct snow_source snow_source;
  * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
 snow_status snow_source_open(snow_context *context, const char *path,
                              snow_source **out);
+
+/* Whether a path can be read only once, and by one: "-", a pipe. */
+bool snow_source_is_stream(const char *path);
 
 /* Bytes in memory, which must outlive the source; gzip is unpacked as well.
  * It has no siblings. */

@@ -143,6 +143,13 @@ snow_status snow_source_open(snow_context *context, const char *path,
     return open_path(context, strcmp(path, "-") ? path : NULL, true, true, out);
 }
 
+bool snow_source_is_stream(const char *path) {
+    struct stat about;
+    return strcmp(path, "-") == 0 ||
+           (stat(path, &about) == 0 &&
+            (S_ISFIFO(about.st_mode) || S_ISSOCK(about.st_mode)));
+}
+
 snow_status snow_source_open_memory(snow_context *context, const char *name,
                                     const void *bytes, size_t size,
                                     snow_source **out) {

@@ -4,8 +4,8 @@
  * into the box, where a later receive finds the oldest that it asks for: so
  * letters of one tag arrive in order, in whatever order they are waited for.
  *
- *   send --> asked for? --yes--> slot->letter     slot: a receive under way
- *                 |no
+ *   send --> asked for? --yes--> slot->letter     slot: a message under way
+ *                 |no                               on either side
  *                 +--> box->letters --(receive)--> slot->letter
  *
  * Nobody waits for ever.  A rank that has left, or whose transport has failed,
@@ -17,16 +17,19 @@
 
 typedef struct mail_letter {
     struct mail_letter *next;
+    struct mail_slot *sender; /* to be told when it is asked for */
     int from, tag;
     size_t bytes; /* which follow this record */
 } mail_letter;
 
+/* Of a receive, or of a send (`sends`), which uses only some of it. */
 typedef struct mail_slot {
     struct mail_slot *next; /* in the box, while no letter has come; or spare */
     struct mail_slot *made; /* the one that was made before it */
+    bool sends, taken;      /* a send; it was asked for */
     void *bytes;
     size_t room;
-    int from, tag;
+    int peer, tag;
     mail_letter *letter;
 } mail_slot;
 
@@ -86,7 +89,7 @@ static void sleep_at(snow_office *office, mail_box *box) {
 /* Takes the oldest slot that asks for a letter out of the box, or NULL. */
 static mail_slot *find_slot(mail_box *box, const mail_letter *letter) {
     for (mail_slot **at = &box->slots; *at; at = &(*at)->next)
-        if ((*at)->from == letter->from && (*at)->tag == letter->tag) {
+        if ((*at)->peer == letter->from && (*at)->tag == letter->tag) {
             mail_slot *found = *at;
             *at = found->next;
             return found;
@@ -97,7 +100,7 @@ static mail_slot *find_slot(mail_box *box, const mail_letter *letter) {
 /* Takes the oldest letter that a slot asks for out of the box, or NULL. */
 static mail_letter *find_letter(mail_box *box, const mail_slot *slot) {
     for (mail_letter **at = &box->letters; *at; at = &(*at)->next)
-        if ((*at)->from == slot->from && (*at)->tag == slot->tag) {
+        if ((*at)->from == slot->peer && (*at)->tag == slot->tag) {
             mail_letter *found = *at;
             *at = found->next;
             return found;
@@ -105,23 +108,35 @@ static mail_letter *find_letter(mail_box *box, const mail_slot *slot) {
     return NULL;
 }
 
-static void deliver(mail_box *box, mail_letter *letter) {
+/* A letter and who asks for it have met: both sides are done. */
+static void join(snow_office *office, mail_slot *slot, mail_letter *letter) {
+    slot->letter = letter;
+    letter->sender->taken = true;
+    wake(office, &office->boxes[letter->from]);
+}
+
+static void put_letter(snow_office *office, int to, mail_letter *letter) {
+    mail_box *box = &office->boxes[to];
     mail_slot *slot = find_slot(box, letter);
+    wake(office, box);
     if (slot) {
-        slot->letter = letter;
+        join(office, slot, letter);
         return;
     }
-    struct mail_letter **end = &box->letters;
+    mail_letter **end = &box->letters;
     while (*end)
         end = &(*end)->next;
     *end = letter;
 }
 
-static void put_slot(mail_box *box, mail_slot *slot) {
-    slot->letter = find_letter(box, slot);
-    if (slot->letter)
+static void put_slot(snow_office *office, int at, mail_slot *slot) {
+    mail_box *box = &office->boxes[at];
+    mail_letter *letter = find_letter(box, slot);
+    if (letter) {
+        join(office, slot, letter);
         return;
-    struct mail_slot **end = &box->slots;
+    }
+    mail_slot **end = &box->slots;
     while (*end)
         end = &(*end)->next;
     *end = slot;
@@ -133,39 +148,59 @@ static mail_slot *new_slot(mail_desk *desk) {
     mail_slot *slot = desk->spare;
     if (slot) {
         desk->spare = slot->next;
+        slot->next = NULL;
         return slot;
     }
     slot = snow_allocate(desk->context, sizeof *slot);
     if (slot) {
-        slot->made = desk->made;
+        *slot = (mail_slot){.made = desk->made};
         desk->made = slot;
     }
     return slot;
+}
+
+static void free_slot(mail_desk *desk, mail_slot *slot) {
+    *slot = (mail_slot){.made = slot->made, .next = desk->spare};
+    desk->spare = slot;
+}
+
+/* A copy of a message, or NULL and a message. */
+static mail_letter *new_letter(mail_desk *desk, const void *bytes, size_t count,
+                               int to, int tag) {
+    mail_letter *letter = NULL;
+    if (count <= SIZE_MAX - sizeof *letter)
+        letter = snow_allocate(desk->office->context, sizeof *letter + count);
+    if (!letter) {
+        snow_fail(desk->context, SNOW_NO_MEMORY,
+                  "no memory for a message of %zu bytes to rank %d; take fewer "
+                  "ranks or a smaller picture",
+                  count, to);
+        return NULL;
+    }
+    *letter = (mail_letter){.from = desk->rank, .tag = tag, .bytes = count};
+    if (count)
+        memcpy(letter + 1, bytes, count);
+    return letter;
 }
 
 static snow_status send(void *self, const void *bytes, size_t count, int to,
                         int tag, snow_message *message) {
     mail_desk *desk = self;
     snow_office *office = desk->office;
-    mail_letter *letter = NULL;
-    if (count <= SIZE_MAX - sizeof *letter)
-        letter = snow_allocate(office->context, sizeof *letter + count);
-    if (!letter) {
+    mail_letter *letter = new_letter(desk, bytes, count, to, tag);
+    mail_slot *slot = letter ? new_slot(desk) : NULL;
+    if (!slot) {
+        snow_release(office->context, letter);
         snow_office_leave(office, desk->rank);
-        return snow_fail(desk->context, SNOW_NO_MEMORY,
-                         "no memory for a message of %zu bytes to rank %d; "
-                         "take fewer ranks or a smaller picture",
-                         count, to);
+        return SNOW_NO_MEMORY;
     }
-    *letter =
-        (struct mail_letter){.from = desk->rank, .tag = tag, .bytes = count};
-    if (count)
-        memcpy(letter + 1, bytes, count);
+    slot->sends = true;
+    slot->peer = to;
+    letter->sender = slot;
     pthread_mutex_lock(&office->lock);
-    deliver(&office->boxes[to], letter);
-    wake(office, &office->boxes[to]);
+    put_letter(office, to, letter);
     pthread_mutex_unlock(&office->lock);
-    *message = (snow_message){.bytes = count};
+    *message = (snow_message){.handle = slot, .bytes = count};
     return SNOW_OK;
 }
 
@@ -178,33 +213,32 @@ static snow_status receive(void *self, void *bytes, size_t room, int from,
         snow_office_leave(office, desk->rank);
         return SNOW_NO_MEMORY;
     }
-    slot->next = NULL;
     slot->bytes = bytes;
     slot->room = room;
-    slot->from = from;
+    slot->peer = from;
     slot->tag = tag;
     pthread_mutex_lock(&office->lock);
-    put_slot(&office->boxes[desk->rank], slot);
+    put_slot(office, desk->rank, slot);
     pthread_mutex_unlock(&office->lock);
     *message = (snow_message){.handle = slot};
     return SNOW_OK;
 }
 
 /* What there is for those who wait. */
-typedef enum mail_news { NOTHING, ARRIVED, NONE_ASKED, LOST } mail_news;
+typedef enum mail_news { NOTHING, DONE, NONE_ASKED, LOST } mail_news;
 
-/* Looks through the messages under way: *which has arrived; or *which is from a
+/* Looks through the messages under way: *which is done; or *which is with a
  * rank that has gone. */
 static mail_news look(const snow_office *office, const snow_message *messages,
                       int count, int *which) {
     mail_news news = NONE_ASKED;
     for (int i = 0; i < count; i++) {
         const mail_slot *slot = messages[i].handle;
-        if (slot && slot->letter) {
+        if (slot && (slot->letter || slot->taken)) {
             *which = i;
-            return ARRIVED;
+            return DONE;
         }
-        if (slot && office->boxes[slot->from].gone) {
+        if (slot && office->boxes[slot->peer].gone) {
             *which = i;
             news = LOST;
         } else if (slot && news == NONE_ASKED) {
@@ -214,24 +248,25 @@ static mail_news look(const snow_office *office, const snow_message *messages,
     return news;
 }
 
-/* Hands a letter over; its slot is spare again. */
-static snow_status open_letter(mail_desk *desk, snow_message *message) {
+/* Hands over the letter of a receive; the slot is spare again. */
+static snow_status finish(mail_desk *desk, snow_message *message) {
     mail_slot *slot = message->handle;
     mail_letter *letter = slot->letter;
-    if (letter->bytes > slot->room) {
+    if (letter && letter->bytes > slot->room) {
         snow_office_leave(desk->office, desk->rank);
         return snow_fail(desk->context, SNOW_FAILED,
                          "a message of %zu bytes from rank %d where there is "
                          "room for %zu; the ranks do different things",
                          letter->bytes, letter->from, slot->room);
     }
-    if (letter->bytes)
-        memcpy(slot->bytes, letter + 1, letter->bytes);
-    *message = (snow_message){.bytes = letter->bytes};
-    snow_release(desk->office->context, letter);
-    slot->letter = NULL;
-    slot->next = desk->spare;
-    desk->spare = slot;
+    message->handle = NULL;
+    if (letter) {
+        message->bytes = letter->bytes;
+        if (letter->bytes)
+            memcpy(slot->bytes, letter + 1, letter->bytes);
+        snow_release(desk->office->context, letter);
+    }
+    free_slot(desk, slot);
     return SNOW_OK;
 }
 
@@ -251,19 +286,18 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
         *which = -1;
         return SNOW_OK;
     }
-    if (news == ARRIVED) {
-        SNOW_TRY(open_letter(desk, &messages[found]));
+    if (news == DONE) {
+        SNOW_TRY(finish(desk, &messages[found]));
         *which = found;
         return SNOW_OK;
     }
     snow_office_leave(office, desk->rank);
     if (news == LOST)
-        return snow_fail(desk->context, SNOW_FAILED,
-                         "rank %d has ended and sends nothing more",
-                         ((const mail_slot *)messages[found].handle)->from);
+        return snow_fail(desk->context, SNOW_FAILED, "rank %d has ended",
+                         ((const mail_slot *)messages[found].handle)->peer);
     return snow_fail(desk->context, SNOW_FAILED,
-                     "every rank waits for a message that nobody sends; the "
-                     "ranks do different things");
+                     "every rank waits for another; the ranks do different "
+                     "things");
 }
 
 static snow_status wait_all(void *self, snow_message *messages, int count) {

@@ -1,8 +1,8 @@
 /* comm/office.h - a post office: messages between ranks of one process.
  *
- * Every rank has a box; a send leaves a copy there and is done, so no order of
- * sends and receives can stop two ranks that wait for each other's message.
- * For comm/ alone. */
+ * Every rank has a box for copies of what is sent to it.  A send is done when
+ * it is asked for, though the copy would allow it to be at once: what works
+ * here then works with any MPI.  For comm/ alone. */
 #ifndef SNOW_OFFICE_H
 #define SNOW_OFFICE_H
 

@@ -17,7 +17,7 @@
 
 /* Blocks: so many for each rank, but no more and no fewer in all than these. */
 #define BLOCKS_A_RANK 16384
-#define LEAST_BLOCKS (INT64_C(1) << 18)
+#define LEAST_BLOCKS (INT64_C(1) << 20)
 #define MOST_BLOCKS (INT64_C(1) << 22)
 
 /* Another axis than the longest must be better by so much to be cut: long thin
@@ -27,37 +27,30 @@
 /* And so must a cut whose larger side has all ranks, not half of them. */
 #define HALVES_BONUS 0.01
 
-/* Along the axis of the slices blocks are multiples of `multiple` thick. */
-static void lay_blocks(int64_t edge, int axis, int64_t multiple,
-                       snow_tally *tally) {
+static bool lay_blocks(int64_t edge, int64_t most, snow_tally *tally) {
+    const snow_cut_grid *grid = &tally->grid;
+    uint64_t blocks = 1;
     for (int i = 0; i < 3; i++) {
-        int64_t step = i == axis ? multiple : 1;
-        int64_t block = (edge + step - 1) / step * step;
-        tally->block[i] = block < tally->dims[i] ? block : tally->dims[i];
-        tally->blocks[i] = (tally->dims[i] - 1) / tally->block[i] + 1;
+        tally->block[i] = edge < grid->dims[i] ? edge : grid->dims[i];
+        tally->blocks[i] = (grid->dims[i] - 1) / tally->block[i] + 1;
+        if (grid->borders && i == grid->axis)
+            tally->blocks[i] = grid->count;
+        if (!snow_mul_u64(blocks, (uint64_t)tally->blocks[i], &blocks))
+            return false;
     }
+    return blocks <= (uint64_t)most;
 }
 
-snow_tally snow_tally_for_bricks(const int64_t dims[3], int axis,
-                                 int64_t multiple, int ranks) {
-    snow_tally tally = {.blocks = {1, 1, 1}};
-    int64_t most = (int64_t)ranks * BLOCKS_A_RANK;
+snow_tally snow_tally_for_bricks(const snow_cut_grid *grid, int ranks) {
+    snow_tally tally = {.grid = *grid};
+    int64_t most = (int64_t)ranks * BLOCKS_A_RANK, edge = 1;
     if (most < LEAST_BLOCKS)
         most = LEAST_BLOCKS;
     if (most > MOST_BLOCKS)
         most = MOST_BLOCKS;
-    memcpy(tally.dims, dims, sizeof tally.dims);
-    int64_t edge = 1;
-    for (;; edge *= 2) {
-        uint64_t blocks = 1;
-        bool fits = true;
-        lay_blocks(edge, axis, multiple, &tally);
-        for (int i = 0; i < 3; i++)
-            fits = fits &&
-                   snow_mul_u64(blocks, (uint64_t)tally.blocks[i], &blocks);
-        if (fits && blocks <= (uint64_t)most)
-            return tally;
-    }
+    while (!lay_blocks(edge, most, &tally))
+        edge *= 2;
+    return tally;
 }
 
 /* A box of blocks: first .. end - 1. */
@@ -97,14 +90,7 @@ static void sum_up(tree *t) {
 }
 
 static snow_box voxels_of(const snow_tally *tally, const node *n) {
-    snow_box box;
-    for (int i = 0; i < 3; i++) {
-        int64_t end = n->end[i] * tally->block[i];
-        box.first[i] = n->first[i] * tally->block[i];
-        box.count[i] =
-            (end < tally->dims[i] ? end : tally->dims[i]) - box.first[i];
-    }
-    return box;
+    return snow_tally_box(tally, n->first, n->end);
 }
 
 static double cost_of(const tree *t, const node *n) {
@@ -208,8 +194,8 @@ snow_status snow_cut_bricks(snow_context *context, const snow_tally *tally,
     sum_up(&t);
     node root = {.ranks = ranks};
     memcpy(root.end, blocks, sizeof root.end);
-    double voxels = (double)tally->dims[0] * (double)tally->dims[1] *
-                    (double)tally->dims[2];
+    const int64_t *dims = tally->grid.dims;
+    double voxels = (double)dims[0] * (double)dims[1] * (double)dims[2];
     int64_t all = t.sums[corners - 1];
     t.emptiness = all ? (double)all / (SNOW_EMPTINESS * voxels) : 1;
     cut_node(&t, &root);

@@ -12,43 +12,57 @@
 #include "base/base.h"
 #include "decompose/box.h"
 
-/* Interesting voxels, counted by blocks of the grid.  Those at the far ends
- * may be smaller than the others. */
+/* What is cut, and where: along `axis`, the slices', only before voxels
+ * borders[0] = 0, borders[1], ... borders[count] = dims[axis], which rise;
+ * NULL: anywhere.  The borders are the caller's. */
+typedef struct snow_cut_grid {
+    int64_t dims[3]; /* voxels */
+    int axis;
+    const int64_t *borders;
+    int64_t count;
+} snow_cut_grid;
+
+/* Interesting voxels, counted by blocks of the grid. */
 typedef struct snow_tally {
-    int64_t dims[3];   /* of the grid, voxels */
-    int64_t block[3];  /* of a block, voxels */
+    snow_cut_grid grid;
+    int64_t block[3];  /* voxels of a block; not along an axis with borders,
+                          and those at the far ends may be smaller */
     int64_t blocks[3]; /* along each axis */
     int64_t *counts;   /* x fastest; the caller's */
 } snow_tally;
 
-/* Lays blocks for slabs along `axis`, one for each `multiple` slices; or for
- * bricks of so many ranks, whose cuts along `axis` are to lie at multiples of
- * `multiple` as well, so many that bricks come out about equal and so few that
- * the counts of all take 32 MiB at most.  No counts yet. */
-snow_tally snow_tally_for_slabs(const int64_t dims[3], int axis,
-                                int64_t multiple);
-snow_tally snow_tally_for_bricks(const int64_t dims[3], int axis,
-                                 int64_t multiple, int ranks);
+/* Lays blocks for slabs along the slices' axis, a slice each; or for bricks of
+ * so many ranks, so many blocks that bricks come out about equal and so few
+ * that the counts of all take 32 MiB at most.  Borders are heeded by both.  No
+ * counts yet. */
+snow_tally snow_tally_for_slabs(const snow_cut_grid *grid);
+snow_tally snow_tally_for_bricks(const snow_cut_grid *grid, int ranks);
 
-/* How many blocks. */
+/* How many blocks in all; the first voxel of block `n` along an axis (dims for
+ * the one past the last); the block that a voxel lies in. */
 size_t snow_tally_blocks(const snow_tally *tally);
+int64_t snow_tally_begin(const snow_tally *tally, int axis, int64_t n);
+int64_t snow_tally_find(const snow_tally *tally, int axis, int64_t voxel);
 
-/* Slabs as equal as can be along an axis, larger ones first, cut at multiples
- * of `multiple`. */
-void snow_cut_equal(const int64_t dims[3], int axis, int64_t multiple,
-                    int ranks, snow_box *boxes);
+/* The voxels of blocks first .. end - 1 along each axis. */
+snow_box snow_tally_box(const snow_tally *tally, const int64_t first[3],
+                        const int64_t end[3]);
+
+/* Slabs of as equally many slices as can be, or runs between borders, larger
+ * ones first. */
+void snow_cut_equal(const snow_cut_grid *grid, int ranks, snow_box *boxes);
 
 /* What a part costs: its interesting voxels, and a little for all its voxels,
  * so that no rank stores all that is empty.  Those of the whole grid together
  * cost 1 / SNOW_EMPTINESS of what the interesting ones do: a part is at most
- * SNOW_EMPTINESS + 1 times as large as an equal one, and the interesting voxels
- * are as unequal as 1 : 1 + 1 / SNOW_EMPTINESS for it. */
-#define SNOW_EMPTINESS 32
+ * SNOW_EMPTINESS + 1 times as large as an equal one. */
+#define SNOW_EMPTINESS 64
 
-/* Slabs along an axis whose most expensive one is as cheap as can be; the
- * tally's blocks span the others.  Errors: SNOW_NO_MEMORY. */
+/* Slabs whose most expensive one is as cheap as can be, from a tally for them;
+ * none is thicker than SNOW_THICKEST equal ones.  Errors: SNOW_NO_MEMORY. */
+#define SNOW_THICKEST 4
 snow_status snow_cut_counted(snow_context *context, const snow_tally *tally,
-                             int axis, int ranks, snow_box *boxes);
+                             int ranks, snow_box *boxes);
 
 /* Bricks: the grid is cut in two across an axis, and so are its parts, each
  * with its share of the ranks (a k-d tree).  From every direction, and from

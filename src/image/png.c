@@ -10,9 +10,9 @@
  * fails.  So that no variable is lost on the way, everything that must survive
  * lies in a `png_job` of the function above the one that calls setjmp. */
 #include "image/image.h"
+#include "image/samples.h"
 
 #include <assert.h>
-#include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
@@ -105,69 +105,6 @@ static snow_status refuse_library(png_job *job) {
                      png_get_libpng_ver(NULL), PNG_LIBPNG_VER_STRING);
 }
 
-/* --- from pixels to samples ----------------------------------------------- */
-
-/* Between 0 and 1; NaN becomes 0. */
-static inline double clamp_unit(double x) {
-    return x > 0 ? (x < 1 ? x : 1) : 0;
-}
-
-/* One sample that is not a number makes the pixel unknown: what the others say
- * was computed beside it. */
-static inline bool has_nan(const float *pixel, int channels) {
-    bool found = false;
-    for (int c = 0; c < channels; c++)
-        found |= isnan(pixel[c]) != 0;
-    return found;
-}
-
-/* Divides alpha out of a row; what is transparent, or not a number, becomes
- * 0 in all channels. */
-static inline void straighten_row(const float *row, int width, int channels,
-                                  double *out) {
-    for (int x = 0; x < width; x++, row += channels, out += channels) {
-        double alpha = clamp_unit((double)row[channels - 1]);
-        if (has_nan(row, channels))
-            alpha = 0;
-        for (int c = 0; c < channels - 1; c++)
-            out[c] = alpha > 0 ? clamp_unit((double)row[c] / alpha) : 0;
-        out[channels - 1] = alpha;
-    }
-}
-
-/* Lays a row on a background of `kept` channels (1 grey, 3 colour), by Porter
- * and Duff's "over" on premultiplied samples; what is not a number shows the
- * background alone. */
-static void flatten_row(const float *row, int width, int channels,
-                        const double *background, int kept, double *out) {
-    int step = channels == 2 ? 0 : 1; /* grey serves for all three */
-    for (int x = 0; x < width; x++, row += channels, out += kept) {
-        bool missing = has_nan(row, channels);
-        double rest = missing ? 1 : 1 - clamp_unit((double)row[channels - 1]);
-        for (int c = 0; c < kept; c++)
-            out[c] = clamp_unit((missing ? 0 : (double)row[c * step]) +
-                                rest * background[c]);
-    }
-}
-
-/* round(255 x), halves up.  In double precision, where the product of a float
- * and 255 is exact, so that the nearest level is taken always. */
-static void quantise_8(const double *samples, size_t count,
-                       unsigned char *bytes) {
-    for (size_t i = 0; i < count; i++)
-        bytes[i] = (unsigned char)(int)(samples[i] * 255 + 0.5);
-}
-
-/* round(65535 x), the high byte first */
-static void quantise_16(const double *samples, size_t count,
-                        unsigned char *bytes) {
-    for (size_t i = 0; i < count; i++) {
-        int level = (int)(samples[i] * 65535 + 0.5);
-        bytes[2 * i] = (unsigned char)(level >> 8);
-        bytes[2 * i + 1] = (unsigned char)(level & 255);
-    }
-}
-
 /* --- writing -------------------------------------------------------------- */
 
 /* What is written, and the buffers of one row. */
@@ -204,16 +141,16 @@ static void encode_row(const png_plan *plan, int y) {
         image->pixels + (size_t)y * (size_t)width * (size_t)channels;
     size_t count = (size_t)width * (size_t)plan->samples;
     if (plan->background)
-        flatten_row(row, width, channels, plan->background, plan->samples,
-                    plan->row);
+        snow_flatten_row(row, width, channels, plan->background, plan->samples,
+                         plan->row);
     else if (channels == 2)
-        straighten_row(row, width, 2, plan->row);
+        snow_straighten_row(row, width, 2, plan->row);
     else
-        straighten_row(row, width, 4, plan->row);
+        snow_straighten_row(row, width, 4, plan->row);
     if (plan->bits == 8)
-        quantise_8(plan->row, count, plan->bytes);
+        snow_quantise_8(plan->row, count, plan->bytes);
     else
-        quantise_16(plan->row, count, plan->bytes);
+        snow_quantise_16(plan->row, count, plan->bytes);
 }
 
 /* Level 1, the filter "up" and runs alone (Z_RLE) were measured to be the best

@@ -22,7 +22,7 @@ void snow_clip_make(const snow_volume *volume, const snow_placement *whole,
         out->first[n] = none ? out->stored[n] : part.first[axes[n]];
         out->count[n] = none ? 0 : part.count[axes[n]];
     }
-    for (int n = 0; n < 2; n++) {
+    for (int n = 0; n < 2 && !none; n++) {
         int64_t end = out->first[n] + out->count[n];
         bool at_start = out->first[n] == 0;
         bool at_end = end == part.dims[axes[n]];

@@ -122,14 +122,16 @@ static snow_status skip_blanks(word_reader *reader, bool *got) {
     }
 }
 
-/* Takes the next word into reader->word. */
+/* Takes the next word into reader->word.  A tag ends it in XML; no number has
+ * its letter. */
 static snow_status next_word(word_reader *reader, bool *got) {
     size_t used = 0;
     SNOW_TRY(skip_blanks(reader, got));
     for (;; reader->at++) {
         SNOW_TRY(look_ahead(reader));
         if (reader->at == reader->end ||
-            separates(reader, reader->bytes[reader->at]))
+            separates(reader, reader->bytes[reader->at]) ||
+            (used && reader->bytes[reader->at] == '<'))
             break;
         if (used == WORD_BYTES - 1) {
             reader->word[used - 1] = '?'; /* too long: no number any more */

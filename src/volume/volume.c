@@ -183,6 +183,26 @@ void snow_volume_whole(const snow_volume *volume, snow_volume_info *out) {
         for (int axis = 0; axis < 3; axis++)
             out->matrix[row][3] -=
                 out->matrix[row][axis] * (double)volume->part.stored[axis];
+    for (int row = 0; row < 3 && volume->knows_origin; row++)
+        out->matrix[row][3] = volume->origin[row];
+}
+
+void snow_volume_set_whole(snow_volume *volume, const snow_volume_info *whole) {
+    for (int row = 0; row < 3; row++)
+        volume->origin[row] = whole->matrix[row][3];
+    volume->knows_origin = true;
+}
+
+snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
+                                         const int64_t first[3],
+                                         const int64_t count[3]) {
+    snow_volume_info info = *whole;
+    for (int i = 0; i < 3; i++) {
+        info.dims[i] = count[i];
+        for (int j = 0; j < 3; j++)
+            info.matrix[i][3] += info.matrix[i][j] * (double)first[j];
+    }
+    return info;
 }
 
 /* Voxels of the caller come without a file: no source is checked against the

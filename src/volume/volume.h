@@ -22,11 +22,22 @@ struct snow_volume {
     uint64_t serial;
     bool is_part;
     snow_part part; /* where is_part */
+    bool knows_origin;
+    double origin[3]; /* the last column of the whole's matrix, where known */
 };
 
-/* What is known of the whole that a volume is a part of: its dims, and its
- * matrix, whose last column is that of the part but for rounding. */
+/* What is known of the whole that a volume is a part of: its dims and its
+ * matrix, whose last column is computed back from that of the part, and so
+ * differs by rounding from rank to rank, unless it was told. */
 void snow_volume_whole(const snow_volume *volume, snow_volume_info *out);
+
+/* Tells a part, which it has been made by now, the matrix of its whole. */
+void snow_volume_set_whole(snow_volume *volume, const snow_volume_info *whole);
+
+/* What a box of a whole is as a volume of its own. */
+snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
+                                         const int64_t first[3],
+                                         const int64_t count[3]);
 
 /* A volume format.  `read` gets the source at its first byte (gzip undone) and
  * makes the volume; its messages need not name the file, and its options are
@@ -43,6 +54,7 @@ typedef struct snow_format {
     const char *suffixes[8]; /* ".nrrd", ".nhdr", NULL */
     bool (*probe)(const unsigned char *bytes, size_t size);
     bool crops;
+    bool slices; /* a folder or a pattern of its files is a volume */
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
                         snow_volume_info *info, snow_volume **out);
     snow_status (*write)(const snow_volume *volume, const char *path,
@@ -53,6 +65,12 @@ extern const snow_format snow_format_raw;
 extern const snow_format snow_format_nrrd;
 extern const snow_format snow_format_nifti;
 extern const snow_format snow_format_metaimage;
+extern const snow_format snow_format_npy;
+extern const snow_format snow_format_mrc;
+extern const snow_format snow_format_vtk;
+extern const snow_format snow_format_vti;
+extern const snow_format snow_format_tiff;
+extern const snow_format snow_format_png;
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */

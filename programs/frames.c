@@ -1,0 +1,237 @@
+/* frames.c - the queue between rendering and writing: a bounded ring of slots
+ * under one lock (the monitor of C. A. R. Hoare, 1974).
+ *
+ * Frames get tickets 0, 1, 2, ... as they are put; ticket t lies in slot
+ * t mod slots.  Three counters say where everything is:
+ *
+ *   committed <= taken <= put <= committed + slots
+ *
+ * Tickets below `committed` are done, those up to `taken` are with workers, the
+ * rest waits.  A slot belongs to whoever its ticket's place says, so that its
+ * contents need no lock. */
+#include "frames.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define SLOTS_MOST (FRAME_WORKERS_MOST + 2)
+#define MESSAGE_BYTES 12288 /* the library's longest, and a little */
+
+struct frame_queue {
+    frame_sink sink;
+    pthread_mutex_t lock;
+    pthread_cond_t changed; /* any of what follows */
+    uint64_t put, taken, committed;
+    bool closing;
+    snow_status status; /* the first fault, in the order of tickets */
+    double seconds;
+    char message[MESSAGE_BYTES];
+    frame_slot ring[SLOTS_MOST];
+    int slots, workers;
+    pthread_t threads[FRAME_WORKERS_MOST];
+};
+
+static double clock_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static frame_slot *slot_of(frame_queue *queue, uint64_t ticket) {
+    return &queue->ring[ticket % (uint64_t)queue->slots];
+}
+
+/* The next ticket, once there is one; false at the end. */
+static bool take_ticket(frame_queue *queue, uint64_t *ticket) {
+    while (queue->taken == queue->put && !queue->closing)
+        pthread_cond_wait(&queue->changed, &queue->lock);
+    if (queue->taken == queue->put)
+        return false;
+    *ticket = queue->taken++;
+    return true;
+}
+
+/* Only the first fault is told: the others follow from it. */
+static void note_fault(frame_queue *queue, const frame_slot *slot,
+                       snow_status status) {
+    if (status == SNOW_OK || queue->status != SNOW_OK)
+        return;
+    queue->status = status;
+    snprintf(queue->message, sizeof queue->message, "%s",
+             slot->fault[0] ? slot->fault
+                            : snow_context_message(slot->context));
+}
+
+/* One frame, from its ticket to its end.  Called and left under the lock, which
+ * is open while the sink works.  Earlier tickets were taken earlier, so that
+ * the one whose turn it is never waits. */
+static void serve(frame_queue *queue, uint64_t ticket) {
+    frame_slot *slot = slot_of(queue, ticket);
+    snow_status status = queue->status;
+    pthread_mutex_unlock(&queue->lock);
+    double begin = clock_seconds();
+    if (status == SNOW_OK)
+        status = queue->sink.prepare(queue->sink.user, slot);
+    double seconds = clock_seconds() - begin;
+    pthread_mutex_lock(&queue->lock);
+    while (queue->committed != ticket)
+        pthread_cond_wait(&queue->changed, &queue->lock);
+    if (status == SNOW_OK && queue->status == SNOW_OK) {
+        pthread_mutex_unlock(&queue->lock);
+        begin = clock_seconds();
+        status = queue->sink.commit(queue->sink.user, slot);
+        seconds += clock_seconds() - begin;
+        pthread_mutex_lock(&queue->lock);
+    }
+    note_fault(queue, slot, status);
+    queue->seconds += seconds;
+    queue->committed++;
+    pthread_cond_broadcast(&queue->changed);
+}
+
+static void *work(void *argument) {
+    frame_queue *queue = argument;
+    uint64_t ticket;
+    pthread_mutex_lock(&queue->lock);
+    while (take_ticket(queue, &ticket))
+        serve(queue, ticket);
+    pthread_mutex_unlock(&queue->lock);
+    return NULL;
+}
+
+static snow_status make_slots(frame_queue *queue) {
+    for (int i = 0; i < queue->slots; i++) {
+        snow_status status = snow_context_new(NULL, &queue->ring[i].context);
+        if (status != SNOW_OK)
+            return status;
+    }
+    return SNOW_OK;
+}
+
+/* One worker is enough to go on with. */
+static snow_status start_workers(frame_queue *queue, int wanted) {
+    while (queue->workers < wanted &&
+           pthread_create(&queue->threads[queue->workers], NULL, work, queue) ==
+               0)
+        queue->workers++;
+    return queue->workers > 0 ? SNOW_OK : SNOW_NO_MEMORY;
+}
+
+snow_status frames_new(const frame_sink *sink, int workers, frame_queue **out) {
+    frame_queue *queue = calloc(1, sizeof *queue);
+    if (!queue)
+        return SNOW_NO_MEMORY;
+    queue->sink = *sink;
+    queue->slots = workers + 2;
+    pthread_mutex_init(&queue->lock, NULL);
+    pthread_cond_init(&queue->changed, NULL);
+    snow_status status = make_slots(queue);
+    if (status == SNOW_OK)
+        status = start_workers(queue, workers);
+    if (status != SNOW_OK) {
+        frames_free(queue);
+        return status;
+    }
+    *out = queue;
+    return SNOW_OK;
+}
+
+/* The slot's picture is made anew only where its form has changed. */
+static snow_status copy_image(frame_slot *slot, snow_image *image) {
+    int width = snow_image_width(image), height = snow_image_height(image);
+    int channels = snow_image_channels(image);
+    if (slot->image && (snow_image_width(slot->image) != width ||
+                        snow_image_height(slot->image) != height ||
+                        snow_image_channels(slot->image) != channels)) {
+        snow_image_free(slot->image);
+        slot->image = NULL;
+    }
+    if (!slot->image) {
+        snow_status status = snow_image_new(slot->context, width, height,
+                                            channels, &slot->image);
+        if (status != SNOW_OK)
+            return status;
+    }
+    memcpy(snow_image_pixels(slot->image), snow_image_pixels(image),
+           (size_t)width * (size_t)height * (size_t)channels * sizeof(float));
+    return SNOW_OK;
+}
+
+/* Waits for a free slot; leaves the lock closed. */
+static snow_status wait_for_room(frame_queue *queue) {
+    pthread_mutex_lock(&queue->lock);
+    while (queue->put - queue->committed == (uint64_t)queue->slots)
+        pthread_cond_wait(&queue->changed, &queue->lock);
+    return queue->status;
+}
+
+snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image) {
+    snow_status status = wait_for_room(queue);
+    frame_slot *slot = slot_of(queue, queue->put);
+    pthread_mutex_unlock(&queue->lock);
+    if (status != SNOW_OK)
+        return status;
+    slot->index = index;
+    slot->fault[0] = '\0';
+    if (image) {
+        status = copy_image(slot, image);
+    } else {
+        snow_image_free(slot->image);
+        slot->image = NULL;
+    }
+    pthread_mutex_lock(&queue->lock);
+    note_fault(queue, slot, status);
+    status = queue->status;
+    queue->put += status == SNOW_OK;
+    pthread_cond_broadcast(&queue->changed);
+    pthread_mutex_unlock(&queue->lock);
+    return status;
+}
+
+snow_status frames_status(frame_queue *queue) {
+    pthread_mutex_lock(&queue->lock);
+    snow_status status = queue->status;
+    pthread_mutex_unlock(&queue->lock);
+    return status;
+}
+
+snow_status frames_drain(frame_queue *queue) {
+    pthread_mutex_lock(&queue->lock);
+    while (queue->committed != queue->put)
+        pthread_cond_wait(&queue->changed, &queue->lock);
+    snow_status status = queue->status;
+    pthread_mutex_unlock(&queue->lock);
+    return status;
+}
+
+const char *frames_message(const frame_queue *queue) {
+    return queue->message;
+}
+
+double frames_seconds(const frame_queue *queue) {
+    return queue->seconds;
+}
+
+void frames_free(frame_queue *queue) {
+    if (!queue)
+        return;
+    pthread_mutex_lock(&queue->lock);
+    queue->closing = true;
+    pthread_cond_broadcast(&queue->changed);
+    pthread_mutex_unlock(&queue->lock);
+    for (int i = 0; i < queue->workers; i++)
+        pthread_join(queue->threads[i], NULL);
+    for (int i = 0; i < queue->slots; i++) {
+        frame_slot *slot = &queue->ring[i];
+        if (slot->work && queue->sink.release)
+            queue->sink.release(queue->sink.user, slot);
+        snow_image_free(slot->image);
+        snow_context_free(slot->context);
+    }
+    pthread_cond_destroy(&queue->changed);
+    pthread_mutex_destroy(&queue->lock);
+    free(queue);
+}

@@ -1,0 +1,491 @@
+/* sequence.c - the loop over the frames, and what becomes of each.
+ *
+ * The thread that renders puts pictures into a queue; its workers make a file
+ * of each, and the bytes for ffmpeg.  A frame's way:
+ *
+ *   render -> copy -> compress aside, sync | rename, "done", bytes to ffmpeg
+ *                     several at once      | one after another
+ *
+ * Frames that an earlier run has left whole go the second half only, and only
+ * where there is an ffmpeg to feed. */
+#include "sequence.h"
+#include "commands.h"
+#include "frames.h"
+#include "interrupt.h"
+#include "outputs.h"
+#include "report.h"
+#include "sequence_encoder.h"
+#include "sequence_place.h"
+#include "sequence_record.h"
+#include "sequence_report.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* What slots may hold together: a few huge pictures rather than many. */
+#define QUEUE_BYTES (INT64_C(1) << 30)
+#define PIXEL_BYTES 20 /* floats of four channels, bytes of three */
+
+/* Words that ranks share beside exit codes and GO_ON. */
+#define PASS (-2) /* the frame is kept: nobody renders it */
+
+struct sequence {
+    const options *asked;
+    const shot_list *list;
+    sequence_place place;
+    frame_record record;
+    snow_context *context;
+    frame_queue *queue;
+    movie_encoder encoder;
+    bool encoding; /* there is an ffmpeg to feed */
+    bool begun;    /* the record is written */
+    bool made_folder;
+    snow_image_options form; /* of the frames' files */
+    double background[3];    /* of the movie */
+};
+
+static bool is_png(const char *path) {
+    size_t length = strlen(path);
+    return length >= 4 && (strcmp(path + length - 4, ".png") == 0 ||
+                           strcmp(path + length - 4, ".PNG") == 0);
+}
+
+int sequence_check(const options *asked) {
+    if (!asked->output)
+        return fail_usage("no output is named; add -o OUT.mp4 or "
+                          "-o f_%%04d.png");
+    bool movie = movie_format_of(asked->output) != NULL;
+    if (movie && asked->bits)
+        return fail_usage("%s: --bits is for PNG files; leave it out",
+                          asked->output);
+    if (!movie && !is_png(asked->output) &&
+        (asked->background.given || asked->bits))
+        return fail_usage("%s: --background and --bits are for PNG files and "
+                          "movies; leave them out or name a .png",
+                          asked->output);
+    if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
+                         same_place(asked->stats, asked->output)))
+        return fail_usage("--stats: goes where --output goes; name two places");
+    return check_settings(asked);
+}
+
+/* --- one frame, by the workers ---------------------------------------------
+ */
+
+static snow_status fault(frame_slot *slot, const char *path, int number) {
+    snprintf(slot->fault, sizeof slot->fault,
+             "%s: %s; make room or choose another place, then go on with "
+             "--resume",
+             path, strerror(number));
+    return SNOW_BAD_OUTPUT;
+}
+
+/* A frame that was kept, for ffmpeg. */
+static snow_status load_frame(const sequence *s, frame_slot *slot,
+                              const char *path) {
+    snow_status status = snow_image_load(slot->context, path, &slot->image);
+    if (status != SNOW_OK)
+        return status;
+    if (snow_image_width(slot->image) == (int)s->asked->size[0] &&
+        snow_image_height(slot->image) == (int)s->asked->size[1])
+        return SNOW_OK;
+    snprintf(slot->fault, sizeof slot->fault,
+             "%s: is of another size; remove it and go on with --resume", path);
+    return SNOW_BAD_INPUT;
+}
+
+static snow_status fill_bytes(const sequence *s, frame_slot *slot) {
+    if (!slot->work) /* once: all frames have one size */
+        slot->work =
+            malloc((size_t)s->asked->size[0] * (size_t)s->asked->size[1] * 3);
+    if (!slot->work) {
+        snprintf(slot->fault, sizeof slot->fault,
+                 "no memory for the bytes of a frame; make smaller ones");
+        return SNOW_NO_MEMORY;
+    }
+    snow_image_bytes(slot->image, s->background, slot->work);
+    return SNOW_OK;
+}
+
+static snow_status prepare(void *user, frame_slot *slot) {
+    const sequence *s = user;
+    char path[PATH_MAX];
+    snow_status status;
+    if (s->record.kept[slot->index]) {
+        place_frame(&s->place, slot->index, path, sizeof path);
+        status = load_frame(s, slot, path);
+    } else {
+        place_aside(&s->place, slot->index, path, sizeof path);
+        status = snow_image_save(slot->image, path, &s->form);
+    }
+    return status == SNOW_OK && s->encoding ? fill_bytes(s, slot) : status;
+}
+
+/* The record comes before the first frame that it tells of. */
+static snow_status begin_record(sequence *s, frame_slot *slot) {
+    int number = record_begin(&s->record, &s->place, s->list->count);
+    s->begun = number == 0;
+    if (number == EEXIST || number == EAGAIN) {
+        snprintf(slot->fault, sizeof slot->fault,
+                 "%s: another run has begun these frames; wait for it, or "
+                 "choose another name",
+                 s->place.output);
+        return SNOW_BAD_OUTPUT;
+    }
+    return number == 0 ? SNOW_OK : fault(slot, s->place.record, number);
+}
+
+/* Gives a frame its name.  One that lies there without being recorded is from
+ * a run that was killed in between. */
+static snow_status name_frame(sequence *s, frame_slot *slot) {
+    char aside[PATH_MAX], path[PATH_MAX];
+    struct stat what;
+    bool overwrite = s->asked->overwrite || s->asked->resume;
+    place_aside(&s->place, slot->index, aside, sizeof aside);
+    place_frame(&s->place, slot->index, path, sizeof path);
+    int64_t bytes = stat(aside, &what) == 0 ? (int64_t)what.st_size : 0;
+    int number = name_output(aside, path, overwrite);
+    if (number == 0)
+        number = record_add(&s->record, slot->index, bytes);
+    return number == 0 ? SNOW_OK : fault(slot, path, number);
+}
+
+static snow_status commit(void *user, frame_slot *slot) {
+    sequence *s = user;
+    snow_status status = SNOW_OK;
+    if (!s->record.kept[slot->index]) {
+        if (!s->begun)
+            status = begin_record(s, slot);
+        if (status == SNOW_OK)
+            status = name_frame(s, slot);
+    }
+    if (status != SNOW_OK || !s->encoding)
+        return status;
+    size_t size = (size_t)s->asked->size[0] * (size_t)s->asked->size[1] * 3;
+    int number = encoder_write(&s->encoder, slot->work, size);
+    return number == 0 ? SNOW_OK : fault(slot, "ffmpeg", number);
+}
+
+static void release(void *user, frame_slot *slot) {
+    (void)user;
+    free(slot->work);
+    slot->work = NULL;
+}
+
+/* --- the beginning ---------------------------------------------------------
+ */
+
+/* A movie has no transparency: black, unless another background is asked for.
+ * Its frames are kept as what the encoder gets. */
+static void set_form(sequence *s) {
+    const color_value *color = &s->asked->background;
+    if (color->given)
+        memcpy(s->background, color->rgb, sizeof s->background);
+    memcpy(s->form.background, s->background, sizeof s->background);
+    s->form.flatten = color->given || s->place.format;
+    s->form.bits = s->asked->bits ? (s->asked->bits[0] == '8' ? 8 : 16) : 0;
+    s->form.overwrite = true; /* of names aside */
+}
+
+static int open_parts(sequence *s) {
+    int done = place_read(s->asked->output, &s->place);
+    if (done == GO_ON)
+        done = open_context(s->asked, &s->context);
+    if (done == GO_ON)
+        done = place_check(s->context, &s->place, s->asked);
+    if (done == GO_ON && s->asked->stats)
+        done = check_stats_path(s->asked->stats, s->asked->overwrite);
+    if (done == GO_ON)
+        done = record_open(s->asked, s->list, &s->place, &s->record);
+    if (done == GO_ON)
+        set_form(s);
+    return done;
+}
+
+int sequence_open(const options *asked, const shot_list *list, sequence **out) {
+    sequence *s = calloc(1, sizeof *s);
+    if (!s) {
+        say("no memory to begin with; close other programs");
+        return SNOW_NO_MEMORY;
+    }
+    s->asked = asked;
+    s->list = list;
+    s->encoder.pipe = -1;
+    s->record.file = -1;
+    int done = open_parts(s);
+    if (done != GO_ON) {
+        sequence_close(s);
+        return done;
+    }
+    *out = s;
+    return GO_ON;
+}
+
+void sequence_close(sequence *s) {
+    if (!s)
+        return;
+    frames_free(s->queue);
+    encoder_stop(&s->encoder);
+    record_close(&s->record);
+    snow_context_free(s->context);
+    free(s);
+}
+
+/* Half of the processors compress, at most FRAME_WORKERS_MOST; fewer where
+ * pictures are huge. */
+static int count_workers(const options *asked) {
+    int64_t threads = asked->threads ? asked->threads : snow_processors();
+    int64_t frame = asked->size[0] * asked->size[1] * PIXEL_BYTES;
+    int64_t workers = threads / 2;
+    if (workers > QUEUE_BYTES / frame - 2)
+        workers = QUEUE_BYTES / frame - 2;
+    if (workers > FRAME_WORKERS_MOST)
+        workers = FRAME_WORKERS_MOST;
+    return workers < 1 ? 1 : (int)workers;
+}
+
+static int start_encoder(sequence *s) {
+    encoder_job job = {.format = s->place.format,
+                       .width = (int)s->asked->size[0],
+                       .height = (int)s->asked->size[1],
+                       .rate = s->asked->fps,
+                       .threads = (int)s->asked->threads,
+                       .path = s->place.movie,
+                       .log = s->place.log};
+    int number = encoder_start(&job, &s->encoder);
+    s->encoding = number == 0;
+    return number == 0 ? GO_ON
+                       : fail_output("%s: ffmpeg: %s; correct the PATH",
+                                     s->place.output, strerror(number));
+}
+
+/* The frames' folder, what was left over in it, ffmpeg, the queue. */
+static int begin_parts(sequence *s) {
+    const frame_sink sink = {s, prepare, commit, release};
+    struct stat what;
+    s->made_folder = s->place.format && stat(s->place.folder, &what) != 0;
+    int done = place_make_folder(&s->place);
+    if (done != GO_ON)
+        return done;
+    place_sweep(&s->place);
+    s->begun = !s->record.anew;
+    if (s->place.format && encoder_is_there())
+        done = start_encoder(s);
+    else if (s->place.format && s->asked->verbosity >= 0)
+        say("%s: no ffmpeg is on the PATH: only frames are made, in %s",
+            s->place.output, s->place.folder);
+    if (done != GO_ON)
+        return done;
+    if (frames_new(&sink, count_workers(s->asked), &s->queue) == SNOW_OK)
+        return GO_ON;
+    say("no memory for a queue of frames; make smaller ones");
+    return SNOW_NO_MEMORY;
+}
+
+/* --- the loop ---------------------------------------------------------------
+ */
+
+/* What the loop knows. */
+typedef struct run {
+    sequence *s; /* NULL on ranks that do not write */
+    const options *asked;
+    const shot_list *list;
+    const sequence_renderer *renderer;
+    sequence_progress progress;
+    sequence_figures figures;
+    snow_image *last; /* the last picture, for its check sum */
+} run;
+
+static int share(const run *r, int word) {
+    return r->renderer->share ? r->renderer->share(r->renderer->self, word)
+                              : word;
+}
+
+/* What is to be done with a frame, as the rank that writes sees it: whether
+ * writing has failed shows here, one or some frames later.  The fault is told
+ * when the queue is at rest. */
+static int next_word(const run *r, int64_t index) {
+    if (!r->s)
+        return GO_ON;
+    if (interrupt_seen())
+        return EXIT_INTERRUPTED;
+    snow_status status = frames_status(r->s->queue);
+    if (status != SNOW_OK)
+        return (int)status;
+    return r->s->record.kept[index] ? PASS : GO_ON;
+}
+
+/* Only ffmpeg asks for a frame that is there. */
+static void pass(run *r, int64_t index) {
+    if (!r->s)
+        return;
+    if (r->s->encoding)
+        (void)frames_put(r->s->queue, index, NULL);
+    r->figures.kept++;
+    sequence_progress_step(&r->progress, index, false);
+}
+
+/* Faults of the queue show in the next word, so that all ranks hear of them. */
+static void hand_over(run *r, int64_t index, snow_image *image) {
+    render_report report = {0};
+    r->renderer->report(r->renderer->self, &report);
+    sequence_figures_add(&r->figures, report.stats);
+    (void)frames_put(r->s->queue, index, image);
+    snow_image_free(r->last);
+    r->last = image;
+    sequence_progress_step(&r->progress, index, true);
+}
+
+static int render_frames(run *r) {
+    for (int64_t i = 0; i < r->list->count; i++) {
+        snow_image *image = NULL;
+        int word = share(r, next_word(r, i));
+        if (word == PASS) {
+            pass(r, i);
+            continue;
+        }
+        if (word == GO_ON)
+            word = r->renderer->render(r->renderer->self, &r->list->shots[i],
+                                       &image);
+        if (word != GO_ON)
+            return word;
+        if (r->s)
+            hand_over(r, i, image);
+        else
+            snow_image_free(image);
+    }
+    return GO_ON;
+}
+
+/* --- the end ----------------------------------------------------------------
+ */
+
+static int tell_encoder(sequence *s, const char *text) {
+    return fail_output("%s: ffmpeg failed: %s; the frames are in %s: put it "
+                       "right and give the same command with --resume",
+                       s->place.output, text, s->place.folder);
+}
+
+/* The movie gets its name when ffmpeg says that it is whole. */
+static int finish_movie(sequence *s) {
+    char text[600];
+    if (!encoder_finish(&s->encoder, text, sizeof text)) {
+        unlink(s->place.movie);
+        return tell_encoder(s, text);
+    }
+    int number =
+        place_output(s->place.movie, s->place.output, s->asked->overwrite);
+    if (number == 0) {
+        record_close(&s->record);
+        place_remove_folder(&s->place);
+        return GO_ON;
+    }
+    return fail_output("%s: %s; the frames are in %s: give another place, or "
+                       "make room and go on with --resume",
+                       s->place.output, strerror(number), s->place.folder);
+}
+
+/* The first fault of the queue.  When the pipe broke, ffmpeg knows why. */
+static int tell_queue(sequence *s, snow_status status) {
+    char text[600];
+    if (s->encoding && status == SNOW_BAD_OUTPUT &&
+        strncmp(frames_message(s->queue), "ffmpeg:", 7) == 0 &&
+        !encoder_finish(&s->encoder, text, sizeof text))
+        return tell_encoder(s, text);
+    const char *message = frames_message(s->queue);
+    say("%s", *message ? message : snow_status_text(status));
+    return (int)status;
+}
+
+/* What an end before the end leaves: whole frames and their record, or
+ * nothing at all. */
+static void clean_up(sequence *s) {
+    encoder_stop(&s->encoder);
+    place_sweep(&s->place);
+    if (s->place.format)
+        unlink(s->place.log);
+    if (place_first(&s->place, 0) >= 0)
+        return;
+    if (s->begun)
+        unlink(s->place.record);
+    if (s->made_folder || s->begun)
+        place_remove_folder(&s->place);
+}
+
+/* Only now the workers are at rest: what is whole is named, the rest is none.
+ */
+static int finish(sequence *s, int done) {
+    snow_status status = s->queue ? frames_drain(s->queue) : SNOW_OK;
+    if (status != SNOW_OK)
+        done = tell_queue(s, status);
+    if (done == GO_ON && s->encoding)
+        done = finish_movie(s);
+    else if (done == GO_ON && s->place.format)
+        done = fail_output("%s: no ffmpeg is on the PATH; the frames are in "
+                           "%s: install it and give the same command with "
+                           "--resume",
+                           s->place.output, s->place.folder);
+    if (done != GO_ON)
+        clean_up(s);
+    return done;
+}
+
+/* After the frames are safe. */
+static int tell_figures(run *r, double begin) {
+    render_report report = {0};
+    render_times times = {0};
+    r->renderer->report(r->renderer->self, &report);
+    if (report.times)
+        times = *report.times;
+    times.write = frames_seconds(r->s->queue);
+    times.total = seconds_now() - begin;
+    report.times = &times;
+    report.image = r->last;
+    if (r->asked->verbosity > 0)
+        sequence_tell(&r->figures, &times);
+    if (!r->asked->stats)
+        return SNOW_OK;
+    return write_json(
+        sequence_stats_json(&r->figures, &report, r->renderer->ranks),
+        r->asked->stats, r->asked->overwrite);
+}
+
+/* Of the rank that writes; the others follow its words. */
+static int run_writer(run *r, double begin) {
+    interrupt_hold_movie();
+    int done = sequence_figures_begin(&r->figures, r->list->count)
+                   ? begin_parts(r->s)
+                   : SNOW_NO_MEMORY;
+    sequence_progress_begin(&r->progress, r->asked, r->list->count);
+    done = share(r, done);
+    if (done == GO_ON)
+        done = render_frames(r);
+    sequence_progress_end(&r->progress);
+    done = share(r, finish(r->s, done));
+    if (done == GO_ON)
+        done = tell_figures(r, begin);
+    snow_image_free(r->last);
+    sequence_figures_end(&r->figures);
+    return done;
+}
+
+int sequence_run(sequence *s, const options *asked, const shot_list *list,
+                 const sequence_renderer *renderer, double begin) {
+    run r = {.s = renderer->writes ? s : NULL,
+             .asked = asked,
+             .list = list,
+             .renderer = renderer};
+    if (r.s)
+        return run_writer(&r, begin);
+    interrupt_hold_movie(); /* the rank that writes hears of it, and says so */
+    int done = share(&r, GO_ON);
+    if (done == GO_ON)
+        done = render_frames(&r);
+    done = share(&r, done);
+    return done == GO_ON ? SNOW_OK : done;
+}

@@ -1,0 +1,213 @@
+/* sequence_place.c - names of frames, of what they are called until they are
+ * whole, and of the folder that holds the frames of a movie:
+ *
+ *   f_%04d.png                      spin.mp4
+ *     f_0007.png                      spin.mp4.frames/000007.png
+ *     .unfinished-f_0007.png          spin.mp4.frames/.unfinished-000007.png
+ *     .f_%04d.png.frames              spin.mp4.frames/record
+ *                                     spin.mp4.frames/movie.mp4, ffmpeg.log */
+#include "sequence_place.h"
+#include "outputs.h"
+#include "report.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define ASIDE ".unfinished-"
+#define MOVIE_FRAMES "%06d.png"
+
+/* The library's own mark of files that are not whole, and six letters. */
+#define LIBRARY_MARK ".snow-"
+#define LIBRARY_LETTERS 6
+
+/* False when `size` bytes do not hold both parts. */
+static bool join(char *out, size_t size, const char *a, const char *b) {
+    int length = snprintf(out, size, "%s%s", a, b);
+    return length >= 0 && (size_t)length < size;
+}
+
+static int fail_length(const char *output) {
+    return fail_usage("%s: is too long a name; choose a shorter one", output);
+}
+
+/* A movie's own files, all in one folder beside it. */
+static int read_movie(sequence_place *out) {
+    char frames[PATH_MAX], name[32];
+    if (names_are_meant(out->output))
+        return fail_usage("%s: a movie is one file; leave out the %%",
+                          out->output);
+    snprintf(name, sizeof name, "movie%s", out->format->suffix);
+    if (!join(out->folder, sizeof out->folder, out->output, ".frames/") ||
+        !join(frames, sizeof frames, out->folder, MOVIE_FRAMES) ||
+        !join(out->movie, sizeof out->movie, out->folder, name) ||
+        !join(out->log, sizeof out->log, out->folder, "ffmpeg.log") ||
+        !join(out->record, sizeof out->record, out->folder, "record"))
+        return fail_length(out->output);
+    const char *fault = names_read(frames, &out->names);
+    return fault ? fail_usage("%s: %s", out->output, fault) : GO_ON;
+}
+
+static int read_pattern(sequence_place *out) {
+    if (!names_are_meant(out->output))
+        return fail_usage("%s: one file for all frames; let it end with .mp4, "
+                          ".webm or .gif, or number them, as in f_%%04d.png",
+                          out->output);
+    const char *fault = names_read(out->output, &out->names);
+    if (fault)
+        return fail_usage("%s: %s", out->output, fault);
+    const char *name = out->output + folder_length(out->output);
+    int length = snprintf(out->record, sizeof out->record, "%s.%s.frames",
+                          out->names.folder, name);
+    return length > 0 && (size_t)length < sizeof out->record
+               ? GO_ON
+               : fail_length(out->output);
+}
+
+int place_read(const char *output, sequence_place *out) {
+    *out =
+        (sequence_place){.output = output, .format = movie_format_of(output)};
+    return out->format ? read_movie(out) : read_pattern(out);
+}
+
+bool place_frame(const sequence_place *place, int64_t index, char *out,
+                 size_t size) {
+    return names_path(&place->names, index, out, size);
+}
+
+bool place_aside(const sequence_place *place, int64_t index, char *out,
+                 size_t size) {
+    char frame[PATH_MAX];
+    if (!place_frame(place, index, frame, sizeof frame))
+        return false;
+    int length = snprintf(out, size, "%s" ASIDE "%s", place->names.folder,
+                          frame + strlen(place->names.folder));
+    return length >= 0 && (size_t)length < size;
+}
+
+/* The library knows which names it can write, and where.  Whether frames are
+ * there already is asked later. */
+static int check_pattern(snow_context *context, const sequence_place *place) {
+    char aside[PATH_MAX];
+    char frame[PATH_MAX];
+    if (!place_aside(place, INT64_C(1000000000), aside, sizeof aside) ||
+        !place_frame(place, 0, frame, sizeof frame))
+        return fail_length(place->output);
+    snow_status status = snow_image_check_path(context, frame, true);
+    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+}
+
+/* A folder can be made where a file of the same name could be: a picture's
+ * check says so without leaving one. */
+static int check_movie(snow_context *context, const sequence_place *place,
+                       bool overwrite) {
+    struct stat what;
+    char probe[PATH_MAX];
+    if (lstat(place->output, &what) == 0) {
+        if (S_ISDIR(what.st_mode))
+            return fail_output("%s: is a folder; name a file", place->output);
+        if (!S_ISREG(what.st_mode) && !S_ISLNK(what.st_mode))
+            return fail_output("%s: is no plain file; name one", place->output);
+        if (!overwrite)
+            return fail_output("%s: exists; give --overwrite or another name",
+                               place->output);
+    }
+    if (stat(place->folder, &what) == 0)
+        return GO_ON;
+    if (!join(probe, sizeof probe, place->output, ".frames.png"))
+        return fail_length(place->output);
+    snow_status status = snow_image_check_path(context, probe, true);
+    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+}
+
+int place_check(snow_context *context, const sequence_place *place,
+                const options *asked) {
+    return place->format ? check_movie(context, place, asked->overwrite)
+                         : check_pattern(context, place);
+}
+
+int64_t place_first(const sequence_place *place, int64_t from) {
+    int64_t first = -1;
+    const struct dirent *entry;
+    DIR *folder = opendir(names_folder(&place->names));
+    while (folder && (entry = readdir(folder))) {
+        int64_t index = names_index(&place->names, entry->d_name);
+        if (index >= from && (first < 0 || index < first))
+            first = index;
+    }
+    if (folder)
+        closedir(folder);
+    return first;
+}
+
+void place_remove_frames(const sequence_place *place, int64_t count) {
+    char path[PATH_MAX];
+    for (int64_t i = 0; i < count; i++) {
+        if (place_frame(place, i, path, sizeof path))
+            unlink(path);
+    }
+}
+
+/* ".unfinished-NAME", or "..unfinished-NAME.snow-abcdef" where the library was
+ * at it, with a NAME of ours. */
+static bool is_unfinished(const sequence_place *place, const char *file) {
+    char name[NAME_MAX + 1];
+    size_t length = strlen(file), mark = strlen(ASIDE);
+    size_t tail = strlen(LIBRARY_MARK) + LIBRARY_LETTERS;
+    if (file[0] == '.' && file[1] == '.' && length > tail &&
+        strncmp(file + length - tail, LIBRARY_MARK, strlen(LIBRARY_MARK)) ==
+            0) {
+        file++;
+        length -= tail + 1;
+    }
+    if (length <= mark || length > NAME_MAX || strncmp(file, ASIDE, mark) != 0)
+        return false;
+    snprintf(name, sizeof name, "%.*s", (int)(length - mark), file + mark);
+    return names_index(&place->names, name) >= 0;
+}
+
+/* Removes the files of the folder that are `wanted`. */
+static void remove_those(const sequence_place *place,
+                         bool (*wanted)(const sequence_place *, const char *)) {
+    char path[PATH_MAX];
+    const struct dirent *entry;
+    DIR *folder = opendir(names_folder(&place->names));
+    while (folder && (entry = readdir(folder))) {
+        if (wanted(place, entry->d_name) &&
+            join(path, sizeof path, place->names.folder, entry->d_name))
+            unlink(path);
+    }
+    if (folder)
+        closedir(folder);
+}
+
+static bool is_frame(const sequence_place *place, const char *file) {
+    return names_index(&place->names, file) >= 0;
+}
+
+void place_sweep(const sequence_place *place) {
+    remove_those(place, is_unfinished);
+    if (place->format)
+        unlink(place->movie);
+}
+
+int place_make_folder(const sequence_place *place) {
+    if (!place->format || mkdir(place->folder, 0777) == 0 || errno == EEXIST)
+        return GO_ON;
+    return fail_output("%s: %s; choose a place that can be written",
+                       place->folder, strerror(errno));
+}
+
+/* What else somebody has put there stays, and the folder with it. */
+void place_remove_folder(const sequence_place *place) {
+    if (!place->format)
+        return;
+    remove_those(place, is_frame);
+    place_sweep(place);
+    unlink(place->log);
+    unlink(place->record);
+    rmdir(place->folder);
+}

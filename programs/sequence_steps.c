@@ -1,0 +1,392 @@
+/* sequence_steps.c - which volumes a movie shows, and in what order. */
+#define _XOPEN_SOURCE 700
+#include "sequence_steps.h"
+#include "commands.h"
+#include "launch.h"
+#include "report.h"
+#include "sequence_names.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static int fail_memory(void) {
+    say("no memory for the list of time steps; make a movie of fewer");
+    return SNOW_NO_MEMORY;
+}
+
+/* Takes a copy of the path. */
+static int add_path(step_files *files, const char *path) {
+    if (files->count == files->room) {
+        int64_t room = files->room ? 2 * files->room : 64;
+        char **paths =
+            realloc(files->paths, (size_t)room * sizeof *files->paths);
+        if (!paths)
+            return fail_memory();
+        files->paths = paths;
+        files->room = room;
+    }
+    char *copy = strdup(path);
+    if (!copy)
+        return fail_memory();
+    files->paths[files->count++] = copy;
+    return GO_ON;
+}
+
+void steps_free(step_files *files) {
+    for (int64_t i = 0; i < files->count; i++)
+        free(files->paths[i]);
+    free(files->paths);
+}
+
+/* Numbers of a pattern's files, in a growing list. */
+typedef struct numbers {
+    int64_t *items;
+    size_t count, room;
+} numbers;
+
+static bool add_number(numbers *list, int64_t number) {
+    if (list->count == list->room) {
+        size_t room = list->room ? 2 * list->room : 256;
+        int64_t *items = realloc(list->items, room * sizeof *items);
+        if (!items)
+            return false;
+        list->items = items;
+        list->room = room;
+    }
+    list->items[list->count++] = number;
+    return true;
+}
+
+static int by_number(const void *a, const void *b) {
+    int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+    return (x > y) - (x < y);
+}
+
+/* All numbers that there are, rising. */
+static int find_numbers(const char *pattern, const frame_names *names,
+                        numbers *out) {
+    const struct dirent *entry;
+    DIR *folder = opendir(names_folder(names));
+    if (!folder) {
+        say("%s: %s; correct the folder's name", pattern, strerror(errno));
+        return SNOW_BAD_INPUT;
+    }
+    bool good = true;
+    while (good && (entry = readdir(folder))) {
+        int64_t number = names_index(names, entry->d_name);
+        if (number >= 0)
+            good = add_number(out, number);
+    }
+    closedir(folder);
+    if (!good)
+        return fail_memory();
+    if (!out->count) {
+        say("%s: there is no such file; correct the pattern", pattern);
+        return SNOW_BAD_INPUT;
+    }
+    qsort(out->items, out->count, sizeof *out->items, by_number);
+    return GO_ON;
+}
+
+/* Simulations write every tenth step as well as every one: the smallest step
+ * between two files is the one between all. */
+static int64_t step_of(const numbers *list) {
+    int64_t step = INT64_MAX;
+    for (size_t i = 1; i < list->count; i++)
+        if (list->items[i] - list->items[i - 1] < step)
+            step = list->items[i] - list->items[i - 1];
+    return step;
+}
+
+static int add_numbers(const char *pattern, const frame_names *names,
+                       const numbers *list, step_files *out) {
+    char path[PATH_MAX];
+    int64_t step = step_of(list);
+    int done = GO_ON;
+    for (size_t i = 0; i < list->count && done == GO_ON; i++) {
+        if (i && list->items[i] - list->items[i - 1] != step) {
+            names_path(names, list->items[i - 1] + step, path, sizeof path);
+            say("%s: this step of %s is missing; make it, or name the files "
+                "one by one",
+                path, pattern);
+            return SNOW_BAD_INPUT;
+        }
+        if (names_path(names, list->items[i], path, sizeof path))
+            done = add_path(out, path);
+    }
+    return done;
+}
+
+static int add_pattern(const char *pattern, step_files *out) {
+    frame_names names;
+    numbers list = {NULL, 0, 0};
+    const char *fault = names_read(pattern, &names);
+    if (fault)
+        return fail_usage("%s: %s", pattern, fault);
+    int done = find_numbers(pattern, &names, &list);
+    if (done == GO_ON)
+        done = add_numbers(pattern, &names, &list, out);
+    free(list.items);
+    return done;
+}
+
+/* A movie that ends in its ninetieth minute for a file that could have been
+ * missed at once would be a shame. */
+static int add_file(const char *path, step_files *out) {
+    struct stat what;
+    if (strcmp(path, "-") == 0)
+        return fail_usage("movie: reads its files twice, so that standard "
+                          "input will not do; name files");
+    if (strncmp(path, "phantom:", 8) != 0 && stat(path, &what) != 0) {
+        say("%s: %s; a movie needs all of its steps", path, strerror(errno));
+        return SNOW_BAD_INPUT;
+    }
+    return add_path(out, path);
+}
+
+int steps_find(const options *asked, step_files *out) {
+    int done = GO_ON;
+    for (int i = 0; i < asked->operand_count && done == GO_ON; i++) {
+        const char *path = asked->operands[i];
+        struct stat what;
+        done = names_are_meant(path) && stat(path, &what) != 0
+                   ? add_pattern(path, out)
+                   : add_file(path, out);
+    }
+    return done;
+}
+
+static bool was_told(const options *asked, const char *name) {
+    size_t row = 0;
+    while (option_table[row].name && strcmp(option_table[row].name, name) != 0)
+        row++;
+    return asked->told[row] != NULL;
+}
+
+/* Whether the transfer function follows from the options alone: a preset in
+ * units of its own, or one that is spread over given values. */
+static bool look_is_fixed(const options *asked) {
+    if (!asked->preset)
+        return false;
+    const char *name =
+        snow_preset_name((size_t)snow_preset_named(asked->preset));
+    bool values = asked->range.kind == SNOW_RANGE_VALUES ||
+                  asked->window == asked->window; /* told: not NaN */
+    bool own =
+        strncmp(name, "ct-", 3) == 0 && asked->range.kind == SNOW_RANGE_AUTO;
+    return values || own;
+}
+
+/* What is known of a shot's volume without reading it. */
+static int inspect(const shot_renderer *shots, const movie_shot *shot,
+                   snow_volume_info *out) {
+    options step = *shots->scene.asked;
+    step.time = shot->time;
+    snow_volume_options data = data_options(&step);
+    snow_status status =
+        snow_volume_inspect(shots->scene.context, shot->path, &data, out);
+    return status == SNOW_OK ? GO_ON
+                             : fail_status(shots->scene.context, status);
+}
+
+int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
+    const options *asked = shots->scene.asked;
+    movie_shot first = {files->paths[0], asked->time, asked->azimuth};
+    out->count = files->count;
+    if (files->count == 1 && !was_told(asked, "time")) {
+        snow_volume_info info;
+        int done = inspect(shots, &first, &info);
+        if (done != GO_ON)
+            return done;
+        out->count = info.times;
+    }
+    shots->whole_files = files->count > 1 && !was_told(asked, "time");
+    out->together = out->count > 1 && !look_is_fixed(asked);
+    out->shots = calloc((size_t)out->count, sizeof *out->shots);
+    if (!out->shots)
+        return fail_memory();
+    for (int64_t i = 0; i < out->count; i++)
+        out->shots[i] =
+            files->count == 1
+                ? (movie_shot){first.path,
+                               was_told(asked, "time") ? first.time : i,
+                               first.azimuth}
+                : (movie_shot){files->paths[i], first.time, first.azimuth};
+    return GO_ON;
+}
+
+/* --- one look for all steps -------------------------------------------------
+ */
+
+/* Values that are taken from all steps together, and from each at least: so
+ * many that the histogram is the same to the eye. */
+#define POOL_VALUES (INT64_C(1) << 22)
+#define STEP_VALUES 1024
+
+/* Values of all steps, in their order. */
+typedef struct value_pool {
+    double *values;
+    int64_t count;
+    double *step; /* those of the step that this rank has read */
+    int64_t step_count;
+    int64_t quota; /* of one step, less its ends */
+} value_pool;
+
+static int64_t common_factor(int64_t a, int64_t b) {
+    while (b) {
+        int64_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* From value to value.  No factor in common with rows and slices, so that the
+ * sample does not run along one column of them. */
+static int64_t stride_of(const snow_volume_info *info, int64_t quota) {
+    int64_t slice = info->dims[0] * info->dims[1];
+    int64_t stride = (slice * info->dims[2] + quota - 1) / quota;
+    while (stride > 1 && common_factor(stride, slice) != 1)
+        stride++;
+    return stride < 1 ? 1 : stride;
+}
+
+/* A native value as a double. */
+static double native(const void *voxels, snow_type type, int64_t i) {
+    switch (type) {
+#define NATIVE(name, c_type, text) \
+    case SNOW_##name:              \
+        return (double)((const c_type *)voxels)[i];
+        SNOW_TYPE_MAP(NATIVE)
+#undef NATIVE
+    default:
+        return 0;
+    }
+}
+
+/* A sample of a step's data values, and its ends, which no sample may miss. */
+static void pool_step(value_pool *pool, const snow_volume *volume) {
+    const snow_volume_info *info = snow_volume_describe(volume);
+    const void *voxels = snow_volume_voxels(volume);
+    int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
+    int64_t stride = stride_of(info, pool->quota), count = 0;
+    snow_volume_measures ends;
+    snow_volume_measure(volume, &ends);
+    for (int64_t i = 0; i < all && count < pool->quota; i += stride)
+        pool->step[count++] =
+            info->slope * native(voxels, info->type, i) + info->intercept;
+    pool->step[count++] = ends.min;
+    pool->step[count++] = ends.max;
+    pool->step_count = count;
+}
+
+/* The look of a volume that consists of the pool. */
+static int look_at_pool(scene *s, const value_pool *pool) {
+    snow_volume_info info = {.dims = {pool->count, 1, 1}, .type = SNOW_FLOAT64};
+    snow_volume *volume = NULL;
+    snow_status status =
+        snow_volume_share(s->context, &info, pool->values, &volume);
+    if (status != SNOW_OK)
+        return fail_status(s->context, status);
+    int done = open_look(s->context, s->asked, volume, &s->transfer);
+    snow_volume_close(volume);
+    return done;
+}
+
+static void tell_step(const options *asked, int64_t step, int64_t count) {
+    char line[96];
+    snprintf(line, sizeof line,
+             "reading values of step %" PRId64 " of %" PRId64, step + 1, count);
+    if (progress_is_live())
+        progress(asked, line);
+}
+
+static int read_step(shot_renderer *shots, const movie_shot *shot,
+                     value_pool *pool) {
+    scene *s = &shots->scene;
+    double begin = seconds_now();
+    snow_volume *volume = NULL;
+    options step = *s->asked;
+    step.time = shot->time;
+    int done = open_input(s->context, &step, shot->path, &volume);
+    if (done == GO_ON)
+        done = shots_check(shots, shot->path, snow_volume_describe(volume));
+    if (done == GO_ON)
+        pool_step(pool, volume);
+    snow_volume_close(volume);
+    s->times.read += seconds_now() - begin;
+    return done;
+}
+
+/* Appends the step that a rank has read. */
+static int append_step(value_pool *pool, int rank) {
+    double *to = pool->values + pool->count;
+    int64_t count = pool->step_count;
+    snow_comm *comm = launch_comm();
+    snow_status status = SNOW_OK;
+    if (comm)
+        status = snow_comm_broadcast(comm, &count, sizeof count, rank);
+    size_t bytes = (size_t)count * sizeof *to;
+    if (rank == launch_rank())
+        memcpy(to, pool->step, bytes);
+    if (comm && status == SNOW_OK)
+        status = snow_comm_broadcast(comm, to, bytes, rank);
+    pool->count += count;
+    return status == SNOW_OK ? GO_ON
+                             : fail_status(snow_comm_context(comm), status);
+}
+
+/* Steps from `first` on, one for each rank. */
+static int pool_round(const shot_list *list, int64_t first,
+                      shot_renderer *shots, value_pool *pool) {
+    int64_t mine = first + launch_rank(), left = list->count - first;
+    int done = GO_ON;
+    if (mine < list->count)
+        done = read_step(shots, &list->shots[mine], pool);
+    done = launch_agree(done);
+    for (int rank = 0; rank < launch_ranks() && rank < left; rank++)
+        if (done == GO_ON)
+            done = append_step(pool, rank);
+    return done;
+}
+
+/* All ranks compare their steps with the first. */
+static int pool_steps(const shot_list *list, shot_renderer *shots,
+                      value_pool *pool) {
+    snow_volume_info first;
+    int done = inspect(shots, &list->shots[0], &first);
+    if (done == GO_ON)
+        done = shots_check(shots, list->shots[0].path, &first);
+    done = launch_agree(done);
+    for (int64_t i = 0; i < list->count && done == GO_ON; i += launch_ranks()) {
+        tell_step(shots->scene.asked, i, list->count);
+        done = pool_round(list, i, shots, pool);
+    }
+    return done == GO_ON ? launch_agree(look_at_pool(&shots->scene, pool))
+                         : done;
+}
+
+int steps_look(const shot_list *list, shot_renderer *shots) {
+    if (!list->together)
+        return GO_ON;
+    value_pool pool = {.quota = POOL_VALUES / list->count};
+    if (pool.quota < STEP_VALUES)
+        pool.quota = STEP_VALUES;
+    int64_t room = pool.quota + 2;
+    pool.values =
+        malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
+    int done = launch_agree(pool.values ? GO_ON : fail_memory());
+    if (done == GO_ON) {
+        pool.step = pool.values + room * list->count;
+        done = pool_steps(list, shots, &pool);
+    }
+    free(pool.values);
+    /* All steps will be opened once more, and say the same again. */
+    snow_context_set_notice(shots->scene.context, NULL, NULL);
+    return done;
+}

@@ -1,0 +1,434 @@
+/* mpi/comm_mpi.c - the record of functions of a communicator, filled in from
+ * MPI.
+ *
+ * MPI counts in int.  A message of more bytes than SNOW_MPI_CHUNK is one of a
+ * datatype made for it, of whole chunks and a rest; its signature is still so
+ * many bytes, so that the receiver's type, made for its room, matches it.
+ *
+ * Requests lie in a table; a message's handle is its place there, from 1.  This
+ * file stands on public headers only, and uses none of the names that SimGrid's
+ * mpi.h replaces by macros (malloc, free, sleep, ...). */
+#include <snowglass/mpi.h>
+
+#include <stdint.h>
+#include <string.h>
+
+#ifndef SNOW_MPI_CHUNK
+#define SNOW_MPI_CHUNK ((size_t)1 << 30)
+#endif
+
+typedef struct mpi_slot {
+    MPI_Request request; /* MPI_REQUEST_NULL: the slot is spare */
+    bool receives;
+    int peer;
+} mpi_slot;
+
+/* The side of one rank. */
+typedef struct mpi_side {
+    snow_context *context;
+    MPI_Comm group; /* ours, a duplicate */
+    bool failed;    /* MPI's state is unknown: it is left alone */
+    mpi_slot *slots;
+    int slot_count;
+    /* Of the last wait: what was asked for. */
+    MPI_Request *requests;
+    int *places; /* of the requests among the messages */
+    int room;    /* of the two */
+} mpi_side;
+
+/* --- failures --------------------------------------------------------------
+ */
+
+/* The message of an MPI error that a call to do with `peer` (-1: nobody in
+ * particular) has returned. */
+static snow_status fail_mpi(snow_context *context, int error, const char *what,
+                            int peer) {
+    char text[MPI_MAX_ERROR_STRING + 1] = "";
+    int length = 0, kind = MPI_ERR_OTHER;
+    MPI_Error_class(error, &kind);
+    MPI_Error_string(error, text, &length);
+    for (char *at = text; *at; at++)
+        if (*at == '\n')
+            *at = ' ';
+    if (kind == MPI_ERR_TRUNCATE)
+        return snow_context_fail(context, SNOW_FAILED,
+                                 "a message from rank %d is longer than the "
+                                 "room for it; the ranks do different things",
+                                 peer);
+    if (peer < 0)
+        return snow_context_fail(context, SNOW_FAILED, "MPI cannot %s: %s",
+                                 what, text);
+    return snow_context_fail(context, SNOW_FAILED,
+                             "MPI cannot %s rank %d: %s; look whether all "
+                             "processes still run",
+                             what, peer, text);
+}
+
+static snow_status fail_side(mpi_side *side, int error, const char *what,
+                             int peer) {
+    side->failed = true;
+    return fail_mpi(side->context, error, what, peer);
+}
+
+/* --- memory ----------------------------------------------------------------
+ */
+
+/* Replaces a block by a larger one that begins with the `keep` bytes of the old
+ * one. */
+static snow_status grow(mpi_side *side, void *block_pointer, size_t keep,
+                        size_t bytes) {
+    void *old;
+    void *block = snow_context_allocate(side->context, bytes);
+    if (!block)
+        return SNOW_NO_MEMORY;
+    memcpy(&old, block_pointer, sizeof old);
+    if (keep)
+        memcpy(block, old, keep);
+    snow_context_release(side->context, old);
+    memcpy(block_pointer, &block, sizeof block);
+    return SNOW_OK;
+}
+
+static snow_status spare_slot(mpi_side *side, int *out) {
+    for (int i = 0; i < side->slot_count; i++)
+        if (side->slots[i].request == MPI_REQUEST_NULL) {
+            *out = i;
+            return SNOW_OK;
+        }
+    int count = side->slot_count * 2 + 8;
+    snow_status status =
+        grow(side, &side->slots, (size_t)side->slot_count * sizeof(mpi_slot),
+             (size_t)count * sizeof(mpi_slot));
+    if (status != SNOW_OK)
+        return status;
+    for (int i = side->slot_count; i < count; i++)
+        side->slots[i].request = MPI_REQUEST_NULL;
+    *out = side->slot_count;
+    side->slot_count = count;
+    return SNOW_OK;
+}
+
+/* Room for so many requests in a wait. */
+static snow_status make_room(mpi_side *side, int count) {
+    if (count <= side->room)
+        return SNOW_OK;
+    size_t room = (size_t)count * 2;
+    snow_status status =
+        grow(side, &side->requests, 0, room * sizeof(MPI_Request));
+    if (status == SNOW_OK)
+        status = grow(side, &side->places, 0, room * sizeof(int));
+    if (status == SNOW_OK)
+        side->room = (int)room;
+    return status;
+}
+
+/* --- messages --------------------------------------------------------------
+ */
+
+/* A type of `bytes` bytes, more than a chunk; the caller frees it. */
+static int large_type(size_t bytes, MPI_Datatype *out) {
+    MPI_Datatype chunk, parts[2];
+    size_t chunks = bytes / SNOW_MPI_CHUNK, rest = bytes % SNOW_MPI_CHUNK;
+    int lengths[2] = {(int)chunks, (int)rest};
+    MPI_Aint places[2] = {0, (MPI_Aint)(bytes - rest)};
+    int error = MPI_Type_contiguous((int)SNOW_MPI_CHUNK, MPI_BYTE, &chunk);
+    if (error != MPI_SUCCESS)
+        return error;
+    parts[0] = chunk;
+    parts[1] = MPI_BYTE;
+    error = MPI_Type_create_struct(rest ? 2 : 1, lengths, places, parts, out);
+    MPI_Type_free(&chunk);
+    if (error == MPI_SUCCESS)
+        error = MPI_Type_commit(out);
+    return error;
+}
+
+static int start(mpi_side *side, mpi_slot *slot, void *bytes, int count,
+                 MPI_Datatype type, int tag) {
+    return slot->receives ? MPI_Irecv(bytes, count, type, slot->peer, tag,
+                                      side->group, &slot->request)
+                          : MPI_Isend(bytes, count, type, slot->peer, tag,
+                                      side->group, &slot->request);
+}
+
+/* Starts a message either way. */
+static snow_status begin(mpi_side *side, bool receives, void *bytes,
+                         size_t count, int peer, int tag,
+                         snow_message *message) {
+    int place, error;
+    snow_status status = spare_slot(side, &place);
+    if (status != SNOW_OK)
+        return status;
+    mpi_slot *slot = &side->slots[place];
+    slot->receives = receives;
+    slot->peer = peer;
+    if (count <= SNOW_MPI_CHUNK) {
+        error = start(side, slot, bytes, (int)count, MPI_BYTE, tag);
+    } else {
+        MPI_Datatype type;
+        error = large_type(count, &type);
+        if (error == MPI_SUCCESS) {
+            error = start(side, slot, bytes, 1, type, tag);
+            MPI_Type_free(&type); /* which waits until it is not needed */
+        }
+    }
+    if (error != MPI_SUCCESS) {
+        slot->request = MPI_REQUEST_NULL;
+        return fail_side(side, error, receives ? "receive from" : "send to",
+                         peer);
+    }
+    message->handle = (void *)(uintptr_t)(place + 1);
+    message->bytes = receives ? 0 : count;
+    return SNOW_OK;
+}
+
+static snow_status send_bytes(void *self, const void *bytes, size_t count,
+                              int to, int tag, snow_message *message) {
+    void *unchanged; /* MPI's own headers once had no const here */
+    memcpy(&unchanged, &bytes, sizeof unchanged);
+    return begin(self, false, unchanged, count, to, tag, message);
+}
+
+static snow_status receive_bytes(void *self, void *bytes, size_t room, int from,
+                                 int tag, snow_message *message) {
+    return begin(self, true, bytes, room, from, tag, message);
+}
+
+static mpi_slot *slot_of(const mpi_side *side, const snow_message *message) {
+    return &side->slots[(uintptr_t)message->handle - 1];
+}
+
+/* Fills in the requests of the messages that are under way; their number. */
+static int gather(mpi_side *side, const snow_message *messages, int count) {
+    int asked = 0;
+    for (int i = 0; i < count; i++)
+        if (messages[i].handle) {
+            side->requests[asked] = slot_of(side, &messages[i])->request;
+            side->places[asked++] = i;
+        }
+    return asked;
+}
+
+/* A count of the basic elements, which are bytes, holds for both kinds of
+ * types; SimGrid has only the one that counts in int. */
+static size_t bytes_of(MPI_Status *status) {
+#ifdef SMPI_H
+    int bytes = 0;
+    MPI_Get_count(status, MPI_BYTE, &bytes);
+#else
+    MPI_Count bytes = 0;
+    MPI_Get_elements_x(status, MPI_BYTE, &bytes);
+#endif
+    return (size_t)bytes;
+}
+
+/* A message is done: its slot is spare, its length known. */
+static void finish(mpi_side *side, snow_message *message,
+                   const MPI_Status *status) {
+    mpi_slot *slot = slot_of(side, message);
+    if (slot->receives) {
+        MPI_Status copy = *status; /* SimGrid wants it without const */
+        message->bytes = bytes_of(&copy);
+    }
+    slot->request = MPI_REQUEST_NULL;
+    message->handle = NULL;
+}
+
+static snow_status wait_any(void *self, snow_message *messages, int count,
+                            int *which) {
+    mpi_side *side = self;
+    snow_status status = make_room(side, count);
+    if (status != SNOW_OK)
+        return status;
+    int asked = gather(side, messages, count), found = -1;
+    if (!asked) {
+        *which = -1;
+        return SNOW_OK;
+    }
+    MPI_Status done;
+    int error = MPI_Waitany(asked, side->requests, &found, &done);
+    if (error != MPI_SUCCESS) {
+        bool known = found >= 0 && found < asked;
+        return fail_side(
+            side, error, known ? "exchange messages with" : "exchange messages",
+            known ? slot_of(side, &messages[side->places[found]])->peer : -1);
+    }
+    *which = side->places[found];
+    finish(side, &messages[*which], &done);
+    return SNOW_OK;
+}
+
+/* One after another: all must be done anyway, and MPI then says which failed.
+ */
+static snow_status wait_all(void *self, snow_message *messages, int count) {
+    mpi_side *side = self;
+    for (int i = 0; i < count; i++) {
+        if (!messages[i].handle)
+            continue;
+        MPI_Status found;
+        mpi_slot *slot = slot_of(side, &messages[i]);
+        int error = MPI_Wait(&slot->request, &found);
+        if (error != MPI_SUCCESS)
+            return fail_side(side, error, "exchange messages with", slot->peer);
+        finish(side, &messages[i], &found);
+    }
+    return SNOW_OK;
+}
+
+static double seconds(void *self) {
+    (void)self;
+    return MPI_Wtime();
+}
+
+#ifdef SMPI_H
+/* In a simulation work takes the time that it is told to. */
+static void work(void *self, double length) {
+    (void)self;
+    smpi_execute(length);
+}
+#endif
+
+/* --- the communicator ------------------------------------------------------
+ */
+
+/* A duplicate keeps our messages apart from the caller's.  In SimGrid it takes
+ * time of the square of the ranks, and whoever simulates has no other messages:
+ * there the group itself is ours. */
+static int take_group(MPI_Comm group, MPI_Comm *ours) {
+#ifdef SMPI_H
+    *ours = group;
+    return MPI_SUCCESS;
+#else
+    return MPI_Comm_dup(group, ours);
+#endif
+}
+
+static void drop_group(MPI_Comm *ours) {
+#ifdef SMPI_H
+    (void)ours;
+#else
+    MPI_Comm_free(ours);
+#endif
+}
+
+/* Messages that nobody waited for are given up.  A group that has failed is
+ * left to MPI's end: to free it is collective, and peers may be gone. */
+static void end(void *self) {
+    mpi_side *side = self;
+    int finalized = 0;
+    MPI_Finalized(&finalized);
+    if (!finalized && !side->failed) {
+        for (int i = 0; i < side->slot_count; i++)
+            if (side->slots[i].request != MPI_REQUEST_NULL) {
+                if (side->slots[i].receives)
+                    MPI_Cancel(&side->slots[i].request);
+                MPI_Request_free(&side->slots[i].request);
+            }
+        drop_group(&side->group);
+    }
+    snow_context_release(side->context, side->slots);
+    snow_context_release(side->context, side->requests);
+    snow_context_release(side->context, side->places);
+    snow_context_release(side->context, side);
+}
+
+static snow_status check_group(snow_context *context, MPI_Comm group) {
+    int initialized = 0, finalized = 0, between = 0;
+    MPI_Initialized(&initialized);
+    MPI_Finalized(&finalized);
+    if (!initialized || finalized)
+        return snow_context_fail(context, SNOW_BAD_USAGE,
+                                 "MPI is not running; make communicators "
+                                 "between MPI_Init and MPI_Finalize");
+    if (group == MPI_COMM_NULL)
+        return snow_context_fail(context, SNOW_BAD_USAGE,
+                                 "MPI_COMM_NULL is no group; give the "
+                                 "communicator of those who render");
+    int error = MPI_Comm_test_inter(group, &between);
+    if (error != MPI_SUCCESS)
+        return fail_mpi(context, error, "look at the group", -1);
+    if (between)
+        return snow_context_fail(context, SNOW_BAD_USAGE,
+                                 "an intercommunicator is no single group; "
+                                 "merge it with MPI_Intercomm_merge");
+    return SNOW_OK;
+}
+
+static void remark_threads(snow_context *context) {
+    int level = MPI_THREAD_SINGLE;
+    MPI_Query_thread(&level);
+    if (level < MPI_THREAD_FUNNELED)
+        snow_context_remark(context, "this MPI was started without support "
+                                     "for threads; if it misbehaves, start it "
+                                     "with MPI_Init_thread and "
+                                     "MPI_THREAD_FUNNELED");
+}
+
+/* This rank's objects over `ours`. */
+static snow_status equip(snow_context *context, MPI_Comm ours,
+                         snow_comm **out) {
+    static const snow_comm_ops ops = {.size = sizeof ops,
+                                      .send = send_bytes,
+                                      .receive = receive_bytes,
+                                      .wait_any = wait_any,
+                                      .wait_all = wait_all,
+                                      .seconds = seconds,
+#ifdef SMPI_H
+                                      .work = work,
+#endif
+                                      .end = end};
+    int rank = 0, ranks = 1;
+    MPI_Comm_rank(ours, &rank);
+    MPI_Comm_size(ours, &ranks);
+    mpi_side *side = snow_context_allocate(context, sizeof *side);
+    if (!side)
+        return SNOW_NO_MEMORY;
+    *side = (mpi_side){.context = context, .group = ours};
+    snow_status status = snow_comm_new(context, &ops, side, rank, ranks, out);
+    if (status != SNOW_OK)
+        snow_context_release(context, side);
+    return status;
+}
+
+/* Nobody goes on with ranks that lack theirs. */
+static snow_status agree(snow_context *context, MPI_Comm ours,
+                         snow_status status) {
+    int worst = (int)status;
+    int error = MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, ours);
+    if (error != MPI_SUCCESS)
+        return fail_mpi(context, error, "agree on a new communicator", -1);
+    if (status == SNOW_OK && worst != SNOW_OK)
+        return snow_context_fail(context, (snow_status)worst,
+                                 "another rank: %s",
+                                 snow_status_text((snow_status)worst));
+    return (snow_status)worst;
+}
+
+snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
+                          snow_comm **out) {
+    MPI_Comm ours;
+    snow_comm *comm = NULL;
+    snow_status status = check_group(context, group);
+    if (status != SNOW_OK)
+        return status;
+    int error = take_group(group, &ours);
+    if (error != MPI_SUCCESS)
+        return fail_mpi(context, error, "duplicate the group", -1);
+    MPI_Comm_set_errhandler(ours, MPI_ERRORS_RETURN);
+    status = agree(context, ours, equip(context, ours, &comm));
+    if (status != SNOW_OK) {
+        if (comm)
+            snow_comm_free(comm); /* and the duplicate with it */
+        else
+            drop_group(&ours);
+        return status;
+    }
+    remark_threads(context);
+    *out = comm;
+    return SNOW_OK;
+}
+
+snow_status snow_comm_mpi_fortran(snow_context *context, MPI_Fint group,
+                                  snow_comm **out) {
+    return snow_comm_mpi(context, MPI_Comm_f2c(group), out);
+}

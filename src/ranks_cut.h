@@ -1,0 +1,43 @@
+/* ranks_cut.h - which cut of a volume a picture asks for, and its boxes. */
+#ifndef SNOW_RANKS_CUT_H
+#define SNOW_RANKS_CUT_H
+
+#include "comm/comm.h"
+#include "decompose/cut.h"
+#include "decompose/part.h"
+
+#include <snowglass/ranks.h>
+
+typedef struct snow_cut_order {
+    snow_cut cut; /* EQUAL, COUNTED or BRICKS */
+    int ranks;
+    snow_cut_grid grid; /* its borders are those below, of groups of slices,
+                           where pictures are to have the same bits for any
+                           number of ranks; else NULL */
+    int64_t borders[SNOW_GROUPS + 1];
+    int64_t layers[3]; /* of ghost voxels */
+    bool slabs_only;   /* along the slices' axis: boxes of another kind would
+                          not give the picture, or were not asked for */
+    double threshold;
+    snow_isa isa;
+} snow_cut_order;
+
+/* What picture and ranks ask for.  Not to be copied, for its borders.
+ * Errors: SNOW_BAD_USAGE (view, settings, options), SNOW_BAD_INPUT. */
+snow_status snow_cut_order_make(snow_context *context,
+                                const snow_volume_info *whole,
+                                const snow_view *view,
+                                const snow_settings *settings,
+                                const snow_ranks_options *how, int ranks,
+                                snow_cut_order *out);
+
+/* The boxes of all ranks, and (unless NULL) their interesting voxels, which are
+ * 0 for equal slabs unless asked for.  Counted are the voxels that the volumes
+ * of all ranks of `comm` answer for; NULL: of this one.  Collective then.
+ * Errors: SNOW_NO_MEMORY, those of the transport; agreed on. */
+snow_status snow_cut_boxes(snow_comm *comm, const snow_cut_order *order,
+                           const snow_volume *volume,
+                           const snow_transfer *transfer, snow_box *boxes,
+                           int64_t *loads);
+
+#endif

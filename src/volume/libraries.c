@@ -1,0 +1,19 @@
+/* volume/libraries.c - which optional libraries this build reads files with. */
+#include "volume/volume.h"
+
+static const struct {
+    const char *name, *version, *formats;
+    bool built;
+} libraries[] = {
+    {"expat", SNOW_VERSION_EXPAT, "vti", SNOW_HAVE_EXPAT},
+    {"libtiff", SNOW_VERSION_TIFF, "tiff", SNOW_HAVE_TIFF},
+};
+
+const char *snow_library_name(size_t index, const char **version,
+                              const char **formats) {
+    if (index >= sizeof libraries / sizeof *libraries)
+        return NULL;
+    *version = libraries[index].built ? libraries[index].version : NULL;
+    *formats = libraries[index].formats;
+    return libraries[index].name;
+}

@@ -1,0 +1,36 @@
+/* volume/vtk.h - what the two formats of VTK's image data share: vtk.c reads
+ * the older one, vti*.c the one of XML. */
+#ifndef SNOW_VTK_H
+#define SNOW_VTK_H
+
+#include "volume/array.h"
+
+/* A grid of points; point (i, j, k) lies at
+ * origin + direction * (spacing * (first + (i, j, k))). */
+typedef struct vtk_grid {
+    int64_t first[3]; /* index of the first point */
+    int64_t points[3];
+    double origin[3], spacing[3];
+    double direction[3][3]; /* columns: where the axes lead */
+} vtk_grid;
+
+/* One array of values of a file. */
+typedef struct vtk_array {
+    char name[256];
+    bool cells; /* a value for each cell between points, else for each point */
+    snow_type type;
+    int64_t channels;
+} vtk_array;
+
+vtk_grid snow_vtk_grid_default(void);
+
+/* Sizes, type and matrix of an array on the grid: cells lie half a step from
+ * the points, and one fewer of them on an axis with more than one point.
+ * Errors: SNOW_BAD_INPUT where they are empty or too many to be counted. */
+snow_status snow_vtk_describe(snow_context *context, const vtk_grid *grid,
+                              const vtk_array *array, snow_volume_info *info);
+
+/* Undoes the spelling of names in files, "%20" for a blank. */
+void snow_vtk_decode_name(char *name);
+
+#endif

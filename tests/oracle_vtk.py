@@ -1,0 +1,178 @@
+"""Legacy VTK files and VTI beside VTK, whose writers and readers are used."""
+import sys
+
+try:
+    import numpy as np
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+except ImportError:
+    sys.exit(77)
+import gzip
+
+import oracle
+
+place = oracle.folder()
+TYPES = ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f4", "f8"]
+TURN = np.array([[0, -1, 0], [0.6, 0, -0.8], [0.8, 0, 0.6]])
+
+
+def image(shape=(7, 6, 5), turned=True, extent=(0, 0, 0)):
+    grid = vtk.vtkImageData()
+    z, y, x = shape
+    e = extent
+    grid.SetExtent(e[0], e[0] + x - 1, e[1], e[1] + y - 1, e[2],
+                   e[2] + z - 1)
+    grid.SetSpacing(0.5, 1.25, 2)
+    grid.SetOrigin(3, -4, 5.5)
+    if turned:
+        grid.SetDirectionMatrix(*TURN.ravel())
+    return grid
+
+
+def add(grid, name, values, cells=False, scalars=False):
+    shape = values.shape if values.ndim == 3 else values.shape[:3]
+    flat = values.reshape(np.prod(shape), -1)
+    array = numpy_to_vtk(np.ascontiguousarray(
+        flat if flat.shape[1] > 1 else flat.ravel()), deep=True)
+    array.SetName(name)
+    where = grid.GetCellData() if cells else grid.GetPointData()
+    if scalars:
+        where.SetScalars(array)
+    else:
+        where.AddArray(array)
+
+
+def matrix_of(grid, cells=False):
+    m = grid.GetIndexToPhysicalMatrix()
+    matrix = np.array([[m.GetElement(i, j) for j in range(4)]
+                       for i in range(4)])
+    e = grid.GetExtent()
+    first = np.array([e[0], e[2], e[4]]) + (0.5 if cells else 0)
+    matrix[:3, 3] += matrix[:3, :3] @ first
+    return matrix
+
+
+def write_vti(grid, path, mode, compressor, header, big):
+    writer = vtk.vtkXMLImageDataWriter()
+    writer.SetInputData(grid)
+    writer.SetFileName(path)
+    if mode == "ascii":
+        writer.SetDataModeToAscii()
+    elif mode == "binary":
+        writer.SetDataModeToBinary()
+    else:
+        writer.SetDataModeToAppended()
+        writer.SetEncodeAppendedData(mode == "appended base64")
+    if compressor:
+        writer.SetCompressor(vtk.vtkZLibDataCompressor())
+        writer.SetBlockSize(4096)
+    else:
+        writer.SetCompressor(None)
+    if header == 64:
+        writer.SetHeaderTypeToUInt64()
+    else:
+        writer.SetHeaderTypeToUInt32()
+    if big:
+        writer.SetByteOrderToBigEndian()
+    assert writer.Write()
+
+
+# Every way that VTK's writer knows, with arrays before and behind.
+b = oracle.sample("f4", (20, 21, 22))
+for mode in ("ascii", "binary", "appended raw", "appended base64"):
+    for packed in (False, True):
+        for header in (32, 64):
+            for big in (False, True):
+                grid = image(b.shape, extent=(-2, 3, 10))
+                add(grid, "before", oracle.sample("u1", b.shape))
+                add(grid, "wanted", b, scalars=True)
+                add(grid, "behind", oracle.sample("i2", b.shape))
+                write_vti(grid, "a.vti", mode, packed, header, big)
+                said = f"{mode} packed {packed} header {header} big {big}"
+                oracle.expect("a.vti", b, matrix_of(grid), name=said)
+                oracle.expect("a.vti", oracle.sample("i2", b.shape),
+                              matrix_of(grid), ["--dataset", "behind"],
+                              name=said + " behind")
+        with open("a.vti", "rb") as file, gzip.open("b.vti.gz", "wb") as to:
+            to.write(file.read())
+        oracle.expect("b.vti.gz", b, matrix_of(grid), name=said + " gzip")
+oracle.refuse("a.vti", "before, wanted, behind", ["--dataset", "none"], 2)
+
+for kind in TYPES:
+    a = oracle.sample(kind)
+    for mode in ("ascii", "binary", "appended raw"):
+        grid = image()
+        add(grid, "a", a, scalars=True)
+        write_vti(grid, "a.vti", mode, True, 32, False)
+        oracle.expect("a.vti", a, matrix_of(grid), name=f"{kind} {mode}")
+
+# Vectors by channel; values of cells.
+a = oracle.sample("f8", (7, 6, 5, 3))
+c = oracle.sample("u2", (6, 5, 4))
+for mode in ("ascii", "binary", "appended raw"):
+    grid = image()
+    add(grid, "v", a)
+    add(grid, "c", c, cells=True)
+    write_vti(grid, "a.vti", mode, True, 64, False)
+    for channel in range(3):
+        oracle.expect("a.vti", a[..., channel], matrix_of(grid),
+                      ["--channel", channel])
+    oracle.expect("a.vti", c, matrix_of(grid, True), ["--dataset", "c"])
+    grid = image()
+    add(grid, "c", c, cells=True)
+    write_vti(grid, "a.vti", mode, True, 64, False)
+    oracle.expect("a.vti", c, matrix_of(grid, True))
+
+# Legacy files.
+for version in (42, 51):
+    for binary in (False, True):
+        for kind in TYPES:
+            a = oracle.sample(kind)
+            grid = image(turned=False)
+            add(grid, "the_array", a, scalars=True)
+            add(grid, "v", oracle.sample("f4", (7, 6, 5, 3)))
+            add(grid, "c", c, cells=True)
+            writer = vtk.vtkStructuredPointsWriter()
+            writer.SetInputData(grid)
+            writer.SetFileName("a.vtk")
+            writer.SetFileVersion(version)
+            if binary:
+                writer.SetFileTypeToBinary()
+            assert writer.Write()
+            said = f"legacy {version} binary {binary} {kind}"
+            # Text has six digits: what VTK reads back counts.
+            reader = vtk.vtkStructuredPointsReader()
+            reader.SetFileName("a.vtk")
+            reader.ReadAllScalarsOn()
+            reader.ReadAllVectorsOn()
+            reader.ReadAllFieldsOn()
+            reader.Update()
+            points = reader.GetOutput().GetPointData()
+            v = vtk_to_numpy(points.GetArray("v")).reshape(7, 6, 5, 3)
+            a = vtk_to_numpy(points.GetArray("the_array")).reshape(7, 6, 5)
+            oracle.expect("a.vtk", a, matrix_of(grid), name=said + " default")
+            options = ["--dataset", "the_array"]
+            oracle.expect("a.vtk", a, matrix_of(grid), options, name=said)
+            for channel in range(3):
+                oracle.expect("a.vtk", v[..., channel], matrix_of(grid),
+                              ["--dataset", "v", "--channel", channel],
+                              name=said + " vectors")
+            oracle.expect("a.vtk", c, matrix_of(grid, True),
+                          ["--dataset", "c"], name=said + " cells")
+
+for relative, reader in (
+        ("formats/vtk/ironProt.vtk", vtk.vtkStructuredPointsReader()),
+        ("sim/hydrogen.vti", vtk.vtkXMLImageDataReader()),
+        ("sim/isabel_30.vti", vtk.vtkXMLImageDataReader()),
+        ("classic/engine.vti", vtk.vtkXMLImageDataReader()),
+        ("classic/bonsai.vti", vtk.vtkXMLImageDataReader()),
+        ("classic/aneurism.vti", vtk.vtkXMLImageDataReader())):
+    path = oracle.data(relative)
+    if path:
+        reader.SetFileName(path)
+        reader.Update()
+        grid = reader.GetOutput()
+        values = vtk_to_numpy(grid.GetPointData().GetScalars())
+        oracle.expect(path, values.reshape(grid.GetDimensions()[::-1]),
+                      matrix_of(grid))
+oracle.finish()

@@ -1,0 +1,37 @@
+# support_mpi.sh - launching several processes; sourced by mpi_*.sh, which are
+# run as `script TOOL MPIEXEC TOOL_UNDER_MPI TESTS`.
+#
+# Test machines have fewer processors than ranks, and run as root in containers:
+# Open MPI must be told that both are meant.
+. "$(dirname "$0")/support_shell.sh"
+MPIEXEC=$2 MPI_TOOL=$3 TESTS=$4
+export OMP_NUM_THREADS=1
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export OMPI_MCA_rmaps_base_oversubscribe=1
+export OMPI_MCA_hwloc_base_binding_policy=none
+
+skip() {
+    echo "skip   $*"
+    exit 77
+}
+
+[ -x "$(command -v "$MPIEXEC")" ] || skip "there is no $MPIEXEC"
+
+is_open_mpi() {
+    "$MPIEXEC" --version 2>&1 | grep -qi 'open.mpi\|openrte'
+}
+
+# launch N COMMAND...: with a limit, so that a hang is a failure.
+launch() {
+    local ranks=$1
+    shift
+    timeout -k 5 "${LIMIT:-120}" "$MPIEXEC" -n "$ranks" "$@"
+}
+
+# How many ranks are tried: MPICH waits busily, and many ranks on few
+# processors take long.
+if is_open_mpi; then
+    COUNTS="1 2 3 5" MOST=5
+else
+    COUNTS="1 2 4" MOST=4
+fi
