@@ -4,6 +4,7 @@
  * help of the tool shows its text as it stands. */
 #include "bench.h"
 #include "combine.h"
+#include "launch.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -336,9 +337,13 @@ static int parse(int argc, char **argv, bench_options *options,
     return check_command(command, options);
 }
 
+bool bench_for_all(int argc, char **argv) {
+    return argc > 1 && strcmp(argv[1], "combine") == 0;
+}
+
 int bench_main(int argc, char **argv) {
-    if (argc > 1 && strcmp(argv[1], "combine") == 0)
-        return combine_main(argc - 1, argv + 1);
+    if (bench_for_all(argc, argv))
+        return combine_main(argc - 1, argv + 1, launch_comm());
     bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};
     int code = parse(argc, argv, &options, &command);

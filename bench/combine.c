@@ -1,6 +1,6 @@
 /* bench/combine.c - `snowglass bench combine`: its options, and ranks that are
  * threads of one process.  The same options are read by the program of
- * simulated networks (simulate/main.c). */
+ * simulated networks (mpi_combine.c). */
 #include "combine.h"
 
 #include <stdlib.h>
@@ -15,9 +15,9 @@ static const char help[] =
     "messages, and a bound.  Local images are slabs of a cube seen at an "
     "angle, "
     "with\n"
-    "random pixels.  Here the ranks are threads of one process.\n"
+    "random pixels.  Ranks are those of MPI, or threads of one process.\n"
     "\n"
-    "  --ranks N        (8)\n"
+    "  --ranks N        where they are threads (8)\n"
     "  --size N         side of the square picture in pixels (512)\n"
     "  --method NAME    auto, tree (the paper's), swap, direct or radix "
     "(auto)\n"
@@ -107,8 +107,7 @@ static int usage_error(FILE *said, const char *what, const char *word) {
 int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
     int method = 0, pieces = 0;
     bool grey = false, floats = false, helps = false;
-    *out = (combine_options){.ranks = 8,
-                             .size = 512,
+    *out = (combine_options){.size = 512,
                              .runs = 5,
                              .azimuth = 30,
                              .elevation = 20,
@@ -172,22 +171,51 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
     return -1;
 }
 
-int combine_main(int argc, char **argv) {
-    combine_options options;
-    snow_context *context;
-    int code = combine_parse(argc, argv, &options, stderr);
-    if (code >= 0)
-        return code;
-    if (snow_context_new(NULL, &context) != SNOW_OK)
-        return SNOW_NO_MEMORY;
-    combine_session session = {.options = &options};
+/* Ranks that are threads of this process. */
+static snow_status run_threads(snow_context *context, combine_session *session,
+                               int ranks) {
     snow_status status =
-        snow_comm_threads(context, options.ranks, combine_body, &session);
+        snow_comm_threads(context, ranks, combine_body, session);
     if (status != SNOW_OK)
         fprintf(stderr, "snowglass: bench combine: %s\n",
                 snow_context_message(context));
-    else
-        status = (snow_status)combine_print(&options, &session.result);
+    return status;
+}
+
+static int run_alone(combine_session *session, int ranks) {
+    snow_context *context;
+    if (snow_context_new(NULL, &context) != SNOW_OK)
+        return SNOW_NO_MEMORY;
+    snow_status status = run_threads(context, session, ranks);
     snow_context_free(context);
+    return status == SNOW_OK ? combine_print(session) : (int)status;
+}
+
+int combine_run(snow_comm *comm, combine_session *session) {
+    const bool talks = snow_comm_rank(comm) == 0;
+    snow_status status = combine_body(comm, session);
+    if (status != SNOW_OK && talks)
+        fprintf(stderr, "snowglass: bench combine: %s\n",
+                snow_context_message(snow_comm_context(comm)));
+    if (status == SNOW_OK && talks)
+        status = (snow_status)combine_print(session);
     return (int)status;
+}
+
+int combine_main(int argc, char **argv, snow_comm *comm) {
+    combine_options options;
+    const bool talks = !comm || snow_comm_rank(comm) == 0;
+    int code = combine_parse(argc, argv, &options, talks ? stderr : NULL);
+    if (code >= 0)
+        return code;
+    if (comm && options.ranks) {
+        if (talks)
+            fprintf(stderr, "snowglass: bench combine: ranks are those of MPI; "
+                            "leave out --ranks\n");
+        return SNOW_BAD_USAGE;
+    }
+    combine_session session = {.options = &options};
+    if (comm)
+        return combine_run(comm, &session);
+    return run_alone(&session, options.ranks ? options.ranks : 8);
 }

@@ -120,8 +120,9 @@ static void put_times(line *out, const combine_options *options,
     put_number(out, "ratio", bound > 0 ? most->total / bound : 0);
 }
 
-int combine_print(const combine_options *options,
-                  const combine_result *result) {
+int combine_print(const combine_session *session) {
+    const combine_options *options = session->options;
+    const combine_result *result = &session->result;
     line out = {.json = options->json};
     const double difference = result->most.difference;
     /* A channel of 8 bits is off by half a step from rounding alone; floats by

@@ -92,12 +92,16 @@ static int walk_tree(int rank, int ranks, int radix, int *children,
     return found;
 }
 
-/* Measured on simulated networks: see docs/scaling.md. */
-static int chosen_radix(const snow_combiner *combiner) {
+/* Wide where pixels take longer than messages, which they do from 2 MB on, by
+ * simulated networks (docs/scaling.md). */
+static int chosen_radix(const snow_combiner *combiner, int width, int height,
+                        size_t pixel_bytes) {
     const int ranks = combiner->comm->ranks;
+    double bytes = (double)width * height * (double)pixel_bytes;
+    int radix = bytes < 2e6 ? 8 : 32;
     if (combiner->gather.radix >= 2)
-        return combiner->gather.radix;
-    return ranks < 3 ? 2 : ranks < 32 ? ranks : 32;
+        radix = combiner->gather.radix;
+    return radix < ranks ? radix : ranks < 2 ? 2 : ranks;
 }
 
 /* --- memory --------------------------------------------------------------- */
@@ -132,7 +136,7 @@ static snow_status take_buffers(snow_combiner *combiner) {
 static snow_status take_shape(snow_combiner *combiner, int width, int height,
                               size_t pixel_bytes) {
     snow_gather_state *state = &combiner->gather;
-    const int radix = chosen_radix(combiner);
+    const int radix = chosen_radix(combiner, width, height, pixel_bytes);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 ||
         pixel_bytes < 1 || pixel_bytes > 1024)
         return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
