@@ -85,8 +85,7 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
 
 /* The texts were checked against the choices of the table, so that every name
  * is known to the library. */
-int make_settings(const options *asked, const snow_volume *volume,
-                  snow_settings *out) {
+void fill_settings(const options *asked, snow_settings *out) {
     snow_settings_init(out);
     out->threshold = asked->threshold < 0 ? 0 : asked->threshold;
     out->method = (snow_method)snow_method_named(asked->method);
@@ -105,6 +104,11 @@ int make_settings(const options *asked, const snow_volume *volume,
     out->isa = (snow_isa)snow_isa_named(asked->isa);
     out->threads = (int)asked->threads;
     out->deterministic = asked->deterministic;
+}
+
+int make_settings(const options *asked, const snow_volume *volume,
+                  snow_settings *out) {
+    fill_settings(asked, out);
     return opacity_length(asked, snow_volume_describe(volume),
                           &out->opacity_length);
 }
