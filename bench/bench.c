@@ -16,6 +16,7 @@ static const char help[] =
     "  table1 table2 table3   the paper's tables\n"
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
+    "  balance                how equal the work of many processors is\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -35,6 +36,11 @@ static const char help[] =
     "colours, shading, sizes, methods, encodings and threads, against "
     "original and\n"
     "tested splatting with the same kernel.  It takes many minutes.\n"
+    "\n"
+    "balance prints the interesting voxels of the processor that has most, "
+    "over "
+    "the\n"
+    "mean, for equal slabs, slabs by count, and bricks.\n"
     "\n"
     "Every row is verified before its times are printed.\n"
     "\n"
@@ -89,6 +95,7 @@ static const struct bench_entry {
     {"figure11", bench_figure11, "cq", true},
     {"figure12", bench_figure12, "cq", true},
     {"speed", bench_speed, "qlvocwst", false},
+    {"balance", bench_balance, "", true},
 };
 
 #define OF_ALL "djrh"

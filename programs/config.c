@@ -5,6 +5,7 @@
  * an interrupted movie knows what it was asked for. */
 #include "config.h"
 #include "commands.h"
+#include "launch.h"
 #include "outputs.h"
 #include "report.h"
 
@@ -125,14 +126,11 @@ static int check_recipe(const char *path) {
     return done;
 }
 
-/* Rows that are told together now did not hide one another: keys are taken in
- * the order of the file, window and level with each other. */
-int config_take(options *out, const verb_row *verb) {
+/* Keys in the order of the file. */
+static int take_file(options *out, const verb_row *verb) {
     json_error_t error;
     const char *key;
     json_t *value;
-    if (!out->config)
-        return GO_ON;
     int done = check_recipe(out->config);
     if (done != GO_ON)
         return done;
@@ -144,6 +142,11 @@ int config_take(options *out, const verb_row *verb) {
     }
     json_decref(tree);
     return done;
+}
+
+/* All ranks read the file; what one of them cannot read none does. */
+int config_take(options *out, const verb_row *verb) {
+    return out->config ? launch_agree(take_file(out, verb)) : GO_ON;
 }
 
 /* --- writing -------------------------------------------------------------- */
@@ -209,14 +212,18 @@ static void fill_recipe(const options *asked, snow_recipe *out) {
     fill_settings(asked, &out->settings);
 }
 
-int config_check(const options *asked) {
-    if (!asked->save_config)
-        return GO_ON;
+static int check_place(const options *asked) {
     if (asked->output && (strcmp(asked->save_config, asked->output) == 0 ||
                           same_place(asked->save_config, asked->output)))
         return fail_usage("--save-config: goes where --output goes; name two "
                           "places");
     return check_stats_path(asked->save_config, asked->overwrite);
+}
+
+int config_check(const options *asked) {
+    if (!asked->save_config)
+        return GO_ON;
+    return launch_agree(launch_talks() ? check_place(asked) : GO_ON);
 }
 
 /* The recipe as a tree: the library writes a text. */
@@ -238,7 +245,7 @@ int config_save(const options *asked) {
     snow_context *context = NULL;
     snow_recipe recipe;
     json_t *tree = NULL;
-    if (!asked->save_config)
+    if (!asked->save_config || !launch_talks())
         return SNOW_OK;
     fill_recipe(asked, &recipe);
     if (snow_context_new(NULL, &context) == SNOW_OK)

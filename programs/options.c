@@ -4,6 +4,7 @@
  * last.  What is unknown, of another verb, or not built yet is refused. */
 #include "options.h"
 #include "config.h"
+#include "launch.h"
 #include "report.h"
 
 #include <getopt.h>
@@ -41,9 +42,31 @@ void options_init(options *out) {
         .progress = "auto",
         .isa = "auto",
         .quality = "normal",
+        .cut = "auto",
+        .combine = "auto",
         .frames = 120,
         .fps = 25,
     };
+}
+
+bool topic_is_here(topic which) {
+    return which != TOPIC_RANKS || launch_mpi() != NULL;
+}
+
+/* The words before it in the row, of which it is one. */
+int option_choice(const char *name, const char *text) {
+    const option_row *row = option_table;
+    size_t length = strlen(text);
+    int index = 0;
+    while (strcmp(row->name, name) != 0)
+        row++;
+    for (const char *at = row->argument; *at; index++) {
+        size_t word = strcspn(at, "|");
+        if (word == length && strncmp(at, text, word) == 0)
+            break;
+        at += word + (at[word] == '|');
+    }
+    return index;
 }
 
 /* Verbs count in full only, as options do. */
@@ -111,7 +134,8 @@ static const char *nearest_option(const char *name, unsigned verb) {
     int least = (int)strlen(name) / 3 + 2;
     for (const option_row *row = option_table; row->name; row++) {
         int distance = value_distance(name, row->name);
-        if ((row->verbs & verb) && row->read && distance < least) {
+        if ((row->verbs & verb) && row->read && distance < least &&
+            topic_is_here(row->topic)) {
             least = distance;
             best = row->name;
         }
@@ -166,6 +190,10 @@ static int take(options *out, const option_row *row, const verb_row *verb,
                 const char *text) {
     if (!row->read)
         return fail_usage("--%s is not built yet; %s", row->name, row->text);
+    if (!topic_is_here(row->topic))
+        return fail_usage("--%s: is for many ranks; give it to snowglass-mpi, "
+                          "under mpirun",
+                          row->name);
     if (!(row->verbs & verb->bit))
         return refuse_foreign(row, verb);
     char wrong[WRONG_BYTES];

@@ -39,7 +39,8 @@ typedef enum topic {
     TOPIC_LABELS,
     TOPIC_DATA,
     TOPIC_RUN,
-    TOPIC_MORE /* of single verbs */
+    TOPIC_RANKS, /* of the program under MPI only */
+    TOPIC_MORE   /* of single verbs */
 } topic;
 
 /* More than option_table has: rows beyond would be lost. */
@@ -94,6 +95,8 @@ typedef struct options {
     const char *stats; /* NULL: none */
     const char *progress, *isa, *quality;
     int64_t threads; /* 0: not told */
+    const char *cut, *combine;
+    int64_t radix; /* 0: chosen */
     bool deterministic, no_labels;
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 
@@ -157,6 +160,12 @@ typedef struct topic_row {
     const char *built;
 } topic_row;
 extern const topic_row topic_table[];
+
+/* Whether a topic is one of this program. */
+bool topic_is_here(topic which);
+
+/* Which of its choices an option has, from 0. */
+int option_choice(const char *name, const char *text);
 
 const verb_row *verb_named(const char *name);
 const verb_row *verb_of(unsigned bit);

@@ -163,8 +163,8 @@ table1 --runs|unknown option or missing value '--runs'
 table1 --runs 4|this value is not possible: '4'
 table1 --kernel cube|this value is not possible: 'cube'
 table4|there is no benchmark 'table4'
-table1 table2|give one table
---json|give one table
+table1 table2|give one thing to measure
+--json|give one thing to measure
 END
 for table in table1 table2 table3; do
     refused 3 "bench $table without its files" \
