@@ -148,7 +148,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"background\": \"#12345\"}", "\"background\" must be"},
         {"{\"background\": \"#1010-8\"}", "\"background\" must be"},
         {"{\"range\": [\"p 1\", \"p99\"]}", "\"range\" must be"},
-        {"{\"window\": 1e308, \"level\": 1e308}", "go together"},
+        {"{\"window\": 1.7e308, \"level\": 1.7e308}", "go together"},
         {"{\"window\": 1e-300, \"level\": 1e308}", "go together"},
         {"{\"background\": [0, 0, 2]}", "\"background\" must be"},
         {"{\"window\": 3}", "go together"},
