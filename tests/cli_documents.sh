@@ -26,6 +26,12 @@ for suffix in png npy; do
     done
 done
 
+mkdir slices
+head -c 4096 /dev/zero >slices/notes.txt
+for i in 0001 0002 0003; do
+    "$tool" render phantom:shells --dims 16x16x16 -q -s 16x16 -o slices/ct_$i.png || exit 1
+done
+
 # Movies need a program of its own.
 without='^$'
 command -v ffmpeg >/dev/null || without='-o [^ ]*\.(mp4|webm|gif)'

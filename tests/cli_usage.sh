@@ -56,8 +56,6 @@ info --perspective x|no option of info
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint
 --crop 0:1,0:1 x|--crop: 
---dataset d x|--dataset is not built yet
---channel 1 x|--channel is not built yet
 --series 1 x|--series is not built yet
 --quality best x|'best' is unknown
 --frames 3 x|--frames: no option of render; it belongs to turntable
@@ -167,8 +165,8 @@ table1 --runs|unknown option or missing value '--runs'
 table1 --runs 4|this value is not possible: '4'
 table1 --kernel cube|this value is not possible: 'cube'
 table4|there is no benchmark 'table4'
-table1 table2|give one table
---json|give one table
+table1 table2|give one thing to measure
+--json|give one thing to measure
 END
 for table in table1 table2 table3; do
     refused 3 "bench $table without its files" \

@@ -13,11 +13,13 @@
 typedef struct file_layer {
     snow_layer layer;
     int descriptor;
+    off_t begin; /* where in the file the layer's first byte is */
 } file_layer;
 
 typedef struct memory_layer {
     snow_layer layer;
-    const unsigned char *bytes; /* the caller's, what is still to come */
+    const unsigned char *begin; /* the caller's, all of them */
+    const unsigned char *bytes; /* what is still to come */
     size_t left;
 } memory_layer;
 
@@ -148,6 +150,27 @@ static snow_status pull_file(snow_layer *layer, void *bytes, size_t size,
     return SNOW_OK;
 }
 
+/* A read that fails brings nothing, as one behind the end: whoever looks for
+ * bytes that must be there refuses both. */
+static size_t look_in_file(snow_layer *layer, uint64_t from, void *bytes,
+                           size_t size) {
+    const file_layer *file = (file_layer *)layer;
+    size_t done = 0;
+    if (from > (uint64_t)layer->size)
+        return 0;
+    while (done < size) {
+        ssize_t count = pread(file->descriptor, (unsigned char *)bytes + done,
+                              size - done, file->begin + (off_t)(from + done));
+        if (count < 0 && errno == EINTR)
+            continue;
+        if (count <= 0)
+            break;
+        done += (size_t)count;
+    }
+    layer->context->bytes_read += done;
+    return done;
+}
+
 static void close_file(snow_layer *layer) {
     close(((file_layer *)layer)->descriptor);
 }
@@ -164,6 +187,9 @@ snow_status snow_layer_open_file(snow_context *context, const char *name,
     file->layer.fini = close_file;
     file->layer.size = size;
     file->descriptor = descriptor;
+    file->begin = size < 0 ? -1 : lseek(descriptor, 0, SEEK_CUR);
+    if (file->begin >= 0)
+        file->layer.look = look_in_file;
     *out = &file->layer;
     return SNOW_OK;
 }
@@ -183,6 +209,18 @@ static snow_status pull_memory(snow_layer *layer, void *bytes, size_t size,
     return SNOW_OK;
 }
 
+static size_t look_in_memory(snow_layer *layer, uint64_t from, void *bytes,
+                             size_t size) {
+    const memory_layer *memory = (memory_layer *)layer;
+    uint64_t all = (uint64_t)layer->size;
+    if (from >= all)
+        return 0;
+    if (size > all - from)
+        size = (size_t)(all - from);
+    memcpy(bytes, memory->begin + from, size);
+    return size;
+}
+
 snow_status snow_layer_open_memory(snow_context *context, const char *name,
                                    const void *bytes, size_t size,
                                    snow_layer **out) {
@@ -193,7 +231,8 @@ snow_status snow_layer_open_memory(snow_context *context, const char *name,
     memory->layer.name = name;
     memory->layer.pull = pull_memory;
     memory->layer.size = (int64_t)size;
-    memory->bytes = size ? bytes : nothing;
+    memory->layer.look = look_in_memory;
+    memory->begin = memory->bytes = size ? bytes : nothing;
     memory->left = size;
     *out = &memory->layer;
     return SNOW_OK;

@@ -27,6 +27,9 @@ struct snow_layer {
     /* The most bytes that can still come where `size` is not known; NULL: as
      * deflate packs those below. */
     uint64_t (*limit)(const snow_layer *layer);
+    /* Copies bytes from any place without taking them, as many as are there;
+     * NULL where that cannot be done. */
+    size_t (*look)(snow_layer *layer, uint64_t from, void *bytes, size_t size);
     void (*fini)(snow_layer *layer);
     int64_t size;      /* of all its bytes; -1 when that is not known */
     uint64_t taken;    /* bytes handed out so far */
@@ -93,9 +96,6 @@ int64_t snow_layer_remaining(const snow_layer *layer);
 /* The largest number of bytes that can still come, UINT64_MAX when nothing is
  * known: for a packed stream deflate's limit times the packed bytes. */
 uint64_t snow_layer_limit(const snow_layer *layer);
-
-/* Deflate's shortest code for its longest run: 258 bytes for 2 bits. */
-#define SNOW_DEFLATE_RATIO 1032
 
 /* True when the bytes begin a gzip member. */
 bool snow_looks_gzip(const unsigned char *bytes, size_t size);

@@ -4,6 +4,7 @@
  * Since the sizes stand before the data, what is passed by need not be
  * unpacked: a block is skipped by its packed size. */
 #include "base/layer.h"
+#include "base/source.h"
 
 #include <zlib.h>
 

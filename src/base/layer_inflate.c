@@ -5,6 +5,7 @@
  * layer passes on its end only after that.  A gzip file may be several members
  * one after the other, whose bytes are joined. */
 #include "base/layer.h"
+#include "base/source.h"
 
 #include <zlib.h>
 

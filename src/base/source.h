@@ -10,6 +10,9 @@
 
 typedef struct snow_source snow_source;
 
+/* Deflate's shortest code for its longest run: 258 bytes for 2 bits. */
+#define SNOW_DEFLATE_RATIO 1032
+
 /* The most that snow_source_peek can show. */
 #define SNOW_PEEK_BYTES 4096
 

@@ -192,14 +192,16 @@ static size_t words_next_row(snow_walk *walk, snow_span *spans) {
 static void words_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
     size_t words = snow_mask_words(walk->sparse);
     size_t first = (size_t)walk->row * words;
-    for (size_t w = 0; w < words; w++)
-        mask[w * step] = 0;
     for (size_t w = 0; w < words; w += CHUNK) {
-        uint64_t summary =
-            some_bits(walk->slice, first + w, lesser(words - w, CHUNK));
-        for (; summary; summary &= summary - 1, walk->ea += 8)
-            mask[(w + (size_t)__builtin_ctzll(summary)) * step] =
-                snow_load_word(walk->ea);
+        size_t some = lesser(words - w, CHUNK);
+        uint64_t summary = some_bits(walk->slice, first + w, some);
+        /* Each word is read, also where none is stored and the next one, or the
+         * room behind the last, is: how many are is hard to guess. */
+        for (size_t n = w; n < w + some; n++, summary >>= 1) {
+            uint64_t full = summary & 1;
+            mask[n * step] = snow_load_word(walk->ea) & (0 - full);
+            walk->ea += 8 * full;
+        }
     }
 }
 

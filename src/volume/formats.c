@@ -3,7 +3,9 @@
  * The first bytes decide, then the name; the sizes that a user gives make
  * everything else raw data.  The name of the file is put before every message
  * here, so that no reader has to. */
+#include "base/folder.h"
 #include "volume/phantom.h"
+#include "volume/stack.h"
 #include "volume/volume.h"
 
 #include <math.h>
@@ -15,7 +17,8 @@
 static const snow_format *const formats[] = {
     &snow_format_nrrd, &snow_format_nifti, &snow_format_metaimage,
     &snow_format_npy,  &snow_format_vtk,   &snow_format_vti,
-    &snow_format_mrc,  &snow_format_raw,
+    &snow_format_mrc,  &snow_format_tiff,  &snow_format_png,
+    &snow_format_raw,
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
@@ -269,6 +272,34 @@ static snow_status open_phantom(snow_context *context, const char *name,
     return SNOW_OK;
 }
 
+/* Slices in files of their own; what holds for all formats holds for them. */
+static snow_status open_stack(snow_context *context, const char *path,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_volume *volume = NULL;
+    snow_volume_info told;
+    snow_status status = check_options(context, options);
+    if (status == SNOW_OK && tells_raw(options))
+        status = snow_fail(context, SNOW_BAD_USAGE,
+                           "slices tell their sizes and type themselves; leave "
+                           "out --dims, --type, --endian and --offset");
+    if (status == SNOW_OK)
+        status = snow_stack_read(context, path, options, &told,
+                                 out ? &volume : NULL);
+    if (status == SNOW_OK)
+        status = finish_info(context, options, &told);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
+        return name_failure(context, status, path);
+    }
+    *info = told;
+    if (out) {
+        volume->info = told;
+        *out = volume;
+    }
+    return SNOW_OK;
+}
+
 /* The prefix comes before any file of that name: "./phantom:x" still reaches
  * one. */
 static snow_status open_path(snow_context *context, const char *path,
@@ -279,6 +310,8 @@ static snow_status open_path(snow_context *context, const char *path,
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
         return open_phantom(context, path + strlen(PHANTOM), options, info,
                             out);
+    if (snow_is_folder(path) || snow_is_pattern(path))
+        return open_stack(context, path, options, info, out);
     snow_source *source;
     snow_status status = snow_source_open(context, path, &source);
     if (status != SNOW_OK)

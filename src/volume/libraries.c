@@ -6,6 +6,7 @@ static const struct {
     bool built;
 } libraries[] = {
     {"expat", SNOW_VERSION_EXPAT, "vti", SNOW_HAVE_EXPAT},
+    {"libtiff", SNOW_VERSION_TIFF, "tiff", SNOW_HAVE_TIFF},
 };
 
 const char *snow_library_name(size_t index, const char **version,

@@ -54,6 +54,7 @@ typedef struct snow_format {
     const char *suffixes[8]; /* ".nrrd", ".nhdr", NULL */
     bool (*probe)(const unsigned char *bytes, size_t size);
     bool crops;
+    bool slices; /* a folder or a pattern of its files is a volume */
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
                         snow_volume_info *info, snow_volume **out);
     snow_status (*write)(const snow_volume *volume, const char *path,
@@ -68,6 +69,8 @@ extern const snow_format snow_format_npy;
 extern const snow_format snow_format_mrc;
 extern const snow_format snow_format_vtk;
 extern const snow_format snow_format_vti;
+extern const snow_format snow_format_tiff;
+extern const snow_format snow_format_png;
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */

@@ -1,0 +1,200 @@
+/* volume/stack.c - a folder or a pattern of files with a slice each.
+ *
+ * The files' own reader makes a volume of one slice of each, cropped in x and
+ * y; they are put one behind the other.  Files outside the box along z are not
+ * opened.  A number that is missing among the names is a slice that is missing,
+ * and refused. */
+#include "volume/stack.h"
+#include "base/folder.h"
+
+#include <string.h>
+
+/* What all files have in common, by the first of them. */
+typedef struct stack {
+    snow_context *context;
+    const snow_format *format;
+    const snow_folder *files;    /* those of the format, in order */
+    snow_volume_options options; /* for a slice */
+    snow_volume_info first;      /* the first slice, whole */
+    snow_volume_info slice;      /* as each is read */
+} stack;
+
+/* The format whose names the file has, if files of it are slices. */
+static const snow_format *slice_format(const char *path) {
+    const snow_format *format = snow_format_of_name(path);
+    return format && format->slices ? format : NULL;
+}
+
+/* Keeps the files whose names say that they are slices: folders hold notes and
+ * tables as well.  All must be of one format. */
+static snow_status choose_files(stack *s, snow_folder *files) {
+    size_t kept = 0, others = 0;
+    for (size_t i = 0; i < files->count; i++) {
+        const snow_format *format = slice_format(files->paths[i]);
+        if (!format)
+            continue;
+        if (!s->format)
+            s->format = format;
+        if (format == s->format)
+            files->paths[kept++] = files->paths[i];
+        else
+            others++;
+    }
+    if (others)
+        return snow_fail(s->context, SNOW_BAD_INPUT,
+                         "has %zu files of %s beside others; give a pattern "
+                         "that names one kind, such as \"folder/*.tif\"",
+                         kept, s->format->name);
+    if (!kept)
+        return snow_fail(s->context, SNOW_BAD_INPUT,
+                         "names no slices; give a folder or a pattern of .tif "
+                         "or .png files");
+    files->count = kept;
+    s->files = files;
+    return SNOW_OK;
+}
+
+/* Numbers may begin anywhere and go in equal steps. */
+static snow_status check_numbers(const stack *s) {
+    char *const *paths = s->files->paths;
+    int64_t step = 0;
+    for (size_t i = 1; i < s->files->count; i++) {
+        int64_t a = snow_last_number(paths[i - 1]);
+        int64_t b = snow_last_number(paths[i]);
+        if (a < 0 || b < 0)
+            return SNOW_OK; /* names without numbers have no gaps */
+        if (i == 1)
+            step = b - a;
+        if (b - a != step)
+            return snow_fail(s->context, SNOW_BAD_INPUT,
+                             "its files are not numbered in equal steps (%s, "
+                             "then %s); bring the slices that are missing, or "
+                             "give a pattern that names the others",
+                             paths[i - 1], paths[i]);
+    }
+    return SNOW_OK;
+}
+
+/* Opens a file with its name before every message. */
+static snow_status read_file(const stack *s, size_t index,
+                             snow_volume_info *info, snow_volume **out) {
+    snow_source *source;
+    SNOW_TRY(snow_source_open(s->context, s->files->paths[index], &source));
+    const char *name = snow_source_name(source);
+    size_t length = strlen(name);
+    snow_status status = s->format->read(source, &s->options, info, out);
+    const char *message = s->context->message;
+    if (status != SNOW_OK &&
+        (strncmp(message, name, length) != 0 || message[length] != ':'))
+        snow_fail_within(s->context, status, "%s", name);
+    snow_source_close(source);
+    return status;
+}
+
+static snow_status refuse_unlike(const stack *s, size_t index,
+                                 const snow_volume_info *info) {
+    const snow_volume_info *first = &s->first;
+    return snow_fail(s->context, SNOW_BAD_INPUT,
+                     "%s: has %lldx%lldx%lld voxels of %s where the first "
+                     "slice has %lldx%lldx%lld of %s; a volume's slices must "
+                     "be alike",
+                     s->files->paths[index], (long long)info->dims[0],
+                     (long long)info->dims[1], (long long)info->dims[2],
+                     snow_type_name(info->type), (long long)first->dims[0],
+                     (long long)first->dims[1], (long long)first->dims[2],
+                     snow_type_name(first->type));
+}
+
+/* A slice that cannot be cropped as the first was has other sizes, which are
+ * told rather than the box. */
+static snow_status explain(stack *s, size_t index) {
+    snow_volume_info info;
+    memset(s->options.crop, 0, sizeof s->options.crop);
+    SNOW_TRY(read_file(s, index, &info, NULL));
+    return refuse_unlike(s, index, &info);
+}
+
+/* Several slices in each file would be a volume each, of times perhaps. */
+static snow_status look_at_first(stack *s) {
+    SNOW_TRY(read_file(s, 0, &s->first, NULL));
+    s->slice = s->first;
+    if (s->first.dims[2] == 1 && s->first.times == 1) {
+        if (s->first.matrix[0][0] != 1 && s->first.matrix[2][2] == 1)
+            snow_notify(s->context, "the distance of the slices is not told; "
+                                    "1 is taken, --spacing gives another");
+        return SNOW_OK;
+    }
+    return snow_fail(s->context, SNOW_BAD_INPUT,
+                     "%s: has %lld slices, a volume of its own; open one file "
+                     "at a time",
+                     s->files->paths[0],
+                     (long long)(s->first.dims[2] * s->first.times));
+}
+
+/* Remarks are made of the first slice alone: each has the same. */
+static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
+    size_t bytes = (size_t)(s->slice.dims[0] * s->slice.dims[1]) *
+                   snow_type_size(s->slice.type);
+    snow_notice_fn *notice = s->context->notice;
+    snow_status status = SNOW_OK;
+    s->context->notice = NULL;
+    for (int64_t z = 0; z < volume->info.dims[2] && status == SNOW_OK; z++) {
+        snow_volume_info info;
+        snow_volume *slice = NULL;
+        status = read_file(s, (size_t)(first + z), &info, &slice);
+        if (status == SNOW_BAD_USAGE ||
+            (status == SNOW_OK &&
+             (info.type != s->slice.type ||
+              memcmp(info.dims, s->slice.dims, sizeof info.dims) != 0)))
+            status = explain(s, (size_t)(first + z));
+        if (status == SNOW_OK)
+            memcpy((unsigned char *)volume->owned + (size_t)z * bytes,
+                   slice->voxels, bytes);
+        snow_volume_close(slice);
+    }
+    s->context->notice = notice;
+    return status;
+}
+
+/* The window is laid on all slices, then each is cropped alike; what a box
+ * without end means is told by the first. */
+static snow_status read_stack(stack *s, const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_window window;
+    s->options = *options;
+    memset(s->options.crop, 0, sizeof s->options.crop);
+    SNOW_TRY(check_numbers(s));
+    SNOW_TRY(look_at_first(s));
+    *info = s->slice;
+    info->dims[2] = (int64_t)s->files->count;
+    SNOW_TRY(snow_window_lay(s->context, options, info, &window));
+    if (!out)
+        return SNOW_OK;
+    for (int i = 0; i < 2; i++) {
+        s->options.crop[i][0] = window.first[i];
+        s->options.crop[i][1] = window.first[i] + window.count[i];
+        s->slice.dims[i] = window.count[i];
+    }
+    snow_volume *volume;
+    SNOW_TRY(snow_volume_new(s->context, info, &volume));
+    snow_status status = read_slices(s, window.first[2], volume);
+    if (status != SNOW_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    *out = volume;
+    return SNOW_OK;
+}
+
+snow_status snow_stack_read(snow_context *context, const char *path,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    snow_folder files;
+    stack s = {.context = context};
+    SNOW_TRY(snow_folder_list(context, path, &files));
+    snow_status status = choose_files(&s, &files);
+    if (status == SNOW_OK)
+        status = read_stack(&s, options, info, out);
+    snow_folder_free(&files);
+    return status;
+}

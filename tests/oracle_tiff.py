@@ -1,0 +1,194 @@
+"""TIFF and PNG stacks beside tifffile and Pillow."""
+import sys
+
+try:
+    import numpy as np
+    import tifffile
+except ImportError:
+    sys.exit(77)
+import gzip
+import os
+import shutil
+import subprocess
+import tarfile
+
+import oracle
+
+place = oracle.folder()
+TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8", "f2"]
+tiffcp = shutil.which("tiffcp")
+
+
+def wide(a):
+    return a.astype(np.float32) if a.dtype == np.float16 else a
+
+
+for kind in TYPES:
+    a = oracle.sample(kind)
+    for order in "<>":
+        for big in (False, True):
+            tifffile.imwrite("a.tif", a, byteorder=order, bigtiff=big,
+                             photometric="minisblack")
+            oracle.expect("a.tif", wide(a), name=f"{kind} {order} {big}")
+    tifffile.imwrite("a.tif", a, photometric="minisblack", rowsperstrip=2)
+    oracle.expect("a.tif", wide(a), name=f"{kind} strips")
+    if kind != "f2":
+        tifffile.imwrite("a.tif", a, photometric="minisblack", tile=(16, 16))
+        oracle.expect("a.tif", wide(a), name=f"{kind} tiles")
+
+a = oracle.sample("u2", (9, 50, 70))
+tifffile.imwrite("a.tif", a, photometric="minisblack", rowsperstrip=7)
+with open("a.tif", "rb") as file, gzip.open("b.tif.gz", "wb") as to:
+    to.write(file.read())
+oracle.expect("b.tif.gz", a)
+for options in (["-c", "lzw"], ["-c", "lzw:2"], ["-c", "zip:2"],
+                ["-c", "packbits"], ["-t", "-w", "32", "-l", "16"],
+                ["-t", "-w", "32", "-l", "16", "-c", "zip"], ["-B"],
+                ["-f", "lsb2msb"], ["-8"]):
+    if tiffcp:
+        subprocess.run([tiffcp, *options, "a.tif", "c.tif"], check=True)
+        oracle.expect("c.tif", a, name=" ".join(options))
+
+# Bits, colours beside one another and in planes.
+bits = oracle.sample("?", (5, 13, 21))
+tifffile.imwrite("d.tif", bits, photometric="minisblack")
+oracle.expect("d.tif", bits.astype("u1"), name="bits")
+rgb = oracle.sample("u1", (6, 12, 20, 3))
+for planar in ("contig", "separate"):
+    b = rgb if planar == "contig" else np.moveaxis(rgb, 3, 1)
+    tifffile.imwrite("e.tif", b, photometric="rgb", planarconfig=planar)
+    for channel in range(3):
+        oracle.expect("e.tif", rgb[..., channel],
+                      options=["--channel", channel], name=planar)
+oracle.refuse("e.tif", "no channel 3", ["--channel", 3], 2)
+
+# ImageJ: (t, z, c, y, x), a unit and a spacing.
+h = oracle.sample("u2", (2, 4, 3, 6, 5))
+for contiguous in (None, True):
+    tifffile.imwrite("f.tif", h, imagej=True, resolution=(4, 2),
+                     metadata={"spacing": 1.5, "unit": "um",
+                               "axes": "TZCYX"}, contiguous=contiguous)
+    for t in range(2):
+        for c in range(3):
+            oracle.expect("f.tif", h[t, :, c],
+                          oracle.affine((0.25, 0.5, 1.5)),
+                          ["--time", t, "--channel", c], unit="um")
+# One page and the others behind it, as ImageJ writes more than 4 GB.
+with tifffile.TiffWriter("g.tif", imagej=True) as writer:
+    writer.write(h[0, :, 0], contiguous=True, metadata={"axes": "ZYX"})
+with open("g.tif", "rb") as file:
+    whole = bytearray(file.read())
+with tifffile.TiffFile("g.tif") as file:
+    second = file.pages[0].offset
+    order = ">" if whole[:2] == b"MM" else "<"
+    entries = int(np.frombuffer(whole, order + "u2", 1, second)[0])
+    nextifd = second + 2 + 12 * entries
+whole[nextifd:nextifd + 4] = bytes(4)
+with open("g.tif", "wb") as file:
+    file.write(whole)
+oracle.expect("g.tif", h[0, :, 0], name="ImageJ, one page")
+
+# OME: every order of channels, slices and times.
+for axes in ("TZCYX", "TCZYX", "CTZYX", "ZTCYX", "CZTYX", "ZCTYX"):
+    turned = np.transpose(h, ["TZC".index(a) for a in axes[:3]] + [3, 4])
+    tifffile.imwrite("h.ome.tif", turned, photometric="minisblack",
+                     metadata={"axes": axes, "PhysicalSizeX": 0.5,
+                               "PhysicalSizeY": 0.5, "PhysicalSizeZ": 2000,
+                               "PhysicalSizeZUnit": "nm"})
+    for t in range(2):
+        for c in range(3):
+            oracle.expect("h.ome.tif", h[t, :, c],
+                          oracle.affine((0.5, 0.5, 2)),
+                          ["--time", t, "--channel", c], unit="um",
+                          name=f"OME {axes} {t} {c}")
+
+# Folders and patterns.
+os.mkdir("stack")
+a = oracle.sample("u2", (12, 8, 9))
+for z, page in enumerate(a):
+    tifffile.imwrite(f"stack/s{z + 5}.tif", page, photometric="minisblack")
+with open("stack/notes.txt", "w") as file:
+    file.write("not a slice")
+oracle.expect("stack", a)
+oracle.expect("stack/", a, name="with a slash")
+oracle.expect("stack/s*.tif", a, name="pattern")
+oracle.expect("stack/s%d.tif", a, name="number")
+oracle.expect("stack/s?.tif", a[:5], name="one letter")
+os.rename("stack/s8.tif", "s8.tif")
+oracle.refuse("stack", "missing")
+os.rename("s8.tif", "stack/s8.tif")
+tifffile.imwrite("stack/s17.tif", a[0, 1:], photometric="minisblack")
+oracle.refuse("stack", "must be alike")
+os.remove("stack/s17.tif")
+tifffile.imwrite("i.tif", a, photometric="minisblack")
+shutil.copy("i.tif", "stack/s17.tif")
+oracle.refuse("stack", "must be alike")
+oracle.refuse("none*.tif", "no slices")
+os.mkdir("empty")
+oracle.refuse("empty", "no slices")
+
+# Pages that differ, files that are cut.
+with tifffile.TiffWriter("j.tif") as writer:
+    writer.write(a[0])
+    writer.write(a[0, 1:])
+oracle.refuse("j.tif", "must be alike")
+with open("i.tif", "rb") as file:
+    whole = file.read()
+for size in (9, 100, len(whole) // 2):
+    with open("k.tif", "wb") as file:
+        file.write(whole[:size])
+    oracle.refuse("k.tif", "cut")
+
+try:
+    from PIL import Image
+    os.mkdir("png")
+    for z, page in enumerate(a):
+        Image.fromarray(page).save(f"png/p_{z:03}.png")
+    oracle.expect("png", a, name="PNG of 16 bits")
+    rgb = oracle.sample("u1", (4, 12, 20, 4))
+    os.mkdir("rgba")
+    for z, page in enumerate(rgb):
+        Image.fromarray(page, "RGBA").save(f"rgba/{z}.png")
+    for channel in range(4):
+        oracle.expect("rgba", rgb[..., channel],
+                      options=["--channel", channel])
+    os.mkdir("bits")
+    for z, page in enumerate(bits):
+        Image.fromarray(page).save(f"bits/{z}.png")
+    oracle.expect("bits", bits.astype("u1"))
+    Image.fromarray(rgb[0, ..., 0]).quantize(16).save("p.png")
+    index = np.array(Image.open("p.png"))
+    oracle.expect("p.png", index[None], name="palette")
+    shutil.copy("png/p_003.png", "stack/s20.png")
+    os.remove("stack/s17.tif")
+    oracle.refuse("stack", "one kind")
+except ImportError:
+    print("no Pillow: PNG is not compared")
+
+for relative, step, unit in (
+        ("formats/tiff/mini-t1-head.tif", (1e6 / 666666,) * 2 + (1.5,), "mm"),
+        ("microscopy/Bead_Image1_crop.tif", (1e6 / 44460534,) * 2 + (0.125,),
+         "um")):
+    path = oracle.data(relative)
+    if path:
+        oracle.expect(path, tifffile.imread(path), oracle.affine(step),
+                      unit=unit)
+for relative in ("microscopy/hemisphere_l_211tif.tar.gz",
+                 "classic/cthead-8bit_99tif.tar.gz"):
+    path = oracle.data(relative)
+    if path:
+        with tarfile.open(path) as archive:
+            archive.extractall("real")
+        name = os.listdir("real")[0]
+        names = sorted(os.listdir(f"real/{name}"))
+        voxels = np.stack([tifffile.imread(f"real/{name}/{n}")
+                           for n in names])
+        with tifffile.TiffFile(f"real/{name}/{names[0]}") as file:
+            tags = file.pages[0].tags
+            step = [1, 1, 1]
+            for i, tag in enumerate(("XResolution", "YResolution")):
+                if file.is_imagej and tag in tags:
+                    step[i] = tags[tag].value[1] / tags[tag].value[0]
+        oracle.expect(f"real/{name}", voxels, oracle.affine(step))
+        shutil.rmtree("real")
+oracle.finish()
