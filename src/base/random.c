@@ -62,6 +62,10 @@ uint64_t snow_random_size(const snow_random *random) {
     return random->size;
 }
 
+const void *snow_random_held(const snow_random *random) {
+    return random->layer ? NULL : random->bytes;
+}
+
 size_t snow_random_read(snow_random *random, uint64_t from, void *bytes,
                         size_t size) {
     if (from >= random->size)
