@@ -99,7 +99,7 @@ with h5py.File("g.h5", "w") as file:
                                         ("y", 9 - np.arange(5) * 0.5),
                                         ("x", np.arange(6) * 3.0 + 1))):
         s = file.create_dataset(name, data=values)
-        s.attrs["units"] = "km"
+        s.attrs["units"] = np.bytes_("km")
         s.make_scale(name)
         v.dims[i].attach_scale(s)
 values = packed * 0.5 + 10

@@ -16,6 +16,9 @@
 #define HDF5_MOST_AXES 5
 #define HDF5_NAME_BYTES 512
 
+/* Objects of a file that are looked at in search of something. */
+#define HDF5_MOST_OBJECTS 100000
+
 typedef struct hdf5_file hdf5_file;
 
 /* A numeric array of a file. */

@@ -9,9 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Objects that are looked at before we give up to find the only one. */
-#define MOST_OBJECTS 100000
-
 /* What a look through the file has found. */
 typedef struct survey {
     int axes;     /* wanted at least */
@@ -109,7 +106,7 @@ static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
                    void *user) {
     survey *s = user;
     hdf5_set set;
-    if (++s->objects > MOST_OBJECTS)
+    if (++s->objects > HDF5_MOST_OBJECTS)
         return 1;
     if (info->type != H5O_TYPE_DATASET || strlen(name) + 2 > HDF5_NAME_BYTES)
         return 0;

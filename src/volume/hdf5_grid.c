@@ -14,7 +14,11 @@
 #if SNOW_HAVE_HDF5
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
+
+/* Data sets that use one scale. */
+#define MOST_USES 65536
 
 /* Up to `most` numbers of an attribute; how many there are, 0 when it is not
  * there or has others. */
@@ -36,7 +40,9 @@ static int read_numbers(hid_t object, const char *name, int most, double *out) {
     return right ? (int)count : 0;
 }
 
-/* A text of either of libhdf5's kinds; "" when it is not there. */
+/* A text of fixed length; "" when it is not there.  Those of variable length
+ * lie in the file's global heap, in which libhdf5 1.10 goes astray when it is
+ * damaged: fuzzing finds nothing else so soon.  They are left alone. */
 static void read_text(hid_t object, const char *name, char *out, size_t room) {
     *out = 0;
     if (H5Aexists(object, name) <= 0)
@@ -45,25 +51,13 @@ static void read_text(hid_t object, const char *name, char *out, size_t room) {
     if (attribute < 0)
         return;
     hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
-    if (H5Tget_class(type) == H5T_STRING &&
-        H5Sget_simple_extent_npoints(space) == 1) {
-        hid_t memory = H5Tcopy(type);
-        char *text = NULL;
-        if (H5Tis_variable_str(type) > 0) {
-            if (H5Aread(attribute, memory, &text) >= 0 && text) {
-                if (strlen(text) < room)
-                    memcpy(out, text, strlen(text) + 1);
-                H5free_memory(text);
-            }
-        } else if (H5Tget_size(type) < room) {
-            size_t size = H5Tget_size(type);
-            if (H5Aread(attribute, memory, out) >= 0)
-                out[size] = 0;
-            else
-                *out = 0;
-        }
-        H5Tclose(memory);
-    }
+    size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
+        size < room && H5Sget_simple_extent_npoints(space) == 1 &&
+        H5Aread(attribute, type, out) >= 0)
+        out[size] = 0;
+    else
+        *out = 0;
     H5Sclose(space);
     H5Tclose(type);
     H5Aclose(attribute);
@@ -179,38 +173,110 @@ static void read_scale(snow_context *context, hid_t scale, hsize_t count,
     snow_release(context, values);
 }
 
-/* NetCDF-4's and h5py's way: each axis has a list of references to scales. */
-static bool place_by_scales(snow_context *context, hid_t file,
-                            const hdf5_set *set, snow_volume_info *info) {
-    hvl_t lists[HDF5_MOST_AXES] = {{0}};
-    cf_axis axes[3] = {{0}};
-    if (H5Aexists(set->id, "DIMENSION_LIST") <= 0)
-        return false;
-    hid_t attribute = H5Aopen(set->id, "DIMENSION_LIST", H5P_DEFAULT);
-    hid_t kind = H5Aget_type(attribute), space = H5Aget_space(attribute);
-    hid_t type = H5Tvlen_create(H5T_STD_REF_OBJ);
-    bool right = H5Tget_class(kind) == H5T_VLEN &&
-                 H5Sget_simple_extent_npoints(space) == set->axes &&
-                 H5Aread(attribute, type, lists) >= 0;
-    for (int i = 0; i < 3 && i < set->axes && right; i++) {
-        int at = set->axes - 1 - i;
-        hid_t scale = lists[at].len ? H5Rdereference2(file, H5P_DEFAULT,
-                                                      H5R_OBJECT, lists[at].p)
-                                    : H5I_INVALID_HID;
-        if (scale >= 0 && H5Iget_type(scale) == H5I_DATASET)
-            read_scale(context, scale, set->sizes[at], &axes[i]);
-        if (scale >= 0)
-            H5Oclose(scale);
+/* What a walk over the file's scales looks for, and has found. */
+typedef struct scales {
+    snow_context *context;
+    const hdf5_set *set;
+    haddr_t address; /* of the set */
+    long objects;    /* seen */
+    cf_axis axes[3];
+} scales;
+
+/* An entry of a scale's REFERENCE_LIST: whose axis it stands at. */
+typedef struct scale_use {
+    hobj_ref_t set;
+    int axis;
+} scale_use;
+
+/* Puts the scale at the axes of the set that it is used for. */
+static void use_scale(scales *s, hid_t scale, const scale_use *uses,
+                      hssize_t count) {
+    for (hssize_t i = 0; i < count; i++) {
+        int from_end = s->set->axes - 1 - uses[i].axis;
+        if (uses[i].set == s->address && uses[i].axis >= 0 && from_end >= 0 &&
+            from_end < 3)
+            read_scale(s->context, scale, s->set->sizes[uses[i].axis],
+                       &s->axes[from_end]);
     }
-    if (right)
-        H5Dvlen_reclaim(type, space, H5P_DEFAULT, lists);
+}
+
+/* Whether entries of this type are a reference and a number that lie in them:
+ * libhdf5 converts others without a look at where they end. */
+static bool is_use(hid_t type) {
+    size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_nmembers(type) != 2)
+        return false;
+    for (unsigned i = 0; i < 2; i++) {
+        hid_t member = H5Tget_member_type(type, i);
+        size_t at = H5Tget_member_offset(type, i);
+        bool right = member >= 0 && at <= size &&
+                     H5Tget_size(member) <= size - at &&
+                     H5Tget_class(member) == (i ? H5T_INTEGER : H5T_REFERENCE);
+        if (member >= 0)
+            H5Tclose(member);
+        if (!right)
+            return false;
+    }
+    return true;
+}
+
+static void read_uses(scales *s, hid_t scale) {
+    hid_t attribute = H5Aopen(scale, "REFERENCE_LIST", H5P_DEFAULT);
+    if (attribute < 0)
+        return;
+    hid_t kind = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(scale_use));
+    H5Tinsert(type, "dataset", offsetof(scale_use, set), H5T_STD_REF_OBJ);
+    H5Tinsert(type, "dimension", offsetof(scale_use, axis), H5T_NATIVE_INT);
+    hssize_t count = H5Sget_simple_extent_npoints(space);
+    if (is_use(kind) && count >= 1 && count <= MOST_USES) {
+        scale_use *uses =
+            snow_allocate_array(s->context, (uint64_t)count, sizeof *uses);
+        if (uses && H5Aread(attribute, type, uses) >= 0)
+            use_scale(s, scale, uses, count);
+        snow_release(s->context, uses);
+    }
     H5Tclose(type);
     H5Tclose(kind);
     H5Sclose(space);
     H5Aclose(attribute);
-    if (!axes[0].told && !axes[1].told && !axes[2].told)
+}
+
+static herr_t look_at_scale(hid_t file, const char *name,
+                            const H5O_info_t *info, void *user) {
+    scales *s = user;
+    char kind[32];
+    if (++s->objects > HDF5_MOST_OBJECTS)
+        return 1;
+    if (info->type != H5O_TYPE_DATASET)
+        return 0;
+    hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
+    if (id < 0)
+        return 0;
+    read_text(id, "CLASS", kind, sizeof kind);
+    if (!strcmp(kind, "DIMENSION_SCALE") && H5Aexists(id, "REFERENCE_LIST") > 0)
+        read_uses(s, id);
+    H5Dclose(id);
+    return 0;
+}
+
+/* NetCDF-4's and h5py's way: axes and scales refer to each other.  The scales'
+ * side is read, because the axes' lies in the global heap, in which libhdf5
+ * goes astray when it is damaged. */
+static bool place_by_scales(snow_context *context, hid_t file,
+                            const hdf5_set *set, snow_volume_info *info) {
+    scales s = {.context = context, .set = set};
+    H5O_info_t about;
+    if (H5Aexists(set->id, "DIMENSION_LIST") <= 0 ||
+        H5Oget_info2(set->id, &about, H5O_INFO_BASIC) < 0)
         return false;
-    snow_cf_place(context, axes, info);
+    s.address = about.addr;
+    if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, look_at_scale, &s,
+                  H5O_INFO_BASIC) < 0)
+        return false;
+    if (!s.axes[0].told && !s.axes[1].told && !s.axes[2].told)
+        return false;
+    snow_cf_place(context, s.axes, info);
     return true;
 }
 
