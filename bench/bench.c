@@ -14,7 +14,9 @@ static const char help[] =
     "usage: snowglass bench NAME [options]\n"
     "\n"
     "  table1 table2 table3   the paper's tables\n"
+    "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
+    "  balance                how equal the work of many processors is\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -23,11 +25,22 @@ static const char help[] =
     "one\n"
     "voxel per pixel, preset linear, no shading, one thread.\n"
     "\n"
+    "figure11 and figure12 print speed-ups of original and sparse splatting "
+    "on up\n"
+    "to 32 nodes, over the original on one node and over themselves: the "
+    "nodes'\n"
+    "work is measured, the network between them is modelled.\n"
+    "\n"
     "speed prints how fast pictures are made while the view turns: volumes, "
     "looks,\n"
     "colours, shading, sizes, methods, encodings and threads, against "
     "original and\n"
     "tested splatting with the same kernel.  It takes many minutes.\n"
+    "\n"
+    "balance prints the interesting voxels of the processor that has most, "
+    "over "
+    "the\n"
+    "mean, for equal slabs, slabs by count, and bricks.\n"
     "\n"
     "Every row is verified before its times are printed.\n"
     "\n"
@@ -64,7 +77,9 @@ static const char help[] =
     "                   add up, kinds restrict each other\n"
     "  --sweep NAME     instead: phantoms by sparse ratio (sparse) or by size "
     "(size)\n"
-    "  --chart FILE     draw the sweep (sparse unless told) as SVG\n"
+    "  --chart FILE     draw the sweep (sparse unless told) as SVG; of the "
+    "figures,\n"
+    "                   too\n"
     "  --quick          one run on a tiny phantom: a test, no measurement\n";
 
 /* What is measured, by name: a new one is a file and a line here. */
@@ -77,7 +92,10 @@ static const struct bench_entry {
     {"table1", bench_table1, "kae", true},
     {"table2", bench_table2, "kae", true},
     {"table3", bench_table3, "kae", true},
+    {"figure11", bench_figure11, "cq", true},
+    {"figure12", bench_figure12, "cq", true},
     {"speed", bench_speed, "qlvocwst", false},
+    {"balance", bench_balance, "", true},
 };
 
 #define OF_ALL "djrh"
@@ -229,6 +247,13 @@ static int check_letters(const bench_command *command,
     return -1;
 }
 
+static int check_quick(const bench_options *options) {
+    if (options->quick && options->data)
+        return usage_error("--quick has its own volumes; leave out",
+                           options->data);
+    return -1;
+}
+
 /* Sweeps and the quick run have volumes of their own. */
 static int check_speed(const bench_options *options) {
     bool own = options->quick || options->sweep || options->chart;
@@ -256,8 +281,8 @@ static int check_command(const bench_command *command,
         return usage_error("there is no benchmark", command->name);
     int code = check_letters(command, entry);
     if (code < 0 && entry->run == bench_speed)
-        code = check_speed(options);
-    return code;
+        return check_speed(options);
+    return code < 0 ? check_quick(options) : code;
 }
 
 /* Parses the command line into options and `*name`; an exit code, or -1 to go

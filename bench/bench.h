@@ -125,6 +125,13 @@ int bench_table1(snow_context *context, const bench_options *options);
 int bench_table2(snow_context *context, const bench_options *options);
 int bench_table3(snow_context *context, const bench_options *options);
 
+/* Speed-ups on many nodes: see figures.h. */
+int bench_figure11(snow_context *context, const bench_options *options);
+int bench_figure12(snow_context *context, const bench_options *options);
+
+/* How equal the work of many processors is. */
+int bench_balance(snow_context *context, const bench_options *options);
+
 /* Today's speed, method by method: see speed.h. */
 int bench_speed(snow_context *context, const bench_options *options);
 

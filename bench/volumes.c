@@ -103,8 +103,11 @@ static snow_status open_file(snow_context *context, const bench_source *source,
                              const bench_options *options, bench_volume *out) {
     if (!options->data || !source->file) {
         snprintf(out->source, sizeof out->source, "%s", source->phantom);
-        return snow_volume_open(context, source->phantom, &source->options,
-                                &out->file);
+        /* The rest of the options is the file's. */
+        snow_volume_options size = {.dims = {source->options.dims[0],
+                                             source->options.dims[1],
+                                             source->options.dims[2]}};
+        return snow_volume_open(context, source->phantom, &size, &out->file);
     }
     char path[PATH_BYTES];
     spell_path(options, source->file, path, sizeof path);

@@ -1,6 +1,7 @@
 /* cmd_doctor.c - what this build and this machine can do.  The names come from
  * the library's own lists, so that the answer cannot grow old. */
 #include "commands.h"
+#include "launch.h"
 #include "report.h"
 #include "sequence_encoder.h"
 
@@ -107,7 +108,9 @@ static int tell_json(void) {
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
     json_object_set_new(o, "isa", json_string(snow_isa_used()));
     json_object_set_new(o, "threads", json_integer(snow_processors()));
-    json_object_set_new(o, "mpi", json_false());
+    json_object_set_new(
+        o, "mpi", launch_mpi() ? json_string(launch_mpi()) : json_false());
+    json_object_set_new(o, "ranks", json_integer(launch_ranks()));
     json_object_set_new(o, "display", json_false());
     json_object_set_new(o, "memory_bytes",
                         json_integer((json_int_t)memory_bytes()));
@@ -143,7 +146,11 @@ static int tell_text(void) {
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
     printf("%-16s%d\n", "threads", snow_processors());
-    print_row("mpi", "no (not built yet)");
+    if (launch_mpi())
+        printf("%-16s%s, %d rank%s\n", "mpi", launch_mpi(), launch_ranks(),
+               launch_ranks() > 1 ? "s" : "");
+    else
+        print_row("mpi", "no; snowglass-mpi has it");
     print_row("display", "not needed");
     printf("%-16s%.1f GiB\n", "memory",
            (double)memory_bytes() / (double)(1 << 30));

@@ -6,6 +6,7 @@
  * off.  So all steps are read twice: first for their values, then to be drawn.
  */
 #include "commands.h"
+#include "launch.h"
 #include "report.h"
 #include "sequence_steps.h"
 
@@ -18,37 +19,46 @@ static int check(const options *asked) {
     return sequence_check(asked);
 }
 
-/* Lists the steps, looks at the output, chooses the look, makes the frames. */
-static int run(const options *asked, serial_renderer *serial, step_files *files,
-               shot_list *list, sequence **s, double begin) {
+/* Lists the steps, and looks at the output, by the rank that writes it. */
+static int prepare(const options *asked, shot_renderer *shots,
+                   step_files *files, shot_list *list, sequence **s) {
     int done = check(asked);
     if (done == GO_ON)
         done = steps_find(asked, files);
+    done = launch_agree(done);
     if (done == GO_ON)
-        done = serial_open(asked, serial);
-    if (done == GO_ON)
-        done = steps_list(files, serial, list);
-    if (done == GO_ON)
-        done = sequence_open(asked, list, s);
-    if (done == GO_ON)
-        done = steps_look(list, serial);
+        done = shots_open(asked, shots);
     if (done != GO_ON)
         return done;
-    serial->count = list->count;
-    sequence_renderer renderer = serial_renderer_of(serial);
+    done = steps_list(files, shots, list);
+    if (done == GO_ON && launch_talks())
+        done = sequence_open(asked, list, s);
+    return launch_agree(done);
+}
+
+/* Then chooses the look, and makes the frames. */
+static int run(const options *asked, shot_renderer *shots, step_files *files,
+               shot_list *list, sequence **s, double begin) {
+    int done = prepare(asked, shots, files, list, s);
+    if (done == GO_ON)
+        done = steps_look(list, shots);
+    if (done != GO_ON)
+        return done;
+    shots->count = list->count;
+    sequence_renderer renderer = shots_renderer(shots);
     return sequence_run(*s, asked, list, &renderer, begin);
 }
 
 int cmd_movie(const options *asked) {
     double begin = seconds_now();
-    serial_renderer serial = {.asked = asked};
+    shot_renderer shots = {.count = 0};
     step_files files = {NULL, 0, 0};
     shot_list list = {.shots = NULL};
     sequence *s = NULL;
-    int done = run(asked, &serial, &files, &list, &s, begin);
+    int done = run(asked, &shots, &files, &list, &s, begin);
     progress(asked, NULL);
     sequence_close(s);
-    serial_close(&serial);
+    shots_close(&shots);
     free(list.shots);
     steps_free(&files);
     return done;

@@ -15,7 +15,7 @@ static int save(snow_context *context, const options *asked,
         snow_volume_save(volume, asked->output, asked->overwrite);
     if (status != SNOW_OK)
         return fail_status(context, status);
-    describe_volume(volume, text, sizeof text);
+    describe_volume(snow_volume_describe(volume), text, sizeof text);
     if (asked->verbosity >= 0)
         say("%s: %s", asked->output, text);
     return SNOW_OK;

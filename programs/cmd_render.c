@@ -4,9 +4,11 @@
  * options that contradict each other, and outputs that cannot be written. */
 #include "commands.h"
 #include "interrupt.h"
+#include "launch.h"
 #include "outputs.h"
 #include "render_stats.h"
 #include "report.h"
+#include "scene.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -47,7 +49,8 @@ static int check_combination(const options *asked) {
     if (is_stream(asked->output) && isatty(STDOUT_FILENO))
         return fail_usage("--output: '-' is a terminal; send it to a pipe or a "
                           "file");
-    return check_settings(asked);
+    int done = scene_check(asked);
+    return done == GO_ON ? check_settings(asked) : done;
 }
 
 /* A long rendering must not end in an output that could have been refused at
@@ -85,8 +88,7 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
 
 /* The texts were checked against the choices of the table, so that every name
  * is known to the library. */
-int make_settings(const options *asked, const snow_volume *volume,
-                  snow_settings *out) {
+void fill_settings(const options *asked, snow_settings *out) {
     snow_settings_init(out);
     out->threshold = asked->threshold < 0 ? 0 : asked->threshold;
     out->method = (snow_method)snow_method_named(asked->method);
@@ -105,19 +107,24 @@ int make_settings(const options *asked, const snow_volume *volume,
     out->isa = (snow_isa)snow_isa_named(asked->isa);
     out->threads = (int)asked->threads;
     out->deterministic = asked->deterministic;
-    return opacity_length(asked, snow_volume_describe(volume),
-                          &out->opacity_length);
+}
+
+int make_settings(const options *asked, const snow_volume_info *info,
+                  snow_settings *out) {
+    fill_settings(asked, out);
+    if (!out->threads)
+        out->threads = launch_threads();
+    return opacity_length(asked, info, &out->opacity_length);
 }
 
 /* A named view sets size and angles too, hence it comes before them. */
 int make_view(snow_context *context, const options *asked,
-              const snow_volume *volume, snow_view *out) {
-    snow_view_default(volume, out);
-    if (asked->view) {
-        snow_status status = snow_view_named(context, asked->view, out);
-        if (status != SNOW_OK)
-            return fail_status(context, status);
-    }
+              const snow_volume_info *info, snow_view *out) {
+    const char *usual = info->medical ? "anterior" : "+z";
+    snow_status status =
+        snow_view_named(context, asked->view ? asked->view : usual, out);
+    if (status != SNOW_OK)
+        return fail_status(context, status);
     out->width = (int)asked->size[0];
     out->height = (int)asked->size[1];
     out->azimuth = asked->azimuth;
@@ -128,78 +135,12 @@ int make_view(snow_context *context, const options *asked,
     return GO_ON;
 }
 
-/* The objects of one picture, and what it took. */
+/* One picture, and what it took. */
 typedef struct work {
-    snow_context *context;
-    snow_volume *volume;
-    snow_transfer *transfer;
-    snow_frame *frame;
-    snow_image *image;
-    snow_settings settings;
-    render_times times;
+    scene scene;
+    snow_image *image; /* NULL on ranks that do not write */
+    double begin;
 } work;
-
-/* In any order but the context last; all of them accept NULL. */
-static void free_work(work *w) {
-    snow_image_free(w->image);
-    snow_frame_free(w->frame);
-    snow_transfer_free(w->transfer);
-    snow_volume_close(w->volume);
-    snow_context_free(w->context);
-}
-
-/* Decompression and conversion are part of the reading. */
-static int read_volume(work *w, const options *asked) {
-    double begin = seconds_now();
-    progress(asked, "reading");
-    int done = open_input(w->context, asked, asked->operands[0], &w->volume);
-    w->times.read = seconds_now() - begin;
-    return done;
-}
-
-/* Timed apart from the reading: the histogram takes a pass over all voxels. */
-static int choose_look(work *w, const options *asked) {
-    double begin = seconds_now();
-    int done = open_look(w->context, asked, w->volume, &w->transfer);
-    w->times.look = seconds_now() - begin;
-    return done;
-}
-
-/* Calls the pipeline.  The view comes first: what is wrong with it costs no
- * buffers. */
-static int make_picture(work *w, const options *asked) {
-    snow_view view;
-    int done = make_view(w->context, asked, w->volume, &view);
-    if (done == GO_ON)
-        done = make_settings(asked, w->volume, &w->settings);
-    if (done != GO_ON)
-        return done;
-    progress(asked, "rendering");
-    snow_status status = snow_frame_new(w->context, &w->frame);
-    if (status == SNOW_OK)
-        status = snow_frame_render(w->frame, w->volume, w->transfer, &view,
-                                   &w->settings, &w->image);
-    return status == SNOW_OK ? GO_ON
-                             : fail_volume(w->context, status,
-                                           name_of_input(asked->operands[0]));
-}
-
-/* The one line that says what was chosen where nothing was told. */
-static void tell_choices(const work *w, const options *asked) {
-    if (asked->verbosity < 0)
-        return;
-    const snow_stats *stats = snow_frame_stats(w->frame);
-    const char *view = asked->view                                ? asked->view
-                       : snow_volume_describe(w->volume)->medical ? "anterior"
-                                                                  : "+z";
-    bool encoded = stats->encoding != SNOW_ENCODING_AUTO;
-    char volume[256];
-    describe_volume(w->volume, volume, sizeof volume);
-    say("%s: %s; %s; view %s; method %s%s%s", name_of_input(asked->operands[0]),
-        volume, snow_transfer_text(w->transfer), view,
-        snow_method_name(stats->method), encoded ? ", encoding " : "",
-        encoded ? snow_encoding_name(stats->encoding) : "");
-}
 
 /* A pipe is written through and may block, so there an interruption does not
  * wait. */
@@ -212,17 +153,21 @@ static int write_picture(work *w, const options *asked) {
     double begin = seconds_now();
     if (!is_special(asked->output))
         interrupt_hold(); /* before the word, so that who reads it may rely */
+    if (!launch_talks())
+        return GO_ON;
     progress(asked, "writing");
     snow_status status = snow_image_save(w->image, asked->output, &form);
-    w->times.write = seconds_now() - begin;
-    return status == SNOW_OK ? GO_ON : fail_status(w->context, status);
+    w->scene.times.write = seconds_now() - begin;
+    return status == SNOW_OK ? GO_ON : fail_status(w->scene.context, status);
 }
 
 /* After the picture is safe: its writing is part of the figures. */
 static int tell_figures(work *w, const options *asked) {
-    render_report report = {w->context,   w->volume, w->frame,
-                            &w->settings, w->image,  &w->times};
-    w->times.total = seconds_now() - w->times.begin;
+    if (!launch_talks())
+        return SNOW_OK;
+    w->scene.times.total = seconds_now() - w->begin;
+    render_report report = scene_report(&w->scene);
+    report.image = w->image;
     if (asked->verbosity > 0)
         tell_stats(&report);
     if (!asked->stats)
@@ -232,32 +177,49 @@ static int tell_figures(work *w, const options *asked) {
     return write_json(stats_json(&report), asked->stats, asked->overwrite);
 }
 
+static void tell_choices(const work *w) {
+    char text[1024];
+    scene_choices(&w->scene, text, sizeof text);
+    if (w->scene.asked->verbosity >= 0)
+        say("%s", text);
+}
+
+/* What can be refused before anything is read; outputs by the rank that
+ * writes them. */
+static int check(work *w, const options *asked) {
+    int done = launch_agree(check_combination(asked));
+    if (done == GO_ON)
+        done = scene_new(asked, &w->scene);
+    if (done != GO_ON || !launch_talks())
+        return done;
+    return check_paths(w->scene.context, asked);
+}
+
 /* The stages in their order; the first fault ends them. */
 static int run(work *w, const options *asked) {
-    int done = check_combination(asked);
-    if (done == GO_ON)
-        done = open_context(asked, &w->context);
-    if (done == GO_ON)
-        done = check_paths(w->context, asked);
-    if (done == GO_ON)
-        done = read_volume(w, asked);
-    if (done == GO_ON)
-        done = choose_look(w, asked);
-    if (done == GO_ON)
-        done = make_picture(w, asked);
+    int done = launch_agree(check(w, asked));
+    if (done != GO_ON)
+        return done;
+    progress(asked, "reading");
+    done = scene_open(&w->scene, asked->operands[0], asked->time);
+    if (done == GO_ON) {
+        progress(asked, "rendering");
+        done = scene_draw(&w->scene, asked->azimuth, &w->image);
+    }
     progress(asked, NULL);
     if (done != GO_ON)
         return done;
-    tell_choices(w, asked);
-    done = write_picture(w, asked);
+    tell_choices(w);
+    done = launch_agree(write_picture(w, asked));
     progress(asked, NULL);
     return done == GO_ON ? tell_figures(w, asked) : done;
 }
 
 /* One way out, so that whatever was made is freed at every fault. */
 int cmd_render(const options *asked) {
-    work w = {.times = {.begin = seconds_now()}};
+    work w = {.begin = seconds_now()};
     int done = run(&w, asked);
-    free_work(&w);
+    snow_image_free(w.image);
+    scene_free(&w.scene);
     return done;
 }

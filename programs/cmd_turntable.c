@@ -3,8 +3,9 @@
  * `render --azimuth A+360i/N` makes, bit for bit; frame N would be frame 0, so
  * that the movie can be played in a loop. */
 #include "commands.h"
+#include "launch.h"
 #include "report.h"
-#include "sequence_serial.h"
+#include "sequence_render.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,30 +33,41 @@ static int check(const options *asked) {
     if (asked->resume && strcmp(asked->operands[0], "-") == 0)
         return fail_usage("--resume: standard input cannot be compared with "
                           "that of an earlier run; name a file");
-    return sequence_check(asked);
+    int done = scene_check(asked);
+    return done == GO_ON ? sequence_check(asked) : done;
+}
+
+/* Outputs are looked at by the rank that writes them. */
+static int prepare(const options *asked, shot_list *list, shot_renderer *shots,
+                   sequence **s) {
+    int done = check(asked);
+    if (done == GO_ON)
+        done = make_shots(asked, list);
+    if (done == GO_ON && launch_talks())
+        done = sequence_open(asked, list, s);
+    done = launch_agree(done);
+    if (done == GO_ON)
+        done = shots_open(asked, shots);
+    if (done != GO_ON)
+        return done;
+    shots->count = list->count;
+    shots->scene.turns = true;
+    /* here, where an interruption ends it at once */
+    return shots_volume(shots, &list->shots[0]);
 }
 
 int cmd_turntable(const options *asked) {
     double begin = seconds_now();
     shot_list list = {.shots = NULL};
     sequence *s = NULL;
-    serial_renderer serial = {.asked = asked};
-    int done = check(asked);
-    if (done == GO_ON)
-        done = make_shots(asked, &list);
-    if (done == GO_ON)
-        done = sequence_open(asked, &list, &s);
-    if (done == GO_ON)
-        done = serial_open(asked, &serial);
-    if (done == GO_ON) /* here, where an interruption ends it at once */
-        done = serial_volume(&serial, &list.shots[0]);
+    shot_renderer shots = {.count = 0};
+    int done = prepare(asked, &list, &shots, &s);
     if (done == GO_ON) {
-        serial.count = list.count;
-        sequence_renderer renderer = serial_renderer_of(&serial);
+        sequence_renderer renderer = shots_renderer(&shots);
         done = sequence_run(s, asked, &list, &renderer, begin);
     }
     sequence_close(s);
-    serial_close(&serial);
+    shots_close(&shots);
     free(list.shots);
     return done;
 }

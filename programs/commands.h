@@ -17,6 +17,10 @@ int cmd_doctor(const options *asked);
  * for "-". */
 const char *name_of_input(const char *path);
 
+/* What the options say of an input, and of its look, which points into them. */
+snow_volume_options data_options(const options *asked);
+snow_look look_options(const options *asked);
+
 /* Opens the volume that the options name: a file, phantom:NAME, or "-" for
  * standard input.  Answers GO_ON or an exit code. */
 int open_input(snow_context *context, const options *asked, const char *path,
@@ -31,18 +35,22 @@ int check_look(const options *asked);
 int open_look(snow_context *context, const options *asked,
               const snow_volume *volume, snow_transfer **out);
 
+/* The settings that the options ask for, but for the opacity's length, which
+ * depends on the volume's unit. */
+void fill_settings(const options *asked, snow_settings *out);
+
 /* The settings and the view that the options ask for.  Answer GO_ON or an exit
  * code. */
-int make_settings(const options *asked, const snow_volume *volume,
+int make_settings(const options *asked, const snow_volume_info *info,
                   snow_settings *out);
 int make_view(snow_context *context, const options *asked,
-              const snow_volume *volume, snow_view *out);
+              const snow_volume_info *info, snow_view *out);
 
 /* Refuses settings that contradict each other, before a volume is read.
  * Answers GO_ON or an exit code. */
 int check_settings(const options *asked);
 
 /* "raw 256x256x110 uint8, spacing 1x1x1 mm". */
-void describe_volume(const snow_volume *volume, char *out, size_t size);
+void describe_volume(const snow_volume_info *info, char *out, size_t size);
 
 #endif

@@ -154,7 +154,7 @@ static int print_verb_page(const verb_row *row) {
     }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
     for (int i = 0; topic_table[i].name; i++) {
-        if (has_options((topic)i, row->bit)) {
+        if (topic_is_here((topic)i) && has_options((topic)i, row->bit)) {
             printf("\n");
             print_heading((topic)i);
             print_options((topic)i, row->bit);
@@ -174,8 +174,9 @@ static int print_overview(void) {
             printf("  %-11s%s\n", row->name, row->text);
     }
     printf("\ntopics (snowglass help TOPIC, or a verb's name):\n");
-    for (const topic_row *row = topic_table; row->name; row++)
-        printf("  %-11s%s\n", row->name, row->text);
+    for (int i = 0; topic_table[i].name; i++)
+        if (topic_is_here((topic)i))
+            printf("  %-11s%s\n", topic_table[i].name, topic_table[i].text);
     printf("%s", examples);
     return finish_stdout();
 }
@@ -184,10 +185,10 @@ static int print_overview(void) {
 static int refuse_word(const char *word) {
     char names[256] = "";
     size_t used = 0;
-    for (const topic_row *row = topic_table; row->name && used < sizeof names;
-         row++)
-        used += (size_t)snprintf(names + used, sizeof names - used, " %s",
-                                 row->name);
+    for (int i = 0; topic_table[i].name && used < sizeof names; i++)
+        if (topic_is_here((topic)i))
+            used += (size_t)snprintf(names + used, sizeof names - used, " %s",
+                                     topic_table[i].name);
     return fail_usage("%s: no topic and no verb; topics are:%s", word, names);
 }
 
@@ -196,7 +197,7 @@ int help_print(const char *word, const verb_row *verb) {
     if (!word)
         return verb ? print_verb_page(verb) : print_overview();
     for (int i = 0; topic_table[i].name; i++) {
-        if (strcmp(word, topic_table[i].name) == 0)
+        if (strcmp(word, topic_table[i].name) == 0 && topic_is_here((topic)i))
             return print_topic_page((topic)i);
     }
     const verb_row *named = verb_named(word);

@@ -9,7 +9,7 @@
 
 /* What was not told stays 0: the library refuses what does not fit a format,
  * and must see the difference between told and default. */
-static snow_volume_options data_options(const options *asked) {
+snow_volume_options data_options(const options *asked) {
     snow_volume_options data = {.type = asked->type,
                                 .offset = asked->offset,
                                 .time = asked->time,
@@ -53,8 +53,7 @@ int check_look(const options *asked) {
     return GO_ON;
 }
 
-int open_look(snow_context *context, const options *asked,
-              const snow_volume *volume, snow_transfer **out) {
+snow_look look_options(const options *asked) {
     snow_look look = {.preset = asked->preset,
                       .colormap = asked->colormap,
                       .range = asked->range.kind,
@@ -69,13 +68,18 @@ int open_look(snow_context *context, const options *asked,
         look.opacities = asked->opacities.points;
         look.opacity_count = asked->opacities.count;
     }
+    return look;
+}
+
+int open_look(snow_context *context, const options *asked,
+              const snow_volume *volume, snow_transfer **out) {
+    snow_look look = look_options(asked);
     snow_status status = snow_transfer_make(volume, &look, out);
     return status == SNOW_OK ? GO_ON : fail_status(context, status);
 }
 
 /* Short enough for the one line that render prints. */
-void describe_volume(const snow_volume *volume, char *out, size_t size) {
-    const snow_volume_info *info = snow_volume_describe(volume);
+void describe_volume(const snow_volume_info *info, char *out, size_t size) {
     snprintf(out, size, "%s %lldx%lldx%lld %s, spacing %gx%gx%g%s%s",
              info->format, (long long)info->dims[0], (long long)info->dims[1],
              (long long)info->dims[2], snow_type_name(info->type),

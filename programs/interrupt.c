@@ -10,7 +10,7 @@
 /* Whether a file is being written, whether that is one of many, and whether a
  * signal has come since.  Atomic, not only sig_atomic_t: the handler may run in
  * any thread. */
-static atomic_int held, movie, pending;
+static atomic_int held, movie, mute, pending;
 
 /* Only write and _exit here: printf and exit could meet a lock or a buffer that
  * the interrupted code has in hand. */
@@ -22,11 +22,12 @@ static void leave(int signal_number) {
     ssize_t told = 0;
     (void)signal_number;
     if (!held || atomic_exchange(&pending, 1)) {
-        told = write(STDERR_FILENO, text, sizeof text - 1);
+        if (!mute)
+            told = write(STDERR_FILENO, text, sizeof text - 1);
         (void)told;
         _exit(EXIT_INTERRUPTED);
     }
-    if (movie)
+    if (movie && !mute)
         told = write(STDERR_FILENO, later, sizeof later - 1);
     (void)told;
     errno = number;
@@ -63,4 +64,8 @@ void interrupt_hold_movie(void) {
 
 bool interrupt_seen(void) {
     return pending != 0;
+}
+
+void interrupt_mute(void) {
+    mute = 1;
 }

@@ -28,4 +28,8 @@ void interrupt_hold_movie(void);
 /* Whether a signal has come since. */
 bool interrupt_seen(void);
 
+/* From here on nothing is said: of ranks only the first one says that it was
+ * interrupted, and none when it has done its work. */
+void interrupt_mute(void);
+
 #endif

@@ -1,11 +1,14 @@
-/* main.c - the tool: which verb is meant, and what it answers.
+/* main.c - the tool: which verb is meant, and what it answers; its main
+ * functions are in main_alone.c and mpi_main.c.
  *
  * The first word is a verb, or the call is a bare `render`.  The tool stands on
  * the public headers only; its exit codes are the library's status values and
  * 130. */
 #include "bench.h"
 #include "commands.h"
+#include "config.h"
 #include "interrupt.h"
+#include "launch.h"
 #include "report.h"
 
 #include <fcntl.h>
@@ -23,7 +26,8 @@ static void fill_standard_streams(void) {
 }
 
 static int print_version(void) {
-    printf("snowglass %s\n", snow_version());
+    if (launch_talks())
+        printf("snowglass %s\n", snow_version());
     return finish_stdout();
 }
 
@@ -66,32 +70,58 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
         return done;
     if (asked.version)
         return print_version();
+    if (asked.help && !launch_talks())
+        return SNOW_OK;
     if (asked.help)
         return help_print(asked.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
+    done = config_check(&asked);
+    if (done != GO_ON)
+        return done;
     double begin = seconds_now();
     done = run_verb(verb, &asked);
+    if (done == SNOW_OK)
+        done = config_save(&asked);
     if (asked.verbosity > 0 && verb->bit != VERB_RENDER) /* it tells more */
         say("seconds: total %.3f", seconds_now() - begin);
     return done;
 }
 
-int main(int argc, char **argv) {
-    fill_standard_streams();
-    interrupt_install();
+/* Verbs that render are for all ranks; any other is for one, and the others
+ * learn its exit code. */
+static bool is_for_all(const verb_row *verb) {
+    return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
+}
+
+static int run_bench(int argc, char **argv) {
+    int done = bench_main(argc, argv);
+    return done == SNOW_OK ? finish_stdout() : done;
+}
+
+/* Only the first word can be a verb: a file of that name is ./NAME. */
+static int dispatch(int argc, char **argv) {
     if (argc < 2) {
         help_hint();
         return SNOW_BAD_USAGE;
     }
-    /* Only the first word can be a verb: a file of that name is ./NAME. */
     const verb_row *verb = verb_named(argv[1]);
     if (!verb)
         return run(verb_of(VERB_RENDER), false, argc, argv);
     if (!verb->bit)
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
-    if (verb->bit == VERB_BENCH) {
-        int done = bench_main(argc - 1, argv + 1);
-        return done == SNOW_OK ? finish_stdout() : done;
-    }
+    if (!is_for_all(verb) && !launch_talks())
+        return SNOW_OK;
+    if (verb->bit == VERB_BENCH)
+        return run_bench(argc - 1, argv + 1);
     return run(verb, true, argc - 1, argv + 1);
+}
+
+int tool_run(int argc, char **argv, const launch *how) {
+    fill_standard_streams();
+    launch_begin(how);
+    interrupt_install();
+    int done = launch_agree(dispatch(argc, argv));
+    if (launch_ranks() > 1) /* whose launcher ends all with the first to fail */
+        interrupt_mute();
+    return done;
 }

@@ -185,8 +185,13 @@ const option_row option_table[] = {
      0, "", "tell nothing but errors"},
     LATER("memory", 0, "SIZE", TOPIC_RUN,
           "limit the process with ulimit -v or a cgroup"),
-    LATER("config", 0, "FILE", TOPIC_RUN, "give the options themselves"),
-    LATER("save-config", 0, "FILE", TOPIC_RUN, "keep the command line"),
+    {"config", 0, "FILE", TOPIC_RUN, INPUT, read_text, FIELD(config), 0, 0, "",
+     "take options from a JSON object: long names for keys, and input; what "
+     "stands on the command line counts more"},
+    {"save-config", 0, "FILE", TOPIC_RUN, RENDER, read_text,
+     FIELD(save_config), 0, 0, "", "write such an object, which gives the same "
+     "picture again; - is standard output; a file that exists needs "
+     "--overwrite"},
 
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
      1000000, "", "pictures of one turn (120)"},
@@ -195,6 +200,17 @@ const option_row option_table[] = {
     {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
      "go on where an earlier run was ended, with the frames that it left whole; "
      "the other options must be the same"},
+    {"cut", 0, "auto|equal|counted|bricks", TOPIC_RANKS, RENDER, read_choice,
+     FIELD(cut), 0, 0, "", "the parts of the volume: equal slabs as in the "
+     "paper, slabs or bricks of equally many interesting voxels (auto: counted, "
+     "and bricks where slabs would be thin)"},
+    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, RENDER,
+     read_choice, FIELD(combine), 0, 0, "", "how the ranks' pictures become "
+     "one: the paper's tree, binary swap, direct send or radix-k (auto: by "
+     "ranks and size)"},
+    {"radix", 0, "K", TOPIC_RANKS, RENDER, read_integer, FIELD(radix), 2, 64,
+     "", "ranks that exchange at once, of --combine radix (chosen)"},
+
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR, read_flag,
      FIELD(json), 0, 0, "", "write one JSON object"},
     {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
@@ -246,6 +262,7 @@ const topic_row topic_table[] = {
      "none yet: the picture shows the volume alone"},
     {"data", "raw files, time steps", NULL},
     {"run", "threads, figures, talk", NULL},
+    {"ranks", "many processors: parts of the volume, one picture", NULL},
     {"more", "options of single verbs", NULL},
     {NULL, NULL, NULL},
 };

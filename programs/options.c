@@ -3,6 +3,8 @@
  * Options may follow operands, "--" ends them, a repeated one counts as told
  * last.  What is unknown, of another verb, or not built yet is refused. */
 #include "options.h"
+#include "config.h"
+#include "launch.h"
 #include "report.h"
 
 #include <getopt.h>
@@ -40,9 +42,31 @@ void options_init(options *out) {
         .progress = "auto",
         .isa = "auto",
         .quality = "normal",
+        .cut = "auto",
+        .combine = "auto",
         .frames = 120,
         .fps = 25,
     };
+}
+
+bool topic_is_here(topic which) {
+    return which != TOPIC_RANKS || launch_mpi() != NULL;
+}
+
+/* The words before it in the row, of which it is one. */
+int option_choice(const char *name, const char *text) {
+    const option_row *row = option_table;
+    size_t length = strlen(text);
+    int index = 0;
+    while (strcmp(row->name, name) != 0)
+        row++;
+    for (const char *at = row->argument; *at; index++) {
+        size_t word = strcspn(at, "|");
+        if (word == length && strncmp(at, text, word) == 0)
+            break;
+        at += word + (at[word] == '|');
+    }
+    return index;
 }
 
 /* Verbs count in full only, as options do. */
@@ -110,7 +134,8 @@ static const char *nearest_option(const char *name, unsigned verb) {
     int least = (int)strlen(name) / 3 + 2;
     for (const option_row *row = option_table; row->name; row++) {
         int distance = value_distance(name, row->name);
-        if ((row->verbs & verb) && row->read && distance < least) {
+        if ((row->verbs & verb) && row->read && distance < least &&
+            topic_is_here(row->topic)) {
             least = distance;
             best = row->name;
         }
@@ -165,6 +190,10 @@ static int take(options *out, const option_row *row, const verb_row *verb,
                 const char *text) {
     if (!row->read)
         return fail_usage("--%s is not built yet; %s", row->name, row->text);
+    if (!topic_is_here(row->topic))
+        return fail_usage("--%s: is for many ranks; give it to snowglass-mpi, "
+                          "under mpirun",
+                          row->name);
     if (!(row->verbs & verb->bit))
         return refuse_foreign(row, verb);
     char wrong[WRONG_BYTES];
@@ -172,6 +201,25 @@ static int take(options *out, const option_row *row, const verb_row *verb,
     if (row->read(row, text ? text : "", (char *)out + row->field, wrong))
         return GO_ON;
     return fail_usage("--%s: '%s' %s", row->name, text, wrong);
+}
+
+static const option_row *row_named(const char *name) {
+    const option_row *row = option_table;
+    while (row->name && strcmp(row->name, name) != 0)
+        row++;
+    return row;
+}
+
+bool options_told(const options *asked, const char *name) {
+    return asked->told[row_named(name) - option_table] != NULL;
+}
+
+int options_take(options *out, const verb_row *verb, const char *name,
+                 const char *text) {
+    const option_row *row = row_named(name);
+    if (!row->name || !(row->verbs & verb->bit) || options_told(out, name))
+        return GO_ON;
+    return take(out, row, verb, text);
 }
 
 /* An argument that may be left out is the word behind the option only where all
@@ -270,5 +318,6 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
     }
     out->operands = argv + optind;
     out->operand_count = argc - optind;
-    return check_count(out, verb);
+    int done = config_take(out, verb);
+    return done == GO_ON ? check_count(out, verb) : done;
 }

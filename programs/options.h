@@ -39,13 +39,18 @@ typedef enum topic {
     TOPIC_LABELS,
     TOPIC_DATA,
     TOPIC_RUN,
-    TOPIC_MORE /* of single verbs */
+    TOPIC_RANKS, /* of the program under MPI only */
+    TOPIC_MORE   /* of single verbs */
 } topic;
 
 /* More than option_table has: rows beyond would be lost. */
 #define OPTION_ROWS_MOST 96
 
-/* Everything that can be asked.  Texts point into argv. */
+/* Room for the texts of a configuration. */
+#define CONFIG_TEXTS_BYTES 32768
+
+/* Everything that can be asked.  Texts point into argv or, of a configuration,
+ * into `texts`. */
 typedef struct options {
     const char *output; /* NULL: not told */
     int64_t size[2];    /* width, height */
@@ -78,7 +83,7 @@ typedef struct options {
     int64_t time;
     int64_t channel;
     const char *dataset; /* NULL: not told */
-    int64_t crop[3][2]; /* 0: the end */
+    int64_t crop[3][2];  /* 0: the end */
     uint64_t seed;
 
     int64_t frames; /* of a turn */
@@ -90,11 +95,18 @@ typedef struct options {
     const char *stats; /* NULL: none */
     const char *progress, *isa, *quality;
     int64_t threads; /* 0: not told */
+    const char *cut, *combine;
+    int64_t radix; /* 0: chosen */
     bool deterministic, no_labels;
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 
     bool version, help;
-    const char *help_word; /* the topic or verb asked for, or NULL */
+    const char *help_word;            /* the topic or verb asked for, or NULL */
+    const char *config, *save_config; /* NULL: none */
+    char texts[CONFIG_TEXTS_BYTES];
+    size_t text_bytes;
+    char *config_input; /* the operand where none is given */
+
     char **operands;
     int operand_count;
     const char *told[OPTION_ROWS_MOST]; /* the text of each row of the table as
@@ -149,6 +161,12 @@ typedef struct topic_row {
 } topic_row;
 extern const topic_row topic_table[];
 
+/* Whether a topic is one of this program. */
+bool topic_is_here(topic which);
+
+/* Which of its choices an option has, from 0. */
+int option_choice(const char *name, const char *text);
+
 const verb_row *verb_named(const char *name);
 const verb_row *verb_of(unsigned bit);
 
@@ -158,6 +176,15 @@ void options_init(options *out);
 /* Reads the arguments of a verb; argv[0] is the verb's own name.  Answers
  * GO_ON, or an exit code after the fault has been told on stderr. */
 int options_parse(options *out, const verb_row *verb, int argc, char **argv);
+
+/* Takes an option by its long name as if it stood on the command line, unless
+ * that has it, or the verb takes none such.  `text` NULL: without a value.
+ * Answers GO_ON or an exit code. */
+int options_take(options *out, const verb_row *verb, const char *name,
+                 const char *text);
+
+/* Whether an option stands on the command line. */
+bool options_told(const options *asked, const char *name);
 
 /* Writes the help that was asked for to standard output: `word` names a topic
  * or a verb, NULL means that of `verb`, or the overview when that is NULL too.

@@ -1,5 +1,6 @@
 /* render_stats.c - seconds, bytes and the checksum of one picture. */
 #include "render_stats.h"
+#include "launch.h"
 #include "report.h"
 
 #include <inttypes.h>
@@ -35,14 +36,13 @@ static void set_bytes(json_t *object, const char *key, uint64_t bytes) {
 /* EA, IA and PA are the paper's three arrays (section 3.1); 0 for methods
  * without. */
 static json_t *bytes_json(const render_report *report) {
-    const snow_stats *stats = snow_frame_stats(report->frame);
+    const snow_stats *stats = report->stats;
     json_t *object = json_object();
-    set_bytes(object, "volume",
-              volume_bytes(snow_volume_describe(report->volume)));
+    set_bytes(object, "volume", volume_bytes(report->volume));
     set_bytes(object, "ea", stats->ea_bytes);
     set_bytes(object, "ia", stats->ia_bytes);
     set_bytes(object, "pa", stats->pa_bytes);
-    set_bytes(object, "peak", snow_context_peak_bytes(report->context));
+    set_bytes(object, "peak", report->peak);
     return object;
 }
 
@@ -51,13 +51,13 @@ static json_t *bytes_json(const render_report *report) {
  * up to the total, and `frame` stays what one more picture of the same look
  * takes. */
 static double classify_seconds(const render_report *report) {
-    return report->times->look +
-           snow_frame_stats(report->frame)->seconds_classify;
+    return report->times->look + report->stats->seconds_classify;
 }
 
-/* combine is a stage of several processors; its time is 0 here. */
+/* combine and gather are stages of several processors; their time is 0 for
+ * one. */
 static json_t *seconds_json(const render_report *report) {
-    const snow_stats *stats = snow_frame_stats(report->frame);
+    const snow_stats *stats = report->stats;
     const struct {
         const char *key;
         double seconds;
@@ -68,7 +68,8 @@ static json_t *seconds_json(const render_report *report) {
                 {"splat", stats->seconds_splat},
                 {"composite", stats->seconds_composite},
                 {"warp", stats->seconds_warp},
-                {"combine", 0},
+                {"combine", stats->seconds_combine},
+                {"gather", stats->seconds_gather},
                 {"write", report->times->write},
                 {"frame", stats->seconds_frame},
                 {"total", report->times->total}};
@@ -92,15 +93,12 @@ static json_t *image_json(const snow_image *image) {
     return object;
 }
 
-/* Ranks are 1 until there can be more: the key is there, so that tables made
- * now and later have the same columns. */
 json_t *stats_json(const render_report *report) {
-    const snow_stats *stats = snow_frame_stats(report->frame);
+    const snow_stats *stats = report->stats;
     const snow_settings *settings = report->settings;
     json_t *o = json_object();
     json_object_set_new(o, "version", json_string(snow_version()));
-    json_object_set_new(o, "volume",
-                        volume_json(snow_volume_describe(report->volume)));
+    json_object_set_new(o, "volume", volume_json(report->volume));
     json_object_set_new(o, "threshold", json_number(settings->threshold));
     json_object_set_new(o, "sparse_ratio", json_number(stats->sparse_ratio));
     json_object_set_new(o, "encoding", json_string(encoding_text(stats)));
@@ -110,7 +108,8 @@ json_t *stats_json(const render_report *report) {
                         json_string(snow_kernel_name(stats->kernel)));
     json_object_set_new(o, "footprint", json_integer(stats->footprint));
     json_object_set_new(o, "threads", json_integer(stats->threads));
-    json_object_set_new(o, "ranks", json_integer(1));
+    json_object_set_new(o, "ranks", json_integer(launch_ranks()));
+    json_object_set_new(o, "load", json_number(report->load));
     json_object_set_new(o, "isa", json_string(snow_isa_name(stats->isa)));
     json_object_set_new(o, "quality",
                         json_string(snow_quality_name(stats->quality)));
@@ -121,7 +120,7 @@ json_t *stats_json(const render_report *report) {
 }
 
 void tell_stats(const render_report *report) {
-    const snow_stats *stats = snow_frame_stats(report->frame);
+    const snow_stats *stats = report->stats;
     const render_times *times = report->times;
     say("seconds: read %.3f, classify %.3f (look %.3f), shade %.3f, encode "
         "%.3f, splat %.3f, composite %.3f, frame %.3f, write %.3f, total %.3f",
@@ -131,9 +130,13 @@ void tell_stats(const render_report *report) {
         times->total);
     say("bytes: volume %" PRIu64 ", EA %" PRIu64 ", IA %" PRIu64 ", PA %" PRIu64
         ", peak %" PRIu64,
-        volume_bytes(snow_volume_describe(report->volume)), stats->ea_bytes,
-        stats->ia_bytes, stats->pa_bytes,
-        snow_context_peak_bytes(report->context));
+        volume_bytes(report->volume), stats->ea_bytes, stats->ia_bytes,
+        stats->pa_bytes, report->peak);
     say("interesting voxels: %" PRId64 " of %" PRId64 ", sparse ratio %.1f %%",
         stats->interesting, stats->voxels, 100 * stats->sparse_ratio);
+    if (launch_ranks() > 1)
+        say("ranks: %d, load of the largest part %.2f; combine %.3f s, gather "
+            "%.3f s",
+            launch_ranks(), report->load, stats->seconds_combine,
+            stats->seconds_gather);
 }

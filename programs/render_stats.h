@@ -14,9 +14,10 @@ typedef struct render_times {
 } render_times;
 
 typedef struct render_report {
-    const snow_context *context;
-    const snow_volume *volume;
-    const snow_frame *frame;
+    const snow_volume_info *volume;
+    const snow_stats *stats;
+    uint64_t peak; /* bytes; of ranks the most that one had */
+    double load;   /* of ranks: most interesting voxels by their mean */
     const snow_settings *settings;
     const snow_image *image;
     const render_times *times;

@@ -3,6 +3,7 @@
  * Standard output carries data only; the rest is one line at a time on
  * standard error. */
 #include "report.h"
+#include "launch.h"
 
 #include <errno.h>
 #include <math.h>
@@ -19,6 +20,9 @@
 /* Whether the terminal's last line names a stage, to be wiped before talk. */
 static bool stage_shown;
 
+/* What a rank that does not talk would have said last. */
+static char kept[LINE_BYTES];
+
 static void wipe_stage(void) {
     if (stage_shown)
         fputs("\r\033[K", stderr);
@@ -34,8 +38,16 @@ static void say_list(const char *format, va_list arguments) {
         if ((unsigned char)*at < ' ' || *at == 127)
             *at = '?';
     }
+    if (!launch_talks()) {
+        memcpy(kept, line, sizeof kept);
+        return;
+    }
     wipe_stage();
     fprintf(stderr, "snowglass: %s\n", line);
+}
+
+const char *last_said(void) {
+    return kept;
 }
 
 void say(const char *format, ...) {
@@ -95,6 +107,20 @@ int open_context(const options *asked, snow_context **out) {
     return GO_ON;
 }
 
+int open_render_context(const options *asked, snow_context **out) {
+    if (launch_ranks() == 1)
+        return open_context(asked, out);
+    *out = snow_comm_context(launch_comm());
+    if (asked->verbosity >= 0 && launch_talks())
+        snow_context_set_notice(*out, hear_notice, NULL);
+    return GO_ON;
+}
+
+void close_render_context(snow_context *context) {
+    if (launch_ranks() == 1)
+        snow_context_free(context);
+}
+
 double seconds_now(void) {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -108,7 +134,8 @@ bool progress_is_live(void) {
 }
 
 bool progress_is_wanted(const options *asked) {
-    return asked->verbosity >= 0 && strcmp(asked->progress, "never") != 0;
+    return launch_talks() && asked->verbosity >= 0 &&
+           strcmp(asked->progress, "never") != 0;
 }
 
 void progress(const options *asked, const char *stage) {

@@ -8,8 +8,12 @@
 #include <jansson.h>
 
 /* One line on standard error, "snowglass: " before it; what could move the
- * cursor is replaced, so that a file's name cannot write more lines. */
+ * cursor is replaced, so that a file's name cannot write more lines.  A rank
+ * that does not talk (launch.h) only keeps the line. */
 void say(const char *format, ...) SNOW_PRINTF(1, 2);
+
+/* The last line of a rank that does not talk, "" before any. */
+const char *last_said(void);
 
 /* Tells a fault and answers the exit code of it. */
 int fail_usage(const char *format, ...) SNOW_PRINTF(1, 2);
@@ -24,6 +28,11 @@ int fail_volume(const snow_context *context, snow_status status,
 /* Makes a context whose remarks go to standard error, unless quiet.
  * Answers GO_ON or an exit code. */
 int open_context(const options *asked, snow_context **out);
+
+/* The context of what is rendered: that of the communicator, where there is
+ * one, and else as above.  Answers GO_ON or an exit code. */
+int open_render_context(const options *asked, snow_context **out);
+void close_render_context(snow_context *context);
 
 /* Seconds of a steady clock. */
 double seconds_now(void);

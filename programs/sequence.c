@@ -334,7 +334,7 @@ static void pass(run *r, int64_t index) {
 static void hand_over(run *r, int64_t index, snow_image *image) {
     render_report report = {0};
     r->renderer->report(r->renderer->self, &report);
-    sequence_figures_add(&r->figures, snow_frame_stats(report.frame));
+    sequence_figures_add(&r->figures, report.stats);
     (void)frames_put(r->s->queue, index, image);
     snow_image_free(r->last);
     r->last = image;
@@ -482,6 +482,7 @@ int sequence_run(sequence *s, const options *asked, const shot_list *list,
              .renderer = renderer};
     if (r.s)
         return run_writer(&r, begin);
+    interrupt_hold_movie(); /* the rank that writes hears of it, and says so */
     int done = share(&r, GO_ON);
     if (done == GO_ON)
         done = render_frames(&r);

@@ -5,6 +5,7 @@
  * without a word.  Left out are those that do not change a frame. */
 #define _XOPEN_SOURCE 700
 #include "sequence_record.h"
+#include "launch.h"
 #include "report.h"
 
 #include <errno.h>
@@ -98,6 +99,8 @@ static char *write_text(const options *asked, const shot_list *list) {
         return NULL;
     fprintf(out, FIRST_LINE "version %s\nkernels %s\n", snow_version(),
             kernels(asked));
+    if (launch_ranks() > 1 && !asked->deterministic)
+        fprintf(out, "ranks %d\n", launch_ranks());
     print_options(out, asked);
     print_shots(out, list);
     bool good = !ferror(out);

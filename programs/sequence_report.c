@@ -83,6 +83,8 @@ void sequence_figures_add(sequence_figures *figures, const snow_stats *stats) {
     sums->seconds_splat += stats->seconds_splat;
     sums->seconds_composite += stats->seconds_composite;
     sums->seconds_warp += stats->seconds_warp;
+    sums->seconds_combine += stats->seconds_combine;
+    sums->seconds_gather += stats->seconds_gather;
     sums->seconds_frame += stats->seconds_frame;
 }
 
@@ -130,6 +132,8 @@ static void set_seconds(json_t *seconds, const sequence_figures *figures,
                 {"splat", sums->seconds_splat},
                 {"composite", sums->seconds_composite},
                 {"warp", sums->seconds_warp},
+                {"combine", sums->seconds_combine},
+                {"gather", sums->seconds_gather},
                 {"frame", median(figures->seconds, figures->rendered)},
                 {"total", times->total}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)

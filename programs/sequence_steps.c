@@ -2,6 +2,7 @@
 #define _XOPEN_SOURCE 700
 #include "sequence_steps.h"
 #include "commands.h"
+#include "launch.h"
 #include "report.h"
 #include "sequence_names.h"
 
@@ -181,18 +182,30 @@ static bool look_is_fixed(const options *asked) {
     return values || own;
 }
 
-int steps_list(const step_files *files, serial_renderer *serial,
-               shot_list *out) {
-    const options *asked = serial->asked;
+/* What is known of a shot's volume without reading it. */
+static int inspect(const shot_renderer *shots, const movie_shot *shot,
+                   snow_volume_info *out) {
+    options step = *shots->scene.asked;
+    step.time = shot->time;
+    snow_volume_options data = data_options(&step);
+    snow_status status =
+        snow_volume_inspect(shots->scene.context, shot->path, &data, out);
+    return status == SNOW_OK ? GO_ON
+                             : fail_status(shots->scene.context, status);
+}
+
+int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
+    const options *asked = shots->scene.asked;
     movie_shot first = {files->paths[0], asked->time, asked->azimuth};
     out->count = files->count;
     if (files->count == 1 && !was_told(asked, "time")) {
-        int done = serial_volume(serial, &first);
+        snow_volume_info info;
+        int done = inspect(shots, &first, &info);
         if (done != GO_ON)
             return done;
-        out->count = snow_volume_describe(serial->volume)->times;
+        out->count = info.times;
     }
-    serial->whole_files = files->count > 1 && !was_told(asked, "time");
+    shots->whole_files = files->count > 1 && !was_told(asked, "time");
     out->together = out->count > 1 && !look_is_fixed(asked);
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
@@ -215,10 +228,12 @@ int steps_list(const step_files *files, serial_renderer *serial,
 #define POOL_VALUES (INT64_C(1) << 22)
 #define STEP_VALUES 1024
 
-/* Values of all steps, side by side. */
+/* Values of all steps, in their order. */
 typedef struct value_pool {
     double *values;
-    int64_t count, room;
+    int64_t count;
+    double *step; /* those of the step that this rank has read */
+    int64_t step_count;
     int64_t quota; /* of one step, less its ends */
 } value_pool;
 
@@ -259,26 +274,26 @@ static void pool_step(value_pool *pool, const snow_volume *volume) {
     const snow_volume_info *info = snow_volume_describe(volume);
     const void *voxels = snow_volume_voxels(volume);
     int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
-    int64_t stride = stride_of(info, pool->quota);
+    int64_t stride = stride_of(info, pool->quota), count = 0;
     snow_volume_measures ends;
     snow_volume_measure(volume, &ends);
-    for (int64_t i = 0; i < all && pool->count < pool->room - 2; i += stride)
-        pool->values[pool->count++] =
+    for (int64_t i = 0; i < all && count < pool->quota; i += stride)
+        pool->step[count++] =
             info->slope * native(voxels, info->type, i) + info->intercept;
-    pool->values[pool->count++] = ends.min;
-    pool->values[pool->count++] = ends.max;
+    pool->step[count++] = ends.min;
+    pool->step[count++] = ends.max;
+    pool->step_count = count;
 }
 
 /* The look of a volume that consists of the pool. */
-static int look_at_pool(serial_renderer *serial, const value_pool *pool) {
+static int look_at_pool(scene *s, const value_pool *pool) {
     snow_volume_info info = {.dims = {pool->count, 1, 1}, .type = SNOW_FLOAT64};
     snow_volume *volume = NULL;
     snow_status status =
-        snow_volume_share(serial->context, &info, pool->values, &volume);
+        snow_volume_share(s->context, &info, pool->values, &volume);
     if (status != SNOW_OK)
-        return fail_status(serial->context, status);
-    int done =
-        open_look(serial->context, serial->asked, volume, &serial->transfer);
+        return fail_status(s->context, status);
+    int done = open_look(s->context, s->asked, volume, &s->transfer);
     snow_volume_close(volume);
     return done;
 }
@@ -291,31 +306,87 @@ static void tell_step(const options *asked, int64_t step, int64_t count) {
         progress(asked, line);
 }
 
-static int pool_steps(const shot_list *list, serial_renderer *serial,
-                      value_pool *pool) {
-    for (int64_t i = 0; i < list->count; i++) {
-        tell_step(serial->asked, i, list->count);
-        int done = serial_volume(serial, &list->shots[i]);
-        if (done != GO_ON)
-            return done;
-        pool_step(pool, serial->volume);
-    }
-    return look_at_pool(serial, pool);
+static int read_step(shot_renderer *shots, const movie_shot *shot,
+                     value_pool *pool) {
+    scene *s = &shots->scene;
+    double begin = seconds_now();
+    snow_volume *volume = NULL;
+    options step = *s->asked;
+    step.time = shot->time;
+    int done = open_input(s->context, &step, shot->path, &volume);
+    if (done == GO_ON)
+        done = shots_check(shots, shot->path, snow_volume_describe(volume));
+    if (done == GO_ON)
+        pool_step(pool, volume);
+    snow_volume_close(volume);
+    s->times.read += seconds_now() - begin;
+    return done;
 }
 
-int steps_look(const shot_list *list, serial_renderer *serial) {
+/* Appends the step that a rank has read. */
+static int append_step(value_pool *pool, int rank) {
+    double *to = pool->values + pool->count;
+    int64_t count = pool->step_count;
+    snow_comm *comm = launch_comm();
+    snow_status status = SNOW_OK;
+    if (comm)
+        status = snow_comm_broadcast(comm, &count, sizeof count, rank);
+    size_t bytes = (size_t)count * sizeof *to;
+    if (rank == launch_rank())
+        memcpy(to, pool->step, bytes);
+    if (comm && status == SNOW_OK)
+        status = snow_comm_broadcast(comm, to, bytes, rank);
+    pool->count += count;
+    return status == SNOW_OK ? GO_ON
+                             : fail_status(snow_comm_context(comm), status);
+}
+
+/* Steps from `first` on, one for each rank. */
+static int pool_round(const shot_list *list, int64_t first,
+                      shot_renderer *shots, value_pool *pool) {
+    int64_t mine = first + launch_rank(), left = list->count - first;
+    int done = GO_ON;
+    if (mine < list->count)
+        done = read_step(shots, &list->shots[mine], pool);
+    done = launch_agree(done);
+    for (int rank = 0; rank < launch_ranks() && rank < left; rank++)
+        if (done == GO_ON)
+            done = append_step(pool, rank);
+    return done;
+}
+
+/* All ranks compare their steps with the first. */
+static int pool_steps(const shot_list *list, shot_renderer *shots,
+                      value_pool *pool) {
+    snow_volume_info first;
+    int done = inspect(shots, &list->shots[0], &first);
+    if (done == GO_ON)
+        done = shots_check(shots, list->shots[0].path, &first);
+    done = launch_agree(done);
+    for (int64_t i = 0; i < list->count && done == GO_ON; i += launch_ranks()) {
+        tell_step(shots->scene.asked, i, list->count);
+        done = pool_round(list, i, shots, pool);
+    }
+    return done == GO_ON ? launch_agree(look_at_pool(&shots->scene, pool))
+                         : done;
+}
+
+int steps_look(const shot_list *list, shot_renderer *shots) {
     if (!list->together)
         return GO_ON;
     value_pool pool = {.quota = POOL_VALUES / list->count};
     if (pool.quota < STEP_VALUES)
         pool.quota = STEP_VALUES;
-    pool.room = (pool.quota + 2) * list->count;
-    pool.values = malloc((size_t)pool.room * sizeof *pool.values);
-    if (!pool.values)
-        return fail_memory();
-    int done = pool_steps(list, serial, &pool);
+    int64_t room = pool.quota + 2;
+    pool.values =
+        malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
+    int done = launch_agree(pool.values ? GO_ON : fail_memory());
+    if (done == GO_ON) {
+        pool.step = pool.values + room * list->count;
+        done = pool_steps(list, shots, &pool);
+    }
     free(pool.values);
     /* All steps will be opened once more, and say the same again. */
-    snow_context_set_notice(serial->context, NULL, NULL);
+    snow_context_set_notice(shots->scene.context, NULL, NULL);
     return done;
 }

@@ -3,7 +3,7 @@
 #ifndef SEQUENCE_STEPS_H
 #define SEQUENCE_STEPS_H
 
-#include "sequence_serial.h"
+#include "sequence_render.h"
 
 /* The files that are meant, in order: each operand is a file, or a pattern of
  * numbered ones (run_%04d.nrrd). */
@@ -19,14 +19,14 @@ int steps_find(const options *asked, step_files *out);
 void steps_free(step_files *files);
 
 /* One shot for each file; for a file that stands alone one for each time step
- * in it, unless --time picks one: then it is opened.  Answers GO_ON or an exit
- * code. */
-int steps_list(const step_files *files, serial_renderer *serial,
-               shot_list *out);
+ * in it, unless --time picks one: then it is looked into.  Answers GO_ON or an
+ * exit code. */
+int steps_list(const step_files *files, shot_renderer *shots, shot_list *out);
 
-/* Chooses serial->transfer by the values of all steps, where it depends on
+/* Chooses the transfer function by the values of all steps, where it depends on
  * values at all and there are several steps; else leaves it to the first one.
- * Reads every step once.  Answers GO_ON or an exit code. */
-int steps_look(const shot_list *list, serial_renderer *serial);
+ * Reads every step once; of many ranks each reads some of them, whole.  Answers
+ * GO_ON or an exit code. */
+int steps_look(const shot_list *list, shot_renderer *shots);
 
 #endif

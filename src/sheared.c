@@ -71,7 +71,8 @@ typedef struct snow_scratch {
     uint64_t *bits; /* of the rows of the slices */
     uint32_t *rank;
     float *samples; /* windows of a tile */
-    float *ring;    /* filtered rows of a tile */
+    snow_sample_room *room;
+    float *ring; /* filtered rows of a tile */
     float *zero;
     uint64_t *alive; /* per tile: cells that something shines through */
     snow_span *spans;
@@ -305,14 +306,18 @@ static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
         return;
     held &= rows_of_cells(cells, v->stride, slice->reach);
     size_t pixel = (size_t)pass->channels, floats = pass->window_floats;
-    for (uint64_t left = held; left; left &= left - 1) {
-        int row = __builtin_ctzll(left);
-        const uint16_t *normals = slice->rows.normals[row];
-        pass->sample(slice->rows.codes[row] + before[row] * pass->code_bytes,
-                     normals ? normals + before[row] : NULL, bits[row],
-                     pass->window, pass->palette, pass->gloss,
-                     scratch->samples + (size_t)row * floats);
-    }
+    snow_sample_job job = {held,
+                           pass->window,
+                           bits,
+                           slice->rows.codes,
+                           slice->rows.normals,
+                           before,
+                           pass->palette,
+                           pass->gloss,
+                           scratch->room,
+                           scratch->samples,
+                           floats};
+    pass->sample(&job);
     snow_tile tile = {u,
                       v,
                       slice->u,
@@ -442,6 +447,7 @@ static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
     PART(rank, SLICES_AT_ONCE * words * sizeof *out->rank);
     PART(samples,
          (SNOW_WINDOW_ROWS * pass->window_floats + 64) * sizeof(float));
+    PART(room, sizeof *out->room);
     PART(ring, SNOW_WINDOW_ROWS * filtered);
     PART(zero, filtered);
     PART(alive, (size_t)pass->tiles * sizeof *out->alive);
@@ -618,7 +624,7 @@ snow_status snow_sheared_shade(snow_sheared *s,
         return SNOW_OK;
     SNOW_TRY(snow_reserve(s->context, &s->gloss, &s->gloss_capacity, 0,
                           (SNOW_NORMALS + 1) * sizeof *s->gloss));
-    s->gloss[0] = (snow_gloss){0, 0};
+    s->gloss[0] = 0;
     snow_gloss_table(s->context, settings, order->placement, settings->threads,
                      s->gloss + 1);
     return SNOW_OK;

@@ -46,8 +46,6 @@ info --perspective x|no option of info
 --depth d.npy x|--depth is not built yet
 --iso 3 x|--iso is not built yet
 --memory 1G x|--memory is not built yet
---config f x|--config is not built yet
---save-config f x|--save-config is not built yet
 --tf f x|--tf is not built yet
 --log x|--log is not built yet
 --legend x|--legend is not built yet
@@ -165,8 +163,8 @@ table1 --runs|unknown option or missing value '--runs'
 table1 --runs 4|this value is not possible: '4'
 table1 --kernel cube|this value is not possible: 'cube'
 table4|there is no benchmark 'table4'
-table1 table2|give one table
---json|give one table
+table1 table2|give one thing to measure
+--json|give one thing to measure
 END
 for table in table1 table2 table3; do
     refused 3 "bench $table without its files" \

@@ -10,6 +10,11 @@ export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_rmaps_base_oversubscribe=1
 export OMPI_MCA_hwloc_base_binding_policy=none
 
+skip() {
+    echo "skip   $*"
+    exit 77
+}
+
 [ -x "$(command -v "$MPIEXEC")" ] || skip "there is no $MPIEXEC"
 
 is_open_mpi() {
@@ -26,7 +31,7 @@ launch() {
 # How many ranks are tried: MPICH waits busily, and many ranks on few
 # processors take long.
 if is_open_mpi; then
-    COUNTS="1 2 3 5"
+    COUNTS="1 2 3 5" MOST=5
 else
-    COUNTS="1 2 4"
+    COUNTS="1 2 4" MOST=4
 fi

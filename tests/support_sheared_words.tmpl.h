@@ -16,16 +16,12 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
         V(store)(out->lanes[SET1] + at, V(set1)(in->a[3]));
         V(store)(out->lanes[ALPHA2] + at, V(alpha2)(a));
         V(store)(out->lanes[ALPHA4] + at, V(alpha4)(a));
-        V(store)(out->lanes[EVEN] + at, V(even)(a));
-        V(store)(out->lanes[ODD] + at, V(odd)(a));
         V(store)(out->lanes[WITH_ALPHA2] + at, V(with_alpha2)(a, b));
         V(store)(out->lanes[WITH_ALPHA4] + at, V(with_alpha4)(a, b));
         V(store)
         (out->lanes[GATHER4] + at, V(gather4)(in->table, in->entries + at / 4));
         V(store)
         (out->lanes[GATHER2] + at, V(gather2)(in->table, in->entries + at / 2));
-        V(store)
-        (out->lanes[DOUBLE2] + at, V(double2)(in->table, in->entries + at / 4));
         V(weave2)(a, b, out->weave2 + 2 * at);
         V(weave4)(a, b, out->weave4 + 2 * at);
         out->less[at / LANES] = V(any_less)(a, b) != 0;
@@ -35,5 +31,12 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
     out->lane_count = LANES;
     V(expand8)(in->bytes, in->bits, out->expand8);
     V(expand16)(in->shorts, in->bits, out->expand16);
+    V(pairs16)(in->pairs, in->entries, out->low, out->high);
+    V(widen8)(in->bytes, out->widen8);
+    V(widen16)(in->shorts, out->widen16);
+    V(spread2)(in->table, in->bits, 16, out->spread2);
+    V(spread4)(in->table, in->bits, 16, out->spread4);
+    out->found =
+        V(windows)(in->low, in->high, in->shift, in->within, out->windows);
     out->popcount = V(popcount)(in->mask);
 }

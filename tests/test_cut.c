@@ -172,7 +172,7 @@ static void counted_slabs_of_an_ellipsoid_are_about_equal(void **state) {
     static const struct {
         int ranks;
         double most;
-    } rows[] = {{2, 1.002}, {8, 1.02}, {32, 1.05}, {128, 1.13}};
+    } rows[] = {{2, 1.002}, {8, 1.02}, {32, 1.04}, {128, 1.13}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         double most = imbalance(COUNTED, dims, rows[i].ranks);
         print_message("counted slabs, %4d ranks: %.4f\n", rows[i].ranks, most);
@@ -195,7 +195,8 @@ static void bricks_of_an_ellipsoid_are_about_equal(void **state) {
 }
 
 /* The least possible maximum by dynamic programming. */
-static int64_t least_by_trying(const int64_t *costs, int items, int parts) {
+static int64_t least_by_trying(const int64_t *costs, int items, int parts,
+                               int longest) {
     int64_t best[2][64];
     for (int end = 0; end <= items; end++)
         best[0][end] = end ? INT64_MAX : 0;
@@ -204,7 +205,7 @@ static int64_t least_by_trying(const int64_t *costs, int items, int parts) {
         for (int end = 0; end <= items; end++) {
             int64_t sum = 0;
             to[end] = from[end];
-            for (int begin = end; begin-- > 0;) {
+            for (int begin = end; begin-- > 0 && end - begin <= longest;) {
                 sum += costs[begin];
                 int64_t most = from[begin] > sum ? from[begin] : sum;
                 if (most < to[end])
@@ -239,7 +240,10 @@ static void no_slabs_are_cheaper_than_counted_ones(void **state) {
             if (cost > dearest)
                 dearest = cost;
         }
-        assert_int_equal(dearest, least_by_trying(costs, items, ranks));
+        assert_int_equal(
+            dearest,
+            least_by_trying(costs, items, ranks,
+                            SNOW_THICKEST * ((items - 1) / ranks + 1)));
         free(tally.counts);
     }
     snow_context_free(context);
@@ -264,7 +268,8 @@ static void no_rank_stores_all_that_is_empty(void **state) {
         cut(context, how, &tally, 100, boxes);
         for (int rank = 0; rank < 100; rank++)
             assert_true(snow_box_voxels(&boxes[rank]) <=
-                        (SNOW_EMPTINESS + 2) * 64 * 64 * 10);
+                        (how == COUNTED ? SNOW_THICKEST : SNOW_EMPTINESS + 1) *
+                            64 * 64 * 10);
         free(tally.counts);
     }
     snow_context_free(context);

@@ -364,115 +364,151 @@ static void pixels_are_cleared_and_finished(void **state) {
 /* --- samples ---------------------------------------------------------------
  */
 
+#define VOXELS_BEFORE 5 /* at most: of a row, before its window */
+#define ROW_VOXELS (VOXELS_BEFORE + SNOW_WINDOW_MOST + SNOW_SAMPLE_MARGIN)
+
 typedef struct sample_case {
     int code_bytes, channels, count;
     bool shaded;
     fill kind;
-    uint64_t bits;
-    unsigned char codes[(SNOW_WINDOW_MOST + SNOW_SAMPLE_MARGIN) * 2];
-    uint16_t normals[SNOW_WINDOW_MOST + SNOW_SAMPLE_MARGIN];
-    float *palette; /* of code 0; a sample of zeros before it */
+    uint64_t held, bits[SNOW_SAMPLE_ROWS];
+    uint32_t before[SNOW_SAMPLE_ROWS];
+    unsigned char codes[SNOW_SAMPLE_ROWS][ROW_VOXELS * 2];
+    uint16_t normals[SNOW_SAMPLE_ROWS][ROW_VOXELS];
+    float *palette; /* of code 0 */
     snow_gloss *gloss;
 } sample_case;
 
-static const char *sample_words(const sample_case *s) {
-    static char words[128];
+static const char *sample_words(const sample_case *s, int row) {
+    static char words[160];
     snprintf(words, sizeof words,
-             "codes of %d bytes, %d channels, %s, %d places, bits %llx, %s",
+             "codes of %d bytes, %d channels, %s, %d places, rows %llx, bits "
+             "of row %d %llx, %s",
              s->code_bytes, s->channels, s->shaded ? "shaded" : "plain",
-             s->count, (unsigned long long)s->bits, fill_names[s->kind]);
+             s->count, (unsigned long long)s->held, row,
+             (unsigned long long)s->bits[row], fill_names[s->kind]);
     return words;
 }
 
 static void draw_sample(sample_case *s, int count, uint64_t *random) {
     s->count = count;
-    s->bits = draw_mask(random, count);
-    for (size_t n = 0; n < sizeof s->codes; n++)
-        s->codes[n] = draw(random, 4) ? (unsigned char)draw(random, 256) : 255;
-    for (size_t n = 0; n < COUNT(s->normals); n++)
-        s->normals[n] = (uint16_t)(draw(random, 4) ? draw(random, 65536)
-                                                   : 65535 * draw(random, 2));
+    s->held = draw_mask(random, SNOW_SAMPLE_ROWS);
+    for (int row = 0; row < SNOW_SAMPLE_ROWS; row++) {
+        s->bits[row] = draw_mask(random, count);
+        s->before[row] = (uint32_t)draw(random, VOXELS_BEFORE + 1);
+        for (size_t n = 0; n < sizeof s->codes[row]; n++)
+            s->codes[row][n] =
+                draw(random, 4) ? (unsigned char)draw(random, 256) : 255;
+        for (size_t n = 0; n < ROW_VOXELS; n++)
+            s->normals[row][n] =
+                (uint16_t)(draw(random, 4) ? draw(random, 65536)
+                                           : 65535 * draw(random, 2));
+    }
 }
 
 /* The plain loop for one place. */
-static void plain_sample(const sample_case *s, int place, double out[4]) {
-    int before = 0;
+static void plain_sample(const sample_case *s, int row, int place,
+                         double out[4]) {
+    int voxel = (int)s->before[row];
     for (int n = 0; n < place; n++)
-        before += (int)(s->bits >> n & 1);
+        voxel += (int)(s->bits[row] >> n & 1);
     for (int c = 0; c < 4; c++)
         out[c] = 0;
-    if (!(s->bits >> place & 1))
+    if (!(s->bits[row] >> place & 1))
         return;
-    uint16_t code = s->codes[before];
+    uint16_t code = s->codes[row][voxel];
     if (s->code_bytes == 2)
-        memcpy(&code, s->codes + 2 * before, 2);
+        memcpy(&code, s->codes[row] + 2 * voxel, 2);
     const float *entry = s->palette + (size_t)code * (size_t)s->channels;
     for (int c = 0; c < s->channels; c++)
         out[c] = (double)entry[c];
     if (!s->shaded)
         return;
-    snow_gloss gloss = s->gloss[s->normals[before]];
-    double alpha = out[s->channels - 1];
+    snow_gloss gloss = s->gloss[s->normals[row][voxel]];
+    double alpha = out[s->channels - 1], one = (double)SNOW_GLOSS_ONE;
     for (int c = 0; c < s->channels - 1; c++)
         out[c] = alpha *
-                 fmin(1, out[c] * (double)gloss.factor + (double)gloss.white);
+                 fmin(1, out[c] * (gloss & 0xFFFF) / one + (gloss >> 16) / one);
+}
+
+/* Makes the samples of a case by a level. */
+static void make_samples(const sample_case *s, snow_isa isa, size_t window,
+                         snow_sample_room *room, float *out) {
+    const unsigned char *codes[SNOW_SAMPLE_ROWS];
+    const uint16_t *normals[SNOW_SAMPLE_ROWS];
+    for (int row = 0; row < SNOW_SAMPLE_ROWS; row++) {
+        codes[row] = s->codes[row];
+        normals[row] = s->shaded ? s->normals[row] : NULL;
+    }
+    snow_sample_job job = {
+        s->held, s->count,  s->bits,    codes,
+        normals, s->before, s->palette, s->shaded ? s->gloss : NULL,
+        room,    out,       window};
+    snow_sample_of(isa, s->code_bytes, s->channels, s->shaded)(&job);
+}
+
+static void check_row(const sample_case *s, int row, const float *samples,
+                      const char *name, double *most) {
+    for (int place = 0; place < s->count; place++) {
+        double plain[4];
+        plain_sample(s, row, place, plain);
+        for (int c = 0; c < s->channels; c++) {
+            double gap =
+                fabs((double)samples[place * s->channels + c] - plain[c]);
+            bool exact = !s->shaded || !(s->bits[row] >> place & 1);
+            if (!(gap <= (exact ? 0 : 2e-7)))
+                fail_msg("%s differs by %g at place %d: %s", name, gap, place,
+                         sample_words(s, row));
+            *most = fmax(*most, gap);
+        }
+    }
 }
 
 static void check_sample(const sample_case *s, double *most) {
-    size_t floats = (size_t)(s->count * s->channels);
-    float avx2[SNOW_WINDOW_MOST * 4];
+    static float avx2[SNOW_SAMPLE_ROWS][SNOW_WINDOW_MOST * 4];
+    static snow_sample_room room;
+    size_t window = (size_t)(s->count * s->channels);
     for (size_t level = 0; level < COUNT(levels); level++) {
         const char *name = snow_isa_name(levels[level]);
         if (!snow_isa_runs(levels[level]))
             continue;
-        guarded block =
-            guarded_new((floats + 8 * (size_t)s->channels) * sizeof(float));
+        guarded block = guarded_new(
+            (SNOW_SAMPLE_ROWS * window + SNOW_SAMPLE_BEYOND) * sizeof(float));
         float *out = guarded_at(&block);
-        snow_sample_of(levels[level], s->code_bytes, s->channels, s->shaded)(
-            s->codes, s->shaded ? s->normals : NULL, s->bits, s->count,
-            s->palette, s->shaded ? s->gloss : NULL, out);
-        for (int place = 0; place < s->count; place++) {
-            double plain[4];
-            plain_sample(s, place, plain);
-            for (int c = 0; c < s->channels; c++) {
-                double gap =
-                    fabs((double)out[place * s->channels + c] - plain[c]);
-                bool exact = !s->shaded || !(s->bits >> place & 1);
-                if (!(gap <= (exact ? 0 : 2e-7)))
-                    fail_msg("%s differs by %g at place %d: %s", name, gap,
-                             place, sample_words(s));
-                *most = fmax(*most, gap);
-            }
+        memset(&room, GUARD_BYTE, sizeof room);
+        make_samples(s, levels[level], window, &room, out);
+        for (int row = 0; row < SNOW_SAMPLE_ROWS; row++) {
+            const float *samples = out + (size_t)row * window;
+            if (!(s->held >> row & 1))
+                continue;
+            check_row(s, row, samples, name, most);
+            if (levels[level] == SNOW_ISA_AVX2)
+                memcpy(avx2[row], samples, window * sizeof *out);
+            else if (levels[level] == SNOW_ISA_AVX512 &&
+                     memcmp(avx2[row], samples, window * sizeof *out) != 0)
+                fail_msg("avx2 and avx512 differ: %s", sample_words(s, row));
         }
-        if (levels[level] == SNOW_ISA_AVX2)
-            memcpy(avx2, out, floats * sizeof *out);
-        else if (levels[level] == SNOW_ISA_AVX512 &&
-                 memcmp(avx2, out, floats * sizeof *out) != 0)
-            fail_msg("avx2 and avx512 differ: %s", sample_words(s));
         if (!guarded_end(&block))
-            fail_msg("a guard of %s is broken: %s", name, sample_words(s));
+            fail_msg("a guard of %s is broken: %s", name, sample_words(s, 0));
     }
 }
 
-/* Tables between guards: the entry before each is a number. */
+/* Tables of all codes and normals, made exactly as long. */
 static void make_tables(sample_case *s, uint64_t *random) {
     size_t codes = s->code_bytes == 1 ? 256 : 65536;
-    size_t floats = (codes + 1) * (size_t)s->channels;
-    float *palette = malloc(floats * sizeof *palette);
-    snow_gloss *gloss = malloc((SNOW_NORMALS + 1) * sizeof *gloss);
-    assert_true(palette && gloss);
+    size_t floats = codes * (size_t)s->channels;
+    s->palette = malloc(floats * sizeof *s->palette);
+    s->gloss = malloc(SNOW_NORMALS * sizeof *s->gloss);
+    assert_true(s->palette && s->gloss);
     for (size_t n = 0; n < floats; n++)
-        palette[n] = n < (size_t)s->channels ? 0 : value_of(s->kind, random);
-    for (size_t n = 0; n <= SNOW_NORMALS; n++)
-        gloss[n] = (snow_gloss){(float)support_uniform(random) * 1.2f,
-                                (float)support_uniform(random) * 0.4f};
-    s->palette = palette + s->channels;
-    s->gloss = gloss + 1;
+        s->palette[n] = value_of(s->kind, random);
+    for (size_t n = 0; n < SNOW_NORMALS; n++)
+        s->gloss[n] = (snow_gloss)(support_random(random) >> 32);
 }
 
 static void free_tables(sample_case *s) {
-    free(s->palette - s->channels);
-    free(s->gloss - 1);
+    free(s->palette);
+    free(s->gloss);
 }
 
 static void samples_of_every_window(void **state) {
@@ -488,14 +524,15 @@ static void samples_of_every_window(void **state) {
         s.kind = (fill)(kind / 8);
         make_tables(&s, &random);
         for (int count = 1; count <= SNOW_WINDOW_MOST; count++)
-            for (int n = 0; n < 12; n++, done++) {
+            for (int n = 0; n < 3; n++, done++) {
                 draw_sample(&s, count, &random);
                 check_sample(&s, &most);
             }
         free_tables(&s);
     }
-    print_message("             %d windows are within %.2g of float64\n", done,
-                  most);
+    print_message(
+        "             %d times 64 windows are within %.2g of float64\n", done,
+        most);
 }
 
 /* --- windows ---------------------------------------------------------------
@@ -513,8 +550,9 @@ typedef struct window_case {
 static bool bit_at(const window_case *w, int row, int64_t column) {
     if (column < 0 || column >= w->columns)
         return false;
-    uint64_t word = w->bits[(size_t)row * w->rows.words +
-                            (size_t)(column + SNOW_WINDOW_PAD) / 64];
+    uint64_t word =
+        w->bits[(size_t)(column + SNOW_WINDOW_PAD) / 64 * SNOW_WINDOW_ROWS +
+                (size_t)row];
     return word >> (column + SNOW_WINDOW_PAD) % 64 & 1;
 }
 
@@ -531,13 +569,14 @@ static void draw_rows(window_case *w, int columns, uint64_t *random) {
     for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
         if (!(w->rows.held >> row & 1))
             continue;
-        uint64_t *words = w->bits + (size_t)row * w->rows.words;
+        uint64_t *words = w->bits + row;
         int kind = draw(random, 5);
-        memset(words, 0, w->rows.words * sizeof *words);
+        for (size_t word = 0; word < w->rows.words; word++)
+            words[word * SNOW_WINDOW_ROWS] = 0;
         for (int n = SNOW_WINDOW_PAD; n < SNOW_WINDOW_PAD + columns; n++)
             if (kind == 0 || (kind == 1 && draw(random, 40) == 0) ||
                 (kind > 1 && draw(random, 2)))
-                words[n / 64] |= UINT64_C(1) << n % 64;
+                words[n / 64 * SNOW_WINDOW_ROWS] |= UINT64_C(1) << n % 64;
     }
 }
 
@@ -546,7 +585,7 @@ static void rank_rows(window_case *w) {
     for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
         uint32_t rank = 0;
         for (size_t word = 0; word < w->rows.words; word++) {
-            size_t at = (size_t)row * w->rows.words + word;
+            size_t at = word * SNOW_WINDOW_ROWS + (size_t)row;
             if (w->rows.held >> row & 1)
                 w->rank[at] = rank;
             for (int n = 0; n < 64; n++)
@@ -569,12 +608,9 @@ static void check_window(const window_case *w, snow_isa isa) {
             window |= (uint64_t)bit_at(w, row, w->column + n) << n;
         for (int64_t n = 0; n < w->column; n++)
             voxels += bit_at(w, row, n);
-        if (!(w->rows.held >> row & w->wanted >> row & 1)) {
-            memset(&window, GUARD_BYTE, sizeof window);
-            memset(&voxels, GUARD_BYTE, sizeof voxels);
-        } else {
-            found |= (uint64_t)(window != 0) << row;
-        }
+        if (!window || !(w->rows.held >> row & w->wanted >> row & 1))
+            continue;
+        found |= UINT64_C(1) << row;
         if (bits[row] != window || before[row] != voxels)
             fail_msg("%s: row %d has %llx after %u, not %llx after %u: %d "
                      "columns, %d from %d",
@@ -685,17 +721,17 @@ static void check_read_row(const band_case *b, const snow_mask_rows *rows,
     const unsigned char *voxels =
         b->voxels +
         ((size_t)slice * (size_t)b->rows + (size_t)row) * (size_t)b->columns;
-    const uint64_t *bits = rows->bits + (size_t)n * rows->words;
-    const uint32_t *rank = rows->rank + (size_t)n * rows->words;
+    const uint64_t *bits = rows->bits + n;
+    const uint32_t *rank = rows->rank + n;
     uint32_t count = 0;
     for (size_t at = 0; at < 64 * rows->words; at++) {
         size_t column = at - SNOW_WINDOW_PAD; /* far beyond, before the first */
         bool kept = column < (size_t)b->columns && voxels[column] >= 128;
-        if (at % 64 == 0 && rank[at / 64] != count)
+        size_t word = at / 64 * SNOW_WINDOW_ROWS;
+        if (at % 64 == 0 && rank[word] != count)
             fail_msg("%s ranks word %zu of row %d of %dx%d %u, not %u", name,
-                     at / 64, (int)row, b->columns, b->rows, rank[at / 64],
-                     count);
-        if ((bits[at / 64] >> at % 64 & 1) != kept)
+                     at / 64, (int)row, b->columns, b->rows, rank[word], count);
+        if ((bits[word] >> at % 64 & 1) != kept)
             fail_msg("%s: bit %zu of row %d of %dx%d is not %d", name, at,
                      (int)row, b->columns, b->rows, kept);
         if (kept)
@@ -926,13 +962,10 @@ enum word {
     SET1,
     ALPHA2,
     ALPHA4,
-    EVEN,
-    ODD,
     WITH_ALPHA2,
     WITH_ALPHA4,
     GATHER4,
     GATHER2,
-    DOUBLE2,
     WORDS
 };
 
@@ -941,11 +974,12 @@ enum word {
 typedef struct word_input {
     float a[16], b[16], c[16];
     float table[ENTRIES * 4];
-    uint32_t entries[8];
+    uint32_t pairs[ENTRIES], entries[16];
     uint8_t bytes[32];
     uint16_t shorts[32];
     uint32_t bits;
-    uint64_t mask;
+    uint64_t mask, low[8], high[8], within;
+    unsigned shift;
 } word_input;
 
 typedef struct word_output {
@@ -954,7 +988,10 @@ typedef struct word_output {
     float fold2[4][4], fold4[4][4];
     bool less[4];
     int lane_count, popcount;
-    uint32_t expand8[16], expand16[16];
+    uint32_t expand8[16], expand16[16], widen8[16], widen16[16];
+    float low[16], high[16], spread2[16 * 2 + 16], spread4[16 * 4 + 16];
+    uint64_t windows[8];
+    unsigned found;
 } word_output;
 
 #define SELECT_SCALAR
@@ -1010,20 +1047,14 @@ static float plain_word(const word_input *in, enum word word, int i,
         return in->a[i | 1];
     case ALPHA4:
         return in->a[i | 3];
-    case EVEN:
-        return in->a[i & ~1];
-    case ODD:
-        return in->a[i | 1];
     case WITH_ALPHA2:
         return i % 2 == 1 ? b : a;
     case WITH_ALPHA4:
         return i % 4 == 3 ? b : a;
     case GATHER4:
         return in->table[in->entries[i / 4] * 4 + (uint32_t)i % 4];
-    case GATHER2:
-        return in->table[in->entries[i / 2] * 2 + (uint32_t)i % 2];
     default:
-        return in->table[in->entries[i / 4] * 2 + (uint32_t)i % 2];
+        return in->table[in->entries[i / 2] * 2 + (uint32_t)i % 2];
     }
 }
 
@@ -1085,6 +1116,17 @@ static void check_bits(const word_input *in, const word_output *out,
         bool here = in->bits >> i & 1;
         uint32_t byte = here ? in->bytes[next] + 1u : 0;
         uint32_t word = here ? in->shorts[next] + 1u : 0;
+        for (int c = 0; c < 4; c++) {
+            float two = here ? in->table[2 * next + c] : 0;
+            float four = here ? in->table[4 * next + c] : 0;
+            assert_true((c >= 2 || out->spread2[2 * i + c] == two) &&
+                        out->spread4[4 * i + c] == four);
+        }
+        uint32_t pair = in->pairs[in->entries[i]];
+        assert_true(out->low[i] == (float)(pair & 0xFFFF) &&
+                    out->high[i] == (float)(pair >> 16));
+        assert_true(out->widen8[i] == in->bytes[i] &&
+                    out->widen16[i] == in->shorts[i]);
         next += here;
         if (out->expand8[i] != byte || out->expand16[i] != word)
             fail_msg("%s: bits %x expand to %u and %u at %d, not %u and %u",
@@ -1094,6 +1136,17 @@ static void check_bits(const word_input *in, const word_output *out,
     for (int i = 0; i < 64; i++)
         bits += (int)(in->mask >> i & 1);
     assert_int_equal(out->popcount, bits);
+}
+
+static void check_windows(const word_input *in, const word_output *out) {
+    for (int n = 0; n < 8; n++) {
+        uint64_t window = in->low[n] >> in->shift;
+        if (in->shift)
+            window |= in->high[n] << (64 - in->shift);
+        window &= in->within;
+        assert_true(out->windows[n] == window);
+        assert_int_equal(out->found >> n & 1, window != 0);
+    }
 }
 
 static float odd_value(uint64_t *random) {
@@ -1112,7 +1165,9 @@ static void draw_words(word_input *in, uint64_t *random) {
     }
     for (int i = 0; i < ENTRIES * 4; i++)
         in->table[i] = (float)i;
-    for (int i = 0; i < 8; i++)
+    for (int i = 0; i < ENTRIES; i++)
+        in->pairs[i] = (uint32_t)(support_random(random) >> 32);
+    for (int i = 0; i < 16; i++)
         in->entries[i] = (uint32_t)draw(random, ENTRIES);
     for (int i = 0; i < 32; i++) {
         in->bytes[i] = (uint8_t)draw(random, 256);
@@ -1120,6 +1175,12 @@ static void draw_words(word_input *in, uint64_t *random) {
     }
     in->bits = (uint32_t)draw_mask(random, 16);
     in->mask = draw_mask(random, 64);
+    for (int i = 0; i < 8; i++) {
+        in->low[i] = draw_mask(random, 64);
+        in->high[i] = draw_mask(random, 64);
+    }
+    in->within = (UINT64_C(1) << draw(random, 64)) - 1;
+    in->shift = (unsigned)draw(random, 64);
 }
 
 static void words_mean_what_they_say(void **state) {
@@ -1138,6 +1199,7 @@ static void words_mean_what_they_say(void **state) {
             check_lanes(&in, &out, name);
             check_vectors(&in, &out, name);
             check_bits(&in, &out, name);
+            check_windows(&in, &out);
         }
     }
 }
@@ -1234,10 +1296,11 @@ static void time_tile(int lattice, int taps, int channels) {
 }
 
 static void call_sample(void *user, snow_isa isa) {
-    sample_case *s = user;
-    float out[(SNOW_WINDOW_MOST + 8) * 4];
-    snow_sample_of(isa, s->code_bytes, s->channels, s->shaded)(
-        s->codes, s->normals, s->bits, s->count, s->palette, s->gloss, out);
+    static float out[(SNOW_SAMPLE_ROWS * SNOW_WINDOW_MOST + 8) * 4];
+    static snow_sample_room room;
+    const sample_case *s = user;
+    make_samples(s, isa, (size_t)((s->count + 3) / 4 * 4 * s->channels), &room,
+                 out);
 }
 
 static void call_windows(void *user, snow_isa isa) {
@@ -1296,9 +1359,11 @@ static void time_samples(uint64_t *random) {
         s.channels = kind / 2 % 2 ? 4 : 2;
         s.shaded = kind / 4;
         make_tables(&s, random);
-        draw_sample(&s, 20, random);
-        s.bits = 0xFFFFF;
-        snprintf(name, sizeof name, "sample 20 of %d bytes %dch %s",
+        draw_sample(&s, 17, random);
+        s.held = 0xFFFFF;
+        for (int row = 0; row < SNOW_SAMPLE_ROWS; row++)
+            s.bits[row] = support_random(random) >> 47;
+        snprintf(name, sizeof name, "20 x 17 samples of %d bytes %dch %s",
                  s.code_bytes, s.channels, s.shaded ? "shaded" : "plain");
         time_kernel(name, call_sample, &s);
         free_tables(&s);

@@ -12,11 +12,14 @@
 
 #include <math.h>
 #include <snowglass/ranks.h>
+#include <stdatomic.h>
 
-/* Rounding of over, and of the warp; what shines through where a pixel is given
- * up, which parts do later than the whole; steps of 8 bits. */
+/* Rounding of over, and of the warp.  Where the sheared method gives up a pixel
+ * half a step of 8 bits may shine through, which parts do later than the whole,
+ * and Catmull-Rom's weights along both axes may make 1.25^2 times that of it.
+ */
 #define BOUND 4e-6
-#define BOUND_OPAQUE (0.5 / 255 + BOUND)
+#define BOUND_OPAQUE (1.25 * 1.25 * 0.5 / 255 + BOUND)
 
 #define MOST_RANKS 33
 
@@ -352,6 +355,92 @@ static void so_it_does_by_the_exact_methods(void **state) {
     sweep("exact, perspective", 6, 50, exact, 3);
 }
 
+/* --- phantoms and real volumes --------------------------------------------
+ */
+
+/* Views along all axes from both sides, and oblique; every number of ranks; all
+ * cuts in turn. */
+static void look_around(const char *name, const snow_volume *volume) {
+    static const char *const names[] = {"+x", "-x", "+y",  "-y",
+                                        "+z", "-z", "iso", "iso"};
+    snow_context *context = support_context();
+    snow_transfer *transfer = NULL;
+    sweep_tally tally = {0};
+    assert_int_equal(snow_transfer_make(volume, NULL, &transfer), SNOW_OK);
+    for (int n = 0; n < 8; n++) {
+        double strongest;
+        play p = {.info = *snow_volume_describe(volume),
+                  .voxels = snow_volume_voxels(volume),
+                  .transfer = transfer,
+                  .how = {.size = sizeof(snow_ranks_options),
+                          .combining = (snow_combining)(n % 5)},
+                  .pictures = 1};
+        assert_int_equal(snow_view_named(context, names[n], &p.view), SNOW_OK);
+        snow_settings_init(&p.settings);
+        p.view.width = 160;
+        p.view.height = 120;
+        p.view.zoom = 1 + n % 3 * 0.5;
+        p.view.fov = n == 7 ? 30 : 0;
+        p.settings.threads = 1;
+        p.settings.quality = (snow_quality)(n % 3);
+        if (n / 2 % 2) /* thin */
+            p.settings.opacity_length = 100;
+        float *serial = serial_picture(context, &p, &strongest);
+        for (int i = n % 2; i < COUNTS; i += 2) {
+            p.cut = (cutting)((n + i / 2) % CUTTINGS);
+            check(context, &p, serial, strongest, rank_counts[i], &tally);
+        }
+        free(serial);
+    }
+    report(name, &tally);
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void phantoms_are_seen_alike_by_many_ranks(void **state) {
+    (void)state;
+    static const char *const names[] = {"head", "engine", "shells"};
+    for (int n = 0; n < 3; n++) {
+        snow_context *context = support_context();
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_phantom(context, names[n],
+                                             (const int64_t[]){70, 64, 60}, 1,
+                                             &volume),
+                         SNOW_OK);
+        look_around(names[n], volume);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+}
+
+static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
+    (void)state;
+    static const struct {
+        const char *path;
+        snow_volume_options options;
+    } files[] = {
+        {"classic/engine_256x256x110_u8.raw.gz",
+         {.dims = {256, 256, 110}, .type = SNOW_UINT8}},
+        {"classic/CThead_256x256x113_u16be.raw.gz",
+         {.dims = {256, 256, 113},
+          .type = SNOW_UINT16,
+          .endian = SNOW_ENDIAN_BIG,
+          .spacing = {1, 1, 2}}},
+    };
+    if (!support_data(files[0].path) || !support_data(files[1].path))
+        skip();
+    for (int n = 0; n < 2; n++) {
+        snow_context *context = support_context();
+        snow_volume *volume = NULL;
+        if (snow_volume_open(context, support_data(files[n].path),
+                             &files[n].options, &volume) != SNOW_OK)
+            fail_msg("%s", snow_context_message(context));
+        look_around(n ? "CThead" : "Engine", volume);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+}
+
 /* --- deterministic pictures -----------------------------------------------
  */
 
@@ -529,13 +618,89 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
     snow_context_free(context);
 }
 
+/* --- memory ---------------------------------------------------------------
+ */
+
+/* Fails one allocation, or all from it on. */
+typedef struct miser {
+    atomic_long asked;
+    long failing;
+    bool for_good;
+} miser;
+
+static void *give_or_not(void *user, size_t bytes) {
+    miser *m = user;
+    long number = atomic_fetch_add(&m->asked, 1);
+    bool fails = m->for_good ? number >= m->failing : number == m->failing;
+    return m->failing >= 0 && fails ? NULL : malloc(bytes);
+}
+
+static void take_back(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+/* Ranks' allocations come in any order, so a number is another one each time;
+ * what counts is that all ranks end, and nothing is left. */
+static void ranks_without_memory_fail_together(void **state) {
+    (void)state;
+    for (int n = 0; n < 3; n++) {
+        reference_scene scene;
+        snow_context *maker = support_context();
+        snow_transfer *transfer = NULL;
+        play p = play_of(2 + n, 70, &scene);
+        p.settings.method =
+            n == 2 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_SHEARED;
+        p.settings.quality = SNOW_QUALITY_NORMAL;
+        p.settings.deterministic = n == 1;
+        p.settings.shade = SNOW_SHADE_NONE;
+        p.settings.threads = 1;
+        p.cut = GROUPED;
+        p.how.pixel_bits = 8;
+        p.channels = 4;
+        assert_int_equal(snow_transfer_new(maker, scene.colors,
+                                           scene.color_count, scene.opacities,
+                                           scene.opacity_count, &transfer),
+                         SNOW_OK);
+        p.transfer = transfer;
+        cut_up(maker, &p, 3);
+        p.picture = malloc(floats_of(&p) * sizeof(float));
+        assert_non_null(p.picture);
+        long last = 1;
+        /* Each of the first ones, then some. */
+        for (long failing = -1; failing < last;
+             failing += failing < 30 ? 1 : 5) {
+            miser m = {.failing = failing, .for_good = failing % 2};
+            const snow_allocator allocator = {give_or_not, take_back, &m};
+            snow_context *context = NULL;
+            if (snow_context_new(&allocator, &context) != SNOW_OK)
+                continue;
+            snow_status status = snow_comm_threads(context, 3, perform, &p);
+            assert_int_equal(status, failing < 0 ? SNOW_OK : status);
+            assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
+            if (failing < 0)
+                last = atomic_load(&m.asked);
+            assert_int_equal(snow_context_bytes(context), 0);
+            snow_context_free(context);
+        }
+        assert_true(last > 50);
+        free(p.picture);
+        snow_transfer_free(transfer);
+        snow_context_free(maker);
+        model_free(&scene);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_ranks_makes_the_serial_picture),
         cmocka_unit_test(so_it_does_in_perspective),
         cmocka_unit_test(so_it_does_by_the_exact_methods),
+        cmocka_unit_test(phantoms_are_seen_alike_by_many_ranks),
+        cmocka_unit_test(real_volumes_are_seen_alike_by_many_ranks),
         cmocka_unit_test(deterministic_pictures_are_the_same_bit_for_bit),
         cmocka_unit_test(what_one_rank_finds_wrong_all_are_told),
+        cmocka_unit_test(ranks_without_memory_fail_together),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -114,6 +114,14 @@ SNOW_API snow_context *snow_comm_context(const snow_comm *comm);
  * communicator it fails at once. */
 SNOW_API snow_status snow_comm_agree(snow_comm *comm, snow_status status);
 
+/* Collective.  `count` bytes of rank `root` to all; of every rank to all, `all`
+ * having room for ranks * count bytes, in order of rank.  Errors: those of the
+ * transport. */
+SNOW_API snow_status snow_comm_broadcast(snow_comm *comm, void *bytes,
+                                         size_t count, int root);
+SNOW_API snow_status snow_comm_share(snow_comm *comm, const void *mine,
+                                     size_t count, void *all);
+
 /* Whether the transport itself has failed on this rank (a peer is gone, say).
  * All further calls on the communicator fail with the same status, and the
  * other ranks may not know: a program of several processes ends them all. */

@@ -67,6 +67,10 @@ SNOW_API void snow_context_release(snow_context *context, void *block);
 /* --- figures ---------------------------------------------------------------
  */
 
+/* The most bytes that objects of this context may hold together from now on; 0:
+ * as many as there are.  What would exceed it fails with SNOW_NO_MEMORY. */
+SNOW_API void snow_context_set_limit(snow_context *context, uint64_t bytes);
+
 /* Bytes that objects of this context hold now, and the most they ever held. */
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);
 SNOW_API uint64_t snow_context_peak_bytes(const snow_context *context);

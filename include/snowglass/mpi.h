@@ -1,4 +1,4 @@
-/* snowglass/mpi.h - communicators of MPI processes.
+/* snowglass/mpi.h - communicators of MPI processes, and pictures over them.
  *
  * A library of its own, libsnowglass-mpi (pkg-config: snowglass-mpi), built
  * for one MPI; the caller's program is built with the same one.  It neither
@@ -8,7 +8,7 @@
 #define SNOWGLASS_MPI_H
 
 #include <mpi.h>
-#include <snowglass/comm.h>
+#include <snowglass/insitu.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -30,6 +30,17 @@ SNOW_API snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
  * of the module mpi. */
 SNOW_API snow_status snow_comm_mpi_fortran(snow_context *context,
                                            MPI_Fint group, snow_comm **out);
+
+/* Collective over `group`: pictures of a running simulation over such a
+ * communicator, which goes with them (snow_insitu_free is collective, and comes
+ * before MPI_Finalize).  `context` NULL: a context of their own.  Errors: as
+ * snow_comm_mpi; the message is in the context. */
+SNOW_API snow_status snow_insitu_new_mpi(snow_context *context, MPI_Comm group,
+                                         snow_insitu **out);
+
+/* The same for a communicator's handle in Fortran, with a context of their own.
+ */
+SNOW_API snow_status snow_insitu_new_fortran(MPI_Fint group, snow_insitu **out);
 
 #ifdef __cplusplus
 }

@@ -99,10 +99,10 @@ SNOW_API snow_status snow_ranks_plan(const snow_volume *volume,
  * the ghost voxels that the view needs; each voxel is one rank's own, and a
  * rank may own none.  Parts may be any boxes that have an order from front to
  * back: slabs, a grid, a k-d tree.  The picture is that of snow_frame_render of
- * the whole but for rounding; where it is opaque, by up to half a step of 8
- * bits, which is what may shine through where the sheared method gives up a
- * pixel.  Where quality high blends pictures along several axes, floats travel
- * and the blend is rank 0's.
+ * the whole but for rounding, and where it is opaque within one step of 8 bits:
+ * half a step may shine through where the sheared method gives up a pixel,
+ * which parts do later than the whole.  Where quality high blends pictures
+ * along several axes, floats travel and the blend is rank 0's.
  *
  * With settings->deterministic it is the same bit for bit as
  * snow_frame_render's, for any number of ranks: parts then are slabs across the

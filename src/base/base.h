@@ -26,6 +26,7 @@ struct snow_context {
     snow_notice_fn *notice; /* NULL: nobody listens */
     void *notice_user;
     uint64_t bytes, peak;   /* held now; the most ever held */
+    uint64_t limit;         /* of bytes; 0: none */
     struct snow_pool *pool; /* threads (base/parallel.h), NULL until needed */
     uint64_t serials;       /* given out so far, to tell objects apart */
     uint64_t bytes_read;    /* from files */

@@ -71,6 +71,10 @@ void snow_context_set_notice(snow_context *context, snow_notice_fn *notice,
     context->notice_user = user;
 }
 
+void snow_context_set_limit(snow_context *context, uint64_t bytes) {
+    context->limit = bytes;
+}
+
 uint64_t snow_context_bytes(const snow_context *context) {
     return context->bytes;
 }
@@ -162,12 +166,19 @@ static block_header *header_of(void *block) {
     return (block_header *)(void *)((char *)block - ALIGNMENT);
 }
 
+/* Whether so many bytes more are allowed; the context is locked. */
+static bool may_hold(const snow_context *context, size_t bytes) {
+    return !context->limit || (bytes <= context->limit &&
+                               context->bytes <= context->limit - bytes);
+}
+
 /* A block from the caller's allocator, which need not be safe for threads. */
 static void *allocate_counted(snow_context *context, size_t bytes,
                               size_t with_header, uint64_t *held) {
     pthread_mutex_lock(&context->lock);
-    void *raw =
-        context->allocator.allocate(context->allocator.user, with_header);
+    void *raw = NULL;
+    if (may_hold(context, bytes))
+        raw = context->allocator.allocate(context->allocator.user, with_header);
     if (raw)
         context->bytes += bytes;
     if (context->bytes > context->peak)
@@ -184,10 +195,12 @@ void *snow_allocate(snow_context *context, size_t bytes) {
     if (bytes <= SIZE_MAX - extra)
         raw = allocate_counted(context, bytes, bytes + extra, &held);
     if (!raw) {
-        snow_fail(context, SNOW_NO_MEMORY,
-                  "no memory for %zu bytes more (%llu are held); close other "
-                  "programs or take a smaller volume",
-                  bytes, (unsigned long long)held);
+        snow_fail(
+            context, SNOW_NO_MEMORY,
+            "no memory for %zu bytes more (%llu are held%s); %s", bytes,
+            (unsigned long long)held, context->limit ? " under a limit" : "",
+            context->limit ? "raise it or take a smaller volume"
+                           : "close other programs or take a smaller volume");
         return NULL;
     }
     char *block = raw + extra - (uintptr_t)raw % ALIGNMENT;

@@ -27,6 +27,12 @@ struct gloss_job {
     snow_gloss *table;
 };
 
+/* Both are from 0 to 2. */
+static inline snow_gloss gloss_of(float factor, float white) {
+    return (uint32_t)(int32_t)(factor * SNOW_GLOSS_ONE + 0.5f) |
+           (uint32_t)(int32_t)(white * SNOW_GLOSS_ONE + 0.5f) << 16;
+}
+
 /* The order matters, so a blank line keeps the two from being sorted. */
 #define SELECT_SCALAR
 #include "simd/select.h"
@@ -80,7 +86,7 @@ void snow_gloss_table(snow_context *context, const snow_settings *settings,
         job.light[i] = (float)light[i];
         job.half[i] = (float)half[i];
     }
-    snow_gloss plain = {job.ambient, 0};
+    snow_gloss plain = gloss_of(job.ambient, 0);
     table[SNOW_NO_NORMAL] = plain;
     for (int code = SIDE * SIDE + 1; code < SNOW_NORMALS; code++)
         table[code] = plain;

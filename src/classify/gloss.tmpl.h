@@ -54,8 +54,10 @@ TARGET static void NAME(gloss_row)(const gloss_job *job, int row) {
     else
         NAME(power_real)(white, job->shininess);
     /* x^0 is 1 for a highlight of 0 too, which must stay black. */
-    for (int i = 0; i < SIDE; i++) {
-        out[i].factor = job->ambient + job->diffuse * lambert[i];
-        out[i].white = lambert[i] > 0 ? job->specular * white[i] : 0;
-    }
+    const float ambient = job->ambient, diffuse = job->diffuse;
+    const float specular = job->specular;
+    for (int i = 0; i < SIDE; i++)
+        white[i] = lambert[i] > 0 ? specular * white[i] : 0;
+    for (int i = 0; i < SIDE; i++)
+        out[i] = gloss_of(ambient + diffuse * lambert[i], white[i]);
 }

@@ -21,10 +21,12 @@
 #define SNOW_NO_NORMAL 0       /* the code of a voxel without a gradient */
 #define SNOW_NORMAL_ERROR 0.56 /* degrees */
 
-/* What a normal makes of a colour c: min(1, c * factor + white). */
-typedef struct snow_gloss {
-    float factor, white;
-} snow_gloss;
+/* What a normal makes of a colour c: min(1, c * factor + white).  Both are from
+ * 0 to 2, in steps of 1 / SNOW_GLOSS_ONE, a 128th of an 8-bit step; the factor
+ * is the lower half.  In floats the table would take twice the room, and voxels
+ * wait for it. */
+typedef uint32_t snow_gloss;
+#define SNOW_GLOSS_ONE 32767.0f
 
 /* The code of a direction (not 0, any length), and the unit vector that a code
  * stands for (one of the two). */

@@ -5,7 +5,7 @@
  *   RAY_EXPAND    V(expand8) or V(expand16), as the code
  *   RAY_CHANNELS  floats of a sample: 2 or 4
  *   RAY_SHADED    whether normals and gloss are used: 0 or 1
- *   RAY_GATHER, RAY_SHINE, RAY_ALPHA, RAY_WITH_ALPHA
+ *   RAY_GATHER, RAY_REPEAT, RAY_ALPHA, RAY_WITH_ALPHA
  *                 as in classify/sample.tmpl.h
  *   RAY_NAME      name of the function
  *
@@ -19,8 +19,7 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
     float exponents[SNOW_WINDOW_MOST + 33];
     const RAY_CODE *code = codes;
 #if RAY_SHADED
-    const float *shines = (const float *)(const void *)(gloss - 1);
-    uint32_t normal[SNOW_WINDOW_MOST + 17];
+    float factors[SNOW_WINDOW_MOST + 33], whites[SNOW_WINDOW_MOST + 33];
 #else
     (void)normals, (void)gloss;
 #endif
@@ -29,7 +28,9 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         RAY_EXPAND(code, here, entry + at);
         code += V(popcount)(here);
 #if RAY_SHADED
-        V(expand16)(normals, here, normal + at);
+        uint32_t normal[16];
+        V(expand16)(normals, here, normal);
+        V(pairs16)(gloss - 1, normal, factors + at, whites + at);
         normals += V(popcount)(here);
 #endif
     }
@@ -38,7 +39,7 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         V(vec) sum = V(fma)(V(set1)(square[2]), x, V(set1)(square[1]));
         V(store)(exponents + at, V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
     }
-    const V(places) spread = RAY_CHANNELS == 2 ? V(repeat2)() : V(repeat4)();
+    const V(places) spread = RAY_REPEAT();
     const V(vec) one = V(set1)(1), round = V(set1)(0x1.8p23f);
     for (int i = 0; i < count; i += LANES / RAY_CHANNELS) {
         V(vec) straight = RAY_GATHER(entries, entry + i);
@@ -57,9 +58,10 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         V(vec) alpha = V(fnma)(V(mul)(scale, f), series, V(sub)(one, scale));
         V(vec) color = straight;
 #if RAY_SHADED
-        V(vec) shine = RAY_SHINE(shines, normal + i);
-        color = V(fma)(straight, V(even)(shine), V(odd)(shine));
-        color = V(min)(color, one);
+        V(vec) factor = V(pick)(factors + i, spread);
+        V(vec) white = V(pick)(whites + i, spread);
+        color = V(fma)(straight, factor, white);
+        color = V(min)(V(mul)(color, V(set1)(1 / SNOW_GLOSS_ONE)), one);
 #endif
         V(store)
         (samples + i * RAY_CHANNELS,
@@ -73,6 +75,6 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
 #undef RAY_SHADED
 #undef RAY_NAME
 #undef RAY_GATHER
-#undef RAY_SHINE
+#undef RAY_REPEAT
 #undef RAY_ALPHA
 #undef RAY_WITH_ALPHA

@@ -5,7 +5,7 @@
 #define RAY_CHANNELS 2
 #define RAY_SHADED 0
 #define RAY_GATHER V(gather2)
-#define RAY_SHINE V(gather2)
+#define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
 #define RAY_WITH_ALPHA V(with_alpha2)
 #define RAY_NAME NAME(ray_byte2_plain)
@@ -15,7 +15,7 @@
 #define RAY_CHANNELS 2
 #define RAY_SHADED 1
 #define RAY_GATHER V(gather2)
-#define RAY_SHINE V(gather2)
+#define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
 #define RAY_WITH_ALPHA V(with_alpha2)
 #define RAY_NAME NAME(ray_byte2_shaded)
@@ -25,7 +25,7 @@
 #define RAY_CHANNELS 4
 #define RAY_SHADED 0
 #define RAY_GATHER V(gather4)
-#define RAY_SHINE V(double2)
+#define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
 #define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME NAME(ray_byte4_plain)
@@ -35,7 +35,7 @@
 #define RAY_CHANNELS 4
 #define RAY_SHADED 1
 #define RAY_GATHER V(gather4)
-#define RAY_SHINE V(double2)
+#define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
 #define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME NAME(ray_byte4_shaded)
@@ -45,7 +45,7 @@
 #define RAY_CHANNELS 2
 #define RAY_SHADED 0
 #define RAY_GATHER V(gather2)
-#define RAY_SHINE V(gather2)
+#define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
 #define RAY_WITH_ALPHA V(with_alpha2)
 #define RAY_NAME NAME(ray_word2_plain)
@@ -55,7 +55,7 @@
 #define RAY_CHANNELS 2
 #define RAY_SHADED 1
 #define RAY_GATHER V(gather2)
-#define RAY_SHINE V(gather2)
+#define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
 #define RAY_WITH_ALPHA V(with_alpha2)
 #define RAY_NAME NAME(ray_word2_shaded)
@@ -65,7 +65,7 @@
 #define RAY_CHANNELS 4
 #define RAY_SHADED 0
 #define RAY_GATHER V(gather4)
-#define RAY_SHINE V(double2)
+#define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
 #define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME NAME(ray_word4_plain)
@@ -75,7 +75,7 @@
 #define RAY_CHANNELS 4
 #define RAY_SHADED 1
 #define RAY_GATHER V(gather4)
-#define RAY_SHINE V(double2)
+#define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
 #define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME NAME(ray_word4_shaded)

@@ -7,6 +7,16 @@
 /* By bytes of a code, channels, and whether shaded. */
 typedef snow_sample_fn *snow_sample_table[2][2][2];
 
+/* Copies as many numbers as a window of so many places can hold: a length that
+ * is that of the row would often be guessed wrong. */
+#define SAMPLE_COPY(to, from, count)                          \
+    do {                                                      \
+        memcpy(to, from, 32 * sizeof *(to));                  \
+        if ((count) > 32)                                     \
+            memcpy((to) + 32, (from) + 32,                    \
+                   (SNOW_SAMPLE_MARGIN - 32) * sizeof *(to)); \
+    } while (0)
+
 #define SELECT_SCALAR
 #include "simd/select.h"
 

@@ -12,16 +12,46 @@
 #define SNOW_WINDOW_MOST 63
 #define SNOW_SAMPLE_MARGIN 64
 
-/* Samples of a window of `count` places, premultiplied, 2 or 4 floats each: the
- * next voxel of IA where `bits` has a 1 (lowest first), zeros elsewhere.  The
- * palette is that of classify/codes.h, with its zeros before it; before `gloss`
- * lies an entry that is a number at least; `samples` has room for 8 more.
+#define SNOW_SAMPLE_ROWS                                 \
+    64 /* of windows at most: a mask of rows is one word \
+        */
+#define SNOW_SAMPLES_MOST (SNOW_SAMPLE_ROWS * (SNOW_WINDOW_MOST + 1))
+
+/* Memory for the voxels of some windows, one after another. */
+typedef struct snow_sample_room {
+    uint16_t codes[SNOW_SAMPLES_MOST + 64], normals[SNOW_SAMPLES_MOST + 64];
+    uint32_t entries[SNOW_SAMPLES_MOST + 64]; /* of the palette */
+    float factors[SNOW_SAMPLES_MOST + 64], whites[SNOW_SAMPLES_MOST + 64];
+    float samples[4 * (SNOW_SAMPLES_MOST + 64)];
+} snow_sample_room;
+
+/* Windows of `count` places, of which samples are to be made: premultiplied, 2
+ * or 4 floats each, the next voxel of IA where the row's bits have a 1 (lowest
+ * first), zeros elsewhere.  The palette is that of classify/codes.h, with its
+ * zeros before it; before `gloss` lies an entry that is a number at least.
  * Shaded, the palette holds straight colours, `normals` the voxels' normals and
  * `gloss` the shading table; unshaded, the palette is premultiplied and both
  * are NULL. */
-typedef void snow_sample_fn(const void *codes, const uint16_t *normals,
-                            uint64_t bits, int count, const float *palette,
-                            const snow_gloss *gloss, float *samples);
+typedef struct snow_sample_job {
+    uint64_t held; /* rows that have a voxel: bit i; the others are passed over,
+                      as is what is told of them below */
+    int count;
+    const uint64_t *bits;
+    const unsigned char *const *codes; /* of voxels of each row, of which */
+    const uint16_t *const *normals;    /* so many lie before the window: */
+    const uint32_t *before;
+    const float *palette;
+    const snow_gloss *gloss;
+    snow_sample_room *room;
+    float *samples; /* row i's begin at i * window; SNOW_SAMPLE_BEYOND floats
+                       beyond the last row are written, and so are rows that
+                       are not held */
+    size_t window;  /* floats */
+} snow_sample_job;
+
+#define SNOW_SAMPLE_BEYOND 16
+
+typedef void snow_sample_fn(const snow_sample_job *job);
 
 snow_sample_fn *snow_sample_of(snow_isa isa, int code_bytes, int channels,
                                bool shaded);

@@ -2,72 +2,103 @@
  * simd/select.h's words in force:
  *
  *   SAMPLE_CODE      C type of a code: uint8_t or uint16_t
- *   SAMPLE_EXPAND    V(expand8) or V(expand16), as the code
+ *   SAMPLE_WIDEN     V(widen8) or V(widen16), as the code
  *   SAMPLE_CHANNELS  floats of a sample: 2 or 4
- *   SAMPLE_GATHER, SAMPLE_SHINE, SAMPLE_ALPHA, SAMPLE_WITH_ALPHA
- *                    V(gather2), V(gather2), V(alpha2), V(with_alpha2), or
- *                    V(gather4), V(double2), V(alpha4), V(with_alpha4), as the
- *                    channels
- *   SAMPLE_NAME      name of the functions: SAMPLE_NAME(plain), (shaded)
+ *   SAMPLE_GATHER, SAMPLE_REPEAT, SAMPLE_ALPHA, SAMPLE_WITH_ALPHA,
+ * SAMPLE_SPREAD V(gather2), V(repeat2), V(alpha2), V(with_alpha2), V(spread2),
+ * or V(gather4), V(repeat4), V(alpha4), V(with_alpha4), V(spread4), as the
+ * channels SAMPLE_NAME      name of the functions: SAMPLE_NAME(plain), (shaded)
  *
- * All are undefined at the end.  Which places hold a voxel decides no branch,
- * which the processor would guess wrong at every edge of an object: places
- * without one have entry 0 of the palette, its zeros.  A sample of four floats
- * is one vector: 16 bytes in one load and one store are several times faster
- * than a gather. */
+ * All are undefined at the end.  The voxels of all windows are first set down
+ * one after another, so that no lane of a vector is spent on a place without
+ * one; then they are classified and shaded; then spread out over their windows.
+ * Which places hold a voxel decides no branch, which the processor would guess
+ * wrong at every edge of an object. */
 
-TARGET static void SAMPLE_NAME(plain)(const void *codes,
-                                      const uint16_t *normals, uint64_t bits,
-                                      int count, const float *palette,
-                                      const snow_gloss *gloss, float *samples) {
-    const float *entries = palette - SAMPLE_CHANNELS;
-    uint32_t entry[SNOW_WINDOW_MOST + 17];
-    const SAMPLE_CODE *code = codes;
-    (void)normals, (void)gloss;
-    for (int at = 0; at < count; at += 16) {
-        uint32_t here = (uint32_t)(bits >> at) & 0xFFFF;
-        SAMPLE_EXPAND(code, here, entry + at);
-        code += V(popcount)(here);
+/* Sets down the codes of all voxels; returns how many they are. */
+TARGET static inline int SAMPLE_NAME(codes)(const snow_sample_job *job,
+                                            const bool shaded) {
+    SAMPLE_CODE *codes = (SAMPLE_CODE *)(void *)job->room->codes;
+    int total = 0;
+    for (uint64_t left = job->held; left; left &= left - 1) {
+        int row = __builtin_ctzll(left);
+        const SAMPLE_CODE *code =
+            (const SAMPLE_CODE *)(const void *)job->codes[row];
+        size_t before = job->before[row];
+        SAMPLE_COPY(codes + total, code + before, job->count);
+        if (shaded)
+            SAMPLE_COPY(job->room->normals + total, job->normals[row] + before,
+                        job->count);
+        total += V(popcount)(job->bits[row]);
     }
-    /* Four at a time, past the end: entries there are 0. */
-    for (int i = 0; i < count; i += 4)
-        for (int n = i; n < i + 4; n++)
-            memcpy(samples + n * SAMPLE_CHANNELS,
-                   entries + (size_t)entry[n] * SAMPLE_CHANNELS,
-                   SAMPLE_CHANNELS * sizeof *samples);
+    return total;
 }
 
-TARGET static void SAMPLE_NAME(shaded)(const void *codes,
-                                       const uint16_t *normals, uint64_t bits,
-                                       int count, const float *palette,
-                                       const snow_gloss *gloss,
-                                       float *samples) {
-    const float *entries = palette - SAMPLE_CHANNELS;
-    const float *shines = (const float *)(const void *)(gloss - 1);
-    uint32_t entry[SNOW_WINDOW_MOST + 17], normal[SNOW_WINDOW_MOST + 17];
-    const SAMPLE_CODE *code = codes;
-    for (int at = 0; at < count; at += 16) {
-        uint32_t here = (uint32_t)(bits >> at) & 0xFFFF;
-        SAMPLE_EXPAND(code, here, entry + at);
-        V(expand16)(normals, here, normal + at);
-        code += V(popcount)(here);
-        normals += V(popcount)(here);
+/* The samples to their windows. */
+TARGET static inline void SAMPLE_NAME(spread)(const snow_sample_job *job) {
+    const float *samples = job->room->samples;
+    for (uint64_t left = job->held; left; left &= left - 1) {
+        int row = __builtin_ctzll(left);
+        SAMPLE_SPREAD(samples, job->bits[row], job->count,
+                      job->samples + (size_t)row * job->window);
+        samples += SAMPLE_CHANNELS * V(popcount)(job->bits[row]);
     }
-    for (int i = 0; i < count; i += LANES / SAMPLE_CHANNELS) {
-        V(vec) straight = SAMPLE_GATHER(entries, entry + i);
-        V(vec) shine = SAMPLE_SHINE(shines, normal + i);
-        V(vec) color = V(fma)(straight, V(even)(shine), V(odd)(shine));
-        color = V(mul)(V(min)(color, V(set1)(1)), SAMPLE_ALPHA(straight));
+}
+
+/* A sample of four floats is one vector: 16 bytes in one load and one store
+ * are several times faster than a gather. */
+TARGET static void SAMPLE_NAME(plain)(const snow_sample_job *job) {
+    const SAMPLE_CODE *codes = (const SAMPLE_CODE *)(void *)job->room->codes;
+    float *samples = job->room->samples;
+    int total = SAMPLE_NAME(codes)(job, false);
+    for (int i = 0; i < total; i += 4)
+        for (int n = i; n < i + 4; n++)
+            memcpy(samples + n * SAMPLE_CHANNELS,
+                   job->palette + (size_t)codes[n] * SAMPLE_CHANNELS,
+                   SAMPLE_CHANNELS * sizeof *samples);
+    SAMPLE_NAME(spread)(job);
+}
+
+/* Codes to entries of the palette, normals to factors; also some beyond the
+ * last, which are those of any voxel. */
+TARGET static inline void SAMPLE_NAME(look_up)(const snow_sample_job *job,
+                                               int total) {
+    snow_sample_room *room = job->room;
+    const SAMPLE_CODE *codes = (const SAMPLE_CODE *)(void *)room->codes;
+    for (int i = 0; i < total; i += 16) {
+        uint32_t normals[16];
+        SAMPLE_WIDEN(codes + i, room->entries + i);
+        V(widen16)(room->normals + i, normals);
+        V(pairs16)(job->gloss, normals, room->factors + i, room->whites + i);
+    }
+}
+
+TARGET static void SAMPLE_NAME(shaded)(const snow_sample_job *job) {
+    snow_sample_room *room = job->room;
+    const V(places) repeat = SAMPLE_REPEAT();
+    const V(vec) one = V(set1)(SNOW_GLOSS_ONE);
+    const V(vec) step = V(set1)(1 / SNOW_GLOSS_ONE);
+    int total = SAMPLE_NAME(codes)(job, true);
+    SAMPLE_NAME(look_up)(job, total);
+    for (int i = 0; i < total; i += LANES / SAMPLE_CHANNELS) {
+        V(vec) straight = SAMPLE_GATHER(job->palette, room->entries + i);
+        V(vec) factor = V(pick)(room->factors + i, repeat);
+        V(vec) white = V(pick)(room->whites + i, repeat);
+        V(vec) color = V(min)(V(fma)(straight, factor, white), one);
+        color = V(mul)(color, V(mul)(SAMPLE_ALPHA(straight), step));
         V(store)
-        (samples + i * SAMPLE_CHANNELS, SAMPLE_WITH_ALPHA(color, straight));
+        (room->samples + i * SAMPLE_CHANNELS,
+         SAMPLE_WITH_ALPHA(color, straight));
     }
+    SAMPLE_NAME(spread)(job);
 }
 
 #undef SAMPLE_CODE
-#undef SAMPLE_EXPAND
+#undef SAMPLE_WIDEN
 #undef SAMPLE_CHANNELS
 #undef SAMPLE_NAME
 #undef SAMPLE_GATHER
-#undef SAMPLE_SHINE
+#undef SAMPLE_REPEAT
 #undef SAMPLE_ALPHA
 #undef SAMPLE_WITH_ALPHA
+#undef SAMPLE_SPREAD

@@ -55,19 +55,13 @@ snow_status snow_comm_wait_all(snow_comm *comm, snow_message *messages,
                                int count);
 void snow_comm_work(snow_comm *comm, double seconds);
 
-/* Collective: element by element over all ranks; the result replaces `values`
- * on every rank, and has the same bits there. */
+/* Collective, as are broadcast and share (snowglass/comm.h): element by element
+ * over all ranks; the result replaces `values` on every rank, and has the same
+ * bits there. */
 typedef enum snow_reduction { SNOW_SUM, SNOW_MIN, SNOW_MAX } snow_reduction;
 snow_status snow_comm_reduce_ints(snow_comm *comm, int64_t *values,
                                   size_t count, snow_reduction by);
 snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,
                                      size_t count, snow_reduction by);
-
-/* Collective: `count` bytes of rank `root` to all; of every rank to all, `all`
- * having room for ranks * count bytes, in order of rank. */
-snow_status snow_comm_broadcast(snow_comm *comm, void *bytes, size_t count,
-                                int root);
-snow_status snow_comm_share(snow_comm *comm, const void *mine, size_t count,
-                            void *all);
 
 #endif

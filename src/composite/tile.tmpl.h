@@ -11,6 +11,28 @@
  * that loops unroll and weights stay in registers.  The order of additions does
  * not depend on the level. */
 
+/* Floats of a filtered row. */
+#define TILE_ROW (2 * SNOW_TILE_COLUMNS * TILE_CHANNELS)
+
+/* Returns a function of (tile, width, taps, phases, lead), with constants in
+ * the cases that pictures are made of. */
+#define TILE_CASE(call, t, width, taps, comb, lattice)  \
+    if ((lattice)->phases == 1)                         \
+        return call(t, width, taps, 1, 0);              \
+    return (comb)->lead[1] ? call(t, width, taps, 2, 1) \
+                           : call(t, width, taps, 2, 0)
+#define TILE_CASES(call, t, width, taps, comb, lattice)                  \
+    switch (taps) {                                                      \
+    case 2:                                                              \
+        TILE_CASE(call, t, width, 2, comb, lattice);                     \
+    case 4:                                                              \
+        TILE_CASE(call, t, width, 4, comb, lattice);                     \
+    case 6:                                                              \
+        TILE_CASE(call, t, width, 6, comb, lattice);                     \
+    default:                                                             \
+        return call(t, width, taps, (lattice)->phases, (comb)->lead[1]); \
+    }
+
 /* Along u, one pixel a lattice column: pixel n sums voxels n + m. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_single)(const float *samples, const V(vec) * weights, const int taps,
@@ -64,13 +86,12 @@ TARGET static void TILE_NAME(_strided)(const float *samples, const snow_comb *u,
  * still shines through. */
 TARGET static inline __attribute__((always_inline)) bool
 TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
-                 const int taps, const int phases) {
+                 const int taps, const int width) {
     const float *row[SNOW_TAPS_MOST];
     V(vec) least = V(set1)(0);
     for (int m = 0; m < taps; m++)
         row[m] = rows[m];
-    for (int at = 0; at < phases * SNOW_TILE_COLUMNS * TILE_CHANNELS;
-         at += LANES) {
+    for (int at = 0; at < width; at += LANES) {
         V(vec) front = V(load)(line + at);
         V(vec) sum = V(mul)(weights[0], V(load)(row[0] + at));
         for (int m = 1; m < taps; m++)
@@ -88,13 +109,12 @@ TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
 TARGET static inline __attribute__((always_inline)) bool
 TILE_NAME(_lines)(float *line, float *below, const float *const *rows,
                   const V(vec) * weights, const int taps, const int lead,
-                  const int phases) {
+                  const int width) {
     const float *row[SNOW_TAPS_MOST + 1];
     V(vec) least = V(set1)(0);
     for (int m = 0; m < taps + lead; m++)
         row[m] = rows[m];
-    for (int at = 0; at < phases * SNOW_TILE_COLUMNS * TILE_CHANNELS;
-         at += LANES) {
+    for (int at = 0; at < width; at += LANES) {
         V(vec) front = V(load)(line + at), next = V(load)(below + at);
         V(vec) a = V(set1)(0), b = a;
         for (int m = 0; m < taps + lead; m++) {
@@ -117,19 +137,6 @@ TILE_NAME(_lines)(float *line, float *below, const float *const *rows,
     return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
 }
 
-TARGET static inline __attribute__((always_inline)) void
-TILE_NAME(_filter)(const snow_tile *t, int row, const V(vec) * weights,
-                   const int taps, const int phases, const int lead,
-                   float *pixels) {
-    const float *samples = t->samples + (size_t)row * t->window;
-    if (phases == 2)
-        TILE_NAME(_double)(samples, weights, taps, lead, pixels);
-    else if (t->lattice_u->stride == 1)
-        TILE_NAME(_single)(samples, weights, taps, pixels);
-    else
-        TILE_NAME(_strided)(samples, t->u, taps, t->lattice_u->stride, pixels);
-}
-
 /* Weights in all lanes, phase after phase. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_weights)(const snow_comb *comb, int phases, const int taps,
@@ -139,70 +146,71 @@ TILE_NAME(_weights)(const snow_comb *comb, int phases, const int taps,
             weights[phase * taps + m] = V(set1)(comb->weights[phase][m]);
 }
 
+/* Combs all rows along u. */
 TARGET static inline __attribute__((always_inline)) uint64_t
-TILE_NAME(_cells)(const snow_tile *t, const int taps_u, const int taps_v,
-                  const int phases_u, const int phases_v, const int lead_u,
-                  const int lead_v) {
-    const int stride = t->lattice_v->stride, reach = taps_v + lead_v;
+TILE_NAME(_along_u)(const snow_tile *t, const int width, const int taps,
+                    const int phases, const int lead) {
+    V(vec) weights[2 * SNOW_TAPS_MOST];
+    TILE_NAME(_weights)(t->u, phases, taps, weights);
+    (void)width;
+    for (uint64_t left = t->held; left; left &= left - 1) {
+        int row = __builtin_ctzll(left), stride = t->lattice_u->stride;
+        const float *samples = t->samples + (size_t)row * t->window;
+        float *pixels = t->ring + row * TILE_ROW;
+        if (phases == 2)
+            TILE_NAME(_double)(samples, weights, taps, lead, pixels);
+        else if (stride == 1)
+            TILE_NAME(_single)(samples, weights, taps, pixels);
+        else
+            TILE_NAME(_strided)(samples, t->u, taps, stride, pixels);
+    }
+    return 0;
+}
+
+/* Lays the wanted cells behind the image; returns those that are finished. */
+TARGET static inline __attribute__((always_inline)) uint64_t
+TILE_NAME(_along_v)(const snow_tile *t, const int width, const int taps,
+                    const int phases, const int lead) {
+    const int stride = t->lattice_v->stride;
     const float *rows[SNOW_TILE_ROWS];
-    V(vec) along_u[2 * SNOW_TAPS_MOST], along_v[2 * SNOW_TAPS_MOST];
+    V(vec) weights[2 * SNOW_TAPS_MOST];
     uint64_t finished = 0;
-    int next = 0;
-    TILE_NAME(_weights)(t->u, phases_u, taps_u, along_u);
-    TILE_NAME(_weights)(t->v, phases_v, taps_v, along_v);
-    for (uint64_t cells = t->wanted; cells; cells &= cells - 1) {
-        int cell = __builtin_ctzll(cells), first = cell * stride;
-        for (next = next > first ? next : first; next < first + reach; next++) {
-            float *filtered =
-                t->ring + next * 2 * SNOW_TILE_COLUMNS * TILE_CHANNELS;
-            rows[next] = t->zero;
-            if (t->held >> next & 1) {
-                TILE_NAME(_filter)
-                (t, next, along_u, taps_u, phases_u, lead_u, filtered);
-                rows[next] = filtered;
-            }
-        }
-        float *line = t->pixels + (size_t)(cell * phases_v) * t->line;
-        bool seen = phases_v == 2
-                        ? TILE_NAME(_lines)(line, line + t->line, rows + first,
-                                            along_v, taps_v, lead_v, phases_u)
-                        : TILE_NAME(_line)(line, rows + first, along_v, taps_v,
-                                           phases_u);
-        if (!seen)
-            finished |= cells & -cells;
+    int row = 0;
+    TILE_NAME(_weights)(t->v, phases, taps, weights);
+    for (uint64_t left = t->wanted; left; left &= left - 1) {
+        int cell = __builtin_ctzll(left), end = cell * stride + taps + lead;
+        for (row = row > cell * stride ? row : cell * stride; row < end; row++)
+            rows[row] = t->held >> row & 1 ? t->ring + row * TILE_ROW : t->zero;
+        const float *const *first = rows + cell * stride;
+        float *line = t->pixels + (size_t)(cell * phases) * t->line;
+        bool seen = phases == 2
+                        ? TILE_NAME(_lines)(line, line + t->line, first,
+                                            weights, taps, lead, width)
+                        : TILE_NAME(_line)(line, first, weights, taps, width);
+        finished |= seen ? 0 : left & -left;
     }
     return finished;
 }
 
-/* Two phases on both axes: leads are constants, so that each case unrolls. */
-TARGET static inline __attribute__((always_inline)) uint64_t
-TILE_NAME(_fine)(const snow_tile *t, const int taps) {
-    const int u = t->u->lead[1], v = t->v->lead[1];
-    if (u)
-        return v ? TILE_NAME(_cells)(t, taps, taps, 2, 2, 1, 1)
-                 : TILE_NAME(_cells)(t, taps, taps, 2, 2, 1, 0);
-    return v ? TILE_NAME(_cells)(t, taps, taps, 2, 2, 0, 1)
-             : TILE_NAME(_cells)(t, taps, taps, 2, 2, 0, 0);
-}
+TARGET static uint64_t TILE_NAME(_rows)(const snow_tile *t){
+    TILE_CASES(TILE_NAME(_along_u), t, 0, t->taps_u, t->u, t->lattice_u)}
 
-/* The cases that pictures are made of, unrolled; and any other. */
+TARGET static uint64_t TILE_NAME(_cells)(const snow_tile *t){
+    TILE_CASES(TILE_NAME(_along_v), t, TILE_ROW / 2, t->taps_v, t->v,
+               t->lattice_v)}
+
+TARGET static uint64_t TILE_NAME(_wide_cells)(const snow_tile *t){
+    TILE_CASES(TILE_NAME(_along_v), t, TILE_ROW, t->taps_v, t->v, t->lattice_v)}
+
 TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
-    const int taps = t->taps_u == t->taps_v ? t->taps_u : 0;
-    const int pu = t->lattice_u->phases, pv = t->lattice_v->phases;
-    if (pu == 2 && pv == 2 && taps == 4)
-        return TILE_NAME(_fine)(t, 4);
-    if (pu == 2 && pv == 2 && taps == 6)
-        return TILE_NAME(_fine)(t, 6);
-    if (pu == 1 && pv == 1 && taps == 2)
-        return TILE_NAME(_cells)(t, 2, 2, 1, 1, 0, 0);
-    if (pu == 1 && pv == 1 && taps == 4)
-        return TILE_NAME(_cells)(t, 4, 4, 1, 1, 0, 0);
-    if (pu == 1 && pv == 1 && taps == 6)
-        return TILE_NAME(_cells)(t, 6, 6, 1, 1, 0, 0);
-    return TILE_NAME(_cells)(t, t->taps_u, t->taps_v, pu, pv, t->u->lead[1],
-                             t->v->lead[1]);
+    TILE_NAME(_rows)(t);
+    return t->lattice_u->phases == 2 ? TILE_NAME(_wide_cells)(t)
+                                     : TILE_NAME(_cells)(t);
 }
 
+#undef TILE_ROW
+#undef TILE_CASE
+#undef TILE_CASES
 #undef TILE_CHANNELS
 #undef TILE_WEAVE
 #undef TILE_ALPHA

@@ -17,7 +17,7 @@
 
 /* Blocks: so many for each rank, but no more and no fewer in all than these. */
 #define BLOCKS_A_RANK 16384
-#define LEAST_BLOCKS (INT64_C(1) << 18)
+#define LEAST_BLOCKS (INT64_C(1) << 20)
 #define MOST_BLOCKS (INT64_C(1) << 22)
 
 /* Another axis than the longest must be better by so much to be cut: long thin

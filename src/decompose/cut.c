@@ -74,14 +74,22 @@ void snow_cut_equal(const snow_cut_grid *grid, int ranks, snow_box *boxes) {
 
 /* --- linear partition ----------------------------------------------------- */
 
-/* The farthest end of a run that begins at `from` and costs at most `most`:
- * sums[i] is the cost of items 0 .. i - 1. */
-static int64_t reach(const int64_t *sums, int64_t items, int64_t from,
-                     int64_t most) {
-    int64_t low = from, high = items;
+/* Items in a row, to be dealt out in runs. */
+typedef struct row {
+    int64_t *sums; /* sums[i]: the cost of items 0 .. i - 1 */
+    int64_t items;
+    int64_t longest; /* run */
+    int parts;
+} row;
+
+/* The farthest end of a run that begins at `from` and costs at most `most`. */
+static int64_t reach(const row *r, int64_t from, int64_t most) {
+    int64_t low = from, high = r->items;
+    if (high - low > r->longest)
+        high = low + r->longest;
     while (low < high) {
         int64_t middle = high - (high - low) / 2;
-        if (sums[middle] - sums[from] <= most)
+        if (r->sums[middle] - r->sums[from] <= most)
             low = middle;
         else
             high = middle - 1;
@@ -89,24 +97,12 @@ static int64_t reach(const int64_t *sums, int64_t items, int64_t from,
     return low;
 }
 
-static bool suffices(const int64_t *sums, int64_t items, int parts,
-                     int64_t most) {
-    int64_t at = 0;
-    for (int part = 0; part < parts && at < items; part++) {
-        int64_t end = reach(sums, items, at, most);
-        if (end == at)
-            return false;
-        at = end;
-    }
-    return at == items;
-}
-
-/* The smallest cost that the most expensive of `parts` runs can have. */
-static int64_t least_cost(const int64_t *sums, int64_t items, int parts) {
-    int64_t low = sums[items] / parts, high = sums[items];
+/* The earliest begin of one that ends at `end`. */
+static int64_t reach_back(const row *r, int64_t end, int64_t most) {
+    int64_t low = end > r->longest ? end - r->longest : 0, high = end;
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
-        if (suffices(sums, items, parts, middle))
+        if (r->sums[end] - r->sums[middle] <= most)
             high = middle;
         else
             low = middle + 1;
@@ -114,12 +110,23 @@ static int64_t least_cost(const int64_t *sums, int64_t items, int parts) {
     return low;
 }
 
-/* Where the last of those runs begins that ends at `end`. */
-static int64_t reach_back(const int64_t *sums, int64_t end, int64_t most) {
-    int64_t low = 0, high = end;
+static bool suffices(const row *r, int64_t most) {
+    int64_t at = 0;
+    for (int part = 0; part < r->parts && at < r->items; part++) {
+        int64_t end = reach(r, at, most);
+        if (end == at)
+            return false;
+        at = end;
+    }
+    return at == r->items;
+}
+
+/* The smallest cost that the most expensive run can have. */
+static int64_t least_cost(const row *r) {
+    int64_t low = r->sums[r->items] / r->parts, high = r->sums[r->items];
     while (low < high) {
         int64_t middle = low + (high - low) / 2;
-        if (sums[end] - sums[middle] <= most)
+        if (suffices(r, middle))
             high = middle;
         else
             low = middle + 1;
@@ -128,28 +135,34 @@ static int64_t reach_back(const int64_t *sums, int64_t end, int64_t most) {
 }
 
 /* The border nearest to a cost. */
-static int64_t nearest(const int64_t *sums, int64_t items, int64_t wanted) {
-    int64_t at = reach(sums, items, 0, wanted);
-    if (at < items && sums[at + 1] - wanted < wanted - sums[at])
-        at++;
-    return at;
+static int64_t nearest(const row *r, int64_t wanted) {
+    int64_t low = 0, high = r->items;
+    while (low < high) {
+        int64_t middle = high - (high - low) / 2;
+        if (r->sums[middle] <= wanted)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    if (low < r->items && r->sums[low + 1] - wanted < wanted - r->sums[low])
+        low++;
+    return low;
 }
 
 /* Many partitions have the least cost, and runs filled to the brim would leave
  * nothing for the last ranks: each border goes where it would be ideal, or as
  * near to there as the cost allows.  starts[part] is first the earliest
  * border from which the parts behind it suffice. */
-static void partition(const int64_t *sums, int64_t items, int parts,
-                      int64_t *starts) {
-    int64_t most = least_cost(sums, items, parts);
-    starts[parts] = items;
-    for (int part = parts - 1; part > 0; part--)
-        starts[part] = reach_back(sums, starts[part + 1], most);
+static void partition(const row *r, int64_t *starts) {
+    int64_t most = least_cost(r);
+    starts[r->parts] = r->items;
+    for (int part = r->parts - 1; part > 0; part--)
+        starts[part] = reach_back(r, starts[part + 1], most);
     starts[0] = 0;
-    for (int part = 1; part < parts; part++) {
-        double ideal = (double)sums[items] / parts * part;
-        int64_t border = nearest(sums, items, (int64_t)ideal);
-        int64_t last = reach(sums, items, starts[part - 1], most);
+    for (int part = 1; part < r->parts; part++) {
+        double ideal = (double)r->sums[r->items] / r->parts * part;
+        int64_t border = nearest(r, (int64_t)ideal);
+        int64_t last = reach(r, starts[part - 1], most);
         if (border > last)
             border = last;
         if (border > starts[part])
@@ -178,7 +191,8 @@ snow_status snow_cut_counted(snow_context *context, const snow_tally *tally,
                       (int64_t)((double)all * share);
     }
     int64_t *starts = sums + items + 1;
-    partition(sums, items, ranks, starts);
+    row r = {sums, items, SNOW_THICKEST * ((items - 1) / ranks + 1), ranks};
+    partition(&r, starts);
     for (int rank = 0; rank < ranks; rank++)
         boxes[rank] = slab_box(tally, starts[rank], starts[rank + 1]);
     snow_release(context, sums);
@@ -195,10 +209,10 @@ static int64_t load_of(const snow_tally *tally, const snow_box *box) {
     }
     for (int64_t z = first[2]; z <= last[2]; z++)
         for (int64_t y = first[1]; y <= last[1]; y++) {
-            const int64_t *row =
+            const int64_t *counts =
                 tally->counts + (z * tally->blocks[1] + y) * tally->blocks[0];
             for (int64_t x = first[0]; x <= last[0]; x++)
-                load += row[x];
+                load += counts[x];
         }
     return load;
 }

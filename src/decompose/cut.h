@@ -55,12 +55,12 @@ void snow_cut_equal(const snow_cut_grid *grid, int ranks, snow_box *boxes);
 /* What a part costs: its interesting voxels, and a little for all its voxels,
  * so that no rank stores all that is empty.  Those of the whole grid together
  * cost 1 / SNOW_EMPTINESS of what the interesting ones do: a part is at most
- * SNOW_EMPTINESS + 1 times as large as an equal one, and the interesting voxels
- * are as unequal as 1 : 1 + 1 / SNOW_EMPTINESS for it. */
-#define SNOW_EMPTINESS 32
+ * SNOW_EMPTINESS + 1 times as large as an equal one. */
+#define SNOW_EMPTINESS 64
 
-/* Slabs whose most expensive one is as cheap as can be, from a tally for them.
- * Errors: SNOW_NO_MEMORY. */
+/* Slabs whose most expensive one is as cheap as can be, from a tally for them;
+ * none is thicker than SNOW_THICKEST equal ones.  Errors: SNOW_NO_MEMORY. */
+#define SNOW_THICKEST 4
 snow_status snow_cut_counted(snow_context *context, const snow_tally *tally,
                              int ranks, snow_box *boxes);
 

@@ -332,7 +332,6 @@ static snow_status check_whole(const snow_voxels *voxels) {
 
 /* What this rank finds out without the others. */
 static snow_status plan_alone(snow_voxels *voxels, const census *c) {
-    SNOW_TRY(check_overlap(voxels, c));
     SNOW_TRY(make_parcels(voxels, c));
     SNOW_TRY(check_whole(voxels));
     size_t messages = voxels->sent.parcel_count + voxels->received.parcel_count;
@@ -347,6 +346,9 @@ snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
     voxels->wanted = *wanted;
     census c = {0};
     snow_status status = take_census(voxels->comm, held, count, wanted, &c);
+    /* Before counting, which overlaps would confuse on other ranks. */
+    if (status == SNOW_OK)
+        status = snow_comm_agree(voxels->comm, check_overlap(voxels, &c));
     if (status == SNOW_OK)
         status = snow_comm_agree(voxels->comm, plan_alone(voxels, &c));
     free_census(voxels->context, &c);

@@ -156,20 +156,21 @@ static size_t plain_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static void plain_next_mask(snow_walk *walk, uint64_t *mask) {
+static void plain_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
     size_t columns = (size_t)walk->sparse->columns, whole = columns / 64;
     const unsigned char *row =
         walk->slice + (size_t)walk->row * row_bytes(walk->sparse);
     for (size_t word = 0; word < whole; word++)
-        mask[word] = snow_load_word(row + 8 * word);
+        mask[word * step] = snow_load_word(row + 8 * word);
     if (columns % 64)
-        mask[whole] = snow_load_word(row + 8 * whole) &
-                      ((UINT64_C(1) << columns % 64) - 1);
+        mask[whole * step] = snow_load_word(row + 8 * whole) &
+                             ((UINT64_C(1) << columns % 64) - 1);
 }
 
 static size_t plain_skip(snow_walk *walk, int64_t rows) {
-    size_t row = 8 * row_bytes(walk->sparse);
-    return count_bits(walk->slice, (size_t)walk->row * row, (size_t)rows * row);
+    size_t row = row_bytes(walk->sparse);
+    return walk->sparse->loops->count_bits(
+        walk->slice + (size_t)walk->row * row, (size_t)rows * row);
 }
 
 /* walk->ea is at the next word that holds anything. */
@@ -188,16 +189,19 @@ static size_t words_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
-static void words_next_mask(snow_walk *walk, uint64_t *mask) {
+static void words_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
     size_t words = snow_mask_words(walk->sparse);
     size_t first = (size_t)walk->row * words;
-    memset(mask, 0, words * sizeof *mask);
     for (size_t w = 0; w < words; w += CHUNK) {
-        uint64_t summary =
-            some_bits(walk->slice, first + w, lesser(words - w, CHUNK));
-        for (; summary; summary &= summary - 1, walk->ea += 8)
-            mask[w + (size_t)__builtin_ctzll(summary)] =
-                snow_load_word(walk->ea);
+        size_t some = lesser(words - w, CHUNK);
+        uint64_t summary = some_bits(walk->slice, first + w, some);
+        /* Each word is read, also where none is stored and the next one, or the
+         * room behind the last, is: how many are is hard to guess. */
+        for (size_t n = w; n < w + some; n++, summary >>= 1) {
+            uint64_t full = summary & 1;
+            mask[n * step] = snow_load_word(walk->ea) & (0 - full);
+            walk->ea += 8 * full;
+        }
     }
 }
 
@@ -205,7 +209,7 @@ static size_t words_skip(snow_walk *walk, int64_t rows) {
     size_t words = snow_mask_words(walk->sparse);
     size_t full = count_bits(walk->slice, (size_t)walk->row * words,
                              (size_t)rows * words);
-    size_t voxels = count_bits(walk->ea, 0, 64 * full);
+    size_t voxels = walk->sparse->loops->count_bits(walk->ea, 8 * full);
     walk->ea += 8 * full;
     return voxels;
 }

@@ -170,6 +170,21 @@ static size_t cells_next_row(snow_walk *walk, snow_span *spans) {
     return count;
 }
 
+static void cells_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
+    size_t cells = cells_of(walk->sparse);
+    size_t words = snow_mask_words(walk->sparse);
+    const unsigned char *at = walk->ea;
+    for (size_t n = 0; n < cells; n++) {
+        uint64_t bits[CELL_WORDS] = {0};
+        if (cell_is_full(walk, (size_t)walk->row * cells + n))
+            for (size_t left = (size_t)*at++ + 1; left; left--, at++)
+                bits[*at / 64] |= UINT64_C(1) << *at % 64;
+        for (size_t w = 0; w < CELL_WORDS && n * CELL_WORDS + w < words; w++)
+            mask[(n * CELL_WORDS + w) * step] = bits[w];
+    }
+    walk->ea = at;
+}
+
 static size_t cells_skip(snow_walk *walk, int64_t rows) {
     size_t cells = cells_of(walk->sparse), voxels = 0;
     size_t first = (size_t)walk->row * cells;
@@ -183,7 +198,8 @@ static size_t cells_skip(snow_walk *walk, int64_t rows) {
 }
 
 static const snow_reader whole_reader = {crs_next_row, NULL, crs_skip};
-static const snow_reader cells_reader = {cells_next_row, NULL, cells_skip};
+static const snow_reader cells_reader = {cells_next_row, cells_next_mask,
+                                         cells_skip};
 
 static void crs_begin_walk(snow_walk *walk) {
     walk->reader = &whole_reader;

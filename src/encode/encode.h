@@ -84,9 +84,9 @@ struct snow_reader {
      * (columns + 1) / 2; returns their number.  The walk's voxel and row are
      * moved on by the caller. */
     size_t (*next_row)(snow_walk *walk, snow_span *spans);
-    /* The same as snow_mask_words words of bits; NULL where a form has no
-     * quicker way than by spans. */
-    void (*next_mask)(snow_walk *walk, uint64_t *mask);
+    /* The same as snow_mask_words words of bits, `step` apart; NULL where a
+     * form has no quicker way than by spans. */
+    void (*next_mask)(snow_walk *walk, uint64_t *mask, size_t step);
     /* Passes over rows: returns how many voxels they hold.  The same holds. */
     size_t (*skip)(snow_walk *walk, int64_t rows);
 };

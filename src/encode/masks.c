@@ -92,8 +92,15 @@ static unsigned char *pack_words_scalar(const uint64_t *masks, size_t words,
     return out;
 }
 
+#define SELECT_SCALAR
+#include "simd/select.h"
+
+#include "encode/masks.tmpl.h"
 #if SNOW_HAS_AVX
-#include "simd/vec_avx512.h"
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "encode/masks.tmpl.h"
 
 SNOW_AVX512_TARGET static unsigned char *places_avx512(const uint64_t *masks,
                                                        size_t words,
@@ -147,12 +154,17 @@ pack_words_avx512(const uint64_t *masks, size_t words, unsigned char *summary,
 
 const snow_mask_loops *snow_mask_loops_of(snow_isa isa) {
     static const snow_mask_loops scalar = {places_scalar, count_words_scalar,
-                                           pack_words_scalar};
+                                           pack_words_scalar,
+                                           count_bits_scalar};
 #if SNOW_HAS_AVX
     static const snow_mask_loops avx512 = {places_avx512, count_words_avx512,
-                                           pack_words_avx512};
+                                           pack_words_avx512, count_bits_avx2};
+    static const snow_mask_loops avx2 = {places_scalar, count_words_scalar,
+                                         pack_words_scalar, count_bits_avx2};
     if (isa == SNOW_ISA_AVX512)
         return &avx512;
+    if (isa == SNOW_ISA_AVX2)
+        return &avx2;
 #endif
     (void)isa;
     return &scalar;

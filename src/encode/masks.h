@@ -26,6 +26,8 @@ typedef struct snow_mask_loops {
      */
     unsigned char *(*pack_words)(const uint64_t *masks, size_t words,
                                  unsigned char *summary, unsigned char *out);
+    /* How many bits of some bytes are set. */
+    size_t (*count_bits)(const unsigned char *bytes, size_t count);
 } snow_mask_loops;
 
 /* `isa` is resolved. */

@@ -11,7 +11,7 @@ static void set_bits(uint64_t *bits, size_t from, size_t to) {
             mask <<= from % 64;
         if (to - word * 64 < 64)
             mask &= (UINT64_C(1) << (to - word * 64)) - 1;
-        bits[word] |= mask;
+        bits[word * SNOW_WINDOW_ROWS] |= mask;
     }
 }
 
@@ -26,12 +26,14 @@ static void set_spans(uint64_t *bits, const snow_span *spans, size_t count) {
  * for its row and voxel. */
 static void next_mask(snow_walk *walk, snow_span *spans, uint64_t *bits,
                       size_t words) {
+    const size_t step = SNOW_WINDOW_ROWS;
     if (walk->reader->next_mask) {
-        bits[0] = bits[words - 1] = bits[words - 2] = 0;
-        walk->reader->next_mask(walk, bits + SNOW_WINDOW_PAD / 64);
+        bits[0] = bits[(words - 1) * step] = bits[(words - 2) * step] = 0;
+        walk->reader->next_mask(walk, bits + SNOW_WINDOW_PAD / 64 * step, step);
         return;
     }
-    memset(bits, 0, words * sizeof *bits);
+    for (size_t word = 0; word < words; word++)
+        bits[word * step] = 0;
     set_spans(bits, spans, walk->reader->next_row(walk, spans));
 }
 
@@ -44,14 +46,21 @@ static void next_mask(snow_walk *walk, snow_span *spans, uint64_t *bits,
 #include "simd/select.h"
 
 #include "encode/windows.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "encode/windows.tmpl.h"
 #endif
 
 const snow_window_fns *snow_window_fns_of(snow_isa isa) {
     static const snow_window_fns scalar = {windows_scalar, read_scalar};
 #if SNOW_HAS_AVX
     static const snow_window_fns avx2 = {windows_avx2, read_avx2};
-    if (isa == SNOW_ISA_AVX2 || isa == SNOW_ISA_AVX512)
+    static const snow_window_fns avx512 = {windows_avx512, read_avx512};
+    if (isa == SNOW_ISA_AVX2)
         return &avx2;
+    if (isa == SNOW_ISA_AVX512)
+        return &avx512;
 #endif
     (void)isa;
     return &scalar;

@@ -6,7 +6,10 @@
  *
  *   bits    64 zeros | one bit a column, lowest first | zeros to the end
  *   rank    per word: voxels of the row before it
- *   voxel   per row: its first voxel in IA */
+ *   voxel   per row: its first voxel in IA
+ *
+ * The same word of all rows lies together, so that a window is cut out of
+ * several rows at once. */
 #ifndef SNOW_WINDOWS_H
 #define SNOW_WINDOWS_H
 
@@ -17,7 +20,7 @@
 #define SNOW_WINDOW_PAD 64  /* bits before the first column */
 
 typedef struct snow_mask_rows {
-    uint64_t *bits; /* [row * words + word] */
+    uint64_t *bits; /* [word * SNOW_WINDOW_ROWS + row] */
     uint32_t *rank;
     const unsigned char *codes[SNOW_WINDOW_ROWS]; /* of the row's first voxel */
     const uint16_t *normals[SNOW_WINDOW_ROWS];    /* NULL: none */
@@ -31,9 +34,9 @@ static inline size_t snow_window_words(int64_t columns) {
 }
 
 /* Windows of `count` columns from `column` on, up to SNOW_WINDOW_MOST, which
- * overlap the rows: -count < column < columns.  Per row that is held and
- * wanted: its bits, and how many voxels of its row lie before it.  Returns the
- * rows of these whose window holds a voxel. */
+ * overlap the rows: -count < column < columns.  Returns the rows, held and
+ * wanted, whose window holds a voxel; of each its bits, and how many voxels of
+ * its row lie before it.  All SNOW_WINDOW_ROWS bits may be written. */
 typedef uint64_t snow_windows_fn(const snow_mask_rows *rows, uint64_t wanted,
                                  int64_t column, int count, uint64_t *bits,
                                  uint32_t *before);

@@ -4,19 +4,23 @@
 TARGET static uint64_t NAME(windows)(const snow_mask_rows *rows,
                                      uint64_t wanted, int64_t column, int count,
                                      uint64_t *bits, uint32_t *before) {
-    size_t at = (size_t)(column + SNOW_WINDOW_PAD), word = at / 64;
+    size_t at = (size_t)(column + SNOW_WINDOW_PAD);
+    size_t word = at / 64 * SNOW_WINDOW_ROWS;
     unsigned shift = at % 64;
     uint64_t below = (UINT64_C(1) << shift) - 1;
     uint64_t within = (UINT64_C(1) << count) - 1, found = 0;
-    for (uint64_t left = rows->held & wanted; left; left &= left - 1) {
+    const uint64_t *low = rows->bits + word, *high = low + SNOW_WINDOW_ROWS;
+    wanted &= rows->held;
+    for (int row = 0; row < SNOW_WINDOW_ROWS && wanted >> row; row += 8)
+        if (wanted >> row & 255)
+            found |= (uint64_t)V(windows)(low + row, high + row, shift, within,
+                                          bits + row)
+                     << row;
+    found &= wanted;
+    for (uint64_t left = found; left; left &= left - 1) {
         int row = __builtin_ctzll(left);
-        const uint64_t *words = rows->bits + (size_t)row * rows->words + word;
-        /* In two steps, since a shift by 64 is none. */
-        uint64_t window = words[0] >> shift | words[1] << 1 << (63 - shift);
-        bits[row] = window & within;
-        before[row] = rows->rank[(size_t)row * rows->words + word] +
-                      (uint32_t)V(popcount)(words[0] & below);
-        found |= (uint64_t)(bits[row] != 0) << row;
+        before[row] = rows->rank[word + (size_t)row] +
+                      (uint32_t)V(popcount)(low[row] & below);
     }
     return found;
 }
@@ -26,8 +30,8 @@ TARGET static size_t NAME(rank)(const uint64_t *bits, size_t words,
                                 uint32_t *rank) {
     uint32_t sum = 0;
     for (size_t word = 0; word < words; word++) {
-        rank[word] = sum;
-        sum += (uint32_t)V(popcount)(bits[word]);
+        rank[word * SNOW_WINDOW_ROWS] = sum;
+        sum += (uint32_t)V(popcount)(bits[word * SNOW_WINDOW_ROWS]);
     }
     return sum;
 }
@@ -42,13 +46,11 @@ TARGET static void NAME(read_band)(const snow_bands *bands, int64_t slice,
     if (begin % SNOW_BAND_ROWS)
         snow_walk_skip(&walk, begin % SNOW_BAND_ROWS);
     for (int64_t row = begin; row < end; row++, n++) {
-        size_t place = (size_t)n * rows->words;
-        next_mask(&walk, spans, rows->bits + place, rows->words);
+        next_mask(&walk, spans, rows->bits + n, rows->words);
         rows->codes[n] = snow_bands_codes(band, walk.voxel);
         rows->normals[n] =
             bands->with_normals ? snow_bands_normals(band, walk.voxel) : NULL;
-        size_t voxels =
-            NAME(rank)(rows->bits + place, rows->words, rows->rank + place);
+        size_t voxels = NAME(rank)(rows->bits + n, rows->words, rows->rank + n);
         walk.voxel += voxels;
         walk.row++;
         rows->held |= (uint64_t)(voxels != 0) << n;

@@ -20,14 +20,24 @@
  *   V(any_less)(a, b)                whether a < b in any lane
  *   V(gather4)(p, n), V(gather2)     entries n[0], n[1] ... of a table of 4 or 2
  *                                    floats each, as many as a vector holds
- *   V(double2)(p, n)                 entries of 2 floats, each twice
- *   V(even)(v), V(odd)(v)            the first or second of each two lanes, in
- *                                    both of them
+ *   V(pairs16)(p, n, low, high)      the lower and the upper halves of 16 entries
+ *                                    of a table of uint32_t, as floats
  *   V(with_alpha2)(a, b), V(with_alpha4)  a with the last channels of b
  *   V(expand8)(p, bits, out), V(expand16)
  *                                    16 places: the next of the numbers at p,
  *                                    and 1 more, where a bit is set, else 0;
  *                                    may read 16 numbers beyond the last
+ *   V(widen8)(p, out), V(widen16)    16 numbers at p
+ *   V(spread2)(p, bits, count, out), V(spread4)
+ *                                    `count` places of 2 or 4 floats: the next
+ *                                    of those at p where a bit is set, else
+ *                                    zeros; may read and write 16 floats beyond
+ *                                    the last
+ *   V(windows)(low, high, shift, within, out)
+ *                                    of eight pairs of words, `low` the lower
+ *                                    one, the 64 bits from bit `shift` (0 to 63)
+ *                                    on which are in `within` too; returns a bit
+ *                                    for each that is not 0
  *   V(popcount)(x)                   bits that are set in a uint64_t
  *   V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4 floats) of a
  *                                    and b in turns: a0 b0 a1 b1 ...

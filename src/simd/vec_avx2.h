@@ -114,20 +114,6 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_gather2(const float *p,
     return _mm256_castpd_ps(_mm256_blend_pd(low, high, 12));
 }
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_double2(const float *p,
-                                                 const uint32_t *n) {
-    return _mm256_castpd_ps(
-        _mm256_blend_pd(snow_avx2_pair(p, n, 0), snow_avx2_pair(p, n, 1), 12));
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_even(snow_avx2_vec v) {
-    return _mm256_moveldup_ps(v);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_odd(snow_avx2_vec v) {
-    return _mm256_movehdup_ps(v);
-}
-
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_with_alpha2(snow_avx2_vec a,
                                                      snow_avx2_vec b) {
     return _mm256_blend_ps(a, b, 0xAA);
@@ -153,6 +139,86 @@ SNOW_AVX2_INLINE void snow_avx2_expand16(const uint16_t *p, uint32_t bits,
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);
         p += here;
+    }
+}
+
+SNOW_AVX2_INLINE unsigned snow_avx2_windows(const uint64_t *low,
+                                            const uint64_t *high,
+                                            unsigned shift, uint64_t within,
+                                            uint64_t *out) {
+    __m128i right = _mm_cvtsi32_si128((int)shift);
+    __m128i left = _mm_cvtsi32_si128((int)(64 - shift)); /* 64 leaves none */
+    __m256i wanted = _mm256_set1_epi64x((long long)within);
+    unsigned found = 0;
+    for (int i = 0; i < 8; i += 4) {
+        __m256i a =
+            _mm256_loadu_si256((const __m256i *)(const void *)(low + i));
+        __m256i b =
+            _mm256_loadu_si256((const __m256i *)(const void *)(high + i));
+        a = _mm256_or_si256(_mm256_srl_epi64(a, right),
+                            _mm256_sll_epi64(b, left));
+        a = _mm256_and_si256(a, wanted);
+        _mm256_storeu_si256((__m256i *)(void *)(out + i), a);
+        __m256i none = _mm256_cmpeq_epi64(a, _mm256_setzero_si256());
+        int empty = _mm256_movemask_pd(_mm256_castsi256_pd(none));
+        found |= ((unsigned)empty ^ 15) << i;
+    }
+    return found;
+}
+
+SNOW_AVX2_INLINE void snow_avx2_widen8(const uint8_t *p, uint32_t *out) {
+    for (int i = 0; i < 16; i += 8)
+        _mm256_storeu_si256((__m256i *)(void *)(out + i),
+                            _mm256_cvtepu8_epi32(_mm_loadl_epi64(
+                                (const __m128i *)(const void *)(p + i))));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_widen16(const uint16_t *p, uint32_t *out) {
+    for (int i = 0; i < 16; i += 8)
+        _mm256_storeu_si256((__m256i *)(void *)(out + i),
+                            _mm256_cvtepu16_epi32(_mm_loadu_si128(
+                                (const __m128i *)(const void *)(p + i))));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_pairs16(const uint32_t *p, const uint32_t *n,
+                                        float *first, float *second) {
+    for (int i = 0; i < 16; i += 8) {
+        __m256i places =
+            _mm256_loadu_si256((const __m256i *)(const void *)(n + i));
+        __m256i pairs =
+            _mm256_i32gather_epi32((const int *)(const void *)p, places, 4);
+        _mm256_storeu_ps(first + i, _mm256_cvtepi32_ps(_mm256_and_si256(
+                                        pairs, _mm256_set1_epi32(0xFFFF))));
+        _mm256_storeu_ps(second + i,
+                         _mm256_cvtepi32_ps(_mm256_srli_epi32(pairs, 16)));
+    }
+}
+
+/* The next lanes of p where a byte of `bytes`, all ones or zeros, has ones. */
+SNOW_AVX2_INLINE __m256 snow_avx2_next_lanes(const float *p, uint64_t bytes) {
+    uint64_t lanes = _pdep_u64(UINT64_C(0x0706050403020100), bytes);
+    __m256i n = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)lanes));
+    __m256i here = _mm256_cvtepi8_epi32(_mm_cvtsi64_si128((long long)bytes));
+    return _mm256_and_ps(_mm256_permutevar8x32_ps(_mm256_loadu_ps(p), n),
+                         _mm256_castsi256_ps(here));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_spread2(const float *p, uint64_t bits,
+                                        int count, float *out) {
+    for (int at = 0; at < count; at += 4, bits >>= 4) {
+        uint64_t bytes = _pdep_u64(bits, UINT64_C(0x0001000100010001)) * 0xFFFF;
+        _mm256_storeu_ps(out + 2 * at, snow_avx2_next_lanes(p, bytes));
+        p += 2 * __builtin_popcount((unsigned)bits & 0xF);
+    }
+}
+
+SNOW_AVX2_INLINE void snow_avx2_spread4(const float *p, uint64_t bits,
+                                        int count, float *out) {
+    for (int at = 0; at < count; at += 2, bits >>= 2) {
+        uint64_t bytes =
+            _pdep_u64(bits, UINT64_C(0x0000000100000001)) * 0xFFFFFFFF;
+        _mm256_storeu_ps(out + 4 * at, snow_avx2_next_lanes(p, bytes));
+        p += 4 * __builtin_popcount((unsigned)bits & 3);
     }
 }
 

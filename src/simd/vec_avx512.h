@@ -108,11 +108,7 @@ SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
-/* Puts what is at p + n floats into the places of the mask, or of 16 bytes. */
-#define SNOW_AVX512_PAIR(v, mask, p, n) \
-    _mm512_mask_broadcastsd_pd(         \
-        v, mask,                        \
-        _mm_load_sd((const double *)(const void *)((p) + 2 * (size_t)(n))))
+/* Puts the 16 bytes of an entry into a place. */
 #define SNOW_AVX512_FOUR(v, place, p, n) \
     _mm512_insertf32x4(v, _mm_loadu_ps((p) + 4 * (size_t)(n)), place)
 
@@ -126,32 +122,8 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather4(const float *p,
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_gather2(const float *p,
                                                        const uint32_t *n) {
-    __m512d v = _mm512_setzero_pd();
-    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
-    v = SNOW_AVX512_PAIR(v, 0x02, p, n[1]);
-    v = SNOW_AVX512_PAIR(v, 0x04, p, n[2]);
-    v = SNOW_AVX512_PAIR(v, 0x08, p, n[3]);
-    v = SNOW_AVX512_PAIR(v, 0x10, p, n[4]);
-    v = SNOW_AVX512_PAIR(v, 0x20, p, n[5]);
-    v = SNOW_AVX512_PAIR(v, 0x40, p, n[6]);
-    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0x80, p, n[7]));
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_double2(const float *p,
-                                                       const uint32_t *n) {
-    __m512d v = _mm512_setzero_pd();
-    v = SNOW_AVX512_PAIR(v, 0xFF, p, n[0]);
-    v = SNOW_AVX512_PAIR(v, 0x0C, p, n[1]);
-    v = SNOW_AVX512_PAIR(v, 0x30, p, n[2]);
-    return _mm512_castpd_ps(SNOW_AVX512_PAIR(v, 0xC0, p, n[3]));
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_even(snow_avx512_vec v) {
-    return _mm512_moveldup_ps(v);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_odd(snow_avx512_vec v) {
-    return _mm512_movehdup_ps(v);
+    __m256i places = _mm256_loadu_si256((const __m256i *)(const void *)n);
+    return _mm512_castpd_ps(_mm512_i32gather_pd(places, p, 8));
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_with_alpha2(snow_avx512_vec a,
@@ -182,6 +154,57 @@ SNOW_AVX512_INLINE void snow_avx512_expand16(const uint16_t *p, uint32_t bits,
     _mm512_storeu_si512(
         out, _mm512_maskz_add_epi32(here, _mm512_cvtepu16_epi32(codes),
                                     _mm512_set1_epi32(1)));
+}
+
+SNOW_AVX512_INLINE unsigned snow_avx512_windows(const uint64_t *low,
+                                                const uint64_t *high,
+                                                unsigned shift, uint64_t within,
+                                                uint64_t *out) {
+    __m512i right = _mm512_set1_epi64((long long)shift);
+    __m512i window = _mm512_shrdv_epi64(_mm512_loadu_si512(low),
+                                        _mm512_loadu_si512(high), right);
+    window = _mm512_and_si512(window, _mm512_set1_epi64((long long)within));
+    _mm512_storeu_si512(out, window);
+    return _mm512_test_epi64_mask(window, window);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_widen8(const uint8_t *p, uint32_t *out) {
+    _mm512_storeu_si512(out, _mm512_cvtepu8_epi32(_mm_loadu_si128(
+                                 (const __m128i *)(const void *)p)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_widen16(const uint16_t *p, uint32_t *out) {
+    _mm512_storeu_si512(out, _mm512_cvtepu16_epi32(_mm256_loadu_si256(
+                                 (const __m256i *)(const void *)p)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_pairs16(const uint32_t *p,
+                                            const uint32_t *n, float *first,
+                                            float *second) {
+    __m512i pairs = _mm512_i32gather_epi32(_mm512_loadu_si512(n), p, 4);
+    _mm512_storeu_ps(first, _mm512_cvtepi32_ps(_mm512_and_si512(
+                                pairs, _mm512_set1_epi32(0xFFFF))));
+    _mm512_storeu_ps(second, _mm512_cvtepi32_ps(_mm512_srli_epi32(pairs, 16)));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_spread2(const float *p, uint64_t bits,
+                                            int count, float *out) {
+    for (int at = 0; at < count; at += 8, bits >>= 8) {
+        _mm512_storeu_pd(out + 2 * at, _mm512_maskz_expand_pd(
+                                           (__mmask8)bits, _mm512_loadu_pd(p)));
+        p += 2 * __builtin_popcount((unsigned)bits & 0xFF);
+    }
+}
+
+SNOW_AVX512_INLINE void snow_avx512_spread4(const float *p, uint64_t bits,
+                                            int count, float *out) {
+    for (int at = 0; at < count; at += 4, bits >>= 4) {
+        uint32_t lanes = _pdep_u32((uint32_t)bits, 0x1111) * 15;
+        _mm512_storeu_ps(
+            out + 4 * at,
+            _mm512_maskz_expand_ps((__mmask16)lanes, _mm512_loadu_ps(p)));
+        p += 4 * __builtin_popcount((unsigned)bits & 0xF);
+    }
 }
 
 SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {

@@ -109,20 +109,6 @@ static inline snow_scalar_vec snow_scalar_gather2(const float *p,
     return (snow_scalar_vec){a[0], a[1], b[0], b[1]};
 }
 
-static inline snow_scalar_vec snow_scalar_double2(const float *p,
-                                                  const uint32_t *n) {
-    const float *a = p + (size_t)n[0] * 2;
-    return (snow_scalar_vec){a[0], a[1], a[0], a[1]};
-}
-
-static inline snow_scalar_vec snow_scalar_even(snow_scalar_vec v) {
-    return (snow_scalar_vec){v[0], v[0], v[2], v[2]};
-}
-
-static inline snow_scalar_vec snow_scalar_odd(snow_scalar_vec v) {
-    return (snow_scalar_vec){v[1], v[1], v[3], v[3]};
-}
-
 static inline snow_scalar_vec snow_scalar_with_alpha2(snow_scalar_vec a,
                                                       snow_scalar_vec b) {
     return (snow_scalar_vec){a[0], b[1], a[2], b[3]};
@@ -148,6 +134,54 @@ static inline void snow_scalar_expand16(const uint16_t *p, uint32_t bits,
         uint32_t here = bits & 1;
         out[i] = ((uint32_t)*p + 1) & (0 - here);
         p += here;
+    }
+}
+
+/* As told in simd/select.h; in two steps, since a shift by 64 is none. */
+static inline unsigned snow_scalar_windows(const uint64_t *low,
+                                           const uint64_t *high, unsigned shift,
+                                           uint64_t within, uint64_t *out) {
+    unsigned found = 0;
+    for (unsigned i = 0; i < 8; i++) {
+        out[i] = (low[i] >> shift | high[i] << 1 << (63 - shift)) & within;
+        found |= (unsigned)(out[i] != 0) << i;
+    }
+    return found;
+}
+
+static inline void snow_scalar_widen8(const uint8_t *p, uint32_t *out) {
+    for (int i = 0; i < 16; i++)
+        out[i] = p[i];
+}
+
+static inline void snow_scalar_widen16(const uint16_t *p, uint32_t *out) {
+    for (int i = 0; i < 16; i++)
+        out[i] = p[i];
+}
+
+static inline void snow_scalar_pairs16(const uint32_t *p, const uint32_t *n,
+                                       float *first, float *second) {
+    for (int i = 0; i < 16; i++) {
+        first[i] = (float)(p[n[i]] & 0xFFFF);
+        second[i] = (float)(p[n[i]] >> 16);
+    }
+}
+
+static inline void snow_scalar_spread2(const float *p, uint64_t bits, int count,
+                                       float *out) {
+    static const float zeros[2];
+    for (int i = 0; i < count; i++, bits >>= 1) {
+        memcpy(out + 2 * i, bits & 1 ? p : zeros, sizeof zeros);
+        p += 2 * (bits & 1);
+    }
+}
+
+static inline void snow_scalar_spread4(const float *p, uint64_t bits, int count,
+                                       float *out) {
+    static const float zeros[4];
+    for (int i = 0; i < count; i++, bits >>= 1) {
+        memcpy(out + 4 * i, bits & 1 ? p : zeros, sizeof zeros);
+        p += 4 * (bits & 1);
     }
 }
 

@@ -15,37 +15,36 @@ static const float catmull_rom[4][4] = {
     {1, -2.5f, 2, -0.5f},
     {-0.5f, 1.5f, -1.5f, 0.5f},
 };
-static const float linear[4][4] = {
-    {1, 0, 0, 0},
-    {-1, 1, 0, 0},
-    {0, 0, 0, 0},
-    {0, 0, 0, 0},
-};
 
 #include "simd/vec_scalar.h"
 
+/* The part of a place below one, in 24 bits: what a float holds. */
 static inline float fraction_of(int64_t place) {
-    return (float)(uint32_t)place * 0x1p-32f;
+    return (float)(int32_t)((uint32_t)place >> 8) * 0x1p-24f;
 }
 
-static inline snow_scalar_vec cubic_weights(const float cubic[4][4], float f) {
-    snow_scalar_vec at = snow_scalar_set1(f);
-    snow_scalar_vec w = snow_scalar_load(cubic[3]);
-    for (int power = 2; power >= 0; power--)
-        w = snow_scalar_fma(w, at, snow_scalar_load(cubic[power]));
-    return w;
+/* (1 - part) a + part b */
+static inline snow_scalar_vec mixed(snow_scalar_vec a, snow_scalar_vec b,
+                                    snow_scalar_vec part) {
+    return a + part * (b - a);
 }
 
-/* Holds a pixel to the laws of premultiplied ones, and stores it. */
-static inline void store_pixel(snow_scalar_vec pixel, int channels,
-                               float *out) {
-    const snow_scalar_vec zero = {0, 0, 0, 0}, one = {1, 1, 1, 1};
-    pixel = snow_scalar_min(snow_scalar_max(pixel, zero), one);
-    snow_scalar_vec alpha =
-        channels == 4 ? snow_scalar_alpha4(pixel) : snow_scalar_alpha2(pixel);
-    pixel = snow_scalar_min(pixel, alpha);
-    memcpy(out, &pixel, (size_t)channels * sizeof *out);
+static inline snow_scalar_vec two_pixels(const float *a, const float *b) {
+    float both[4];
+    memcpy(both, a, 2 * sizeof *a);
+    memcpy(both + 2, b, 2 * sizeof *b);
+    return snow_scalar_load(both);
 }
+
+#define GROUP 16
+
+/* Where the pixels of a group lie. */
+typedef struct warp_group {
+    int64_t at[GROUP];       /* the first one that is read, in floats from the
+                                plane's first */
+    float across[2 * GROUP]; /* fractions, each twice */
+    float down[2 * GROUP];
+} warp_group;
 
 #define SELECT_SCALAR
 #include "simd/select.h"
@@ -75,11 +74,12 @@ static warp_pair pair_of(snow_isa isa, snow_filter filter, int channels) {
 #if SNOW_HAS_AVX
     if (isa == SNOW_ISA_AVX512 && cubic && !grey)
         return PAIR(cubic4, avx512);
+    if (isa == SNOW_ISA_AVX512 && !cubic)
+        return grey ? PAIR(linear2, avx512) : PAIR(linear4, avx512);
     if (isa == SNOW_ISA_AVX512 || isa == SNOW_ISA_AVX2) {
         if (cubic)
             return grey ? PAIR(cubic2, avx2) : PAIR(cubic4, avx2);
-        if (!grey)
-            return PAIR(linear4, avx2);
+        return grey ? PAIR(linear2, avx2) : PAIR(linear4, avx2);
     }
 #endif
     (void)isa;
@@ -116,7 +116,7 @@ static int64_t fixed(double x) {
 }
 
 /* Pixels of the picture that are warped, or left out, together. */
-#define RUN 16
+#define RUN GROUP
 
 /* The blocks that pixels first .. last of a line read along an axis. */
 static void blocks_of(const snow_warp_line *line, int axis, int first, int last,
@@ -145,14 +145,20 @@ static bool any_drawn(const snow_plane *plane, const snow_warp_line *line,
 static void warp_runs(const snow_plane *plane, const snow_warp_line *line,
                       snow_warp_fn *warp, int first, int last, float *pixels) {
     size_t pixel = (size_t)plane->channels;
+    int begun = first; /* of pixels that are still to be warped */
     for (int x = first; x <= last; x += RUN) {
-        int end = x + RUN - 1 < last ? x + RUN - 1 : last;
-        float *run = pixels + (size_t)x * pixel;
-        if (any_drawn(plane, line, x, end))
-            warp(plane, line, x, end - x + 1, run);
-        else
-            memset(run, 0, (size_t)(end - x + 1) * pixel * sizeof *run);
+        int end = x + RUN <= last ? x + RUN : last + 1;
+        if (any_drawn(plane, line, x, end - 1))
+            continue;
+        if (begun < x)
+            warp(plane, line, begun, x - begun, pixels + (size_t)begun * pixel);
+        memset(pixels + (size_t)x * pixel, 0,
+               (size_t)(end - x) * pixel * sizeof *pixels);
+        begun = end;
     }
+    if (begun <= last)
+        warp(plane, line, begun, last + 1 - begun,
+             pixels + (size_t)begun * pixel);
 }
 
 void snow_warp_row(const snow_plane *plane, const snow_shear *shear,

@@ -24,7 +24,7 @@ typedef enum snow_filter { SNOW_BILINEAR, SNOW_CATMULL_ROM } snow_filter;
 
 typedef struct snow_warp_line snow_warp_line;
 
-/* Resamples `count` pixels of a line; see warp.tmpl.h. */
+/* Resamples `count` pixels of a line; see lines.tmpl.h. */
 typedef void snow_warp_fn(const snow_plane *plane, const snow_warp_line *line,
                           int first, int count, float *pixels);
 

@@ -1,0 +1,62 @@
+/* launch.c - what main told, and agreement between ranks. */
+#include "launch.h"
+#include "interrupt.h"
+#include "report.h"
+
+static launch now;
+
+void launch_begin(const launch *how) {
+    now = *how;
+    if (!launch_talks())
+        interrupt_mute();
+}
+
+int launch_rank(void) {
+    return now.comm ? snow_comm_rank(now.comm) : 0;
+}
+
+int launch_ranks(void) {
+    return now.comm ? snow_comm_ranks(now.comm) : 1;
+}
+
+snow_comm *launch_comm(void) {
+    return now.comm;
+}
+
+int launch_threads(void) {
+    return now.threads;
+}
+
+const char *launch_mpi(void) {
+    return now.mpi;
+}
+
+bool launch_talks(void) {
+    return launch_rank() == 0;
+}
+
+/* A rank that does not talk has kept what it would have said. */
+int launch_agree(int done) {
+    if (launch_ranks() == 1)
+        return done;
+    snow_context *context = snow_comm_context(now.comm);
+    snow_status mine = done == GO_ON ? SNOW_OK : (snow_status)done;
+    if (mine != SNOW_OK && !launch_talks())
+        snow_context_fail(context, mine, "%s", last_said());
+    snow_status all = snow_comm_agree(now.comm, mine);
+    if (all == SNOW_OK)
+        return done;
+    if (mine == SNOW_OK && launch_talks())
+        return fail_status(context, all);
+    return (int)all;
+}
+
+int launch_share(int word) {
+    int shared = word;
+    if (launch_ranks() == 1)
+        return word;
+    snow_status status =
+        snow_comm_broadcast(now.comm, &shared, sizeof shared, 0);
+    return status == SNOW_OK ? shared
+                             : fail_status(snow_comm_context(now.comm), status);
+}

@@ -1,0 +1,7 @@
+/* main_alone.c - the tool as one process. */
+#include "launch.h"
+
+int main(int argc, char **argv) {
+    const launch alone = {.comm = NULL};
+    return tool_run(argc, argv, &alone);
+}

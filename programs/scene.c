@@ -1,0 +1,255 @@
+/* scene.c - from a file to pictures.  Of many ranks each has its part of the
+ * volume, and the first gets the pictures (snowglass/ranks.h). */
+#include "scene.h"
+#include "commands.h"
+#include "launch.h"
+#include "report.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What every rank tells the others of a picture. */
+typedef struct rank_figures {
+    snow_stats stats;
+    uint64_t peak;
+} rank_figures;
+
+int scene_check(const options *asked) {
+    if (launch_ranks() > 1 && strcmp(asked->operands[0], "-") == 0)
+        return fail_usage("-: many ranks read a file, each its part; name one");
+    return GO_ON;
+}
+
+int scene_new(const options *asked, scene *out) {
+    *out = (scene){.asked = asked};
+    int done = open_render_context(asked, &out->context);
+    if (done == GO_ON) {
+        size_t ranks = (size_t)launch_ranks();
+        out->figures = calloc(ranks, sizeof(rank_figures));
+        if (!out->figures) {
+            say("no memory to begin with; close other programs");
+            done = SNOW_NO_MEMORY;
+        }
+    }
+    return launch_agree(done);
+}
+
+/* In any order but the context last; all of them accept NULL. */
+void scene_free(scene *s) {
+    snow_frame_free(s->frame);
+    snow_transfer_free(s->transfer);
+    snow_volume_close(s->volume);
+    free(s->figures);
+    if (s->context)
+        close_render_context(s->context);
+}
+
+/* --- a volume --------------------------------------------------------------
+ */
+
+static int place_camera(scene *s) {
+    int done = make_view(s->context, s->asked, &s->whole, &s->view);
+    return done == GO_ON ? make_settings(s->asked, &s->whole, &s->settings)
+                         : done;
+}
+
+/* Decompression and conversion are part of the reading. */
+static int open_alone(scene *s, const options *step) {
+    double begin = seconds_now();
+    int done = open_input(s->context, step, s->path, &s->volume);
+    s->times.read += seconds_now() - begin;
+    if (done != GO_ON)
+        return done;
+    s->whole = *snow_volume_describe(s->volume);
+    begin = seconds_now();
+    if (!s->transfer)
+        done = open_look(s->context, step, s->volume, &s->transfer);
+    s->times.look += seconds_now() - begin;
+    return done == GO_ON ? place_camera(s) : done;
+}
+
+/* Eight bits are enough on the way where the picture is laid on its background
+ * and rounded to them in the end. */
+static snow_ranks_options how_of(const scene *s) {
+    const options *asked = s->asked;
+    bool coarse = asked->background.given && !asked->deterministic &&
+                  !(asked->bits && asked->bits[0] == '1');
+    return (snow_ranks_options){
+        .size = sizeof(snow_ranks_options),
+        .cut = (snow_cut)option_choice("cut", asked->cut),
+        .combining = (snow_combining)option_choice("combine", asked->combine),
+        .radix = (int)asked->radix,
+        .pixel_bits = coarse ? 8 : 0,
+        .turns = s->turns};
+}
+
+/* The camera comes first: the volume is cut to suit it. */
+static int inspect(scene *s, const snow_volume_options *data) {
+    snow_status status =
+        snow_volume_inspect(s->context, s->path, data, &s->whole);
+    return status == SNOW_OK ? place_camera(s)
+                             : fail_status(s->context, status);
+}
+
+/* Making the transfer function is part of the reading: it needs values of all
+ * parts. */
+static int open_part(scene *s, const options *step) {
+    double begin = seconds_now();
+    snow_volume_options data = data_options(step);
+    snow_look look = look_options(step);
+    snow_ranks_options how = how_of(s);
+    snow_transfer *transfer = NULL;
+    int done = launch_agree(inspect(s, &data));
+    if (done != GO_ON)
+        return done;
+    snow_status status =
+        snow_ranks_open(launch_comm(), s->path, &data, &look, &s->view,
+                        &s->settings, &how, &s->volume, &transfer);
+    if (status != SNOW_OK)
+        return fail_status(s->context, status);
+    if (s->transfer)
+        snow_transfer_free(transfer);
+    else
+        s->transfer = transfer;
+    s->times.read += seconds_now() - begin;
+    return GO_ON;
+}
+
+/* The old volume goes first: there is never room for two. */
+int scene_open(scene *s, const char *path, int64_t time) {
+    options step = *s->asked;
+    step.time = time;
+    s->path = path;
+    snow_volume_close(s->volume);
+    s->volume = NULL;
+    return launch_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
+}
+
+/* --- a picture -------------------------------------------------------------
+ */
+
+/* Sums of what ranks have, seconds of the slowest at each stage. */
+static void add_figures(snow_stats *sum, const snow_stats *stats) {
+    const struct {
+        double *to, from;
+    } rows[] = {{&sum->seconds_classify, stats->seconds_classify},
+                {&sum->seconds_shade, stats->seconds_shade},
+                {&sum->seconds_encode, stats->seconds_encode},
+                {&sum->seconds_splat, stats->seconds_splat},
+                {&sum->seconds_composite, stats->seconds_composite},
+                {&sum->seconds_warp, stats->seconds_warp},
+                {&sum->seconds_frame, stats->seconds_frame},
+                {&sum->seconds_combine, stats->seconds_combine},
+                {&sum->seconds_gather, stats->seconds_gather}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (rows[i].from > *rows[i].to)
+            *rows[i].to = rows[i].from;
+    sum->voxels += stats->voxels;
+    sum->interesting += stats->interesting;
+    sum->ea_bytes += stats->ea_bytes;
+    sum->ia_bytes += stats->ia_bytes;
+    sum->pa_bytes += stats->pa_bytes;
+}
+
+static void sum_up(scene *s) {
+    const rank_figures *figures = s->figures;
+    const int ranks = launch_ranks();
+    int64_t most = 0;
+    s->stats = figures[0].stats;
+    s->peak = 0;
+    for (int rank = 0; rank < ranks; rank++) {
+        if (rank)
+            add_figures(&s->stats, &figures[rank].stats);
+        if (figures[rank].peak > s->peak)
+            s->peak = figures[rank].peak;
+        if (figures[rank].stats.interesting > most)
+            most = figures[rank].stats.interesting;
+    }
+    double mean = (double)s->stats.interesting / ranks;
+    s->load = mean > 0 ? (double)most / mean : 1;
+    if (s->stats.voxels && ranks > 1)
+        s->stats.sparse_ratio =
+            1 - (double)s->stats.interesting / (double)s->stats.voxels;
+}
+
+static int take_figures(scene *s) {
+    rank_figures mine = {*snow_frame_stats(s->frame),
+                         snow_context_peak_bytes(s->context)};
+    snow_status status = SNOW_OK;
+    if (launch_ranks() > 1)
+        status = snow_comm_share(launch_comm(), &mine, sizeof mine, s->figures);
+    else
+        memcpy(s->figures, &mine, sizeof mine);
+    sum_up(s);
+    return status == SNOW_OK ? GO_ON : fail_status(s->context, status);
+}
+
+static snow_status draw_part(scene *s, snow_image **image) {
+    snow_ranks_options how = how_of(s);
+    snow_status status = SNOW_OK;
+    if (s->turns)
+        status = snow_ranks_recut(launch_comm(), s->transfer, &s->view,
+                                  &s->settings, &how, &s->volume);
+    return status == SNOW_OK
+               ? snow_ranks_render(s->frame, launch_comm(), s->volume,
+                                   s->transfer, &s->view, &s->settings, &how,
+                                   image)
+               : status;
+}
+
+static int make_frame(scene *s) {
+    snow_status status = SNOW_OK;
+    if (!s->frame)
+        status = snow_frame_new(s->context, &s->frame);
+    return launch_agree(status == SNOW_OK ? GO_ON
+                                          : fail_status(s->context, status));
+}
+
+int scene_draw(scene *s, double azimuth, snow_image **image) {
+    snow_image *made = NULL;
+    snow_status status;
+    int done = make_frame(s);
+    if (done != GO_ON)
+        return done;
+    s->view.azimuth = azimuth;
+    if (launch_ranks() > 1)
+        status = draw_part(s, &made);
+    else
+        status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
+                                   &s->settings, &made);
+    if (status != SNOW_OK)
+        return fail_volume(s->context, status, name_of_input(s->path));
+    done = take_figures(s);
+    if (done == GO_ON)
+        *image = made;
+    else
+        snow_image_free(made);
+    return done;
+}
+
+/* --- what is told ----------------------------------------------------------
+ */
+
+render_report scene_report(const scene *s) {
+    return (render_report){.volume = &s->whole,
+                           .stats = &s->stats,
+                           .peak = s->peak,
+                           .load = s->load,
+                           .settings = &s->settings,
+                           .times = &s->times};
+}
+
+void scene_choices(const scene *s, char *out, size_t size) {
+    const char *view = s->asked->view     ? s->asked->view
+                       : s->whole.medical ? "anterior"
+                                          : "+z";
+    bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
+    char volume[256];
+    describe_volume(&s->whole, volume, sizeof volume);
+    snprintf(out, size, "%s: %s; %s; view %s; method %s%s%s",
+             name_of_input(s->path), volume, snow_transfer_text(s->transfer),
+             view, snow_method_name(s->stats.method),
+             encoded ? ", encoding " : "",
+             encoded ? snow_encoding_name(s->stats.encoding) : "");
+}

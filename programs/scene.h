@@ -1,0 +1,53 @@
+/* scene.h - a volume, its look and its camera, rendered by this process or by
+ * all ranks together.  Calls are made by all ranks alike, and what one of them
+ * answers, all do. */
+#ifndef SCENE_H
+#define SCENE_H
+
+#include "options.h"
+#include "render_stats.h"
+
+#include <snowglass/ranks.h>
+
+typedef struct scene {
+    const options *asked;
+    const char *path; /* of the volume */
+    bool turns;       /* pictures from several sides are asked for */
+    snow_context *context;
+    snow_volume_info whole; /* of the volume, of which ranks have parts */
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    snow_view view;
+    snow_settings settings;
+    render_times times; /* read and look; sums over all that was opened */
+    /* Of the last picture; of ranks sums, and seconds of the slowest. */
+    snow_stats stats;
+    uint64_t peak; /* bytes; of ranks the most that one had */
+    double load;   /* most interesting voxels of a rank by their mean */
+    void *figures; /* of all ranks */
+} scene;
+
+/* Refuses what ranks cannot do.  Answers GO_ON or an exit code. */
+int scene_check(const options *asked);
+
+/* Answers GO_ON or an exit code, as all do. */
+int scene_new(const options *asked, scene *out);
+void scene_free(scene *s);
+
+/* Opens a time step of a volume in place of the present one, with the look that
+ * is asked for, unless the scene has a transfer function already. */
+int scene_open(scene *s, const char *path, int64_t time);
+
+/* Renders from an azimuth.  *image is the caller's; NULL on ranks that do not
+ * talk. */
+int scene_draw(scene *s, double azimuth, snow_image **image);
+
+/* Figures of the last picture, without image. */
+render_report scene_report(const scene *s);
+
+/* The one line that says what was chosen where nothing was told, but for its
+ * end. */
+void scene_choices(const scene *s, char *out, size_t size);
+
+#endif

@@ -1,0 +1,107 @@
+/* sequence_render.c - the renderer of a sequence: a volume as long as shots are
+ * of it, one look, one frame whose buffers and encoding are kept from picture
+ * to picture. */
+#include "sequence_render.h"
+#include "commands.h"
+#include "launch.h"
+#include "report.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+int shots_open(const options *asked, shot_renderer *out) {
+    *out = (shot_renderer){.count = 0};
+    return scene_new(asked, &out->scene);
+}
+
+void shots_close(shot_renderer *shots) {
+    scene_free(&shots->scene);
+}
+
+/* The camera is placed by the volume, and would jump. */
+int shots_check(shot_renderer *shots, const char *path,
+                const snow_volume_info *info) {
+    const snow_volume_info *first = &shots->grid;
+    if (shots->whole_files && info->times > 1) {
+        say("%s: holds %" PRId64 " time steps; give it alone for a movie of "
+            "them, or --time for one of each file",
+            path, info->times);
+        return SNOW_BAD_INPUT;
+    }
+    if (first->dims[0] == 0) {
+        shots->grid = *info;
+        return GO_ON;
+    }
+    if (memcmp(info->dims, first->dims, sizeof info->dims) != 0) {
+        say("%s: has %" PRId64 "x%" PRId64 "x%" PRId64 " voxels, the first "
+            "step %" PRId64 "x%" PRId64 "x%" PRId64 "; steps of one movie lie "
+            "on one grid",
+            path, info->dims[0], info->dims[1], info->dims[2], first->dims[0],
+            first->dims[1], first->dims[2]);
+        return SNOW_BAD_INPUT;
+    }
+    if (memcmp(info->matrix, first->matrix, sizeof info->matrix) == 0)
+        return GO_ON;
+    say("%s: lies elsewhere in the world than the first step; steps of one "
+        "movie lie on one grid",
+        path);
+    return SNOW_BAD_INPUT;
+}
+
+int shots_volume(shot_renderer *shots, const movie_shot *shot) {
+    scene *s = &shots->scene;
+    if (s->volume && strcmp(s->path, shot->path) == 0 &&
+        shots->time == shot->time)
+        return GO_ON;
+    if (!shots->drawn)
+        progress(s->asked, "reading");
+    shots->time = shot->time;
+    int done = scene_open(s, shot->path, shot->time);
+    return done == GO_ON
+               ? shots_check(shots, name_of_input(shot->path), &s->whole)
+               : done;
+}
+
+/* What was chosen where nothing was told: as render says it, of all frames. */
+static void tell_choices(const shot_renderer *shots) {
+    const options *asked = shots->scene.asked;
+    char text[1024];
+    scene_choices(&shots->scene, text, sizeof text);
+    if (asked->verbosity >= 0)
+        say("%s; %" PRId64 " frames of %lldx%lld to %s", text, shots->count,
+            (long long)asked->size[0], (long long)asked->size[1],
+            asked->output);
+}
+
+static int render(void *self, const movie_shot *shot, snow_image **image) {
+    shot_renderer *shots = self;
+    int done = shots_volume(shots, shot);
+    if (done == GO_ON)
+        done = scene_draw(&shots->scene, shot->azimuth, image);
+    if (done != GO_ON)
+        return done;
+    if (!shots->drawn)
+        tell_choices(shots);
+    shots->drawn = true;
+    return GO_ON;
+}
+
+static void report(void *self, render_report *out) {
+    const shot_renderer *shots = self;
+    *out = scene_report(&shots->scene);
+}
+
+static int share(void *self, int word) {
+    (void)self;
+    return launch_share(word);
+}
+
+sequence_renderer shots_renderer(shot_renderer *shots) {
+    return (sequence_renderer){.self = shots,
+                               .render = render,
+                               .report = report,
+                               .share = share,
+                               .writes = launch_talks(),
+                               .ranks = launch_ranks()};
+}

@@ -1,0 +1,242 @@
+/* recipe/recipe.c - recipes read, written, and applied.
+ *
+ * Texts of a record that was read lie in its JSON tree, which is kept beside
+ * it.  jansson takes its memory from malloc: to tell it another allocator would
+ * change it for the whole process. */
+#include "recipe/keys.h"
+
+#include <string.h>
+
+void snow_recipe_init(snow_recipe *recipe) {
+    *recipe = (snow_recipe){
+        .size = sizeof *recipe, .width = 512, .height = 512, .zoom = 1};
+    snow_settings_init(&recipe->settings);
+}
+
+void snow_recipe_clear(snow_recipe *recipe) {
+    json_decref(recipe->owned);
+    recipe->owned = NULL;
+}
+
+/* --- reading -------------------------------------------------------------- */
+
+static const recipe_key *key_named(const char *name) {
+    const recipe_key *key = recipe_keys;
+    while (key->name && strcmp(key->name, name) != 0)
+        key++;
+    return key->name ? key : NULL;
+}
+
+static snow_status take_key(snow_context *context, const char *source,
+                            const char *name, const json_t *value,
+                            snow_recipe *out) {
+    char wrong[WRONG_BYTES];
+    const recipe_key *key = key_named(name);
+    if (!key)
+        return snow_context_fail(context, SNOW_BAD_INPUT,
+                                 "%s: \"%.64s\" is no key of a recipe; take "
+                                 "the tool's long options without dashes",
+                                 source, name);
+    if (key->read(key, value, (char *)out + key->field, wrong))
+        return SNOW_OK;
+    return snow_context_fail(context, SNOW_BAD_INPUT, "%s: \"%s\" %s", source,
+                             name, wrong);
+}
+
+/* A window and a level are another way to write a range. */
+static snow_status take_window(snow_context *context, const char *source,
+                               json_t *tree, snow_recipe *out) {
+    json_t *window = json_object_get(tree, "window");
+    json_t *level = json_object_get(tree, "level");
+    if (!window && !level)
+        return SNOW_OK;
+    double width = json_number_value(window);
+    if (!json_is_number(window) || !json_is_number(level) || !(width > 0) ||
+        out->range != SNOW_RANGE_AUTO)
+        return snow_context_fail(context, SNOW_BAD_INPUT,
+                                 "%s: \"window\" (above 0) and \"level\" go "
+                                 "together, without \"range\"",
+                                 source);
+    out->range = SNOW_RANGE_VALUES;
+    out->low = json_number_value(level) - width / 2;
+    out->high = json_number_value(level) + width / 2;
+    return SNOW_OK;
+}
+
+static snow_status take_tree(snow_context *context, const char *source,
+                             json_t *tree, snow_recipe *out) {
+    const char *name;
+    json_t *value;
+    if (!json_is_object(tree))
+        return snow_context_fail(context, SNOW_BAD_INPUT,
+                                 "%s: a recipe is one JSON object; begin it "
+                                 "with {",
+                                 source);
+    json_object_foreach(tree, name, value) {
+        snow_status status = SNOW_OK;
+        if (strcmp(name, "window") != 0 && strcmp(name, "level") != 0)
+            status = take_key(context, source, name, value, out);
+        if (status != SNOW_OK)
+            return status;
+    }
+    return take_window(context, source, tree, out);
+}
+
+/* Takes over the tree. */
+static snow_status finish(snow_context *context, const char *source,
+                          json_t *tree, const json_error_t *error,
+                          snow_recipe *out) {
+    snow_recipe recipe;
+    if (!tree)
+        return snow_context_fail(context, SNOW_BAD_INPUT,
+                                 "%s: line %d is no JSON: %s; correct it",
+                                 source, error->line, error->text);
+    snow_recipe_init(&recipe);
+    snow_status status = take_tree(context, source, tree, &recipe);
+    if (status != SNOW_OK) {
+        json_decref(tree);
+        return status;
+    }
+    recipe.owned = tree;
+    *out = recipe;
+    return SNOW_OK;
+}
+
+snow_status snow_recipe_parse(snow_context *context, const char *name,
+                              const char *text, size_t bytes,
+                              snow_recipe *out) {
+    json_error_t error;
+    json_t *tree = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
+    return finish(context, name, tree, &error, out);
+}
+
+snow_status snow_recipe_load(snow_context *context, const char *path,
+                             snow_recipe *out) {
+    json_error_t error;
+    json_t *tree = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
+    if (!tree && json_error_code(&error) == json_error_cannot_open_file)
+        return snow_context_fail(context, SNOW_BAD_INPUT,
+                                 "%s: cannot be opened; name a recipe that can "
+                                 "be read",
+                                 path);
+    return finish(context, path, tree, &error, out);
+}
+
+/* --- writing -------------------------------------------------------------- */
+
+snow_status snow_recipe_write(snow_context *context, const snow_recipe *recipe,
+                              char *text, size_t room, size_t *length) {
+    json_t *tree = json_object();
+    int failed = tree == NULL;
+    for (const recipe_key *key = recipe_keys; key->name && !failed; key++) {
+        json_t *value = key->write(key, (const char *)recipe + key->field);
+        if (value)
+            failed = json_object_set_new(tree, key->name, value);
+    }
+    size_t flags = JSON_INDENT(2) | JSON_REAL_PRECISION(17);
+    size_t bytes = failed ? 0 : json_dumpb(tree, text, room, flags);
+    json_decref(tree);
+    if (!bytes)
+        return snow_context_fail(context, SNOW_NO_MEMORY,
+                                 "no memory for the text of a recipe; close "
+                                 "other programs");
+    if (room)
+        text[bytes < room ? bytes : 0] = 0;
+    *length = bytes;
+    return SNOW_OK;
+}
+
+/* --- what it says --------------------------------------------------------- */
+
+void snow_recipe_look(const snow_recipe *recipe, snow_look *out) {
+    *out = (snow_look){.preset = recipe->preset,
+                       .colormap = recipe->colormap,
+                       .range = recipe->range,
+                       .low = recipe->low,
+                       .high = recipe->high};
+    if (recipe->opacity_count) {
+        out->opacities = recipe->opacities;
+        out->opacity_count = recipe->opacity_count;
+    }
+}
+
+snow_status snow_recipe_view(snow_context *context, const snow_recipe *recipe,
+                             const snow_view *usual, snow_view *out) {
+    snow_view view = *usual;
+    if (recipe->view) {
+        snow_status status = snow_view_named(context, recipe->view, &view);
+        if (status != SNOW_OK)
+            return status;
+    }
+    view.width = recipe->width;
+    view.height = recipe->height;
+    view.azimuth = recipe->azimuth;
+    view.elevation = recipe->elevation;
+    view.roll = recipe->roll;
+    view.zoom = recipe->zoom;
+    view.fov = recipe->fov;
+    *out = view;
+    return SNOW_OK;
+}
+
+/* Millimetres in a unit of length; 0 where it is none. */
+static double length_of_mm(const char *unit) {
+    static const struct {
+        const char *unit;
+        double length;
+    } units[] = {{"", 1},     {"mm", 1},   {"um", 1e3},
+                 {"nm", 1e6}, {"m", 1e-3}, {"angstrom", 1e7}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strcmp(units[i].unit, unit) == 0)
+            return units[i].length;
+    return 0;
+}
+
+snow_status snow_recipe_settings(snow_context *context,
+                                 const snow_recipe *recipe, const char *unit,
+                                 snow_settings *out) {
+    snow_settings settings = recipe->settings;
+    if (recipe->opacity_per_mm) {
+        settings.opacity_length = length_of_mm(unit);
+        if (settings.opacity_length == 0)
+            return snow_context_fail(context, SNOW_BAD_USAGE,
+                                     "the volume's unit '%s' is no length; "
+                                     "take opacities per voxel",
+                                     unit);
+    }
+    *out = settings;
+    return SNOW_OK;
+}
+
+snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
+    snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
+    snow_look look;
+    snow_view usual, view;
+    snow_settings settings;
+    snow_recipe_look(recipe, &look);
+    snow_status status = snow_view_named(context, "+z", &usual);
+    if (status == SNOW_OK)
+        status = snow_recipe_view(context, recipe, &usual, &view);
+    if (status == SNOW_OK)
+        status = snow_recipe_settings(context, recipe, "", &settings);
+    if (status == SNOW_OK)
+        status = snow_insitu_set_look(insitu, &look);
+    if (status == SNOW_OK)
+        status = snow_insitu_set_view(insitu, &view);
+    if (status == SNOW_OK)
+        status = snow_insitu_set_settings(insitu, &settings);
+    if (status == SNOW_OK && recipe->output)
+        status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
+    return status;
+}
+
+snow_status snow_recipe_apply_file(snow_insitu *insitu, const char *path) {
+    snow_recipe recipe;
+    snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
+    snow_status status = snow_recipe_load(context, path, &recipe);
+    if (status == SNOW_OK) {
+        status = snow_recipe_apply(&recipe, insitu);
+        snow_recipe_clear(&recipe);
+    }
+    return snow_insitu_set_failure(insitu, status);
+}

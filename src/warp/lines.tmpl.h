@@ -1,0 +1,91 @@
+/* warp/lines.tmpl.h - lines of the picture out of the intermediate image, in
+ * groups of pixels.  Define before including, with simd/select.h's words in
+ * force:
+ *
+ *   WARP_CHANNELS  floats of a pixel: 2 or 4
+ *   WARP_BEFORE    lines and columns that are read before a pixel's place
+ *   WARP_NAME      names of the functions: of a line whose places are a number
+ *                  of steps apart, and (_places) of any places; (_mix) is what
+ *                  makes pixels of the places of a group
+ *
+ * All are undefined at the end.  Places become offsets and fractions in loops
+ * that the compiler carries to vectors. */
+
+/* Fills what a group's places (x, y) say; those beyond `count` are places of
+ * others. */
+TARGET static inline __attribute__((always_inline)) void
+WARP_NAME(_place)(const snow_plane *plane, const int64_t *x, const int64_t *y,
+                  int count, warp_group *group) {
+    const int32_t stride = (int32_t)plane->stride; /* shear.c: up to 2^23 */
+    const int64_t before = WARP_BEFORE * (stride + WARP_CHANNELS);
+    for (int n = 0; n < GROUP; n++)
+        group->at[n] = (int64_t)(int32_t)(y[n] >> 32) * stride +
+                       (x[n] >> 32) * WARP_CHANNELS - before;
+    for (int n = 0; n < GROUP; n++) {
+        group->across[2 * n] = group->across[2 * n + 1] = fraction_of(x[n]);
+        group->down[2 * n] = group->down[2 * n + 1] = fraction_of(y[n]);
+    }
+    for (int n = count; n < GROUP; n++)
+        group->at[n] = group->at[0];
+}
+
+/* A group's pixels, of which `count` are written, held to the laws of
+ * premultiplied ones. */
+TARGET static inline __attribute__((always_inline)) void
+WARP_NAME(_group)(const snow_plane *plane, const int64_t *x, const int64_t *y,
+                  int count, float *pixels) {
+    const V(vec) zero = V(set1)(0), one = V(set1)(1);
+    float mixtures[WARP_CHANNELS * GROUP];
+    warp_group group;
+    WARP_NAME(_place)(plane, x, y, count, &group);
+    WARP_NAME(_mix)(plane, &group, mixtures);
+    for (int at = 0; at < WARP_CHANNELS * GROUP; at += LANES) {
+        V(vec) v = V(min)(V(max)(V(load)(mixtures + at), zero), one);
+        v = V(min)(v, WARP_CHANNELS == 4 ? V(alpha4)(v) : V(alpha2)(v));
+        V(store)(mixtures + at, v);
+    }
+    if (count == GROUP)
+        memcpy(pixels, mixtures, sizeof mixtures);
+    else
+        memcpy(pixels, mixtures,
+               (size_t)(count * WARP_CHANNELS) * sizeof *pixels);
+}
+
+TARGET static void WARP_NAME()(const snow_plane *plane,
+                               const snow_warp_line *line, int first, int count,
+                               float *pixels) {
+    int64_t x[GROUP], y[GROUP], steps[2][GROUP];
+    for (int i = 0; i < GROUP; i++) {
+        steps[0][i] = i * line->step[0];
+        steps[1][i] = i * line->step[1];
+    }
+    for (int n = 0; n < count; n += GROUP) {
+        int64_t left = line->start[0] + (first + n) * line->step[0];
+        int64_t top = line->start[1] + (first + n) * line->step[1];
+        for (int i = 0; i < GROUP; i++) {
+            x[i] = left + steps[0][i];
+            y[i] = top + steps[1][i];
+        }
+        WARP_NAME(_group)
+        (plane, x, y, count - n < GROUP ? count - n : GROUP,
+         pixels + n * WARP_CHANNELS);
+    }
+}
+
+TARGET static void WARP_NAME(_places)(const snow_plane *plane,
+                                      const int64_t (*places)[2], int count,
+                                      float *pixels) {
+    for (int n = 0; n < count; n += GROUP) {
+        int64_t x[GROUP] = {0}, y[GROUP] = {0};
+        int some = count - n < GROUP ? count - n : GROUP;
+        for (int i = 0; i < some; i++) {
+            x[i] = places[n + i][0];
+            y[i] = places[n + i][1];
+        }
+        WARP_NAME(_group)(plane, x, y, some, pixels + n * WARP_CHANNELS);
+    }
+}
+
+#undef WARP_CHANNELS
+#undef WARP_BEFORE
+#undef WARP_NAME

@@ -1,0 +1,98 @@
+# mpi_render.sh - the tool as many ranks makes the pictures of one process, from
+# all sides, however the volume is cut and the pictures are combined.
+. "$(dirname "$0")/support_mpi.sh"
+head="phantom:head --dims 40x36x44 -s 160x120 -q"
+
+# render N NAME OPTION...: a picture by N ranks, and as alone.
+render() {
+    local ranks=$1 name=$2
+    shift 2
+    # shellcheck disable=SC2086
+    run 0 "$name by $ranks ranks" \
+        launch "$ranks" "$MPI_TOOL" $head -y -o many.npy "$@"
+    run 0 "$name by $ranks ranks is as by one" "$TOOL" compare one.npy \
+        many.npy --tolerance "${TOLERANCE:-1/255}"
+}
+
+for view in "--view +x" "--view -y" "--view +z" \
+    "--azimuth 33 --elevation 21 --roll 10 --zoom 1.3" "--view iso --perspective"; do
+    # shellcheck disable=SC2086
+    run 0 "$view alone" "$TOOL" $head $view -y -o one.npy
+    for ranks in $COUNTS; do
+        # shellcheck disable=SC2086
+        render "$ranks" "$view" $view
+    done
+done
+
+# The last view is oblique enough for bricks.
+for way in "--cut equal" "--cut bricks" "--combine tree" "--combine swap" \
+    "--combine direct" "--combine radix --radix 3"; do
+    # shellcheck disable=SC2086
+    run 0 "a picture alone" "$TOOL" $head --azimuth 70 -y -o one.npy
+    # shellcheck disable=SC2086
+    render "$MOST" "$way" --azimuth 70 $way
+done
+
+# shellcheck disable=SC2086
+run 0 "a deterministic picture" "$TOOL" $head --deterministic -y -o one.npy
+TOLERANCE=0 render 3 "a deterministic picture" --deterministic
+check "it has the same bits" cmp -s one.npy many.npy
+
+# shellcheck disable=SC2086
+run 0 "figures" launch 2 "$MPI_TOOL" $head -y -o many.png --stats -
+prints '"ranks": 2'
+prints '"interesting": |"load": 1'
+# shellcheck disable=SC2086
+"$TOOL" $head -y -o one.png --stats one.json
+check "bytes of EA are those of one process" [ "$(number ea)" = \
+    "$(sed -n 's/.*"ea": \([0-9]*\).*/\1/p' one.json)" ]
+
+# Files of which each rank reads its part, and unpacks all.
+run 0 "a file" "$TOOL" phantom engine --dims 40x40x40 -o v.nrrd
+run 0 "a packed file" "$TOOL" phantom engine --dims 40x40x40 -o v.nii.gz
+for file in v.nrrd v.nii.gz; do
+    run 0 "$file alone" "$TOOL" $file -q -y -o one.npy
+    run 0 "$file by 3" launch 3 "$MPI_TOOL" $file -q -y -o many.npy
+    run 0 "$file by 3 is as by one" "$TOOL" compare one.npy many.npy \
+        --tolerance 1/255
+done
+
+# Movies.
+turn="turntable v.nrrd --frames 4 -s 64x64 -q"
+# shellcheck disable=SC2086
+run 0 "a turntable alone" "$TOOL" $turn -o one_%02d.png
+# shellcheck disable=SC2086
+run 0 "a turntable by 3" launch 3 "$MPI_TOOL" $turn -o many_%02d.png
+for frame in 0 1 2 3; do
+    run 0 "frame $frame" "$TOOL" compare one_0$frame.png many_0$frame.png \
+        --tolerance 1/255
+done
+rm many_02.png
+# shellcheck disable=SC2086
+run 0 "a turntable is resumed" launch 3 "$MPI_TOOL" $turn --resume \
+    -o many_%02d.png --stats stats.json
+check "one frame was missing" grep -q '"rendered": 1, "kept": 3' stats.json
+run 0 "its frame is the same" "$TOOL" compare one_02.png many_02.png \
+    --tolerance 1/255
+for seed in 0 1 2; do
+    "$TOOL" phantom head --dims 32x32x32 --seed $seed -q -o step$seed.nrrd
+done
+run 0 "a movie alone" "$TOOL" movie step%d.nrrd -s 64x64 -q -o step_%d.png
+run 0 "a movie by 2" launch 2 "$MPI_TOOL" movie step%d.nrrd -s 64x64 -q \
+    -o steps_%d.png
+for frame in 0 1 2; do
+    run 0 "step $frame" "$TOOL" compare step_$frame.png steps_$frame.png \
+        --tolerance 1/255
+done
+
+# What is for one process, one rank does.
+run 0 "info" launch 2 "$MPI_TOOL" info v.nrrd --json
+check "info is told once" [ "$(wc -l <"$OUT")" -eq 1 ]
+run 6 "compare" launch 2 "$MPI_TOOL" compare one_00.png one_01.png
+run 0 "doctor" launch 2 "$MPI_TOOL" doctor
+prints '^mpi  *[A-Z].*, 2 ranks$'
+run 0 "help" launch 2 "$MPI_TOOL" help ranks
+prints '^      --cut auto.equal.counted.bricks'
+refused 2 "--cut alone" 'snowglass-mpi' "$TOOL" v.nrrd -o x.png --cut equal
+run 2 "help ranks alone" "$TOOL" help ranks
+finish

@@ -1,0 +1,219 @@
+/* tests/test_recipe.c - a render as JSON: read, refused, written and read
+ * again. */
+#include "support.h"
+
+#include <snowglass/recipe.h>
+
+/* Every key but window and level, none with its default. */
+static const char all_keys[] =
+    "{\"input\": \"a.raw\", \"output\": \"b_%04d.png\", \"overwrite\": true,"
+    " \"size\": [640, 480], \"background\": [1, 0.5, 0], \"bits\": 16,"
+    " \"mode\": \"over\", \"threshold\": 10.5, \"encoding\": \"rle\","
+    " \"method\": \"footprint\", \"kernel\": \"gauss\", \"footprint\": 5,"
+    " \"preset\": \"ct-bone\", \"colormap\": \"viridis\","
+    " \"opacity\": [[-10, 0], [0.25, 0.5], [90, 1]],"
+    " \"range\": [\"p1\", \"p99.5\"], \"opacity-unit\": \"mm\","
+    " \"shade\": \"none\", \"light\": [30, -40.5], \"ambient\": 0.1,"
+    " \"diffuse\": 0.3, \"specular\": 0.4, \"shininess\": 7,"
+    " \"quality\": \"high\", \"view\": \"iso\", \"azimuth\": 1,"
+    " \"elevation\": -2, \"roll\": 3.25, \"zoom\": 1.5, \"perspective\": 40,"
+    " \"threads\": 3, \"deterministic\": true, \"isa\": \"scalar\","
+    " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
+    " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
+    " \"channel\": 1, \"dataset\": \"/a/b\", \"crop\": [[1, 5], [0, 0], [3, "
+    "0]]}";
+
+static snow_status parse(snow_context *context, const char *text,
+                         snow_recipe *out) {
+    return snow_recipe_parse(context, "text", text, strlen(text), out);
+}
+
+/* The text of a recipe; the caller frees it. */
+static char *write_text(snow_context *context, const snow_recipe *recipe) {
+    size_t length, again;
+    assert_int_equal(snow_recipe_write(context, recipe, NULL, 0, &length),
+                     SNOW_OK);
+    char *text = malloc(length + 1);
+    assert_int_equal(
+        snow_recipe_write(context, recipe, text, length + 1, &again), SNOW_OK);
+    assert_int_equal(length, again);
+    assert_int_equal(strlen(text), length);
+    return text;
+}
+
+static void every_key_reaches_its_field(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_recipe r;
+    assert_int_equal(parse(context, all_keys, &r), SNOW_OK);
+    assert_string_equal(r.input, "a.raw");
+    assert_string_equal(r.output, "b_%04d.png");
+    assert_true(r.image.overwrite && r.image.flatten && r.image.bits == 16);
+    assert_true(r.image.background[1] == 0.5);
+    assert_true(r.width == 640 && r.height == 480);
+    assert_true(r.settings.threshold == 10.5);
+    assert_int_equal(r.settings.encoding, SNOW_ENCODING_RLE);
+    assert_int_equal(r.settings.method, SNOW_METHOD_FOOTPRINT);
+    assert_int_equal(r.settings.kernel, SNOW_KERNEL_GAUSS);
+    assert_int_equal(r.settings.footprint, 5);
+    assert_string_equal(r.preset, "ct-bone");
+    assert_string_equal(r.colormap, "viridis");
+    assert_int_equal(r.opacity_count, 3);
+    assert_true(r.opacities[1].value == 0.25 && r.opacities[1].opacity == 0.5);
+    assert_int_equal(r.range, SNOW_RANGE_PERCENTILES);
+    assert_true(r.low == 1 && r.high == 99.5);
+    assert_true(r.opacity_per_mm);
+    assert_int_equal(r.settings.shade, SNOW_SHADE_NONE);
+    assert_true(r.settings.light_azimuth == 30 &&
+                r.settings.light_elevation == -40.5);
+    assert_true(r.settings.ambient == 0.1 && r.settings.diffuse == 0.3 &&
+                r.settings.specular == 0.4 && r.settings.shininess == 7);
+    assert_int_equal(r.settings.quality, SNOW_QUALITY_HIGH);
+    assert_string_equal(r.view, "iso");
+    assert_true(r.azimuth == 1 && r.elevation == -2 && r.roll == 3.25);
+    assert_true(r.zoom == 1.5 && r.fov == 40);
+    assert_int_equal(r.settings.threads, 3);
+    assert_true(r.settings.deterministic);
+    assert_int_equal(r.settings.isa, SNOW_ISA_SCALAR);
+    assert_true(r.data.dims[2] == 7 && r.data.type == SNOW_INT16);
+    assert_true(r.data.spacing[2] == 0.1);
+    assert_int_equal(r.data.endian, SNOW_ENDIAN_BIG);
+    assert_true(r.data.offset == 352 && r.data.time == 2);
+    assert_true(r.data.channel == 1);
+    assert_string_equal(r.data.dataset, "/a/b");
+    assert_true(r.data.crop[0][1] == 5 && r.data.crop[2][0] == 3);
+    snow_recipe_clear(&r);
+    snow_context_free(context);
+}
+
+static void what_is_written_reads_as_it_was(void **state) {
+    (void)state;
+    static const char *const texts[] = {all_keys,
+                                        "{}",
+                                        "{\"range\": \"full\"}",
+                                        "{\"range\": [-1e-3, 0.1]}",
+                                        "{\"window\": 0.2, \"level\": 7}",
+                                        "{\"background\": \"#ff8000\"}"};
+    snow_context *context = support_context();
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        snow_recipe a, b;
+        assert_int_equal(parse(context, texts[i], &a), SNOW_OK);
+        char *text = write_text(context, &a);
+        assert_int_equal(parse(context, text, &b), SNOW_OK);
+        char *again = write_text(context, &b);
+        assert_string_equal(text, again);
+        assert_int_equal(a.range, b.range);
+        assert_true(a.low == b.low && a.high == b.high);
+        assert_true(a.image.flatten == b.image.flatten);
+        assert_memory_equal(&a.settings, &b.settings, sizeof a.settings);
+        assert_int_equal(a.data.dataset == NULL, b.data.dataset == NULL);
+        a.data.dataset = b.data.dataset = NULL;
+        assert_memory_equal(&a.data, &b.data, sizeof a.data);
+        free(again);
+        free(text);
+        snow_recipe_clear(&a);
+        snow_recipe_clear(&b);
+    }
+    snow_context_free(context);
+}
+
+static void an_empty_recipe_is_the_defaults(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_recipe a, b;
+    snow_recipe_init(&a);
+    assert_int_equal(parse(context, "{}", &b), SNOW_OK);
+    snow_recipe_clear(&b);
+    assert_memory_equal(&a, &b, sizeof a);
+    snow_context_free(context);
+}
+
+static void a_wrong_recipe_is_refused_by_its_key(void **state) {
+    (void)state;
+    static const char *const wrong[][2] = {
+        {"{\"colourmap\": \"hot\"}", "\"colourmap\" is no key"},
+        {"{\"colormap\": \"nothing\"}", "must be one of grey"},
+        {"{\"size\": [640]}", "\"size\" must be [width, height]"},
+        {"{\"size\": [640, 0]}", "\"size\" must be"},
+        {"{\"zoom\": 0}", "\"zoom\" must be a number from"},
+        {"{\"footprint\": 2.5}", "\"footprint\" must be a whole number"},
+        {"{\"footprint\": 10}", "from 2 to 9"},
+        {"{\"azimuth\": \"30\"}", "\"azimuth\" must be a number"},
+        {"{\"opacity\": [[0, 0], [-1, 1]]}", "values that do not fall"},
+        {"{\"opacity\": [[0, 1.5]]}", "opacities 0 to 1"},
+        {"{\"opacity\": []}", "\"opacity\" must be"},
+        {"{\"range\": [2, 1]}", "\"range\" must be"},
+        {"{\"range\": [\"p1\", 3]}", "\"range\" must be"},
+        {"{\"range\": [\"p1\", \"p101\"]}", "\"range\" must be"},
+        {"{\"background\": \"#12345\"}", "\"background\" must be"},
+        {"{\"background\": [0, 0, 2]}", "\"background\" must be"},
+        {"{\"window\": 3}", "go together"},
+        {"{\"window\": 3, \"level\": 1, \"range\": [0, 1]}", "go together"},
+        {"{\"type\": \"int12\"}", "\"type\" must be one of"},
+        {"{\"overwrite\": 1}", "true or false"},
+        {"{\"mode\": \"mip\"}", "\"mode\" must be \"over\""},
+        {"{\"roll\": 1, \"roll\": 2}", "duplicate"},
+        {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},
+        {"[1]", "one JSON object"},
+        {"{\n\"roll\": }", "line 2"},
+        {"", "no JSON"}};
+    snow_context *context = support_context();
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        snow_recipe r;
+        assert_int_equal(parse(context, wrong[i][0], &r), SNOW_BAD_INPUT);
+        if (!strstr(snow_context_message(context), wrong[i][1]))
+            fail_msg("%s: %s", wrong[i][0], snow_context_message(context));
+    }
+    snow_recipe r;
+    assert_int_equal(snow_recipe_load(context, "no/such/recipe.json", &r),
+                     SNOW_BAD_INPUT);
+    assert_non_null(strstr(snow_context_message(context), "cannot be opened"));
+    snow_context_free(context);
+}
+
+static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_recipe r;
+    snow_view usual, named, view;
+    assert_int_equal(snow_view_named(context, "left", &usual), SNOW_OK);
+    assert_int_equal(snow_view_named(context, "iso", &named), SNOW_OK);
+    assert_int_equal(parse(context, "{\"azimuth\": 5, \"size\": [9, 8]}", &r),
+                     SNOW_OK);
+    assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
+    assert_memory_equal(view.back, usual.back, sizeof view.back);
+    assert_true(view.azimuth == 5 && view.width == 9 && view.height == 8);
+    r.view = "iso";
+    assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
+    assert_memory_equal(view.back, named.back, sizeof view.back);
+    snow_recipe_clear(&r);
+    snow_context_free(context);
+}
+
+static void opacities_per_millimetre_follow_the_unit(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_recipe r;
+    snow_settings s;
+    snow_recipe_init(&r);
+    assert_int_equal(snow_recipe_settings(context, &r, "furlong", &s), SNOW_OK);
+    assert_true(s.opacity_length == 0);
+    r.opacity_per_mm = true;
+    assert_int_equal(snow_recipe_settings(context, &r, "um", &s), SNOW_OK);
+    assert_true(s.opacity_length == 1000);
+    assert_int_equal(snow_recipe_settings(context, &r, "furlong", &s),
+                     SNOW_BAD_USAGE);
+    snow_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_key_reaches_its_field),
+        cmocka_unit_test(what_is_written_reads_as_it_was),
+        cmocka_unit_test(an_empty_recipe_is_the_defaults),
+        cmocka_unit_test(a_wrong_recipe_is_refused_by_its_key),
+        cmocka_unit_test(a_view_without_a_name_is_the_usual_one_turned),
+        cmocka_unit_test(opacities_per_millimetre_follow_the_unit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
