@@ -20,7 +20,8 @@ static const char all_keys[] =
     " \"threads\": 3, \"deterministic\": true, \"isa\": \"scalar\","
     " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
     " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
-    " \"crop\": [[1, 5], [0, 0], [3, 0]]}";
+    " \"channel\": 1, \"dataset\": \"/a/b\", \"crop\": [[1, 5], [0, 0], [3, "
+    "0]]}";
 
 static snow_status parse(snow_context *context, const char *text,
                          snow_recipe *out) {
@@ -78,6 +79,8 @@ static void every_key_reaches_its_field(void **state) {
     assert_true(r.data.spacing[2] == 0.1);
     assert_int_equal(r.data.endian, SNOW_ENDIAN_BIG);
     assert_true(r.data.offset == 352 && r.data.time == 2);
+    assert_true(r.data.channel == 1);
+    assert_string_equal(r.data.dataset, "/a/b");
     assert_true(r.data.crop[0][1] == 5 && r.data.crop[2][0] == 3);
     snow_recipe_clear(&r);
     snow_context_free(context);
@@ -103,6 +106,8 @@ static void what_is_written_reads_as_it_was(void **state) {
         assert_true(a.low == b.low && a.high == b.high);
         assert_true(a.image.flatten == b.image.flatten);
         assert_memory_equal(&a.settings, &b.settings, sizeof a.settings);
+        assert_int_equal(a.data.dataset == NULL, b.data.dataset == NULL);
+        a.data.dataset = b.data.dataset = NULL;
         assert_memory_equal(&a.data, &b.data, sizeof a.data);
         free(again);
         free(text);
@@ -141,6 +146,10 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"range\": [\"p1\", 3]}", "\"range\" must be"},
         {"{\"range\": [\"p1\", \"p101\"]}", "\"range\" must be"},
         {"{\"background\": \"#12345\"}", "\"background\" must be"},
+        {"{\"background\": \"#1010-8\"}", "\"background\" must be"},
+        {"{\"range\": [\"p 1\", \"p99\"]}", "\"range\" must be"},
+        {"{\"window\": 1.7e308, \"level\": 1.7e308}", "go together"},
+        {"{\"window\": 1e-300, \"level\": 1e308}", "go together"},
         {"{\"background\": [0, 0, 2]}", "\"background\" must be"},
         {"{\"window\": 3}", "go together"},
         {"{\"window\": 3, \"level\": 1, \"range\": [0, 1]}", "go together"},
