@@ -138,6 +138,12 @@ def cases():
                                 (1024, 6.6, "long")):
         yield Case(f"large-{ranks}", "flat", ranks, 4096, OURS, target=target,
                    tier=tier)
+    # What one processor of the machine where docs/scaling.md was written takes:
+    # `snowglass bench combine --rates --size 1024`.
+    rates = ["--scan", "1.3e-9", "--blend", "2.5e-9"]
+    for ranks in (32, 128):
+        yield Case(f"own-rates-{ranks}", "flat", ranks, 1024, OURS + rates,
+                   tier="usual")
     yield Case("paper-4096", "flat", 4096, 1024, PAPER, "exchange_ms",
                tier="long")
     yield Case("ours-4096", "flat", 4096, 1024, OURS, target=0.42, ratio=1.7,
