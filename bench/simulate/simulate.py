@@ -96,6 +96,8 @@ class Case:
 
 
 def cases():
+    # With pixels, and compared with the picture of a chain.
+    yield Case("checked-128", "flat", 128, 256, OURS + ["--check"])
     quick = {32: (0.60, 2.5, 13), 128: (0.48, 2.0, 23), 1024: (0.41, 1.65, 40)}
     for ranks, (target, ratio, times) in quick.items():
         paper = f"paper-{ranks}"
@@ -197,8 +199,9 @@ def run(program, folder, case):
              "--beta", str(1 / (0.97 * network.bandwidth))]
     command = ["smpirun", "-np", str(case.ranks), "-platform", str(platform),
                "-hostfile", str(hosts), *settings(network), str(program),
-               "--json", "--sizes-only", "--size", str(case.size), *bound,
-               *case.options]
+               "--json", "--size", str(case.size), *bound, *case.options]
+    if "--check" not in case.options:
+        command.append("--sizes-only")
     done = subprocess.run(command, capture_output=True, text=True)
     lines = [line for line in done.stdout.splitlines()
              if line.startswith("{")]
