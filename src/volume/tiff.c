@@ -224,7 +224,6 @@ static snow_status read_open(tiff_file *file,
     snow_window window;
     SNOW_TRY(make_plan(file, &plan, info));
     SNOW_TRY(check_size(file, &plan));
-    SNOW_TRY(snow_volume_check_dataset(file->context, options, ""));
     SNOW_TRY(snow_volume_pick_channel(
         file->context, options, plan.channels * plan.page.samples, &channel));
     SNOW_TRY(snow_volume_pick_time(file->context, "time step", options, info));
@@ -277,6 +276,7 @@ const snow_format snow_format_tiff = {
     .suffixes = {".tif", ".tiff", ".btf", ".tif.gz", ".tiff.gz"},
     .probe = probe_tiff,
     .crops = true,
+    .channels = true,
     .slices = true,
     .read = read_tiff,
 };
