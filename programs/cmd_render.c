@@ -88,8 +88,7 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
 
 /* The texts were checked against the choices of the table, so that every name
  * is known to the library. */
-int make_settings(const options *asked, const snow_volume_info *info,
-                  snow_settings *out) {
+void fill_settings(const options *asked, snow_settings *out) {
     snow_settings_init(out);
     out->threshold = asked->threshold < 0 ? 0 : asked->threshold;
     out->method = (snow_method)snow_method_named(asked->method);
@@ -106,8 +105,15 @@ int make_settings(const options *asked, const snow_volume_info *info,
     out->light_elevation = asked->light[1];
     out->quality = (snow_quality)snow_quality_named(asked->quality);
     out->isa = (snow_isa)snow_isa_named(asked->isa);
-    out->threads = asked->threads ? (int)asked->threads : launch_threads();
+    out->threads = (int)asked->threads;
     out->deterministic = asked->deterministic;
+}
+
+int make_settings(const options *asked, const snow_volume_info *info,
+                  snow_settings *out) {
+    fill_settings(asked, out);
+    if (!out->threads)
+        out->threads = launch_threads();
     return opacity_length(asked, info, &out->opacity_length);
 }
 

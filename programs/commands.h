@@ -35,6 +35,10 @@ int check_look(const options *asked);
 int open_look(snow_context *context, const options *asked,
               const snow_volume *volume, snow_transfer **out);
 
+/* The settings that the options ask for, but for the opacity's length, which
+ * depends on the volume's unit. */
+void fill_settings(const options *asked, snow_settings *out);
+
 /* The settings and the view that the options ask for.  Answer GO_ON or an exit
  * code. */
 int make_settings(const options *asked, const snow_volume_info *info,

@@ -6,6 +6,7 @@
  * 130. */
 #include "bench.h"
 #include "commands.h"
+#include "config.h"
 #include "interrupt.h"
 #include "launch.h"
 #include "report.h"
@@ -74,8 +75,13 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
     if (asked.help)
         return help_print(asked.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
+    done = config_check(&asked);
+    if (done != GO_ON)
+        return done;
     double begin = seconds_now();
     done = run_verb(verb, &asked);
+    if (done == SNOW_OK)
+        done = config_save(&asked);
     if (asked.verbosity > 0 && verb->bit != VERB_RENDER) /* it tells more */
         say("seconds: total %.3f", seconds_now() - begin);
     return done;

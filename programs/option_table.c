@@ -185,8 +185,13 @@ const option_row option_table[] = {
      0, "", "tell nothing but errors"},
     LATER("memory", 0, "SIZE", TOPIC_RUN,
           "limit the process with ulimit -v or a cgroup"),
-    LATER("config", 0, "FILE", TOPIC_RUN, "give the options themselves"),
-    LATER("save-config", 0, "FILE", TOPIC_RUN, "keep the command line"),
+    {"config", 0, "FILE", TOPIC_RUN, INPUT, read_text, FIELD(config), 0, 0, "",
+     "take options from a JSON object: long names for keys, and input; what "
+     "stands on the command line counts more"},
+    {"save-config", 0, "FILE", TOPIC_RUN, RENDER, read_text,
+     FIELD(save_config), 0, 0, "", "write such an object, which gives the same "
+     "picture again; - is standard output; a file that exists needs "
+     "--overwrite"},
 
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
      1000000, "", "pictures of one turn (120)"},

@@ -3,6 +3,7 @@
  * Options may follow operands, "--" ends them, a repeated one counts as told
  * last.  What is unknown, of another verb, or not built yet is refused. */
 #include "options.h"
+#include "config.h"
 #include "launch.h"
 #include "report.h"
 
@@ -202,6 +203,25 @@ static int take(options *out, const option_row *row, const verb_row *verb,
     return fail_usage("--%s: '%s' %s", row->name, text, wrong);
 }
 
+static const option_row *row_named(const char *name) {
+    const option_row *row = option_table;
+    while (row->name && strcmp(row->name, name) != 0)
+        row++;
+    return row;
+}
+
+bool options_told(const options *asked, const char *name) {
+    return asked->told[row_named(name) - option_table] != NULL;
+}
+
+int options_take(options *out, const verb_row *verb, const char *name,
+                 const char *text) {
+    const option_row *row = row_named(name);
+    if (!row->name || !(row->verbs & verb->bit) || options_told(out, name))
+        return GO_ON;
+    return take(out, row, verb, text);
+}
+
 /* An argument that may be left out is the word behind the option only where all
  * of that is a number: any other is an operand, as in --perspective in.nrrd. */
 static const char *take_number(int argc, char **argv) {
@@ -298,5 +318,6 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
     }
     out->operands = argv + optind;
     out->operand_count = argc - optind;
-    return check_count(out, verb);
+    int done = config_take(out, verb);
+    return done == GO_ON ? check_count(out, verb) : done;
 }

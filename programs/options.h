@@ -46,7 +46,11 @@ typedef enum topic {
 /* More than option_table has: rows beyond would be lost. */
 #define OPTION_ROWS_MOST 96
 
-/* Everything that can be asked.  Texts point into argv. */
+/* Room for the texts of a configuration. */
+#define CONFIG_TEXTS_BYTES 32768
+
+/* Everything that can be asked.  Texts point into argv or, of a configuration,
+ * into `texts`. */
 typedef struct options {
     const char *output; /* NULL: not told */
     int64_t size[2];    /* width, height */
@@ -97,7 +101,12 @@ typedef struct options {
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 
     bool version, help;
-    const char *help_word; /* the topic or verb asked for, or NULL */
+    const char *help_word;            /* the topic or verb asked for, or NULL */
+    const char *config, *save_config; /* NULL: none */
+    char texts[CONFIG_TEXTS_BYTES];
+    size_t text_bytes;
+    char *config_input; /* the operand where none is given */
+
     char **operands;
     int operand_count;
     const char *told[OPTION_ROWS_MOST]; /* the text of each row of the table as
@@ -167,6 +176,15 @@ void options_init(options *out);
 /* Reads the arguments of a verb; argv[0] is the verb's own name.  Answers
  * GO_ON, or an exit code after the fault has been told on stderr. */
 int options_parse(options *out, const verb_row *verb, int argc, char **argv);
+
+/* Takes an option by its long name as if it stood on the command line, unless
+ * that has it, or the verb takes none such.  `text` NULL: without a value.
+ * Answers GO_ON or an exit code. */
+int options_take(options *out, const verb_row *verb, const char *name,
+                 const char *text);
+
+/* Whether an option stands on the command line. */
+bool options_told(const options *asked, const char *name);
 
 /* Writes the help that was asked for to standard output: `word` names a topic
  * or a verb, NULL means that of `verb`, or the overview when that is NULL too.

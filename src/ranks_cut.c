@@ -68,15 +68,20 @@ snow_status snow_cut_order_make(snow_context *context,
                                 out->layers));
     if (resolved.deterministic)
         set_borders(out);
-    /* What falls on the picture itself is laid over slab by slab. */
+    /* What falls on the picture itself is laid over slab by slab, and so are
+     * groups of slices. */
     bool any = resolved.method == SNOW_METHOD_SHEARED &&
+               !resolved.deterministic &&
                snow_sheared_fits(&placement, &resolved);
     out->slabs_only =
         !any || how.cut == SNOW_CUT_EQUAL || how.cut == SNOW_CUT_COUNTED;
     out->cut = how.cut ? how.cut : choose_cut(out, resolved.method);
     if (out->cut == SNOW_CUT_BRICKS && !any) {
-        snow_notify(context, "bricks cannot share this picture, whose voxels "
-                             "fall on it directly; slabs are cut");
+        snow_notify(context, "%s; slabs are cut",
+                    resolved.deterministic
+                        ? "bricks cannot share a deterministic picture"
+                        : "bricks cannot share this picture, whose voxels fall "
+                          "on it directly");
         out->cut = SNOW_CUT_COUNTED;
     }
     return SNOW_OK;

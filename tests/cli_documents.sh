@@ -13,6 +13,7 @@ for name in head.nii.gz ct.nii.gz ct.nrrd sim.nrrd volume.mha; do
     "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
 done
 "$tool" phantom engine -q -o engine.raw.gz || exit 1
+echo '{"input": "sim.nrrd", "output": "sim.png"}' >look.json
 for step in 0 1 2; do
     "$tool" phantom shells --dims 16x16x16 --seed $step -q \
         -o run_000$step.nrrd || exit 1

@@ -46,8 +46,6 @@ info --perspective x|no option of info
 --depth d.npy x|--depth is not built yet
 --iso 3 x|--iso is not built yet
 --memory 1G x|--memory is not built yet
---config f x|--config is not built yet
---save-config f x|--save-config is not built yet
 --tf f x|--tf is not built yet
 --log x|--log is not built yet
 --legend x|--legend is not built yet

@@ -477,6 +477,85 @@ static void another_picture_of_the_same_voxels_encodes_nothing(void **state) {
     assert_int_equal(s.encoded, 0);
 }
 
+/* --- bricks in the world -------------------------------------------------- */
+
+/* Ranks whose bricks are told by their places: slabs along z, which share the
+ * voxels of their borders or do not. */
+typedef struct world {
+    scene scene;
+    bool shared;
+    double shift, spacing; /* of rank 1, from what is right */
+    snow_status status;
+    char message[256];
+    int64_t first[3], count[3], dims[3]; /* of rank 1's brick, as found */
+} world;
+
+static snow_status place_rank(snow_comm *comm, void *user) {
+    world *w = user;
+    const scene *s = &w->scene;
+    int rank = snow_comm_rank(comm);
+    snow_box box = s->box[rank];
+    if (w->shared && rank + 1 < s->ranks)
+        box.count[2]++;
+    double spacing[3] = {0.5, 0.25, 2 + (rank == 1 ? w->spacing : 0)};
+    snow_world_brick brick = {.origin = {-7, 3, 2 * (double)box.first[2]}};
+    brick.origin[0] += rank == 1 ? w->shift : 0;
+    memcpy(brick.count, box.count, sizeof brick.count);
+    snow_insitu *insitu = NULL;
+    SNOW_TRY(snow_insitu_new(comm, &insitu));
+    /* Twice: what is as it was stays. */
+    snow_status status = snow_insitu_place_bricks(insitu, &brick, 1, spacing);
+    if (status == SNOW_OK)
+        status = snow_insitu_place_bricks(insitu, &brick, 1, spacing);
+    if (rank == 1) {
+        w->status = status;
+        snprintf(w->message, sizeof w->message, "%s",
+                 snow_insitu_message(insitu));
+        memcpy(w->dims, insitu->whole.dims, sizeof w->dims);
+        if (status == SNOW_OK) {
+            memcpy(w->first, insitu->bricks[0].box.first, sizeof w->first);
+            memcpy(w->count, insitu->bricks[0].box.count, sizeof w->count);
+            assert_true(insitu->whole.matrix[0][3] == -7);
+            assert_true(insitu->whole.matrix[2][2] == 2);
+            assert_int_equal(insitu->bricks[0].halo.high[2], w->shared);
+        }
+    }
+    snow_insitu_free(insitu);
+    return SNOW_OK;
+}
+
+static world place_world(bool shared, double shift, double spacing) {
+    world w = {.scene = make_scene(3, 1, 1, 3),
+               .shared = shared,
+               .shift = shift,
+               .spacing = spacing};
+    snow_context *context = support_context();
+    assert_int_equal(snow_comm_threads(context, 3, place_rank, &w), SNOW_OK);
+    snow_context_free(context);
+    return w;
+}
+
+static void bricks_in_the_world_find_their_grid(void **state) {
+    (void)state;
+    for (int shared = 0; shared < 2; shared++) {
+        world w = place_world(shared, 0, 0);
+        assert_int_equal(w.status, SNOW_OK);
+        assert_memory_equal(w.dims, w.scene.dims, sizeof w.dims);
+        assert_memory_equal(w.first, w.scene.box[1].first, sizeof w.first);
+        assert_memory_equal(w.count, w.scene.box[1].count, sizeof w.count);
+    }
+}
+
+static void bricks_that_fit_no_grid_are_refused(void **state) {
+    (void)state;
+    world w = place_world(false, 0.2, 0);
+    assert_int_equal(w.status, SNOW_BAD_USAGE);
+    assert_non_null(strstr(w.message, "lies at voxel 0.4 along axis 0"));
+    w = place_world(false, 0, 0.5);
+    assert_int_equal(w.status, SNOW_BAD_USAGE);
+    assert_non_null(strstr(w.message, "spacings along axis 2 are from 2"));
+}
+
 /* --- movies --------------------------------------------------------------- */
 
 /* A movie of some steps, and what became of it. */
@@ -974,6 +1053,8 @@ int main(void) {
         cmocka_unit_test(a_deterministic_picture_is_the_same_bit_for_bit),
         cmocka_unit_test(bars_in_a_ring_are_recut),
         cmocka_unit_test(another_picture_of_the_same_voxels_encodes_nothing),
+        cmocka_unit_test(bricks_in_the_world_find_their_grid),
+        cmocka_unit_test(bricks_that_fit_no_grid_are_refused),
         cmocka_unit_test(no_step_takes_more_memory_than_the_one_before),
         cmocka_unit_test(colours_keep_their_meaning_through_a_movie),
         cmocka_unit_test(frames_of_an_earlier_run_are_kept),

@@ -17,59 +17,59 @@ struct snow_random {
 
 /* All bytes of the source, in a block that grows with them: how many there are
  * is known at the end. */
-static snow_status hold_all(snow_source *source, snow_random *random) {
+static snow_status hold_all(snow_source *source, snow_random *store) {
     size_t capacity = 0, used = 0, got;
     do {
-        SNOW_TRY(snow_reserve(random->context, &random->bytes, &capacity, used,
+        SNOW_TRY(snow_reserve(store->context, &store->bytes, &capacity, used,
                               used + SNOW_LAYER_BYTES));
-        SNOW_TRY(snow_source_read(source, random->bytes + used, capacity - used,
+        SNOW_TRY(snow_source_read(source, store->bytes + used, capacity - used,
                                   &got));
         used += got;
     } while (got);
-    random->size = used;
+    store->size = used;
     return snow_source_finish(source);
 }
 
 snow_status snow_random_open(snow_source *source, snow_random **out) {
     snow_layer *top = source->top;
     assert(top->taken == 0);
-    snow_random *random = snow_allocate_clear(source->context, sizeof *random);
-    if (!random)
+    snow_random *store = snow_allocate_clear(source->context, sizeof *store);
+    if (!store)
         return SNOW_NO_MEMORY;
-    random->context = source->context;
+    store->context = source->context;
     if (top->look && top->size >= 0) {
-        random->layer = top;
-        random->size = (uint64_t)top->size;
+        store->layer = top;
+        store->size = (uint64_t)top->size;
     } else {
-        snow_status status = hold_all(source, random);
+        snow_status status = hold_all(source, store);
         if (status != SNOW_OK) {
-            snow_random_close(random);
+            snow_random_close(store);
             return status;
         }
     }
-    *out = random;
+    *out = store;
     return SNOW_OK;
 }
 
-void snow_random_close(snow_random *random) {
-    if (random) {
-        snow_release(random->context, random->bytes);
-        snow_release(random->context, random);
+void snow_random_close(snow_random *store) {
+    if (store) {
+        snow_release(store->context, store->bytes);
+        snow_release(store->context, store);
     }
 }
 
-uint64_t snow_random_size(const snow_random *random) {
-    return random->size;
+uint64_t snow_random_size(const snow_random *store) {
+    return store->size;
 }
 
-size_t snow_random_read(snow_random *random, uint64_t from, void *bytes,
+size_t snow_random_read(snow_random *store, uint64_t from, void *bytes,
                         size_t size) {
-    if (from >= random->size)
+    if (from >= store->size)
         return 0;
-    if (size > random->size - from)
-        size = (size_t)(random->size - from);
-    if (random->layer)
-        return random->layer->look(random->layer, from, bytes, size);
-    memcpy(bytes, random->bytes + from, size);
+    if (size > store->size - from)
+        size = (size_t)(store->size - from);
+    if (store->layer)
+        return store->layer->look(store->layer, from, bytes, size);
+    memcpy(bytes, store->bytes + from, size);
     return size;
 }

@@ -13,13 +13,13 @@ typedef struct snow_random snow_random;
 snow_status snow_random_open(snow_source *source, snow_random **out);
 
 /* NULL is accepted. */
-void snow_random_close(snow_random *random);
+void snow_random_close(snow_random *store);
 
-uint64_t snow_random_size(const snow_random *random);
+uint64_t snow_random_size(const snow_random *store);
 
 /* Copies up to `size` bytes from `from` on; fewer where the data end or cannot
  * be read. */
-size_t snow_random_read(snow_random *random, uint64_t from, void *bytes,
+size_t snow_random_read(snow_random *store, uint64_t from, void *bytes,
                         size_t size);
 
 #endif

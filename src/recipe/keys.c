@@ -582,6 +582,9 @@ const recipe_key recipe_keys[] = {
     {"offset", read_long, write_told_long, AT(data.offset), 0, 9e15, 0, NULL,
      NULL},
     MADE("crop", crop, data.crop, 0, 9e15, 2),
+    {"channel", read_long, write_told_long, AT(data.channel), 0, 9e15, 0, NULL,
+     NULL},
+    TEXT("dataset", data.dataset),
     {"time", read_long, write_told_long, AT(data.time), 0, 9e15, 0, NULL, NULL},
     {NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };
