@@ -39,8 +39,9 @@ typedef struct combine_options {
  * `said` may be NULL: ranks but the first say nothing. */
 int combine_parse(int argc, char **argv, combine_options *out, FILE *said);
 
-/* The verb: `argv[0]` is "combine".  Returns the tool's exit code. */
-int combine_main(int argc, char **argv);
+/* The verb: `argv[0]` is "combine".  Its ranks are those of `comm`, or, where
+ * that is NULL, threads.  Returns the tool's exit code. */
+int combine_main(int argc, char **argv, snow_comm *comm);
 
 /* One rank's part of a slab's picture. */
 typedef struct combine_pattern {

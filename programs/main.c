@@ -88,13 +88,15 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
 }
 
 /* Verbs that render are for all ranks; any other is for one, and the others
- * learn its exit code. */
-static bool is_for_all(const verb_row *verb) {
+ * learn its exit code.  `argv[0]` is the verb. */
+static bool is_for_all(const verb_row *verb, int argc, char **argv) {
+    if (verb->bit == VERB_BENCH)
+        return bench_is_for_all(argc, argv);
     return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
 }
 
 static int run_bench(int argc, char **argv) {
-    int done = bench_main(argc, argv);
+    int done = bench_main(argc, argv, launch_comm());
     return done == SNOW_OK ? finish_stdout() : done;
 }
 
@@ -109,7 +111,7 @@ static int dispatch(int argc, char **argv) {
         return run(verb_of(VERB_RENDER), false, argc, argv);
     if (!verb->bit)
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
-    if (!is_for_all(verb) && !launch_talks())
+    if (!is_for_all(verb, argc - 1, argv + 1) && !launch_talks())
         return SNOW_OK;
     if (verb->bit == VERB_BENCH)
         return run_bench(argc - 1, argv + 1);
