@@ -334,7 +334,10 @@ snow_status snow_insitu_set_settings(snow_insitu *insitu,
 
 snow_status snow_insitu_set_ranks(snow_insitu *insitu,
                                   const snow_ranks_options *how) {
-    insitu->how = *how;
+    insitu->how = (snow_ranks_options){0};
+    memcpy(&insitu->how, how,
+           how->size < sizeof *how ? how->size : sizeof *how);
+    insitu->how.size = sizeof insitu->how;
     return SNOW_OK;
 }
 

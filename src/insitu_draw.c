@@ -293,6 +293,10 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
                   "snow_insitu_set_output");
     SNOW_TRY(snow_comm_agree(insitu->comm,
                              insitu->pattern ? SNOW_OK : SNOW_BAD_USAGE));
+    if (insitu->how.scattered) /* the same on all ranks, or found so */
+        return snow_fail(insitu->context, SNOW_BAD_USAGE,
+                         "a scattered picture is in no one place to be written "
+                         "from; call snow_insitu_draw and write its parts");
     SNOW_TRY(update(insitu));
     SNOW_TRY(draw(insitu, &image));
     snow_status status = SNOW_OK;

@@ -106,11 +106,11 @@ static snow_status begin_picture(picture *p, const snow_volume *volume,
     p->ranks = p->frame->ranks;
     SNOW_TRY(snow_job_begin(p->frame, volume, transfer, view, settings, 1, 0,
                             &p->job));
-    if (snow_comm_rank(p->comm) != 0)
+    if (snow_comm_rank(p->comm) != 0 && !p->how.scattered)
         return SNOW_OK;
     SNOW_TRY(snow_image_new(context, view->width, view->height, p->job.channels,
                             &p->image));
-    if (p->how.pixel_bits != 8)
+    if (p->how.pixel_bits != 8 || p->how.scattered)
         return SNOW_OK;
     size_t bytes =
         (size_t)view->width * (size_t)view->height * (size_t)p->job.channels;
@@ -131,11 +131,11 @@ static int64_t terms_of(const picture *p) {
     const snow_settings *s = &job->settings;
     const snow_placement *place = &job->placement;
     const int numbers[] = {
-        job->channels,         (int)s->method,    (int)s->quality,
-        (int)s->kernel,        s->footprint,      (int)s->shade,
-        s->deterministic,      place->width,      place->height,
-        (int)p->how.combining, p->how.radix,      p->how.pixel_bits,
-        place->slice_axis,     place->perspective};
+        job->channels,         (int)s->method,     (int)s->quality,
+        (int)s->kernel,        s->footprint,       (int)s->shade,
+        s->deterministic,      place->width,       place->height,
+        (int)p->how.combining, p->how.radix,       p->how.pixel_bits,
+        place->slice_axis,     place->perspective, p->how.scattered};
     const double reals[] = {place->back[0],  place->back[1], place->back[2],
                             place->up[0],    place->up[1],   place->up[2],
                             place->path,     s->threshold,   s->opacity_length,
@@ -245,7 +245,29 @@ static snow_status exchange(picture *p, const snow_local *local,
     return SNOW_OK;
 }
 
+/* This rank's pixels to their places in its own image. */
+static void keep_pixels(const picture *p, int pixel_bits, snow_image *image) {
+    const snow_ranks *r = p->ranks;
+    size_t channels = (size_t)image->channels, at = 0;
+    for (size_t n = 0; n < r->run_count; n++) {
+        const snow_pixel_run *run = &r->runs[n];
+        size_t count = (size_t)run->count * channels;
+        float *out =
+            image->pixels +
+            ((size_t)run->y * (size_t)image->width + (size_t)run->x) * channels;
+        if (pixel_bits != 8)
+            memcpy(out, r->packed + at * sizeof *out, count * sizeof *out);
+        for (size_t i = 0; pixel_bits == 8 && i < count; i++)
+            out[i] = (float)r->packed[at + i] / 255;
+        at += count;
+    }
+}
+
 static snow_status deliver(picture *p, int pixel_bits, snow_image *image) {
+    if (p->how.scattered) {
+        keep_pixels(p, pixel_bits, image);
+        return SNOW_OK;
+    }
     const snow_delivery delivery = {pixel_bits, image, p->bytes,
                                     &p->frame->stats};
     return snow_pixels_gather(p->ranks, &p->job, &delivery);

@@ -428,6 +428,62 @@ static void the_exact_methods_do_too(void **state) {
     expect_serial(&s, "footprint, turned");
 }
 
+/* A scattered picture's parts, added up. */
+typedef struct scattered {
+    scene scene;
+    float sum[61 * 47 * 4], whole[61 * 47 * 4];
+    int with_pixels[RANKS_MOST]; /* pixels that are not transparent */
+} scattered;
+
+static snow_status scatter_rank(snow_comm *comm, void *user) {
+    scattered *all = user;
+    rank_memory m = {.count = 0};
+    snow_insitu *insitu = NULL;
+    snow_image *image = NULL;
+    snow_ranks_options how = {.size = sizeof how};
+    int rank = snow_comm_rank(comm);
+    const size_t floats = sizeof all->sum / sizeof *all->sum;
+    SNOW_TRY(snow_insitu_new(comm, &insitu));
+    tell_picture(insitu, &all->scene);
+    tell_bricks(insitu, &all->scene, rank, 0, &m);
+    SNOW_TRY(snow_insitu_update(insitu));
+    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    if (rank == 0)
+        memcpy(all->whole, snow_image_pixels(image), sizeof all->whole);
+    snow_image_free(image);
+    how.scattered = 1;
+    snow_insitu_set_ranks(insitu, &how);
+    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    /* One after the other. */
+    for (int turn = 0; turn < all->scene.ranks; turn++) {
+        for (size_t n = 0; turn == rank && n < floats; n++) {
+            float value = snow_image_pixels(image)[n];
+            all->with_pixels[rank] += value != 0;
+            all->sum[n] += value;
+        }
+        SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
+    }
+    snow_image_free(image);
+    snow_insitu_free(insitu);
+    free_memory(&m);
+    return SNOW_OK;
+}
+
+static void parts_of_a_scattered_picture_add_up_to_it(void **state) {
+    (void)state;
+    scattered *all = calloc(1, sizeof *all);
+    all->scene = make_scene(4, 2, 1, 2);
+    snow_context *context = support_context();
+    assert_int_equal(snow_comm_threads(context, 4, scatter_rank, all), SNOW_OK);
+    assert_memory_equal(all->sum, all->whole, sizeof all->sum);
+    int ranks = 0;
+    for (int rank = 0; rank < 4; rank++)
+        ranks += all->with_pixels[rank] > 0;
+    assert_true(ranks > 1);
+    snow_context_free(context);
+    free(all);
+}
+
 static void a_deterministic_picture_is_the_same_bit_for_bit(void **state) {
     (void)state;
     static const double turns[][2] = {{0, 0}, {70, 0}, {0, 80}};
@@ -1050,6 +1106,7 @@ int main(void) {
         cmocka_unit_test(bricks_that_are_no_box_are_recut),
         cmocka_unit_test(ranks_without_bricks_help),
         cmocka_unit_test(the_exact_methods_do_too),
+        cmocka_unit_test(parts_of_a_scattered_picture_add_up_to_it),
         cmocka_unit_test(a_deterministic_picture_is_the_same_bit_for_bit),
         cmocka_unit_test(bars_in_a_ring_are_recut),
         cmocka_unit_test(another_picture_of_the_same_voxels_encodes_nothing),

@@ -192,7 +192,9 @@ SNOW_API snow_status snow_insitu_set_limits(snow_insitu *insitu, double seconds,
 SNOW_API snow_status snow_insitu_update(snow_insitu *insitu);
 
 /* A picture of the voxels last taken: on rank 0, owned by the caller; NULL on
- * the others, and on all where the limits left it out.  Another picture of the
+ * the others, and on all where the limits left it out.  Where the options of
+ * snow_insitu_set_ranks say scattered, each rank's part of it, ungathered, on
+ * all ranks.  Another picture of the
  * same voxels (another view, say) costs no exchange and no encoding. */
 SNOW_API snow_status snow_insitu_draw(snow_insitu *insitu, snow_image **image);
 

@@ -41,6 +41,9 @@ typedef struct snow_ranks_options {
                        bytes); 0: floats travel */
     int turns;      /* not 0: pictures from other sides will follow, at this
                        zoom; parts get ghost voxels enough for all of them */
+    int scattered;  /* not 0: the picture stays where it is made: each rank's
+                       image has the pixels that are its own, and the others
+                       transparent; together they are the picture */
 } snow_ranks_options;
 
 /* Opens this rank's part of a volume (snow_volume_get_part), with the ghost
@@ -93,7 +96,8 @@ SNOW_API snow_status snow_ranks_plan(const snow_volume *volume,
                                      int slice_axis, int ranks,
                                      snow_part *parts, int64_t *loads);
 
-/* Collective.  The picture, on rank 0; NULL on the others.
+/* Collective.  The picture, on rank 0; NULL on the others, unless it is
+ * scattered.
  *
  * Every rank's volume is its part (snow_volume_set_part) of one whole, with
  * the ghost voxels that the view needs; each voxel is one rank's own, and a

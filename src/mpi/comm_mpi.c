@@ -19,7 +19,7 @@
 
 typedef struct mpi_slot {
     MPI_Request request; /* MPI_REQUEST_NULL: the slot is spare */
-    bool receives;
+    bool receives, large;
     int peer;
 } mpi_slot;
 
@@ -162,7 +162,8 @@ static snow_status begin(mpi_side *side, bool receives, void *bytes,
     mpi_slot *slot = &side->slots[place];
     slot->receives = receives;
     slot->peer = peer;
-    if (count <= SNOW_MPI_CHUNK) {
+    slot->large = count > SNOW_MPI_CHUNK;
+    if (!slot->large) {
         error = start(side, slot, bytes, (int)count, MPI_BYTE, tag);
     } else {
         MPI_Datatype type;
@@ -209,27 +210,26 @@ static int gather(mpi_side *side, const snow_message *messages, int count) {
     return asked;
 }
 
-/* A count of the basic elements, which are bytes, holds for both kinds of
- * types; SimGrid has only the one that counts in int. */
-static size_t bytes_of(MPI_Status *status) {
-#ifdef SMPI_H
-    int bytes = 0;
-    MPI_Get_count(status, MPI_BYTE, &bytes);
-#else
-    MPI_Count bytes = 0;
-    MPI_Get_elements_x(status, MPI_BYTE, &bytes);
-#endif
-    return (size_t)bytes;
+/* Bytes received.  Only into a large type may more than an int's have come, and
+ * only there they are counted as the basic elements that they are: SimGrid
+ * cannot. */
+static size_t count_bytes(const mpi_slot *slot, const MPI_Status *status) {
+    MPI_Status copy = *status; /* SimGrid wants it without const */
+    MPI_Count many = 0;
+    int some = 0;
+    if (slot->large)
+        MPI_Get_elements_x(&copy, MPI_BYTE, &many);
+    else
+        MPI_Get_count(&copy, MPI_BYTE, &some);
+    return (size_t)(slot->large ? many : some);
 }
 
 /* A message is done: its slot is spare, its length known. */
 static void finish(mpi_side *side, snow_message *message,
                    const MPI_Status *status) {
     mpi_slot *slot = slot_of(side, message);
-    if (slot->receives) {
-        MPI_Status copy = *status; /* SimGrid wants it without const */
-        message->bytes = bytes_of(&copy);
-    }
+    if (slot->receives)
+        message->bytes = count_bytes(slot, status);
     slot->request = MPI_REQUEST_NULL;
     message->handle = NULL;
 }

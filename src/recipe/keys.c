@@ -373,9 +373,9 @@ static json_t *write_nothing(const recipe_key *key, const void *field) {
 /* A percentile "p99"; false for any other text. */
 static bool read_percent(const json_t *value, double *out) {
     const char *text = json_string_value(value);
-    int length = 0;
-    return text && sscanf(text, "p%lf%n", out, &length) == 1 && !text[length] &&
-           *out >= 0 && *out <= 100;
+    size_t digits = text ? strspn(text + (*text == 'p'), "0123456789.") : 0;
+    return digits && text[0] == 'p' && !text[1 + digits] &&
+           sscanf(text + 1, "%lf", out) == 1 && *out >= 0 && *out <= 100;
 }
 
 /* Range, low and high follow each other in the record. */
@@ -484,22 +484,27 @@ static json_t *write_points(const recipe_key *key, const void *field) {
     return array;
 }
 
+/* "#rrggbb"; false for any other text. */
+static bool read_hex(const char *text, double rgb[3]) {
+    unsigned parts[3];
+    if (!text || text[0] != '#' || strlen(text) != 7 ||
+        strspn(text + 1, "0123456789abcdefABCDEF") != 6 ||
+        sscanf(text, "#%2x%2x%2x", &parts[0], &parts[1], &parts[2]) != 3)
+        return false;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = parts[i] / 255.0;
+    return true;
+}
+
 static bool read_color(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     snow_image_options *image = field;
     const char *text = json_string_value(value);
-    unsigned rgb[3];
-    int length = 0;
-    if (text && strcmp(text, "none") == 0) {
-        image->flatten = false;
+    image->flatten = false;
+    if (text && strcmp(text, "none") == 0)
         return true;
-    }
-    if (text &&
-        sscanf(text, "#%2x%2x%2x%n", &rgb[0], &rgb[1], &rgb[2], &length) == 3 &&
-        length == 7 && !text[7]) {
-        for (int i = 0; i < 3; i++)
-            image->background[i] = rgb[i] / 255.0;
-    } else if (!read_reals(key, value, image->background, wrong))
+    if (!read_hex(text, image->background) &&
+        !read_reals(key, value, image->background, wrong))
         return refuse(wrong, "\"none\", \"#rrggbb\" or [red, green, blue] "
                              "from 0 to 1");
     image->flatten = true;

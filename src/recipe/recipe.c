@@ -5,6 +5,7 @@
  * change it for the whole process. */
 #include "recipe/keys.h"
 
+#include <math.h>
 #include <string.h>
 
 void snow_recipe_init(snow_recipe *recipe) {
@@ -50,16 +51,18 @@ static snow_status take_window(snow_context *context, const char *source,
     json_t *level = json_object_get(tree, "level");
     if (!window && !level)
         return SNOW_OK;
-    double width = json_number_value(window);
-    if (!json_is_number(window) || !json_is_number(level) || !(width > 0) ||
-        out->range != SNOW_RANGE_AUTO)
+    double half = json_number_value(window) / 2;
+    double low = json_number_value(level) - half;
+    double high = json_number_value(level) + half;
+    if (!json_is_number(window) || !json_is_number(level) || !(low < high) ||
+        !isfinite(low) || !isfinite(high) || out->range != SNOW_RANGE_AUTO)
         return snow_context_fail(context, SNOW_BAD_INPUT,
                                  "%s: \"window\" (above 0) and \"level\" go "
                                  "together, without \"range\"",
                                  source);
     out->range = SNOW_RANGE_VALUES;
-    out->low = json_number_value(level) - width / 2;
-    out->high = json_number_value(level) + width / 2;
+    out->low = low;
+    out->high = high;
     return SNOW_OK;
 }
 
