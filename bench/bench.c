@@ -5,6 +5,7 @@
 #include "bench.h"
 #include "combine.h"
 #include "frame.h"
+#include "launch.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -353,14 +354,14 @@ static const struct bench_ranks *find_of_ranks(int argc, char **argv) {
     return NULL;
 }
 
-bool bench_is_for_all(int argc, char **argv) {
+bool bench_for_all(int argc, char **argv) {
     return find_of_ranks(argc, argv) != NULL;
 }
 
-int bench_main(int argc, char **argv, snow_comm *comm) {
+int bench_main(int argc, char **argv) {
     const struct bench_ranks *ranks = find_of_ranks(argc, argv);
     if (ranks)
-        return ranks->run(argc - 1, argv + 1, comm);
+        return ranks->run(argc - 1, argv + 1, launch_comm());
     bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};
     int code = parse(argc, argv, &options, &command);

@@ -7,15 +7,14 @@
 #define SNOW_BENCH_H
 
 #include <jansson.h>
-#include <snowglass/comm.h>
 #include <snowglass/snowglass.h>
 
-/* The verb: `argv[0]` is "bench".  `comm`: the ranks that run the tool; NULL
- * where it is alone.  Returns the tool's exit code. */
-int bench_main(int argc, char **argv, snow_comm *comm);
+/* The verb: `argv[0]` is "bench".  Returns the tool's exit code. */
+int bench_main(int argc, char **argv);
 
-/* Whether all ranks take part, not the first one alone. */
-bool bench_is_for_all(int argc, char **argv);
+/* Whether all ranks run it; others but the first have nothing to do with it
+ * otherwise. */
+bool bench_for_all(int argc, char **argv);
 
 #define BENCH_LIST_MOST 8
 

@@ -4,7 +4,8 @@
  *   combine_pattern.c  local images of a benchmark: slabs of a cube
  *   combine_run.c      one exchange and one gather, verified and counted
  *   combine_print.c    a line of key=value, or JSON
- *   simulate/          the same on simulated networks
+ *   mpi_combine.c      the same as a program of its own, for MPI
+ *   simulate/          builds that one for simulated networks, and runs it
  *
  * The stage that is measured is inside the library: unlike other benchmarks
  * this one sees its headers. */
@@ -39,8 +40,8 @@ typedef struct combine_options {
  * `said` may be NULL: ranks but the first say nothing. */
 int combine_parse(int argc, char **argv, combine_options *out, FILE *said);
 
-/* The verb: `argv[0]` is "combine".  Its ranks are those of `comm`, or, where
- * that is NULL, threads.  Returns the tool's exit code. */
+/* The verb: `argv[0]` is "combine".  All ranks of `comm` call it; NULL: the
+ * ranks are threads.  Returns the tool's exit code. */
 int combine_main(int argc, char **argv, snow_comm *comm);
 
 /* One rank's part of a slab's picture. */
@@ -86,7 +87,11 @@ typedef struct combine_session {
 } combine_session;
 snow_status combine_body(snow_comm *comm, void *user);
 
+/* Runs the body on every rank of a communicator, the first of which prints;
+ * the exit code. */
+int combine_run(snow_comm *comm, combine_session *session);
+
 /* Prints the line; the exit code. */
-int combine_print(const combine_options *options, const combine_result *result);
+int combine_print(const combine_session *session);
 
 #endif

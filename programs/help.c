@@ -149,7 +149,7 @@ static int print_verb_page(const verb_row *row) {
         return fail_usage("%s is not built yet; %s", row->name, row->text);
     if (row->bit == VERB_BENCH) { /* it reads and tells its own options */
         char *words[] = {"bench", "--help", NULL};
-        bench_main(2, words, NULL);
+        bench_main(2, words);
         return finish_stdout();
     }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);

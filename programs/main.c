@@ -88,15 +88,13 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
 }
 
 /* Verbs that render are for all ranks; any other is for one, and the others
- * learn its exit code.  `argv[0]` is the verb. */
-static bool is_for_all(const verb_row *verb, int argc, char **argv) {
-    if (verb->bit == VERB_BENCH)
-        return bench_is_for_all(argc, argv);
+ * learn its exit code. */
+static bool is_for_all(const verb_row *verb) {
     return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
 }
 
 static int run_bench(int argc, char **argv) {
-    int done = bench_main(argc, argv, launch_comm());
+    int done = bench_main(argc, argv);
     return done == SNOW_OK ? finish_stdout() : done;
 }
 
@@ -111,7 +109,9 @@ static int dispatch(int argc, char **argv) {
         return run(verb_of(VERB_RENDER), false, argc, argv);
     if (!verb->bit)
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
-    if (!is_for_all(verb, argc - 1, argv + 1) && !launch_talks())
+    bool all = is_for_all(verb) ||
+               (verb->bit == VERB_BENCH && bench_for_all(argc - 1, argv + 1));
+    if (!all && !launch_talks())
         return SNOW_OK;
     if (verb->bit == VERB_BENCH)
         return run_bench(argc - 1, argv + 1);

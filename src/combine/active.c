@@ -302,7 +302,8 @@ static uint64_t lay_word(snow_active *layers, int count, int channels,
         uint64_t bits = bits_of(&layers[i], index, range);
         if (!bits)
             continue;
-        *laid += population(bits);
+        if (!layers[i].own)
+            *laid += population(bits);
         if (layers[i].pixels)
             lay_bits(&layers[i], bits, seen, channels, tile);
         seen |= bits;

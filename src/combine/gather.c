@@ -37,10 +37,12 @@ static void drop_buffers(snow_combiner *combiner) {
     snow_release(context, state->slots);
     snow_release(context, state->messages);
     snow_release(context, state->places);
+    snow_release(context, state->queue);
     state->children = NULL;
     state->bytes = state->slots = NULL;
     state->messages = NULL;
     state->places = NULL;
+    state->queue = NULL;
     state->width = 0;
 }
 
@@ -90,12 +92,16 @@ static int walk_tree(int rank, int ranks, int radix, int *children,
     return found;
 }
 
-/* Measured on simulated networks: see docs/scaling.md. */
-static int chosen_radix(const snow_combiner *combiner) {
+/* Wide where pixels take longer than messages, which they do from 2 MB on, by
+ * simulated networks (docs/scaling.md). */
+static int chosen_radix(const snow_combiner *combiner, int width, int height,
+                        size_t pixel_bytes) {
     const int ranks = combiner->comm->ranks;
+    double bytes = (double)width * height * (double)pixel_bytes;
+    int radix = bytes < 2e6 ? 8 : 32;
     if (combiner->gather.radix >= 2)
-        return combiner->gather.radix;
-    return ranks <= 32 ? (ranks > 2 ? ranks : 2) : 8;
+        radix = combiner->gather.radix;
+    return radix < ranks ? radix : ranks < 2 ? 2 : ranks;
 }
 
 /* --- memory --------------------------------------------------------------- */
@@ -117,7 +123,8 @@ static snow_status take_buffers(snow_combiner *combiner) {
         (state->slots = snow_allocate_array(context, some, SLOT)) &&
         (state->messages =
              snow_allocate_array(context, 2 * some, sizeof(snow_message))) &&
-        (state->places = snow_allocate_array(context, some, sizeof(size_t)));
+        (state->places = snow_allocate_array(context, some, sizeof(size_t))) &&
+        (state->queue = snow_allocate_array(context, some, sizeof(int)));
     if (!fine)
         return SNOW_NO_MEMORY;
     state->child_count =
@@ -129,7 +136,7 @@ static snow_status take_buffers(snow_combiner *combiner) {
 static snow_status take_shape(snow_combiner *combiner, int width, int height,
                               size_t pixel_bytes) {
     snow_gather_state *state = &combiner->gather;
-    const int radix = chosen_radix(combiner);
+    const int radix = chosen_radix(combiner, width, height, pixel_bytes);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 ||
         pixel_bytes < 1 || pixel_bytes > 1024)
         return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
@@ -256,31 +263,57 @@ static snow_status begin_receives(snow_combiner *combiner) {
     return SNOW_OK;
 }
 
+/* How many long messages are on their way to a rank at a time.  Two fill its
+ * network; all at once would end together, and the display processor could not
+ * place one while the next comes. */
+#define UNDER_WAY 2
+
+/* What a rank has got so far. */
+typedef struct intake {
+    size_t used;                /* bytes that blocks take, or will */
+    int queued, asked, arrived; /* children with more than a beginning: found,
+                                   told to send, done */
+} intake;
+
+static uint64_t told_length(const snow_gather_state *state, int child) {
+    uint64_t length;
+    memcpy(&length, state->slots + (size_t)child * SLOT, sizeof length);
+    return length;
+}
+
 /* The beginning of a child's message is there: it goes behind what is there
- * already, and the rest is asked for. */
+ * already; is there a rest, the child is queued. */
 static snow_status take_beginning(snow_combiner *combiner, int child,
-                                  size_t *used) {
+                                  intake *in) {
     snow_gather_state *state = &combiner->gather;
-    const unsigned char *slot = state->slots + (size_t)child * SLOT;
-    uint64_t length = 0;
-    size_t here = state->messages[child].bytes;
-    if (here >= HEAD)
-        memcpy(&length, slot, HEAD);
-    if (here < HEAD || length < here - HEAD || length > state->room - *used)
+    const size_t here = state->messages[child].bytes;
+    const uint64_t length = here >= HEAD ? told_length(state, child) : 0;
+    if (here < HEAD || length < here - HEAD || length > state->room - in->used)
         return snow_fail(combiner->comm->context, SNOW_FAILED,
                          "rank %d sent more pixels than the picture has; runs "
                          "of ranks must be apart",
                          state->children[child]);
-    here -= HEAD;
-    memcpy(state->bytes + *used, slot + HEAD, here);
-    state->places[child] = *used;
-    *used += (size_t)length;
-    if (length == here)
-        return SNOW_OK;
-    return snow_comm_receive(
-        combiner->comm, state->bytes + state->places[child] + here,
-        (size_t)length - here, state->children[child], SNOW_TAG_GATHER,
-        &state->messages[state->child_count + child]);
+    memcpy(state->bytes + in->used, state->slots + (size_t)child * SLOT + HEAD,
+           here - HEAD);
+    state->places[child] = in->used;
+    in->used += (size_t)length;
+    if (length > here - HEAD)
+        state->queue[in->queued++] = child;
+    return SNOW_OK;
+}
+
+/* Gets ready for the rests of children whose turn it is. */
+static snow_status ask_rests(snow_combiner *combiner, intake *in) {
+    snow_gather_state *state = &combiner->gather;
+    const size_t here = SLOT - HEAD;
+    while (in->asked < in->queued && in->asked - in->arrived < UNDER_WAY) {
+        int child = state->queue[in->asked++];
+        SNOW_TRY(snow_comm_receive(
+            combiner->comm, state->bytes + state->places[child] + here,
+            (size_t)told_length(state, child) - here, state->children[child],
+            SNOW_TAG_GATHER, &state->messages[state->child_count + child]));
+    }
+    return SNOW_OK;
 }
 
 /* A message of `length` bytes, whose own length stands before them. */
@@ -299,12 +332,26 @@ static snow_status send_up(snow_combiner *combiner, size_t length) {
     return snow_comm_wait_all(combiner->comm, messages, 2);
 }
 
+/* All of a child's blocks are there: the display processor places them. */
+static bool place_child(snow_combiner *combiner, int child,
+                        unsigned char *picture) {
+    const snow_gather_state *state = &combiner->gather;
+    const size_t length = (size_t)told_length(state, child);
+    if (state->parent >= 0)
+        return true;
+    snow_comm_work(combiner->comm, (double)length / (double)state->pixel_bytes *
+                                       combiner->scan_seconds);
+    return !picture || place_blocks(state, state->bytes + state->places[child],
+                                    length, picture);
+}
+
 /* What children send, in the order of its coming, behind the first `used` bytes
- * that are there; the display processor places it as it comes. */
+ * that are there. */
 static snow_status take_children(snow_combiner *combiner, size_t *used,
                                  unsigned char *picture) {
     snow_gather_state *state = &combiner->gather;
     const int count = state->child_count;
+    intake in = {.used = *used};
     bool good = true;
     for (;;) {
         int which;
@@ -312,16 +359,16 @@ static snow_status take_children(snow_combiner *combiner, size_t *used,
                                     &which));
         if (which < 0)
             break;
-        int child = which % count;
+        const int child = which % count, queued = in.queued;
         if (which < count)
-            SNOW_TRY(take_beginning(combiner, child, used));
-        if (!picture || state->messages[count + child].handle)
-            continue;
-        uint64_t length;
-        memcpy(&length, state->slots + (size_t)child * SLOT, HEAD);
-        good = good && place_blocks(state, state->bytes + state->places[child],
-                                    (size_t)length, picture);
+            SNOW_TRY(take_beginning(combiner, child, &in));
+        else
+            in.arrived++;
+        SNOW_TRY(ask_rests(combiner, &in));
+        if (in.queued == queued)
+            good = place_child(combiner, child, picture) && good;
     }
+    *used = in.used;
     if (!good)
         return snow_fail(combiner->comm->context, SNOW_FAILED,
                          "runs lie outside the picture of %d x %d pixels",
@@ -347,8 +394,7 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
         place_run(state, &runs[i], from, picture);
         from += (size_t)runs[i].count * pixel_bytes;
     }
-    SNOW_TRY(
-        take_children(combiner, &used, state->parent < 0 ? picture : NULL));
+    SNOW_TRY(take_children(combiner, &used, picture));
     if (state->parent >= 0)
         SNOW_TRY(send_up(combiner, used - HEAD));
     return status;

@@ -1,6 +1,6 @@
-/* bench/simulate/main.c - `bench combine` as a program of MPI: the ranks are
- * its processes.  Built by smpicc it runs on networks that SimGrid simulates,
- * by any other MPI's compiler on real ones.
+/* bench/mpi_combine.c - `bench combine` as a program of MPI: the ranks are its
+ * processes.  Built by smpicc it runs on networks that SimGrid simulates, by
+ * any other MPI's compiler on real ones.
  *
  * Nobody has memory for a thousand whole pictures: where sizes alone are asked
  * for and whole pictures travel, large blocks of all simulated ranks are one,
@@ -13,9 +13,6 @@
 
 #ifdef SMPI_H
 #define LARGE ((size_t)1 << 18)
-
-/* A block begins with its length, for SimGrid's way to release it. */
-#define HEAD 64
 
 static void *allocate_folded(void *user, size_t bytes) {
     (void)user;
@@ -43,23 +40,21 @@ static snow_status new_context(const combine_options *options,
     return snow_context_new(NULL, out);
 }
 
-static int run(const combine_options *options, int rank) {
+static int run(const combine_options *options) {
     snow_context *context;
     snow_comm *comm = NULL;
     combine_session session = {.options = options};
-    snow_status status = new_context(options, &context);
-    if (status != SNOW_OK)
-        return (int)status;
-    status = snow_comm_mpi(context, MPI_COMM_WORLD, &comm);
-    if (status == SNOW_OK)
-        status = combine_body(comm, &session);
-    if (status != SNOW_OK && rank == 0)
+    int code = (int)new_context(options, &context);
+    if (code != SNOW_OK)
+        return code;
+    code = (int)snow_comm_mpi(context, MPI_COMM_WORLD, &comm);
+    if (code == SNOW_OK)
+        code = combine_run(comm, &session);
+    else
         fprintf(stderr, "bench combine: %s\n", snow_context_message(context));
-    if (status == SNOW_OK && rank == 0)
-        status = (snow_status)combine_print(options, &session.result);
     snow_comm_free(comm);
     snow_context_free(context);
-    return (int)status;
+    return code;
 }
 
 int main(int argc, char **argv) {
@@ -73,7 +68,7 @@ int main(int argc, char **argv) {
     options.runs = 1; /* all are alike */
 #endif
     if (code < 0)
-        code = run(&options, rank);
+        code = run(&options);
     MPI_Finalize();
     return code;
 }
