@@ -865,6 +865,31 @@ static void a_limit_of_memory_is_kept_and_told(void **state) {
     support_folder_remove(folder);
 }
 
+/* What a movie held at most without a limit is too much by half: pictures get
+ * smaller until they fit, and what the first try took is given back. */
+static void pictures_are_smaller_where_memory_lacks(void **state) {
+    (void)state;
+    char folder[SUPPORT_FOLDER_BYTES];
+    support_folder_make(folder);
+    movie m = {.scene = make_scene(2, 1, 1, 2), .steps = 8};
+    m.scene.view.width = 900;
+    m.scene.view.height = 700;
+    run_movie(&m, folder);
+    assert_int_equal(m.status, SNOW_OK);
+    double most = m.figures[7].bytes_peak.most;
+    assert_int_equal(count_frames(folder, 8), 8);
+    m.limit_bytes = (uint64_t)(0.75 * most);
+    run_movie(&m, folder);
+    assert_int_equal(m.status, SNOW_OK);
+    assert_true(m.figures[7].pictures > 0);
+    assert_int_equal(m.figures[0].lowering, SNOW_LOWERED_SKIPPED);
+    assert_true(m.figures[0].bytes_held.most < 0.01 * most);
+    assert_true(m.figures[7].lowering > SNOW_LOWERED_NOT);
+    assert_true(m.figures[7].bytes_peak.most <= (double)m.limit_bytes);
+    assert_int_equal(count_frames(folder, 8), m.figures[7].pictures);
+    support_folder_remove(folder);
+}
+
 /* --- memory that fails ---------------------------------------------------- */
 
 /* An allocator that refuses one block, and counts those that are there. */
@@ -1119,6 +1144,7 @@ int main(void) {
             a_limit_of_time_lowers_pictures_and_then_leaves_some_out),
         cmocka_unit_test(a_limit_that_suffices_lowers_nothing),
         cmocka_unit_test(a_limit_of_memory_is_kept_and_told),
+        cmocka_unit_test(pictures_are_smaller_where_memory_lacks),
         cmocka_unit_test(no_block_that_is_refused_hangs_or_leaks),
         cmocka_unit_test(what_is_wrong_on_one_rank_is_told_to_all),
         cmocka_unit_test(setters_refuse_what_cannot_be),
