@@ -3,6 +3,8 @@
  * It reads its own options, since they mean nothing to other verbs, and the
  * help of the tool shows its text as it stands. */
 #include "bench.h"
+#include "combine.h"
+#include "launch.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -17,6 +19,7 @@ static const char help[] =
     "  figure11 figure12      the paper's speed-ups on 1 to 32 nodes\n"
     "  speed                  how fast pictures are made\n"
     "  balance                how equal the work of many processors is\n"
+    "  combine                pictures of many ranks (bench combine --help)\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -334,7 +337,13 @@ static int parse(int argc, char **argv, bench_options *options,
     return check_command(command, options);
 }
 
+bool bench_for_all(int argc, char **argv) {
+    return argc > 1 && strcmp(argv[1], "combine") == 0;
+}
+
 int bench_main(int argc, char **argv) {
+    if (bench_for_all(argc, argv))
+        return combine_main(argc - 1, argv + 1, launch_comm());
     bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};
     int code = parse(argc, argv, &options, &command);

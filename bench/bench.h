@@ -12,6 +12,10 @@
 /* The verb: `argv[0]` is "bench".  Returns the tool's exit code. */
 int bench_main(int argc, char **argv);
 
+/* Whether all ranks run it; others but the first have nothing to do with it
+ * otherwise. */
+bool bench_for_all(int argc, char **argv);
+
 #define BENCH_LIST_MOST 8
 
 /* Numbers of a list such as 256,512. */

@@ -109,7 +109,9 @@ static int dispatch(int argc, char **argv) {
         return run(verb_of(VERB_RENDER), false, argc, argv);
     if (!verb->bit)
         return fail_usage("%s is not built yet; %s", verb->name, verb->text);
-    if (!is_for_all(verb) && !launch_talks())
+    bool all = is_for_all(verb) ||
+               (verb->bit == VERB_BENCH && bench_for_all(argc - 1, argv + 1));
+    if (!all && !launch_talks())
         return SNOW_OK;
     if (verb->bit == VERB_BENCH)
         return run_bench(argc - 1, argv + 1);

@@ -73,8 +73,8 @@ snow_status snow_cut_order_make(snow_context *context,
     bool any = resolved.method == SNOW_METHOD_SHEARED &&
                !resolved.deterministic &&
                snow_sheared_fits(&placement, &resolved);
-    out->slabs_only =
-        !any || how.cut == SNOW_CUT_EQUAL || how.cut == SNOW_CUT_COUNTED;
+    out->slabs_only = resolved.deterministic || !any ||
+                      how.cut == SNOW_CUT_EQUAL || how.cut == SNOW_CUT_COUNTED;
     out->cut = how.cut ? how.cut : choose_cut(out, resolved.method);
     if (out->cut == SNOW_CUT_BRICKS && !any) {
         snow_notify(context, "%s; slabs are cut",

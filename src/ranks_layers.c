@@ -226,6 +226,8 @@ snow_status snow_layers_exchange(snow_ranks *r, const snow_local *local,
         r->firsts[rank] = lines.first * local->width;
         r->counts[rank] = lines.count * local->width;
     }
-    *out = (snow_piece){r->firsts[r->rank], r->counts[r->rank], r->piece};
+    *out = (snow_piece){.first = r->firsts[r->rank],
+                        .count = r->counts[r->rank],
+                        .pixels = r->piece};
     return SNOW_OK;
 }

@@ -197,7 +197,7 @@ static void warp_lines(void *of, int64_t item, int worker) {
         snow_sheared_pixels_of(job->sheared, y, job->first, job->end, range);
         if (range[0] >= range[1])
             continue;
-        snow_sheared_warp(job->sheared, y, row);
+        snow_sheared_warp(job->sheared, y, range[0], range[1], row);
         memcpy(job->pixels + job->places[y] * channels,
                row + (size_t)range[0] * channels,
                (size_t)(range[1] - range[0]) * channels * sizeof *row);

@@ -85,9 +85,11 @@ void snow_sheared_pixels_of(const snow_sheared *sheared, int y, int first,
 #define SNOW_WARP_BEFORE 2
 #define SNOW_WARP_BEHIND 3
 
-/* Warps the image, or what was put in its place, to line y of the picture; or
- * to all of it. */
-void snow_sheared_warp(const snow_sheared *sheared, int y, float *pixels);
+/* Warps the image, or what was put in its place, to pixels `from` to `to` - 1
+ * of line y of the picture, whose pixel 0 is the first of `pixels`; or to all
+ * of it. */
+void snow_sheared_warp(const snow_sheared *sheared, int y, int from, int to,
+                       float *pixels);
 void snow_sheared_warp_all(const snow_sheared *sheared, int threads,
                            float *pixels);
 

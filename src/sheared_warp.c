@@ -15,13 +15,14 @@
 /* Lines of the picture that are warped as one item of work. */
 #define SNOW_WARP_LINES 16
 
-void snow_sheared_warp(const snow_sheared *s, int y, float *pixels) {
+void snow_sheared_warp(const snow_sheared *s, int y, int from, int to,
+                       float *pixels) {
     const snow_sheared_warping *w = &s->warping;
     if (w->perspective)
-        snow_warp_row_seen(&w->plane, &w->scaled, w->filter, w->places, y,
-                           w->width, pixels);
+        snow_warp_row_seen(&w->plane, &w->scaled, w->filter, w->places, y, from,
+                           to, pixels);
     else
-        snow_warp_row(&w->plane, &w->shear, w->filter, w->warp, y, w->width,
+        snow_warp_row(&w->plane, &w->shear, w->filter, w->warp, y, from, to,
                       pixels);
 }
 
@@ -37,7 +38,7 @@ static void warp_lines(void *of, int64_t item, int worker) {
     (void)worker;
     int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
     for (int y = first; y < last && y < w->height; y++)
-        snow_sheared_warp(job->sheared, y,
+        snow_sheared_warp(job->sheared, y, 0, w->width,
                           job->pixels + (size_t)y * (size_t)w->width *
                                             (size_t)w->plane.channels);
 }

@@ -1,3 +1,4 @@
+#!/bin/bash
 # mpi_comm.sh - messages and collective calls over MPI, with messages as they
 # are, and with a thousand bytes as the limit for large ones.
 . "$(dirname "$0")/support_mpi.sh"

@@ -1,3 +1,4 @@
+#!/bin/bash
 # mpi_fail.sh - what fails on one rank fails on all: one message that names the
 # rank, an exit code, no picture, and nobody waits.
 . "$(dirname "$0")/support_mpi.sh"

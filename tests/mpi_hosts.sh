@@ -1,3 +1,4 @@
+#!/bin/bash
 # mpi_hosts.sh - three hosts with two ranks each, over TCP: network namespaces
 # of this machine, joined by a bridge, and started through an agent as others
 # are through ssh.  Skipped where namespaces cannot be made.

@@ -1,3 +1,4 @@
+#!/bin/bash
 # mpi_kill.sh - one rank of four is killed, while it draws and in the middle of
 # a movie: the job ends at once, tells which, and leaves nothing unfinished.
 . "$(dirname "$0")/support_mpi.sh"

@@ -1,3 +1,4 @@
+#!/bin/bash
 # mpi_other.sh - the mpirun of another MPI than the tool's: as many programs
 # that believe to be alone are refused, and none writes.
 . "$(dirname "$0")/support_mpi.sh"

@@ -1,3 +1,4 @@
+#!/bin/bash
 # mpi_render.sh - the tool as many ranks makes the pictures of one process, from
 # all sides, however the volume is cut and the pictures are combined.
 . "$(dirname "$0")/support_mpi.sh"

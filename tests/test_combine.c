@@ -613,7 +613,7 @@ static snow_status combine_bad_orders(snow_comm *comm, void *user) {
     shuffle(&j);
     snow_combiner *combiner;
     SNOW_TRY(snow_combiner_new(comm, &combiner));
-    snow_piece piece = {7, 7, NULL};
+    snow_piece piece = {.first = 7};
     snow_exchange_order good = order_of(&j, comm->rank, NULL, 0), bad[6];
     good.drawn = (snow_rectangle){-5, -5, -1, 90};
     for (int i = 0; i < 6; i++)

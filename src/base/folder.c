@@ -16,6 +16,16 @@
 /* Longest digits that cannot overflow. */
 #define MOST_DIGITS 18
 
+bool snow_is_there(const char *path, size_t length) {
+    char whole[4096];
+    struct stat about;
+    if (length >= sizeof whole)
+        return false;
+    memcpy(whole, path, length);
+    whole[length] = 0;
+    return stat(whole, &about) == 0;
+}
+
 bool snow_is_folder(const char *path) {
     struct stat about;
     return stat(path, &about) == 0 && S_ISDIR(about.st_mode);

@@ -11,6 +11,9 @@ typedef struct snow_folder {
     size_t count;
 } snow_folder;
 
+/* True when the first `length` letters of a path lead to anything. */
+bool snow_is_there(const char *path, size_t length);
+
 /* True when the path is a folder; when it is no file of that name, but its last
  * part has a '*', a '?' or a number such as %04d in it. */
 bool snow_is_folder(const char *path);

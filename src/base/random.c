@@ -62,6 +62,10 @@ uint64_t snow_random_size(const snow_random *store) {
     return store->size;
 }
 
+const void *snow_random_held(const snow_random *store) {
+    return store->layer ? NULL : store->bytes;
+}
+
 size_t snow_random_read(snow_random *store, uint64_t from, void *bytes,
                         size_t size) {
     if (from >= store->size)

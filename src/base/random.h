@@ -17,6 +17,10 @@ void snow_random_close(snow_random *store);
 
 uint64_t snow_random_size(const snow_random *store);
 
+/* The bytes where they are held; NULL where they are looked at in place, and
+ * the source still stands before them. */
+const void *snow_random_held(const snow_random *store);
+
 /* Copies up to `size` bytes from `from` on; fewer where the data end or cannot
  * be read. */
 size_t snow_random_read(snow_random *store, uint64_t from, void *bytes,

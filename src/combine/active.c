@@ -302,7 +302,8 @@ static uint64_t lay_word(snow_active *layers, int count, int channels,
         uint64_t bits = bits_of(&layers[i], index, range);
         if (!bits)
             continue;
-        *laid += population(bits);
+        if (!layers[i].own)
+            *laid += population(bits);
         if (layers[i].pixels)
             lay_bits(&layers[i], bits, seen, channels, tile);
         seen |= bits;
@@ -339,12 +340,16 @@ int64_t snow_active_merge(snow_active *layers, int count, int channels,
     return active;
 }
 
-void snow_active_lay(snow_active *layers, int count, int channels,
-                     int64_t first, int64_t last, float *out, int64_t *laid) {
+int64_t snow_active_lay(snow_active *layers, int count, int channels,
+                        int64_t first, int64_t last, uint64_t *words,
+                        float *out, int64_t *laid) {
     float tile[64 * 4];
+    int64_t active = 0;
     for (int64_t i = first / 64; i * 64 < last; i++) {
         uint64_t range = snow_active_range(i, first, last);
         uint64_t seen = lay_word(layers, count, channels, i, range, tile, laid);
+        words[i - first / 64] = seen;
+        active += population(seen);
         while (out && seen) {
             int at = lowest(seen), run = run_at(seen, at);
             memcpy(out + (i * 64 + at - first) * channels, tile + at * channels,
@@ -352,4 +357,5 @@ void snow_active_lay(snow_active *layers, int count, int channels,
             seen &= at + run < 64 ? ~(uint64_t)0 << (at + run) : 0;
         }
     }
+    return active;
 }

@@ -28,6 +28,7 @@ typedef struct snow_active {
                               pixels are active */
     const float *pixels;   /* packed; NULL: there are none (a rehearsal) */
     const float *next;     /* of pixels: the first that is not merged yet */
+    bool own;              /* this rank's: not counted as laid */
 } snow_active;
 
 /* Words of the mask of first .. last - 1. */
@@ -79,12 +80,13 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
  *
  * snow_active_merge packs the result to `out` (NULL in a rehearsal) with its
  * mask in `words`, and returns how many active pixels it has; snow_active_lay
- * writes pixel n at out[(n - first) * channels], which are 0 before.  Both add
- * to *laid how many pixels of layers there were. */
+ * does the same but writes pixel n at out[(n - first) * channels], which are 0
+ * before.  Both add to *laid how many pixels of layers that came there were. */
 int64_t snow_active_merge(snow_active *layers, int count, int channels,
                           int64_t first, int64_t last, uint64_t *words,
                           float *out, int64_t *laid);
-void snow_active_lay(snow_active *layers, int count, int channels,
-                     int64_t first, int64_t last, float *out, int64_t *laid);
+int64_t snow_active_lay(snow_active *layers, int count, int channels,
+                        int64_t first, int64_t last, uint64_t *words,
+                        float *out, int64_t *laid);
 
 #endif

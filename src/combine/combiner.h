@@ -37,6 +37,12 @@ typedef struct snow_gather_state {
     unsigned char *slots;   /* the beginning of each child's message */
     snow_message *messages; /* of each child: its beginning, its rest */
     size_t *places;         /* where each child's blocks lie in bytes */
+    int *queue;             /* children with long messages, in order */
+    /* Of snow_gather_piece: the piece's active pixels, for so many pixels. */
+    snow_pixel_run *runs;
+    unsigned char *packed;
+    int64_t packed_room;
+    size_t packed_bytes; /* a pixel */
 } snow_gather_state;
 
 struct snow_combiner {
@@ -54,6 +60,7 @@ struct snow_combiner {
     snow_traffic in[2], out[2];
     float *piece;
     snow_exchange_figures figures;
+    double scan_seconds, blend_seconds; /* of the last order */
     snow_gather_state gather;
 };
 

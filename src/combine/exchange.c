@@ -465,8 +465,10 @@ static snow_status end_receives(exchange *run, int level) {
         }
         if ((int64_t)count > combiner->figures.receive_largest)
             combiner->figures.receive_largest = (int64_t)count;
-        if (!open_layer(run, bytes, count, part, words,
-                        &combiner->layers[run->layer_count++]))
+        snow_active *layer = &combiner->layers[run->layer_count++];
+        bool good = open_layer(run, bytes, count, part, words, layer);
+        layer->own = share->seat == combiner->rounds.seat;
+        if (!good)
             return snow_fail(combiner->comm->context, SNOW_FAILED,
                              "rank %d sent what is no part of this picture; "
                              "give all ranks the same order",
@@ -485,7 +487,7 @@ static void lay_piece(exchange *run, stretch piece) {
     if (out)
         memset(out, 0, (size_t)(piece.last - piece.first) * run->pixel_bytes);
     snow_active_lay(combiner->layers, run->layer_count, order->channels,
-                    piece.first, piece.last, out, &laid);
+                    piece.first, piece.last, combiner->part, out, &laid);
     combiner->figures.laid += laid;
     snow_comm_work(combiner->comm, (double)laid * order->blend_seconds);
 }
@@ -556,8 +558,11 @@ snow_status snow_exchange(snow_combiner *combiner,
             snow_comm_wait_all(combiner->comm, sent->messages, sent->count));
         sent->count = 0;
     }
-    *out = (snow_piece){mine.first, mine.last - mine.first,
-                        order.rehearsal ? NULL : combiner->piece};
+    combiner->scan_seconds = order.scan_seconds;
+    combiner->blend_seconds = order.blend_seconds;
+    *out =
+        (snow_piece){mine.first, mine.last - mine.first,
+                     order.rehearsal ? NULL : combiner->piece, combiner->part};
     return SNOW_OK;
 }
 

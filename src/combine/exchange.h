@@ -71,10 +71,13 @@ typedef struct snow_exchange_order {
 } snow_exchange_order;
 
 /* This rank's part of the picture: pixels first .. first + count - 1; count may
- * be 0.  Owned by the combiner until its next call; NULL in a rehearsal. */
+ * be 0.  Owned by the combiner until its next exchange; `pixels` is NULL in a
+ * rehearsal.  Bit i % 64 of active[i / 64 - first / 64] tells whether pixel i
+ * is not nothing. */
 typedef struct snow_piece {
     int64_t first, count;
     float *pixels;
+    const uint64_t *active;
 } snow_piece;
 
 /* Figures of the last exchange, for benchmarks. */
@@ -127,6 +130,12 @@ typedef struct snow_pixel_run {
 snow_status snow_gather(snow_combiner *combiner, int width, int height,
                         const snow_pixel_run *runs, size_t run_count,
                         const void *pixels, size_t pixel_bytes, void *picture);
+
+/* Collective.  Brings the piece of the last exchange as it is: `bits` 8 rounds
+ * channels to whole steps of 1/255, one byte each; 0: floats.  Errors: as those
+ * of snow_gather. */
+snow_status snow_gather_piece(snow_combiner *combiner, const snow_piece *piece,
+                              int bits, void *picture);
 
 /* How many messages a rank of the gather's tree waits for at a time: 2 to the
  * number of ranks, which is no tree at all; 0: chosen. */

@@ -37,11 +37,27 @@ static void drop_buffers(snow_combiner *combiner) {
     snow_release(context, state->slots);
     snow_release(context, state->messages);
     snow_release(context, state->places);
-    *state = (snow_gather_state){.radix = state->radix};
+    snow_release(context, state->queue);
+    state->children = NULL;
+    state->bytes = state->slots = NULL;
+    state->messages = NULL;
+    state->places = NULL;
+    state->queue = NULL;
+    state->width = 0;
+}
+
+static void drop_packed(snow_combiner *combiner) {
+    snow_gather_state *state = &combiner->gather;
+    snow_release(combiner->comm->context, state->runs);
+    snow_release(combiner->comm->context, state->packed);
+    state->runs = NULL;
+    state->packed = NULL;
+    state->packed_room = 0;
 }
 
 void snow_gather_free(snow_combiner *combiner) {
     drop_buffers(combiner);
+    drop_packed(combiner);
 }
 
 /* --- the tree ------------------------------------------------------------- */
@@ -76,12 +92,16 @@ static int walk_tree(int rank, int ranks, int radix, int *children,
     return found;
 }
 
-/* Measured on simulated networks: see docs/scaling.md. */
-static int chosen_radix(const snow_combiner *combiner) {
+/* Wide where pixels take longer than messages, which they do from 2 MB on, by
+ * simulated networks (docs/scaling.md). */
+static int chosen_radix(const snow_combiner *combiner, int width, int height,
+                        size_t pixel_bytes) {
     const int ranks = combiner->comm->ranks;
+    double bytes = (double)width * height * (double)pixel_bytes;
+    int radix = bytes < 2e6 ? 8 : 32;
     if (combiner->gather.radix >= 2)
-        return combiner->gather.radix;
-    return ranks <= 32 ? (ranks > 2 ? ranks : 2) : 8;
+        radix = combiner->gather.radix;
+    return radix < ranks ? radix : ranks < 2 ? 2 : ranks;
 }
 
 /* --- memory --------------------------------------------------------------- */
@@ -103,7 +123,8 @@ static snow_status take_buffers(snow_combiner *combiner) {
         (state->slots = snow_allocate_array(context, some, SLOT)) &&
         (state->messages =
              snow_allocate_array(context, 2 * some, sizeof(snow_message))) &&
-        (state->places = snow_allocate_array(context, some, sizeof(size_t)));
+        (state->places = snow_allocate_array(context, some, sizeof(size_t))) &&
+        (state->queue = snow_allocate_array(context, some, sizeof(int)));
     if (!fine)
         return SNOW_NO_MEMORY;
     state->child_count =
@@ -115,7 +136,7 @@ static snow_status take_buffers(snow_combiner *combiner) {
 static snow_status take_shape(snow_combiner *combiner, int width, int height,
                               size_t pixel_bytes) {
     snow_gather_state *state = &combiner->gather;
-    const int radix = chosen_radix(combiner);
+    const int radix = chosen_radix(combiner, width, height, pixel_bytes);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 ||
         pixel_bytes < 1 || pixel_bytes > 1024)
         return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
@@ -242,31 +263,57 @@ static snow_status begin_receives(snow_combiner *combiner) {
     return SNOW_OK;
 }
 
+/* How many long messages are on their way to a rank at a time.  Two fill its
+ * network; all at once would end together, and the display processor could not
+ * place one while the next comes. */
+#define UNDER_WAY 2
+
+/* What a rank has got so far. */
+typedef struct intake {
+    size_t used;                /* bytes that blocks take, or will */
+    int queued, asked, arrived; /* children with more than a beginning: found,
+                                   told to send, done */
+} intake;
+
+static uint64_t told_length(const snow_gather_state *state, int child) {
+    uint64_t length;
+    memcpy(&length, state->slots + (size_t)child * SLOT, sizeof length);
+    return length;
+}
+
 /* The beginning of a child's message is there: it goes behind what is there
- * already, and the rest is asked for. */
+ * already; is there a rest, the child is queued. */
 static snow_status take_beginning(snow_combiner *combiner, int child,
-                                  size_t *used) {
+                                  intake *in) {
     snow_gather_state *state = &combiner->gather;
-    const unsigned char *slot = state->slots + (size_t)child * SLOT;
-    uint64_t length = 0;
-    size_t here = state->messages[child].bytes;
-    if (here >= HEAD)
-        memcpy(&length, slot, HEAD);
-    if (here < HEAD || length < here - HEAD || length > state->room - *used)
+    const size_t here = state->messages[child].bytes;
+    const uint64_t length = here >= HEAD ? told_length(state, child) : 0;
+    if (here < HEAD || length < here - HEAD || length > state->room - in->used)
         return snow_fail(combiner->comm->context, SNOW_FAILED,
                          "rank %d sent more pixels than the picture has; runs "
                          "of ranks must be apart",
                          state->children[child]);
-    here -= HEAD;
-    memcpy(state->bytes + *used, slot + HEAD, here);
-    state->places[child] = *used;
-    *used += (size_t)length;
-    if (length == here)
-        return SNOW_OK;
-    return snow_comm_receive(
-        combiner->comm, state->bytes + state->places[child] + here,
-        (size_t)length - here, state->children[child], SNOW_TAG_GATHER,
-        &state->messages[state->child_count + child]);
+    memcpy(state->bytes + in->used, state->slots + (size_t)child * SLOT + HEAD,
+           here - HEAD);
+    state->places[child] = in->used;
+    in->used += (size_t)length;
+    if (length > here - HEAD)
+        state->queue[in->queued++] = child;
+    return SNOW_OK;
+}
+
+/* Gets ready for the rests of children whose turn it is. */
+static snow_status ask_rests(snow_combiner *combiner, intake *in) {
+    snow_gather_state *state = &combiner->gather;
+    const size_t here = SLOT - HEAD;
+    while (in->asked < in->queued && in->asked - in->arrived < UNDER_WAY) {
+        int child = state->queue[in->asked++];
+        SNOW_TRY(snow_comm_receive(
+            combiner->comm, state->bytes + state->places[child] + here,
+            (size_t)told_length(state, child) - here, state->children[child],
+            SNOW_TAG_GATHER, &state->messages[state->child_count + child]));
+    }
+    return SNOW_OK;
 }
 
 /* A message of `length` bytes, whose own length stands before them. */
@@ -285,12 +332,26 @@ static snow_status send_up(snow_combiner *combiner, size_t length) {
     return snow_comm_wait_all(combiner->comm, messages, 2);
 }
 
+/* All of a child's blocks are there: the display processor places them. */
+static bool place_child(snow_combiner *combiner, int child,
+                        unsigned char *picture) {
+    const snow_gather_state *state = &combiner->gather;
+    const size_t length = (size_t)told_length(state, child);
+    if (state->parent >= 0)
+        return true;
+    snow_comm_work(combiner->comm, (double)length / (double)state->pixel_bytes *
+                                       combiner->scan_seconds);
+    return !picture || place_blocks(state, state->bytes + state->places[child],
+                                    length, picture);
+}
+
 /* What children send, in the order of its coming, behind the first `used` bytes
- * that are there; the display processor places it as it comes. */
+ * that are there. */
 static snow_status take_children(snow_combiner *combiner, size_t *used,
                                  unsigned char *picture) {
     snow_gather_state *state = &combiner->gather;
     const int count = state->child_count;
+    intake in = {.used = *used};
     bool good = true;
     for (;;) {
         int which;
@@ -298,16 +359,16 @@ static snow_status take_children(snow_combiner *combiner, size_t *used,
                                     &which));
         if (which < 0)
             break;
-        int child = which % count;
+        const int child = which % count, queued = in.queued;
         if (which < count)
-            SNOW_TRY(take_beginning(combiner, child, used));
-        if (!picture || state->messages[count + child].handle)
-            continue;
-        uint64_t length;
-        memcpy(&length, state->slots + (size_t)child * SLOT, HEAD);
-        good = good && place_blocks(state, state->bytes + state->places[child],
-                                    (size_t)length, picture);
+            SNOW_TRY(take_beginning(combiner, child, &in));
+        else
+            in.arrived++;
+        SNOW_TRY(ask_rests(combiner, &in));
+        if (in.queued == queued)
+            good = place_child(combiner, child, picture) && good;
     }
+    *used = in.used;
     if (!good)
         return snow_fail(combiner->comm->context, SNOW_FAILED,
                          "runs lie outside the picture of %d x %d pixels",
@@ -333,9 +394,124 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
         place_run(state, &runs[i], from, picture);
         from += (size_t)runs[i].count * pixel_bytes;
     }
-    SNOW_TRY(
-        take_children(combiner, &used, state->parent < 0 ? picture : NULL));
+    SNOW_TRY(take_children(combiner, &used, picture));
     if (state->parent >= 0)
         SNOW_TRY(send_up(combiner, used - HEAD));
     return status;
+}
+
+/* --- a piece as it is ----------------------------------------------------- */
+
+/* Buffers for the piece of any seat, of the same size on all ranks but those
+ * without a piece in a tree; all ranks come here together. */
+static snow_status take_packed(snow_combiner *combiner, size_t pixel_bytes) {
+    snow_gather_state *state = &combiner->gather;
+    snow_context *context = combiner->comm->context;
+    const int pieces = combiner->rounds.tree ? 1 : combiner->comm->ranks;
+    const int64_t room = snow_border_room(&combiner->borders, pieces);
+    if (state->packed_room == room && state->packed_bytes == pixel_bytes)
+        return SNOW_OK;
+    drop_packed(combiner);
+    state->packed_room = room;
+    state->packed_bytes = pixel_bytes;
+    /* Every second pixel may be a run, and every line's first. */
+    uint64_t runs = (uint64_t)(room / 2 + room / combiner->shape.width + 3);
+    bool fine =
+        (combiner->rounds.tree && combiner->comm->rank) ||
+        ((state->runs =
+              snow_allocate_array(context, runs, sizeof *state->runs)) &&
+         (state->packed =
+              snow_allocate_array(context, (uint64_t)room, pixel_bytes)));
+    snow_status status =
+        snow_comm_agree(combiner->comm, fine ? SNOW_OK : SNOW_NO_MEMORY);
+    if (status != SNOW_OK)
+        drop_packed(combiner);
+    return status;
+}
+
+static void round_pixels(const float *pixels, int64_t floats,
+                         unsigned char *out) {
+    for (int64_t i = 0; i < floats; i++) {
+        float value = pixels[i] * 255 + 0.5f;
+        value = value > 0 ? value : 0;
+        out[i] = (unsigned char)(value < 255 ? value : 255);
+    }
+}
+
+/* Appends pixels first .. last - 1, of one line, to what is packed. */
+static void pack_run(snow_combiner *combiner, const snow_piece *piece,
+                     int64_t first, int64_t last, size_t *run_count,
+                     int64_t *packed) {
+    snow_gather_state *state = &combiner->gather;
+    const int channels = combiner->shape.channels;
+    const int width = combiner->shape.width;
+    const int64_t count = last - first;
+    unsigned char *out = state->packed + (size_t)*packed * state->packed_bytes;
+    state->runs[(*run_count)++] = (snow_pixel_run){
+        (int32_t)(first % width),
+        snow_exchange_line(combiner, (int)(first / width)), (int32_t)count};
+    if (piece->pixels) {
+        const float *from = piece->pixels + (first - piece->first) * channels;
+        if (state->packed_bytes == (size_t)channels)
+            round_pixels(from, count * channels, out);
+        else
+            memcpy(out, from, (size_t)count * state->packed_bytes);
+    }
+    *packed += count;
+}
+
+/* The next pixel from `at` on that is active, or is not; `end` at most. */
+static int64_t next_pixel(const snow_piece *piece, int64_t at, int64_t end,
+                          bool active) {
+    while (at < end) {
+        uint64_t word = piece->active[at / 64 - piece->first / 64];
+        word = (active ? word : ~word) >> (at % 64);
+        if (word) {
+            at += __builtin_ctzll(word);
+            break;
+        }
+        at = (at / 64 + 1) * 64;
+    }
+    return at < end ? at : end;
+}
+
+/* Packs the active pixels of a piece, line by line; gaps that are shorter than
+ * what a run costs are filled. */
+static size_t pack_piece(snow_combiner *combiner, const snow_piece *piece,
+                         int64_t *packed) {
+    const int64_t width = combiner->shape.width;
+    const int64_t gap = SNOW_RUN_BYTES / (int64_t)combiner->gather.packed_bytes;
+    const int64_t last = piece->first + piece->count;
+    size_t runs = 0;
+    for (int64_t line = piece->first; line < last;) {
+        int64_t end = (line / width + 1) * width;
+        end = end < last ? end : last;
+        int64_t at = next_pixel(piece, line, end, true);
+        while (at < end) {
+            int64_t stop = next_pixel(piece, at, end, false);
+            int64_t next = next_pixel(piece, stop, end, true);
+            while (next < end && next - stop <= gap) {
+                stop = next_pixel(piece, next, end, false);
+                next = next_pixel(piece, stop, end, true);
+            }
+            pack_run(combiner, piece, at, stop, &runs, packed);
+            at = next;
+        }
+        line = end;
+    }
+    return runs;
+}
+
+snow_status snow_gather_piece(snow_combiner *combiner, const snow_piece *piece,
+                              int bits, void *picture) {
+    const snow_exchange_shape *shape = &combiner->shape;
+    const size_t pixel_bytes =
+        (size_t)shape->channels * (bits == 8 ? 1 : sizeof(float));
+    int64_t packed = 0;
+    SNOW_TRY(take_packed(combiner, pixel_bytes));
+    size_t runs = pack_piece(combiner, piece, &packed);
+    snow_comm_work(combiner->comm, (double)packed * combiner->blend_seconds);
+    return snow_gather(
+        combiner, shape->width, shape->height, combiner->gather.runs, runs,
+        piece->pixels ? combiner->gather.packed : NULL, pixel_bytes, picture);
 }

@@ -2,6 +2,9 @@
  * pieces of two cuts overlap. */
 #include "combine/rounds.h"
 
+#include <math.h>
+#include <string.h>
+
 /* A run of seats. */
 typedef struct group {
     int start, count;
@@ -171,63 +174,70 @@ int snow_rounds_last(const snow_rounds *rounds, int seat) {
 /* --- the choice -----------------------------------------------------------
  */
 
-/* What the choice takes a network and a picture for: seconds for a message to
- * arrive and for a processor to start or end one, seconds a byte, and the part
- * of a local image's pixels that are active.  On a slower network all grow
- * together, so that the choice is about the same. */
-#define LATENCY 1.2e-6
+/* What the choice takes a network for: seconds for a message to arrive, for a
+ * processor to start or end one, and for a byte.  On a slower network all grow
+ * together, and the choice is about the same. */
+#define LATENCY 1.0e-6
 #define OVERHEAD 0.3e-6
-#define SECONDS_A_BYTE 0.085e-9
-#define ACTIVE 0.05
+#define SECONDS_A_BYTE 0.0825e-9
+
+/* What it takes pictures for: a volume's footprint is so much of the picture,
+ * and a 32nd of the volume hides so much of that. */
+#define FOOTPRINT 0.4
+#define HIDDEN 0.3
+
 #define RADIX_MOST 64
 
-/* Seconds for a round of `radix`, where so many subsets are left, of which each
- * has a piece of left / seats of the picture... */
-static double round_seconds(int radix, double left, double seats,
-                            double bytes) {
-    double merged = seats / left, active = ACTIVE * merged;
-    double held = bytes / merged * (active < 1 ? active : 1);
-    return LATENCY + 2 * OVERHEAD * (radix - 1) +
-           SECONDS_A_BYTE * held * (radix - 1) / radix;
+/* The part of the picture's pixels that `parts` of all parts of the volume
+ * make active when they are combined. */
+static double active_part(double parts) {
+    return FOOTPRINT * (1 - pow(1 - HIDDEN, 32 * parts));
 }
 
-/* The cheapest radices of all plans whose rounds have near-equal roots: `count`
- * rounds, the first of `first`. */
-static double plan(int seats, int count, int first, double bytes,
-                   int radices[]) {
-    double seconds = 0, left = seats;
-    int rest = seats;
-    for (int i = 0; i < count; i++) {
-        int radix = first;
-        if (i > 0) /* the least that does it in the rounds left */
-            for (radix = 2;; radix++) {
-                double reach = 1;
-                for (int k = i; k < count; k++)
-                    reach *= radix;
-                if (reach >= rest)
-                    break;
-            }
-        seconds += round_seconds(radix, left, seats, bytes);
-        radices[i] = radix;
-        left /= radix;
-        rest = (rest + radix - 1) / radix;
+/* All sequences of radices, cut off where they cannot be the best. */
+typedef struct search {
+    double seats, bytes, best;
+    int radices[SNOW_ROUNDS_MOST], count; /* under way */
+    snow_rounds *found;
+} search;
+
+/* Seconds for a round that makes groups out of `radix` subsets each, when there
+ * are `left` subsets.  A rank starts its messages one after another while the
+ * first are on their way, and ends what comes one after another. */
+static double round_seconds(const search *s, int left, int radix) {
+    double messages = (left % radix ? 1.6 : 1) * (radix - 1);
+    double held = s->bytes * active_part(1.0 / left) * left / s->seats;
+    double start = OVERHEAD * messages;
+    double travel = SECONDS_A_BYTE * held * (radix - 1) / radix;
+    return LATENCY + OVERHEAD * messages + (start > travel ? start : travel);
+}
+
+/* Whether there are radices that divide it. */
+static bool divides(int left) {
+    for (int factor = 2; factor <= 16; factor++)
+        while (left % factor == 0)
+            left /= factor;
+    return left == 1;
+}
+
+static void search_rounds(search *s, int left, double seconds) {
+    if (seconds >= s->best || s->count == 12)
+        return;
+    if (left == 1) {
+        s->best = seconds;
+        s->found->count = s->count;
+        memcpy(s->found->radices, s->radices, sizeof s->radices);
+        return;
     }
-    return rest <= 1 ? seconds : -1;
-}
-
-static void choose_radices(snow_rounds *rounds, int seats, double bytes) {
-    double best = -1;
-    int radices[SNOW_ROUNDS_MOST];
-    for (int count = 1; count <= 12; count++)
-        for (int first = 2; first <= least(seats, RADIX_MOST); first++) {
-            double seconds = plan(seats, count, first, bytes, radices);
-            if (seconds < 0 || (best >= 0 && seconds >= best))
-                continue;
-            best = seconds;
-            rounds->count = count;
-            for (int i = 0; i < count; i++)
-                rounds->radices[i] = radices[i];
-        }
+    const bool even = divides(left);
+    for (int radix = least(left, RADIX_MOST); radix >= 2; radix--) {
+        if (even && left % radix)
+            continue;
+        s->radices[s->count++] = radix;
+        search_rounds(s, (left + radix - 1) / radix,
+                      seconds + round_seconds(s, left, radix));
+        s->count--;
+    }
 }
 
 /* As many rounds of one radix as it takes, the last with what is left. */
@@ -249,5 +259,9 @@ void snow_rounds_choose(snow_rounds *rounds, snow_combining method, int radix,
     else if (method == SNOW_COMBINE_RADIX && radix)
         repeat_radix(rounds, seats, radix);
     else if (seats > 1)
-        choose_radices(rounds, seats, (double)pixels * (double)pixel_bytes);
+        search_rounds(&(search){.seats = seats,
+                                .bytes = (double)pixels * (double)pixel_bytes,
+                                .best = HUGE_VAL,
+                                .found = rounds},
+                      seats, 0);
 }

@@ -19,7 +19,7 @@
 
 typedef struct mpi_slot {
     MPI_Request request; /* MPI_REQUEST_NULL: the slot is spare */
-    bool receives;
+    bool receives, large;
     int peer;
 } mpi_slot;
 
@@ -162,7 +162,8 @@ static snow_status begin(mpi_side *side, bool receives, void *bytes,
     mpi_slot *slot = &side->slots[place];
     slot->receives = receives;
     slot->peer = peer;
-    if (count <= SNOW_MPI_CHUNK) {
+    slot->large = count > SNOW_MPI_CHUNK;
+    if (!slot->large) {
         error = start(side, slot, bytes, (int)count, MPI_BYTE, tag);
     } else {
         MPI_Datatype type;
@@ -209,17 +210,26 @@ static int gather(mpi_side *side, const snow_message *messages, int count) {
     return asked;
 }
 
-/* A message is done: its slot is spare, its length known.  A count of the basic
- * elements, which are bytes, holds for both kinds of types. */
+/* Bytes received.  Only into a large type may more than an int's have come, and
+ * only there they are counted as the basic elements that they are: SimGrid
+ * cannot. */
+static size_t count_bytes(const mpi_slot *slot, const MPI_Status *status) {
+    MPI_Status copy = *status; /* SimGrid wants it without const */
+    MPI_Count many = 0;
+    int some = 0;
+    if (slot->large)
+        MPI_Get_elements_x(&copy, MPI_BYTE, &many);
+    else
+        MPI_Get_count(&copy, MPI_BYTE, &some);
+    return (size_t)(slot->large ? many : some);
+}
+
+/* A message is done: its slot is spare, its length known. */
 static void finish(mpi_side *side, snow_message *message,
                    const MPI_Status *status) {
     mpi_slot *slot = slot_of(side, message);
-    if (slot->receives) {
-        MPI_Status copy = *status; /* SimGrid wants it without const */
-        MPI_Count bytes = 0;
-        MPI_Get_elements_x(&copy, MPI_BYTE, &bytes);
-        message->bytes = (size_t)bytes;
-    }
+    if (slot->receives)
+        message->bytes = count_bytes(slot, status);
     slot->request = MPI_REQUEST_NULL;
     message->handle = NULL;
 }
@@ -281,6 +291,26 @@ static void work(void *self, double length) {
 /* --- the communicator ------------------------------------------------------
  */
 
+/* A duplicate keeps our messages apart from the caller's.  In SimGrid it takes
+ * time of the square of the ranks, and whoever simulates has no other messages:
+ * there the group itself is ours. */
+static int take_group(MPI_Comm group, MPI_Comm *ours) {
+#ifdef SMPI_H
+    *ours = group;
+    return MPI_SUCCESS;
+#else
+    return MPI_Comm_dup(group, ours);
+#endif
+}
+
+static void drop_group(MPI_Comm *ours) {
+#ifdef SMPI_H
+    (void)ours;
+#else
+    MPI_Comm_free(ours);
+#endif
+}
+
 /* Messages that nobody waited for are given up.  A group that has failed is
  * left to MPI's end: to free it is collective, and peers may be gone. */
 static void end(void *self) {
@@ -294,7 +324,7 @@ static void end(void *self) {
                     MPI_Cancel(&side->slots[i].request);
                 MPI_Request_free(&side->slots[i].request);
             }
-        MPI_Comm_free(&side->group);
+        drop_group(&side->group);
     }
     snow_context_release(side->context, side->slots);
     snow_context_release(side->context, side->requests);
@@ -381,7 +411,7 @@ snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
     snow_status status = check_group(context, group);
     if (status != SNOW_OK)
         return status;
-    int error = MPI_Comm_dup(group, &ours);
+    int error = take_group(group, &ours);
     if (error != MPI_SUCCESS)
         return fail_mpi(context, error, "duplicate the group", -1);
     MPI_Comm_set_errhandler(ours, MPI_ERRORS_RETURN);
@@ -390,7 +420,7 @@ snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
         if (comm)
             snow_comm_free(comm); /* and the duplicate with it */
         else
-            MPI_Comm_free(&ours);
+            drop_group(&ours);
         return status;
     }
     remark_threads(context);

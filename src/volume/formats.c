@@ -15,10 +15,10 @@
 
 /* Raw, which recognises nothing, is the last. */
 static const snow_format *const formats[] = {
-    &snow_format_nrrd, &snow_format_nifti, &snow_format_metaimage,
-    &snow_format_npy,  &snow_format_vtk,   &snow_format_vti,
-    &snow_format_mrc,  &snow_format_tiff,  &snow_format_png,
-    &snow_format_raw,
+    &snow_format_nrrd, &snow_format_nifti,  &snow_format_metaimage,
+    &snow_format_npy,  &snow_format_vtk,    &snow_format_vti,
+    &snow_format_mrc,  &snow_format_tiff,   &snow_format_png,
+    &snow_format_hdf5, &snow_format_netcdf, &snow_format_raw,
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
@@ -300,6 +300,44 @@ static snow_status open_stack(snow_context *context, const char *path,
     return SNOW_OK;
 }
 
+/* The path of a data set in "file.h5:/path", where that is no file but its
+ * front is one; else NULL. */
+static const char *data_set_in(const char *path) {
+    const char *found = NULL;
+    for (const char *at = path; (at = strstr(at, ":/")); at++)
+        found = at;
+    if (!found || snow_is_there(path, strlen(path)) ||
+        !snow_is_there(path, (size_t)(found - path)))
+        return NULL;
+    return found + 1;
+}
+
+static snow_status open_path(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out);
+
+static snow_status open_inside(snow_context *context, const char *path,
+                               const char *inside,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    snow_volume_options own = *options;
+    if (own.dataset)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: names a data set, as --dataset does; leave one "
+                         "of them out",
+                         path);
+    own.dataset = inside;
+    size_t length = (size_t)(inside - 1 - path);
+    char *file = snow_allocate(context, length + 1);
+    if (!file)
+        return SNOW_NO_MEMORY;
+    memcpy(file, path, length);
+    file[length] = 0;
+    snow_status status = open_path(context, file, &own, info, out);
+    snow_release(context, file);
+    return status;
+}
+
 /* The prefix comes before any file of that name: "./phantom:x" still reaches
  * one. */
 static snow_status open_path(snow_context *context, const char *path,
@@ -310,6 +348,9 @@ static snow_status open_path(snow_context *context, const char *path,
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
         return open_phantom(context, path + strlen(PHANTOM), options, info,
                             out);
+    const char *inside = data_set_in(path);
+    if (inside)
+        return open_inside(context, path, inside, options, info, out);
     if (snow_is_folder(path) || snow_is_pattern(path))
         return open_stack(context, path, options, info, out);
     snow_source *source;

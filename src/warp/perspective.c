@@ -83,8 +83,8 @@ static void warp_run(const snow_plane *plane, double line[3][2],
 
 void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
                         snow_filter filter, snow_warp_places_fn *warp, int y,
-                        int width, float *pixels) {
-    double line[3][2], low = 0, high = width - 1;
+                        int from, int to, float *pixels) {
+    double line[3][2], low = from, high = to - 1;
     size_t pixel = (size_t)plane->channels;
     for (int i = 0; i < 3; i++) {
         line[i][1] = scaled->warp[i][1];
@@ -92,15 +92,16 @@ void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
                      (y + 0.5) * scaled->warp[i][2];
     }
     cut_line(plane, line, filter == SNOW_CATMULL_ROM ? 1 : 0, &low, &high);
-    int first = (int)ceil(fmin(low, width));
+    int first = (int)ceil(fmin(low, to));
     int last = low <= high ? (int)floor(high) : first - 1;
     if (last < first)
-        first = width, last = width - 1;
-    memset(pixels, 0, (size_t)first * pixel * sizeof *pixels);
+        first = to, last = to - 1;
+    memset(pixels + (size_t)from * pixel, 0,
+           (size_t)(first - from) * pixel * sizeof *pixels);
     for (int x = first; x <= last; x += CHUNK)
         warp_run(plane, line, warp, x,
                  last - x + 1 < CHUNK ? last - x + 1 : CHUNK,
                  pixels + (size_t)x * pixel);
     memset(pixels + (size_t)(last + 1) * pixel, 0,
-           (size_t)(width - 1 - last) * pixel * sizeof *pixels);
+           (size_t)(to - 1 - last) * pixel * sizeof *pixels);
 }

@@ -162,11 +162,11 @@ static void warp_runs(const snow_plane *plane, const snow_warp_line *line,
 }
 
 void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
-                   snow_filter filter, snow_warp_fn *warp, int y, int width,
-                   float *pixels) {
+                   snow_filter filter, snow_warp_fn *warp, int y, int from,
+                   int to, float *pixels) {
     int before = filter == SNOW_CATMULL_ROM ? 1 : 0, after = before + 1;
     const int sides[2] = {plane->width, plane->height};
-    double low = 0, high = width - 1;
+    double low = from, high = to - 1;
     snow_warp_line line;
     for (int axis = 0; axis < 2; axis++) {
         double start = shear->start[axis] + y * shear->along_y[axis];
@@ -177,12 +177,13 @@ void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
         line.start[axis] = low <= high ? fixed(start) : 0;
     }
     size_t pixel = (size_t)plane->channels;
-    int first = (int)ceil(fmin(low, width));
+    int first = (int)ceil(fmin(low, to));
     int last = low <= high ? (int)floor(high) : first - 1;
     if (last < first)
-        first = width, last = width - 1;
-    memset(pixels, 0, (size_t)first * pixel * sizeof *pixels);
+        first = to, last = to - 1;
+    memset(pixels + (size_t)from * pixel, 0,
+           (size_t)(first - from) * pixel * sizeof *pixels);
     warp_runs(plane, &line, warp, first, last, pixels);
     memset(pixels + (size_t)(last + 1) * pixel, 0,
-           (size_t)(width - 1 - last) * pixel * sizeof *pixels);
+           (size_t)(to - 1 - last) * pixel * sizeof *pixels);
 }

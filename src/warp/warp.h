@@ -45,14 +45,15 @@ snow_warp_fn *snow_warp_of(snow_isa isa, snow_filter filter, int channels);
 snow_warp_places_fn *snow_warp_places_of(snow_isa isa, snow_filter filter,
                                          int channels);
 
-/* Fills line y of a picture `width` pixels wide; 0 where the plane ends. */
+/* Fills pixels `from` to `to` - 1 of line y of a picture, whose pixel 0 is the
+ * first of `pixels`; 0 where the plane ends. */
 void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
-                   snow_filter filter, snow_warp_fn *warp, int y, int width,
-                   float *pixels);
+                   snow_filter filter, snow_warp_fn *warp, int y, int from,
+                   int to, float *pixels);
 
 /* The same in perspective: warp/perspective.c. */
 void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
                         snow_filter filter, snow_warp_places_fn *warp, int y,
-                        int width, float *pixels);
+                        int from, int to, float *pixels);
 
 #endif

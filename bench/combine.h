@@ -1,0 +1,97 @@
+/* bench/combine.h - how fast, and how evenly, local images are combined.
+ *
+ *   combine.c          options; the plain tool, whose ranks are threads
+ *   combine_pattern.c  local images of a benchmark: slabs of a cube
+ *   combine_run.c      one exchange and one gather, verified and counted
+ *   combine_print.c    a line of key=value, or JSON
+ *   mpi_combine.c      the same as a program of its own, for MPI
+ *   simulate/          builds that one for simulated networks, and runs it
+ *
+ * The stage that is measured is inside the library: unlike other benchmarks
+ * this one sees its headers. */
+#ifndef SNOW_BENCH_COMBINE_H
+#define SNOW_BENCH_COMBINE_H
+
+#include "combine/exchange.h"
+
+#include <stdio.h>
+
+typedef struct combine_options {
+    int ranks;    /* of the plain tool */
+    int size;     /* of the square picture, in pixels */
+    int channels; /* 2 or 4 */
+    int bits;     /* of a gathered channel: 8, or 0 for floats */
+    snow_combining method;
+    int radix, gather; /* 0: chosen */
+    snow_pieces pieces;
+    bool whole;
+    bool sizes_only; /* no pixels: messages of the right length */
+    bool check;
+    bool json;
+    int runs; /* of which the fastest counts */
+    double azimuth, elevation, fill, cube;
+    int grain;          /* of the pattern: pixels that are active together */
+    double alpha, beta; /* seconds a message, seconds a byte: of the bound */
+    double scan, blend; /* seconds a pixel, of a simulated processor */
+    bool simulated;
+} combine_options;
+
+/* Reads the options after the verb's name; an exit code, or -1 to go on.
+ * `said` may be NULL: ranks but the first say nothing. */
+int combine_parse(int argc, char **argv, combine_options *out, FILE *said);
+
+/* The verb: `argv[0]` is "combine".  All ranks of `comm` call it; NULL: the
+ * ranks are threads.  Returns the tool's exit code. */
+int combine_main(int argc, char **argv, snow_comm *comm);
+
+/* One rank's part of a slab's picture. */
+typedef struct combine_pattern {
+    int size, channels, slab, slabs, grain;
+    uint32_t threshold; /* active below it, of 2^16 */
+    snow_rectangle drawn;
+    int *spans; /* of each line: its first column, and that after its last */
+} combine_pattern;
+
+/* Memory of the caller's: 2 * size numbers in `spans`. */
+void combine_pattern_make(const combine_options *options, int slab, int slabs,
+                          int *spans, combine_pattern *out);
+
+/* As snow_rehearsal's: bits of pixels of line y. */
+uint64_t combine_pattern_active(void *pattern, int y, int x, int count);
+
+/* A pixel's channels, all 0 where it is not active. */
+void combine_pattern_pixel(const combine_pattern *pattern, int x, int y,
+                           float *out);
+
+/* Times of one run in seconds on this rank; counters of it. */
+typedef struct combine_figures {
+    double exchange, gather, total; /* wall, or simulated */
+    double exchange_cpu, gather_cpu;
+    int64_t bytes_sent, messages, active, scanned, laid;
+    int64_t exchange_bytes, exchange_messages;
+    int64_t shown;     /* pixels of the piece that are not nothing */
+    double difference; /* from the serial picture; -1: not looked at */
+} combine_figures;
+
+/* Over all ranks. */
+typedef struct combine_result {
+    int ranks;
+    snow_exchange_figures told;
+    combine_figures most, sum;
+} combine_result;
+
+/* A body for snow_comm_threads and the like; `user` is a combine_session. */
+typedef struct combine_session {
+    const combine_options *options;
+    combine_result result; /* filled in by rank 0 */
+} combine_session;
+snow_status combine_body(snow_comm *comm, void *user);
+
+/* Runs the body on every rank of a communicator, the first of which prints;
+ * the exit code. */
+int combine_run(snow_comm *comm, combine_session *session);
+
+/* Prints the line; the exit code. */
+int combine_print(const combine_session *session);
+
+#endif

@@ -1,0 +1,306 @@
+/* bench/combine_run.c - one exchange and one gather on every rank: timed,
+ * counted, and compared with the picture of a chain.
+ *
+ * Real ranks leave a barrier at about the same time.  Simulated ones all have
+ * the same clock, and start at the same moment of it; the picture is complete
+ * when the last pixel is in rank 0's picture. */
+#include "combine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* One rank's buffers. */
+typedef struct rank_state {
+    const combine_options *options;
+    snow_comm *comm;
+    snow_combiner *combiner;
+    combine_pattern pattern;
+    int *spans, *order;
+    float *pixels; /* the local image; NULL when only sizes are asked for */
+    void *picture; /* rank 0's */
+    snow_piece piece;
+} rank_state;
+
+static double cpu_seconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static size_t picture_bytes(const combine_options *options) {
+    return (size_t)options->size * (size_t)options->size *
+           (size_t)options->channels * (options->bits == 8 ? 1 : sizeof(float));
+}
+
+/* --- the local image ------------------------------------------------------ */
+
+static void draw(rank_state *state) {
+    const combine_options *options = state->options;
+    const size_t channels = (size_t)options->channels;
+    const snow_rectangle *drawn = &state->pattern.drawn;
+    for (int y = drawn->y0; y < drawn->y1; y++)
+        for (int x = drawn->x0; x < drawn->x1; x++)
+            combine_pattern_pixel(
+                &state->pattern, x, y,
+                state->pixels +
+                    ((size_t)y * (size_t)options->size + (size_t)x) * channels);
+}
+
+/* Memory and the local image.  In a simulation of sizes alone there are no
+ * pictures. */
+static snow_status prepare(rank_state *state) {
+    const combine_options *options = state->options;
+    snow_context *context = state->comm->context;
+    const uint64_t size = (uint64_t)options->size,
+                   ranks = (uint64_t)state->comm->ranks;
+    state->spans = snow_allocate_array(context, 2 * size, sizeof(int));
+    state->order = snow_allocate_array(context, ranks, sizeof(int));
+    if (!state->spans || !state->order)
+        return SNOW_NO_MEMORY;
+    for (int i = 0; i < state->comm->ranks; i++)
+        state->order[i] = i;
+    combine_pattern_make(options, state->comm->rank, state->comm->ranks,
+                         state->spans, &state->pattern);
+    if (options->sizes_only)
+        return SNOW_OK;
+    state->pixels = snow_allocate_array(
+        context, size * size, (size_t)options->channels * sizeof(float));
+    if (!state->pixels)
+        return SNOW_NO_MEMORY;
+    if (state->comm->rank == 0 && !(state->picture = snow_allocate_clear(
+                                        context, picture_bytes(options))))
+        return SNOW_NO_MEMORY;
+    draw(state);
+    return SNOW_OK;
+}
+
+static void finish(rank_state *state) {
+    snow_context *context = state->comm->context;
+    snow_combiner_free(state->combiner);
+    snow_release(context, state->spans);
+    snow_release(context, state->order);
+    snow_release(context, state->pixels);
+    snow_release(context, state->picture);
+}
+
+/* --- one run -------------------------------------------------------------- */
+
+/* All ranks go on together. */
+static snow_status line_up(snow_comm *comm) {
+    double now = snow_comm_seconds(comm);
+    SNOW_TRY(snow_comm_reduce_doubles(comm, &now, 1, SNOW_MAX));
+    /* The last rank has the news well within a second. */
+    if (comm->ops.work)
+        snow_comm_work(comm, now + 1 - snow_comm_seconds(comm));
+    return SNOW_OK;
+}
+
+/* Pixels of a piece that are not nothing. */
+static int64_t count_shown(const snow_piece *piece) {
+    int64_t shown = 0;
+    for (int64_t i = piece->first / 64; i * 64 < piece->first + piece->count;
+         i++)
+        shown += __builtin_popcountll(piece->active[i - piece->first / 64]);
+    return shown;
+}
+
+/* Local images are as drawn, or, to take memory, empty. */
+static snow_status run_once(rank_state *state, bool drawn,
+                            combine_figures *out) {
+    const combine_options *options = state->options;
+    snow_comm *comm = state->comm;
+    const snow_rehearsal rehearsal = {combine_pattern_active, &state->pattern};
+    const snow_exchange_order order = {
+        .width = options->size,
+        .height = options->size,
+        .channels = options->channels,
+        .pixels = state->pixels,
+        .stride = (size_t)options->size * (size_t)options->channels,
+        .drawn = drawn ? state->pattern.drawn : (snow_rectangle){0},
+        .ranks = state->order,
+        .method = options->method,
+        .radix = options->radix,
+        .grain = 1,
+        .pieces = options->pieces,
+        .whole = options->whole,
+        .rehearsal = options->sizes_only ? &rehearsal : NULL,
+        .scan_seconds = options->scan,
+        .blend_seconds = options->blend};
+    if (drawn)
+        SNOW_TRY(line_up(comm));
+    const uint64_t bytes = comm->bytes_sent, messages = comm->messages_sent;
+    const double start = snow_comm_seconds(comm), cpu = cpu_seconds();
+    SNOW_TRY(snow_exchange(state->combiner, &order, &state->piece));
+    const double between = snow_comm_seconds(comm), cpu_between = cpu_seconds();
+    out->exchange_bytes = (int64_t)(comm->bytes_sent - bytes);
+    out->exchange_messages = (int64_t)(comm->messages_sent - messages);
+    SNOW_TRY(snow_gather_piece(state->combiner, &state->piece, options->bits,
+                               state->picture));
+    const double end = snow_comm_seconds(comm);
+    const snow_exchange_figures *told = snow_exchange_told(state->combiner);
+    out->exchange = between - start;
+    out->gather = end - between;
+    out->total = end - start;
+    out->exchange_cpu = cpu_between - cpu;
+    out->gather_cpu = cpu_seconds() - cpu_between;
+    out->bytes_sent = (int64_t)(comm->bytes_sent - bytes);
+    out->messages = (int64_t)(comm->messages_sent - messages);
+    out->active = told->active;
+    out->scanned = told->scanned;
+    out->laid = told->laid;
+    out->shown = count_shown(&state->piece);
+    return SNOW_OK;
+}
+
+/* --- the check ------------------------------------------------------------ */
+
+typedef struct check {
+    const combine_options *options;
+    combine_pattern *layers; /* of all ranks, from front to back */
+    int count;
+} check;
+
+/* A pixel of the picture of a chain of floats. */
+static void expect(const check *c, int x, int y, float *out) {
+    const int last = c->options->channels - 1;
+    for (int k = 0; k <= last; k++)
+        out[k] = 0;
+    for (int i = 0; i < c->count; i++) {
+        float back[4];
+        combine_pattern_pixel(&c->layers[i], x, y, back);
+        float left = 1 - out[last];
+        for (int k = 0; k <= last; k++)
+            out[k] += left * back[k];
+    }
+}
+
+/* The largest difference of a channel of rank 0's picture. */
+static double compare(const check *c, const void *picture) {
+    const int channels = c->options->channels, size = c->options->size;
+    const unsigned char *bytes = picture;
+    const float *floats = picture;
+    double most = 0;
+    for (int y = 0; y < size; y++)
+        for (int x = 0; x < size; x++) {
+            float want[4];
+            size_t at =
+                ((size_t)y * (size_t)size + (size_t)x) * (size_t)channels;
+            expect(c, x, y, want);
+            for (int k = 0; k < channels; k++) {
+                double is = c->options->bits == 8
+                                ? bytes[at + (size_t)k] / 255.0
+                                : (double)floats[at + (size_t)k];
+                double off = fabs(is - (double)want[k]);
+                most = off > most || off != off ? off : most;
+            }
+        }
+    return most;
+}
+
+static snow_status compare_picture(rank_state *state, double *out) {
+    snow_context *context = state->comm->context;
+    const size_t count = (size_t)state->comm->ranks;
+    const size_t lines = 2 * (size_t)state->options->size;
+    check c = {.options = state->options, .count = (int)count};
+    int *spans = snow_allocate_array(context, count * lines, sizeof *spans);
+    c.layers = snow_allocate_array(context, count, sizeof *c.layers);
+    if (spans && c.layers) {
+        for (int i = 0; i < c.count; i++)
+            combine_pattern_make(state->options, i, c.count,
+                                 spans + (size_t)i * lines, &c.layers[i]);
+        *out = compare(&c, state->picture);
+    }
+    snow_status status = spans && c.layers ? SNOW_OK : SNOW_NO_MEMORY;
+    snow_release(context, spans);
+    snow_release(context, c.layers);
+    return status;
+}
+
+/* --- all ranks ------------------------------------------------------------ */
+
+/* All figures as numbers of one kind: counters are far below 2^53. */
+#define FIGURES 13
+
+static void list_figures(const combine_figures *f, double list[FIGURES]) {
+    const double all[FIGURES] = {f->exchange,
+                                 f->gather,
+                                 f->total,
+                                 f->exchange_cpu,
+                                 f->gather_cpu,
+                                 (double)f->bytes_sent,
+                                 (double)f->messages,
+                                 (double)f->active,
+                                 (double)f->scanned,
+                                 (double)f->laid,
+                                 (double)f->exchange_bytes,
+                                 (double)f->exchange_messages,
+                                 (double)f->shown};
+    memcpy(list, all, sizeof all);
+}
+
+static snow_status reduce_by(snow_comm *comm, const combine_figures *mine,
+                             snow_reduction by, combine_figures *out) {
+    double f[FIGURES];
+    list_figures(mine, f);
+    SNOW_TRY(snow_comm_reduce_doubles(comm, f, FIGURES, by));
+    *out = (combine_figures){.exchange = f[0],
+                             .gather = f[1],
+                             .total = f[2],
+                             .exchange_cpu = f[3],
+                             .gather_cpu = f[4],
+                             .bytes_sent = (int64_t)f[5],
+                             .messages = (int64_t)f[6],
+                             .active = (int64_t)f[7],
+                             .scanned = (int64_t)f[8],
+                             .laid = (int64_t)f[9],
+                             .exchange_bytes = (int64_t)f[10],
+                             .exchange_messages = (int64_t)f[11],
+                             .shown = (int64_t)f[12],
+                             .difference = mine->difference};
+    return SNOW_OK;
+}
+
+/* The fastest run counts; rank 0's total is that of the picture. */
+static snow_status measure(rank_state *state, combine_result *out) {
+    snow_comm *comm = state->comm;
+    combine_result best = {.ranks = comm->ranks};
+    best.most.total = -1;
+    for (int i = 0; i <= state->options->runs; i++) {
+        combine_figures mine = {.difference = -1};
+        combine_result this = {.ranks = comm->ranks};
+        SNOW_TRY(run_once(state, i > 0, &mine));
+        if (i == 0)
+            continue;
+        this.told = *snow_exchange_told(state->combiner);
+        SNOW_TRY(reduce_by(comm, &mine, SNOW_MAX, &this.most));
+        SNOW_TRY(reduce_by(comm, &mine, SNOW_SUM, &this.sum));
+        if (i > 0 && (best.most.total < 0 || this.most.total < best.most.total))
+            best = this;
+    }
+    double difference = -1;
+    snow_status status = SNOW_OK;
+    if (state->options->check && comm->rank == 0)
+        status = compare_picture(state, &difference);
+    best.most.difference = difference;
+    SNOW_TRY(snow_comm_agree(comm, status));
+    if (comm->rank == 0)
+        *out = best;
+    return SNOW_OK;
+}
+
+snow_status combine_body(snow_comm *comm, void *user) {
+    combine_session *session = user;
+    rank_state state = {.options = session->options, .comm = comm};
+    snow_status status = snow_combiner_new(comm, &state.combiner);
+    if (status == SNOW_OK)
+        status = prepare(&state);
+    status = snow_comm_agree(comm, status);
+    if (status == SNOW_OK)
+        snow_gather_radix(state.combiner, session->options->gather);
+    if (status == SNOW_OK)
+        status = measure(&state, &session->result);
+    finish(&state);
+    return status;
+}

@@ -1,0 +1,55 @@
+/* volume/hdf5.h - the parts of the HDF5 reader; for hdf5*.c alone.
+ *
+ *   hdf5_driver.c  bytes of a source -> an open file of libhdf5
+ *   hdf5_find.c    names -> the data set that is read
+ *   hdf5_grid.c    attributes -> where its voxels lie, what they are worth
+ *   hdf5.c         a box of it -> the volume */
+#ifndef SNOW_HDF5_H
+#define SNOW_HDF5_H
+
+#include "volume/cf.h"
+
+#if SNOW_HAVE_HDF5
+
+#include <hdf5.h>
+
+#define HDF5_MOST_AXES 5
+#define HDF5_NAME_BYTES 512
+
+/* Objects of a file that are looked at in search of something. */
+#define HDF5_MOST_OBJECTS 100000
+
+typedef struct hdf5_file hdf5_file;
+
+/* A numeric array of a file. */
+typedef struct hdf5_set {
+    hid_t id; /* the data set */
+    char path[HDF5_NAME_BYTES];
+    int axes;
+    hsize_t sizes[HDF5_MOST_AXES]; /* the last one fastest */
+    snow_type type;
+} hdf5_set;
+
+/* Opens a source as a file of HDF5.  libhdf5 prints nothing until it is closed,
+ * and finds no other files.  Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
+snow_status snow_hdf5_open(snow_source *source, hdf5_file **out);
+void snow_hdf5_close(hdf5_file *file); /* NULL is accepted */
+
+hid_t snow_hdf5_id(const hdf5_file *file);
+uint64_t snow_hdf5_size(const hdf5_file *file); /* bytes */
+
+/* "what (libhdf5: why); the file is damaged ..." */
+snow_status snow_hdf5_fail(snow_context *context, const char *what);
+
+/* Opens the data set that is asked for, or else the only volume of the file.
+ * The set's id is to be closed on success.
+ * Errors: SNOW_BAD_INPUT, SNOW_BAD_USAGE (there are several; a wrong name). */
+snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
+                           hdf5_set *out);
+
+/* The matrix and unit into info, and how values are stored. */
+void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
+                     snow_volume_info *info, cf_values *values);
+
+#endif
+#endif

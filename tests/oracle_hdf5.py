@@ -1,0 +1,155 @@
+"""HDF5 beside h5py."""
+import sys
+
+try:
+    import h5py
+    import numpy as np
+except ImportError:
+    sys.exit(77)
+import gzip
+import os
+
+import oracle
+
+place = oracle.folder()
+TYPES = ["i1", "u1", "<i2", ">i2", "<u2", "<i4", ">u4", "<i8", ">u8", "<f2",
+         "<f4", ">f4", "<f8", ">f8", "?"]
+WIDER = {"f2": np.float32, "b1": np.uint8}
+
+
+def wide(a):
+    kind = WIDER.get(a.dtype.str[1:])
+    return a.astype(kind or a.dtype.newbyteorder("="))
+
+
+with h5py.File("a.h5", "w") as file:
+    for kind in TYPES:
+        file[f"types/{kind}"] = oracle.sample(kind)
+for kind in TYPES:
+    a = wide(oracle.sample(kind))
+    oracle.expect("a.h5", a, options=["--dataset", f"/types/{kind}"])
+    oracle.expect(f"a.h5:/types/{kind}", a)
+oracle.refuse("a.h5", "/types/i1 (5x6x7)", status=2)
+oracle.refuse("a.h5", "no such data set", ["--dataset", "none"], 2)
+
+# Storage: chunks, filters, a user's block, gzip around it, other versions.
+a = oracle.sample("<f4", (20, 30, 40))
+ways = [dict(chunks=(7, 8, 9)), dict(compression="gzip", chunks=True),
+        dict(compression="gzip", shuffle=True, fletcher32=True),
+        dict(fletcher32=True), {}]
+for way in ways:
+    for version in ("earliest", "latest"):
+        with h5py.File("b.h5", "w", libver=version) as file:
+            file.create_dataset("only", data=a, **way)
+            file["line"] = np.arange(10)
+        oracle.expect("b.h5", a, name=f"{way} {version}")
+with open("b.h5", "rb") as file, gzip.open("b.h5.gz", "wb") as to:
+    to.write(file.read())
+oracle.expect("b.h5.gz", a)
+with h5py.File("c.h5", "w", userblock_size=1024) as file:
+    file["only"] = a
+oracle.expect("c.h5", a, name="user's block")
+with h5py.File("d.h5", "w") as file:
+    part = file.create_dataset("only", (20, 30, 40), "<i2", chunks=(5, 5, 5),
+                               fillvalue=-7)
+    part[4:9, 3:4, 20:] = 3
+    half = part[()]
+oracle.expect("d.h5", half, name="chunks never written")
+
+# Times and channels, two axes.
+t = oracle.sample("u2", (3, 2, 5, 6, 7))
+with h5py.File("e.h5", "w") as file:
+    file["t"] = t[:, 0]
+    file["tc"] = t
+    file["flat"] = t[0, 0, 0]
+for time in range(3):
+    oracle.expect("e.h5:/t", t[time, 0], options=["--time", time])
+    for channel in range(2):
+        oracle.expect("e.h5:/tc", t[time, channel],
+                      options=["--time", time, "--channel", channel])
+oracle.expect("e.h5:/flat", t[0, 0, :1])
+
+# Attributes that give a place.
+with h5py.File("f.h5", "w") as file:
+    for name, values in (("element_size_um", (2, 1, 0.5)),
+                         ("resolution", (40, 4, 4.5)),
+                         ("voxel_size", (3, 2, 1)), ("spacing", (1, 2, 4))):
+        file[name] = a
+        file[name].attrs[name] = values
+    file["resolution"].attrs["offset"] = (100, 20, 3)
+    file["zero"] = a
+    file["zero"].attrs["spacing"] = (0, 1, 1)
+oracle.expect("f.h5:/element_size_um", a, oracle.affine((0.5, 1, 2)),
+              unit="um")
+oracle.expect("f.h5:/resolution", a,
+              oracle.affine((4.5, 4, 40), (3, 20, 100)), unit="nm")
+oracle.expect("f.h5:/voxel_size", a, oracle.affine((1, 2, 3)), unit="")
+oracle.expect("f.h5:/spacing", a, oracle.affine((4, 2, 1)), unit="")
+oracle.expect("f.h5:/zero", a)
+
+# Dimension scales, packed and missing values.
+packed = oracle.sample("<i2", (4, 5, 6))
+packed[1, 2, 3] = packed[0, 0, 0] = -999
+with h5py.File("g.h5", "w") as file:
+    v = file.create_dataset("v", data=packed)
+    v.attrs["scale_factor"] = 0.5
+    v.attrs["add_offset"] = 10.0
+    v.attrs["_FillValue"] = np.int16(-999)
+    for i, (name, values) in enumerate((("z", np.arange(4) * 2.0),
+                                        ("y", 9 - np.arange(5) * 0.5),
+                                        ("x", np.arange(6) * 3.0 + 1))):
+        s = file.create_dataset(name, data=values)
+        s.attrs["units"] = np.bytes_("km")
+        s.make_scale(name)
+        v.dims[i].attach_scale(s)
+values = packed * 0.5 + 10
+values[packed == -999] = np.nan
+oracle.expect("g.h5", values, oracle.affine((3, -0.5, 2), (1, 9, 0)),
+              dtype=np.float32, unit="km")
+
+# Refused: other files' voxels, filters that are not there, cut files.
+with h5py.File("h.h5", "w") as file:
+    layout = h5py.VirtualLayout((20, 30, 40), "<f4")
+    layout[:] = h5py.VirtualSource("b.h5", "only", (20, 30, 40))
+    file.create_virtual_dataset("virtual", layout)
+    file.create_dataset("outside", (2, 2, 2), "u1",
+                        external=[("/etc/passwd", 0, 8)])
+    file["link"] = h5py.ExternalLink("b.h5", "/only")
+    file["text"] = np.full((2, 2, 2), b"abc")
+    file["pairs"] = np.zeros((2, 2, 2), [("a", "i4"), ("b", "f4")])
+    file["six"] = np.zeros((2,) * 6)
+for name in ("virtual", "outside"):
+    oracle.refuse(f"h.h5:/{name}", "in other files")
+oracle.refuse("h.h5:/link", "no such data set", status=2)
+for name in ("text", "pairs", "six"):
+    oracle.refuse(f"h.h5:/{name}", "no array of numbers")
+with open("b.h5", "rb") as file:
+    whole = file.read()
+for size in (20, 600, len(whole) // 2, len(whole) - 1):
+    with open("i.h5", "wb") as file:
+        file.write(whole[:size])
+    oracle.refuse("i.h5", "fetch or write it again")
+with h5py.File("k.h5", "w") as file:
+    file.create_dataset("only", data=a, compression="lzf")
+oracle.refuse("k.h5", "filter 32000")
+with h5py.File("j.h5", "w") as file:
+    file.create_dataset("huge", (10**6, 10**6, 10**5), "f8",
+                        chunks=(8, 8, 8))
+oracle.refuse("j.h5", "cannot hold")
+
+path = oracle.data("formats/hdf5/example-femm-3d.h5")
+if path:
+    with h5py.File(path) as file:
+        for name in "xyz":
+            mesh = file["data/1/meshes/B"]
+            dx, dy, dz = mesh.attrs["gridSpacing"]
+            matrix = np.zeros((4, 4))
+            matrix[2, 0], matrix[1, 1], matrix[0, 2] = dz, dy, dx
+            matrix[:3, 3] = mesh.attrs["gridGlobalOffset"]
+            matrix[3, 3] = 1
+            oracle.expect(path, mesh[name][()], matrix,
+                          ["--dataset", f"data/1/meshes/B/{name}"], unit="m")
+path = oracle.data("formats/minc/small.mnc")
+if path:
+    oracle.refuse(path, "MINC")
+oracle.finish()

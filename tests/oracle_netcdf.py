@@ -1,0 +1,122 @@
+"""NetCDF, classic and NetCDF-4, beside netCDF4."""
+import sys
+
+try:
+    import netCDF4
+    import numpy as np
+except ImportError:
+    sys.exit(77)
+import gzip
+
+import oracle
+
+place = oracle.folder()
+CLASSIC = ["i1", "i2", "i4", "f4", "f8"]
+MORE = CLASSIC + ["u1", "u2", "u4", "i8", "u8"]
+FORMATS = {"NETCDF3_CLASSIC": CLASSIC, "NETCDF3_64BIT_OFFSET": CLASSIC,
+           "NETCDF3_64BIT_DATA": MORE, "NETCDF4": MORE,
+           "NETCDF4_CLASSIC": CLASSIC}
+
+for form, types in FORMATS.items():
+    with netCDF4.Dataset("a.nc", "w", format=form) as file:
+        for name, size in (("z", 7), ("y", 6), ("x", 5)):
+            file.createDimension(name, size)
+        for kind in types:
+            v = file.createVariable(f"v{kind}", kind, ("z", "y", "x"),
+                                    fill_value=False)
+            v[:] = oracle.sample(kind)
+        file.createVariable("text", "S1", ("z", "y", "x"))
+    for kind in types:
+        oracle.expect("a.nc", oracle.sample(kind),
+                      options=["--dataset", f"v{kind}"],
+                      name=f"{form} {kind}")
+    oracle.refuse("a.nc", "vi1", status=2)
+    oracle.refuse("a.nc", "no array of numbers", ["--dataset", "text"])
+    oracle.refuse("a.nc", "there is no such", ["--dataset", "w"], 2)
+
+# Records: one variable of odd bytes, then several, and a fixed one.
+for form in FORMATS:
+    for kinds in (["i1"], ["i2"], ["i1", "i2", "f8"]):
+        with netCDF4.Dataset("b.nc", "w", format=form) as file:
+            file.createDimension("time", None)
+            for name, size in (("z", 3), ("y", 5), ("x", 7)):
+                file.createDimension(name, size)
+            fixed = file.createVariable("fixed", "f4", ("z", "y", "x"))
+            fixed[:] = oracle.sample("f4", (3, 5, 7))
+            for kind in kinds:
+                v = file.createVariable(f"v{kind}", kind,
+                                        ("time", "z", "y", "x"),
+                                        fill_value=False)
+                v[:] = oracle.sample(kind, (4, 3, 5, 7))
+                v = file.createVariable(f"w{kind}", kind,
+                                        ("time", "y", "x"),
+                                        fill_value=False) \
+                    if len(kinds) > 1 else None
+                if v:
+                    v[:] = oracle.sample(kind, (4, 5, 7), 2)
+        for kind in kinds:
+            for time in (0, 3):
+                oracle.expect("b.nc", oracle.sample(kind, (4, 3, 5, 7))[time],
+                              options=["--dataset", f"v{kind}", "--time",
+                                       time], name=f"{form} {kinds} {kind}")
+            if len(kinds) > 1:
+                oracle.expect("b.nc", oracle.sample(kind, (4, 5, 7), 2),
+                              options=["--dataset", f"w{kind}"],
+                              name=f"{form} {kinds} {kind} time as z")
+        oracle.expect("b.nc", oracle.sample("f4", (3, 5, 7)),
+                      options=["--dataset", "fixed"], name=form)
+
+# Coordinates, packed and missing values; a gzip stream around them.
+for form in FORMATS:
+    packed = oracle.sample("i2", (2, 4, 5, 6))
+    packed[0, 1, 2, 3] = packed[0, 0, 0, 0] = -999
+    with netCDF4.Dataset("c.nc", "w", format=form) as file:
+        file.createDimension("time", None)
+        for name, values, unit in (
+                ("lev", np.arange(4) * 2.0, "km"),
+                ("lat", 9 - np.arange(5) * 0.5, "degrees_north"),
+                ("lon", np.arange(6) * 3.0 + 1, "degrees_east")):
+            file.createDimension(name, len(values))
+            v = file.createVariable(name, "f8", (name,))
+            v[:] = values
+            v.units = unit
+        v = file.createVariable("t", "i2", ("time", "lev", "lat", "lon"),
+                                fill_value=-999)
+        v.scale_factor = 0.5
+        v.add_offset = 10.0
+        v.set_auto_maskandscale(False)
+        v[:] = packed
+    values = packed * 0.5 + 10
+    values[packed == -999] = np.nan
+    oracle.expect("c.nc", values[0], oracle.affine((3, -0.5, 3), (1, 9, 0)),
+                  dtype=np.float32, unit="degrees", name=f"{form} packed")
+    with open("c.nc", "rb") as file, gzip.open("c.nc.gz", "wb") as to:
+        to.write(file.read())
+    oracle.expect("c.nc.gz", values[1],
+                  oracle.affine((3, -0.5, 3), (1, 9, 0)), ["--time", 1],
+                  dtype=np.float32, unit="degrees", name=f"{form} gzip")
+with netCDF4.Dataset("c.nc", "w", format="NETCDF3_CLASSIC") as file:
+    for name, size in (("z", 7), ("y", 6), ("x", 5)):
+        file.createDimension(name, size)
+    v = file.createVariable("v", "i1", ("z", "y", "x"), fill_value=False)
+    v[:] = oracle.sample("i1")
+    v.setncattr("_Unsigned", "true")
+oracle.expect("c.nc", oracle.sample("i1").view("u1"), name="_Unsigned")
+with open("c.nc", "rb") as file:
+    whole = file.read()
+for size in (3, 30, 100, len(whole) - 9):
+    with open("d.nc", "wb") as file:
+        file.write(whole[:size])
+    oracle.refuse("d.nc", "cut")
+
+path = oracle.data("formats/netcdf/tos_O1_2001-2002.nc.gz")
+if path:
+    with gzip.open(path) as file:
+        data = netCDF4.Dataset("tos", memory=file.read())
+    tos = data["tos"][:].filled(np.nan)
+    oracle.expect(path, tos, oracle.affine((2, 1, 2), (1, -79.5, 0)),
+                  unit="degrees")
+path = oracle.data("formats/minc/minc1_4d.mnc")
+if path:
+    oracle.refuse(path, "MINC")
+oracle.finish()
