@@ -31,6 +31,7 @@ static const char help[] =
     "  --check          compare with the picture of a chain; fail when they "
     "differ\n"
     "  --sizes-only     no pixels, but messages of the right length\n"
+    "  --rates          only what one processor takes for a pixel\n"
     "  --runs N         of which the fastest counts (5)\n"
     "  --json           print a JSON object\n"
     "\n"
@@ -130,6 +131,7 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
         {"--floats", WORD, &floats, 0, 0, NULL},
         {"--check", WORD, &out->check, 0, 0, NULL},
         {"--sizes-only", WORD, &out->sizes_only, 0, 0, NULL},
+        {"--rates", WORD, &out->rates, 0, 0, NULL},
         {"--runs", WHOLE_NUMBER, &out->runs, 1, 1000, NULL},
         {"--json", WORD, &out->json, 0, 0, NULL},
         {"--azimuth", NUMBER, &out->azimuth, -1e6, 1e6, NULL},
@@ -214,6 +216,8 @@ int combine_main(int argc, char **argv, snow_comm *comm) {
                             "leave out --ranks\n");
         return SNOW_BAD_USAGE;
     }
+    if (options.rates)
+        return talks ? combine_rates(&options) : SNOW_OK;
     combine_session session = {.options = &options};
     if (comm)
         return combine_run(comm, &session);

@@ -3,6 +3,7 @@
  *   combine.c          options; the plain tool, whose ranks are threads
  *   combine_pattern.c  local images of a benchmark: slabs of a cube
  *   combine_run.c      one exchange and one gather, verified and counted
+ *   combine_rates.c    what a processor takes for a pixel
  *   combine_print.c    a line of key=value, or JSON
  *   mpi_combine.c      the same as a program of its own, for MPI
  *   simulate/          builds that one for simulated networks, and runs it
@@ -27,6 +28,7 @@ typedef struct combine_options {
     bool whole;
     bool sizes_only; /* no pixels: messages of the right length */
     bool check;
+    bool rates; /* only measure one processor */
     bool json;
     int runs; /* of which the fastest counts */
     double azimuth, elevation, fill, cube;
@@ -90,6 +92,9 @@ snow_status combine_body(snow_comm *comm, void *user);
 /* Runs the body on every rank of a communicator, the first of which prints;
  * the exit code. */
 int combine_run(snow_comm *comm, combine_session *session);
+
+/* Measures what one processor takes for a pixel; the exit code. */
+int combine_rates(const combine_options *options);
 
 /* Prints the line; the exit code. */
 int combine_print(const combine_session *session);

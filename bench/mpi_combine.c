@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 #ifdef SMPI_H
-#define LARGE ((size_t)1 << 18)
+#define LARGE ((size_t)1 << 20)
 
 static void *allocate_folded(void *user, size_t bytes) {
     (void)user;

@@ -2,7 +2,7 @@
  * another without unpacking what is not active (see active.h).
  *
  * Over is that of composite/over.c, front += (1 - front.alpha) * back, with the
- * same operations on each float. */
+ * same operations on each float; on nothing it is what lies behind, exactly. */
 #include "combine/active.h"
 
 #include <string.h>
@@ -15,68 +15,17 @@ static int population(uint64_t bits) {
     return __builtin_popcountll(bits);
 }
 
-/* How many bits are set from `at` on, of which the lowest is. */
-static int run_at(uint64_t bits, int at) {
-    uint64_t rest = ~(bits >> at);
-    return rest ? lowest(rest) : 64;
-}
-
-/* --- over ----------------------------------------------------------------- */
-
-static void over_grey(float *restrict front, const float *restrict back,
-                      int count) {
-    for (int i = 0; i < count; i++) {
-        float left = 1 - front[2 * i + 1];
-        front[2 * i] += left * back[2 * i];
-        front[2 * i + 1] += left * back[2 * i + 1];
-    }
-}
-
-static void over_rgba(float *restrict front, const float *restrict back,
-                      int count) {
-    for (int i = 0; i < count; i++) {
-        float left = 1 - front[4 * i + 3];
-        for (int c = 0; c < 4; c++)
-            front[4 * i + c] += left * back[4 * i + c];
-    }
-}
-
 /* --- the local image ------------------------------------------------------ */
 
-/* Whether a pixel has anything in it; -0 is nothing. */
-static bool is_active(const float *pixel, int channels) {
-    if (channels == 2)
-        return pixel[0] != 0 || pixel[1] != 0;
-    return pixel[0] != 0 || pixel[1] != 0 || pixel[2] != 0 || pixel[3] != 0;
-}
-
 /* The mask of `count` <= 64 pixels of line y from column x on, all drawn. */
-static uint64_t look(const snow_exchange_order *order, int y, int x,
+static uint64_t look(const snow_pixel_loops *loops,
+                     const snow_exchange_order *order, int y, int x,
                      int count) {
     if (order->rehearsal)
         return order->rehearsal->active(order->rehearsal->user, y, x, count);
-    const float *pixel = order->pixels + (size_t)y * order->stride +
-                         (size_t)x * (size_t)order->channels;
-    uint64_t bits = 0;
-    for (int i = 0; i < count; i++, pixel += order->channels)
-        bits |= (uint64_t)is_active(pixel, order->channels) << i;
-    return bits;
-}
-
-/* Appends the pixels of line y from column x on whose bits are set. */
-static float *pack(const snow_exchange_order *order, int y, int x,
-                   uint64_t bits, float *out) {
-    const size_t channels = (size_t)order->channels;
-    const float *line =
-        order->pixels + (size_t)y * order->stride + (size_t)x * channels;
-    while (bits) {
-        int at = lowest(bits), count = run_at(bits, at);
-        memcpy(out, line + (size_t)at * channels,
-               (size_t)count * channels * sizeof *out);
-        out += (size_t)count * channels;
-        bits &= at + count < 64 ? ~(uint64_t)0 << (at + count) : 0;
-    }
-    return out;
+    return loops->look(order->pixels + (size_t)y * order->stride +
+                           (size_t)x * (size_t)order->channels,
+                       count);
 }
 
 /* The drawn columns of line y among x0 .. x1 - 1; none where x0 >= x1. */
@@ -92,7 +41,8 @@ static void clip(const snow_exchange_order *order, int y, int *x0, int *x1) {
 
 /* Columns x0 .. x1 - 1 of line y, all drawn; column 0 is pixel `zero` of the
  * picture. */
-static float *scan_line(const snow_exchange_order *order, int y, int64_t zero,
+static float *scan_line(const snow_pixel_loops *loops,
+                        const snow_exchange_order *order, int y, int64_t zero,
                         int x0, int x1, uint64_t *words, int64_t first_word,
                         float *out, int64_t *active) {
     for (int x = x0; x < x1;) {
@@ -100,11 +50,14 @@ static float *scan_line(const snow_exchange_order *order, int y, int64_t zero,
         int count = 64 - (int)(at % 64);
         if (count > x1 - x)
             count = x1 - x;
-        uint64_t bits = look(order, y, x, count);
+        uint64_t bits = look(loops, order, y, x, count);
         words[at / 64 - first_word] |= bits << (at % 64);
         *active += population(bits);
         if (!order->rehearsal)
-            out = pack(order, y, x, bits, out);
+            out = loops->pack(out,
+                              order->pixels + (size_t)y * order->stride +
+                                  (size_t)x * (size_t)order->channels,
+                              bits);
         x += count;
     }
     return out;
@@ -125,7 +78,8 @@ static float *copy_line(const snow_exchange_order *order, int y, int x0, int x1,
     return out + (size_t)(x1 - x0) * channels;
 }
 
-int64_t snow_active_scan(const snow_exchange_order *order, const int *lines,
+int64_t snow_active_scan(const snow_pixel_loops *loops,
+                         const snow_exchange_order *order, const int *lines,
                          int64_t first, int64_t last, uint64_t *words,
                          float *out, int64_t *scanned) {
     const int64_t width = order->width;
@@ -149,18 +103,20 @@ int64_t snow_active_scan(const snow_exchange_order *order, const int *lines,
         if (x0 >= x1)
             continue;
         *scanned += x1 - x0;
-        out =
-            scan_line(order, y, zero, x0, x1, words, first / 64, out, &active);
+        out = scan_line(loops, order, y, zero, x0, x1, words, first / 64, out,
+                        &active);
     }
     return order->whole ? last - first : active;
 }
 
-int64_t snow_active_in_line(const snow_exchange_order *order, int y) {
+int64_t snow_active_in_line(const snow_pixel_loops *loops,
+                            const snow_exchange_order *order, int y) {
     int x0 = 0, x1 = order->width;
     int64_t active = 0;
     clip(order, y, &x0, &x1);
     for (int x = x0; x < x1; x += 64)
-        active += population(look(order, y, x, x1 - x < 64 ? x1 - x : 64));
+        active +=
+            population(look(loops, order, y, x, x1 - x < 64 ? x1 - x : 64));
     return active;
 }
 
@@ -173,7 +129,15 @@ typedef struct tail {
 
 size_t snow_active_room(int64_t count, size_t pixel_bytes) {
     return (size_t)count * pixel_bytes + (size_t)(count / 64 + 2) * 9 +
-           sizeof(tail);
+           sizeof(tail) + SNOW_PIXELS_SLACK;
+}
+
+/* Which bytes of a word are not 0, as 8 bits: the highest bit of each such byte
+ * is set, and all of them are moved into one byte. */
+static unsigned bytes_of(uint64_t word) {
+    const uint64_t low = 0x7f7f7f7f7f7f7f7f;
+    uint64_t high = (((word & low) + low) | word) & ~low;
+    return (unsigned)((high >> 7) * 0x0102040810204080 >> 56);
 }
 
 size_t snow_active_close(unsigned char *message, const uint64_t *words,
@@ -191,28 +155,26 @@ size_t snow_active_close(unsigned char *message, const uint64_t *words,
         for (uint64_t word = words[i]; word; word >>= 8)
             if (word & 255)
                 *out++ = (unsigned char)(word & 255);
-    for (int64_t i = begin; i < end; i++) {
-        unsigned which = 0;
-        for (int byte = 0; byte < 8; byte++)
-            which |= (unsigned)((words[i] >> (8 * byte) & 255) != 0) << byte;
-        *out++ = (unsigned char)which;
-    }
+    for (int64_t i = begin; i < end; i++)
+        *out++ = (unsigned char)bytes_of(words[i]);
     tail last_bytes = {(uint32_t)(first / 64 + begin), (uint32_t)(end - begin)};
     memcpy(out, &last_bytes, sizeof last_bytes);
     return (size_t)(out - message) + sizeof last_bytes;
 }
 
-/* Unpacks `count` words; their bytes, of which there are `bytes`, end before
- * `which`.  Returns how many pixels are active, -1 where bytes are missing. */
-static int64_t unpack_words(const unsigned char *which, int64_t count,
-                            size_t room, uint64_t *words) {
+/* Bytes of a packed mask of `count` words, whose list of bytes is `which`. */
+static size_t mask_bytes(const unsigned char *which, int64_t count) {
     size_t bytes = 0;
-    int64_t active = 0;
     for (int64_t i = 0; i < count; i++)
         bytes += (size_t)population(which[i]);
-    if (bytes > room)
-        return -1;
-    const unsigned char *from = which - bytes;
+    return bytes;
+}
+
+/* Unpacks words, the bytes of which begin at `from`; returns how many pixels
+ * are active. */
+static int64_t unpack_words(const unsigned char *which, int64_t count,
+                            const unsigned char *from, uint64_t *words) {
+    int64_t active = 0;
     for (int64_t i = 0; i < count; i++) {
         uint64_t word = 0;
         for (unsigned bits = which[i]; bits; bits &= bits - 1)
@@ -221,14 +183,6 @@ static int64_t unpack_words(const unsigned char *which, int64_t count,
         active += population(word);
     }
     return active;
-}
-
-/* Bytes of the packed mask. */
-static size_t mask_bytes(const unsigned char *which, int64_t count) {
-    size_t bytes = (size_t)count;
-    for (int64_t i = 0; i < count; i++)
-        bytes += (size_t)population(which[i]);
-    return bytes;
 }
 
 bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
@@ -247,11 +201,14 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
     if (end.first_word < first / 64 || end.words > bytes ||
         end.first_word + (int64_t)end.words > first / 64 + count)
         return false;
-    const unsigned char *which = message + bytes - end.words;
-    int64_t active = unpack_words(which, end.words, bytes - end.words,
+    bytes -= end.words;
+    const unsigned char *which = message + bytes;
+    const size_t mask = mask_bytes(which, end.words);
+    if (mask > bytes)
+        return false;
+    int64_t active = unpack_words(which, end.words, which - mask,
                                   words + (end.first_word - first / 64));
-    size_t mask = mask_bytes(which, end.words);
-    if (active < 0 || (size_t)active * pixel_bytes != bytes - mask)
+    if ((size_t)active * pixel_bytes != bytes - mask)
         return false;
     out->pixels = out->next = (const float *)(const void *)message;
     return true;
@@ -270,33 +227,10 @@ static uint64_t bits_of(const snow_active *layer, int64_t index,
     return own & range;
 }
 
-/* Lays the next pixels of a layer, those of `bits`, behind what `tile` holds;
- * its pixels are there where `seen`. */
-static void lay_bits(snow_active *layer, uint64_t bits, uint64_t seen,
-                     int channels, float *tile) {
-    while (bits) {
-        int at = lowest(bits), count = run_at(bits, at);
-        bool behind = seen >> at & 1;
-        int same = run_at(behind ? seen : ~seen, at);
-        if (same < count)
-            count = same;
-        float *front = tile + at * channels;
-        if (!behind)
-            memcpy(front, layer->next,
-                   (size_t)(count * channels) * sizeof *front);
-        else if (channels == 2)
-            over_grey(front, layer->next, count);
-        else
-            over_rgba(front, layer->next, count);
-        layer->next += count * channels;
-        bits &= at + count < 64 ? ~(uint64_t)0 << (at + count) : 0;
-    }
-}
-
-/* All layers of a word; the mask of the result. */
-static uint64_t lay_word(snow_active *layers, int count, int channels,
-                         int64_t index, uint64_t range, float *tile,
-                         int64_t *laid) {
+/* All layers of a word into `tile`, 64 pixels; the mask of the result. */
+static uint64_t lay_word(const snow_pixel_loops *loops, snow_active *layers,
+                         int count, int channels, int64_t index, uint64_t range,
+                         float *tile, int64_t *laid) {
     uint64_t seen = 0;
     for (int i = 0; i < count; i++) {
         uint64_t bits = bits_of(&layers[i], index, range);
@@ -304,58 +238,59 @@ static uint64_t lay_word(snow_active *layers, int count, int channels,
             continue;
         if (!layers[i].own)
             *laid += population(bits);
-        if (layers[i].pixels)
-            lay_bits(&layers[i], bits, seen, channels, tile);
+        if (layers[i].pixels) {
+            if (!seen)
+                memset(tile, 0, 64 * (size_t)channels * sizeof *tile);
+            layers[i].next = loops->lay(tile, layers[i].next, bits);
+        }
         seen |= bits;
     }
     return seen;
 }
 
-/* Appends the pixels of `bits`. */
-static float *append(float *out, const float *tile, uint64_t bits,
-                     int channels) {
-    while (bits) {
-        int at = lowest(bits), count = run_at(bits, at);
-        memcpy(out, tile + at * channels,
-               (size_t)(count * channels) * sizeof *out);
-        out += count * channels;
-        bits &= at + count < 64 ? ~(uint64_t)0 << (at + count) : 0;
-    }
-    return out;
-}
-
-int64_t snow_active_merge(snow_active *layers, int count, int channels,
-                          int64_t first, int64_t last, uint64_t *words,
-                          float *out, int64_t *laid) {
+int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
+                          int count, int channels, int64_t first, int64_t last,
+                          uint64_t *words, float *out, int64_t *laid) {
     float tile[64 * 4];
     int64_t active = 0;
     for (int64_t i = first / 64; i * 64 < last; i++) {
         uint64_t range = snow_active_range(i, first, last);
-        uint64_t seen = lay_word(layers, count, channels, i, range, tile, laid);
+        uint64_t seen =
+            lay_word(loops, layers, count, channels, i, range, tile, laid);
         words[i - first / 64] = seen;
         active += population(seen);
-        if (out)
-            out = append(out, tile, seen, channels);
+        if (out && seen)
+            out = loops->pack(out, tile, seen);
     }
     return active;
 }
 
-int64_t snow_active_lay(snow_active *layers, int count, int channels,
-                        int64_t first, int64_t last, uint64_t *words,
-                        float *out, int64_t *laid) {
+/* The pixels of word `index` that lie in first .. last - 1, or nothing. */
+static void unpack_tile(const float *tile, int channels, int64_t index,
+                        int64_t first, int64_t last, float *out) {
+    int64_t from = index * 64 > first ? index * 64 : first;
+    int64_t to = index * 64 + 64 < last ? index * 64 + 64 : last;
+    size_t bytes = (size_t)((to - from) * channels) * sizeof *out;
+    out += (from - first) * channels;
+    if (tile)
+        memcpy(out, tile + (from - index * 64) * channels, bytes);
+    else
+        memset(out, 0, bytes);
+}
+
+int64_t snow_active_lay(const snow_pixel_loops *loops, snow_active *layers,
+                        int count, int channels, int64_t first, int64_t last,
+                        uint64_t *words, float *out, int64_t *laid) {
     float tile[64 * 4];
     int64_t active = 0;
     for (int64_t i = first / 64; i * 64 < last; i++) {
         uint64_t range = snow_active_range(i, first, last);
-        uint64_t seen = lay_word(layers, count, channels, i, range, tile, laid);
+        uint64_t seen =
+            lay_word(loops, layers, count, channels, i, range, tile, laid);
         words[i - first / 64] = seen;
         active += population(seen);
-        while (out && seen) {
-            int at = lowest(seen), run = run_at(seen, at);
-            memcpy(out + (i * 64 + at - first) * channels, tile + at * channels,
-                   (size_t)(run * channels) * sizeof *out);
-            seen &= at + run < 64 ? ~(uint64_t)0 << (at + run) : 0;
-        }
+        if (out)
+            unpack_tile(seen ? tile : NULL, channels, i, first, last, out);
     }
     return active;
 }

@@ -19,6 +19,7 @@
 #define SNOW_ACTIVE_H
 
 #include "combine/exchange.h"
+#include "combine/pixels.h"
 
 /* Pixels first .. last - 1 of the picture, all those of one rank's, or one
  * subset's, combined image. */
@@ -47,7 +48,8 @@ static inline uint64_t snow_active_range(int64_t index, int64_t first,
     return bits;
 }
 
-/* Bytes that a message of `count` pixels may take. */
+/* Bytes that a message of `count` pixels may take, and what loops may touch
+ * beyond them. */
 size_t snow_active_room(int64_t count, size_t pixel_bytes);
 
 /* Looks at pixels first .. last - 1 of the local image: their mask into
@@ -55,12 +57,14 @@ size_t snow_active_room(int64_t count, size_t pixel_bytes);
  * there are, and adds to *scanned how many were looked at.  `lines` is the
  * order of lines, NULL for that of the picture.  When all pixels travel, all
  * are active and `words` is not written. */
-int64_t snow_active_scan(const snow_exchange_order *order, const int *lines,
+int64_t snow_active_scan(const snow_pixel_loops *loops,
+                         const snow_exchange_order *order, const int *lines,
                          int64_t first, int64_t last, uint64_t *words,
                          float *out, int64_t *scanned);
 
 /* How many pixels of one line of the local image are active. */
-int64_t snow_active_in_line(const snow_exchange_order *order, int y);
+int64_t snow_active_in_line(const snow_pixel_loops *loops,
+                            const snow_exchange_order *order, int y);
 
 /* Completes a message that begins with `count` pixels of pixel_bytes, which
  * are there already; returns its length. */
@@ -80,13 +84,14 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
  *
  * snow_active_merge packs the result to `out` (NULL in a rehearsal) with its
  * mask in `words`, and returns how many active pixels it has; snow_active_lay
- * does the same but writes pixel n at out[(n - first) * channels], which are 0
- * before.  Both add to *laid how many pixels of layers that came there were. */
-int64_t snow_active_merge(snow_active *layers, int count, int channels,
-                          int64_t first, int64_t last, uint64_t *words,
-                          float *out, int64_t *laid);
-int64_t snow_active_lay(snow_active *layers, int count, int channels,
-                        int64_t first, int64_t last, uint64_t *words,
-                        float *out, int64_t *laid);
+ * does the same but writes all pixels, number n at out[(n - first) * channels],
+ * 0 where no layer is.  Both add to *laid how many pixels of layers that came
+ * there were. */
+int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
+                          int count, int channels, int64_t first, int64_t last,
+                          uint64_t *words, float *out, int64_t *laid);
+int64_t snow_active_lay(const snow_pixel_loops *loops, snow_active *layers,
+                        int count, int channels, int64_t first, int64_t last,
+                        uint64_t *words, float *out, int64_t *laid);
 
 #endif

@@ -48,6 +48,7 @@ typedef struct snow_gather_state {
 struct snow_combiner {
     snow_comm *comm;
     snow_exchange_shape shape; /* width 0: there are no buffers */
+    const snow_pixel_loops *loops;
     snow_rounds rounds;
     bool filled; /* the lists of `rounds`, for its seat and display */
     snow_borders borders;

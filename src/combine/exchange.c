@@ -202,6 +202,7 @@ static snow_status take_shape(snow_combiner *combiner,
     drop_buffers(combiner);
     combiner->filled = false;
     combiner->shape = shape_of(order);
+    combiner->loops = snow_pixels_pick(SNOW_ISA_AUTO, order->channels);
     snow_borders_even(&combiner->borders, order->width, order->height,
                       order->grain);
     combiner->borders.counted = counts_pieces(order, comm->ranks);
@@ -274,7 +275,7 @@ static snow_status count_pieces(snow_combiner *combiner,
     for (int y = step / 2; y < order->height; y += step) {
         while (y >= snow_borders_line(borders, bin + 1))
             bin++;
-        counts[bin] += snow_active_in_line(order, y);
+        counts[bin] += snow_active_in_line(combiner->loops, order, y);
         if (y >= order->drawn.y0 && y < order->drawn.y1)
             scanned += order->drawn.x1 - order->drawn.x0;
     }
@@ -327,13 +328,14 @@ static size_t write_part(exchange *run, int level, stretch part,
     float *pixels = order->rehearsal ? NULL : (float *)(void *)out;
     int64_t scanned = 0, laid = 0, count;
     if (level == 0) {
-        count = snow_active_scan(order, combiner->lines, part.first, part.last,
-                                 combiner->part, pixels, &scanned);
+        count = snow_active_scan(combiner->loops, order, combiner->lines,
+                                 part.first, part.last, combiner->part, pixels,
+                                 &scanned);
         figures->active += count;
     } else {
-        count = snow_active_merge(combiner->layers, run->layer_count,
-                                  order->channels, part.first, part.last,
-                                  combiner->part, pixels, &laid);
+        count = snow_active_merge(combiner->loops, combiner->layers,
+                                  run->layer_count, order->channels, part.first,
+                                  part.last, combiner->part, pixels, &laid);
     }
     figures->scanned += scanned;
     figures->laid += laid;
@@ -484,10 +486,9 @@ static void lay_piece(exchange *run, stretch piece) {
     const snow_exchange_order *order = run->order;
     float *out = order->rehearsal ? NULL : combiner->piece;
     int64_t laid = 0;
-    if (out)
-        memset(out, 0, (size_t)(piece.last - piece.first) * run->pixel_bytes);
-    snow_active_lay(combiner->layers, run->layer_count, order->channels,
-                    piece.first, piece.last, combiner->part, out, &laid);
+    snow_active_lay(combiner->loops, combiner->layers, run->layer_count,
+                    order->channels, piece.first, piece.last, combiner->part,
+                    out, &laid);
     combiner->figures.laid += laid;
     snow_comm_work(combiner->comm, (double)laid * order->blend_seconds);
 }

@@ -66,7 +66,8 @@ typedef struct snow_exchange_order {
     bool whole;         /* all pixels travel, as in the paper: no masks */
     const snow_rehearsal *rehearsal; /* NULL: a real exchange */
     /* Seconds that a simulated processor takes (snow_comm_work) to look at a
-     * pixel of its local image, and to lay a pixel over another. */
+     * pixel of its local image, or to move as many bytes of a gathered picture;
+     * and to lay a pixel over another, or to round it to 8 bits. */
     double scan_seconds, blend_seconds;
 } snow_exchange_order;
 

@@ -339,8 +339,9 @@ static bool place_child(snow_combiner *combiner, int child,
     const size_t length = (size_t)told_length(state, child);
     if (state->parent >= 0)
         return true;
-    snow_comm_work(combiner->comm, (double)length / (double)state->pixel_bytes *
-                                       combiner->scan_seconds);
+    /* By the byte as looking at a pixel of four floats. */
+    snow_comm_work(combiner->comm,
+                   (double)length / 16 * combiner->scan_seconds);
     return !picture || place_blocks(state, state->bytes + state->places[child],
                                     length, picture);
 }
