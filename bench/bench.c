@@ -4,6 +4,7 @@
  * help of the tool shows its text as it stands. */
 #include "bench.h"
 #include "combine.h"
+#include "frame.h"
 #include "launch.h"
 
 #include <errno.h>
@@ -20,6 +21,8 @@ static const char help[] =
     "  speed                  how fast pictures are made\n"
     "  balance                how equal the work of many processors is\n"
     "  combine                pictures of many ranks (bench combine --help)\n"
+    "  frame                  a volume's picture by many ranks (bench frame "
+    "--help)\n"
     "\n"
     "table1 to table3 print the paper's tables beside ours: sparse ratios\n"
     "(table1), original splatting against the three sparse encodings "
@@ -337,13 +340,28 @@ static int parse(int argc, char **argv, bench_options *options,
     return check_command(command, options);
 }
 
+/* What runs on the ranks that there are, or on threads of its own; it reads its
+ * own options. */
+static const struct bench_ranks {
+    const char *name;
+    int (*run)(int argc, char **argv, snow_comm *comm);
+} of_ranks[] = {{"combine", combine_main}, {"frame", frame_main}};
+
+static const struct bench_ranks *find_of_ranks(int argc, char **argv) {
+    for (size_t i = 0; argc > 1 && i < sizeof of_ranks / sizeof *of_ranks; i++)
+        if (strcmp(argv[1], of_ranks[i].name) == 0)
+            return &of_ranks[i];
+    return NULL;
+}
+
 bool bench_for_all(int argc, char **argv) {
-    return argc > 1 && strcmp(argv[1], "combine") == 0;
+    return find_of_ranks(argc, argv) != NULL;
 }
 
 int bench_main(int argc, char **argv) {
-    if (bench_for_all(argc, argv))
-        return combine_main(argc - 1, argv + 1, launch_comm());
+    const struct bench_ranks *ranks = find_of_ranks(argc, argv);
+    if (ranks)
+        return ranks->run(argc - 1, argv + 1, launch_comm());
     bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};
     int code = parse(argc, argv, &options, &command);

@@ -73,6 +73,11 @@ for contiguous in (None, True):
             oracle.expect("f.tif", h[t, :, c],
                           oracle.affine((0.25, 0.5, 1.5)),
                           ["--time", t, "--channel", c], unit="um")
+# Slices that were called times or channels.
+many = oracle.sample("u2", (9, 6, 5))
+for axes in ("TYX", "CYX", "ZYX"):
+    tifffile.imwrite("m.tif", many, imagej=True, metadata={"axes": axes})
+    oracle.expect("m.tif", many, name=f"ImageJ {axes}")
 # One page and the others behind it, as ImageJ writes more than 4 GB.
 with tifffile.TiffWriter("g.tif", imagej=True) as writer:
     writer.write(h[0, :, 0], contiguous=True, metadata={"axes": "ZYX"})

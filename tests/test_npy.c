@@ -154,6 +154,37 @@ static void sizes_that_the_file_cannot_hold_cost_nothing(void **state) {
     support_files_end(&files);
 }
 
+/* A box in the middle of 64^3, whichever axis is the fastest. */
+static void a_box_costs_little_more_than_its_bytes(void **state) {
+    (void)state;
+    static const char *const orders[] = {"False", "True"};
+    const snow_volume_options box = {.crop = {{20, 30}, {0, 64}, {40, 44}}};
+    support_files files;
+    support_files_begin(&files);
+    for (int i = 0; i < 2; i++) {
+        static char bytes[200 + 64 * 64 * 64] = "\x93NUMPY\1";
+        int length = snprintf(bytes + 10, 150,
+                              "{'descr': '|u1', 'fortran_order': %s, "
+                              "'shape': (64, 64, 64)}",
+                              orders[i]);
+        bytes[8] = (char)length;
+        for (int k = 0; k < 64 * 64 * 64; k++)
+            bytes[10 + length + k] = (char)(k / 64 + k % 64);
+        const char *path = support_write(&files, "b.npy", bytes,
+                                         10 + (size_t)length + 64 * 64 * 64);
+        uint64_t before = snow_context_bytes_read(files.context);
+        snow_volume *volume = support_opened(&files, path, &box);
+        const uint8_t *voxels = snow_volume_voxels(volume);
+        int k = i ? 20 * 64 * 64 + 40 : 40 * 64 * 64 + 20;
+        assert_int_equal(voxels[0], (k / 64 + k % 64) & 255);
+        /* 4 or 10 slices, and what a layer reads ahead for the header. */
+        assert_true(snow_context_bytes_read(files.context) - before <
+                    (i ? 10 : 4) * 64 * 64 + 70000);
+        snow_volume_close(volume);
+    }
+    support_files_end(&files);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_last_index_is_x),
@@ -161,6 +192,7 @@ int main(void) {
         cmocka_unit_test(time_comes_before_channel_before_z),
         cmocka_unit_test(halves_become_the_same_floats),
         cmocka_unit_test(truth_is_one),
+        cmocka_unit_test(a_box_costs_little_more_than_its_bytes),
         cmocka_unit_test(what_is_no_volume_is_refused),
         cmocka_unit_test(sizes_that_the_file_cannot_hold_cost_nothing),
     };

@@ -657,12 +657,12 @@ static void ranks_without_memory_fail_together(void **state) {
         p.settings.threads = 1;
         p.cut = GROUPED;
         p.how.pixel_bits = 8;
-        p.channels = 4;
         assert_int_equal(snow_transfer_new(maker, scene.colors,
                                            scene.color_count, scene.opacities,
                                            scene.opacity_count, &transfer),
                          SNOW_OK);
         p.transfer = transfer;
+        p.channels = transfer->grey ? 2 : 4;
         cut_up(maker, &p, 3);
         p.picture = malloc(floats_of(&p) * sizeof(float));
         assert_non_null(p.picture);

@@ -140,7 +140,7 @@ def cases():
                                 (1024, 6.6, "long")):
         yield Case(f"large-{ranks}", "flat", ranks, 4096, OURS, target=target,
                    tier=tier)
-    # What one processor of the machine where docs/scaling.md was written takes:
+    # What one processor of the machine where docs/combining.md was written takes:
     # `snowglass bench combine --rates --size 1024`.
     rates = ["--scan", "1.3e-9", "--blend", "2.5e-9"]
     for ranks in (32, 128):

@@ -93,7 +93,7 @@ static int walk_tree(int rank, int ranks, int radix, int *children,
 }
 
 /* Wide where pixels take longer than messages, which they do from 2 MB on, by
- * simulated networks (docs/scaling.md). */
+ * simulated networks (docs/combining.md). */
 static int chosen_radix(const snow_combiner *combiner, int width, int height,
                         size_t pixel_bytes) {
     const int ranks = combiner->comm->ranks;

@@ -57,8 +57,9 @@ SNOW_AVX512_INLINE const float *lay_avx512(float *tile, const float *packed,
         __m512 back = _mm512_castpd_ps(
             _mm512_maskz_expand_pd(mask, _mm512_loadu_pd(packed)));
         __m512 front = _mm512_loadu_ps(tile);
-        __m512 left = _mm512_sub_ps(
-            one, _mm512_permute_ps(front, channels == 2 ? 0xF5 : 0xFF));
+        __m512 opacity = channels == 2 ? _mm512_permute_ps(front, 0xF5)
+                                       : _mm512_permute_ps(front, 0xFF);
+        __m512 left = _mm512_sub_ps(one, opacity);
         _mm512_storeu_ps(tile, _mm512_add_ps(front, _mm512_mul_ps(left, back)));
         packed += _mm_popcnt_u64(some) * channels;
     }

@@ -426,15 +426,3 @@ snow_status snow_volume_pick_channel(snow_context *context,
                     (long long)*out, (long long)channels);
     return SNOW_OK;
 }
-
-snow_status snow_volume_check_dataset(snow_context *context,
-                                      const snow_volume_options *options,
-                                      const char *only) {
-    const char *asked = options->dataset;
-    if (!asked || (*only && strcmp(asked, only) == 0))
-        return SNOW_OK;
-    return snow_fail(context, SNOW_BAD_USAGE,
-                     "--dataset %.200s: the file has one data set%s%.200s; "
-                     "leave the option out",
-                     asked, *only ? ", " : " without a name", only);
-}

@@ -67,10 +67,4 @@ snow_status snow_volume_pick_channel(snow_context *context,
                                      const snow_volume_options *options,
                                      int64_t channels, int64_t *out);
 
-/* For readers of files with one data set: refuses the option that chooses one
- * unless it names this one ("" for a file whose data have no name). */
-snow_status snow_volume_check_dataset(snow_context *context,
-                                      const snow_volume_options *options,
-                                      const char *only);
-
 #endif

@@ -162,6 +162,23 @@ static snow_status read_whole(const snow_format *format, snow_source *source,
     return status;
 }
 
+/* What cannot be chosen in a format must not seem to have been. */
+static snow_status check_choice(snow_context *context,
+                                const snow_format *format,
+                                const snow_volume_options *options) {
+    if (options->dataset && !format->sets)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "--dataset %.200s: a %s file has its data alone; "
+                         "leave the option out",
+                         options->dataset, format->name);
+    if (options->channel && !format->channels)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "there is no channel %lld; a %s file has one value a "
+                         "voxel, so leave --channel out",
+                         (long long)options->channel, format->name);
+    return SNOW_OK;
+}
+
 /* Options that describe raw data are refused with other formats rather than
  * ignored: they would contradict the header. */
 static snow_status read_with(const snow_format *format, snow_source *source,
@@ -174,6 +191,7 @@ static snow_status read_with(const snow_format *format, snow_source *source,
                          "itself; leave out --dims, --type, --endian and "
                          "--offset",
                          format->name);
+    SNOW_TRY(check_choice(context, format, options));
     snow_volume *volume = NULL;
     SNOW_TRY(
         format->crops

@@ -165,7 +165,7 @@ static snow_status read_set(snow_context *context, const hdf5_file *file,
     cf_values values;
     SNOW_TRY(check_storage(context, set->id));
     SNOW_TRY(pick(context, set, options, info, start));
-    snow_hdf5_place(context, snow_hdf5_id(file), set, info, &values);
+    SNOW_TRY(snow_hdf5_place(context, snow_hdf5_id(file), set, info, &values));
     SNOW_TRY(snow_window_lay(context, options, info, &window));
     SNOW_TRY(check_size(context, file, &window));
     snow_volume *volume = NULL;
@@ -223,5 +223,7 @@ const snow_format snow_format_hdf5 = {
     .suffixes = {".h5", ".hdf5", ".hdf", ".nc4", ".h5.gz"},
     .probe = probe_hdf5,
     .crops = true,
+    .sets = true,
+    .channels = true,
     .read = read_hdf5,
 };

@@ -47,9 +47,11 @@ snow_status snow_hdf5_fail(snow_context *context, const char *what);
 snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
                            hdf5_set *out);
 
-/* The matrix and unit into info, and how values are stored. */
-void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
-                     snow_volume_info *info, cf_values *values);
+/* The matrix and unit into info, and how values are stored.
+ * Errors: SNOW_NO_MEMORY. */
+snow_status snow_hdf5_place(snow_context *context, hid_t file,
+                            const hdf5_set *set, snow_volume_info *info,
+                            cf_values *values);
 
 #endif
 #endif

@@ -152,8 +152,8 @@ static bool place_by_mesh(hid_t object, const hdf5_set *set,
 }
 
 /* The coordinates of a dimension scale, when it has one for each index. */
-static void read_scale(snow_context *context, hid_t scale, hsize_t count,
-                       cf_axis *out) {
+static snow_status read_scale(snow_context *context, hid_t scale, hsize_t count,
+                              cf_axis *out) {
     char name[64], units[64];
     hid_t space = H5Dget_space(scale);
     hssize_t points = H5Sget_simple_extent_npoints(space);
@@ -163,22 +163,24 @@ static void read_scale(snow_context *context, hid_t scale, hsize_t count,
     if (points < 1 || (hsize_t)points != count ||
         points > CF_MOST_COORDINATES ||
         !strncmp(name, "This is a netCDF dimension but not", 34))
-        return;
+        return SNOW_OK;
     double *values = snow_allocate_array(context, count, sizeof *values);
     if (!values)
-        return;
+        return SNOW_NO_MEMORY;
     if (H5Dread(scale, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                 values) >= 0)
         snow_cf_measure(values, points, units, out);
     snow_release(context, values);
+    return SNOW_OK;
 }
 
 /* What a walk over the file's scales looks for, and has found. */
 typedef struct scales {
     snow_context *context;
     const hdf5_set *set;
-    haddr_t address; /* of the set */
-    long objects;    /* seen */
+    haddr_t address;    /* of the set */
+    long objects;       /* seen */
+    snow_status status; /* the walk ends when memory does */
     cf_axis axes[3];
 } scales;
 
@@ -191,12 +193,13 @@ typedef struct scale_use {
 /* Puts the scale at the axes of the set that it is used for. */
 static void use_scale(scales *s, hid_t scale, const scale_use *uses,
                       hssize_t count) {
-    for (hssize_t i = 0; i < count; i++) {
+    for (hssize_t i = 0; i < count && s->status == SNOW_OK; i++) {
         int from_end = s->set->axes - 1 - uses[i].axis;
         if (uses[i].set == s->address && uses[i].axis >= 0 && from_end >= 0 &&
             from_end < 3)
-            read_scale(s->context, scale, s->set->sizes[uses[i].axis],
-                       &s->axes[from_end]);
+            s->status =
+                read_scale(s->context, scale, s->set->sizes[uses[i].axis],
+                           &s->axes[from_end]);
     }
 }
 
@@ -232,7 +235,9 @@ static void read_uses(scales *s, hid_t scale) {
     if (is_use(kind) && count >= 1 && count <= MOST_USES) {
         scale_use *uses =
             snow_allocate_array(s->context, (uint64_t)count, sizeof *uses);
-        if (uses && H5Aread(attribute, type, uses) >= 0)
+        if (!uses)
+            s->status = SNOW_NO_MEMORY;
+        else if (H5Aread(attribute, type, uses) >= 0)
             use_scale(s, scale, uses, count);
         snow_release(s->context, uses);
     }
@@ -257,27 +262,28 @@ static herr_t look_at_scale(hid_t file, const char *name,
     if (!strcmp(kind, "DIMENSION_SCALE") && H5Aexists(id, "REFERENCE_LIST") > 0)
         read_uses(s, id);
     H5Dclose(id);
-    return 0;
+    return s->status != SNOW_OK;
 }
 
 /* NetCDF-4's and h5py's way: axes and scales refer to each other.  The scales'
  * side is read, because the axes' lies in the global heap, in which libhdf5
  * goes astray when it is damaged. */
-static bool place_by_scales(snow_context *context, hid_t file,
-                            const hdf5_set *set, snow_volume_info *info) {
+static snow_status place_by_scales(snow_context *context, hid_t file,
+                                   const hdf5_set *set,
+                                   snow_volume_info *info) {
     scales s = {.context = context, .set = set};
     H5O_info_t about;
     if (H5Aexists(set->id, "DIMENSION_LIST") <= 0 ||
         H5Oget_info2(set->id, &about, H5O_INFO_BASIC) < 0)
-        return false;
+        return SNOW_OK;
     s.address = about.addr;
     if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, look_at_scale, &s,
                   H5O_INFO_BASIC) < 0)
-        return false;
-    if (!s.axes[0].told && !s.axes[1].told && !s.axes[2].told)
-        return false;
-    snow_cf_place(context, s.axes, info);
-    return true;
+        return SNOW_OK;
+    SNOW_TRY(s.status);
+    if (s.axes[0].told || s.axes[1].told || s.axes[2].told)
+        snow_cf_place(context, s.axes, info);
+    return SNOW_OK;
 }
 
 static void read_values(const hdf5_set *set, cf_values *out) {
@@ -294,13 +300,14 @@ static void read_values(const hdf5_set *set, cf_values *out) {
             out->fill[out->fills++] = value;
 }
 
-void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
-                     snow_volume_info *info, cf_values *values) {
+snow_status snow_hdf5_place(snow_context *context, hid_t file,
+                            const hdf5_set *set, snow_volume_info *info,
+                            cf_values *values) {
     char group[HDF5_NAME_BYTES];
     *values = snow_cf_values_default();
     read_values(set, values);
     if (place_by_size(set, info) || place_by_mesh(set->id, set, info))
-        return;
+        return SNOW_OK;
     memcpy(group, set->path, sizeof group);
     char *slash = strrchr(group, '/');
     slash[slash == group] = 0;
@@ -308,8 +315,7 @@ void snow_hdf5_place(snow_context *context, hid_t file, const hdf5_set *set,
     bool placed = parent >= 0 && place_by_mesh(parent, set, info);
     if (parent >= 0)
         H5Oclose(parent);
-    if (!placed)
-        place_by_scales(context, file, set, info);
+    return placed ? SNOW_OK : place_by_scales(context, file, set, info);
 }
 
 #endif

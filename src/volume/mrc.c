@@ -255,14 +255,11 @@ static snow_status read_mrc(snow_source *source,
     snow_context *context = snow_source_context(source);
     unsigned char bytes[HEADER_BYTES];
     uint64_t extended = 0, steps[4];
-    int64_t channel;
     snow_array array = {0};
     *info = snow_volume_info_default("mrc");
     SNOW_TRY(snow_source_read_all(source, bytes, sizeof bytes, "the header"));
     const mrc_header header = header_of(bytes);
     SNOW_TRY(parse_header(context, &header, info, &array, &extended));
-    SNOW_TRY(snow_volume_check_dataset(context, options, ""));
-    SNOW_TRY(snow_volume_pick_channel(context, options, 1, &channel));
     SNOW_TRY(snow_volume_pick_time(context, "volume", options, info));
     const int64_t sizes[4] = {info->dims[0], info->dims[1], info->dims[2],
                               info->times};

@@ -118,44 +118,58 @@ static bool lay_out(const netcdf_header *header, const netcdf_variable *v,
     return snow_add_u64(bytes, v->begin, end) && *end <= (uint64_t)INT64_MAX;
 }
 
-/* The coordinate variable of a dimension has its name and is its only axis. */
-static void read_axis(const netcdf_header *header, snow_random *bytes,
-                      int64_t dimension, cf_axis *out) {
-    const netcdf_dimension *d = &header->dimensions[dimension];
-    const netcdf_variable *v = NULL;
-    for (int64_t i = 0; i < header->variable_count; i++)
-        if (header->variables[i].axes == 1 &&
-            header->variables[i].axis[0] == dimension &&
-            !strcmp(header->variables[i].name, d->name))
-            v = &header->variables[i];
-    if (!v || !v->type || d->size < 1 || d->size > CF_MOST_COORDINATES)
-        return;
+/* The coordinate variable of a dimension has its name and is its only axis;
+ * NULL when there is none. */
+static const netcdf_variable *coordinates_of(const netcdf_header *header,
+                                             int64_t dimension) {
+    for (int64_t i = 0; i < header->variable_count; i++) {
+        const netcdf_variable *v = &header->variables[i];
+        if (v->axes == 1 && v->axis[0] == dimension && v->type &&
+            !strcmp(v->name, header->dimensions[dimension].name))
+            return v;
+    }
+    return NULL;
+}
+
+/* The variable's values as data, into an array of that many; false when they
+ * are cut. */
+static bool read_coordinates(const netcdf_header *header,
+                             const netcdf_variable *v, snow_random *bytes,
+                             const snow_volume *line, double *out) {
+    size_t size = snow_type_size(v->type), count = (size_t)line->info.dims[0];
+    uint64_t step = v->records ? header->record_bytes : size;
+    unsigned char *at = line->owned;
+    for (size_t i = 0; i < count; i++, at += size)
+        if (snow_random_read(bytes, v->begin + i * step, at, size) < size)
+            return false;
+    if (!snow_machine_big_endian())
+        snow_swap_bytes(line->owned, count, size);
+    snow_volume_natives(line, 0, count, out);
+    for (size_t i = 0; i < count; i++)
+        out[i] = out[i] * v->values.scale + v->values.offset;
+    return true;
+}
+
+/* A volume of one line serves to turn the values to doubles. */
+static snow_status read_axis(const netcdf_header *header, snow_random *bytes,
+                             int64_t dimension, cf_axis *out) {
+    int64_t count = header->dimensions[dimension].size;
+    const netcdf_variable *v = coordinates_of(header, dimension);
+    if (!v || count < 1 || count > CF_MOST_COORDINATES ||
+        (uint64_t)count > snow_random_size(bytes))
+        return SNOW_OK;
     snow_volume_info info = snow_volume_info_default("netcdf");
     snow_volume *line;
-    size_t size = snow_type_size(v->type);
-    info.dims[0] = d->size;
+    info.dims[0] = count;
     info.type = v->type;
+    SNOW_TRY(snow_volume_new(header->context, &info, &line));
     double *values =
-        snow_allocate_array(header->context, (uint64_t)d->size, sizeof *values);
-    if (!values)
-        return;
-    if (snow_volume_new(header->context, &info, &line) == SNOW_OK) {
-        uint64_t step = v->records ? header->record_bytes : size;
-        bool all = true;
-        for (int64_t i = 0; i < d->size; i++)
-            all = all && snow_random_read(bytes, v->begin + (uint64_t)i * step,
-                                          (unsigned char *)line->owned +
-                                              (size_t)i * size,
-                                          size) == size;
-        snow_volume_order_bytes(line, true);
-        snow_volume_natives(line, 0, (size_t)d->size, values);
-        for (int64_t i = 0; i < d->size; i++)
-            values[i] = values[i] * v->values.scale + v->values.offset;
-        if (all)
-            snow_cf_measure(values, d->size, v->units, out);
-        snow_volume_close(line);
-    }
+        snow_allocate_array(header->context, (uint64_t)count, sizeof *values);
+    if (values && read_coordinates(header, v, bytes, line, values))
+        snow_cf_measure(values, count, v->units, out);
     snow_release(header->context, values);
+    snow_volume_close(line);
+    return values ? SNOW_OK : SNOW_NO_MEMORY;
 }
 
 /* Fills info but for the voxels, and where they are. */
@@ -176,7 +190,8 @@ static snow_status describe(const netcdf_header *header,
         info->dims[i] = size_of(header, v, i);
         array->step[i] = steps[i];
         if (i < v->axes)
-            read_axis(header, bytes, v->axis[v->axes - 1 - i], &axes[i]);
+            SNOW_TRY(
+                read_axis(header, bytes, v->axis[v->axes - 1 - i], &axes[i]));
     }
     info->type = v->type;
     info->times = size_of(header, v, channels ? 4 : 3);
@@ -258,5 +273,7 @@ const snow_format snow_format_netcdf = {
     .suffixes = {".nc", ".cdf", ".nc.gz"},
     .probe = probe_netcdf,
     .crops = true,
+    .sets = true,
+    .channels = true,
     .read = read_netcdf,
 };

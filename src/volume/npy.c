@@ -93,7 +93,6 @@ static snow_status pick(snow_context *context,
     int64_t channel;
     int time = axes == NPY_MOST_AXES ? 4 : 3;
     info->times = lay->size[time];
-    SNOW_TRY(snow_volume_check_dataset(context, options, ""));
     SNOW_TRY(snow_volume_pick_channel(context, options,
                                       time == 4 ? lay->size[3] : 1, &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
@@ -140,5 +139,6 @@ const snow_format snow_format_npy = {
     .suffixes = {".npy", ".npy.gz", ".npz"},
     .probe = snow_npy_probe,
     .crops = true,
+    .channels = true,
     .read = read_npy,
 };

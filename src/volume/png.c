@@ -224,7 +224,6 @@ static snow_status read_png(snow_source *source,
     info->dims[0] = shape.width;
     info->dims[1] = shape.height;
     info->type = shape.depth == 16 ? SNOW_UINT16 : SNOW_UINT8;
-    SNOW_TRY(snow_volume_check_dataset(context, options, ""));
     SNOW_TRY(
         snow_volume_pick_channel(context, options, shape.samples, &channel));
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
@@ -249,6 +248,7 @@ const snow_format snow_format_png = {
     .suffixes = {".png"},
     .probe = probe_png,
     .crops = true,
+    .channels = true,
     .slices = true,
     .read = read_png,
 };

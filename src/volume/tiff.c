@@ -24,6 +24,9 @@ static bool probe_tiff(const unsigned char *bytes, size_t size) {
 
 #if SNOW_HAVE_TIFF
 
+/* More of one slice are slices; see take_for_slices. */
+#define MOST_CHANNELS 7
+
 /* How the file's images make volumes. */
 typedef struct tiff_plan {
     tiff_page page;
@@ -92,6 +95,21 @@ static void find_raw(tiff_plan *plan) {
         plan->images = plan->shape.images;
 }
 
+/* Programs often call slices times, or channels, of which ImageJ shows seven
+ * at most: a volume of one slice is hardly meant. */
+static void take_for_slices(snow_context *context, tiff_plan *plan) {
+    bool times = plan->times > 1;
+    bool channels = plan->times == 1 && plan->channels > MOST_CHANNELS;
+    if (plan->slices > 1 || (!times && !channels))
+        return;
+    int64_t *count = times ? &plan->times : &plan->channels;
+    snow_notify(context, "its %lld %s of one slice are taken for slices",
+                (long long)*count, times ? "times" : "channels");
+    plan->slice_step = times ? plan->time_step : plan->channel_step;
+    plan->slices = *count;
+    *count = 1;
+}
+
 /* Channels, slices and times by the description, where they are as many as
  * there are images; else all are slices. */
 static void share_images(snow_context *context, tiff_plan *plan) {
@@ -126,13 +144,7 @@ static void share_images(snow_context *context, tiff_plan *plan) {
     plan->channels = c;
     plan->slices = z;
     plan->times = t;
-    if (z == 1 && t > 1) {
-        snow_notify(context, "its %lld times of one slice are taken for slices",
-                    (long long)t);
-        plan->slice_step = plan->time_step;
-        plan->slices = t;
-        plan->times = 1;
-    }
+    take_for_slices(context, plan);
 }
 
 /* ImageJ has the pixels to the unit of length where others have those to the
@@ -224,7 +236,6 @@ static snow_status read_open(tiff_file *file,
     snow_window window;
     SNOW_TRY(make_plan(file, &plan, info));
     SNOW_TRY(check_size(file, &plan));
-    SNOW_TRY(snow_volume_check_dataset(file->context, options, ""));
     SNOW_TRY(snow_volume_pick_channel(
         file->context, options, plan.channels * plan.page.samples, &channel));
     SNOW_TRY(snow_volume_pick_time(file->context, "time step", options, info));
@@ -277,6 +288,7 @@ const snow_format snow_format_tiff = {
     .suffixes = {".tif", ".tiff", ".btf", ".tif.gz", ".tiff.gz"},
     .probe = probe_tiff,
     .crops = true,
+    .channels = true,
     .slices = true,
     .read = read_tiff,
 };

@@ -54,7 +54,9 @@ typedef struct snow_format {
     const char *suffixes[8]; /* ".nrrd", ".nhdr", NULL */
     bool (*probe)(const unsigned char *bytes, size_t size);
     bool crops;
-    bool slices; /* a folder or a pattern of its files is a volume */
+    bool slices;   /* a folder or a pattern of its files is a volume */
+    bool sets;     /* heeds the option that chooses a data set */
+    bool channels; /* heeds the option that chooses a channel */
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
                         snow_volume_info *info, snow_volume **out);
     snow_status (*write)(const snow_volume *volume, const char *path,

@@ -49,5 +49,7 @@ const snow_format snow_format_vti = {
     .suffixes = {".vti", ".vti.gz"},
     .probe = probe_vti,
     .crops = true,
+    .sets = true,
+    .channels = true,
     .read = read_vti,
 };

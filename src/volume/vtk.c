@@ -436,5 +436,7 @@ const snow_format snow_format_vtk = {
     .suffixes = {".vtk", ".vtk.gz"},
     .probe = probe_vtk,
     .crops = true,
+    .sets = true,
+    .channels = true,
     .read = read_vtk,
 };

@@ -1,0 +1,94 @@
+/* bench/frame.h - one whole picture of a volume by many ranks: how long, how
+ * even, and whether it is the picture of one.
+ *
+ *   frame.c        options; ranks that are threads, modelled or MPI's
+ *   frame_run.c    what every rank does, measures and tells the others
+ *   frame_print.c  a line of key=value, or JSON
+ *
+ * It stands on the public headers only. */
+#ifndef SNOW_BENCH_FRAME_H
+#define SNOW_BENCH_FRAME_H
+
+#include <snowglass/snowglass.h>
+
+#include <snowglass/ranks.h>
+
+/* Beyond so many ranks the picture of one is asked for with --check: a volume
+ * that many share may be more than one can hold. */
+#define FRAME_CHECKED_RANKS 64
+
+typedef struct frame_options {
+    const char *path;
+    snow_volume_options data;
+    int ranks; /* of the plain tool */
+    int width, height;
+    double threshold, azimuth, elevation;
+    snow_cut cut;
+    snow_combining combining;
+    int radix; /* 0: chosen */
+    int runs;  /* further pictures, of which the fastest counts */
+    bool check, no_check, json;
+    bool modelled;        /* whether `network` is, and time with it */
+    snow_network network; /* one processor a node */
+} frame_options;
+
+/* Stages in seconds of wall time, but those in which messages travel, and
+ * totals: these are of the communicator's clock, and modelled where it is. */
+typedef enum frame_stage {
+    FRAME_READ,   /* opened, cut and counted; with the transfer function */
+    FRAME_ENCODE, /* of the first picture: classified, shaded, encoded */
+    FRAME_SPLAT,  /* splatted and composited */
+    FRAME_EXCHANGE,
+    FRAME_WARP,
+    FRAME_GATHER,
+    FRAME_TOTAL, /* a picture of what is encoded already */
+    FRAME_FIRST, /* the first picture */
+    FRAME_READ_CPU,
+    FRAME_TOTAL_CPU,
+    FRAME_FIRST_CPU,
+    FRAME_STAGES
+} frame_stage;
+
+/* What one rank did. */
+typedef struct frame_figures {
+    double seconds[FRAME_STAGES];
+    uint64_t messages, bytes; /* that it sent for a later picture */
+    int64_t voxels; /* interesting ones that it encodes: its own, and of
+                       bricks those at the borders that neighbours own */
+    int64_t slices; /* of its part, along the view's slice axis */
+    snow_method method;
+    char host[64];
+} frame_figures;
+
+/* Over all ranks. */
+typedef struct frame_result {
+    int ranks, nodes;
+    snow_method method;
+    double most[FRAME_STAGES], mean[FRAME_STAGES];
+    uint64_t messages_most, bytes_most, bytes_sum;
+    int64_t voxels_most, voxels_sum, slices_least;
+    bool checked;
+    double difference; /* from the picture of one rank, if checked */
+    /* Processor time of one rank, if checked: of a later picture, and of the
+     * first one. */
+    double alone, alone_first;
+    int64_t voxels_whole; /* interesting ones of the volume, if checked */
+} frame_result;
+
+typedef struct frame_session {
+    const frame_options *options;
+    bool threads;        /* whether ranks are threads of one process */
+    frame_result result; /* filled in by rank 0 */
+} frame_session;
+
+/* A body for snow_comm_threads and the like; `user` is a frame_session. */
+snow_status frame_body(snow_comm *comm, void *user);
+
+/* Prints the line; the exit code, SNOW_FAILED for a wrong picture. */
+int frame_print(const frame_options *options, const frame_result *result);
+
+/* The verb: `argv[0]` is "frame".  Its ranks are those of `comm`, or, where
+ * that is NULL, threads.  Returns the tool's exit code. */
+int frame_main(int argc, char **argv, snow_comm *comm);
+
+#endif

@@ -1,0 +1,295 @@
+/* bench/frame_run.c - one rank's share of a picture: timed, counted, and on
+ * rank 0 compared with the picture of the whole.
+ *
+ * The first picture is also encoded; the others are of the same look, as when
+ * nothing but the view changes.  Each rank works on one thread, so that its
+ * processor time is that of its thread, or process. */
+#include "frame.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+typedef struct rank_state {
+    const frame_options *options;
+    snow_comm *comm;
+    snow_context *context;
+    clockid_t cpu_clock;
+    snow_view view;
+    snow_settings settings;
+    snow_ranks_options how;
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    snow_image *image; /* rank 0's */
+    frame_figures mine, *all;
+} rank_state;
+
+static double cpu_seconds(const rank_state *s) {
+    struct timespec now;
+    clock_gettime(s->cpu_clock, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* --- before ----------------------------------------------------------------
+ */
+
+static snow_status fill_view(rank_state *s) {
+    const frame_options *options = s->options;
+    snow_volume_info info;
+    snow_status status =
+        snow_volume_inspect(s->context, options->path, &options->data, &info);
+    if (status == SNOW_OK)
+        status = snow_view_named(s->context, info.medical ? "anterior" : "+z",
+                                 &s->view);
+    s->view.width = options->width;
+    s->view.height = options->height;
+    s->view.azimuth = options->azimuth;
+    s->view.elevation = options->elevation;
+    return status;
+}
+
+static snow_status prepare(rank_state *s) {
+    const frame_options *options = s->options;
+    snow_settings_init(&s->settings);
+    s->settings.threshold = options->threshold;
+    s->settings.threads = 1;
+    s->how = (snow_ranks_options){.size = sizeof s->how,
+                                  .cut = options->cut,
+                                  .combining = options->combining,
+                                  .radix = options->radix,
+                                  .pixel_bits = 8};
+    s->all = calloc((size_t)snow_comm_ranks(s->comm), sizeof *s->all);
+    if (!s->all)
+        return snow_context_fail(s->context, SNOW_NO_MEMORY,
+                                 "no memory for figures; close other programs");
+    gethostname(s->mine.host, sizeof s->mine.host - 1);
+    snow_status status = fill_view(s);
+    return status == SNOW_OK ? snow_frame_new(s->context, &s->frame) : status;
+}
+
+static snow_status open_part(rank_state *s) {
+    double start = snow_comm_seconds(s->comm), cpu = cpu_seconds(s);
+    const snow_look look = {0};
+    snow_status status = snow_ranks_open(
+        s->comm, s->options->path, &s->options->data, &look, &s->view,
+        &s->settings, &s->how, &s->volume, &s->transfer);
+    s->mine.seconds[FRAME_READ] = snow_comm_seconds(s->comm) - start;
+    s->mine.seconds[FRAME_READ_CPU] = cpu_seconds(s) - cpu;
+    return status;
+}
+
+static void finish(rank_state *s) {
+    snow_image_free(s->image);
+    snow_frame_free(s->frame);
+    snow_transfer_free(s->transfer);
+    snow_volume_close(s->volume);
+    free(s->all);
+}
+
+/* --- a picture -------------------------------------------------------------
+ */
+
+/* What the library says of the last picture. */
+static void take_stats(rank_state *s, bool first) {
+    const snow_stats *stats = snow_frame_stats(s->frame);
+    double *seconds = s->mine.seconds;
+    snow_part part;
+    snow_volume_get_part(s->volume, &part);
+    if (first)
+        seconds[FRAME_ENCODE] = stats->seconds_classify + stats->seconds_shade +
+                                stats->seconds_encode;
+    seconds[FRAME_SPLAT] = stats->seconds_splat + stats->seconds_composite;
+    seconds[FRAME_EXCHANGE] = stats->seconds_combine;
+    seconds[FRAME_WARP] = stats->seconds_warp;
+    seconds[FRAME_GATHER] = stats->seconds_gather;
+    s->mine.voxels = stats->interesting;
+    s->mine.slices = part.count[stats->slice_axis];
+    s->mine.method = stats->method;
+}
+
+/* Collective. */
+static snow_status draw(rank_state *s, bool first) {
+    double *seconds = s->mine.seconds;
+    uint64_t messages, bytes;
+    snow_image_free(s->image);
+    s->image = NULL;
+    snow_status status = snow_comm_agree(s->comm, SNOW_OK); /* a barrier */
+    if (status != SNOW_OK)
+        return status;
+    snow_comm_sent(s->comm, &messages, &bytes);
+    const double start = snow_comm_seconds(s->comm), cpu = cpu_seconds(s);
+    status = snow_ranks_render(s->frame, s->comm, s->volume, s->transfer,
+                               &s->view, &s->settings, &s->how, &s->image);
+    seconds[first ? FRAME_FIRST : FRAME_TOTAL] =
+        snow_comm_seconds(s->comm) - start;
+    seconds[first ? FRAME_FIRST_CPU : FRAME_TOTAL_CPU] = cpu_seconds(s) - cpu;
+    snow_comm_sent(s->comm, &s->mine.messages, &s->mine.bytes);
+    s->mine.messages -= messages;
+    s->mine.bytes -= bytes;
+    if (status == SNOW_OK)
+        take_stats(s, first);
+    return status;
+}
+
+/* --- all ranks -------------------------------------------------------------
+ */
+
+static int count_hosts(const frame_figures *all, int ranks) {
+    int hosts = 0;
+    for (int i = 0; i < ranks; i++) {
+        int before = 0;
+        while (before < i && strcmp(all[before].host, all[i].host) != 0)
+            before++;
+        hosts += before == i;
+    }
+    return hosts;
+}
+
+static void add_rank(const frame_figures *f, int ranks, frame_result *out) {
+    for (int i = 0; i < FRAME_STAGES; i++) {
+        if (f->seconds[i] > out->most[i])
+            out->most[i] = f->seconds[i];
+        out->mean[i] += f->seconds[i] / ranks;
+    }
+    out->bytes_sum += f->bytes;
+    out->voxels_sum += f->voxels;
+    if (f->bytes > out->bytes_most)
+        out->bytes_most = f->bytes;
+    if (f->messages > out->messages_most)
+        out->messages_most = f->messages;
+    if (f->voxels > out->voxels_most)
+        out->voxels_most = f->voxels;
+    if (f->slices < out->slices_least)
+        out->slices_least = f->slices;
+}
+
+/* Collective: the figures of all, summed up on each. */
+static snow_status sum_up(rank_state *s, frame_result *out) {
+    const int ranks = snow_comm_ranks(s->comm);
+    *out = (frame_result){.ranks = ranks, .slices_least = INT64_MAX};
+    snow_status status =
+        snow_comm_share(s->comm, &s->mine, sizeof s->mine, s->all);
+    if (status != SNOW_OK)
+        return status;
+    for (int i = 0; i < ranks; i++)
+        add_rank(&s->all[i], ranks, out);
+    out->method = s->all[0].method;
+    out->nodes = s->options->modelled ? ranks : count_hosts(s->all, ranks);
+    return SNOW_OK;
+}
+
+/* Collective.  Of the later pictures the fastest counts. */
+static snow_status measure(rank_state *s, frame_result *out) {
+    snow_status status = draw(s, true);
+    for (int i = 0; i < s->options->runs && status == SNOW_OK; i++) {
+        frame_result this;
+        status = draw(s, false);
+        if (status == SNOW_OK)
+            status = sum_up(s, &this);
+        if (status == SNOW_OK &&
+            (i == 0 || this.most[FRAME_TOTAL] < out->most[FRAME_TOTAL]))
+            *out = this;
+    }
+    return status;
+}
+
+/* --- the picture of one rank -----------------------------------------------
+ */
+
+/* To whole steps of 1/255, as pixels travelled. */
+static void round_pixels(snow_image *image) {
+    float *pixels = snow_image_pixels(image);
+    size_t count = (size_t)snow_image_width(image) *
+                   (size_t)snow_image_height(image) *
+                   (size_t)snow_image_channels(image);
+    for (size_t i = 0; i < count; i++)
+        pixels[i] = (float)(unsigned char)(pixels[i] * 255 + 0.5f) / 255;
+}
+
+typedef struct alone {
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    snow_image *image;
+} alone;
+
+static snow_status open_alone(rank_state *s, alone *a) {
+    const snow_look look = {0};
+    snow_status status = snow_volume_open(s->context, s->options->path,
+                                          &s->options->data, &a->volume);
+    if (status == SNOW_OK)
+        status = snow_transfer_make(a->volume, &look, &a->transfer);
+    return status == SNOW_OK ? snow_frame_new(s->context, &a->frame) : status;
+}
+
+/* As many pictures as by all ranks; the fastest of the later ones counts. */
+static snow_status draw_alone(rank_state *s, alone *a, frame_result *out) {
+    snow_status status = SNOW_OK;
+    for (int i = 0; i <= s->options->runs && status == SNOW_OK; i++) {
+        snow_image_free(a->image);
+        a->image = NULL;
+        double cpu = cpu_seconds(s);
+        status = snow_frame_render(a->frame, a->volume, a->transfer, &s->view,
+                                   &s->settings, &a->image);
+        cpu = cpu_seconds(s) - cpu;
+        if (i == 0)
+            out->alone_first = cpu;
+        else if (i == 1 || cpu < out->alone)
+            out->alone = cpu;
+    }
+    return status;
+}
+
+static snow_status compare(rank_state *s, frame_result *out) {
+    alone a = {0};
+    snow_image_difference difference;
+    snow_status status = open_alone(s, &a);
+    if (status == SNOW_OK)
+        status = draw_alone(s, &a, out);
+    if (status == SNOW_OK) {
+        round_pixels(a.image);
+        status = snow_image_compare(s->image, a.image, &difference);
+    }
+    if (status == SNOW_OK) {
+        out->checked = true;
+        out->difference = difference.largest;
+        out->voxels_whole = snow_frame_stats(a.frame)->interesting;
+    }
+    snow_image_free(a.image);
+    snow_frame_free(a.frame);
+    snow_transfer_free(a.transfer);
+    snow_volume_close(a.volume);
+    return status;
+}
+
+static bool is_checked(const rank_state *s) {
+    return s->options->check ||
+           (!s->options->no_check &&
+            snow_comm_ranks(s->comm) <= FRAME_CHECKED_RANKS);
+}
+
+snow_status frame_body(snow_comm *comm, void *user) {
+    frame_session *session = user;
+    frame_result result = {0};
+    rank_state s = {.options = session->options,
+                    .comm = comm,
+                    .context = snow_comm_context(comm),
+                    .cpu_clock = session->threads ? CLOCK_THREAD_CPUTIME_ID
+                                                  : CLOCK_PROCESS_CPUTIME_ID};
+    snow_status status = snow_comm_agree(comm, prepare(&s));
+    if (status == SNOW_OK)
+        status = open_part(&s);
+    if (status == SNOW_OK)
+        status = measure(&s, &result);
+    if (status == SNOW_OK) {
+        if (is_checked(&s) && snow_comm_rank(comm) == 0)
+            status = compare(&s, &result);
+        status = snow_comm_agree(comm, status);
+    }
+    if (status == SNOW_OK && snow_comm_rank(comm) == 0)
+        session->result = result;
+    finish(&s);
+    return status;
+}
