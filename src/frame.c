@@ -3,6 +3,7 @@
  * 03 to 13.  How a stage works is told in its folder. */
 #include "frame.h"
 #include "base/base.h"
+#include "classify/tally.h"
 #include "classify/transfer.h"
 #include "combine/combine.h"
 #include "composite/over.h"
@@ -296,6 +297,24 @@ static snow_status render_slab(snow_frame *frame, snow_job *job) {
                           job->pixels);
 }
 
+static bool has_ghosts(const snow_clip *clip) {
+    return memcmp(clip->size, clip->count, sizeof clip->size) != 0;
+}
+
+/* Where neighbours' voxels are encoded too, for what their kernels reach: the
+ * part's own are counted, when they were encoded anew. */
+static snow_status count_own(snow_frame *frame, const snow_job *job) {
+    snow_stats *stats = job->stats;
+    const int64_t *count = job->clip.count;
+    if (stats->encoded || job->settings.method != SNOW_METHOD_SHEARED)
+        SNOW_TRY(snow_count_interesting(
+            job->volume, job->transfer, job->settings.threshold,
+            job->settings.isa, &frame->own_interesting));
+    stats->voxels = count[0] * count[1] * count[2];
+    stats->interesting = frame->own_interesting;
+    return SNOW_OK;
+}
+
 snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
     bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
@@ -311,6 +330,8 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
         stats->encoded = 1;                       /* for every picture */
     if (!sheared && !job->settings.deterministic) /* groups have counted */
         SNOW_TRY(count_exact(frame, job));
+    if (has_ghosts(&job->clip) && job->all)
+        SNOW_TRY(count_own(frame, job));
     if (stats->voxels > 0)
         stats->sparse_ratio =
             1 - (double)stats->interesting / (double)stats->voxels;

@@ -26,7 +26,8 @@ struct snow_frame {
     size_t layer_capacity;
     float *spare[SNOW_GROUP_RANKS]; /* pictures of groups, to be combined */
     size_t spare_capacity[SNOW_GROUP_RANKS];
-    snow_ranks *ranks; /* of snow_ranks_render; NULL until needed */
+    snow_ranks *ranks;       /* of snow_ranks_render; NULL until needed */
+    int64_t own_interesting; /* of the part that was encoded last */
 };
 
 /* What one picture is made from; lives as long as the call that makes it. */

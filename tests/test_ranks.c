@@ -47,7 +47,9 @@ typedef struct play {
     int pictures; /* one after another, with one frame */
     float *picture;
     int channels;
-    snow_stats stats; /* of rank 0 */
+    snow_stats stats;            /* of rank 0 */
+    snow_stats each[MOST_RANKS]; /* of every rank */
+    int64_t interesting;         /* in the serial picture */
 } play;
 
 static size_t floats_of(const play *p) {
@@ -173,6 +175,8 @@ static snow_status perform(snow_comm *comm, void *user) {
         }
         snow_image_free(image);
     }
+    if (status == SNOW_OK && frame)
+        p->each[rank] = *snow_frame_stats(frame);
     snow_frame_free(frame);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
@@ -197,6 +201,7 @@ static float *serial_picture(snow_context *context, play *p,
     if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
                           &image) != SNOW_OK)
         fail_msg("%s", snow_context_message(context));
+    p->interesting = snow_frame_stats(frame)->interesting;
     p->channels = snow_image_channels(image);
     float *pixels = malloc(floats_of(p) * sizeof(float));
     assert_non_null(pixels);
@@ -230,6 +235,23 @@ static double largest_gap(const play *p, const float *serial) {
     return most;
 }
 
+/* Voxels of borders, which several ranks hold, count for their owner only. */
+static void check_counts(const play *p, int ranks) {
+    int64_t interesting = 0, voxels = 0, all = 1;
+    for (int rank = 0; rank < ranks; rank++) {
+        interesting += p->each[rank].interesting;
+        voxels += p->each[rank].voxels;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        all *= p->info.dims[axis];
+    if (interesting != p->interesting || voxels != all)
+        fail_msg("%d ranks count %lld of %lld voxels as interesting, one "
+                 "counts %lld of %lld; cut %d, method %d, quality %d",
+                 ranks, (long long)interesting, (long long)voxels,
+                 (long long)p->interesting, (long long)all, (int)p->cut,
+                 (int)p->settings.method, (int)p->settings.quality);
+}
+
 /* What a sweep came to. */
 typedef struct sweep_tally {
     int clear, opaque;
@@ -251,6 +273,7 @@ static void check(snow_context *context, play *p, const float *serial,
                  (int)p->settings.quality, p->view.fov, (int)p->how.combining,
                  strongest);
     assert_int_equal(p->stats.ranks, ranks);
+    check_counts(p, ranks);
     if (p->how.pixel_bits != 8) {
         double *most = opaque ? &tally->opaque_most : &tally->clear_most;
         *most = fmax(*most, gap);

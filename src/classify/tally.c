@@ -95,3 +95,19 @@ snow_status snow_tally_count(const snow_volume *volume,
     snow_release(context, p.columns);
     return status;
 }
+
+/* One block holds the whole grid. */
+snow_status snow_count_interesting(const snow_volume *volume,
+                                   const snow_transfer *transfer,
+                                   double threshold, snow_isa isa,
+                                   int64_t *out) {
+    int64_t count = 0;
+    snow_part part;
+    snow_volume_get_part(volume, &part);
+    snow_tally tally = {.blocks = {1, 1, 1}, .counts = &count};
+    for (int axis = 0; axis < 3; axis++)
+        tally.grid.dims[axis] = tally.block[axis] = part.dims[axis];
+    SNOW_TRY(snow_tally_count(volume, transfer, threshold, isa, &tally));
+    *out = count;
+    return SNOW_OK;
+}

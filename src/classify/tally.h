@@ -13,4 +13,10 @@ snow_status snow_tally_count(const snow_volume *volume,
                              const snow_transfer *transfer, double threshold,
                              snow_isa isa, snow_tally *tally);
 
+/* How many there are in all.  Errors: the same. */
+snow_status snow_count_interesting(const snow_volume *volume,
+                                   const snow_transfer *transfer,
+                                   double threshold, snow_isa isa,
+                                   int64_t *out);
+
 #endif
