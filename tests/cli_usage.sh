@@ -29,7 +29,7 @@ phantom snowman -o x.nrrd|snowman
 phantom cube -o x.txt|x.txt
 turntable -o y.mp4|give snowglass turntable INPUT -o OUT
 turntable x y -o y.mp4|one word too many for turntable
-convert a b|convert is not built yet
+convert a b|one word too many for convert
 tf list|tf is not built yet
 serve x|serve is not built yet
 help serve|serve is not built yet
