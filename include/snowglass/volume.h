@@ -56,7 +56,8 @@ typedef struct snow_volume_info {
     char unit[16];       /* of spacing and matrix: "mm", "um", ... or "" */
     const char *format;  /* constant: "raw", "nrrd", "nifti", "metaimage",
                             "npy", "mrc", "vtk", "vti", "tiff", "png",
-                            "hdf5", "netcdf", "phantom", "memory" */
+                            "hdf5", "netcdf", "den", "phantom",
+                            "memory" */
     int64_t times;       /* time steps in the file, at least 1 */
     int64_t time;        /* the one that was read, from 0 */
 } snow_volume_info;
