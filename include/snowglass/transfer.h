@@ -40,6 +40,12 @@ SNOW_API snow_status snow_transfer_new(snow_context *context,
 
 SNOW_API void snow_transfer_free(snow_transfer *transfer);
 
+/* From now on points are joined linearly in the logarithm of the value; values
+ * of 0 and below are transparent.  Errors: SNOW_BAD_USAGE (a point that is not
+ * above 0). */
+SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
+SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
+
 /* Over which data values a look is spread. */
 typedef enum snow_range_kind {
     SNOW_RANGE_AUTO = 0,   /* chosen from the histogram */

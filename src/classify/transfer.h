@@ -14,7 +14,8 @@ struct snow_transfer {
     size_t color_count;       /* at least 1 */
     snow_opacity_point *opacities;
     size_t opacity_count;
-    bool grey;                           /* red = green = blue everywhere */
+    bool log;  /* joined in the logarithm of values, all above 0 */
+    bool grey; /* red = green = blue everywhere */
     char text[SNOW_TRANSFER_TEXT_BYTES]; /* what was chosen, for people */
 };
 
@@ -32,6 +33,10 @@ typedef struct snow_transfer_hint {
 
 void snow_transfer_near(const snow_transfer *transfer, double value,
                         snow_transfer_hint *hint, double rgba[4]);
+
+/* How far a value is on the way from a to b on a logarithmic scale, 0 < a < b,
+ * a <= value <= b: from 0 to 1, never falling. */
+double snow_part_of_decades(double value, double a, double b);
 
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define SNOW_THRESHOLD_MARGIN 0.0001
