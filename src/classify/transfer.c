@@ -47,17 +47,16 @@ static snow_status check_colors(snow_context *context,
     return SNOW_OK;
 }
 
-static snow_status check_opacities(snow_context *context,
+static snow_status check_opacities(snow_context *context, const char *kind,
                                    const snow_opacity_point *opacities,
                                    size_t count) {
     for (size_t i = 0; i < count; i++) {
-        SNOW_TRY(check_point(context, "opacity", i, opacities[i].value,
+        SNOW_TRY(check_point(context, kind, i, opacities[i].value,
                              i ? opacities[i - 1].value : 0));
         if (!in_unit(opacities[i].opacity))
             return snow_fail(context, SNOW_BAD_USAGE,
-                             "opacity point %zu is %g; opacity goes from 0 to "
-                             "1",
-                             i + 1, opacities[i].opacity);
+                             "%s point %zu is %g; opacity goes from 0 to 1",
+                             kind, i + 1, opacities[i].opacity);
     }
     return SNOW_OK;
 }
@@ -88,7 +87,7 @@ snow_status snow_transfer_new(snow_context *context,
                          "is incomplete; give at least one point of each",
                          color_count, opacity_count);
     SNOW_TRY(check_colors(context, colors, color_count));
-    SNOW_TRY(check_opacities(context, opacities, opacity_count));
+    SNOW_TRY(check_opacities(context, "opacity", opacities, opacity_count));
     snow_transfer *transfer = snow_allocate_clear(context, sizeof *transfer);
     if (!transfer)
         return SNOW_NO_MEMORY;
@@ -103,8 +102,10 @@ snow_status snow_transfer_new(snow_context *context,
         snow_transfer_free(transfer);
         return SNOW_NO_MEMORY;
     }
-    snprintf(transfer->text, sizeof transfer->text,
-             "%zu colour and %zu opacity points", color_count, opacity_count);
+    char text[80];
+    snprintf(text, sizeof text, "%zu colour and %zu opacity points",
+             color_count, opacity_count);
+    snow_transfer_tell(transfer, text);
     *out = transfer;
     return SNOW_OK;
 }
@@ -114,7 +115,58 @@ void snow_transfer_free(snow_transfer *transfer) {
         return;
     snow_release(transfer->context, transfer->colors);
     snow_release(transfer->context, transfer->opacities);
+    snow_release(transfer->context, transfer->gradients);
     snow_release(transfer->context, transfer);
+}
+
+/* Appends "; gradient opacity 0 at 2, 1 at 10", as far as there is room. */
+static void tell_gradients(snow_transfer *transfer) {
+    char *text = transfer->text;
+    size_t room = sizeof transfer->text, used = transfer->look_bytes;
+    text[used] = 0;
+    for (size_t i = 0; i < transfer->gradient_count; i++) {
+        used = strlen(text);
+        if (used + 40 > room) { /* the longest, and an end */
+            snprintf(text + used, room - used, ", ...");
+            break;
+        }
+        snprintf(text + used, room - used, "%s %.4g at %.5g",
+                 i ? "," : "; gradient opacity", transfer->gradients[i].opacity,
+                 transfer->gradients[i].value);
+    }
+}
+
+void snow_transfer_tell(snow_transfer *transfer, const char *chosen) {
+    snprintf(transfer->text, sizeof transfer->text, "%s", chosen);
+    transfer->look_bytes = strlen(transfer->text);
+    tell_gradients(transfer);
+}
+
+static bool all_one(const snow_opacity_point *points, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (points[i].opacity != 1)
+            return false;
+    return true;
+}
+
+snow_status snow_transfer_set_gradient_opacity(snow_transfer *transfer,
+                                               const snow_opacity_point *points,
+                                               size_t count) {
+    snow_opacity_point *gradients = NULL;
+    SNOW_TRY(
+        check_opacities(transfer->context, "gradient opacity", points, count));
+    if (all_one(points, count))
+        count = 0;
+    if (count) {
+        gradients = copy(transfer->context, points, count, sizeof *points);
+        if (!gradients)
+            return SNOW_NO_MEMORY;
+    }
+    snow_release(transfer->context, transfer->gradients);
+    transfer->gradients = gradients;
+    transfer->gradient_count = count;
+    tell_gradients(transfer);
+    return SNOW_OK;
 }
 
 const char *snow_transfer_text(const snow_transfer *transfer) {
@@ -188,15 +240,15 @@ static inline size_t points_up_to(const void *points, size_t size, size_t count,
     return low;
 }
 
-static inline double opacity_behind(const snow_transfer *transfer, size_t up_to,
+static inline double opacity_behind(const snow_opacity_point *points,
+                                    size_t count, bool log, size_t up_to,
                                     double value) {
-    const snow_opacity_point *points = transfer->opacities;
     if (up_to == 0)
         return points[0].opacity;
-    if (up_to == transfer->opacity_count)
+    if (up_to == count)
         return points[up_to - 1].opacity;
-    double t = part_of_way(transfer->log, value, points[up_to - 1].value,
-                           points[up_to].value);
+    double t =
+        part_of_way(log, value, points[up_to - 1].value, points[up_to].value);
     return mix(points[up_to - 1].opacity, points[up_to].opacity, t);
 }
 
@@ -220,7 +272,20 @@ double snow_transfer_opacity(const snow_transfer *transfer, double value) {
     size_t up_to =
         points_up_to(transfer->opacities, sizeof *transfer->opacities,
                      transfer->opacity_count, value, 0);
-    return opacity_behind(transfer, up_to, value);
+    return opacity_behind(transfer->opacities, transfer->opacity_count,
+                          transfer->log, up_to, value);
+}
+
+double snow_transfer_gradient_opacity(const snow_transfer *transfer,
+                                      double magnitude) {
+    const snow_opacity_point *points = transfer->gradients;
+    size_t count = transfer->gradient_count;
+    if (!count)
+        return 1;
+    if (isnan(magnitude))
+        return points[count - 1].opacity;
+    size_t up_to = points_up_to(points, sizeof *points, count, magnitude, 0);
+    return opacity_behind(points, count, false, up_to, magnitude);
 }
 
 void snow_transfer_color(const snow_transfer *transfer, double value,
@@ -246,7 +311,8 @@ void snow_transfer_near(const snow_transfer *transfer, double value,
         points_up_to(transfer->opacities, sizeof *transfer->opacities,
                      transfer->opacity_count, value, hint->opacity);
     color_behind(transfer, hint->color, value, rgba);
-    rgba[3] = opacity_behind(transfer, hint->opacity, value);
+    rgba[3] = opacity_behind(transfer->opacities, transfer->opacity_count,
+                             transfer->log, hint->opacity, value);
 }
 
 void snow_transfer_at(const snow_transfer *transfer, double value,
