@@ -80,6 +80,10 @@ const option_row option_table[] = {
      0, 0, "", "colours along the range (grey, or the preset's)"},
     {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED, read_points, FIELD(opacities),
      0, 0, "", "opacities 0 to 1 at data values, linear between them"},
+    {"gradient-opacity", 0, "G:O,G:O", TOPIC_LOOK, LOOKED, read_gradient_points,
+     FIELD(gradient_opacities), 0, 0, "",
+     "factors 0 to 1 of the opacity at gradient magnitudes, in data units per "
+     "mm: 0:0,20:1 shows boundaries and lets what is even fade (none)"},
     {"window", 'w', "W", TOPIC_LOOK, LOOKED, read_real, FIELD(window), 1e-300,
      1e300, "", "width of the range of data values, with --level"},
     {"level", 0, "L", TOPIC_LOOK, LOOKED, read_real, FIELD(level), 0, 0, "",

@@ -65,7 +65,7 @@ typedef struct options {
 
     const char *mode;
     const char *colormap, *preset; /* NULL: automatic */
-    point_list opacities;
+    point_list opacities, gradient_opacities;
     double window, level; /* NaN: not told */
     range_value range;
     const char *opacity_unit, *shade;

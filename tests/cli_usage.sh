@@ -102,6 +102,9 @@ turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
 --opacity 80:2 x|VALUE:OPACITY
 --opacity 80:0.1,70:0.2 x|VALUE:OPACITY
 --opacity 80:0.1, x|VALUE:OPACITY
+--gradient-opacity 80 x|MAGNITUDE:FACTOR
+--gradient-opacity 0:0,20:2 x|MAGNITUDE:FACTOR
+--gradient-opacity 9:0,8:1 x|MAGNITUDE:FACTOR
 --range 3,2 x|is no range
 --range 3,nan x|is no range
 --range p99,p1 x|is no range

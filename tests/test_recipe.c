@@ -12,6 +12,7 @@ static const char all_keys[] =
     " \"method\": \"footprint\", \"kernel\": \"gauss\", \"footprint\": 5,"
     " \"preset\": \"ct-bone\", \"colormap\": \"viridis\","
     " \"opacity\": [[-10, 0], [0.25, 0.5], [90, 1]],"
+    " \"gradient-opacity\": [[0, 0.125], [30, 1]],"
     " \"range\": [\"p1\", \"p99.5\"], \"opacity-unit\": \"mm\","
     " \"shade\": \"none\", \"light\": [30, -40.5], \"ambient\": 0.1,"
     " \"diffuse\": 0.3, \"specular\": 0.4, \"shininess\": 7,"
@@ -60,6 +61,9 @@ static void every_key_reaches_its_field(void **state) {
     assert_string_equal(r.colormap, "viridis");
     assert_int_equal(r.opacity_count, 3);
     assert_true(r.opacities[1].value == 0.25 && r.opacities[1].opacity == 0.5);
+    assert_int_equal(r.gradient_opacity_count, 2);
+    assert_true(r.gradient_opacities[0].opacity == 0.125 &&
+                r.gradient_opacities[1].value == 30);
     assert_int_equal(r.range, SNOW_RANGE_PERCENTILES);
     assert_true(r.low == 1 && r.high == 99.5);
     assert_true(r.opacity_per_mm);
@@ -141,6 +145,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"azimuth\": \"30\"}", "\"azimuth\" must be a number"},
         {"{\"opacity\": [[0, 0], [-1, 1]]}", "values that do not fall"},
         {"{\"opacity\": [[0, 1.5]]}", "opacities 0 to 1"},
+        {"{\"gradient-opacity\": [[0, 2]]}", "\"gradient-opacity\" must be"},
         {"{\"opacity\": []}", "\"opacity\" must be"},
         {"{\"range\": [2, 1]}", "\"range\" must be"},
         {"{\"range\": [\"p1\", 3]}", "\"range\" must be"},

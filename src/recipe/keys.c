@@ -438,8 +438,11 @@ typedef struct point_fields {
 } point_fields;
 
 static_assert(offsetof(snow_recipe, opacities) -
-                      offsetof(snow_recipe, opacity_count) ==
-                  offsetof(point_fields, points),
+                          offsetof(snow_recipe, opacity_count) ==
+                      offsetof(point_fields, points) &&
+                  offsetof(snow_recipe, gradient_opacities) -
+                          offsetof(snow_recipe, gradient_opacity_count) ==
+                      offsetof(point_fields, points),
               "the record's fields lie as they are read");
 
 static bool read_point(const json_t *pair, const snow_opacity_point *before,
@@ -557,6 +560,7 @@ const recipe_key recipe_keys[] = {
     KNOWN("preset", preset, preset_name, snow_preset_named),
     KNOWN("colormap", colormap, colormap_name, snow_colormap_named),
     MADE("opacity", points, opacity_count, 0, 0, 0),
+    MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
     NAME("shade", settings.shade, shade_name, shade_named),

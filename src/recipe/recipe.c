@@ -161,6 +161,10 @@ void snow_recipe_look(const snow_recipe *recipe, snow_look *out) {
         out->opacities = recipe->opacities;
         out->opacity_count = recipe->opacity_count;
     }
+    if (recipe->gradient_opacity_count) {
+        out->gradient_opacities = recipe->gradient_opacities;
+        out->gradient_opacity_count = recipe->gradient_opacity_count;
+    }
 }
 
 snow_status snow_recipe_view(snow_context *context, const snow_recipe *recipe,
