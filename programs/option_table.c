@@ -51,8 +51,12 @@ const option_row option_table[] = {
      "replace files that exist, of --output and --stats (they are kept)"},
     LATER("depth", 0, "FILE", TOPIC_OUTPUT, "leave it out"),
 
-    {"mode", 'm', "over", TOPIC_MODE, RENDER, read_choice, FIELD(mode), 0, 0,
-     "mip|minip|mean|sum|iso", "how samples of a ray make a pixel (over)"},
+    {"mode", 'm', "over|mip|minip|mean|sum", TOPIC_MODE, RENDER, read_choice,
+     FIELD(mode), 0, 0, "iso",
+     "how the voxels that a ray meets make a pixel: laid over one another, the "
+     "largest or smallest value, its mean or its sum along the ray; all but over "
+     "take every voxel, and .npy and .pfm hold mean and sum in data units "
+     "(over)"},
     LATER("iso", 0, "VALUE", TOPIC_MODE,
           "a step of --opacity at the value looks alike"),
 
@@ -261,7 +265,7 @@ const verb_row verb_table[] = {
 const topic_row topic_table[] = {
     {"output", "the picture file: size, background, bits", NULL},
     {"mode", "how samples make a pixel",
-     "over, as in the paper; not mip, minip, mean, sum, iso"},
+     "over, as in the paper, and mip, minip, mean, sum; not iso"},
     {"sparse", "interesting voxels, encodings, methods", NULL},
     {"kernel", "the reconstruction kernel and its footprint", NULL},
     {"look", "transfer function, colours, shading", NULL},

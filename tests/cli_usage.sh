@@ -60,8 +60,7 @@ info --perspective x|no option of info
 movie --frames 3 x -o y.mp4|--frames: no option of movie
 --resume x|--resume: no option of render; it belongs to turntable
 turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
--m mip x|'mip' is not built yet; choose from: over
---mode iso x|'iso' is not built yet
+--mode iso x|'iso' is not built yet; choose from: over, mip, minip, mean, sum
 --mode best x|'best' is unknown
 --method ray x|'ray' is unknown
 --method tested x|'tested' is unknown

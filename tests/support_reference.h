@@ -96,6 +96,7 @@ void reference_shade(const reference_scene *scene,
 
 /* The samples that are splatted: (shaded c a', a') of every voxel, four
  * doubles each, zeros for uninteresting ones.  Free with free(). */
+double reference_opacity_length(const reference_scene *scene);
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis);
 
@@ -103,6 +104,11 @@ double *reference_samples(const reference_scene *scene,
  * The second composites the same sheets from the back to the front. */
 double *reference_render(const reference_scene *scene);
 double *reference_render_back_to_front(const reference_scene *scene);
+
+/* The picture in a mode other than over: width * height * 4 doubles of mip,
+ * minip and iso; of mean and sum width * height in data units, NaN where the
+ * ray misses. */
+double *reference_mode(const reference_scene *scene);
 
 /* The ray caster: trilinear values every quarter of the smallest spacing along
  * each ray within the voxel boxes, classified after interpolation, shaded as

@@ -155,7 +155,7 @@ static bool interesting(double opacity, double threshold) {
 }
 
 /* The world length that an opacity is for: the shortest column by default. */
-static double opacity_length(const reference_scene *scene) {
+double reference_opacity_length(const reference_scene *scene) {
     if (scene->settings.opacity_length > 0)
         return scene->settings.opacity_length;
     double smallest = INFINITY;
@@ -171,7 +171,7 @@ static double opacity_length(const reference_scene *scene) {
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis) {
     const int64_t *dims = scene->info.dims;
-    double length = opacity_length(scene);
+    double length = reference_opacity_length(scene);
     size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
     double *samples = calloc(count * 4, sizeof(double)), *sample = samples;
     for (int64_t k = 0; k < dims[2]; k++)

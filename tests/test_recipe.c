@@ -8,7 +8,7 @@
 static const char all_keys[] =
     "{\"input\": \"a.raw\", \"output\": \"b_%04d.png\", \"overwrite\": true,"
     " \"size\": [640, 480], \"background\": [1, 0.5, 0], \"bits\": 16,"
-    " \"mode\": \"over\", \"threshold\": 10.5, \"encoding\": \"rle\","
+    " \"mode\": \"mip\", \"threshold\": 10.5, \"encoding\": \"rle\","
     " \"method\": \"footprint\", \"kernel\": \"gauss\", \"footprint\": 5,"
     " \"preset\": \"ct-bone\", \"colormap\": \"viridis\","
     " \"opacity\": [[-10, 0], [0.25, 0.5], [90, 1]],"
@@ -53,6 +53,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_true(r.image.background[1] == 0.5);
     assert_true(r.width == 640 && r.height == 480);
     assert_true(r.settings.threshold == 10.5);
+    assert_int_equal(r.settings.mode, SNOW_MODE_MIP);
     assert_int_equal(r.settings.encoding, SNOW_ENCODING_RLE);
     assert_int_equal(r.settings.method, SNOW_METHOD_FOOTPRINT);
     assert_int_equal(r.settings.kernel, SNOW_KERNEL_GAUSS);
@@ -160,7 +161,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"window\": 3, \"level\": 1, \"range\": [0, 1]}", "go together"},
         {"{\"type\": \"int12\"}", "\"type\" must be one of"},
         {"{\"overwrite\": 1}", "true or false"},
-        {"{\"mode\": \"mip\"}", "\"mode\" must be \"over\""},
+        {"{\"mode\": \"most\"}", "\"mode\" must be one of"},
         {"{\"roll\": 1, \"roll\": 2}", "duplicate"},
         {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},
         {"[1]", "one JSON object"},
