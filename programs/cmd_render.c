@@ -33,6 +33,9 @@ int check_settings(const options *asked) {
         strcmp(asked->encoding, "auto") != 0)
         return fail_usage("--encoding: method original encodes nothing; leave "
                           "one of the two out");
+    if (asked->view && asked->position.given)
+        return fail_usage("--position: --view says where the camera is as "
+                          "well; leave one of the two out");
     return check_look(asked);
 }
 
@@ -119,6 +122,15 @@ int make_settings(const options *asked, const snow_volume_info *info,
     return opacity_length(asked, info, &out->opacity_length);
 }
 
+static void place_camera(const options *asked, snow_view *out) {
+    out->has_position = asked->position.given;
+    out->has_target = asked->target.given;
+    out->has_up = asked->up.given;
+    memcpy(out->position, asked->position.at, sizeof out->position);
+    memcpy(out->target, asked->target.at, sizeof out->target);
+    memcpy(out->upward, asked->up.at, sizeof out->upward);
+}
+
 /* A named view sets size and angles too, hence it comes before them. */
 int make_view(snow_context *context, const options *asked,
               const snow_volume_info *info, snow_view *out) {
@@ -134,6 +146,7 @@ int make_view(snow_context *context, const options *asked,
     out->roll = asked->roll;
     out->zoom = asked->zoom;
     out->fov = asked->fov;
+    place_camera(asked, out);
     return GO_ON;
 }
 

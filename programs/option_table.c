@@ -138,11 +138,15 @@ const option_row option_table[] = {
      "from an eye whose field of view is so many degrees over the shorter side, "
      "up to 120; 30 where no number follows (without it: a parallel "
      "projection)"},
-    LATER("position", 0, "X,Y,Z", TOPIC_CAMERA,
-          "give --view, --azimuth and --elevation"),
-    LATER("target", 0, "X,Y,Z", TOPIC_CAMERA,
-          "the camera looks at the middle of the volume"),
-    LATER("up", 0, "X,Y,Z", TOPIC_CAMERA, "give --view and --roll"),
+    {"position", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(position),
+     0, 0, "", "where the camera stands, in the world (mm), in place of --view; "
+     "a parallel projection takes the direction alone (by --view)"},
+    {"target", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(target), 0,
+     0, "", "what it looks at and turns about, the middle of the picture (the "
+     "middle of the volume)"},
+    {"up", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(up), 0, 0, "",
+     "the direction that is up in the picture (the view's; of a --position "
+     "0,0,1, or 0,1,0 along z)"},
 
     {"no-labels", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(no_labels), 0,
      0, "", "without orientation letters (there are none yet)"},

@@ -75,6 +75,7 @@ typedef struct options {
     const char *view; /* NULL: the volume's own */
     double azimuth, elevation, roll, zoom;
     double fov; /* 0: parallel */
+    place_value position, target, up;
 
     int64_t dims[3]; /* 0: not told */
     snow_type type, as;

@@ -29,8 +29,8 @@ typedef struct reference_scene {
  * world, where `back` points from the target to the camera. */
 typedef struct reference_camera {
     double right[3], up[3], back[3];
-    double target[3]; /* middle of the voxel boxes */
-    double radius;    /* from the target to the farthest corner of a box */
+    double target[3]; /* middle of the voxel boxes, or what is looked at */
+    double radius;    /* from their middle to the farthest corner of a box */
     double distance;  /* of the eye from the target; 0: parallel */
     double pitch;     /* world length of a pixel's side, at the target */
 } reference_camera;

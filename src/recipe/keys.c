@@ -144,6 +144,12 @@ static json_t *write_told_reals(const recipe_key *key, const void *field) {
     return numbers[0] != 0 ? write_reals(key, field) : NULL;
 }
 
+/* Of numbers that are NaN where they are not told. */
+static json_t *write_place(const recipe_key *key, const void *field) {
+    const double *numbers = field;
+    return isnan(numbers[0]) ? NULL : write_reals(key, field);
+}
+
 static bool read_longs(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     int64_t numbers[3];
@@ -562,6 +568,9 @@ const recipe_key recipe_keys[] = {
     REAL("roll", roll, 0, 0),
     REAL("zoom", zoom, 1e-6, 1e6),
     REAL("perspective", fov, 0, SNOW_FOV_MOST),
+    {"position", read_reals, write_place, AT(position), 0, 0, 3, NULL, NULL},
+    {"target", read_reals, write_place, AT(target), 0, 0, 3, NULL, NULL},
+    {"up", read_reals, write_place, AT(up), 0, 0, 3, NULL, NULL},
     {"threads", read_int, write_told_int, AT(settings.threads), 1, 4096, 0,
      NULL, NULL},
     MADE("deterministic", switch, settings.deterministic, 0, 0, 0),
