@@ -29,6 +29,8 @@ snow_image *model_image(const model_stage *stage,
         status = snow_transfer_new(context, scene->colors, scene->color_count,
                                    scene->opacities, scene->opacity_count,
                                    &transfer);
+    if (status == SNOW_OK && scene->log)
+        status = snow_transfer_set_log(transfer);
     if (status == SNOW_OK)
         status = snow_frame_render(stage->frame, volume, transfer, &scene->view,
                                    &scene->settings, &image);

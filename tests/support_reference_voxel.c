@@ -25,7 +25,11 @@ double reference_native(const reference_scene *scene, int64_t i, int64_t j,
     return (double)NAN;
 }
 
-static double between(double x0, double y0, double x1, double y1, double x) {
+static double between(bool log, double x0, double y0, double x1, double y1,
+                      double x) {
+    if (log)
+        return y0 +
+               (y1 - y0) * (log10(x) - log10(x0)) / (log10(x1) - log10(x0));
     return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
 }
 
@@ -39,11 +43,14 @@ static void color_at(const reference_scene *scene, double value,
     const snow_color_point *a = next > 0 ? &p[next - 1] : b;
     bool inner = a->value < b->value;
     rgb[0] =
-        inner ? between(a->value, a->red, b->value, b->red, value) : a->red;
-    rgb[1] = inner ? between(a->value, a->green, b->value, b->green, value)
+        inner ? between(scene->log, a->value, a->red, b->value, b->red, value)
+              : a->red;
+    rgb[1] = inner ? between(scene->log, a->value, a->green, b->value, b->green,
+                             value)
                    : a->green;
     rgb[2] =
-        inner ? between(a->value, a->blue, b->value, b->blue, value) : a->blue;
+        inner ? between(scene->log, a->value, a->blue, b->value, b->blue, value)
+              : a->blue;
 }
 
 static double opacity_at(const reference_scene *scene, double value) {
@@ -55,13 +62,13 @@ static double opacity_at(const reference_scene *scene, double value) {
         return p[0].opacity;
     if (next == count)
         return p[count - 1].opacity;
-    return between(p[next - 1].value, p[next - 1].opacity, p[next].value,
-                   p[next].opacity, value);
+    return between(scene->log, p[next - 1].value, p[next - 1].opacity,
+                   p[next].value, p[next].opacity, value);
 }
 
 void reference_classify(const reference_scene *scene, double value,
                         double rgba[4]) {
-    if (isnan(value)) {
+    if (isnan(value) || (scene->log && value <= 0)) {
         rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
         return;
     }
@@ -148,7 +155,7 @@ static bool interesting(double opacity, double threshold) {
 }
 
 /* The world length that an opacity is for: the shortest column by default. */
-static double opacity_length(const reference_scene *scene) {
+double reference_opacity_length(const reference_scene *scene) {
     if (scene->settings.opacity_length > 0)
         return scene->settings.opacity_length;
     double smallest = INFINITY;
@@ -164,7 +171,7 @@ static double opacity_length(const reference_scene *scene) {
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis) {
     const int64_t *dims = scene->info.dims;
-    double length = opacity_length(scene);
+    double length = reference_opacity_length(scene);
     size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
     double *samples = calloc(count * 4, sizeof(double)), *sample = samples;
     for (int64_t k = 0; k < dims[2]; k++)
