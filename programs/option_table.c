@@ -235,6 +235,9 @@ const option_row option_table[] = {
      "ranks and size)"},
     {"radix", 0, "K", TOPIC_RANKS, RENDER, read_integer, FIELD(radix), 2, 64,
      "", "ranks that exchange at once, of --combine radix (chosen)"},
+    {"timeout", 0, "SECONDS", TOPIC_RANKS, RENDER, read_real, FIELD(timeout), 0,
+     1e9, "", "the longest that ranks wait for one that neither sends nor waits "
+     "itself; then the job ends and names it; 0: for ever (300)"},
 
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR, read_flag,
      FIELD(json), 0, 0, "", "write one JSON object"},
