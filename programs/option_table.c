@@ -208,8 +208,10 @@ const option_row option_table[] = {
      0, "", "tell seconds, of render also those of every stage and bytes"},
     {"quiet", 'q', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), -1,
      0, "", "tell nothing but errors"},
-    LATER("memory", 0, "SIZE", TOPIC_RUN,
-          "limit the process with ulimit -v or a cgroup"),
+    {"memory", 0, "SIZE", TOPIC_RUN, RENDER, read_bytes, FIELD(memory), 0, 0,
+     "", "the most that a process may take for voxels, encodings and pictures, "
+     "such as 800M or 4G; what needs more ends with exit code 5 (no limit; -v "
+     "tells the need)"},
     {"config", 0, "FILE", TOPIC_RUN, LOOKED, read_text, FIELD(config), 0, 0, "",
      "take options from a JSON object: long names for keys, and input; what "
      "stands on the command line counts more"},

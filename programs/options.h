@@ -97,6 +97,7 @@ typedef struct options {
     const char *stats; /* NULL: none */
     const char *progress, *isa, *quality;
     int64_t threads; /* 0: not told */
+    uint64_t memory; /* bytes; 0: no limit */
     const char *cut, *combine;
     int64_t radix;  /* 0: chosen */
     double timeout; /* seconds; 0: none */

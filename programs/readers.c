@@ -165,6 +165,18 @@ bool read_dims(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* 1G is 1024 M, as memory is sold. */
+bool read_bytes(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    uint64_t bytes;
+    if (!value_bytes(text, &bytes) || !bytes)
+        return refuse(wrong, "is no amount of memory; give bytes, or a number "
+                             "and K, M, G or T, such as 800M");
+    *(uint64_t *)field = bytes;
+    return true;
+}
+
 /* The library knows the sizes, and so what lies outside. */
 bool read_crop(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {

@@ -14,6 +14,7 @@ option_read read_fov;             /* double; an empty text is the usual one */
 option_read read_tolerance;       /* double, also as a quotient */
 option_read read_integer;         /* int64_t within low..high */
 option_read read_count;           /* uint64_t */
+option_read read_bytes;           /* uint64_t, also as 4G or 4GiB */
 option_read read_size;            /* int64_t[2] */
 option_read read_dims;            /* int64_t[3] */
 option_read read_crop;            /* int64_t[3][2] */

@@ -3,6 +3,7 @@
 #include "scene.h"
 #include "commands.h"
 #include "launch.h"
+#include "memory.h"
 #include "report.h"
 
 #include <stdio.h>
@@ -25,6 +26,7 @@ int scene_new(const options *asked, scene *out) {
     *out = (scene){.asked = asked};
     int done = open_render_context(asked, &out->context);
     if (done == GO_ON) {
+        snow_context_set_limit(out->context, asked->memory);
         size_t ranks = (size_t)launch_ranks();
         out->figures = calloc(ranks, sizeof(rank_figures));
         if (!out->figures) {
@@ -56,8 +58,11 @@ static int place_camera(scene *s) {
 
 /* Decompression and conversion are part of the reading. */
 static int open_alone(scene *s, const options *step) {
+    snow_volume_options data = data_options(step);
+    int done = memory_check(s->context, step, s->path, &data);
     double begin = seconds_now();
-    int done = open_input(s->context, step, s->path, &s->volume);
+    if (done == GO_ON)
+        done = open_input(s->context, step, s->path, &s->volume);
     s->times.read += seconds_now() - begin;
     if (done != GO_ON)
         return done;

@@ -5,6 +5,7 @@
  * is a point everywhere. */
 #include "values.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
@@ -54,6 +55,31 @@ bool value_count(const char *text, uint64_t *out) {
     if (errno || value > UINT64_MAX)
         return false;
     *out = (uint64_t)value;
+    return true;
+}
+
+bool value_bytes(const char *text, uint64_t *out) {
+    static const char letters[] = "KMGT";
+    char number[NUMBER_BYTES];
+    size_t length = strspn(text, "0123456789.");
+    const char *unit = text + length;
+    const char *letter = *unit ? strchr(letters, toupper(*unit)) : NULL;
+    double value, factor = 1;
+    if (!*unit)
+        return value_count(text, out);
+    const char *rest = unit + (letter != NULL);
+    if (length >= sizeof number ||
+        (*rest && strcmp(rest, "B") != 0 && strcmp(rest, "iB") != 0))
+        return false;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    if (!value_real(number, &value) || value < 0)
+        return false;
+    for (long i = letter ? letter - letters : -1; i >= 0; i--)
+        factor *= 1024;
+    if (value * factor >= 0x1p63)
+        return false;
+    *out = (uint64_t)(value * factor);
     return true;
 }
 

@@ -38,6 +38,10 @@ bool value_real(const char *text, double *out);
 bool value_integer(const char *text, int64_t *out);
 bool value_count(const char *text, uint64_t *out);
 
+/* Bytes: digits, or a number and K, M, G or T (of 1024), with B or iB behind
+ * it or nothing; rounded down to whole ones. */
+bool value_bytes(const char *text, uint64_t *out);
+
 /* A number, or a quotient of two such as 1/255. */
 bool value_quotient(const char *text, double *out);
 

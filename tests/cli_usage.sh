@@ -42,7 +42,9 @@ help serve|serve is not built yet
 info --perspective x|no option of info
 --depth d.npy x|--depth is not built yet
 --iso 3 x|--iso is not built yet
---memory 1G x|--memory is not built yet
+--memory lots x -o y.png|--memory: 'lots' is no amount of memory
+--memory 0 x -o y.png|--memory: '0' is no amount
+--memory 1.5Q x -o y.png|is no amount of memory
 --tf f x|--tf is not built yet
 --log x|--log is not built yet
 --labels 1 x|--labels is not built yet
