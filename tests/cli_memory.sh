@@ -3,33 +3,33 @@
 # what turns out to be too large where it would go over; both with code 5.
 . "$(dirname "$0")/support_shell.sh"
 
-"$TOOL" phantom head --dims 100x100x100 -q -o a.nrrd
+"$TOOL" phantom head --dims 160x160x160 -q -o a.nrrd
 small=(-s 64x64 --preset linear)
-for size in 20M 20000K 0.02G 20MB 20MiB 20000000; do
+for size in 30M 30000K 0.03G 30MB 30MiB 30000000; do
     run 0 "a picture within $size" "$TOOL" render -q a.nrrd "${small[@]}" \
         -o "a$size.png" --memory $size --stats "a$size.json"
 done
 check "holds to it" python3 -c '
 import json
-assert json.load(open("a20M.json"))["bytes"]["peak"] <= 20 << 20'
+assert json.load(open("a30M.json"))["bytes"]["peak"] <= 30 << 20'
 run 0 "a picture without limit" "$TOOL" render a.nrrd "${small[@]}" -v -o b.png
-says 'memory: at least 1.0 MiB, about [0-9.]+ MiB if all voxels are interest'
-check "is the same" cmp a20M.png b.png
+says 'memory: at least 4.0 MiB, about [0-9.]+ MiB if all voxels are interest'
+check "is the same" cmp a30M.png b.png
 
 refused 5 "voxels over the limit" \
-    'a.nrrd: voxels and picture need 1.0 MiB, over the --memory of 900.0 KiB' \
-    "$TOOL" render a.nrrd "${small[@]}" -o c.png --memory 900K
-refused 5 "a picture over the limit" 'need 17.0 MiB' \
-    "$TOOL" render a.nrrd -s 1024x1024 -o c.png --memory 2M
+    'a.nrrd: voxels and picture need 4.0 MiB, over the --memory of 3.8 MiB' \
+    "$TOOL" render a.nrrd "${small[@]}" -o c.png --memory 3900K
+refused 5 "a picture over the limit" 'need 19.9 MiB' \
+    "$TOOL" render a.nrrd -s 1024x1024 -o c.png --memory 6M
 refused 5 "encodings over the limit" 'under a limit' \
-    "$TOOL" render a.nrrd "${small[@]}" -q -o c.png --memory 1300K
+    "$TOOL" render a.nrrd "${small[@]}" -q -o c.png --memory 4200K
 refused 5 "standard input" 'under a limit' bash -c \
-    "'$TOOL' render - -o c.png --memory 500K <a.nrrd"
-refused 5 "a turntable" 'need 1.0 MiB' "$TOOL" turntable a.nrrd \
-    "${small[@]}" --frames 3 -o 'f_%d.png' --memory 900K
+    "'$TOOL' render - -o c.png --memory 3000K <a.nrrd"
+refused 5 "a turntable" 'need 4.0 MiB' "$TOOL" turntable a.nrrd \
+    "${small[@]}" --frames 3 -o 'f_%d.png' --memory 3900K
 check "nothing is left" test ! -e c.png -a ! -e f_0.png
 run 0 "a box of it fits" "$TOOL" render -q a.nrrd "${small[@]}" -o d.png \
-    --memory 1030K --crop 40:70,40:70,40:70
+    --memory 3900K --crop 40:70,40:70,40:70
 # What a huge volume needs is told though no machine has it.
 refused 5 "a volume beyond all machines" 'need 116.4 TiB' \
     "$TOOL" render phantom:cube --dims 40000x40000x80000 -o c.png --memory 8G
