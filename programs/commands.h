@@ -12,6 +12,7 @@ int cmd_info(const options *asked);
 int cmd_phantom(const options *asked);
 int cmd_compare(const options *asked);
 int cmd_doctor(const options *asked);
+int cmd_tf(const options *asked);
 
 /* What an input is called when it is spoken of: its path, or "standard input"
  * for "-". */
@@ -25,6 +26,11 @@ snow_look look_options(const options *asked);
  * standard input.  Answers GO_ON or an exit code. */
 int open_input(snow_context *context, const options *asked, const char *path,
                snow_volume **out);
+
+/* Reads the file of --tf, if that is there, into the options; and frees it.
+ * Answers GO_ON or an exit code. */
+int look_load(options *asked);
+void look_unload(options *asked);
 
 /* Refuses look options that contradict each other: asked before a volume is
  * read.  Answers GO_ON or an exit code. */

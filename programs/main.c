@@ -54,11 +54,19 @@ static int run_verb(const verb_row *verb, const options *asked) {
         return cmd_phantom(asked);
     case VERB_COMPARE:
         return cmd_compare(asked);
+    case VERB_TF:
+        return cmd_tf(asked);
     case VERB_DOCTOR:
         return cmd_doctor(asked);
     default:
         return run_help(asked);
     }
+}
+
+/* Verbs that render are for all ranks; any other is for one, and the others
+ * learn its exit code. */
+static bool is_for_all(const verb_row *verb) {
+    return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
 }
 
 /* `named` tells a verb that was written from the one that is understood. */
@@ -76,21 +84,22 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
         return help_print(asked.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
     done = config_check(&asked);
-    if (done != GO_ON)
+    if (done == GO_ON)
+        done = look_load(&asked); /* on every rank: it is small */
+    if (is_for_all(verb))
+        done = launch_agree(done);
+    if (done != GO_ON) {
+        look_unload(&asked);
         return done;
+    }
     double begin = seconds_now();
     done = run_verb(verb, &asked);
     if (done == SNOW_OK)
         done = config_save(&asked);
+    look_unload(&asked);
     if (asked.verbosity > 0 && verb->bit != VERB_RENDER) /* it tells more */
         say("seconds: total %.3f", seconds_now() - begin);
     return done;
-}
-
-/* Verbs that render are for all ranks; any other is for one, and the others
- * learn its exit code. */
-static bool is_for_all(const verb_row *verb) {
-    return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
 }
 
 static int run_bench(int argc, char **argv) {

@@ -247,9 +247,9 @@ void scene_choices(const scene *s, char *out, size_t size) {
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
     char volume[256];
     describe_volume(&s->whole, volume, sizeof volume);
-    snprintf(out, size, "%s: %s; %s; view %s; method %s%s%s",
+    snprintf(out, size, "%s: %s; %s; opacity per %s; view %s; method %s%s%s",
              name_of_input(s->path), volume, snow_transfer_text(s->transfer),
-             view, snow_method_name(s->stats.method),
-             encoded ? ", encoding " : "",
+             s->settings.opacity_length > 0 ? "mm" : "voxel", view,
+             snow_method_name(s->stats.method), encoded ? ", encoding " : "",
              encoded ? snow_encoding_name(s->stats.encoding) : "");
 }
