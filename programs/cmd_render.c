@@ -70,6 +70,13 @@ static int check_paths(snow_context *context, const options *asked) {
                         : GO_ON;
 }
 
+/* A file may say of what its opacities are; the command line counts more. */
+static bool is_per_mm(const options *asked) {
+    if (asked->loaded && !options_told(asked, "opacity-unit"))
+        return snow_tf_points(asked->loaded)->per_mm;
+    return strcmp(asked->opacity_unit, "mm") == 0;
+}
+
 /* A millimetre in the units of the volume's world. */
 static int opacity_length(const options *asked, const snow_volume_info *info,
                           double *out) {
@@ -79,7 +86,7 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
     } units[] = {{"", 1},     {"mm", 1},   {"um", 1e3},
                  {"nm", 1e6}, {"m", 1e-3}, {"angstrom", 1e7}};
     *out = 0;
-    if (strcmp(asked->opacity_unit, "mm") != 0)
+    if (!is_per_mm(asked))
         return GO_ON;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(units[i].unit, info->unit) == 0)

@@ -13,6 +13,7 @@ int cmd_phantom(const options *asked);
 int cmd_convert(const options *asked);
 int cmd_compare(const options *asked);
 int cmd_doctor(const options *asked);
+int cmd_tf(const options *asked);
 
 /* What an input is called when it is spoken of: its path, or "standard input"
  * for "-". */
@@ -31,6 +32,11 @@ int open_input(snow_context *context, const options *asked, const char *path,
  * exit code. */
 int save_volume(snow_context *context, const options *asked,
                 const snow_volume *volume);
+
+/* Reads the file of --tf, if that is there, into the options; and frees it.
+ * Answers GO_ON or an exit code. */
+int look_load(options *asked);
+void look_unload(options *asked);
 
 /* Refuses look options that contradict each other: asked before a volume is
  * read.  Answers GO_ON or an exit code. */

@@ -87,6 +87,10 @@ static bool gives_way(const options *out, const char *key) {
         return options_told(out, "position");
     if (strcmp(key, "position") == 0)
         return options_told(out, "view");
+    if (strcmp(key, "tf") == 0)
+        return options_told(out, "preset");
+    if (strcmp(key, "preset") == 0)
+        return options_told(out, "tf");
     return (strcmp(key, "window") == 0 || strcmp(key, "level") == 0) &&
            options_told(out, "range");
 }
@@ -173,6 +177,8 @@ static void fill_data(const options *asked, snow_recipe *out) {
 static void fill_look(const options *asked, snow_recipe *out) {
     out->preset = asked->preset;
     out->colormap = asked->colormap;
+    out->tf = asked->tf;
+    out->log = asked->log;
     out->range = asked->range.kind;
     out->low = asked->range.low;
     out->high = asked->range.high;

@@ -41,12 +41,35 @@ int open_input(snow_context *context, const options *asked, const char *path,
 
 /* --window and --level are the radiologists' way to give a range, and mean
  * nothing alone. */
+int look_load(options *asked) {
+    if (!asked->tf)
+        return GO_ON;
+    int done = open_context(asked, &asked->tf_context);
+    if (done != GO_ON)
+        return done;
+    snow_status status =
+        snow_tf_load(asked->tf_context, asked->tf, &asked->loaded);
+    if (status != SNOW_OK)
+        done = fail_status(asked->tf_context, status);
+    return done;
+}
+
+void look_unload(options *asked) {
+    snow_tf_free(asked->loaded);
+    snow_context_free(asked->tf_context);
+    asked->loaded = NULL;
+    asked->tf_context = NULL;
+}
+
 int check_look(const options *asked) {
     bool window = !isnan(asked->window), level = !isnan(asked->level);
     if (window != level)
         return fail_usage("--%s: needs --%s beside it",
                           window ? "window" : "level",
                           window ? "level" : "window");
+    if (asked->tf && asked->preset)
+        return fail_usage("--tf: stands in the place of --preset; give one of "
+                          "them");
     if (window && asked->range.kind != SNOW_RANGE_AUTO)
         return fail_usage("--window: does not go with --range; give one of "
                           "them");
@@ -58,10 +81,13 @@ snow_look look_options(const options *asked) {
                       .colormap = asked->colormap,
                       .range = asked->range.kind,
                       .low = asked->range.low,
-                      .high = asked->range.high};
+                      .high = asked->range.high,
+                      .log = asked->log,
+                      .points =
+                          asked->loaded ? snow_tf_points(asked->loaded) : NULL};
     /* Grey over all values, as people know such pictures. */
     if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0 &&
-        !look.preset)
+        !look.preset && !look.points)
         look.preset = "linear";
     if (!isnan(asked->window)) { /* another way to write a range */
         look.range = SNOW_RANGE_VALUES;

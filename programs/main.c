@@ -56,6 +56,8 @@ static int run_verb(const verb_row *verb, const options *asked) {
         return cmd_convert(asked);
     case VERB_COMPARE:
         return cmd_compare(asked);
+    case VERB_TF:
+        return cmd_tf(asked);
     case VERB_DOCTOR:
         return cmd_doctor(asked);
     default:
@@ -86,12 +88,19 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
     if (launch_ranks() > 1 && is_for_all(verb))
         snow_comm_set_timeout(launch_comm(), asked.timeout);
     done = config_check(&asked);
-    if (done != GO_ON)
+    if (done == GO_ON)
+        done = look_load(&asked); /* on every rank: it is small */
+    if (is_for_all(verb))
+        done = launch_agree(done);
+    if (done != GO_ON) {
+        look_unload(&asked);
         return done;
+    }
     double begin = seconds_now();
     done = run_verb(verb, &asked);
     if (done == SNOW_OK)
         done = config_save(&asked);
+    look_unload(&asked);
     if (asked.verbosity > 0 && verb->bit != VERB_RENDER) /* it tells more */
         say("seconds: total %.3f", seconds_now() - begin);
     return done;

@@ -26,15 +26,16 @@ enum {
     COMPARE = VERB_COMPARE,
     DOCTOR = VERB_DOCTOR,
     CONVERT = VERB_CONVERT,
+    TF = VERB_TF,
     LOOKED = RENDER | VERB_INFO, /* a volume with a look */
     INPUT = LOOKED | CONVERT,    /* all that read one */
-    EVERY = INPUT | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR |
-            VERB_HELP
+    EVERY = INPUT | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR | VERB_HELP | TF
 };
 
 /* clang-format off */
 const option_row option_table[] = {
-    {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT, read_text,
+    {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
+     read_text,
      FIELD(output), 0, 0, "",
      "where to write: .png .npy .pfm, or - for a PNG on standard output; a "
      "movie: .mp4 .webm .gif, or frames by a pattern such as f_%04d.png; a "
@@ -47,7 +48,8 @@ const option_row option_table[] = {
      "it stays transparent, a movie black)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
      "", "bits a channel of the PNG (8)"},
-    {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT, read_flag,
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
+     read_flag,
      FIELD(overwrite), 0, 0, "",
      "replace files that exist, of --output and --stats (they are kept)"},
     LATER("depth", 0, "FILE", TOPIC_OUTPUT, "leave it out"),
@@ -96,7 +98,8 @@ const option_row option_table[] = {
     {"range", 0, "LO,HI|pLO,pHI|full", TOPIC_LOOK, INPUT, read_range,
      FIELD(range), 0, 0, "",
      "data values, percentiles of the finite voxels, or all that the look "
-     "spreads over (chosen from the histogram)"},
+     "spreads over (chosen from the histogram, or the preset's and file's "
+     "own)"},
     {"opacity-unit", 0, "voxel|mm", TOPIC_LOOK, RENDER, read_choice,
      FIELD(opacity_unit), 0, 0, "",
      "the length that an opacity is for: the smallest voxel spacing or a "
@@ -113,10 +116,13 @@ const option_row option_table[] = {
      "", "share of specular light (0.2)"},
     {"shininess", 0, "N", TOPIC_LOOK, RENDER, read_real, FIELD(shininess), 0,
      1000, "", "exponent of the specular light (20)"},
-    LATER("tf", 0, "FILE", TOPIC_LOOK, "give --preset, --colormap and "
-          "--opacity"),
-    LATER("log", 0, NULL, TOPIC_LOOK, "give --range or --opacity over the low "
-          "values"),
+    {"tf", 0, "FILE", TOPIC_LOOK, LOOKED, read_text, FIELD(tf), 0, 0, "",
+     "a transfer function from a file, in the place of a preset: ours (.json), "
+     "3D Slicer's .vp or .xml, ParaView's or niivue's .json, Amrvis' .pal, "
+     ".csv; FILE#NAME is one of several"},
+    {"log", 0, NULL, TOPIC_LOOK, LOOKED, read_flag, FIELD(log), 0, 0, "",
+     "spread values and join points by their logarithms; values of 0 and below "
+     "are transparent"},
 
     {"quality", 0, "draft|normal|high", TOPIC_QUALITY, RENDER, read_choice,
      FIELD(quality), 0, 0, "", "of the sheared method: one intermediate pixel "
@@ -241,7 +247,7 @@ const option_row option_table[] = {
      1e9, "", "the longest that ranks wait for one that neither sends nor waits "
      "itself; then the job ends and names it; 0: for ever (300)"},
 
-    {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR, read_flag,
+    {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR | TF, read_flag,
      FIELD(json), 0, 0, "", "write one JSON object"},
     {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
      "moves what is random in a phantom (0)"},
@@ -273,7 +279,8 @@ const verb_row verb_table[] = {
      "the paper's tables, measured; how fast pictures are made"},
     {"doctor", VERB_DOCTOR, 0, "[--json]", "what this build and machine can do"},
     {"help", VERB_HELP, -1, "[TOPIC|VERB]", "help on a topic or a verb"},
-    {"tf", 0, 0, "", "snowglass help look lists presets and colour maps"},
+    {"tf", VERB_TF, -1, "list | show NAME|FILE [-o OUT.png] | convert IN -o OUT",
+     "transfer functions: presets, colour maps, files of other programs"},
     {"serve", 0, 0, "", "render writes pictures"},
     {.name = NULL},
 };

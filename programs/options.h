@@ -9,6 +9,7 @@
 #include "values.h"
 
 #include <snowglass/snowglass.h>
+#include <snowglass/tf.h>
 
 /* Exit code of a run that was interrupted; all others are a snow_status. */
 #define EXIT_INTERRUPTED 130
@@ -26,7 +27,8 @@ enum {
     VERB_HELP = 1 << 6,
     VERB_TURNTABLE = 1 << 7,
     VERB_MOVIE = 1 << 8,
-    VERB_CONVERT = 1 << 9
+    VERB_CONVERT = 1 << 9,
+    VERB_TF = 1 << 10
 };
 
 typedef enum topic {
@@ -65,6 +67,10 @@ typedef struct options {
 
     const char *mode;
     const char *colormap, *preset; /* NULL: automatic */
+    const char *tf;                /* a file; NULL: none */
+    snow_tf *loaded;               /* what it holds, from look_load on */
+    snow_context *tf_context;      /* that it lies in */
+    bool log;
     point_list opacities, gradient_opacities;
     double window, level; /* NaN: not told */
     range_value range;

@@ -80,11 +80,17 @@ int check_stats_path(const char *path, bool overwrite) {
     return GO_ON;
 }
 
-/* Flushes too, so that an error shows here and not in fclose. */
-static int dump_json(json_t *object, FILE *file) {
-    bool good = json_dumpf(object, file, JSON_FORM) == 0;
-    good = good && fputc('\n', file) != EOF && fflush(file) == 0;
-    return good ? 0 : -1;
+/* A text and where it ends. */
+typedef struct text_bytes {
+    const char *bytes;
+    size_t count;
+} text_bytes;
+
+static int dump_text(text_bytes text, FILE *file) {
+    return fwrite(text.bytes, 1, text.count, file) == text.count &&
+                   fflush(file) == 0
+               ? 0
+               : -1;
 }
 
 /* Opens a new file beside `path`, where a rename stays within one file system,
@@ -159,13 +165,13 @@ int place_output(const char *aside, const char *path, bool overwrite) {
 }
 
 /* A link stays one: what it points to is replaced. */
-static int write_aside(json_t *object, const char *told, bool overwrite) {
+static int write_aside(text_bytes text, const char *told, bool overwrite) {
     char resolved[PATH_MAX], aside[PATH_MAX];
     const char *path = realpath(told, resolved) ? resolved : told;
     FILE *file = open_aside(path, aside, sizeof aside);
     if (!file)
         return -1;
-    int done = dump_json(object, file);
+    int done = dump_text(text, file);
     if (done == 0 && fsync(fileno(file)) != 0 && errno != EINVAL)
         done = -1;
     if (fclose(file) != 0 || done != 0 || place(aside, path, overwrite) != 0) {
@@ -179,11 +185,11 @@ static int write_aside(json_t *object, const char *told, bool overwrite) {
 }
 
 /* For pipes and devices, which a rename would replace by a plain file. */
-static int write_through(json_t *object, const char *path) {
+static int write_through(text_bytes text, const char *path) {
     FILE *file = fopen(path, "w");
     if (!file)
         return -1;
-    int done = dump_json(object, file);
+    int done = dump_text(text, file);
     int reason = errno;
     if (fclose(file) != 0)
         return -1;
@@ -191,18 +197,37 @@ static int write_through(json_t *object, const char *path) {
     return done;
 }
 
-int write_json(json_t *object, const char *path, bool overwrite) {
-    if (strcmp(path, "-") == 0)
-        return print_json(object);
-    bool special = is_special(path);
+int write_text(const char *bytes, size_t count, const char *path,
+               bool overwrite) {
+    const text_bytes text = {bytes, count};
     errno = 0;
-    int done = special ? write_through(object, path)
-                       : write_aside(object, path, overwrite);
-    json_decref(object);
+    if (strcmp(path, "-") == 0)
+        return dump_text(text, stdout) == 0
+                   ? finish_stdout()
+                   : fail_output("standard output: cannot be written");
+    int done = is_special(path) ? write_through(text, path)
+                                : write_aside(text, path, overwrite);
     if (done == 0)
         return SNOW_OK;
     if (errno == EEXIST)
         return fail_existing(path);
     return fail_output("%s: %s; choose a place that can be written", path,
                        errno ? strerror(errno) : "cannot be written");
+}
+
+int write_json(json_t *object, const char *path, bool overwrite) {
+    if (strcmp(path, "-") == 0)
+        return print_json(object);
+    size_t room = json_dumpb(object, NULL, 0, JSON_FORM);
+    char *text = room ? malloc(room + 1) : NULL;
+    if (text)
+        json_dumpb(object, text, room, JSON_FORM);
+    json_decref(object);
+    if (!text)
+        return fail_output("%s: no memory for its text; close other programs",
+                           path);
+    text[room] = '\n';
+    int done = write_text(text, room + 1, path, overwrite);
+    free(text);
+    return done;
 }

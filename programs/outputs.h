@@ -22,6 +22,10 @@ int check_stats_path(const char *path, bool overwrite);
  * plain file; "-" is standard output.  Frees it.  Answers an exit code. */
 int write_json(json_t *object, const char *path, bool overwrite);
 
+/* The same of any text. */
+int write_text(const char *bytes, size_t count, const char *path,
+               bool overwrite);
+
 /* Where the last part of a path begins. */
 size_t folder_length(const char *path);
 

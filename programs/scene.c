@@ -260,8 +260,12 @@ void scene_choices(const scene *s, char *out, size_t size) {
     char volume[256];
     describe_volume(&s->whole, volume, sizeof volume);
     bool over = s->settings.mode == SNOW_MODE_OVER;
-    snprintf(out, size, "%s: %s; %s; view %s; %s%s%smethod %s%s%s",
+    snprintf(out, size, "%s: %s; %s%s%s; view %s; %s%s%smethod %s%s%s",
              name_of_input(s->path), volume, snow_transfer_text(s->transfer),
+             over ? "; opacity per " : "",
+             !over                            ? ""
+             : s->settings.opacity_length > 0 ? "mm"
+                                              : "voxel",
              view, over ? "" : "mode ",
              over ? "" : snow_mode_name(s->settings.mode),
              over                        ? ""

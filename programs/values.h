@@ -8,7 +8,7 @@
 #include <snowglass/snowglass.h>
 
 /* Room for the end of an error message, see options.h. */
-#define WRONG_BYTES 256
+#define WRONG_BYTES 1024
 
 #define POINTS_MAX 256
 

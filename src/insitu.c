@@ -74,6 +74,7 @@ void snow_insitu_free(snow_insitu *insitu) {
     snow_release(context, insitu->bricks);
     snow_release(context, insitu->look.opacities);
     snow_release(context, insitu->look.gradients);
+    snow_release(context, insitu->look.point_block);
     snow_release(context, insitu->pattern);
     snow_release(context, insitu);
     if (owns_comm)
@@ -306,6 +307,30 @@ static snow_status keep_points(snow_insitu *insitu,
     return SNOW_OK;
 }
 
+/* The points of a file or the like, and all that they hold, in one block. */
+static snow_status keep_form(snow_insitu *insitu, const snow_points *points,
+                             snow_own_look *own) {
+    size_t colors = points->color_count * sizeof *points->colors;
+    size_t opacities = points->opacity_count * sizeof *points->opacities;
+    size_t gradients = points->gradient_count * sizeof *points->gradients;
+    SNOW_TRY(answer(insitu, snow_reserve(insitu->context, &own->point_block,
+                                         &own->point_bytes, 0,
+                                         colors + opacities + gradients)));
+    char *block = own->point_block;
+    own->points = *points;
+    own->points.name = keep_name(points->name, own->name);
+    own->points.colors = (void *)block;
+    own->points.opacities = (void *)(block + colors);
+    own->points.gradients = (void *)(block + colors + opacities);
+    if (colors)
+        memcpy(block, points->colors, colors);
+    if (opacities)
+        memcpy(block + colors, points->opacities, opacities);
+    if (gradients)
+        memcpy(block + colors + opacities, points->gradients, gradients);
+    return SNOW_OK;
+}
+
 snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
     snow_own_look *own = &insitu->look;
     if ((look->preset && snow_preset_named(look->preset) < 0) ||
@@ -321,7 +346,10 @@ snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
     SNOW_TRY(keep_points(insitu, look->gradient_opacities,
                          look->gradient_opacity_count, &own->gradients,
                          &own->gradient_bytes, &gradients));
+    if (look->points)
+        SNOW_TRY(keep_form(insitu, look->points, own));
     own->look = *look;
+    own->look.points = look->points ? &own->points : NULL;
     own->look.preset = keep_name(look->preset, own->preset);
     own->look.colormap = keep_name(look->colormap, own->colormap);
     own->look.opacities = opacities;

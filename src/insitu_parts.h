@@ -23,7 +23,10 @@ typedef struct snow_insitu_brick {
 /* A look with its texts and points, which live as long as it. */
 typedef struct snow_own_look {
     snow_look look;
-    char preset[64], colormap[64];
+    snow_points points; /* of the look, over the block */
+    void *point_block;
+    size_t point_bytes;
+    char preset[64], colormap[64], name[64];
     snow_opacity_point *opacities, *gradients;
     size_t opacity_bytes, gradient_bytes;
 } snow_own_look;

@@ -30,7 +30,6 @@ phantom cube -o x.txt|x.txt
 turntable -o y.mp4|give snowglass turntable INPUT -o OUT
 turntable x y -o y.mp4|one word too many for turntable
 convert a b|one word too many for convert
-tf list|tf is not built yet
 serve x|serve is not built yet
 help serve|serve is not built yet
 --perspective=wide x -o y.png|--perspective: 'wide' is out of range; give a decimal number from 0.001 to 120
@@ -45,8 +44,6 @@ info --perspective x|no option of info
 --memory lots x -o y.png|--memory: 'lots' is no amount of memory
 --memory 0 x -o y.png|--memory: '0' is no amount
 --memory 1.5Q x -o y.png|is no amount of memory
---tf f x|--tf is not built yet
---log x|--log is not built yet
 --labels 1 x|--labels is not built yet
 --mask m x|--mask is not built yet
 --azim 10 x|--azim: unknown option; did you mean --azimuth
@@ -126,7 +123,7 @@ turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
 --offset -1 x|whole number from 0
 --offset 99999999999999999999 x|whole number from 0
 --time -1 x|whole number
---preset toast x|--preset: 'toast' is unknown; choose from: linear, ct-bone
+--preset toast x|--preset: 'toast' is unknown; choose from: linear, ct-aaa
 --colormap beige x|--colormap: 'beige' is unknown; choose from: grey, viridis
 --view upside x|--view: 'upside' is unknown; choose from: anterior, .*-z
 --view '' x|--view: '' is unknown

@@ -373,7 +373,7 @@ static void quantiles_are_those_of_sorted_values(void **state) {
     const double shares[4] = {0, 0.01, 0.5, 1};
     double found[4];
     snow_census census;
-    assert_int_equal(snow_census_new(volume, NULL, &census), SNOW_OK);
+    assert_int_equal(snow_census_new(volume, NULL, false, &census), SNOW_OK);
     assert_int_equal(snow_quantiles(&census, SNOW_EXACT, shares, 4, found),
                      SNOW_OK);
     snow_census_free(&census);
@@ -457,8 +457,8 @@ static void slope_and_intercept_count(void **state) {
 static void presets_and_maps_are_listed_and_all_work(void **state) {
     (void)state;
     const int16_t values[] = {-1000, -50, 40, 300, 1200, 40, 40, -1000};
-    static const char *const presets[] = {"linear", "ct-bone", "ct-soft",
-                                          "mr-default"};
+    static const char *const presets[] = {"linear", "ct-aaa", "ct-aaa2",
+                                          "ct-bone"};
     static const char *const maps[] = {"grey", "viridis", "inferno",
                                        "cool-warm", "turbo"};
     snow_context *context = support_context();
@@ -697,7 +697,35 @@ static void names_are_free_in_case_and_dashes(void **state) {
                      snow_preset_named("ct-bone"));
     assert_int_equal(snow_preset_named("ctbone"), snow_preset_named("ct-bone"));
     assert_int_equal(snow_preset_named("ct-bon"), -1);
-    assert_int_equal(snow_preset_named("ct-bones"), -1);
+    assert_int_equal(snow_preset_named("ct-boness"), -1);
+    /* As users of other viewers write them. */
+    static const char *const known[] = {"CT-AAA",
+                                        "CT-AAA2",
+                                        "CT-Bone",
+                                        "CT-Bones",
+                                        "CT-Cardiac",
+                                        "CT-Cardiac2",
+                                        "CT-Cardiac3",
+                                        "CT-Chest-Contrast-Enhanced",
+                                        "CT-Chest-Vessels",
+                                        "CT-Coronary-Arteries",
+                                        "CT-Coronary-Arteries-2",
+                                        "CT-Coronary-Arteries-3",
+                                        "CT-Cropped-Volume-Bone",
+                                        "CT-Fat",
+                                        "CT-Liver-Vasculature",
+                                        "CT-Lung",
+                                        "CT-MIP",
+                                        "CT-Muscle",
+                                        "CT-Pulmonary-Arteries",
+                                        "CT-Soft-Tissue",
+                                        "MR-Angio",
+                                        "MR-Default",
+                                        "MR-MIP",
+                                        "MR-T2-Brain",
+                                        "DTI-FA-Brain"};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        assert_true(snow_preset_named(known[i]) >= 0);
     assert_int_equal(snow_preset_named("ct bone"), -1);
     assert_int_equal(snow_colormap_named(""), -1);
     assert_int_equal(snow_colormap_named("-grey"), -1);

@@ -53,6 +53,8 @@ typedef struct snow_recipe {
     void *owned;              /* what texts lie in; NULL: the caller's */
     size_t gradient_opacity_count; /* of the look; 0: none */
     snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS];
+    const char *tf; /* a file that stands for a preset (tf.h), or NULL */
+    bool log;       /* as in snow_look */
 } snow_recipe;
 
 /* The defaults. */
@@ -77,7 +79,8 @@ SNOW_API snow_status snow_recipe_write(snow_context *context,
                                        const snow_recipe *recipe, char *text,
                                        size_t room, size_t *length);
 
-/* The look, whose texts and points are the recipe's; the view, for which
+/* The look, whose texts and points are the recipe's, but for those of the file
+ * `tf`, which the caller loads (snow_recipe_apply does); the view, for which
  * `usual` stands in where the recipe names none; the settings for a volume, in
  * whose unit of length opacities per millimetre are told.  Errors:
  * SNOW_BAD_USAGE (no such view; a unit that is no length). */

@@ -74,6 +74,31 @@ typedef enum snow_range_kind {
     SNOW_RANGE_PERCENTILES /* low to high, percent of the finite voxels */
 } snow_range_kind;
 
+/* What the values of control points mean. */
+typedef enum snow_point_values {
+    SNOW_VALUES_DATA = 0, /* data values */
+    SNOW_VALUES_RANGE,    /* shares, 0 to 1, from the smallest value to the
+                             largest */
+    SNOW_VALUES_OBJECT    /* shares from the background's end to the brightest,
+                             both read from the histogram */
+} snow_point_values;
+
+/* A transfer function as data, before there is a volume: what presets are, and
+ * what files hold.  Points as in snow_transfer_new, or none: then the histogram
+ * says. */
+typedef struct snow_points {
+    const char *name; /* for people */
+    snow_point_values values;
+    bool log;    /* points are joined by the logarithm of values */
+    bool per_mm; /* opacities are of a millimetre; false: of a voxel */
+    const snow_color_point *colors;
+    size_t color_count;
+    const snow_opacity_point *opacities;
+    size_t opacity_count;
+    const snow_opacity_point *gradients; /* as gradient_opacities below */
+    size_t gradient_count;
+} snow_points;
+
 /* What a user asks of a look.  Zero everywhere: chosen from the histogram. */
 typedef struct snow_look {
     const char *preset;   /* "linear", "ct-bone", ...; NULL: automatic */
@@ -86,13 +111,16 @@ typedef struct snow_look {
      * NULL: none. */
     const snow_opacity_point *gradient_opacities;
     size_t gradient_opacity_count;
+    const snow_points *points; /* stand for a preset; NULL: none */
+    bool log; /* values are spread, and points joined, by their logarithms;
+                 what is not above 0 is transparent */
 } snow_look;
 
 /* The transfer function that `look` asks for on `volume`.  A preset in data
  * units (ct-*) keeps its values unless a range is given, over which it is then
- * spread.  The result depends on the volume's values only, and is the same on
- * every machine.  Errors: SNOW_BAD_USAGE (unknown name, bad points; the
- * message lists the names), SNOW_NO_MEMORY. */
+ * spread, and its gradient opacity with it.  The result depends on the volume's
+ * values only, and is the same on every machine.  Errors: SNOW_BAD_USAGE
+ * (unknown name, bad points; the message lists the names), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_transfer_make(const snow_volume *volume,
                                         const snow_look *look,
                                         snow_transfer **out);
@@ -127,6 +155,15 @@ SNOW_API snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
 SNOW_API const char *snow_preset_name(size_t index);
 SNOW_API const char *snow_preset_text(size_t index);
 SNOW_API const char *snow_colormap_name(size_t index);
+
+/* A preset as data, which live as long as the program; NULL past the end. */
+SNOW_API const snow_points *snow_preset_points(size_t index);
+
+/* The control points of a colour map, for values of 0 to 1: into `room` points,
+ * SNOW_COLORMAP_POINTS suffice.  How many there are; 0 past the end. */
+#define SNOW_COLORMAP_POINTS 32
+SNOW_API size_t snow_colormap_points(size_t index, snow_color_point *points,
+                                     size_t room);
 
 /* The index of a name, -1 when there is none, to be asked before a volume is
  * read.  Wherever a look is named, letters may be of either case, and dashes

@@ -47,14 +47,6 @@ typedef struct split {
     double below, above; /* mean bin on each side */
 } split;
 
-double snow_between(double low, double high, double share) {
-    if (share >= 1)
-        return high;
-    double value = isfinite(high - low) ? low + share * (high - low)
-                                        : low * (1 - share) + high * share;
-    return value < high ? value : high;
-}
-
 /* Otsu's threshold in bins first..last-1: the greatest variance between the
  * two parts.  Where several cuts are equally good (a gap in the histogram) the
  * middle one is taken.  False when all counts are in one bin. */
@@ -93,8 +85,8 @@ static double share_of(const uint64_t *counts, int first, int last,
     return sum / (double)all;
 }
 
-static void read_counts(const uint64_t *counts, uint64_t all, double low,
-                        double high, snow_parting *out) {
+static void read_counts(const uint64_t *counts, uint64_t all, bool log,
+                        double low, double high, snow_parting *out) {
     split s = {0}, veil = {0};
     out->top = high;
     if (!part_bins(counts, 0, BINS, &s)) {
@@ -108,13 +100,13 @@ static void read_counts(const uint64_t *counts, uint64_t all, double low,
             break;
         s = upper;
     }
-    out->background = snow_between(low, high, s.below / BINS);
-    out->threshold = snow_between(low, high, s.at / BINS);
-    out->object = snow_between(low, high, s.above / BINS);
+    out->background = snow_between_on(log, low, high, s.below / BINS);
+    out->threshold = snow_between_on(log, low, high, s.at / BINS);
+    out->object = snow_between_on(log, low, high, s.above / BINS);
     if (share_of(counts, (int)s.at, BINS, all) > VEIL_OBJECT ||
         !part_bins(counts, 0, (int)s.at, &veil))
         return;
-    out->faint = snow_between(low, high, veil.at / BINS);
+    out->faint = snow_between_on(log, low, high, veil.at / BINS);
     out->with_faint =
         share_of(counts, (int)veil.at, (int)s.at, all) <= VEIL_MOST &&
         out->faint < out->threshold;
@@ -139,21 +131,9 @@ snow_status snow_part_histogram(const snow_census *census, snow_parting *out) {
     }
     uint64_t counts[BINS], all;
     SNOW_TRY(snow_count_bins(census, ends[0], ends[1], BINS, counts, &all));
-    read_counts(counts, all, ends[0], ends[1], &parting);
+    read_counts(counts, all, census->log, ends[0], ends[1], &parting);
     *out = parting;
     return SNOW_OK;
-}
-
-void snow_full_range(const snow_census *census, double *low, double *high) {
-    *low = census->finite ? census->min : 0;
-    *high = census->finite ? census->max : 1;
-    if (*low < *high)
-        return;
-    /* One value: what is above 0 shows, 0 and less is empty. */
-    if (*high > 0)
-        *low = 0;
-    else
-        *high = *low < 0 ? 0 : 1;
 }
 
 /* Appends a point, not below the one before it. */
@@ -173,29 +153,30 @@ static void draft_grey(snow_draft *draft, double low, double high) {
     draft->colors[1] = (snow_color_point){high, 1, 1, 1};
 }
 
-snow_status snow_draft_automatic(const snow_census *census, snow_draft *out) {
+snow_status snow_draft_automatic(const snow_census *census, snow_draft *draft) {
     snow_parting p;
     SNOW_TRY(snow_part_histogram(census, &p));
-    snow_draft draft = {.reason = "from the histogram"};
+    draft->reason = "from the histogram";
+    draft->opacity_count = 0;
     if (p.constant) {
         double low, high;
         snow_full_range(census, &low, &high);
-        draft_grey(&draft, low, high);
-        add_opacity(&draft, low, 0);
-        add_opacity(&draft, high, 0.8);
-        draft.reason = "one value only";
-        *out = draft;
+        draft_grey(draft, low, high);
+        add_opacity(draft, low, 0);
+        add_opacity(draft, high, 0.8);
+        draft->reason = "one value only";
         return SNOW_OK;
     }
-    double start =
-        p.with_faint ? p.faint : snow_between(p.background, p.threshold, 0.6);
-    add_opacity(&draft, start, 0);
+    double start = p.with_faint ? p.faint
+                                : snow_between_on(census->log, p.background,
+                                                  p.threshold, 0.6);
+    add_opacity(draft, start, 0);
     if (p.with_faint)
-        add_opacity(&draft, p.threshold, 0.05);
-    add_opacity(&draft, snow_between(p.threshold, p.object, 0.15), 0.25);
-    add_opacity(&draft, p.object, 0.4);
-    add_opacity(&draft, p.top, 0.8);
-    draft_grey(&draft, start, draft.opacities[draft.opacity_count - 1].value);
-    *out = draft;
+        add_opacity(draft, p.threshold, 0.05);
+    add_opacity(
+        draft, snow_between_on(census->log, p.threshold, p.object, 0.15), 0.25);
+    add_opacity(draft, p.object, 0.4);
+    add_opacity(draft, p.top, 0.8);
+    draft_grey(draft, start, draft->opacities[draft->opacity_count - 1].value);
     return SNOW_OK;
 }

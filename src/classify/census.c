@@ -26,6 +26,7 @@
  * volume, in runs that have no gap there. */
 typedef struct walk {
     const snow_volume *volume;
+    bool log;        /* what is not above 0 is made NaN */
     snow_window box; /* of the whole, in voxels */
     int64_t stored[3];
     int64_t runs, run; /* all; the next one */
@@ -34,10 +35,11 @@ typedef struct walk {
     uint64_t stride;   /* from one sampled block of the whole to the next */
 } walk;
 
-static walk walk_begin(const snow_volume *volume, snow_effort effort) {
+static walk walk_begin(const snow_volume *volume, bool log,
+                       snow_effort effort) {
     snow_part part;
     snow_volume_get_part(volume, &part);
-    walk w = {.volume = volume, .box = {.value = 1}};
+    walk w = {.volume = volume, .log = log, .box = {.value = 1}};
     memcpy(w.stored, part.stored, sizeof w.stored);
     memcpy(w.box.dims, part.dims, sizeof w.box.dims);
     memcpy(w.box.first, part.first, sizeof w.box.first);
@@ -80,6 +82,8 @@ static size_t next_block(walk *w, double values[BLOCK]) {
                                 (size_t)count, values);
             for (size_t i = 0; i < count; i++)
                 values[i] = info->slope * values[i] + info->intercept;
+            for (size_t i = 0; i < count && w->log; i++)
+                values[i] = values[i] > 0 ? values[i] : (double)NAN;
             w->at += count;
             return (size_t)count;
         }
@@ -129,7 +133,7 @@ static bool counted_type(snow_type type, int *smallest) {
 }
 
 static void count_natives(const snow_volume *volume, uint64_t *counts) {
-    walk w = walk_begin(volume, SNOW_EXACT);
+    walk w = walk_begin(volume, false, SNOW_EXACT);
 #define COUNT_TYPE(name, c_type, smallest)                          \
     case name: {                                                    \
         const c_type *voxels = volume->voxels;                      \
@@ -158,7 +162,7 @@ static uint64_t nth_value(const snow_census *census, int n, double *value) {
     int smallest, place = info->slope < 0 ? DIGITS - 1 - n : n;
     counted_type(info->type, &smallest);
     *value = info->slope * (place + smallest) + info->intercept;
-    return census->counts[place];
+    return census->log && !(*value > 0) ? 0 : census->counts[place];
 }
 
 static void measure_counts(snow_census *census) {
@@ -195,7 +199,7 @@ static double counted_quantile(const snow_census *census, uint64_t rank) {
 static void measure_values(snow_census *census) {
     double values[BLOCK];
     size_t count;
-    walk w = walk_begin(census->volume, SNOW_EXACT);
+    walk w = walk_begin(census->volume, census->log, SNOW_EXACT);
     while ((count = next_block(&w, values))) {
         for (size_t i = 0; i < count; i++) {
             double value = values[i];
@@ -249,9 +253,9 @@ static snow_status count_all(snow_census *census) {
 }
 
 snow_status snow_census_new(const snow_volume *volume, snow_comm *comm,
-                            snow_census *out) {
+                            bool log, snow_census *out) {
     snow_census census = {
-        .volume = volume, .comm = comm, .min = NAN, .max = NAN};
+        .volume = volume, .comm = comm, .min = NAN, .max = NAN, .log = log};
     int smallest;
     snow_status status;
     if (counted_type(volume->info.type, &smallest))
@@ -276,13 +280,10 @@ void snow_census_free(snow_census *census) {
 }
 
 /* Which bin a value falls into; -1 outside. */
-static int bin_of(double value, double low, double high, int bins) {
+static int bin_of(bool log, double value, double low, double high, int bins) {
     if (!(value >= low && value <= high))
         return -1;
-    /* Halves, where the range is more than a double can hold. */
-    double scale = isfinite(high - low) ? 1 : 0.5;
-    double share = (scale * value - scale * low) / (scale * high - scale * low);
-    int bin = (int)(share * bins);
+    int bin = (int)(snow_share_on(log, low, high, value) * bins);
     return bin < bins ? bin : bins - 1;
 }
 
@@ -290,10 +291,10 @@ static void count_sampled(const snow_census *census, double low, double high,
                           int bins, uint64_t *counts, uint64_t *all) {
     double values[BLOCK];
     size_t got;
-    walk w = walk_begin(census->volume, SNOW_SAMPLED);
+    walk w = walk_begin(census->volume, census->log, SNOW_SAMPLED);
     while ((got = next_block(&w, values)))
         for (size_t i = 0; i < got; i++) {
-            int bin = bin_of(values[i], low, high, bins);
+            int bin = bin_of(census->log, values[i], low, high, bins);
             *all += isfinite(values[i]) != 0;
             if (bin >= 0)
                 counts[bin]++;
@@ -312,7 +313,7 @@ snow_status snow_count_bins(const snow_census *census, double low, double high,
     for (int n = 0; n < DIGITS; n++) {
         double value;
         uint64_t count = nth_value(census, n, &value);
-        int bin = count ? bin_of(value, low, high, bins) : -1;
+        int bin = count ? bin_of(census->log, value, low, high, bins) : -1;
         if (bin >= 0)
             counts[bin] += count;
     }
@@ -346,14 +347,14 @@ typedef struct search {
 
 /* Counts the next digit of all values that begin as a search's prefix does;
  * returns how many values there are. */
-static uint64_t count_digits(const snow_volume *volume, snow_effort effort,
+static uint64_t count_digits(const snow_census *census, snow_effort effort,
                              search *searches, size_t count, int shift) {
     double values[BLOCK];
     uint64_t all = 0;
     uint64_t above =
         shift + DIGIT_BITS < 64 ? ~UINT64_C(0) << (shift + DIGIT_BITS) : 0;
     size_t got;
-    walk w = walk_begin(volume, effort);
+    walk w = walk_begin(census->volume, census->log, effort);
     while ((got = next_block(&w, values))) {
         for (size_t i = 0; i < got; i++) {
             if (!isfinite(values[i]))
@@ -389,8 +390,7 @@ static snow_status select_digits(const snow_census *census, snow_effort effort,
                                  search *searches, uint64_t *counts) {
     for (int shift = 64 - DIGIT_BITS; shift >= 0; shift -= DIGIT_BITS) {
         memset(counts, 0, count * DIGITS * sizeof *counts);
-        uint64_t all =
-            count_digits(census->volume, effort, searches, count, shift);
+        uint64_t all = count_digits(census, effort, searches, count, shift);
         SNOW_TRY(sum_up(census, &all, 1));
         for (size_t n = 0; n < count && all; n++) {
             SNOW_TRY(sum_up_table(census, searches[n].counts));

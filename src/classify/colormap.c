@@ -11,6 +11,7 @@
  *              visualization", ISVC 2009: computed by its formula from
  *              (59, 76, 192) to (180, 4, 38)
  *   hot        black over red and yellow to white, as matplotlib's
+ *   tab10      ten colours for categories, Tableau's of 2016 (matplotlib)
  * A new map is a table here and a line in `maps`. */
 #include "classify/look.h"
 
@@ -72,6 +73,14 @@ static const map_point cool_warm[] = {
     {348, 0xf8b395}, {393, 0xf39272}, {443, 0xe0644e}, {484, 0xc73734},
     {502, 0xba1b2a}, {508, 0xb50b27}, {510, 0xb40426}};
 
+/* Ten equal steps, which are not mixed. */
+static const map_point category[] = {
+    {0, 0x1f77b4},   {51, 0x1f77b4},  {51, 0xff7f0e},  {102, 0xff7f0e},
+    {102, 0x2ca02c}, {153, 0x2ca02c}, {153, 0xd62728}, {204, 0xd62728},
+    {204, 0x9467bd}, {255, 0x9467bd}, {255, 0x8c564b}, {306, 0x8c564b},
+    {306, 0xe377c2}, {357, 0xe377c2}, {357, 0x7f7f7f}, {408, 0x7f7f7f},
+    {408, 0xbcbd22}, {459, 0xbcbd22}, {459, 0x17becf}, {510, 0x17becf}};
+
 #define MAP(name, points) \
     { name, points, sizeof points / sizeof *points }
 
@@ -84,7 +93,7 @@ static const struct {
     MAP("inferno", inferno), MAP("cool-warm", cool_warm),
     MAP("turbo", turbo),     MAP("magma", magma),
     MAP("plasma", plasma),   MAP("cividis", cividis),
-    MAP("hot", hot),
+    MAP("hot", hot),         MAP("tab10", category),
 };
 
 static const size_t map_count = sizeof maps / sizeof *maps;
@@ -102,15 +111,26 @@ int snow_colormap_named(const char *name) {
     return -1;
 }
 
+size_t snow_colormap_points(size_t index, snow_color_point *points,
+                            size_t room) {
+    if (index >= map_count)
+        return 0;
+    size_t count = maps[index].count < room ? maps[index].count : room;
+    for (size_t i = 0; i < count; i++) {
+        const map_point *p = maps[index].points + i;
+        points[i] = (snow_color_point){
+            p->at / (double)MAP_END, (p->rgb >> 16) / 255.0,
+            (p->rgb >> 8 & 255) / 255.0, (p->rgb & 255) / 255.0};
+    }
+    return count;
+}
+
 void snow_draft_colormap(snow_draft *draft, int colormap, double low,
                          double high) {
     draft->name = maps[colormap].name;
-    draft->color_count = maps[colormap].count;
-    for (size_t i = 0; i < draft->color_count; i++) {
-        const map_point *p = maps[colormap].points + i;
-        draft->colors[i] = (snow_color_point){
-            snow_between(low, high, p->at / (double)MAP_END),
-            (p->rgb >> 16) / 255.0, (p->rgb >> 8 & 255) / 255.0,
-            (p->rgb & 255) / 255.0};
-    }
+    draft->color_count = snow_colormap_points((size_t)colormap, draft->colors,
+                                              SNOW_DRAFT_POINTS);
+    for (size_t i = 0; i < draft->color_count; i++)
+        draft->colors[i].value =
+            snow_between_on(draft->log, low, high, draft->colors[i].value);
 }

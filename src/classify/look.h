@@ -7,17 +7,23 @@
 #include "comm/comm.h"
 #include "volume/volume.h"
 
-#define SNOW_DRAFT_POINTS 32
+/* What drafts of our own need at most of each kind. */
+#define SNOW_DRAFT_POINTS SNOW_COLORMAP_POINTS
 
-/* A transfer function in the making. */
+/* A transfer function in the making, in data values.  The points have room for
+ * SNOW_DRAFT_POINTS, or as many as are drafted from. */
 typedef struct snow_draft {
     const char *name;   /* of the colours, for people */
     const char *reason; /* why these values, for people */
     double low, high;   /* the data values that it is spread over */
-    snow_color_point colors[SNOW_DRAFT_POINTS];
+    bool log;           /* spread, and to be joined, by logarithms */
+    snow_color_point *colors;
     size_t color_count;
-    snow_opacity_point opacities[SNOW_DRAFT_POINTS];
+    snow_opacity_point *opacities;
     size_t opacity_count;
+    snow_opacity_point *gradients;
+    size_t gradient_count;
+    void *block; /* that they lie in */
 } snow_draft;
 
 /* How often a volume's values occur: range, order statistics, histogram. */
@@ -30,6 +36,8 @@ typedef struct snow_census {
     uint64_t finite;
     double min, max; /* of finite data values; NaN when there is none */
     uint64_t at_min; /* how many have the smallest value */
+    bool log;        /* values that are not above 0 are left out, and histograms
+                        have bins that are equal in the logarithm */
 } snow_census;
 
 /* Counts the voxels that a volume answers for; with a communicator, which is
@@ -37,7 +45,7 @@ typedef struct snow_census {
  * that is asked of the census later.  Errors: SNOW_NO_MEMORY (on all ranks),
  * those of the transport.  Free with snow_census_free. */
 snow_status snow_census_new(const snow_volume *volume, snow_comm *comm,
-                            snow_census *out);
+                            bool log, snow_census *out);
 
 void snow_census_free(snow_census *census);
 
@@ -74,16 +82,15 @@ typedef struct snow_parting {
 snow_status snow_part_histogram(const snow_census *census, snow_parting *out);
 
 /* The look without any wish.  Errors: SNOW_NO_MEMORY. */
-snow_status snow_draft_automatic(const snow_census *census, snow_draft *out);
+snow_status snow_draft_automatic(const snow_census *census, snow_draft *draft);
 
-/* True when a preset's values are Hounsfield units. */
-bool snow_preset_is_hounsfield(int preset);
+/* The draft of points; where they lack colours or opacities, those that the
+ * draft has stay.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_draft_points(const snow_points *points,
+                              const snow_census *census, snow_draft *draft);
 
-/* The draft of a preset.  Errors: SNOW_NO_MEMORY. */
-snow_status snow_draft_preset(int preset, const snow_census *census,
-                              snow_draft *out);
-
-/* Smallest to largest finite value, made apart when they are one. */
+/* Smallest to largest finite value, made apart when they are one; on a
+ * logarithmic scale above 0. */
 void snow_full_range(const snow_census *census, double *low, double *high);
 
 /* snow_transfer_make for the whole of which the volumes of a communicator's
@@ -99,5 +106,10 @@ void snow_draft_colormap(snow_draft *draft, int colormap, double low,
 /* low + share * (high - low), for any finite ends: high itself from share 1 on,
  * and never falling as share grows, whatever the rounding. */
 double snow_between(double low, double high, double share);
+
+/* The same, on a logarithmic scale where `log` says so (0 < low < high), and
+ * back: which share of the way a value is. */
+double snow_between_on(bool log, double low, double high, double share);
+double snow_share_on(bool log, double low, double high, double value);
 
 #endif

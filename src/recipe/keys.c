@@ -551,6 +551,8 @@ const recipe_key recipe_keys[] = {
      NULL, NULL},
     KNOWN("preset", preset, preset_name, snow_preset_named),
     KNOWN("colormap", colormap, colormap_name, snow_colormap_named),
+    TEXT("tf", tf),
+    MADE("log", flag, log, 0, 0, 0),
     MADE("opacity", points, opacity_count, 0, 0, 0),
     MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),

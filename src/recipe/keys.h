@@ -8,7 +8,7 @@
 #include <snowglass/recipe.h>
 
 /* Room for the end of a message: "must be ...". */
-#define WRONG_BYTES 256
+#define WRONG_BYTES 1024
 
 typedef struct recipe_key recipe_key;
 

@@ -5,6 +5,8 @@
  * change it for the whole process. */
 #include "recipe/keys.h"
 
+#include <snowglass/tf.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -158,7 +160,8 @@ void snow_recipe_look(const snow_recipe *recipe, snow_look *out) {
                        .colormap = recipe->colormap,
                        .range = recipe->range,
                        .low = recipe->low,
-                       .high = recipe->high};
+                       .high = recipe->high,
+                       .log = recipe->log};
     if (recipe->opacity_count) {
         out->opacities = recipe->opacities;
         out->opacity_count = recipe->opacity_count;
@@ -236,14 +239,22 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
     snow_look look;
     snow_view usual, view;
     snow_settings settings;
+    snow_tf *tf = NULL;
     snow_recipe_look(recipe, &look);
     snow_status status = snow_view_named(context, "+z", &usual);
+    if (status == SNOW_OK && recipe->tf)
+        status = snow_tf_load(context, recipe->tf, &tf);
+    if (status == SNOW_OK && tf)
+        look.points = snow_tf_points(tf);
     if (status == SNOW_OK)
         status = snow_recipe_view(context, recipe, &usual, &view);
     if (status == SNOW_OK)
         status = snow_recipe_settings(context, recipe, "", &settings);
+    if (status == SNOW_OK && tf && look.points->per_mm)
+        settings.opacity_length = length_of_mm("");
     if (status == SNOW_OK)
         status = snow_insitu_set_look(insitu, &look);
+    snow_tf_free(tf);
     if (status == SNOW_OK)
         status = snow_insitu_set_view(insitu, &view);
     if (status == SNOW_OK)

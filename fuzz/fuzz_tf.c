@@ -1,0 +1,80 @@
+/* fuzz/fuzz_tf.c - an input is a transfer function's file.  What is taken makes
+ * a transfer function, and reads as the same points from our JSON. */
+#include "capped.h"
+
+#include <snowglass/tf.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+static void check_same(const snow_points *a, const snow_points *b) {
+    if (a->color_count != b->color_count ||
+        a->opacity_count != b->opacity_count ||
+        a->gradient_count != b->gradient_count || a->log != b->log ||
+        a->values != b->values || a->per_mm != b->per_mm ||
+        (a->color_count && memcmp(a->colors, b->colors,
+                                  a->color_count * sizeof *a->colors) != 0) ||
+        (a->opacity_count &&
+         memcmp(a->opacities, b->opacities,
+                a->opacity_count * sizeof *a->opacities) != 0) ||
+        (a->gradient_count &&
+         memcmp(a->gradients, b->gradients,
+                a->gradient_count * sizeof *a->gradients) != 0))
+        abort();
+}
+
+static void round_trip(snow_context *context, const snow_tf *tf) {
+    const snow_points *points = snow_tf_points(tf);
+    snow_tf *again = NULL;
+    size_t length = 0;
+    if (snow_tf_write_json(context, points, NULL, 0, &length) != SNOW_OK)
+        abort();
+    char *text = malloc(length + 1);
+    if (!text || snow_tf_write_json(context, points, text, length + 1,
+                                    &length) != SNOW_OK)
+        abort();
+    if (snow_tf_parse(context, "again", text, length, NULL, &again) == SNOW_OK)
+        check_same(points, snow_tf_points(again));
+    else if (length < SNOW_TF_BYTES &&
+             !strstr(snow_context_message(context), "memory"))
+        abort();
+    snow_tf_free(again);
+    free(text);
+}
+
+static void use(snow_context *context, const snow_points *p) {
+    snow_transfer *transfer = NULL;
+    size_t length;
+    if (p->color_count && p->opacity_count) {
+        snow_status status =
+            snow_transfer_new(context, p->colors, p->color_count, p->opacities,
+                              p->opacity_count, &transfer);
+        if (status != SNOW_OK && status != SNOW_NO_MEMORY)
+            abort();
+        snow_transfer_free(transfer);
+    }
+    snow_tf_write_csv(context, p, NULL, 0, &length);
+}
+
+/* The suffix decides some formats; a byte more than the input says which. */
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
+    static const char *const names[] = {"a.json", "a.vp", "a.pal", "a.csv"};
+    for (int i = 0; i < 4; i++) {
+        size_t held;
+        snow_context *context = capped_context(&held);
+        snow_tf *tf = NULL;
+        snow_status status = snow_tf_parse(context, names[i], bytes, size,
+                                           i == 3 ? "CT-Bone" : NULL, &tf);
+        if (status == SNOW_OK) {
+            round_trip(context, tf);
+            use(context, snow_tf_points(tf));
+        } else if (tf || !*snow_context_message(context))
+            abort();
+        for (const char *at = snow_context_message(context); *at; at++)
+            if (*at == '\n')
+                abort();
+        snow_tf_free(tf);
+        capped_end(context, &held);
+    }
+    return 0;
+}

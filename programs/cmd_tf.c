@@ -1,0 +1,293 @@
+/* cmd_tf.c - transfer functions without a volume: which there are, what they
+ * say, and from one format into another. */
+#include "commands.h"
+#include "interrupt.h"
+#include "outputs.h"
+#include "report.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* --- list ----------------------------------------------------------------- */
+
+static json_t *names_json(const char *(*name)(size_t)) {
+    json_t *list = json_array();
+    for (size_t i = 0; name(i); i++)
+        json_array_append_new(list, json_string(name(i)));
+    return list;
+}
+
+static int list(const options *asked) {
+    if (asked->json) {
+        json_t *o = json_object();
+        json_object_set_new(o, "presets", names_json(snow_preset_name));
+        json_object_set_new(o, "colormaps", names_json(snow_colormap_name));
+        return print_json(o);
+    }
+    printf("presets (--preset NAME):\n");
+    for (size_t i = 0; snow_preset_name(i); i++)
+        printf("  %-27s %s\n", snow_preset_name(i), snow_preset_text(i));
+    printf("colour maps (--colormap NAME):\n");
+    for (size_t i = 0; snow_colormap_name(i); i++)
+        printf("  %s\n", snow_colormap_name(i));
+    return finish_stdout();
+}
+
+/* --- what is named -------------------------------------------------------- */
+
+/* A transfer function that was named: of a file, a preset, a colour map. */
+typedef struct named {
+    snow_context *context;
+    snow_tf *tf;
+    const char *kind;
+    snow_points points;
+    snow_color_point colors[SNOW_COLORMAP_POINTS];
+} named;
+
+static void take_colormap(int index, const char *name, named *out) {
+    out->kind = "colour map";
+    out->points = (snow_points){.name = name, .values = SNOW_VALUES_RANGE};
+    out->points.color_count =
+        snow_colormap_points((size_t)index, out->colors, SNOW_COLORMAP_POINTS);
+    out->points.colors = out->colors;
+}
+
+/* A file of that name comes before a preset of that name. */
+static int find(const options *asked, const char *name, named *out) {
+    int done = open_context(asked, &out->context);
+    if (done != GO_ON)
+        return done;
+    int preset = snow_preset_named(name), map = snow_colormap_named(name);
+    bool file = access(name, F_OK) == 0 || (preset < 0 && map < 0);
+    if (!file && preset >= 0) {
+        out->kind = "preset";
+        out->points = *snow_preset_points((size_t)preset);
+        out->points.name = snow_preset_name((size_t)preset);
+        return GO_ON;
+    }
+    if (!file) {
+        take_colormap(map, snow_colormap_name((size_t)map), out);
+        return GO_ON;
+    }
+    snow_status status = snow_tf_load(out->context, name, &out->tf);
+    if (status != SNOW_OK && !strpbrk(name, "./#")) {
+        say("%s: no preset, no colour map and no file; `snowglass tf list` "
+            "tells the names",
+            name);
+        return SNOW_BAD_INPUT;
+    }
+    if (status != SNOW_OK)
+        return fail_status(out->context, status);
+    out->kind = snow_tf_format(out->tf);
+    out->points = *snow_tf_points(out->tf);
+    return GO_ON;
+}
+
+static void lose(named *n) {
+    snow_tf_free(n->tf);
+    snow_context_free(n->context);
+}
+
+/* --- show ----------------------------------------------------------------- */
+
+#define WIDE 512
+#define CURVE 128 /* rows of the opacities */
+#define BAR 32    /* and of the colours below */
+
+/* Where colours or opacities are missing: white, and wholly there. */
+static snow_status make_whole(const named *n, snow_transfer **out) {
+    static const snow_color_point white[] = {{1, 1, 1, 1}};
+    static const snow_opacity_point solid[] = {{1, 1}};
+    const snow_points *p = &n->points;
+    snow_status status =
+        snow_transfer_new(n->context, p->color_count ? p->colors : white,
+                          p->color_count ? p->color_count : 1,
+                          p->opacity_count ? p->opacities : solid,
+                          p->opacity_count ? p->opacity_count : 1, out);
+    if (status == SNOW_OK && p->log)
+        status = snow_transfer_set_log(*out);
+    return status;
+}
+
+static void widen(double value, double ends[2]) {
+    ends[0] = value < ends[0] ? value : ends[0];
+    ends[1] = value > ends[1] ? value : ends[1];
+}
+
+/* From the first to the last control point of either kind. */
+static void find_ends(const snow_points *p, double ends[2]) {
+    ends[0] = ends[1] =
+        p->color_count ? p->colors[0].value : p->opacities[0].value;
+    if (p->color_count)
+        widen(p->colors[p->color_count - 1].value, ends);
+    if (p->opacity_count) {
+        widen(p->opacities[0].value, ends);
+        widen(p->opacities[p->opacity_count - 1].value, ends);
+    }
+}
+
+/* Colours in a bar below, and above it as high as the opacity is. */
+static void paint(const snow_transfer *transfer, const double ends[2],
+                  float *pixels) {
+    for (int x = 0; x < WIDE; x++) {
+        double part = (x + 0.5) / WIDE, rgba[4];
+        snow_transfer_at(transfer, ends[0] * (1 - part) + ends[1] * part, rgba);
+        for (int y = 0; y < CURVE + BAR; y++) {
+            float *pixel = pixels + 4 * (y * WIDE + x);
+            double height = 1 - (y + 0.5) / CURVE;
+            bool on = y >= CURVE || height < rgba[3];
+            for (int c = 0; c < 3; c++)
+                pixel[c] = on ? (float)rgba[c] : 0.13F;
+            pixel[3] = 1;
+        }
+    }
+}
+
+static int save_picture(const options *asked, const named *n) {
+    snow_transfer *transfer = NULL;
+    snow_image *image = NULL;
+    snow_image_options form = {.overwrite = asked->overwrite};
+    double ends[2];
+    find_ends(&n->points, ends);
+    snow_status status = make_whole(n, &transfer);
+    if (status == SNOW_OK)
+        status = snow_image_new(n->context, WIDE, CURVE + BAR, 4, &image);
+    if (status == SNOW_OK) {
+        paint(transfer, ends, snow_image_pixels(image));
+        interrupt_hold();
+        status = snow_image_save(image, asked->output, &form);
+    }
+    snow_image_free(image);
+    snow_transfer_free(transfer);
+    return status == SNOW_OK ? SNOW_OK : fail_status(n->context, status);
+}
+
+static void print_points(const snow_points *p) {
+    for (size_t i = 0; i < p->color_count; i++)
+        printf("colour   %12.6g  %.4f %.4f %.4f\n", p->colors[i].value,
+               p->colors[i].red, p->colors[i].green, p->colors[i].blue);
+    for (size_t i = 0; i < p->opacity_count; i++)
+        printf("opacity  %12.6g  %.4f\n", p->opacities[i].value,
+               p->opacities[i].opacity);
+    for (size_t i = 0; i < p->gradient_count; i++)
+        printf("gradient %12.6g  %.4f\n", p->gradients[i].value,
+               p->gradients[i].opacity);
+}
+
+/* A text of the library's, to be freed; NULL after the fault was told. */
+typedef snow_status text_writer(snow_context *context,
+                                const snow_points *points, char *text,
+                                size_t room, size_t *length);
+
+static char *text_of(const named *n, text_writer *write, size_t *length,
+                     int *done) {
+    snow_status status = write(n->context, &n->points, NULL, 0, length);
+    char *text = status == SNOW_OK ? malloc(*length + 1) : NULL;
+    if (text)
+        status = write(n->context, &n->points, text, *length + 1, length);
+    *done = status != SNOW_OK ? fail_status(n->context, status) : GO_ON;
+    if (status == SNOW_OK && !text)
+        *done = fail_output("no memory for the text; close other programs");
+    return text;
+}
+
+static int show(const options *asked, const named *n) {
+    static const char *const values[] = {"data values",
+                                         "shares of the range of all values",
+                                         "shares of the object's values"};
+    if (asked->output)
+        return save_picture(asked, n);
+    if (asked->json) {
+        size_t length;
+        int done;
+        char *text = text_of(n, snow_tf_write_json, &length, &done);
+        if (done == GO_ON) {
+            text[length] = '\n';
+            done = write_text(text, length + 1, "-", false);
+        }
+        free(text);
+        return done;
+    }
+    printf("name     %s\nkind     %s\nvalues   %s\njoined   %s\nopacity  per "
+           "%s\n",
+           n->points.name, n->kind, values[n->points.values],
+           n->points.log ? "by logarithms" : "linearly",
+           n->points.per_mm ? "mm" : "voxel");
+    print_points(&n->points);
+    return finish_stdout();
+}
+
+/* --- convert -------------------------------------------------------------- */
+
+static bool ends_with(const char *text, const char *suffix) {
+    size_t a = strlen(text), b = strlen(suffix);
+    return a >= b && strcmp(text + a - b, suffix) == 0;
+}
+
+/* What a table has no place for is said. */
+static void tell_losses(const options *asked, const snow_points *p) {
+    if (asked->verbosity >= 0 && (p->gradient_count || p->log || p->values))
+        say("%s: a table has no place for%s%s%s; write .json to keep it",
+            asked->output, p->gradient_count ? " the gradient opacity" : "",
+            p->log ? " the logarithmic scale" : "",
+            p->values ? " that values are shares of a range" : "");
+}
+
+static int convert(const options *asked, const named *n) {
+    bool csv = ends_with(asked->output, ".csv");
+    size_t length;
+    int done;
+    char *text = text_of(n, csv ? snow_tf_write_csv : snow_tf_write_json,
+                         &length, &done);
+    if (done == GO_ON && csv)
+        tell_losses(asked, &n->points);
+    if (done == GO_ON) {
+        if (!csv)
+            text[length++] = '\n';
+        if (!is_special(asked->output))
+            interrupt_hold();
+        done = write_text(text, length, asked->output, asked->overwrite);
+    }
+    free(text);
+    return done;
+}
+
+static int check_convert(const options *asked) {
+    if (!asked->output)
+        return fail_usage("no output is named; add -o OUT.json or -o OUT.csv");
+    if (!ends_with(asked->output, ".json") &&
+        !ends_with(asked->output, ".csv") && strcmp(asked->output, "-") != 0)
+        return fail_usage("%s: is written as .json or .csv; name one of them",
+                          asked->output);
+    if (strcmp(asked->output, "-") == 0)
+        return GO_ON;
+    return check_stats_path(asked->output, asked->overwrite);
+}
+
+/* --- the verb ------------------------------------------------------------- */
+
+static int run_named(const options *asked, const char *name,
+                     int (*act)(const options *, const named *)) {
+    named n = {.context = NULL};
+    int done = find(asked, name, &n);
+    if (done == GO_ON)
+        done = act(asked, &n);
+    lose(&n);
+    return done;
+}
+
+int cmd_tf(const options *asked) {
+    const char *word = asked->operand_count ? asked->operands[0] : "";
+    bool converts = strcmp(word, "convert") == 0;
+    if (strcmp(word, "list") == 0 && asked->operand_count == 1)
+        return list(asked);
+    if ((!converts && strcmp(word, "show") != 0) || asked->operand_count != 2)
+        return fail_usage("tf: give snowglass tf list, tf show NAME|FILE, or "
+                          "tf convert IN -o OUT.json");
+    int done = converts ? check_convert(asked) : GO_ON;
+    if (done != GO_ON)
+        return done;
+    return run_named(asked, asked->operands[1], converts ? convert : show);
+}

@@ -1,0 +1,99 @@
+/* tf/csv.c - tables in text: value,red,green,blue,opacity or value,opacity or
+ * value,red,green,blue, one row a point, numbers separated by commas,
+ * semicolons or blanks; a first row of words, empty rows and rows after # are
+ * passed over.  Colours go from 0 to 1 or, when one is above 1, to 255. */
+#include "tf/tf.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct row {
+    double number[5];
+    int count;
+} row;
+
+static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* Reads the numbers of a line; count is -1 where there is something else. */
+static row read_row(const char *at, const char *end) {
+    row r = {.count = 0};
+    while (at < end && is_blank(*at))
+        at++;
+    while (at < end && *at != '#') {
+        if (r.count == 5 || !tf_take_number(&at, end, &r.number[r.count++]))
+            return (row){.count = -1};
+        while (at < end && is_blank(*at))
+            at++;
+        if (at < end && (*at == ',' || *at == ';'))
+            at++;
+        while (at < end && is_blank(*at))
+            at++;
+    }
+    return r;
+}
+
+static snow_status add_row(const tf_input *in, snow_tf *tf, const row *r,
+                           double scale) {
+    const double *n = r->number;
+    const double rgb[3] = {n[1] / scale, n[2] / scale, n[3] / scale};
+    if (r->count >= 4)
+        TF_TRY(tf_add_color(in, tf, n[0], rgb));
+    if (r->count == 4)
+        return SNOW_OK;
+    return tf_add_opacity(in, tf, &tf->opacities, "opacity", n[0],
+                          n[r->count - 1]);
+}
+
+/* Each line in turn: first to find what all of them have, then to take them.
+ */
+typedef struct table {
+    int columns; /* of the first row of numbers; 0: none yet */
+    bool headed; /* a row of words was passed over */
+    double most; /* the largest of the colours */
+    bool take;
+} table;
+
+static snow_status walk_lines(const tf_input *in, snow_tf *tf, table *t) {
+    const char *at = in->bytes, *end = in->bytes + in->size;
+    for (long number = 1; at < end; number++) {
+        const char *stop = memchr(at, '\n', (size_t)(end - at));
+        stop = stop ? stop : end;
+        row r = read_row(at, stop);
+        at = stop + 1;
+        if (r.count == 0)
+            continue;
+        if (r.count < 0 && !t->columns && !t->headed) {
+            t->headed = true;
+            continue;
+        }
+        if (!t->columns)
+            t->columns = r.count;
+        if (r.count != t->columns || r.count == 3 || r.count == 1 ||
+            r.count < 0)
+            return tf_fail(in,
+                           "line %ld is no row of value,opacity or "
+                           "value,red,green,blue,opacity, as all must be",
+                           number);
+        for (int i = 1; i < 4 && r.count > 2; i++)
+            t->most = r.number[i] > t->most ? r.number[i] : t->most;
+        if (t->take)
+            TF_TRY(add_row(in, tf, &r, t->most > 1 ? 255 : 1));
+    }
+    return SNOW_OK;
+}
+
+snow_status tf_read_csv(const tf_input *in, snow_tf *tf) {
+    table t = {.columns = 0};
+    TF_TRY(walk_lines(in, tf, &t));
+    if (!t.columns)
+        return tf_fail(in, "is no transfer function; give ours (.json), "
+                           "Slicer's .vp or .xml, ParaView's or niivue's "
+                           ".json, Amrvis' .pal, or .csv");
+    t.take = true;
+    t.headed = false;
+    t.columns = 0;
+    tf->format = "csv";
+    return walk_lines(in, tf, &t);
+}
