@@ -83,6 +83,10 @@ static bool gives_way(const options *out, const char *key) {
     bool window = options_told(out, "window") || options_told(out, "level");
     if (strcmp(key, "range") == 0)
         return window;
+    if (strcmp(key, "view") == 0)
+        return options_told(out, "position");
+    if (strcmp(key, "position") == 0)
+        return options_told(out, "view");
     return (strcmp(key, "window") == 0 || strcmp(key, "level") == 0) &&
            options_told(out, "range");
 }
@@ -186,6 +190,11 @@ static void fill_look(const options *asked, snow_recipe *out) {
     out->opacity_per_mm = strcmp(asked->opacity_unit, "mm") == 0;
 }
 
+static void fill_place(const place_value *place, double out[3]) {
+    if (place->given)
+        memcpy(out, place->at, sizeof place->at);
+}
+
 static void fill_view(const options *asked, snow_recipe *out) {
     out->view = asked->view;
     out->width = (int)asked->size[0];
@@ -195,6 +204,9 @@ static void fill_view(const options *asked, snow_recipe *out) {
     out->roll = asked->roll;
     out->zoom = asked->zoom;
     out->fov = asked->fov;
+    fill_place(&asked->position, out->position);
+    fill_place(&asked->target, out->target);
+    fill_place(&asked->up, out->up);
 }
 
 /* A movie of many files has no one input. */

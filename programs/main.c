@@ -52,6 +52,8 @@ static int run_verb(const verb_row *verb, const options *asked) {
         return cmd_info(asked);
     case VERB_PHANTOM:
         return cmd_phantom(asked);
+    case VERB_CONVERT:
+        return cmd_convert(asked);
     case VERB_COMPARE:
         return cmd_compare(asked);
     case VERB_DOCTOR:

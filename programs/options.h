@@ -25,7 +25,8 @@ enum {
     VERB_DOCTOR = 1 << 5,
     VERB_HELP = 1 << 6,
     VERB_TURNTABLE = 1 << 7,
-    VERB_MOVIE = 1 << 8
+    VERB_MOVIE = 1 << 8,
+    VERB_CONVERT = 1 << 9
 };
 
 typedef enum topic {
@@ -74,9 +75,10 @@ typedef struct options {
     const char *view; /* NULL: the volume's own */
     double azimuth, elevation, roll, zoom;
     double fov; /* 0: parallel */
+    place_value position, target, up;
 
     int64_t dims[3]; /* 0: not told */
-    snow_type type;
+    snow_type type, as;
     double spacing[3];  /* 0: not told */
     const char *endian; /* NULL: not told */
     uint64_t offset;

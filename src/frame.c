@@ -41,6 +41,7 @@ void snow_frame_free(snow_frame *frame) {
     for (int n = 0; n < SNOW_GROUP_RANKS; n++)
         snow_release(frame->context, frame->spare[n]);
     snow_release(frame->context, frame->layer);
+    snow_ramp_fini(&frame->ramp);
     snow_release(frame->context, frame);
 }
 
@@ -340,6 +341,21 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     return SNOW_OK;
 }
 
+/* Lines 03 to 13 and the picture of them. */
+static snow_status render_over(snow_frame *frame, snow_job *job,
+                               snow_image **out) {
+    snow_image *image = NULL;
+    SNOW_TRY(snow_image_new(frame->context, job->view->width, job->view->height,
+                            job->channels, &image));
+    job->pixels = snow_image_pixels(image);
+    snow_status status = render_slab(frame, job);
+    if (status == SNOW_OK)
+        *out = image;
+    else
+        snow_image_free(image);
+    return status;
+}
+
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
                                    const snow_transfer *transfer,
                                    const snow_view *view,
@@ -350,14 +366,12 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
     snow_image *image = NULL;
     /* 01 - 02 */ SNOW_TRY(snow_job_begin(frame, volume, transfer, view,
                                           settings, parts, part, &job));
-    SNOW_TRY(snow_image_new(frame->context, view->width, view->height,
-                            job.channels, &image));
-    job.pixels = snow_image_pixels(image);
-    snow_status status = render_slab(frame, &job);
+    bool over = job.settings.mode == SNOW_MODE_OVER;
+    SNOW_TRY(over ? render_over(frame, &job, &image)
+                  : snow_modes_render(frame, &job, &image));
     frame->stats.seconds_frame = snow_seconds() - start;
     frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
-    if (status == SNOW_OK)
-        status = snow_job_finish(frame, &job);
+    snow_status status = over ? snow_job_finish(frame, &job) : SNOW_OK;
     if (status == SNOW_OK)
         *out = image;
     else

@@ -140,15 +140,14 @@ static double least_cosine(double gradients[3][3]) {
 }
 
 /* How obliquely a slice may be seen: the least |d . n|; 0 where there is no
- * bound. */
-static double least_slant(const question *q, double gradients[3][3]) {
+ * bound.  A ray that meets the volume leaves the line of sight by an angle
+ * whose sine is `spread` at most. */
+static double least_slant(const question *q, double gradients[3][3],
+                          double spread) {
     double cosine = least_cosine(gradients);
     if (q->settings->quality == SNOW_QUALITY_HIGH) /* blends of axes */
         cosine -= sqrt(2.0) * sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
-    /* A ray leaves the line of sight by half the field of view at most where it
-     * meets the volume. */
-    double angle =
-        acos(fmax(cosine, 0)) + q->view->fov / 2 * 0.017453292519943295769;
+    double angle = acos(fmax(cosine, 0)) + asin(spread);
     return angle < 1.57 ? cos(angle) : 0;
 }
 
@@ -169,13 +168,17 @@ static double steepest(double gradients[3][3], int axis) {
 static snow_status ask_all(const question *q, int64_t layers[3]) {
     double gradients[3][3];
     snow_placement checked;
+    snow_camera camera;
     SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &checked));
+    SNOW_TRY(snow_camera_make(q->context, q->whole, q->view, &camera));
     if (!index_gradients(q->whole, gradients))
         return snow_fail(q->context, SNOW_BAD_INPUT,
                          "the volume's matrix cannot be inverted");
-    double slant = least_slant(q, gradients);
-    double pitch = snow_pixel_pitch(q->whole, q->view) *
-                   (1 + sin(q->view->fov / 2 * 0.017453292519943295769));
+    /* The volume stays within a sphere about the target. */
+    double reach = snow_length(camera.middle) + snow_volume_radius(q->whole);
+    double spread = camera.distance > 0 ? reach / camera.distance : 0;
+    double slant = least_slant(q, gradients, fmin(spread, 1));
+    double pitch = camera.pitch * (1 + spread);
     for (int axis = 0; axis < 3; axis++) {
         double width =
             slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;

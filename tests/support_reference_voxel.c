@@ -25,7 +25,11 @@ double reference_native(const reference_scene *scene, int64_t i, int64_t j,
     return (double)NAN;
 }
 
-static double between(double x0, double y0, double x1, double y1, double x) {
+static double between(bool log, double x0, double y0, double x1, double y1,
+                      double x) {
+    if (log)
+        return y0 +
+               (y1 - y0) * (log10(x) - log10(x0)) / (log10(x1) - log10(x0));
     return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
 }
 
@@ -39,14 +43,17 @@ static void color_at(const reference_scene *scene, double value,
     const snow_color_point *a = next > 0 ? &p[next - 1] : b;
     bool inner = a->value < b->value;
     rgb[0] =
-        inner ? between(a->value, a->red, b->value, b->red, value) : a->red;
-    rgb[1] = inner ? between(a->value, a->green, b->value, b->green, value)
+        inner ? between(scene->log, a->value, a->red, b->value, b->red, value)
+              : a->red;
+    rgb[1] = inner ? between(scene->log, a->value, a->green, b->value, b->green,
+                             value)
                    : a->green;
     rgb[2] =
-        inner ? between(a->value, a->blue, b->value, b->blue, value) : a->blue;
+        inner ? between(scene->log, a->value, a->blue, b->value, b->blue, value)
+              : a->blue;
 }
 
-static double opacity_of(const snow_opacity_point *p, size_t count,
+static double opacity_of(bool log, const snow_opacity_point *p, size_t count,
                          double value) {
     size_t next = 0;
     while (next < count && p[next].value <= value)
@@ -55,18 +62,19 @@ static double opacity_of(const snow_opacity_point *p, size_t count,
         return p[0].opacity;
     if (next == count)
         return p[count - 1].opacity;
-    return between(p[next - 1].value, p[next - 1].opacity, p[next].value,
+    return between(log, p[next - 1].value, p[next - 1].opacity, p[next].value,
                    p[next].opacity, value);
 }
 
 void reference_classify(const reference_scene *scene, double value,
                         double rgba[4]) {
-    if (isnan(value)) {
+    if (isnan(value) || (scene->log && value <= 0)) {
         rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
         return;
     }
     color_at(scene, value, rgba);
-    rgba[3] = opacity_of(scene->opacities, scene->opacity_count, value);
+    rgba[3] =
+        opacity_of(scene->log, scene->opacities, scene->opacity_count, value);
 }
 
 /* Half the difference of both neighbours, or the difference to the one that is
@@ -119,7 +127,7 @@ double reference_fade(const reference_scene *scene, const double gradient[3]) {
     if (!scene->gradient_count)
         return 1;
     to_world(scene, gradient, world);
-    return opacity_of(scene->gradients, scene->gradient_count,
+    return opacity_of(false, scene->gradients, scene->gradient_count,
                       fabs(scene->info.slope) * sqrt(dot(world, world)));
 }
 
@@ -165,7 +173,7 @@ static bool interesting(double opacity, double threshold) {
 }
 
 /* The world length that an opacity is for: the shortest column by default. */
-static double opacity_length(const reference_scene *scene) {
+double reference_opacity_length(const reference_scene *scene) {
     if (scene->settings.opacity_length > 0)
         return scene->settings.opacity_length;
     double smallest = INFINITY;
@@ -181,7 +189,7 @@ static double opacity_length(const reference_scene *scene) {
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis) {
     const int64_t *dims = scene->info.dims;
-    double length = opacity_length(scene);
+    double length = reference_opacity_length(scene);
     size_t count = (size_t)dims[0] * (size_t)dims[1] * (size_t)dims[2];
     double *samples = calloc(count * 4, sizeof(double)), *sample = samples;
     for (int64_t k = 0; k < dims[2]; k++)

@@ -269,6 +269,10 @@ static double coded(const reference_scene *scene, double value) {
         return value; /* constant there */
     double parts = floor(65534.0 / (double)(count - 1));
     double a = stops[above - 1], b = stops[above];
+    if (scene->log) {
+        double steps = floor(log10(value / a) / log10(b / a) * parts);
+        return a * pow(b / a, (fmin(steps, parts - 1) + 0.5) / parts);
+    }
     double place = fmin(floor((value - a) / (b - a) * parts), parts - 1);
     return a + (b - a) * (place + 0.5) / parts;
 }

@@ -1,7 +1,9 @@
 /* snowglass/image.h - the picture: float pixels, premultiplied, linear.
  *
  * Row 0 is the top.  Grey pictures have two channels (grey, alpha), colour
- * pictures four (red, green, blue, alpha). */
+ * pictures four (red, green, blue, alpha).  One channel is no picture yet but
+ * an array of values in data units (modes mean and sum, depths), NaN where
+ * there is none. */
 #ifndef SNOWGLASS_IMAGE_H
 #define SNOWGLASS_IMAGE_H
 
@@ -14,7 +16,8 @@ extern "C" {
 
 typedef struct snow_image snow_image;
 
-/* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels.
+/* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels, or
+ * an array of zeros with 1.
  * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.  Free with snow_image_free. */
 SNOW_API snow_status snow_image_new(snow_context *context, int width,
                                     int height, int channels, snow_image **out);
@@ -46,12 +49,15 @@ typedef struct snow_image_options {
  *   .png  straight alpha, round(255 x) or round(65535 x), x limited to 0 to 1;
  *         pixels with a NaN are transparent; without alpha when flattened; grey
  *         when the picture has two channels (and the background no colour)
- *   .npy  float32 (height, width, 4), premultiplied RGBA
- *   .pfm  float32 RGB, premultiplied, without alpha
+ *   .npy  float32 (height, width, 4), premultiplied RGBA; values (height,
+ *         width)
+ *   .pfm  float32 RGB, premultiplied, without alpha; values as grey
+ * Values are no colours: a PNG of them is refused (snow_values_paint in
+ * render.h makes colours of them).
  * The file is written aside and renamed, so that it is whole or absent; an
  * existing one is kept, and an error, unless options->overwrite.  `options`
  * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; a
- * background or bits for other than PNG), SNOW_NO_MEMORY. */
+ * background or bits for other than PNG; values into a PNG), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
 
@@ -89,8 +95,8 @@ typedef struct snow_image_difference {
     int x, y;       /* a pixel of the largest difference */
 } snow_image_difference;
 
-/* Compares two pictures of one size (2 channels count as grey).  NaN equals
- * NaN only, an infinity itself only: else they are infinitely far apart.
+/* Compares two pictures of one size (1 and 2 channels count as grey).  NaN
+ * equals NaN only, an infinity itself only: else they are infinitely far apart.
  * Errors: SNOW_DIFFERENT when the sizes differ (the message gives them),
  * SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_compare(const snow_image *a,

@@ -42,6 +42,9 @@ typedef struct snow_recipe {
     double azimuth, elevation, roll;
     double zoom;              /* (1) */
     double fov;               /* 0: parallel */
+    double position[3];       /* of the camera in the world, in place of the */
+    double target[3];         /*   name; what it looks at; and what is up: as */
+    double up[3];             /*   in snow_view.  NaN: not told (NaN) */
     snow_settings settings;   /* as snow_settings_init makes them; the opacity
                                  length stays 0 */
     snow_image_options image; /* of the file */

@@ -44,6 +44,12 @@ SNOW_API snow_status snow_transfer_new(snow_context *context,
 
 SNOW_API void snow_transfer_free(snow_transfer *transfer);
 
+/* From now on points are joined linearly in the logarithm of the value; values
+ * of 0 and below are transparent.  Errors: SNOW_BAD_USAGE (a point that is not
+ * above 0). */
+SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
+SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
+
 /* Gives a transfer function a gradient opacity: the opacity of a voxel is then
  * that of its value times the factor that `points` give for the magnitude of
  * its gradient.  Their values are magnitudes, in data units per unit of the
@@ -99,6 +105,10 @@ SNOW_API const char *snow_transfer_text(const snow_transfer *transfer);
  * NaN gives zeros. */
 SNOW_API void snow_transfer_at(const snow_transfer *transfer, double value,
                                double rgba[4]);
+
+/* The data values of the first and the last colour. */
+SNOW_API void snow_transfer_span(const snow_transfer *transfer, double *low,
+                                 double *high);
 
 /* True when every colour is grey, so that pictures need two channels. */
 SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);

@@ -175,4 +175,9 @@ void snow_shade_strip(const snow_shader *shader, int channels,
 void snow_lengthen_strip(const snow_placement *placement, double opacity_length,
                          int channels, snow_strip *strip);
 
+/* Multiplies the samples of a strip by the lengths of their voxels' rays within
+ * a sheet, in reference lengths: for sums along rays. */
+void snow_weigh_strip(const snow_placement *placement, double opacity_length,
+                      int channels, snow_strip *strip);
+
 #endif

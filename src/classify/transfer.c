@@ -2,8 +2,12 @@
  *
  * Points lie in rising order, so a value is looked up by bisection.  The
  * search is for the first point beyond the value: where a value repeats, the
- * value itself then belongs to the later point, and the step is above it. */
+ * value itself then belongs to the later point, and the step is above it.
+ *
+ * With a logarithmic scale only the way from one point to the next changes:
+ * places of values among points are compared as values, exactly. */
 #include "classify/transfer.h"
+#include "base/power.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -169,13 +173,46 @@ const char *snow_transfer_text(const snow_transfer *transfer) {
     return transfer->text;
 }
 
+void snow_transfer_span(const snow_transfer *transfer, double *low,
+                        double *high) {
+    *low = transfer->colors[0].value;
+    *high = transfer->colors[transfer->color_count - 1].value;
+}
+
 bool snow_transfer_is_grey(const snow_transfer *transfer) {
     return transfer->grey;
 }
 
+snow_status snow_transfer_set_log(snow_transfer *transfer) {
+    double color = transfer->colors[0].value;
+    double opacity = transfer->opacities[0].value;
+    if (!(color > 0) || !(opacity > 0))
+        return snow_fail(transfer->context, SNOW_BAD_USAGE,
+                         "on a logarithmic scale a control point at %g has no "
+                         "place; give values above 0",
+                         color > 0 ? opacity : color);
+    transfer->log = true;
+    return SNOW_OK;
+}
+
+bool snow_transfer_is_log(const snow_transfer *transfer) {
+    return transfer->log;
+}
+
+/* As part_of_way on a logarithmic scale; points that it does not tell apart are
+ * joined by a straight line. */
+double snow_part_of_decades(double value, double a, double b) {
+    double from = snow_log2_rising(a), to = snow_log2_rising(b);
+    if (!(from < to))
+        return (value - a) / (b - a);
+    return (snow_log2_rising(value) - from) / (to - from);
+}
+
 /* How far `value` is on the way from a to b, which differ; halves where their
  * distance is more than a double can hold. */
-static double part_of_way(double value, double a, double b) {
+static double part_of_way(bool log, double value, double a, double b) {
+    if (log)
+        return snow_part_of_decades(value, a, b);
     if (isfinite(b - a))
         return (value - a) / (b - a);
     return (value / 2 - a / 2) / (b / 2 - a / 2);
@@ -210,12 +247,14 @@ static inline size_t points_up_to(const void *points, size_t size, size_t count,
 }
 
 static inline double opacity_behind(const snow_opacity_point *points,
-                                    size_t count, size_t up_to, double value) {
+                                    size_t count, bool log, size_t up_to,
+                                    double value) {
     if (up_to == 0)
         return points[0].opacity;
     if (up_to == count)
         return points[up_to - 1].opacity;
-    double t = part_of_way(value, points[up_to - 1].value, points[up_to].value);
+    double t =
+        part_of_way(log, value, points[up_to - 1].value, points[up_to].value);
     return mix(points[up_to - 1].opacity, points[up_to].opacity, t);
 }
 
@@ -226,7 +265,7 @@ static inline void color_behind(const snow_transfer *transfer, size_t up_to,
     double t = 0;
     if (up_to > 0 && up_to < transfer->color_count) {
         b = a + 1;
-        t = part_of_way(value, a->value, b->value);
+        t = part_of_way(transfer->log, value, a->value, b->value);
     }
     rgb[0] = mix(a->red, b->red, t);
     rgb[1] = mix(a->green, b->green, t);
@@ -234,13 +273,13 @@ static inline void color_behind(const snow_transfer *transfer, size_t up_to,
 }
 
 double snow_transfer_opacity(const snow_transfer *transfer, double value) {
-    if (isnan(value))
+    if (isnan(value) || (transfer->log && !(value > 0)))
         return 0;
     size_t up_to =
         points_up_to(transfer->opacities, sizeof *transfer->opacities,
                      transfer->opacity_count, value, 0);
-    return opacity_behind(transfer->opacities, transfer->opacity_count, up_to,
-                          value);
+    return opacity_behind(transfer->opacities, transfer->opacity_count,
+                          transfer->log, up_to, value);
 }
 
 double snow_transfer_gradient_opacity(const snow_transfer *transfer,
@@ -252,11 +291,15 @@ double snow_transfer_gradient_opacity(const snow_transfer *transfer,
     if (isnan(magnitude))
         return points[count - 1].opacity;
     size_t up_to = points_up_to(points, sizeof *points, count, magnitude, 0);
-    return opacity_behind(points, count, up_to, magnitude);
+    return opacity_behind(points, count, false, up_to, magnitude);
 }
 
 void snow_transfer_color(const snow_transfer *transfer, double value,
                          double rgb[3]) {
+    if (transfer->log && !(value > 0)) {
+        memset(rgb, 0, 3 * sizeof *rgb);
+        return;
+    }
     size_t up_to = points_up_to(transfer->colors, sizeof *transfer->colors,
                                 transfer->color_count, value, 0);
     color_behind(transfer, up_to, value, rgb);
@@ -264,6 +307,10 @@ void snow_transfer_color(const snow_transfer *transfer, double value,
 
 void snow_transfer_near(const snow_transfer *transfer, double value,
                         snow_transfer_hint *hint, double rgba[4]) {
+    if (transfer->log && !(value > 0)) {
+        memset(rgba, 0, 4 * sizeof *rgba);
+        return;
+    }
     hint->color = points_up_to(transfer->colors, sizeof *transfer->colors,
                                transfer->color_count, value, hint->color);
     hint->opacity =
@@ -271,7 +318,7 @@ void snow_transfer_near(const snow_transfer *transfer, double value,
                      transfer->opacity_count, value, hint->opacity);
     color_behind(transfer, hint->color, value, rgba);
     rgba[3] = opacity_behind(transfer->opacities, transfer->opacity_count,
-                             hint->opacity, value);
+                             transfer->log, hint->opacity, value);
 }
 
 void snow_transfer_at(const snow_transfer *transfer, double value,

@@ -14,6 +14,7 @@ struct snow_transfer {
     size_t color_count;       /* at least 1 */
     snow_opacity_point *opacities;
     size_t opacity_count;
+    bool log; /* joined in the logarithm of values, all above 0 */
     snow_opacity_point *gradients;       /* factors by gradient magnitude */
     size_t gradient_count;               /* 0: none, not even factors of 1 */
     bool grey;                           /* red = green = blue everywhere */
@@ -38,6 +39,10 @@ typedef struct snow_transfer_hint {
 
 void snow_transfer_near(const snow_transfer *transfer, double value,
                         snow_transfer_hint *hint, double rgba[4]);
+
+/* How far a value is on the way from a to b on a logarithmic scale, 0 < a < b,
+ * a <= value <= b: from 0 to 1, never falling. */
+double snow_part_of_decades(double value, double a, double b);
 
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define SNOW_THRESHOLD_MARGIN 0.0001

@@ -40,7 +40,13 @@ static snow_status choose_format(snow_context *context, const char *path,
 /* Refuses what a format cannot heed, rather than to ignore it. */
 static snow_status check_options(snow_context *context, const char *path,
                                  const snow_image_format *format,
-                                 const snow_image_options *options) {
+                                 const snow_image_options *options,
+                                 int channels) {
+    if (format->has_colors && channels == 1)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: %s holds colours, not values in data units; "
+                         "write .npy or .pfm, or paint them first",
+                         path, format->name);
     if (!format->has_depth && (options->flatten || options->bits))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "%s: %s takes neither a background nor a number of "
@@ -77,7 +83,8 @@ snow_status snow_image_save(const snow_image *image, const char *path,
         options = &standard;
     const snow_image_format *format = NULL;
     SNOW_TRY(choose_format(image->context, path, &format));
-    SNOW_TRY(check_options(image->context, path, format, options));
+    SNOW_TRY(
+        check_options(image->context, path, format, options, image->channels));
     snow_writer *writer = NULL;
     SNOW_TRY(
         snow_writer_open(image->context, path, options->overwrite, &writer));

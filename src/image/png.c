@@ -360,6 +360,7 @@ const snow_image_format snow_image_png = {
     .name = "PNG",
     .suffix = ".png",
     .has_depth = true,
+    .has_colors = true,
     .write = write_png,
     .probe = probe_png,
     .read = read_png,
