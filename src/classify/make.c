@@ -174,7 +174,8 @@ static snow_status build(const snow_volume *volume, const snow_draft *draft,
         &transfer));
     describe(transfer, draft, look);
     snow_status status = snow_transfer_set_gradient_opacity(
-        transfer, look->gradient_opacities, look->gradient_opacity_count);
+        transfer, look->gradient_opacities,
+        look->gradient_opacities ? look->gradient_opacity_count : 0);
     if (status != SNOW_OK) {
         snow_transfer_free(transfer);
         return status;
