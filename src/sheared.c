@@ -208,8 +208,9 @@ static snow_status take_fade_key(snow_sheared *s,
                                  const snow_sheared_order *order, bool *same) {
     const snow_transfer *t = order->transfer;
     size_t curve = t->gradient_count, bytes = sizeof *s->fade_key;
-    size_t count =
-        curve + (order->settings->threshold > 0 ? t->opacity_count : 0);
+    size_t count = curve;
+    if (order->settings->threshold > 0)
+        count += t->opacity_count + 1;
     *same = true;
     if (!curve)
         return SNOW_OK;
@@ -220,8 +221,10 @@ static snow_status take_fade_key(snow_sheared *s,
                           &s->next_fade_key_capacity, 0, count * bytes));
     snow_opacity_point *key = s->next_fade_key;
     memcpy(key, t->gradients, curve * bytes);
-    if (count > curve)
-        memcpy(key + curve, t->opacities, (count - curve) * bytes);
+    if (count > curve) {
+        memcpy(key + curve, t->opacities, t->opacity_count * bytes);
+        key[count - 1] = (snow_opacity_point){t->log, 0};
+    }
     *same =
         count == s->fade_points && memcmp(key, s->fade_key, count * bytes) == 0;
     size_t capacity = s->next_fade_key_capacity;

@@ -39,6 +39,14 @@ run 0 "the sparse ratio of one threshold" "$TOOL" info eight.raw $raw --json \
     --opacity 0:0,8:1 --threshold 100
 prints '"sparse_ratio": \[\{"threshold": 100.0, "ratio": 0.375\}\]'
 
+# Along x the values step by 1, along y by 2, along z by 4: all gradients are of
+# sqrt(21).  Half of each opacity is left, so that 100/255 is passed by 7 and 8.
+# shellcheck disable=SC2086
+run 0 "the sparse ratio with a gradient opacity" "$TOOL" info eight.raw $raw \
+    --json --opacity 0:0,8:1 --threshold 100 --gradient-opacity 0:0,9.165151:1
+prints '"sparse_ratio": \[\{"threshold": 100.0, "ratio": 0.75\}\]'
+prints 'gradient opacity 0 at 0, 1 at 9.1652'
+
 # The same bytes as big endian 16 bit: 0x0102, 0x0304, 0x0506, 0x0708.
 run 0 "big endian" "$TOOL" info eight.raw --dims 2x2x1 --type uint16 \
     --endian big --json

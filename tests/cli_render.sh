@@ -73,6 +73,8 @@ changes --footprint 3
 changes --colormap viridis
 changes --preset linear
 changes --opacity 0:0,1:0.1
+changes --gradient-opacity 0:0,0.5:1
+same --gradient-opacity 0:1,255:1
 changes --range p20,p60
 changes --range full --opacity 0:0.1
 changes --window 1 --level 0.5

@@ -32,6 +32,7 @@ typedef struct scene {
     snow_settings settings;
     snow_balance balance;
     snow_ghosts ghosts;
+    bool fades; /* by gradients */
     /* What the ranks found. */
     double difference; /* from the serial picture */
     snow_insitu_figures figures;
@@ -92,11 +93,14 @@ static double scale_of(snow_type type) {
     return type == SNOW_UINT16 || type == SNOW_INT16 ? 100 : 1;
 }
 
-static const snow_opacity_point points[] = {{30, 0}, {90, 0.2}, {180, 0.9}};
+/* Opacities, and factors by gradients behind them. */
+static const snow_opacity_point points[] = {
+    {30, 0}, {90, 0.2}, {180, 0.9}, {4, 0}, {20, 1}};
 
 /* In the units of the type. */
-static snow_look look_of(snow_type type, snow_opacity_point scaled[3]) {
-    for (int i = 0; i < 3; i++) {
+static snow_look look_of(const scene *s, snow_opacity_point scaled[5]) {
+    snow_type type = s->type;
+    for (int i = 0; i < 5; i++) {
         scaled[i] = points[i];
         scaled[i].value *= scale_of(type);
     }
@@ -106,7 +110,9 @@ static snow_look look_of(snow_type type, snow_opacity_point scaled[3]) {
                        .low = 0,
                        .high = 200 * scale_of(type),
                        .opacities = scaled,
-                       .opacity_count = 3};
+                       .opacity_count = 3,
+                       .gradient_opacities = s->fades ? scaled + 3 : NULL,
+                       .gradient_opacity_count = s->fades ? 2 : 0};
 }
 
 /* The picture of one process. */
@@ -238,8 +244,8 @@ static snow_status tell_bricks(snow_insitu *insitu, const scene *s, int rank,
 
 /* Everything but the bricks. */
 static snow_status tell_picture(snow_insitu *insitu, const scene *s) {
-    snow_opacity_point scaled[3];
-    snow_look look = look_of(s->type, scaled);
+    snow_opacity_point scaled[5];
+    snow_look look = look_of(s, scaled);
     SNOW_TRY(snow_insitu_set_grid(insitu, s->dims, NULL, NULL));
     SNOW_TRY(snow_insitu_set_sharing(insitu, s->ghosts, s->balance));
     SNOW_TRY(snow_insitu_set_view(insitu, &s->view));
@@ -260,8 +266,8 @@ static snow_status draw_twice(snow_insitu *insitu, scene *s, int rank) {
     SNOW_TRY(snow_insitu_update(insitu));
     SNOW_TRY(snow_insitu_draw(insitu, &image));
     if (rank == 0) {
-        snow_opacity_point scaled[3];
-        snow_look look = look_of(s->type, scaled);
+        snow_opacity_point scaled[5];
+        snow_look look = look_of(s, scaled);
         snow_context *context = support_context();
         snow_image *serial = serial_picture(context, s, 0, &look);
         s->difference = largest_difference(image, serial);
@@ -342,6 +348,20 @@ static void every_view_does(void **state) {
         expect_serial(&s, "a view");
         s.view.fov = 40;
         expect_serial(&s, "perspective");
+    }
+}
+
+static void a_gradient_opacity_does(void **state) {
+    (void)state;
+    static const int cuts[][4] = {{1, 1, 1, 1}, {3, 1, 3, 1}, {4, 2, 2, 1}};
+    for (int n = 0; n < 12; n++) {
+        const int *cut = cuts[n % 3];
+        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
+        s.fades = true;
+        s.type = n % 2 ? SNOW_INT16 : SNOW_FLOAT32;
+        s.settings.quality = n / 3 % 2 ? SNOW_QUALITY_HIGH : s.settings.quality;
+        s.settings.shade = n / 6 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+        expect_serial(&s, "gradient opacity");
     }
 }
 
@@ -827,8 +847,8 @@ a_limit_of_time_lowers_pictures_and_then_leaves_some_out(void **state) {
     snow_image *image = load_frame(context, folder, 3);
     assert_int_equal(snow_image_width(image), m.scene.view.width);
     assert_int_equal(snow_image_height(image), m.scene.view.height);
-    snow_opacity_point scaled[3];
-    snow_look look = look_of(m.scene.type, scaled);
+    snow_opacity_point scaled[5];
+    snow_look look = look_of(&m.scene, scaled);
     snow_image *serial = serial_picture(context, &m.scene, 0.06, &look);
     snow_image_difference d;
     assert_int_equal(snow_image_compare(image, serial, &d), SNOW_OK);
@@ -1132,6 +1152,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_cut_gives_the_picture_of_one_process),
         cmocka_unit_test(every_view_does),
+        cmocka_unit_test(a_gradient_opacity_does),
         cmocka_unit_test(every_type_and_layout_does),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
         cmocka_unit_test(without_ghosts_there_are_seams_and_no_messages),

@@ -28,6 +28,7 @@ static void release_counted(void *user, void *block) {
 
 typedef struct test_paths {
     char input[64], output[64];
+    bool fades; /* a gradient opacity is asked for */
 } test_paths;
 
 /* A picture of a file, as a program would make it. */
@@ -37,7 +38,10 @@ static snow_status make_picture(snow_context *context, const test_paths *paths,
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_image *image = NULL;
-    snow_look look = {.colormap = "viridis"};
+    static const snow_opacity_point curve[] = {{0, 0.1}, {30, 1}};
+    snow_look look = {.colormap = "viridis",
+                      .gradient_opacities = paths->fades ? curve : NULL,
+                      .gradient_opacity_count = 2};
     snow_view view;
     snow_status status = snow_volume_open(context, paths->input, NULL, &volume);
     if (status == SNOW_OK)
@@ -92,6 +96,8 @@ static void fail_each_seen(const char *suffix, snow_method method,
     char folder[] = "/tmp/snow-memory-XXXXXX";
     assert_non_null(mkdtemp(folder));
     test_paths paths;
+    paths.fades =
+        encoding == SNOW_ENCODING_CRS || encoding == SNOW_ENCODING_RLE;
     snprintf(paths.input, sizeof paths.input, "%s/in%s", folder, suffix);
     snprintf(paths.output, sizeof paths.output, "%s/out.png", folder);
     write_input(&paths);

@@ -19,6 +19,7 @@ typedef struct fade_kernels {
     void (*factors)(const snow_opacity_point *points, size_t point_count,
                     size_t count, const double *magnitudes, double *factors);
     void (*correct)(double exponent, size_t count, double *opacities);
+    void (*encode)(const double *factors, size_t count, uint16_t *codes);
 } fade_kernels;
 
 /* The order matters, so a blank line keeps the two from being sorted. */
@@ -124,11 +125,9 @@ static double native_of(snow_type type, const void *natives, size_t n) {
     }
 }
 
-/* Whether voxels that are interesting by their values still are. */
+/* Whether a voxel that is interesting by its value still is. */
 static bool is_kept(const snow_fader *fader, const void *natives,
                     uint32_t column, double factor) {
-    if (!(fader->threshold > 0))
-        return factor > 0;
     const snow_volume_info *info = &fader->volume->info;
     double native = native_of(info->type, natives, column);
     double opacity = snow_transfer_opacity(
@@ -137,25 +136,18 @@ static bool is_kept(const snow_fader *fader, const void *natives,
                                fader->threshold);
 }
 
-static uint16_t code_of(double factor) {
-    double least = factor < 0.5 ? factor : 1 - factor;
-    uint16_t code = (uint16_t)(sqrt(least / 2) * SNOW_FADE_ONE + 0.5);
-    if (!(factor < 0.5))
-        return (uint16_t)(SNOW_FADE_ONE - code);
-    return code ? code : 1;
-}
-
 void snow_fade_codes(const snow_fader *fader, const snow_fade_row *row,
                      const void *natives, const uint32_t *columns, size_t count,
                      uint16_t *codes) {
+    const fade_kernels *kernels = kernels_of(fader->isa);
     for (size_t first = 0; first < count; first += BLOCK) {
         size_t some = count - first < BLOCK ? count - first : BLOCK;
         double factors[BLOCK];
         snow_fade_factors(fader, row, columns + first, some, factors);
-        for (size_t n = 0; n < some; n++)
-            codes[first + n] =
-                is_kept(fader, natives, columns[first + n], factors[n])
-                    ? code_of(factors[n])
-                    : SNOW_NO_FADE;
+        kernels->encode(factors, some, codes + first);
+        /* Without a threshold any opacity above 0 will do. */
+        for (size_t n = 0; n < some && fader->threshold > 0; n++)
+            if (!is_kept(fader, natives, columns[first + n], factors[n]))
+                codes[first + n] = SNOW_NO_FADE;
     }
 }

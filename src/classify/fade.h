@@ -26,7 +26,7 @@
  * of itself where rays through a slice are short.  g is off by no more than
  * sqrt(2 min(g, 1 - g)) / 65535.  A stack of voxels of one g and one a is off
  * by less than a quarter of an 8-bit step for g above 7e-5, and below that for
- * up to 5,600 of them.  Code 0 is a voxel that is not interesting. */
+ * up to 5,400 of them.  Code 0 is a voxel that is not interesting. */
 #define SNOW_FADE_ONE 65535
 #define SNOW_NO_FADE 0
 

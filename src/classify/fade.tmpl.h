@@ -5,26 +5,30 @@
  * NAME(magnitudes) takes differences of native values along x, y and z;
  * NAME(factors) looks magnitudes up in the curve, as
  * snow_transfer_gradient_opacity does;
- * NAME(correct) is for opacities of another length. */
+ * NAME(correct) is for opacities of another length;
+ * NAME(encode) makes the codes that IA holds. */
 
 TARGET static void NAME(magnitudes)(const snow_fader *f,
                                     double g[3][SNOW_FADE_BLOCK], size_t count,
                                     double *restrict out) {
     const double(*m)[3] = f->metric;
+    const double slope = f->scale;
     for (size_t i = 0; i < count; i++) {
         double x = g[0][i], y = g[1][i], z = g[2][i];
         /* The square of a tiny or huge difference could vanish or overflow. */
         double most = fabs(x);
         most = fabs(y) > most ? fabs(y) : most;
         most = fabs(z) > most ? fabs(z) : most;
-        double inverse = most < 0x1p300 ? 1 : 1 / most;
-        inverse = most > 0x1p-300 || most == 0 ? inverse : 1 / most;
-        x *= inverse, y *= inverse, z *= inverse;
+        double scale = most < 0x1p300 ? 1 : 0x1p-600;
+        double back = most < 0x1p300 ? 1 : 0x1p600;
+        scale = most > 0x1p-300 ? scale : 0x1p600;
+        back = most > 0x1p-300 ? back : 0x1p-600;
+        x *= scale, y *= scale, z *= scale;
         double square = (m[0][0] * x + m[0][1] * y + m[0][2] * z) * x +
                         (m[1][0] * x + m[1][1] * y + m[1][2] * z) * y +
                         (m[2][0] * x + m[2][1] * y + m[2][2] * z) * z;
         square = square > 0 ? square : square * 0; /* rounding; NaN stays */
-        out[i] = sqrt(square) / inverse * f->scale;
+        out[i] = sqrt(square) * back * slope;
     }
 }
 
@@ -59,5 +63,18 @@ TARGET static void NAME(correct)(double exponent, size_t count,
         opacities[i] = snow_opacity_of(snow_clarity(opacities[i]), exponent);
 }
 
+/* The codes of factors, as classify/fade.h has them. */
+TARGET static void NAME(encode)(const double *restrict factors, size_t count,
+                                uint16_t *restrict codes) {
+    for (size_t i = 0; i < count; i++) {
+        double factor = factors[i], rest = 1 - factor;
+        double least = factor < rest ? factor : rest;
+        int code = (int)(sqrt(least / 2) * SNOW_FADE_ONE + 0.5);
+        code = factor < rest ? code : SNOW_FADE_ONE - code;
+        code = code ? code : 1;
+        codes[i] = (uint16_t)(factor > 0 ? code : SNOW_NO_FADE);
+    }
+}
+
 static const fade_kernels NAME(kernels) = {NAME(magnitudes), NAME(factors),
-                                           NAME(correct)};
+                                           NAME(correct), NAME(encode)};

@@ -53,13 +53,14 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         V(store)(exponents + at, V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
     }
 #if RAY_FADED
-    for (int at = 0; at < count; at += 16) {
-        for (int i = at; i < at + 16; i++) {
-            opacities[i] = entries[entry[i] * RAY_CHANNELS + RAY_CHANNELS - 1];
-            fade[i] -= fade[i] != 0;
-        }
+    /* In loops of their own: a vector would wait for floats just stored. */
+    int all = (count + 15) / 16 * 16;
+    for (int i = 0; i < all; i++)
+        fade[i] -= fade[i] != 0;
+    for (int i = 0; i < all; i++)
+        opacities[i] = entries[entry[i] * RAY_CHANNELS + RAY_CHANNELS - 1];
+    for (int at = 0; at < all; at += 16)
         NAME(fade16)(fade + at, exponents + at, opacities + at);
-    }
 #else
     const V(vec) round = V(set1)(0x1.8p23f);
 #endif

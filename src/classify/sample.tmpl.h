@@ -110,12 +110,14 @@ TARGET static inline void SAMPLE_NAME(fade)(const snow_sample_job *job,
         SAMPLE_COPY(fades, job->fades[row] + job->before[row], job->count);
         fades += V(popcount)(job->bits[row]);
     }
-    for (int i = 0; i < total; i += 16) {
-        uint32_t codes[16];
-        V(widen16)(room->fades + i, codes);
+    /* In a loop of their own: a vector would wait for floats just stored. */
+    for (int i = 0; i < total; i += 16)
         for (int n = i; n < i + 16; n++)
             room->opacities[n] =
                 last[(size_t)room->entries[n] * SAMPLE_CHANNELS];
+    for (int i = 0; i < total; i += 16) {
+        uint32_t codes[16];
+        V(widen16)(room->fades + i, codes);
         NAME(fade16)(codes, exponents, room->opacities + i);
     }
 }
