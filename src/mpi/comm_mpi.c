@@ -32,8 +32,10 @@ typedef struct mpi_side {
     int slot_count;
     /* Of the last wait: what was asked for. */
     MPI_Request *requests;
-    int *places; /* of the requests among the messages */
-    int room;    /* of the two */
+    int *places;                  /* of the requests among the messages */
+    int room;                     /* of the two */
+    snow_meanwhile_fn *meanwhile; /* what is done in waits, or NULL */
+    void *meanwhile_user;
 } mpi_side;
 
 /* --- failures --------------------------------------------------------------
@@ -234,6 +236,40 @@ static void finish(mpi_side *side, snow_message *message,
     message->handle = NULL;
 }
 
+/* Does a piece of other work; false where there is none. */
+static bool work_meanwhile(const mpi_side *side) {
+    return side->meanwhile && side->meanwhile(side->meanwhile_user);
+}
+
+/* Until one of the requests is done: MPI_Waitany, with other work as long as
+ * there is some. */
+static int wait_for_any(mpi_side *side, int asked, int *found,
+                        MPI_Status *done) {
+    int error = MPI_SUCCESS, flag = 0;
+    while (side->meanwhile) {
+        error = MPI_Testany(asked, side->requests, found, &flag, done);
+        if (error != MPI_SUCCESS || flag)
+            return error;
+        if (!work_meanwhile(side))
+            break;
+    }
+    return MPI_Waitany(asked, side->requests, found, done);
+}
+
+/* The same for one. */
+static int wait_for(const mpi_side *side, MPI_Request *request,
+                    MPI_Status *done) {
+    int error = MPI_SUCCESS, flag = 0;
+    while (side->meanwhile) {
+        error = MPI_Test(request, &flag, done);
+        if (error != MPI_SUCCESS || flag)
+            return error;
+        if (!work_meanwhile(side))
+            break;
+    }
+    return MPI_Wait(request, done);
+}
+
 static snow_status wait_any(void *self, snow_message *messages, int count,
                             int *which) {
     mpi_side *side = self;
@@ -246,7 +282,7 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
         return SNOW_OK;
     }
     MPI_Status done;
-    int error = MPI_Waitany(asked, side->requests, &found, &done);
+    int error = wait_for_any(side, asked, &found, &done);
     if (error != MPI_SUCCESS) {
         bool known = found >= 0 && found < asked;
         return fail_side(
@@ -267,7 +303,7 @@ static snow_status wait_all(void *self, snow_message *messages, int count) {
             continue;
         MPI_Status found;
         mpi_slot *slot = slot_of(side, &messages[i]);
-        int error = MPI_Wait(&slot->request, &found);
+        int error = wait_for(side, &slot->request, &found);
         if (error != MPI_SUCCESS)
             return fail_side(side, error, "exchange messages with", slot->peer);
         finish(side, &messages[i], &found);
@@ -278,6 +314,12 @@ static snow_status wait_all(void *self, snow_message *messages, int count) {
 static double seconds(void *self) {
     (void)self;
     return MPI_Wtime();
+}
+
+static void occupy(void *self, snow_meanwhile_fn *meanwhile, void *user) {
+    mpi_side *side = self;
+    side->meanwhile = meanwhile;
+    side->meanwhile_user = user;
 }
 
 #ifdef SMPI_H
@@ -373,6 +415,7 @@ static snow_status equip(snow_context *context, MPI_Comm ours,
                                       .wait_any = wait_any,
                                       .wait_all = wait_all,
                                       .seconds = seconds,
+                                      .occupy = occupy,
 #ifdef SMPI_H
                                       .work = work,
 #endif
