@@ -84,9 +84,9 @@ snow_status snow_lines_exchange(snow_ranks *ranks,
 
 /* Local work: this rank's pixels of the picture, into ranks->runs and packed:
  * of an intermediate image, or of a piece of the picture itself. */
-snow_status snow_pixels_warp(snow_ranks *ranks, const snow_sheared *sheared,
+snow_status snow_pixels_warp(snow_ranks *ranks, const snow_sheared_image *image,
                              const snow_job *job, const snow_piece *piece,
-                             int image_width, int pixel_bits);
+                             int pixel_bits);
 snow_status snow_pixels_copy(snow_ranks *ranks, const snow_job *job,
                              const snow_piece *piece, int pixel_bits);
 

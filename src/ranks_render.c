@@ -372,8 +372,8 @@ static snow_status render_axis(picture *p, int axis, snow_sheared **sheared,
     SNOW_TRY(snow_lines_exchange(p->ranks, &work.image, &piece));
     double combined = snow_comm_seconds(p->comm), start = snow_seconds();
     stats->seconds_combine += combined - mark;
-    status = snow_pixels_warp(p->ranks, work.sheared, &p->job, &piece,
-                              work.image.width, pixel_bits);
+    status =
+        snow_pixels_warp(p->ranks, &work.image, &p->job, &piece, pixel_bits);
     stats->seconds_warp += snow_seconds() - start;
     SNOW_TRY(snow_comm_agree(p->comm, status));
     return deliver(p, pixel_bits, image);
