@@ -301,13 +301,13 @@ snow_status snow_pixels_gather(snow_ranks *r, const snow_job *job,
         (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     float *pixels = delivery->image ? delivery->image->pixels : NULL;
     void *picture = bytes ? (void *)delivery->bytes : (void *)pixels;
-    double mark = snow_comm_seconds(r->comm);
+    double mark = snow_ranks_clock(r);
     SNOW_TRY(snow_gather(r->combiner, view->width, view->height, r->runs,
                          r->run_count, r->packed,
                          (size_t)job->channels * (bytes ? 1 : sizeof(float)),
                          picture));
     for (size_t n = 0; pixels && bytes && n < floats; n++)
         pixels[n] = (float)delivery->bytes[n] / 255;
-    delivery->stats->seconds_gather += snow_comm_seconds(r->comm) - mark;
+    delivery->stats->seconds_gather += snow_ranks_clock(r) - mark;
     return SNOW_OK;
 }

@@ -195,7 +195,7 @@ void snow_parallel_begin(snow_context *context, int threads, int64_t items,
     snow_pool *pool = threads > 1 ? pool_for(context, threads) : NULL;
     batch->busy = 0;
     fill_batch(batch, threads, items, work, job);
-    if (!pool || !pool->count)
+    if (!pool || !pool->count || pool->open)
         return;
     pthread_mutex_lock(&pool->lock);
     pool->open = batch;

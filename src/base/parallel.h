@@ -35,9 +35,9 @@ typedef struct snow_batch {
 /* The same in three steps, between which the caller may do other things, calls
  * of snow_parallel among them, whose items then come first: begins a batch, and
  * returns while other threads are at work; does one item of it, or tells that
- * all are taken; does all that are left, and returns when all are done.  One
- * batch at a time for each context, which is not moved until its end; to end it
- * twice does nothing. */
+ * all are taken; does all that are left, and returns when all are done.  A
+ * batch is not moved until its end; to end it twice does nothing.  Of several
+ * batches of a context other threads do the first one's items only. */
 void snow_parallel_begin(snow_context *context, int threads, int64_t items,
                          snow_work_fn *work, void *job, snow_batch *batch);
 bool snow_parallel_step(snow_batch *batch);
