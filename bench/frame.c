@@ -39,6 +39,11 @@ static const char help[] =
     "work\n"
     "                   one at a time, as if each had a machine of its own\n"
     "  --runs N         further pictures, of which the fastest counts (3)\n"
+    "  --turn N         also N pictures of the volume, turned by a degree "
+    "each:\n"
+    "                   one after another, then each splatted while the one "
+    "before\n"
+    "                   it is combined; the fastest of --runs times counts\n"
     "  --json           print a JSON object\n"
     "\n"
     "voxels are the interesting ones of a rank's own part; their sum is "
@@ -54,7 +59,12 @@ static const char help[] =
     "ranks, which is what counts where ranks share processors.  projected_ms "
     "is\n"
     "what the modelled machine takes for a picture, t1_ms what one rank takes\n"
-    "(processor time), efficiency t1_ms over ranks and projected_ms.\n";
+    "(processor time), efficiency t1_ms over ranks and projected_ms.  turn_ms "
+    "and\n"
+    "turn_overlap_ms are of one picture of a turning volume, without and with\n"
+    "overlap; hidden_ms of the latter was splatted where a rank else had "
+    "waited.\n"
+    "Where these pictures differ in a bit, the exit code is 1.\n";
 
 static const char *const cuts[] = {"auto", "equal", "counted", "bricks", NULL};
 static const char *const combinings[] = {"auto",   "tree",  "swap",
@@ -172,6 +182,7 @@ static int parse(int argc, char **argv, const snow_comm *comm, FILE *said,
         {"--no-check", BENCH_WORD, &out->no_check, 0, 0, NULL},
         {"--network", BENCH_TEXT, &t.network, 0, 0, NULL},
         {"--runs", BENCH_WHOLE, &out->runs, 1, 1000, NULL},
+        {"--turn", BENCH_WHOLE, &out->turn, 2, 10000, NULL},
         {"--json", BENCH_WORD, &out->json, 0, 0, NULL},
         {"--help", BENCH_WORD, &helps, 0, 0, NULL},
     };

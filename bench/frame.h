@@ -3,6 +3,7 @@
  *
  *   frame.c        options; ranks that are threads, modelled or MPI's
  *   frame_run.c    what every rank does, measures and tells the others
+ *   frame_turn.c   pictures of a turning volume, with and without overlap
  *   frame_print.c  a line of key=value, or JSON
  *
  * It stands on the public headers only. */
@@ -12,6 +13,7 @@
 #include <snowglass/snowglass.h>
 
 #include <snowglass/ranks.h>
+#include <time.h>
 
 /* Beyond so many ranks the picture of one is asked for with --check: a volume
  * that many share may be more than one can hold. */
@@ -27,6 +29,7 @@ typedef struct frame_options {
     snow_combining combining;
     int radix; /* 0: chosen */
     int runs;  /* further pictures, of which the fastest counts */
+    int turn;  /* pictures of a turning volume; 0: none */
     bool check, no_check, json;
     bool modelled;        /* whether `network` is, and time with it */
     snow_network network; /* one processor a node */
@@ -57,6 +60,7 @@ typedef struct frame_figures {
                        bricks those at the borders that neighbours own */
     int64_t slices; /* of its part, along the view's slice axis */
     snow_method method;
+    double hidden; /* seconds a picture of a turning volume */
     char host[64];
 } frame_figures;
 
@@ -73,6 +77,11 @@ typedef struct frame_result {
      * first one. */
     double alone, alone_first;
     int64_t voxels_whole; /* interesting ones of the volume, if checked */
+    /* Of a turning volume: seconds a picture, one after another and
+     * overlapping; of these what was drawn in waits, in the mean of all ranks;
+     * whether the pictures are the same. */
+    double apart, overlapped, hidden;
+    bool same;
 } frame_result;
 
 typedef struct frame_session {
@@ -80,6 +89,25 @@ typedef struct frame_session {
     bool threads;        /* whether ranks are threads of one process */
     frame_result result; /* filled in by rank 0 */
 } frame_session;
+
+/* What a rank has. */
+typedef struct frame_rank {
+    const frame_options *options;
+    snow_comm *comm;
+    snow_context *context;
+    clockid_t cpu_clock;
+    snow_view view;
+    snow_settings settings;
+    snow_ranks_options how;
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    snow_image *image; /* rank 0's */
+    frame_figures mine, *all;
+} frame_rank;
+
+/* Collective: the figures of a turning volume. */
+snow_status frame_turn(frame_rank *rank, frame_result *out);
 
 /* A body for snow_comm_threads and the like; `user` is a frame_session. */
 snow_status frame_body(snow_comm *comm, void *user);

@@ -73,6 +73,13 @@ static void put_projection(bench_line *out, const frame_options *options,
                           result->alone / (result->ranks * projected));
 }
 
+static void put_turn(bench_line *out, const frame_result *result) {
+    bench_line_ms(out, "turn_ms", result->apart);
+    bench_line_ms(out, "turn_overlap_ms", result->overlapped);
+    bench_line_ms(out, "hidden_ms", result->hidden);
+    bench_line_text(out, "turn_check", result->same ? "ok" : "wrong");
+}
+
 int frame_print(const frame_options *options, const frame_result *result) {
     bench_line out = {.json = options->json};
     const bool good = result->difference <= allowed; /* NaN is not */
@@ -86,6 +93,9 @@ int frame_print(const frame_options *options, const frame_result *result) {
     put_counters(&out, result);
     put_times(&out, result);
     put_projection(&out, options, result);
+    if (options->turn)
+        put_turn(&out, result);
     bench_line_end(&out);
-    return result->checked && !good ? SNOW_FAILED : SNOW_OK;
+    bool wrong = (result->checked && !good) || (options->turn && !result->same);
+    return wrong ? SNOW_FAILED : SNOW_OK;
 }

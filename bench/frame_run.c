@@ -8,25 +8,9 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
-typedef struct rank_state {
-    const frame_options *options;
-    snow_comm *comm;
-    snow_context *context;
-    clockid_t cpu_clock;
-    snow_view view;
-    snow_settings settings;
-    snow_ranks_options how;
-    snow_volume *volume;
-    snow_transfer *transfer;
-    snow_frame *frame;
-    snow_image *image; /* rank 0's */
-    frame_figures mine, *all;
-} rank_state;
-
-static double cpu_seconds(const rank_state *s) {
+static double cpu_seconds(const frame_rank *s) {
     struct timespec now;
     clock_gettime(s->cpu_clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
@@ -35,7 +19,7 @@ static double cpu_seconds(const rank_state *s) {
 /* --- before ----------------------------------------------------------------
  */
 
-static snow_status fill_view(rank_state *s) {
+static snow_status fill_view(frame_rank *s) {
     const frame_options *options = s->options;
     snow_volume_info info;
     snow_status status =
@@ -50,7 +34,7 @@ static snow_status fill_view(rank_state *s) {
     return status;
 }
 
-static snow_status prepare(rank_state *s) {
+static snow_status prepare(frame_rank *s) {
     const frame_options *options = s->options;
     snow_settings_init(&s->settings);
     s->settings.threshold = options->threshold;
@@ -59,7 +43,8 @@ static snow_status prepare(rank_state *s) {
                                   .cut = options->cut,
                                   .combining = options->combining,
                                   .radix = options->radix,
-                                  .pixel_bits = 8};
+                                  .pixel_bits = 8,
+                                  .turns = options->turn > 0};
     s->all = calloc((size_t)snow_comm_ranks(s->comm), sizeof *s->all);
     if (!s->all)
         return snow_context_fail(s->context, SNOW_NO_MEMORY,
@@ -69,7 +54,7 @@ static snow_status prepare(rank_state *s) {
     return status == SNOW_OK ? snow_frame_new(s->context, &s->frame) : status;
 }
 
-static snow_status open_part(rank_state *s) {
+static snow_status open_part(frame_rank *s) {
     double start = snow_comm_seconds(s->comm), cpu = cpu_seconds(s);
     const snow_look look = {0};
     snow_status status = snow_ranks_open(
@@ -80,7 +65,7 @@ static snow_status open_part(rank_state *s) {
     return status;
 }
 
-static void finish(rank_state *s) {
+static void finish(frame_rank *s) {
     snow_image_free(s->image);
     snow_frame_free(s->frame);
     snow_transfer_free(s->transfer);
@@ -92,7 +77,7 @@ static void finish(rank_state *s) {
  */
 
 /* What the library says of the last picture. */
-static void take_stats(rank_state *s, bool first) {
+static void take_stats(frame_rank *s, bool first) {
     const snow_stats *stats = snow_frame_stats(s->frame);
     double *seconds = s->mine.seconds;
     snow_part part;
@@ -110,7 +95,7 @@ static void take_stats(rank_state *s, bool first) {
 }
 
 /* Collective. */
-static snow_status draw(rank_state *s, bool first) {
+static snow_status draw(frame_rank *s, bool first) {
     double *seconds = s->mine.seconds;
     uint64_t messages, bytes;
     snow_image_free(s->image);
@@ -166,7 +151,7 @@ static void add_rank(const frame_figures *f, int ranks, frame_result *out) {
 }
 
 /* Collective: the figures of all, summed up on each. */
-static snow_status sum_up(rank_state *s, frame_result *out) {
+static snow_status sum_up(frame_rank *s, frame_result *out) {
     const int ranks = snow_comm_ranks(s->comm);
     *out = (frame_result){.ranks = ranks, .slices_least = INT64_MAX};
     snow_status status =
@@ -181,7 +166,7 @@ static snow_status sum_up(rank_state *s, frame_result *out) {
 }
 
 /* Collective.  Of the later pictures the fastest counts. */
-static snow_status measure(rank_state *s, frame_result *out) {
+static snow_status measure(frame_rank *s, frame_result *out) {
     snow_status status = draw(s, true);
     for (int i = 0; i < s->options->runs && status == SNOW_OK; i++) {
         frame_result this;
@@ -215,7 +200,7 @@ typedef struct alone {
     snow_image *image;
 } alone;
 
-static snow_status open_alone(rank_state *s, alone *a) {
+static snow_status open_alone(frame_rank *s, alone *a) {
     const snow_look look = {0};
     snow_status status = snow_volume_open(s->context, s->options->path,
                                           &s->options->data, &a->volume);
@@ -225,7 +210,7 @@ static snow_status open_alone(rank_state *s, alone *a) {
 }
 
 /* As many pictures as by all ranks; the fastest of the later ones counts. */
-static snow_status draw_alone(rank_state *s, alone *a, frame_result *out) {
+static snow_status draw_alone(frame_rank *s, alone *a, frame_result *out) {
     snow_status status = SNOW_OK;
     for (int i = 0; i <= s->options->runs && status == SNOW_OK; i++) {
         snow_image_free(a->image);
@@ -242,7 +227,7 @@ static snow_status draw_alone(rank_state *s, alone *a, frame_result *out) {
     return status;
 }
 
-static snow_status compare(rank_state *s, frame_result *out) {
+static snow_status compare(frame_rank *s, frame_result *out) {
     alone a = {0};
     snow_image_difference difference;
     snow_status status = open_alone(s, &a);
@@ -264,7 +249,7 @@ static snow_status compare(rank_state *s, frame_result *out) {
     return status;
 }
 
-static bool is_checked(const rank_state *s) {
+static bool is_checked(const frame_rank *s) {
     return s->options->check ||
            (!s->options->no_check &&
             snow_comm_ranks(s->comm) <= FRAME_CHECKED_RANKS);
@@ -273,7 +258,7 @@ static bool is_checked(const rank_state *s) {
 snow_status frame_body(snow_comm *comm, void *user) {
     frame_session *session = user;
     frame_result result = {0};
-    rank_state s = {.options = session->options,
+    frame_rank s = {.options = session->options,
                     .comm = comm,
                     .context = snow_comm_context(comm),
                     .cpu_clock = session->threads ? CLOCK_THREAD_CPUTIME_ID
@@ -283,6 +268,8 @@ snow_status frame_body(snow_comm *comm, void *user) {
         status = open_part(&s);
     if (status == SNOW_OK)
         status = measure(&s, &result);
+    if (status == SNOW_OK && s.options->turn)
+        status = frame_turn(&s, &result);
     if (status == SNOW_OK) {
         if (is_checked(&s) && snow_comm_rank(comm) == 0)
             status = compare(&s, &result);

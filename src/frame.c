@@ -385,6 +385,10 @@ snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
                               const snow_settings *settings,
                               snow_image **image) {
     snow_image *local;
+    if (frame->ranks && snow_ranks_busy(frame->ranks))
+        return snow_fail(frame->context, SNOW_BAD_USAGE,
+                         "a picture of many ranks is under way in this frame; "
+                         "finish it first");
     SNOW_TRY(snow_frame_render_slab(frame, volume, transfer, view, settings, 1,
                                     0, &local));
     /* 14 - 18: one processor has no partner; its local image is the picture. */

@@ -1,6 +1,7 @@
 /* ranks_parts.h - one picture by many processors: what its steps share.
  *
- *   ranks_render.c   the steps, and what ranks agree on
+ *   ranks_flight.c   which pictures are under way
+ *   ranks_render.c   the steps of one, and what ranks agree on
  *   ranks_layers.c   the exchange of deterministic pictures
  *   ranks_piece.c    a rank's piece of the combined image to pixels of the
  *                    picture, and these to rank 0 */
@@ -22,11 +23,49 @@ typedef struct snow_local {
     snow_rectangle drawn[SNOW_NODES_MOST]; /* all else is transparent */
 } snow_local;
 
+/* One axis' share of a picture on its way. */
+typedef struct snow_axis_work {
+    snow_placement placement;
+    snow_sheared_order order;
+    snow_sheared *sheared;
+    snow_sheared_image image;
+    snow_local local;
+} snow_axis_work;
+
+/* One picture on its way. */
+typedef struct snow_picture {
+    snow_frame *frame;
+    snow_ranks *ranks;
+    snow_view view; /* as job.view */
+    snow_job job;   /* without volume and transfer function while it draws */
+    snow_ranks_options how;
+    /* Of the volume, which may be gone when the others are told. */
+    snow_part part;
+    uint64_t serial;
+    snow_image *image; /* on rank 0 */
+    unsigned char *bytes;
+    snow_axis_work work; /* of a picture along one axis */
+    snow_stats stats;
+    /* What became of it: on this rank, or, when it is done, on all. */
+    snow_status status;
+    char message[SNOW_MESSAGE_BYTES]; /* of a failure */
+    bool ahead;   /* its local image is begun before it is asked for */
+    bool drawing; /* which is not ended */
+    bool done;
+} snow_picture;
+
+/* Pictures under way at the same time: one is combined, one is drawn. */
+#define SNOW_PICTURES_MOST 2
+
 /* What a frame keeps for pictures by many ranks. */
 struct snow_ranks {
     snow_context *context;
     snow_comm *comm; /* that all below is for */
     snow_combiner *combiner;
+    snow_picture *pictures; /* SNOW_PICTURES_MOST, in turn */
+    int first, under_way;   /* the oldest; how many */
+    snow_picture *drawn;    /* in waits for messages; or NULL */
+    double hidden;          /* seconds of that, of all pictures */
     /* Every rank's part, shared when one has changed. */
     uint64_t serial; /* of the volume that `parts` were shared for */
     snow_part *parts;
@@ -52,6 +91,28 @@ struct snow_ranks {
 };
 
 void snow_ranks_free(snow_ranks *ranks);
+
+/* Whether pictures are under way whose local images the frame holds. */
+bool snow_ranks_busy(const snow_ranks *ranks);
+
+/* The communicator's clock, which stands while other pictures are drawn. */
+double snow_ranks_clock(const snow_ranks *ranks);
+
+/* Not collective: the beginning of a picture, up to its local image where that
+ * may be drawn ahead; `aside`: of another the local image is still needed. What
+ * fails is left in the picture. */
+void snow_picture_begin(snow_picture *picture, const snow_volume *volume,
+                        const snow_transfer *transfer,
+                        const snow_settings *settings, bool aside);
+
+/* Ends drawing ahead. */
+void snow_picture_settle(snow_picture *picture);
+
+/* Collective.  All the rest.  What failed, on all ranks alike. */
+snow_status snow_picture_combine(snow_picture *picture);
+
+/* Keeps the present failure of the context. */
+void snow_picture_fail(snow_picture *picture, snow_status status);
 
 /* How pixels travel to rank 0. */
 typedef struct snow_delivery {
@@ -84,9 +145,9 @@ snow_status snow_lines_exchange(snow_ranks *ranks,
 
 /* Local work: this rank's pixels of the picture, into ranks->runs and packed:
  * of an intermediate image, or of a piece of the picture itself. */
-snow_status snow_pixels_warp(snow_ranks *ranks, const snow_sheared *sheared,
+snow_status snow_pixels_warp(snow_ranks *ranks, const snow_sheared_image *image,
                              const snow_job *job, const snow_piece *piece,
-                             int image_width, int pixel_bits);
+                             int pixel_bits);
 snow_status snow_pixels_copy(snow_ranks *ranks, const snow_job *job,
                              const snow_piece *piece, int pixel_bits);
 

@@ -179,7 +179,7 @@ static size_t most_runs(size_t pixels, size_t lines) {
 /* A rank's pixels of each line of the picture. */
 typedef struct warp_job {
     snow_ranks *ranks;
-    const snow_sheared *sheared;
+    const snow_sheared_image *image;
     int first, end; /* lines of the intermediate image */
     int width, height, channels;
     float *pixels;  /* of all lines, packed */
@@ -194,10 +194,10 @@ static void warp_lines(void *of, int64_t item, int worker) {
     int first = (int)item * WARP_LINES, last = first + WARP_LINES;
     for (int y = first; y < last && y < job->height; y++) {
         int range[2];
-        snow_sheared_pixels_of(job->sheared, y, job->first, job->end, range);
+        snow_sheared_pixels_of(job->image, y, job->first, job->end, range);
         if (range[0] >= range[1])
             continue;
-        snow_sheared_warp(job->sheared, y, range[0], range[1], row);
+        snow_sheared_warp(job->image, y, range[0], range[1], row);
         memcpy(job->pixels + job->places[y] * channels,
                row + (size_t)range[0] * channels,
                (size_t)(range[1] - range[0]) * channels * sizeof *row);
@@ -209,7 +209,7 @@ static size_t place_pixels(const warp_job *job) {
     size_t pixels = 0;
     for (int y = 0; y < job->height; y++) {
         int range[2];
-        snow_sheared_pixels_of(job->sheared, y, job->first, job->end, range);
+        snow_sheared_pixels_of(job->image, y, job->first, job->end, range);
         job->places[y] = pixels;
         pixels += (size_t)(range[1] - range[0]);
     }
@@ -234,22 +234,22 @@ static void pack_lines(const warp_job *job, int pixel_bits) {
     unsigned char *at = r->packed;
     for (int y = 0; y < job->height; y++) {
         int range[2];
-        snow_sheared_pixels_of(job->sheared, y, job->first, job->end, range);
+        snow_sheared_pixels_of(job->image, y, job->first, job->end, range);
         append_runs(r, range[0], y, range[1] - range[0],
                     job->pixels + job->places[y] * (size_t)job->channels,
                     job->channels, pixel_bits, &at);
     }
 }
 
-snow_status snow_pixels_warp(snow_ranks *r, const snow_sheared *sheared,
+snow_status snow_pixels_warp(snow_ranks *r, const snow_sheared_image *image,
                              const snow_job *job, const snow_piece *piece,
-                             int image_width, int pixel_bits) {
+                             int pixel_bits) {
     const snow_view *view = job->view;
     size_t height = (size_t)view->height, width = (size_t)view->width;
     warp_job warp = {.ranks = r,
-                     .sheared = sheared,
-                     .first = (int)(piece->first / image_width),
-                     .end = (int)((piece->first + piece->count) / image_width),
+                     .image = image,
+                     .first = (int)(piece->first / image->width),
+                     .end = (int)((piece->first + piece->count) / image->width),
                      .width = view->width,
                      .height = view->height,
                      .channels = job->channels};
@@ -301,13 +301,13 @@ snow_status snow_pixels_gather(snow_ranks *r, const snow_job *job,
         (size_t)view->width * (size_t)view->height * (size_t)job->channels;
     float *pixels = delivery->image ? delivery->image->pixels : NULL;
     void *picture = bytes ? (void *)delivery->bytes : (void *)pixels;
-    double mark = snow_comm_seconds(r->comm);
+    double mark = snow_ranks_clock(r);
     SNOW_TRY(snow_gather(r->combiner, view->width, view->height, r->runs,
                          r->run_count, r->packed,
                          (size_t)job->channels * (bytes ? 1 : sizeof(float)),
                          picture));
     for (size_t n = 0; pixels && bytes && n < floats; n++)
         pixels[n] = (float)delivery->bytes[n] / 255;
-    delivery->stats->seconds_gather += snow_comm_seconds(r->comm) - mark;
+    delivery->stats->seconds_gather += snow_ranks_clock(r) - mark;
     return SNOW_OK;
 }

@@ -7,7 +7,12 @@
  *   gather                 pixels -> the picture, on rank 0  (19, 20)
  *
  * What a rank finds wrong by itself is agreed on before anybody waits for a
- * message of it; what all ranks find wrong alike needs no word. */
+ * message of it; what all ranks find wrong alike needs no word.
+ *
+ * A local image by the sheared method along one axis is begun as soon as the
+ * picture is, and then drawn while others wait, for messages of the picture
+ * before it (ranks_flight.c).  From then on it needs no volume.  Other local
+ * images are made when it is their picture's turn. */
 #include "ranks_parts.h"
 
 #include "decompose/order.h"
@@ -16,85 +21,25 @@
 
 #include <string.h>
 
-/* One picture in the making. */
-typedef struct picture {
-    snow_frame *frame;
-    snow_ranks *ranks;
-    snow_comm *comm;
-    snow_job job;
-    snow_ranks_options how;
-    snow_image *image; /* on rank 0 */
-    unsigned char *bytes;
-} picture;
-
-/* --- what a frame keeps ---------------------------------------------------
+/* --- the beginning --------------------------------------------------------
  */
 
-void snow_ranks_free(snow_ranks *r) {
-    if (!r)
-        return;
-    snow_context *context = r->context;
-    void *const blocks[] = {r->parts,    r->boxes,   r->order, r->firsts,
-                            r->counts,   r->offsets, r->sent,  r->came,
-                            r->messages, r->piece,   r->lines, r->images,
-                            r->runs,     r->packed,  r->rows};
-    for (size_t n = 0; n < sizeof blocks / sizeof *blocks; n++)
-        snow_release(context, blocks[n]);
-    snow_combiner_free(r->combiner);
-    snow_release(context, r);
-}
-
-static snow_status take_arrays(snow_ranks *r) {
-    snow_context *context = r->context;
-    uint64_t count = (uint64_t)r->ranks;
-    bool fine =
-        (r->parts = snow_allocate_array(context, count, sizeof *r->parts)) &&
-        (r->boxes = snow_allocate_array(context, count, sizeof *r->boxes)) &&
-        (r->order = snow_allocate_array(context, count, sizeof *r->order)) &&
-        (r->firsts = snow_allocate_array(context, count, sizeof *r->firsts)) &&
-        (r->counts = snow_allocate_array(context, count, sizeof *r->counts)) &&
-        (r->offsets =
-             snow_allocate_array(context, count, sizeof *r->offsets)) &&
-        (r->messages =
-             snow_allocate_array(context, 4 * count + 16, sizeof *r->messages));
-    return fine ? snow_combiner_new(r->comm, &r->combiner) : SNOW_NO_MEMORY;
-}
-
-/* The frame's record for a communicator. */
-static snow_status open_ranks(snow_frame *frame, snow_comm *comm) {
-    if (frame->ranks && frame->ranks->comm == comm)
-        return SNOW_OK;
-    snow_ranks_free(frame->ranks);
-    frame->ranks = NULL;
-    snow_ranks *r = snow_allocate_clear(frame->context, sizeof *r);
-    if (!r)
-        return SNOW_NO_MEMORY;
-    r->context = frame->context;
-    r->comm = comm;
-    r->rank = snow_comm_rank(comm);
-    r->ranks = snow_comm_ranks(comm);
-    snow_status status = take_arrays(r);
-    if (status == SNOW_OK)
-        frame->ranks = r;
-    else
-        snow_ranks_free(r);
+/* What the beginning of a job counts is this picture's. */
+static snow_status begin_job(snow_picture *p, const snow_volume *volume,
+                             const snow_transfer *transfer,
+                             const snow_settings *settings) {
+    snow_stats last = p->frame->stats;
+    snow_status status = snow_job_begin(p->frame, volume, transfer, &p->view,
+                                        settings, 1, 0, &p->job);
+    p->stats = p->frame->stats;
+    p->stats.ranks = p->ranks->ranks;
+    p->job.stats = &p->stats;
+    p->frame->stats = last;
     return status;
 }
 
-/* --- meeting --------------------------------------------------------------
- */
-
-static snow_ranks_options options_known(const snow_ranks_options *how) {
-    snow_ranks_options known = {0};
-    if (how)
-        memcpy(&known, how,
-               how->size < sizeof known ? how->size : sizeof known);
-    return known;
-}
-
-static snow_status begin_picture(picture *p, const snow_volume *volume,
+static snow_status begin_picture(snow_picture *p, const snow_volume *volume,
                                  const snow_transfer *transfer,
-                                 const snow_view *view,
                                  const snow_settings *settings) {
     snow_context *context = p->frame->context;
     if (p->how.pixel_bits != 0 && p->how.pixel_bits != 8)
@@ -102,26 +47,89 @@ static snow_status begin_picture(picture *p, const snow_volume *volume,
                          "pixels of %d bits cannot travel; take 8, or 0 for "
                          "floats",
                          p->how.pixel_bits);
-    SNOW_TRY(open_ranks(p->frame, p->comm));
-    p->ranks = p->frame->ranks;
-    SNOW_TRY(snow_job_begin(p->frame, volume, transfer, view, settings, 1, 0,
-                            &p->job));
+    SNOW_TRY(begin_job(p, volume, transfer, settings));
     if (p->job.settings.mode != SNOW_MODE_OVER)
         return snow_fail(context, SNOW_BAD_USAGE,
                          "mode %s is not built for many ranks yet; render on "
                          "one, or take mode over",
                          snow_mode_name(p->job.settings.mode));
-    if (snow_comm_rank(p->comm) != 0 && !p->how.scattered)
+    if (p->ranks->rank != 0 && !p->how.scattered)
         return SNOW_OK;
-    SNOW_TRY(snow_image_new(context, view->width, view->height, p->job.channels,
-                            &p->image));
+    SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,
+                            p->job.channels, &p->image));
     if (p->how.pixel_bits != 8 || p->how.scattered)
         return SNOW_OK;
-    size_t bytes =
-        (size_t)view->width * (size_t)view->height * (size_t)p->job.channels;
+    size_t bytes = (size_t)p->view.width * (size_t)p->view.height *
+                   (size_t)p->job.channels;
     p->bytes = snow_allocate_clear(context, bytes);
     return p->bytes ? SNOW_OK : SNOW_NO_MEMORY;
 }
+
+/* The one axis that a picture of the sheared method is made along; -1 where it
+ * is blended of several, or made by another method.  The same on all ranks. */
+static int axis_alone(const snow_picture *p) {
+    int axis = p->job.placement.slice_axis;
+    double shares[3];
+    if (p->job.settings.method != SNOW_METHOD_SHEARED ||
+        snow_job_shares(&p->job, shares) != SNOW_OK)
+        return -1;
+    return shares[axis] < 1 ? -1 : axis;
+}
+
+/* Local work: begins this rank's intermediate image. */
+static snow_status begin_axis(snow_picture *p, int axis, bool aside,
+                              snow_axis_work *work) {
+    bool high = p->job.settings.quality == SNOW_QUALITY_HIGH;
+    snow_sheared **sheared = &p->frame->sheared[high ? axis : 0];
+    SNOW_TRY(snow_job_order(&p->job, axis, &work->placement, &work->order));
+    if (p->job.settings.deterministic && work->order.clip.cuts)
+        return snow_fail(p->job.context, SNOW_BAD_USAGE,
+                         "deterministic pictures are not blended of several "
+                         "axes by many ranks; take quality normal");
+    if (!*sheared)
+        SNOW_TRY(snow_sheared_new(p->job.context, sheared));
+    work->sheared = *sheared;
+    return snow_sheared_begin(*sheared, &work->order, aside, &p->stats,
+                              &work->image);
+}
+
+/* What is counted is counted now, while there is a volume. */
+static snow_status begin_ahead(snow_picture *p, int axis, bool aside) {
+    SNOW_TRY(begin_axis(p, axis, aside, &p->work));
+    p->drawing = true;
+    return snow_job_finish(p->frame, &p->job);
+}
+
+void snow_picture_fail(snow_picture *p, snow_status status) {
+    p->status = status;
+    if (status != SNOW_OK)
+        memcpy(p->message, p->frame->context->message, sizeof p->message);
+}
+
+void snow_picture_begin(snow_picture *p, const snow_volume *volume,
+                        const snow_transfer *transfer,
+                        const snow_settings *settings, bool aside) {
+    p->serial = volume->serial;
+    snow_volume_get_part(volume, &p->part);
+    snow_status status = begin_picture(p, volume, transfer, settings);
+    int axis = axis_alone(p);
+    p->ahead = axis >= 0;
+    if (status == SNOW_OK && p->ahead)
+        status = begin_ahead(p, axis, aside);
+    snow_picture_fail(p, status);
+}
+
+void snow_picture_settle(snow_picture *p) {
+    if (!p->drawing)
+        return;
+    double mark = snow_ranks_clock(p->ranks);
+    snow_sheared_end(p->work.sheared);
+    p->drawing = false;
+    p->stats.seconds_splat += snow_ranks_clock(p->ranks) - mark;
+}
+
+/* --- meeting --------------------------------------------------------------
+ */
 
 /* Mixes bytes into a number of 62 bits (Fowler, Noll and Vo's hash). */
 static void mix(uint64_t *hash, const void *bytes, size_t count) {
@@ -131,7 +139,7 @@ static void mix(uint64_t *hash, const void *bytes, size_t count) {
 }
 
 /* What must be the same on all ranks, as a number. */
-static int64_t terms_of(const picture *p) {
+static int64_t terms_of(const snow_picture *p) {
     const snow_job *job = &p->job;
     const snow_settings *s = &job->settings;
     const snow_placement *place = &job->placement;
@@ -178,11 +186,9 @@ static snow_status check_parts(const snow_ranks *r) {
 }
 
 /* Collective.  Every rank's part to all. */
-static snow_status share_parts(snow_ranks *r, const snow_volume *volume) {
-    snow_part mine;
-    snow_volume_get_part(volume, &mine);
+static snow_status share_parts(snow_ranks *r, const snow_picture *p) {
     r->serial = 0;
-    SNOW_TRY(snow_comm_share(r->comm, &mine, sizeof mine, r->parts));
+    SNOW_TRY(snow_comm_share(r->comm, &p->part, sizeof p->part, r->parts));
     for (int rank = 0; rank < r->ranks; rank++) {
         const snow_part *part = &r->parts[rank];
         bool none = !part->count[0] || !part->count[1] || !part->count[2];
@@ -192,36 +198,41 @@ static snow_status share_parts(snow_ranks *r, const snow_volume *volume) {
         }
     }
     SNOW_TRY(check_parts(r));
-    r->serial = volume->serial;
+    r->serial = p->serial;
     return SNOW_OK;
 }
 
-/* Collective.  How the ranks' own preparations went; parts, where one is new.
- */
-static snow_status meet(picture *p, snow_status status) {
+/* Whether this rank knows the parts of a picture. */
+static bool knows_parts(const snow_picture *p) {
+    return p->serial && p->ranks->serial == p->serial;
+}
+
+/* Collective.  How the ranks' own work went; parts, where one is new. */
+static snow_status meet(snow_picture *p, snow_status status, bool *new_parts) {
     enum { FAILED, NEW, TERMS, MINUS_TERMS, COUNT };
+    snow_comm *comm = p->ranks->comm;
     int64_t words[COUNT] = {status != SNOW_OK, 1, 0, 0};
     if (status == SNOW_OK) {
-        const snow_volume *volume = p->job.volume;
-        words[NEW] = !volume->serial || p->ranks->serial != volume->serial;
+        words[NEW] = !knows_parts(p);
         words[TERMS] = terms_of(p);
         words[MINUS_TERMS] = -words[TERMS];
     }
-    SNOW_TRY(snow_comm_reduce_ints(p->comm, words, COUNT, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_ints(comm, words, COUNT, SNOW_MAX));
     if (words[FAILED])
-        return snow_comm_agree(p->comm, status);
+        return snow_comm_agree(comm, status);
     if (words[TERMS] != -words[MINUS_TERMS])
         return snow_fail(p->job.context, SNOW_BAD_USAGE,
                          "ranks were asked for different pictures; give all "
                          "the same view and settings");
-    return words[NEW] ? share_parts(p->ranks, p->job.volume) : SNOW_OK;
+    *new_parts = words[NEW] != 0;
+    return *new_parts ? share_parts(p->ranks, p) : SNOW_OK;
 }
 
 /* --- the exchange ---------------------------------------------------------
  */
 
 /* Local work: which rank is before which, and room. */
-static snow_status prepare_exchange(picture *p, const snow_local *local,
+static snow_status prepare_exchange(snow_picture *p, const snow_local *local,
                                     const snow_placement *placement) {
     snow_sight sight;
     if (p->job.settings.deterministic)
@@ -232,7 +243,7 @@ static snow_status prepare_exchange(picture *p, const snow_local *local,
 }
 
 /* Collective.  Local images to pieces, of `grain` pixels or multiples. */
-static snow_status exchange(picture *p, const snow_local *local,
+static snow_status exchange(snow_picture *p, const snow_local *local,
                             const snow_placement *placement, int grain,
                             snow_piece *piece) {
     snow_ranks *r = p->ranks;
@@ -254,7 +265,8 @@ static snow_status exchange(picture *p, const snow_local *local,
 }
 
 /* This rank's pixels to their places in its own image. */
-static void keep_pixels(const picture *p, int pixel_bits, snow_image *image) {
+static void keep_pixels(const snow_picture *p, int pixel_bits,
+                        snow_image *image) {
     const snow_ranks *r = p->ranks;
     size_t channels = (size_t)image->channels, at = 0;
     for (size_t n = 0; n < r->run_count; n++) {
@@ -271,13 +283,12 @@ static void keep_pixels(const picture *p, int pixel_bits, snow_image *image) {
     }
 }
 
-static snow_status deliver(picture *p, int pixel_bits, snow_image *image) {
+static snow_status deliver(snow_picture *p, int pixel_bits, snow_image *image) {
     if (p->how.scattered) {
         keep_pixels(p, pixel_bits, image);
         return SNOW_OK;
     }
-    const snow_delivery delivery = {pixel_bits, image, p->bytes,
-                                    &p->frame->stats};
+    const snow_delivery delivery = {pixel_bits, image, p->bytes, &p->stats};
     return snow_pixels_gather(p->ranks, &p->job, &delivery);
 }
 
@@ -325,29 +336,8 @@ static snow_local local_of(const snow_sheared_image *image) {
     return local;
 }
 
-/* One axis' share of a picture on its way. */
-typedef struct axis_work {
-    snow_placement placement;
-    snow_sheared_order order;
-    snow_sheared *sheared;
-    snow_sheared_image image;
-    snow_local local;
-} axis_work;
-
-/* Local work: this rank's intermediate image, and all that the exchange needs.
- */
-static snow_status splat_axis(picture *p, int axis, snow_sheared **sheared,
-                              axis_work *work) {
-    SNOW_TRY(snow_job_order(&p->job, axis, &work->placement, &work->order));
-    if (p->job.settings.deterministic && work->order.clip.cuts)
-        return snow_fail(p->job.context, SNOW_BAD_USAGE,
-                         "deterministic pictures are not blended of several "
-                         "axes by many ranks; take quality normal");
-    if (!*sheared)
-        SNOW_TRY(snow_sheared_new(p->job.context, sheared));
-    work->sheared = *sheared;
-    SNOW_TRY(
-        snow_sheared_splat(*sheared, &work->order, p->job.stats, &work->image));
+/* Local work: all that the exchange of a drawn image needs. */
+static snow_status prepare_axis(snow_picture *p, snow_axis_work *work) {
     if (!work->image.width)
         return SNOW_OK;
     work->local = local_of(&work->image);
@@ -355,28 +345,48 @@ static snow_status splat_axis(picture *p, int axis, snow_sheared **sheared,
     return prepare_exchange(p, &work->local, &work->placement);
 }
 
-/* Collective.  The picture with slices along one axis, into `image` of rank 0.
- */
-static snow_status render_axis(picture *p, int axis, snow_sheared **sheared,
-                               int pixel_bits, snow_image *image) {
-    snow_stats *stats = &p->frame->stats;
-    axis_work work;
+/* Collective.  Local images to the picture, in `image` of rank 0. */
+static snow_status combine_axis(snow_picture *p, const snow_axis_work *work,
+                                int pixel_bits, snow_image *image) {
+    snow_ranks *r = p->ranks;
     snow_piece piece;
-    snow_status status = splat_axis(p, axis, sheared, &work);
-    SNOW_TRY(snow_comm_agree(p->comm, status));
-    if (!work.image.width) /* the same on all ranks */
+    if (!work->image.width) /* the same on all ranks */
         return SNOW_OK;
-    double mark = snow_comm_seconds(p->comm);
+    double mark = snow_ranks_clock(r);
     SNOW_TRY(
-        exchange(p, &work.local, &work.placement, work.image.width, &piece));
-    SNOW_TRY(snow_lines_exchange(p->ranks, &work.image, &piece));
-    double combined = snow_comm_seconds(p->comm), start = snow_seconds();
-    stats->seconds_combine += combined - mark;
-    status = snow_pixels_warp(p->ranks, work.sheared, &p->job, &piece,
-                              work.image.width, pixel_bits);
-    stats->seconds_warp += snow_seconds() - start;
-    SNOW_TRY(snow_comm_agree(p->comm, status));
+        exchange(p, &work->local, &work->placement, work->image.width, &piece));
+    SNOW_TRY(snow_lines_exchange(r, &work->image, &piece));
+    double combined = snow_ranks_clock(r);
+    p->stats.seconds_combine += combined - mark;
+    snow_status status =
+        snow_pixels_warp(r, &work->image, &p->job, &piece, pixel_bits);
+    p->stats.seconds_warp += snow_ranks_clock(r) - combined;
+    SNOW_TRY(snow_comm_agree(r->comm, status));
     return deliver(p, pixel_bits, image);
+}
+
+/* Collective.  Of a picture whose local image was begun. */
+static snow_status render_ahead(snow_picture *p, snow_status status) {
+    bool known = knows_parts(p), new_parts;
+    if (status == SNOW_OK && known)
+        status = prepare_axis(p, &p->work);
+    SNOW_TRY(meet(p, status, &new_parts));
+    if (new_parts)
+        SNOW_TRY(snow_comm_agree(p->ranks->comm, prepare_axis(p, &p->work)));
+    return combine_axis(p, &p->work, p->how.pixel_bits, p->image);
+}
+
+/* Collective.  The picture with slices along one axis of several. */
+static snow_status render_axis(snow_picture *p, int axis, snow_image *image) {
+    snow_status status = begin_axis(p, axis, false, &p->work);
+    if (status == SNOW_OK) {
+        double mark = snow_ranks_clock(p->ranks);
+        snow_sheared_end(p->work.sheared);
+        p->stats.seconds_splat += snow_ranks_clock(p->ranks) - mark;
+        status = prepare_axis(p, &p->work);
+    }
+    SNOW_TRY(snow_comm_agree(p->ranks->comm, status));
+    return combine_axis(p, &p->work, 0, image);
 }
 
 /* As bytes would have travelled. */
@@ -387,22 +397,24 @@ static void round_pixels(float *pixels, size_t count) {
 
 /* Collective.  A blend of several axes: their pictures travel as floats, and
  * are added up on rank 0 in the order of frame.c. */
-static snow_status render_blend(picture *p, const double shares[3]) {
+static snow_status render_blend(snow_picture *p) {
     const snow_view *view = p->job.view;
     size_t floats =
         (size_t)view->width * (size_t)view->height * (size_t)p->job.channels;
+    double shares[3];
     snow_image *layer = NULL;
     snow_status status = SNOW_OK;
+    SNOW_TRY(snow_job_shares(&p->job, shares)); /* alike on all ranks */
     if (p->image)
         status = snow_image_new(p->job.context, view->width, view->height,
                                 p->job.channels, &layer);
-    status = snow_comm_agree(p->comm, status);
+    status = snow_comm_agree(p->ranks->comm, status);
     for (int axis = 0; axis < 3 && status == SNOW_OK; axis++) {
         if (shares[axis] == 0)
             continue;
         if (layer)
             memset(layer->pixels, 0, floats * sizeof *layer->pixels);
-        status = render_axis(p, axis, &p->frame->sheared[axis], 0, layer);
+        status = render_axis(p, axis, layer);
         for (size_t n = 0; layer && status == SNOW_OK && n < floats; n++)
             p->image->pixels[n] += (float)shares[axis] * layer->pixels[n];
     }
@@ -412,22 +424,11 @@ static snow_status render_blend(picture *p, const double shares[3]) {
     return status;
 }
 
-static snow_status render_sheared(picture *p) {
-    int axis = p->job.placement.slice_axis;
-    double shares[3];
-    SNOW_TRY(snow_job_shares(&p->job, shares)); /* alike on all ranks */
-    if (shares[axis] < 1)
-        return render_blend(p, shares);
-    bool high = p->job.settings.quality == SNOW_QUALITY_HIGH;
-    return render_axis(p, axis, &p->frame->sheared[high ? axis : 0],
-                       p->how.pixel_bits, p->image);
-}
-
 /* --- the exact methods ----------------------------------------------------
  */
 
 /* Local work: the local image; in deterministic pictures one for each node. */
-static snow_status render_exact_local(picture *p, snow_local *local) {
+static snow_status render_exact_local(snow_picture *p, snow_local *local) {
     snow_ranks *r = p->ranks;
     snow_job *job = &p->job;
     const snow_view *view = job->view;
@@ -462,65 +463,35 @@ static snow_status render_exact_local(picture *p, snow_local *local) {
     return prepare_exchange(p, local, &job->placement);
 }
 
-static snow_status render_exact(picture *p) {
+static snow_status render_exact(snow_picture *p) {
+    snow_ranks *r = p->ranks;
     snow_local local;
     snow_piece piece;
-    SNOW_TRY(snow_comm_agree(p->comm, render_exact_local(p, &local)));
-    double mark = snow_comm_seconds(p->comm);
+    SNOW_TRY(snow_comm_agree(r->comm, render_exact_local(p, &local)));
+    double mark = snow_ranks_clock(r);
     SNOW_TRY(exchange(p, &local, &p->job.placement, 1, &piece));
-    p->frame->stats.seconds_combine += snow_comm_seconds(p->comm) - mark;
-    SNOW_TRY(
-        snow_comm_agree(p->comm, snow_pixels_copy(p->ranks, &p->job, &piece,
-                                                  p->how.pixel_bits)));
+    p->stats.seconds_combine += snow_ranks_clock(r) - mark;
+    SNOW_TRY(snow_comm_agree(
+        r->comm, snow_pixels_copy(r, &p->job, &piece, p->how.pixel_bits)));
     return deliver(p, p->how.pixel_bits, p->image);
 }
 
 /* --- a picture ------------------------------------------------------------
  */
 
-/* A group of one: its local image is the picture. */
-static snow_status render_alone(picture *p, const snow_volume *volume,
-                                const snow_transfer *transfer,
-                                const snow_view *view,
-                                const snow_settings *settings) {
-    SNOW_TRY(snow_frame_render(p->frame, volume, transfer, view, settings,
-                               &p->image));
-    if (p->how.pixel_bits == 8 && p->image->channels > 1)
-        round_pixels(p->image->pixels, (size_t)p->image->width *
-                                           (size_t)p->image->height *
-                                           (size_t)p->image->channels);
-    return SNOW_OK;
-}
-
-static snow_status render_together(picture *p, const snow_volume *volume,
-                                   const snow_transfer *transfer,
-                                   const snow_view *view,
-                                   const snow_settings *settings) {
-    double start = snow_seconds(), cpu = snow_cpu_seconds();
-    snow_stats *stats = &p->frame->stats;
-    SNOW_TRY(meet(p, begin_picture(p, volume, transfer, view, settings)));
-    stats->ranks = p->ranks->ranks;
-    SNOW_TRY(p->job.settings.method == SNOW_METHOD_SHEARED ? render_sheared(p)
+/* Collective.  Local work included, up to the counts. */
+static snow_status render_wholly(snow_picture *p, snow_status status) {
+    bool new_parts;
+    SNOW_TRY(meet(p, status, &new_parts));
+    SNOW_TRY(p->job.settings.method == SNOW_METHOD_SHEARED ? render_blend(p)
                                                            : render_exact(p));
-    stats->seconds_frame = snow_seconds() - start;
-    stats->cpu_frame = snow_cpu_seconds() - cpu;
-    return snow_comm_agree(p->comm, snow_job_finish(p->frame, &p->job));
+    return snow_comm_agree(p->ranks->comm, snow_job_finish(p->frame, &p->job));
 }
 
-snow_status
-snow_ranks_render(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
-                  const snow_transfer *transfer, const snow_view *view,
-                  const snow_settings *settings, const snow_ranks_options *how,
-                  snow_image **image) {
-    picture p = {.frame = frame, .comm = comm, .how = options_known(how)};
-    snow_status status =
-        snow_comm_ranks(comm) == 1
-            ? render_alone(&p, volume, transfer, view, settings)
-            : render_together(&p, volume, transfer, view, settings);
-    snow_release(frame->context, p.bytes);
-    if (status == SNOW_OK)
-        *image = p.image;
-    else
-        snow_image_free(p.image);
-    return status;
+snow_status snow_picture_combine(snow_picture *p) {
+    snow_status status = p->status;
+    snow_picture_settle(p);
+    if (status != SNOW_OK) /* others may have failed since */
+        status = snow_fail(p->frame->context, status, "%s", p->message);
+    return p->ahead ? render_ahead(p, status) : render_wholly(p, status);
 }

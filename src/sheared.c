@@ -11,7 +11,6 @@
  * behind opaque chunks is skipped, voxels included. */
 #include "sheared.h"
 
-#include "base/parallel.h"
 #include "image/image.h"
 #include "sheared_parts.h"
 #include "volume/volume.h"
@@ -100,6 +99,7 @@ snow_status snow_sheared_new(snow_context *context, snow_sheared **out) {
     if (!sheared)
         return SNOW_NO_MEMORY;
     sheared->context = sheared->bands.context = context;
+    sheared->canvas = sheared->canvases;
     *out = sheared;
     return SNOW_OK;
 }
@@ -115,9 +115,12 @@ void snow_sheared_free(snow_sheared *s) {
     snow_release(s->context, s->next_fade_key);
     snow_release(s->context, s->gloss);
     snow_release(s->context, s->combs);
-    snow_release(s->context, s->plane);
-    snow_release(s->context, s->drawn);
+    for (int n = 0; n < 2; n++) {
+        snow_release(s->context, s->canvases[n].plane);
+        snow_release(s->context, s->canvases[n].drawn);
+    }
     snow_release(s->context, s->scratch);
+    snow_release(s->context, s->pass);
     snow_release(s->context, s->seen);
     snow_release(s->context, s->teeth);
     snow_release(s->context, s->reach);
@@ -725,21 +728,23 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
 snow_status snow_sheared_make_layers(snow_sheared *s, int layers, int64_t bands,
                                      size_t lines, snow_sheared_image *image) {
     uint64_t floats, bytes;
+    snow_canvas *canvas = s->canvas;
     image->layers = layers;
     if (layers < 1) /* room for lines that others made */
         layers = 1;
     image->layer_tiles = (size_t)(bands * image->tiles);
-    SNOW_TRY(snow_reserve(s->context, &s->drawn, &s->drawn_capacity, 0,
-                          image->layer_tiles * (size_t)layers));
+    SNOW_TRY(snow_reserve(s->context, &canvas->drawn, &canvas->drawn_capacity,
+                          0, image->layer_tiles * (size_t)layers));
     image->layer_floats = lines * image->stride;
     if (!snow_mul_u64(image->layer_floats, (uint64_t)layers, &floats) ||
-        !snow_mul_u64(floats, sizeof *s->plane, &bytes) || bytes > SIZE_MAX)
+        !snow_mul_u64(floats, sizeof *canvas->plane, &bytes) ||
+        bytes > SIZE_MAX)
         return snow_fail(s->context, SNOW_NO_MEMORY,
                          "no memory for %d intermediate images", layers);
-    SNOW_TRY(snow_reserve(s->context, &s->plane, &s->plane_capacity, 0,
-                          (size_t)bytes));
-    image->pixels = s->plane;
-    image->drawn = s->drawn;
+    SNOW_TRY(snow_reserve(s->context, &canvas->plane, &canvas->plane_capacity,
+                          0, (size_t)bytes));
+    image->pixels = canvas->plane;
+    image->drawn = canvas->drawn;
     return SNOW_OK;
 }
 
@@ -791,7 +796,7 @@ void snow_sheared_fill_figures(const snow_sheared *s, snow_stats *stats) {
 /* What the warp has to know of a picture. */
 static void keep_warping(snow_sheared *s, const snow_pass *pass) {
     const snow_settings *settings = pass->order->settings;
-    snow_sheared_warping *w = &s->warping;
+    snow_sheared_warping *w = &s->canvas->warping;
     w->perspective = false;
     w->shear = pass->shear;
     w->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
@@ -824,44 +829,69 @@ static snow_status place(snow_pass *pass) {
 }
 
 /* Lines 07 to 13 of a parallel view. */
-static snow_status splat_sheared(snow_sheared *s,
+static snow_status begin_sheared(snow_sheared *s,
                                  const snow_sheared_order *order,
                                  snow_stats *stats, snow_sheared_image *out) {
-    snow_pass pass = {.order = order, .sheared = s};
-    SNOW_TRY(classify_and_shade(&pass, stats));
-    SNOW_TRY(place(&pass));
-    keep_warping(s, &pass);
-    if (nothing_in_view(&pass)) {
+    SNOW_TRY(snow_reserve(s->context, &s->pass, &s->pass_capacity, 0,
+                          sizeof(snow_pass)));
+    snow_pass *pass = s->pass;
+    *pass = (snow_pass){.order = order, .sheared = s};
+    SNOW_TRY(classify_and_shade(pass, stats));
+    SNOW_TRY(place(pass));
+    keep_warping(s, pass);
+    if (nothing_in_view(pass)) {
         *out = (snow_sheared_image){.channels = order->channels};
         return SNOW_OK;
     }
     double mark = snow_seconds();
-    SNOW_TRY(place_slices(&pass));
-    SNOW_TRY(reserve_buffers(&pass));
-    snow_parallel(s->context, order->settings->threads, pass.bands, splat_band,
-                  &pass);
-    *out = pass.image;
+    SNOW_TRY(place_slices(pass));
+    SNOW_TRY(reserve_buffers(pass));
+    snow_parallel_begin(s->context, order->settings->threads, pass->bands,
+                        splat_band, pass, &s->batch);
+    *out = pass->image;
     stats->seconds_splat += snow_seconds() - mark;
     return SNOW_OK;
 }
 
-snow_status snow_sheared_splat(snow_sheared *s, const snow_sheared_order *order,
-                               snow_stats *stats, snow_sheared_image *out) {
+snow_status snow_sheared_begin(snow_sheared *s, const snow_sheared_order *order,
+                               bool aside, snow_stats *stats,
+                               snow_sheared_image *out) {
     snow_sheared_image image;
     double mark = snow_seconds();
+    if (aside)
+        s->canvas = &s->canvases[s->canvas == s->canvases];
     SNOW_TRY(snow_sheared_encode(s, order, stats));
     stats->seconds_encode += snow_seconds() - mark;
     SNOW_TRY(order->placement->perspective
-                 ? snow_sheared_seen_splat(s, order, stats, &image)
-                 : splat_sheared(s, order, stats, &image));
+                 ? snow_sheared_seen_begin(s, order, stats, &image)
+                 : begin_sheared(s, order, stats, &image));
     snow_sheared_fill_figures(s, stats);
-    s->warping.width = order->view->width;
-    s->warping.height = order->view->height;
-    s->warping.plane =
+    snow_sheared_warping *warping = &s->canvas->warping;
+    warping->width = order->view->width;
+    warping->height = order->view->height;
+    warping->plane =
         (snow_plane){image.pixels,     image.stride,      image.width,
                      image.height,     image.channels,    image.drawn,
                      image.tile_width, image.tile_height, image.tiles};
+    image.warping = warping;
     *out = image;
+    return SNOW_OK;
+}
+
+bool snow_sheared_step(snow_sheared *s) {
+    return snow_parallel_step(&s->batch);
+}
+
+void snow_sheared_end(snow_sheared *s) {
+    snow_parallel_end(s->context, &s->batch);
+}
+
+snow_status snow_sheared_splat(snow_sheared *s, const snow_sheared_order *order,
+                               snow_stats *stats, snow_sheared_image *out) {
+    SNOW_TRY(snow_sheared_begin(s, order, false, stats, out));
+    double mark = snow_seconds();
+    snow_sheared_end(s);
+    stats->seconds_splat += snow_seconds() - mark;
     return SNOW_OK;
 }
 
@@ -885,7 +915,7 @@ snow_status snow_sheared_render(snow_sheared *s,
     if (order->volume->is_part || order->settings->deterministic)
         snow_sheared_clear(&image, 0, 0, 0, image.tiles,
                            (int)(image.layer_tiles / (size_t)image.tiles));
-    snow_sheared_warp_all(s, order->settings->threads, pixels);
+    snow_sheared_warp_all(s->context, &image, order->settings->threads, pixels);
     stats->seconds_warp += snow_seconds() - mark;
     return SNOW_OK;
 }

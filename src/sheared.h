@@ -33,13 +33,14 @@ typedef struct snow_sheared_order {
  * each of some nodes of the tree of groups (decompose/part.h). */
 typedef struct snow_sheared_image {
     int width, height, channels; /* 0 x 0: nothing is in view */
-    float *pixels;               /* of the frame's, until it draws again */
-    size_t stride;               /* floats from line to line */
-    unsigned char *drawn;        /* per tile, line of tiles by line of tiles */
+    float *pixels;        /* of the frame's, until it draws there again */
+    size_t stride;        /* floats from line to line */
+    unsigned char *drawn; /* per tile, line of tiles by line of tiles */
     int tile_width, tile_height, tiles; /* pixels; tiles of a line */
     int layers;                         /* 1, or as many as nodes */
     snow_group_node nodes[SNOW_NODES_MOST];
     size_t layer_floats, layer_tiles; /* from layer to layer */
+    const struct snow_sheared_warping *warping;
 } snow_sheared_image;
 
 /* Whether the method can make this picture.  Where a kernel, widened for
@@ -62,6 +63,18 @@ snow_status snow_sheared_splat(snow_sheared *sheared,
                                const snow_sheared_order *order,
                                snow_stats *stats, snow_sheared_image *out);
 
+/* That again in steps.  Begins, and tells of the image, which threads of the
+ * context then draw; the caller draws a band of it with each step, which tells
+ * when none is left; it is there after the end.  The order stays until then;
+ * its volume and transfer function need not.  One image of a context at a time
+ * is drawn; the one before it stays as it is where `aside` asks for the other
+ * place of two. */
+snow_status snow_sheared_begin(snow_sheared *sheared,
+                               const snow_sheared_order *order, bool aside,
+                               snow_stats *stats, snow_sheared_image *out);
+bool snow_sheared_step(snow_sheared *sheared);
+void snow_sheared_end(snow_sheared *sheared);
+
 /* Clears what was not drawn on of tiles x0 .. x1 - 1 of tile lines y0 .. y1 - 1
  * of a layer. */
 void snow_sheared_clear(const snow_sheared_image *image, int layer, int x0,
@@ -77,7 +90,7 @@ void snow_sheared_put_lines(const snow_sheared_image *image, int first,
 /* Pixels of a line of the picture whose place in the image is in its lines
  * first .. end - 1: x range[0] .. range[1] - 1.  Of lines that follow one
  * another each pixel is in one range. */
-void snow_sheared_pixels_of(const snow_sheared *sheared, int y, int first,
+void snow_sheared_pixels_of(const snow_sheared_image *image, int y, int first,
                             int end, int range[2]);
 
 /* How many lines before and behind the one that a pixel is in its warp may
@@ -88,9 +101,10 @@ void snow_sheared_pixels_of(const snow_sheared *sheared, int y, int first,
 /* Warps the image, or what was put in its place, to pixels `from` to `to` - 1
  * of line y of the picture, whose pixel 0 is the first of `pixels`; or to all
  * of it. */
-void snow_sheared_warp(const snow_sheared *sheared, int y, int from, int to,
+void snow_sheared_warp(const snow_sheared_image *image, int y, int from, int to,
                        float *pixels);
-void snow_sheared_warp_all(const snow_sheared *sheared, int threads,
+void snow_sheared_warp_all(snow_context *context,
+                           const snow_sheared_image *image, int threads,
                            float *pixels);
 
 #endif

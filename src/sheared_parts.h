@@ -3,6 +3,7 @@
 #ifndef SNOW_SHEARED_PARTS_H
 #define SNOW_SHEARED_PARTS_H
 
+#include "base/parallel.h"
 #include "classify/sample.h"
 #include "composite/tile.h"
 #include "encode/windows.h"
@@ -18,7 +19,7 @@ static inline bool snow_any_alive(const uint64_t *alive, int64_t tiles) {
     return false;
 }
 
-/* How the image of the last picture is warped. */
+/* How the image of a picture is warped. */
 typedef struct snow_sheared_warping {
     snow_plane plane;
     bool perspective;
@@ -29,6 +30,14 @@ typedef struct snow_sheared_warping {
     snow_warp_places_fn *places; /* in perspective */
     int width, height;           /* of the picture */
 } snow_sheared_warping;
+
+/* An intermediate image, and how it is warped. */
+typedef struct snow_canvas {
+    float *plane;
+    unsigned char *drawn;                  /* per band and tile */
+    size_t plane_capacity, drawn_capacity; /* bytes */
+    snow_sheared_warping warping;
+} snow_canvas;
 
 /* What the bands in memory were encoded from. */
 typedef struct snow_encoded_key {
@@ -52,20 +61,21 @@ struct snow_sheared {
     snow_opacity_point *next_fade_key;
     size_t fade_points, fade_key_capacity, next_fade_key_capacity;
     snow_palette palette;
-    snow_gloss *gloss;    /* an entry of zeros, and SNOW_NORMALS */
-    snow_comb *combs;     /* of all slices, along u and v */
-    float *plane;         /* the intermediate image */
-    unsigned char *drawn; /* per band and tile */
-    char *scratch;        /* of all workers */
-    size_t gloss_capacity, combs_capacity, plane_capacity, drawn_capacity,
-        scratch_capacity; /* bytes */
+    snow_gloss *gloss;   /* an entry of zeros, and SNOW_NORMALS */
+    snow_comb *combs;    /* of all slices, along u and v */
+    snow_canvas *canvas; /* that is drawn on: one of these */
+    snow_canvas canvases[2];
+    char *scratch;    /* of all workers */
+    void *pass;       /* the picture in the making, of either half */
+    snow_batch batch; /* its bands */
+    size_t gloss_capacity, combs_capacity, scratch_capacity,
+        pass_capacity; /* bytes */
     /* In perspective: all slices, how they are resampled along u, and how far
      * their kernels reach. */
     struct snow_seen_slice *seen;
     char *teeth;
     double *reach;
     size_t seen_capacity, teeth_capacity, reach_capacity; /* bytes */
-    snow_sheared_warping warping;
 };
 
 /* Slices that are drawn of an order: with those between, but for the one behind
@@ -99,7 +109,7 @@ snow_status snow_sheared_make_layers(snow_sheared *sheared, int layers,
 /* The same method in perspective: sheared_seen.c. */
 bool snow_sheared_seen_fits(const snow_placement *placement,
                             const snow_settings *settings);
-snow_status snow_sheared_seen_splat(snow_sheared *sheared,
+snow_status snow_sheared_seen_begin(snow_sheared *sheared,
                                     const snow_sheared_order *order,
                                     snow_stats *stats, snow_sheared_image *out);
 

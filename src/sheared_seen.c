@@ -2,7 +2,6 @@
  * are scaled as they are moved (transform/scaled.h), so that each has its own
  * kernel, and each pixel of the intermediate image its own weights; and each
  * voxel has its own ray and opacity (classify/rays.h). */
-#include "base/parallel.h"
 #include "classify/rays.h"
 #include "composite/ray_tile.h"
 #include "sheared_parts.h"
@@ -659,7 +658,7 @@ static snow_status choose_slices(seen_pass *pass) {
 /* What the warp has to know of a picture. */
 static void keep_warping(snow_sheared *s, const seen_pass *pass) {
     const snow_settings *settings = pass->order->settings;
-    snow_sheared_warping *w = &s->warping;
+    snow_sheared_warping *w = &s->canvas->warping;
     w->perspective = true;
     w->scaled = pass->scaled;
     w->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
@@ -667,27 +666,30 @@ static void keep_warping(snow_sheared *s, const seen_pass *pass) {
     w->places = snow_warp_places_of(settings->isa, w->filter, pass->channels);
 }
 
-snow_status snow_sheared_seen_splat(snow_sheared *s,
+snow_status snow_sheared_seen_begin(snow_sheared *s,
                                     const snow_sheared_order *order,
                                     snow_stats *stats,
                                     snow_sheared_image *out) {
-    seen_pass pass = {.order = order, .sheared = s};
-    SNOW_TRY(classify_and_shade(&pass, stats));
-    SNOW_TRY(place_lattice(&pass));
-    SNOW_TRY(choose_slices(&pass));
-    keep_warping(s, &pass);
-    if (pass.scaled.u.count == 0 || pass.scaled.v.count == 0) {
+    SNOW_TRY(snow_reserve(s->context, &s->pass, &s->pass_capacity, 0,
+                          sizeof(seen_pass)));
+    seen_pass *pass = s->pass;
+    *pass = (seen_pass){.order = order, .sheared = s};
+    SNOW_TRY(classify_and_shade(pass, stats));
+    SNOW_TRY(place_lattice(pass));
+    SNOW_TRY(choose_slices(pass));
+    keep_warping(s, pass);
+    if (pass->scaled.u.count == 0 || pass->scaled.v.count == 0) {
         *out = (snow_sheared_image){.channels = order->channels};
         return SNOW_OK;
     }
     double mark = snow_seconds();
-    SNOW_TRY(place_slices(&pass));
-    choose_tiles(&pass);
-    SNOW_TRY(fill_slices(&pass));
-    SNOW_TRY(reserve_buffers(&pass));
-    snow_parallel(s->context, order->settings->threads, pass.bands, splat_band,
-                  &pass);
-    *out = pass.image;
+    SNOW_TRY(place_slices(pass));
+    choose_tiles(pass);
+    SNOW_TRY(fill_slices(pass));
+    SNOW_TRY(reserve_buffers(pass));
+    snow_parallel_begin(s->context, order->settings->threads, pass->bands,
+                        splat_band, pass, &s->batch);
+    *out = pass->image;
     stats->seconds_splat += snow_seconds() - mark;
     return SNOW_OK;
 }

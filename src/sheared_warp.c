@@ -15,9 +15,9 @@
 /* Lines of the picture that are warped as one item of work. */
 #define SNOW_WARP_LINES 16
 
-void snow_sheared_warp(const snow_sheared *s, int y, int from, int to,
+void snow_sheared_warp(const snow_sheared_image *image, int y, int from, int to,
                        float *pixels) {
-    const snow_sheared_warping *w = &s->warping;
+    const snow_sheared_warping *w = image->warping;
     if (w->perspective)
         snow_warp_row_seen(&w->plane, &w->scaled, w->filter, w->places, y, from,
                            to, pixels);
@@ -28,26 +28,29 @@ void snow_sheared_warp(const snow_sheared *s, int y, int from, int to,
 
 /* A picture to be filled. */
 typedef struct warp_job {
-    const snow_sheared *sheared;
+    const snow_sheared_image *image;
     float *pixels;
 } warp_job;
 
 static void warp_lines(void *of, int64_t item, int worker) {
     const warp_job *job = of;
-    const snow_sheared_warping *w = &job->sheared->warping;
+    const snow_sheared_warping *w = job->image->warping;
     (void)worker;
     int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
     for (int y = first; y < last && y < w->height; y++)
-        snow_sheared_warp(job->sheared, y, 0, w->width,
+        snow_sheared_warp(job->image, y, 0, w->width,
                           job->pixels + (size_t)y * (size_t)w->width *
                                             (size_t)w->plane.channels);
 }
 
-void snow_sheared_warp_all(const snow_sheared *s, int threads, float *pixels) {
-    warp_job job = {s, pixels};
-    snow_parallel(s->context, threads,
-                  (s->warping.height + SNOW_WARP_LINES - 1) / SNOW_WARP_LINES,
-                  warp_lines, &job);
+void snow_sheared_warp_all(snow_context *context,
+                           const snow_sheared_image *image, int threads,
+                           float *pixels) {
+    warp_job job = {image, pixels};
+    int height = image->warping->height;
+    snow_parallel(context, threads,
+                  (height + SNOW_WARP_LINES - 1) / SNOW_WARP_LINES, warp_lines,
+                  &job);
 }
 
 /* --- pieces ---------------------------------------------------------------
@@ -143,9 +146,9 @@ static int first_pixel(const snow_sheared_warping *w, int y, const int seen[2],
 }
 
 /* Borders are found from the line alone, so that two who share one agree. */
-void snow_sheared_pixels_of(const snow_sheared *s, int y, int first, int end,
-                            int range[2]) {
-    const snow_sheared_warping *w = &s->warping;
+void snow_sheared_pixels_of(const snow_sheared_image *image, int y, int first,
+                            int end, int range[2]) {
+    const snow_sheared_warping *w = image->warping;
     int seen[2];
     seeing_pixels(w, y, seen);
     range[0] = range[1] = seen[0];

@@ -28,6 +28,10 @@ typedef struct snow_message {
     size_t bytes;
 } snow_message;
 
+/* Work that has nothing to do with messages, done piece by piece: does one, or
+ * returns false where none is left. */
+typedef bool snow_meanwhile_fn(void *user);
+
 /* What a transport does.  Its functions are called by the thread that the
  * communicator belongs to.  Those that return a status leave their reason with
  * snow_context_fail, or none, and after a failure none is called but `end`: the
@@ -58,6 +62,10 @@ typedef struct snow_comm_ops {
      * answers, after which it fails; 0: for ever.  NULL where ranks cannot
      * stop alone. */
     void (*timeout)(void *self, double seconds);
+    /* From now on waits do pieces of `work` as long as there is one and none of
+     * their messages is done; NULL: no more.  A transport without this function
+     * waits idly. */
+    void (*occupy)(void *self, snow_meanwhile_fn *work, void *user);
     /* Frees self. */
     void (*end)(void *self);
 } snow_comm_ops;

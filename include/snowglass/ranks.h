@@ -125,6 +125,34 @@ SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
                                        const snow_ranks_options *how,
                                        snow_image **image);
 
+/* The same in two halves, for pictures one after another: while one is combined
+ * and brought to rank 0, the next is splatted.
+ *
+ *   begin 0;  begin 1, finish 0;  begin 2, finish 1;  ...  finish n
+ *
+ * Two pictures may be under way; finish answers for the one begun first.  Where
+ * waiting for messages, of this communicator and whatever collective call, a
+ * rank splats the other picture, and so do its other threads
+ * (settings->threads) all the time: snow_stats.seconds_hidden tells how long.
+ * Pictures are the same to the bit.  Only the sheared method's are splatted
+ * ahead, and not those blended of several axes: the others are wholly made when
+ * they are begun.
+ *
+ * All that is handed over may be freed or changed after the begin, but for the
+ * frame, which has a second local image then, and the communicator.  A begin
+ * leaves what goes wrong with its picture to the finish, and fails with
+ * SNOW_BAD_USAGE (two pictures are under way, or one of another communicator)
+ * or SNOW_NO_MEMORY; then nothing is begun.  Pictures that nobody finishes end
+ * with the frame.  Errors of finish: those of snow_ranks_render, and
+ * SNOW_BAD_USAGE (no picture is under way). */
+SNOW_API snow_status snow_ranks_begin(snow_frame *frame, snow_comm *comm,
+                                      const snow_volume *volume,
+                                      const snow_transfer *transfer,
+                                      const snow_view *view,
+                                      const snow_settings *settings,
+                                      const snow_ranks_options *how);
+SNOW_API snow_status snow_ranks_finish(snow_frame *frame, snow_image **image);
+
 #ifdef __cplusplus
 }
 #endif

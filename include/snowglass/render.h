@@ -150,6 +150,8 @@ typedef struct snow_stats {
     int ranks;              /* that made the picture; else 1 */
     double seconds_combine; /* local images laid over one another */
     double seconds_gather;  /* the picture brought to rank 0 */
+    double seconds_hidden;  /* of splatting and compositing, done where the
+                               thread would have waited for messages */
 } snow_stats;
 
 /* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */

@@ -1,12 +1,15 @@
 /* base/parallel.c - a pool of threads for each context.
  *
- * A call is a round: the caller writes down the work, wakes as many sleepers as
- * it wants, and takes items like everybody else; who finds none left signs off,
- * and the caller waits for the last.  Nobody spins: on a machine with other
- * work a spinning thread takes the time of the one that it waits for. */
+ * A call is a batch of items: the caller writes down the work, wakes as many
+ * sleepers as it wants, and takes items like everybody else; who finds none
+ * left signs off, and the caller waits for the last.  Nobody spins: on a
+ * machine with other work a spinning thread takes the time of the one that it
+ * waits for.
+ *
+ * A batch may lie open behind the calls (snow_parallel_begin).  Threads take
+ * its items one by one, and none while a call has some. */
 #include "base/parallel.h"
 
-#include <stdatomic.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -17,24 +20,19 @@ typedef struct pool_thread {
     snow_pool *pool;
     pthread_t id;
     int worker;
-    uint64_t seen; /* the last round that it need not care for */
 } pool_thread;
 
+/* Batches change under the lock but for `next`, and stay as they are while
+ * anybody takes items. */
 struct snow_pool {
     pid_t owner; /* the process that the threads are of */
     pthread_mutex_t lock;
     pthread_cond_t wake, rest;
     pool_thread *threads; /* worker n is threads[n - 1] */
     int count, room;
-    /* The round, guarded by the lock but for `next`. */
-    uint64_t round;
     bool quit;
-    int wanted; /* workers of this round, the caller included */
-    int busy;   /* of the pool's threads */
-    snow_work_fn *work;
-    void *job;
-    int64_t items;
-    atomic_int_fast64_t next;
+    snow_batch call;  /* of snow_parallel */
+    snow_batch *open; /* of snow_parallel_begin, or NULL */
 };
 
 /* Memory of the context itself, which is not counted among its objects'. */
@@ -50,32 +48,42 @@ static void give_back(snow_context *context, void *block) {
         context->allocator.release(context->allocator.user, block);
 }
 
-static void work_off(snow_pool *pool, int worker) {
-    for (;;) {
-        int64_t item = atomic_fetch_add(&pool->next, 1);
-        if (item >= pool->items)
-            return;
-        pool->work(pool->job, item, worker);
-    }
+/* Does one item; false where none is left. */
+static bool take_item(snow_batch *batch, int worker) {
+    int64_t item = atomic_fetch_add(&batch->next, 1);
+    if (item >= batch->items)
+        return false;
+    batch->work(batch->job, item, worker);
+    return true;
 }
 
-/* The life of a thread: asleep until there is a round that wants it. */
+/* The batch that a worker has something to do in (under the lock), or NULL. */
+static snow_batch *batch_for(snow_pool *pool, int worker) {
+    snow_batch *const batches[] = {&pool->call, pool->open};
+    for (int n = 0; n < 2; n++)
+        if (batches[n] && worker < batches[n]->wanted &&
+            atomic_load(&batches[n]->next) < batches[n]->items)
+            return batches[n];
+    return NULL;
+}
+
+/* The life of a thread: asleep until there is a batch that wants it. */
 static void *live(void *argument) {
     pool_thread *self = argument;
     snow_pool *pool = self->pool;
-    uint64_t seen = self->seen;
     pthread_mutex_lock(&pool->lock);
     while (!pool->quit) {
-        if (pool->round == seen || self->worker >= pool->wanted) {
-            seen = pool->round;
+        snow_batch *batch = batch_for(pool, self->worker);
+        if (!batch) {
             pthread_cond_wait(&pool->wake, &pool->lock);
             continue;
         }
-        seen = pool->round;
+        batch->busy++;
         pthread_mutex_unlock(&pool->lock);
-        work_off(pool, self->worker);
+        while (take_item(batch, self->worker) && batch == &pool->call)
+            continue;
         pthread_mutex_lock(&pool->lock);
-        if (--pool->busy == 0)
+        if (--batch->busy == 0)
             pthread_cond_signal(&pool->rest);
     }
     pthread_mutex_unlock(&pool->lock);
@@ -122,41 +130,91 @@ static void grow(snow_context *context, snow_pool *pool, int count) {
     }
     for (; pool->count < count; pool->count++) {
         pool_thread *thread = &pool->threads[pool->count];
-        *thread = (pool_thread){
-            .pool = pool, .worker = pool->count + 1, .seen = pool->round};
+        *thread = (pool_thread){.pool = pool, .worker = pool->count + 1};
         if (pthread_create(&thread->id, NULL, live, thread))
             return;
     }
+}
+
+/* The pool with threads for so many workers, or what there is of it; NULL: none
+ * at all.  While a batch lies open its threads stay as they are. */
+static snow_pool *pool_for(snow_context *context, int threads) {
+    snow_pool *pool = pool_of(context);
+    if (!pool || threads < 2 || pool->open)
+        return pool;
+    grow(context, pool, threads - 1);
+    return context->pool;
+}
+
+static void fill_batch(snow_batch *batch, int threads, int64_t items,
+                       snow_work_fn *work, void *job) {
+    batch->work = work;
+    batch->job = job;
+    batch->items = items;
+    batch->wanted = threads;
+    atomic_store(&batch->next, 0);
+}
+
+/* The caller is worker 0. */
+static void take_all(snow_batch *batch) {
+    while (take_item(batch, 0))
+        continue;
+}
+
+/* Until the pool's threads have done what they took (under the lock). */
+static void close_batch(snow_pool *pool, snow_batch *batch) {
+    while (batch->busy)
+        pthread_cond_wait(&pool->rest, &pool->lock);
+    batch->items = 0;
 }
 
 void snow_parallel(snow_context *context, int threads, int64_t items,
                    snow_work_fn *work, void *job) {
     if (threads > items)
         threads = (int)items;
-    snow_pool *pool = threads > 1 ? pool_of(context) : NULL;
-    if (pool) {
-        grow(context, pool, threads - 1);
-        pool = context->pool;
-    }
+    snow_pool *pool = threads > 1 ? pool_for(context, threads) : NULL;
     if (!pool || !pool->count) {
         for (int64_t item = 0; item < items; item++)
             work(job, item, 0);
         return;
     }
     pthread_mutex_lock(&pool->lock);
-    pool->work = work;
-    pool->job = job;
-    pool->items = items;
-    pool->wanted = threads;
-    pool->busy = threads - 1 < pool->count ? threads - 1 : pool->count;
-    pool->round++;
-    atomic_store(&pool->next, 0);
+    fill_batch(&pool->call, threads, items, work, job);
     pthread_cond_broadcast(&pool->wake);
     pthread_mutex_unlock(&pool->lock);
-    work_off(pool, 0);
+    take_all(&pool->call);
     pthread_mutex_lock(&pool->lock);
-    while (pool->busy)
-        pthread_cond_wait(&pool->rest, &pool->lock);
+    close_batch(pool, &pool->call);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+void snow_parallel_begin(snow_context *context, int threads, int64_t items,
+                         snow_work_fn *work, void *job, snow_batch *batch) {
+    if (threads > items)
+        threads = (int)items;
+    snow_pool *pool = threads > 1 ? pool_for(context, threads) : NULL;
+    batch->busy = 0;
+    fill_batch(batch, threads, items, work, job);
+    if (!pool || !pool->count || pool->open)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->open = batch;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+bool snow_parallel_step(snow_batch *batch) {
+    return take_item(batch, 0);
+}
+
+void snow_parallel_end(snow_context *context, snow_batch *batch) {
+    snow_pool *pool = context->pool;
+    take_all(batch);
+    if (!pool || !is_mine(pool) || pool->open != batch)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    close_batch(pool, batch);
+    pool->open = NULL;
     pthread_mutex_unlock(&pool->lock);
 }
 

@@ -7,6 +7,8 @@
 
 #include "base/base.h"
 
+#include <stdatomic.h>
+
 #define SNOW_THREADS_MOST 4096
 
 /* One item of work; `worker` is 0 .. threads - 1, and no two items of one
@@ -19,6 +21,27 @@ typedef void snow_work_fn(void *job, int64_t item, int worker);
  * fewer, fewer do the work.  One call at a time for each context. */
 void snow_parallel(snow_context *context, int threads, int64_t items,
                    snow_work_fn *work, void *job);
+
+/* Items to be done; zeros: there are none. */
+typedef struct snow_batch {
+    snow_work_fn *work;
+    void *job;
+    int64_t items;
+    int wanted; /* workers, the caller included */
+    int busy;   /* of the pool's threads */
+    atomic_int_fast64_t next;
+} snow_batch;
+
+/* The same in three steps, between which the caller may do other things, calls
+ * of snow_parallel among them, whose items then come first: begins a batch, and
+ * returns while other threads are at work; does one item of it, or tells that
+ * all are taken; does all that are left, and returns when all are done.  A
+ * batch is not moved until its end; to end it twice does nothing.  Of several
+ * batches of a context other threads do the first one's items only. */
+void snow_parallel_begin(snow_context *context, int threads, int64_t items,
+                         snow_work_fn *work, void *job, snow_batch *batch);
+bool snow_parallel_step(snow_batch *batch);
+void snow_parallel_end(snow_context *context, snow_batch *batch);
 
 /* Ends a context's threads; for snow_context_free. */
 void snow_pool_free(snow_context *context);

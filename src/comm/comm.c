@@ -117,3 +117,8 @@ void snow_comm_work(snow_comm *comm, double seconds) {
     if (comm->ops.work)
         comm->ops.work(comm->self, seconds);
 }
+
+void snow_comm_occupy(snow_comm *comm, snow_meanwhile_fn *work, void *user) {
+    if (comm->ops.occupy)
+        comm->ops.occupy(comm->self, work, user);
+}

@@ -55,6 +55,10 @@ snow_status snow_comm_wait_all(snow_comm *comm, snow_message *messages,
                                int count);
 void snow_comm_work(snow_comm *comm, double seconds);
 
+/* What this rank does, piece by piece, wherever it would wait for messages;
+ * NULL: nothing, as in the beginning. */
+void snow_comm_occupy(snow_comm *comm, snow_meanwhile_fn *work, void *user);
+
 /* Collective, as are broadcast and share (snowglass/comm.h): element by element
  * over all ranks; the result replaces `values` on every rank, and has the same
  * bits there. */

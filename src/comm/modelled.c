@@ -11,7 +11,11 @@
  * with the message, so the receiver knows when it could arrive; several that it
  * waits for together enter its port in order of their starts.  It is the model
  * by which Hockney (1994) and LogGP (Alexandrov et al. 1995) predict programs,
- * with ports that can be busy. */
+ * with ports that can be busy.
+ *
+ * A wait that is told of other work waits for the letter itself, without which
+ * nobody knows when it comes, and then works until the clock says that it is
+ * there: other work sends nothing, so that nobody can tell the difference. */
 #include "comm/comm.h"
 
 #include <math.h>
@@ -31,6 +35,8 @@ typedef struct node {
     snow_comm *inner;
     double clock, computed;   /* modelled; processor time when last looked at */
     double out_free, in_free; /* when the ports have carried what they got */
+    snow_meanwhile_fn *meanwhile; /* what is done in waits, or NULL */
+    void *meanwhile_user;
 } node;
 
 /* What travels before a message's bytes. */
@@ -136,6 +142,18 @@ static double arrival(node *n, const letter *l, size_t bytes) {
     return n->in_free;
 }
 
+/* Lets the clock go on to `then`: with other work as far as there is some, of
+ * which the last piece may end later. */
+static void wait_until(node *n, double then) {
+    bool busy = n->meanwhile != NULL;
+    while (busy && n->clock < then) {
+        leave(n, SNOW_OK);
+        busy = n->meanwhile(n->meanwhile_user);
+        enter(n);
+    }
+    n->clock = fmax(n->clock, then);
+}
+
 /* Ends a letter that is done, in modelled time. */
 static void take(node *n, snow_message *message) {
     letter *l = message->handle;
@@ -143,10 +161,10 @@ static void take(node *n, snow_message *message) {
         message->bytes = l->inner.bytes - sizeof(stamp);
         if (message->bytes)
             memcpy(l->room, stamp_of(l) + 1, message->bytes);
-        n->clock = fmax(n->clock, arrival(n, l, message->bytes)) +
-                   n->cluster->network.overhead;
+        wait_until(n, arrival(n, l, message->bytes));
+        n->clock += n->cluster->network.overhead;
     } else {
-        n->clock = fmax(n->clock, l->sent);
+        wait_until(n, l->sent);
     }
     snow_release(n->inner->context, l);
     message->handle = NULL;
@@ -257,6 +275,12 @@ static void work(void *self, double seconds) {
     leave(n, SNOW_OK);
 }
 
+static void occupy(void *self, snow_meanwhile_fn *meanwhile, void *user) {
+    node *n = self;
+    n->meanwhile = meanwhile;
+    n->meanwhile_user = user;
+}
+
 static void end(void *self) {
     node *n = self;
     snow_release(n->inner->context, n);
@@ -269,6 +293,7 @@ static const snow_comm_ops node_ops = {.size = sizeof node_ops,
                                        .wait_all = wait_all,
                                        .seconds = seconds,
                                        .work = work,
+                                       .occupy = occupy,
                                        .end = end};
 
 /* A rank's life: its node around its communicator, then the user's body. */

@@ -55,9 +55,11 @@ typedef struct mail_desk {
     snow_office *office;
     snow_context *context;
     int rank;
-    bool owns;        /* the office ends with the desk */
-    mail_slot *made;  /* all slots */
-    mail_slot *spare; /* those not in use */
+    bool owns;                    /* the office ends with the desk */
+    mail_slot *made;              /* all slots */
+    mail_slot *spare;             /* those not in use */
+    snow_meanwhile_fn *meanwhile; /* what is done in waits, or NULL */
+    void *meanwhile_user;
 } mail_desk;
 
 /* --- boxes (under the lock) ----------------------------------------------- */
@@ -270,6 +272,18 @@ static snow_status finish(mail_desk *desk, snow_message *message) {
     return SNOW_OK;
 }
 
+/* Does a piece of other work, the lock open, so that letters may have come;
+ * false where there is none. */
+static bool work_meanwhile(mail_desk *desk) {
+    bool worked;
+    if (!desk->meanwhile)
+        return false;
+    pthread_mutex_unlock(&desk->office->lock);
+    worked = desk->meanwhile(desk->meanwhile_user);
+    pthread_mutex_lock(&desk->office->lock);
+    return worked;
+}
+
 static snow_status wait_any(void *self, snow_message *messages, int count,
                             int *which) {
     mail_desk *desk = self;
@@ -277,8 +291,12 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
     int found = -1;
     pthread_mutex_lock(&office->lock);
     mail_news news = look(office, messages, count, &found);
+    bool busy = true;
     while (news == NOTHING && !office->stuck) {
-        sleep_at(office, &office->boxes[desk->rank]);
+        if (busy)
+            busy = work_meanwhile(desk);
+        else
+            sleep_at(office, &office->boxes[desk->rank]);
         news = look(office, messages, count, &found);
     }
     pthread_mutex_unlock(&office->lock);
@@ -312,6 +330,12 @@ static double seconds(void *self) {
     return snow_seconds();
 }
 
+static void occupy(void *self, snow_meanwhile_fn *meanwhile, void *user) {
+    mail_desk *desk = self;
+    desk->meanwhile = meanwhile;
+    desk->meanwhile_user = user;
+}
+
 static void end(void *self) {
     mail_desk *desk = self;
     snow_office_leave(desk->office, desk->rank);
@@ -337,6 +361,7 @@ snow_status snow_office_comm(snow_office *office, snow_context *context,
                                       .wait_any = wait_any,
                                       .wait_all = wait_all,
                                       .seconds = seconds,
+                                      .occupy = occupy,
                                       .end = end};
     mail_desk *desk = snow_allocate(context, sizeof *desk);
     if (!desk)
