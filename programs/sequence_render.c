@@ -74,11 +74,15 @@ static void tell_choices(const shot_renderer *shots) {
             asked->output);
 }
 
-static int render(void *self, const movie_shot *shot, snow_image **image) {
+static int begin(void *self, const movie_shot *shot) {
     shot_renderer *shots = self;
     int done = shots_volume(shots, shot);
-    if (done == GO_ON)
-        done = scene_draw(&shots->scene, shot->azimuth, image);
+    return done == GO_ON ? scene_begin(&shots->scene, shot->azimuth) : done;
+}
+
+static int finish(void *self, snow_image **image) {
+    shot_renderer *shots = self;
+    int done = scene_finish(&shots->scene, image);
     if (done != GO_ON)
         return done;
     if (!shots->drawn)
@@ -99,7 +103,9 @@ static int share(void *self, int word) {
 
 sequence_renderer shots_renderer(shot_renderer *shots) {
     return (sequence_renderer){.self = shots,
-                               .render = render,
+                               .begin = begin,
+                               .finish = finish,
+                               .ahead = launch_ranks() > 1,
                                .report = report,
                                .share = share,
                                .writes = launch_talks(),
