@@ -39,6 +39,7 @@ int scene_new(const options *asked, scene *out) {
 
 /* In any order but the context last; all of them accept NULL. */
 void scene_free(scene *s) {
+    snow_image_free(s->made);
     snow_frame_free(s->frame);
     snow_transfer_free(s->transfer);
     snow_volume_close(s->volume);
@@ -190,42 +191,55 @@ static int take_figures(scene *s) {
     return status == SNOW_OK ? GO_ON : fail_status(s->context, status);
 }
 
-static snow_status draw_part(scene *s, snow_image **image) {
+static snow_status begin_part(scene *s) {
     snow_ranks_options how = how_of(s);
     snow_status status = SNOW_OK;
     if (s->turns)
         status = snow_ranks_recut(launch_comm(), s->transfer, &s->view,
                                   &s->settings, &how, &s->volume);
     return status == SNOW_OK
-               ? snow_ranks_render(s->frame, launch_comm(), s->volume,
-                                   s->transfer, &s->view, &s->settings, &how,
-                                   image)
+               ? snow_ranks_begin(s->frame, launch_comm(), s->volume,
+                                  s->transfer, &s->view, &s->settings, &how)
                : status;
 }
 
 static int make_frame(scene *s) {
-    snow_status status = SNOW_OK;
-    if (!s->frame)
-        status = snow_frame_new(s->context, &s->frame);
+    if (s->frame) /* on all ranks */
+        return GO_ON;
+    snow_status status = snow_frame_new(s->context, &s->frame);
     return launch_agree(status == SNOW_OK ? GO_ON
                                           : fail_status(s->context, status));
 }
 
-int scene_draw(scene *s, double azimuth, snow_image **image) {
-    snow_image *made = NULL;
+int scene_begin(scene *s, double azimuth) {
     snow_status status;
     int done = make_frame(s);
     if (done != GO_ON)
         return done;
     s->view.azimuth = azimuth;
     if (launch_ranks() > 1)
-        status = draw_part(s, &made);
+        status = begin_part(s);
     else
         status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
-                                   &s->settings, &made);
+                                   &s->settings, &s->made);
     if (status != SNOW_OK)
         return fail_volume(s->context, status, name_of_input(s->path));
-    done = take_figures(s);
+    s->begun[s->under_way++] = (scene_shot){s->path, s->whole};
+    return GO_ON;
+}
+
+int scene_finish(scene *s, snow_image **image) {
+    snow_image *made = s->made;
+    snow_status status = SNOW_OK;
+    if (launch_ranks() > 1)
+        status = snow_ranks_finish(s->frame, &made);
+    s->made = NULL;
+    s->drawn = s->begun[0];
+    s->begun[0] = s->begun[1];
+    s->under_way--;
+    if (status != SNOW_OK)
+        return fail_volume(s->context, status, name_of_input(s->drawn.path));
+    int done = take_figures(s);
     if (done == GO_ON)
         *image = made;
     else
@@ -233,11 +247,16 @@ int scene_draw(scene *s, double azimuth, snow_image **image) {
     return done;
 }
 
+int scene_draw(scene *s, double azimuth, snow_image **image) {
+    int done = scene_begin(s, azimuth);
+    return done == GO_ON ? scene_finish(s, image) : done;
+}
+
 /* --- what is told ----------------------------------------------------------
  */
 
 render_report scene_report(const scene *s) {
-    return (render_report){.volume = &s->whole,
+    return (render_report){.volume = &s->drawn.whole,
                            .stats = &s->stats,
                            .peak = s->peak,
                            .load = s->load,
@@ -247,9 +266,9 @@ render_report scene_report(const scene *s) {
 
 void scene_choices(const scene *s, char *out, size_t size) {
     const double *from = s->asked->position.at;
-    const char *view = s->asked->view     ? s->asked->view
-                       : s->whole.medical ? "anterior"
-                                          : "+z";
+    const char *view = s->asked->view           ? s->asked->view
+                       : s->drawn.whole.medical ? "anterior"
+                                                : "+z";
     char place[96];
     if (s->asked->position.given) {
         snprintf(place, sizeof place, "from %g,%g,%g", from[0], from[1],
@@ -258,11 +277,11 @@ void scene_choices(const scene *s, char *out, size_t size) {
     }
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
     char volume[256];
-    describe_volume(&s->whole, volume, sizeof volume);
+    describe_volume(&s->drawn.whole, volume, sizeof volume);
     bool over = s->settings.mode == SNOW_MODE_OVER;
     snprintf(out, size, "%s: %s; %s%s%s; view %s; %s%s%smethod %s%s%s",
-             name_of_input(s->path), volume, snow_transfer_text(s->transfer),
-             over ? "; opacity per " : "",
+             name_of_input(s->drawn.path), volume,
+             snow_transfer_text(s->transfer), over ? "; opacity per " : "",
              !over                            ? ""
              : s->settings.opacity_length > 0 ? "mm"
                                               : "voxel",

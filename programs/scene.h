@@ -9,6 +9,12 @@
 
 #include <snowglass/ranks.h>
 
+/* What a picture is of. */
+typedef struct scene_shot {
+    const char *path;
+    snow_volume_info whole; /* of the volume, of which ranks have parts */
+} scene_shot;
+
 typedef struct scene {
     const options *asked;
     const char *path; /* of the volume */
@@ -20,8 +26,12 @@ typedef struct scene {
     snow_frame *frame;
     snow_view view;
     snow_settings settings;
-    render_times times; /* read and look; sums over all that was opened */
+    render_times times;  /* read and look; sums over all that was opened */
+    scene_shot begun[2]; /* pictures under way, the oldest first */
+    int under_way;
+    snow_image *made; /* by this process alone, and not finished */
     /* Of the last picture; of ranks sums, and seconds of the slowest. */
+    scene_shot drawn;
     snow_stats stats;
     uint64_t peak; /* bytes; of ranks the most that one had */
     double load;   /* most interesting voxels of a rank by their mean */
@@ -42,6 +52,11 @@ int scene_open(scene *s, const char *path, int64_t time);
 /* Renders from an azimuth.  *image is the caller's; NULL on ranks that do not
  * talk. */
 int scene_draw(scene *s, double azimuth, snow_image **image);
+
+/* The same in two halves; of ranks two pictures may be under way, and finish is
+ * of the one that was begun first.  Between them another step may be opened. */
+int scene_begin(scene *s, double azimuth);
+int scene_finish(scene *s, snow_image **image);
 
 /* Figures of the last picture, without image. */
 render_report scene_report(const scene *s);

@@ -317,6 +317,8 @@ typedef struct run {
     sequence_progress progress;
     sequence_figures figures;
     snow_image *last; /* the last picture, for its check sum */
+    int64_t begun[2]; /* frames under way, the oldest first */
+    int under_way;
 } run;
 
 static int share(const run *r, int word) {
@@ -350,6 +352,10 @@ static void pass(run *r, int64_t index) {
 
 /* Faults of the queue show in the next word, so that all ranks hear of them. */
 static void hand_over(run *r, int64_t index, snow_image *image) {
+    if (!r->s) {
+        snow_image_free(image);
+        return;
+    }
     render_report report = {0};
     r->renderer->report(r->renderer->self, &report);
     sequence_figures_add(&r->figures, report.stats);
@@ -362,25 +368,47 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
     sequence_progress_step(&r->progress, index, true);
 }
 
-static int render_frames(run *r) {
-    for (int64_t i = 0; i < r->list->count; i++) {
+/* Finishes frames, the oldest first, until no more than `most` are under way.
+ */
+static int finish_frames(run *r, int most) {
+    while (r->under_way > most) {
         snow_image *image = NULL;
-        int word = share(r, next_word(r, i));
+        int64_t index = r->begun[0];
+        r->begun[0] = r->begun[1];
+        r->under_way--;
+        int word = r->renderer->finish(r->renderer->self, &image);
+        if (word != GO_ON)
+            return word;
+        hand_over(r, index, image);
+    }
+    return GO_ON;
+}
+
+static int begin_frame(run *r, int64_t index) {
+    int word = r->renderer->begin(r->renderer->self, &r->list->shots[index]);
+    if (word == GO_ON)
+        r->begun[r->under_way++] = index;
+    return word;
+}
+
+/* A fault ends the loop, but frames that were begun before it are made. */
+static int render_frames(run *r) {
+    int word = GO_ON;
+    for (int64_t i = 0; i < r->list->count && word == GO_ON; i++) {
+        word = share(r, next_word(r, i));
         if (word == PASS) {
-            pass(r, i);
+            word = finish_frames(r, 0);
+            if (word == GO_ON)
+                pass(r, i);
             continue;
         }
         if (word == GO_ON)
-            word = r->renderer->render(r->renderer->self, &r->list->shots[i],
-                                       &image);
-        if (word != GO_ON)
-            return word;
-        if (r->s)
-            hand_over(r, i, image);
-        else
-            snow_image_free(image);
+            word = begin_frame(r, i);
+        if (word == GO_ON)
+            word = finish_frames(r, r->renderer->ahead);
     }
-    return GO_ON;
+    int last = finish_frames(r, 0);
+    return word == GO_ON ? last : word;
 }
 
 /* --- the end ----------------------------------------------------------------

@@ -1,7 +1,8 @@
 /* sequence.h - many pictures as one movie: what turntable and movie share.
  *
- * A sequence is a list of shots.  They are rendered one after another, while
- * the frames before are compressed and written by other threads (frames.h).
+ * A sequence is a list of shots.  They are rendered one after another, or, of
+ * many ranks, the next while one is combined; meanwhile the frames before are
+ * compressed and written by other threads (frames.h).
  * Every frame becomes a file, whole or absent:
  *
  *   -o f_%04d.png    f_0000.png, f_0001.png, ...      the result itself
@@ -42,9 +43,12 @@ typedef struct render_report render_report;
 typedef struct sequence_renderer {
     void *self;
 
-    /* Renders a shot; *image is the caller's, and NULL on ranks that do not
-     * write.  Answers GO_ON, or an exit code after the fault was told. */
-    int (*render)(void *self, const movie_shot *shot, snow_image **image);
+    /* Begins to render a shot, and finishes the one begun first; *image is the
+     * caller's, and NULL on ranks that do not write.  They answer GO_ON, or an
+     * exit code after the fault was told. */
+    int (*begin)(void *self, const movie_shot *shot);
+    int (*finish)(void *self, snow_image **image);
+    int ahead; /* shots to be begun before the one that is finished: 0 or 1 */
 
     /* Figures of the last picture; their `image` is filled in by the caller.
      * Called on the rank that writes. */

@@ -75,11 +75,15 @@ static void tell_choices(const shot_renderer *shots) {
     marks_tell(asked);
 }
 
-static int render(void *self, const movie_shot *shot, snow_image **image) {
+static int begin(void *self, const movie_shot *shot) {
     shot_renderer *shots = self;
     int done = shots_volume(shots, shot);
-    if (done == GO_ON)
-        done = scene_draw(&shots->scene, shot->azimuth, image);
+    return done == GO_ON ? scene_begin(&shots->scene, shot->azimuth) : done;
+}
+
+static int finish(void *self, snow_image **image) {
+    shot_renderer *shots = self;
+    int done = scene_finish(&shots->scene, image);
     if (done == GO_ON)
         done = paint_values(shots->scene.asked, shots->scene.context,
                             shots->scene.transfer, true, image, shots->painted);
@@ -98,7 +102,7 @@ static void report(void *self, render_report *out) {
 
 static void marks(void *self, picture_marks *out) {
     const scene *s = &((const shot_renderer *)self)->scene;
-    *out = (picture_marks){s->asked, s->whole, s->view, s->transfer};
+    *out = (picture_marks){s->asked, s->drawn.whole, s->view, s->transfer};
 }
 
 static int share(void *self, int word) {
@@ -108,7 +112,9 @@ static int share(void *self, int word) {
 
 sequence_renderer shots_renderer(shot_renderer *shots) {
     return (sequence_renderer){.self = shots,
-                               .render = render,
+                               .begin = begin,
+                               .finish = finish,
+                               .ahead = launch_ranks() > 1,
                                .report = report,
                                .marks = marks,
                                .share = share,

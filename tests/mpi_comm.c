@@ -11,10 +11,11 @@ static int run_bodies(snow_comm *comm) {
     static const struct {
         const char *name;
         snow_comm_body_fn *body;
-    } bodies[] = {
-        BODY(send_all_to_all), BODY(mix_tags),          BODY(receive_first),
-        BODY(send_sizes),      BODY(wait_for_none),     BODY(reduce_ints),
-        BODY(broadcast),       BODY(one_after_another), BODY(share)};
+    } bodies[] = {BODY(send_all_to_all),   BODY(mix_tags),
+                  BODY(receive_first),     BODY(send_sizes),
+                  BODY(wait_for_none),     BODY(work_while_waiting),
+                  BODY(reduce_ints),       BODY(broadcast),
+                  BODY(one_after_another), BODY(share)};
     for (size_t i = 0; i < sizeof bodies / sizeof bodies[0]; i++)
         if (bodies[i].body(comm, NULL) != SNOW_OK) {
             fprintf(stderr, "mpi_comm: rank %d: %s: %s\n", snow_comm_rank(comm),

@@ -126,6 +126,47 @@ snow_status send_sizes(snow_comm *comm, void *user) {
     return SNOW_OK;
 }
 
+/* Pieces of work: so many, or for ever. */
+typedef struct pieces {
+    int left, done;
+} pieces;
+
+static bool do_piece(void *user) {
+    pieces *p = user;
+    if (!p->left)
+        return false;
+    p->left--;
+    p->done++;
+    rest(100);
+    return true;
+}
+
+snow_status work_while_waiting(snow_comm *comm, void *user) {
+    (void)user;
+    const int rank = snow_comm_rank(comm), ranks = snow_comm_ranks(comm);
+    int64_t number = -1;
+    if (ranks == 1)
+        return SNOW_OK;
+    for (int left = -1; left < 8; left += 3) {
+        pieces some = {left, 0};
+        if (rank == 1) {
+            SNOW_TRY(send_number(comm, 1, 0, 5)); /* it is about to wait */
+            snow_comm_occupy(comm, do_piece, &some);
+            SNOW_TRY(receive_number(comm, &number, 0, 6));
+            CHECK(number == 42);
+            CHECK(left < 0 ? some.done > 0 : some.done == left);
+            snow_comm_occupy(comm, NULL, NULL);
+        } else if (rank == 0) {
+            SNOW_TRY(receive_number(comm, &number, 1, 5));
+            rest(50000);
+            SNOW_TRY(send_number(comm, 42, 1, 6));
+        }
+        SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
+        CHECK(rank != 1 || left >= 0 || some.done < 1000);
+    }
+    return SNOW_OK;
+}
+
 snow_status wait_for_none(snow_comm *comm, void *user) {
     (void)user;
     int which = 5;

@@ -37,6 +37,9 @@ snow_status send_sizes(snow_comm *comm, void *user);
 
 snow_status wait_for_none(snow_comm *comm, void *user);
 
+/* A rank that waits works meanwhile, as long as there is work and no longer. */
+snow_status work_while_waiting(snow_comm *comm, void *user);
+
 /* What was sent and asked for, and never met. */
 snow_status leave_much_undone(snow_comm *comm, void *user);
 

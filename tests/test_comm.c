@@ -60,6 +60,11 @@ static void a_wait_for_no_message_returns(void **state) {
     run_all(wait_for_none);
 }
 
+static void a_wait_does_other_work_as_long_as_there_is_some(void **state) {
+    (void)state;
+    run_all(work_while_waiting);
+}
+
 static void a_group_of_one_sends_to_itself(void **state) {
     (void)state;
     snow_context *context = support_context();
@@ -367,6 +372,7 @@ int main(void) {
         cmocka_unit_test(a_wait_for_any_tells_every_message_once),
         cmocka_unit_test(messages_may_be_empty_or_large),
         cmocka_unit_test(a_wait_for_no_message_returns),
+        cmocka_unit_test(a_wait_does_other_work_as_long_as_there_is_some),
         cmocka_unit_test(a_group_of_one_sends_to_itself),
         cmocka_unit_test(messages_that_nobody_fetches_are_freed),
         cmocka_unit_test(whole_numbers_are_reduced),

@@ -117,6 +117,58 @@ static void a_message_to_oneself_takes_no_network(void **state) {
     run(1, send_to_myself);
 }
 
+/* Work of a second a piece, `left` of them. */
+typedef struct chores {
+    snow_comm *comm;
+    int left;
+} chores;
+
+static bool do_chore(void *user) {
+    chores *c = user;
+    if (!c->left)
+        return false;
+    c->left--;
+    snow_comm_work(c->comm, 1);
+    return true;
+}
+
+/* A message takes more than 10 seconds: five of work are hidden wholly, of 25
+ * some are left, and it is not they that the message is waited for with. */
+static snow_status work_meanwhile(snow_comm *comm, void *user) {
+    (void)user;
+    unsigned char bytes[2000] = {7};
+    for (int any = 0; any < 2; any++)
+        for (int all = 5; all < 30; all += 20) {
+            chores c = {comm, all};
+            int which;
+            snow_message message = {0};
+            SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
+            double start = snow_comm_seconds(comm);
+            if (snow_comm_rank(comm) == 0) {
+                SNOW_TRY(snow_comm_send(comm, bytes, 2000, 1, 3, &message));
+                SNOW_TRY(snow_comm_wait_all(comm, &message, 1));
+                continue;
+            }
+            SNOW_TRY(snow_comm_receive(comm, bytes, 2000, 0, 3, &message));
+            snow_comm_occupy(comm, do_chore, &c);
+            SNOW_TRY(any ? snow_comm_wait_any(comm, &message, 1, &which)
+                         : snow_comm_wait_all(comm, &message, 1));
+            snow_comm_occupy(comm, NULL, NULL);
+            double took = snow_comm_seconds(comm) - start;
+            /* Ranks leave the agreement at times that differ by some seconds.
+             */
+            CHECK(took > 2 && took < 30);
+            CHECK(all == 5 ? c.left == 0 : c.left > 0 && c.left < 25);
+            CHECK(all == 5 || took < 25 - c.left + 2.5);
+        }
+    return SNOW_OK;
+}
+
+static void waits_leave_time_for_other_work(void **state) {
+    (void)state;
+    run(2, work_meanwhile);
+}
+
 static snow_status fail_on_one(snow_comm *comm, void *user) {
     (void)user;
     snow_status status = SNOW_OK;
@@ -164,6 +216,7 @@ int main(void) {
         cmocka_unit_test(a_port_takes_one_message_after_another),
         cmocka_unit_test(work_passes_time_and_collectives_work),
         cmocka_unit_test(a_message_to_oneself_takes_no_network),
+        cmocka_unit_test(waits_leave_time_for_other_work),
         cmocka_unit_test(a_rank_that_fails_ends_all),
         cmocka_unit_test(a_network_without_bandwidth_is_refused),
     };
