@@ -2,16 +2,19 @@
  *
  *   files   dicom_files.c    which belong together
  *     |
- *   walk    dicom_walk.c     whether a file is whole, before GDCM sees it
+ *   parse   dicom_parse.c    a file's elements
  *     |
  *   header  dicom_header.c   a file's image, and its frames
  *     |
  *   series  dicom_series.c   which frames are alike, in which order, where
  *     |
- *   voxels  dicom_voxels.c   frames decoded, scaled and put in place
+ *   voxels  dicom_voxels.c   frames scaled and put in place
+ *     |
+ *   pixels  dicom_pixels.c   a frame's words, plain or packed
+ *           dicom_codec.c    what packed ones say, before GDCM unpacks them
  *
  * Places are in LPS and mm, as DICOM has them, up to the matrix, which is RAS.
- * dicom_walk.c and dicom_series.c know nothing of GDCM. */
+ * GDCM sees nothing but packed pixels. */
 #ifndef SNOW_DICOM_H
 #define SNOW_DICOM_H
 
@@ -34,13 +37,13 @@ enum {
 /* One file with an image, as its header tells it. */
 typedef struct dicom_image {
     char *path; /* in the list of files; NULL for the file that was given */
-    char series[65], instance[65], photometric[17], modality[17], syntax[65];
+    char series[65], instance[65], photometric[17], modality[17];
     char patient[256]; /* UTF-8; "" when not told */
     int64_t columns, rows, frames;
     int64_t series_number;
     int samples, allocated, stored, high;
-    bool is_signed;
-    bool pads; /* stored values within padding are no values */
+    bool is_signed, planes; /* samples of a pixel are not side by side */
+    bool pads;              /* stored values within padding are no values */
     double padding[2];
 } dicom_image;
 
@@ -61,18 +64,73 @@ typedef struct dicom_frame {
     double keys[DICOM_KEYS];
 } dicom_frame;
 
-/* --- dicom_walk.c --------------------------------------------------------- */
+/* --- dicom_parse.c --------------------------------------------------------
+ */
+
+#define DICOM_TAG_PIXELS 0x7fe00010u
+#define DICOM_TAG_ITEM 0xfffee000u
 
 /* Whether the bytes are the beginning of a DICOM file, with its mark at byte
  * 128 or without. */
 bool snow_dicom_probe(const unsigned char *bytes, size_t size);
 
-/* Follows the lengths of a file's elements up to its pixels, or to its end.
- * What is not understood is left to GDCM.
+/* An element, an item or a fragment: `length` bytes of the store from `at` on.
+ * Elements in it come next on the list; `next` is the first that is not. */
+typedef struct dicom_element {
+    uint32_t tag; /* group << 16 | element */
+    uint32_t length;
+    uint64_t at;
+    size_t next;
+    bool words; /* VR OW */
+} dicom_element;
+
+/* A file whose elements are known; their values are read when asked for. */
+typedef struct dicom_reader {
+    snow_context *context;
+    snow_random *store; /* outlives it */
+    dicom_element *elements;
+    size_t count, room;
+    char syntax[65];
+    bool big_endian;
+    bool packed;     /* the pixels are fragments */
+    bool has_pixels; /* where they were not asked for: they follow */
+    const dicom_element *frames, *shared; /* functional groups, or NULL */
+    size_t last_item; /* groups of the frame last asked for; 0: none */
+    int64_t last_frame;
+    unsigned char *inflated; /* a deflated file's elements, and their store */
+    snow_source *inner;
+    snow_random *inner_store;
+} dicom_reader;
+
+/* Parses a file up to its pixels, or with them.
  * Errors: SNOW_BAD_INPUT (a value that is longer than the file, sequences that
- * are nested beyond all measure, packed pixels without an end). */
-snow_status snow_dicom_walk(snow_context *context, snow_random *store,
-                            bool pixels);
+ * are nested beyond all measure, packed pixels without an end),
+ * SNOW_NO_MEMORY. */
+snow_status snow_dicom_open(snow_context *context, snow_random *store,
+                            bool pixels, dicom_reader *out);
+void snow_dicom_close(dicom_reader *reader);
+
+/* The first with a tag from list index `begin` up to `end`, not within others;
+ * an item of a sequence, from 0; NULL where there is none. */
+const dicom_element *snow_dicom_find(const dicom_reader *reader, size_t begin,
+                                     size_t end, uint32_t tag);
+const dicom_element *snow_dicom_item(const dicom_reader *reader,
+                                     const dicom_element *sequence,
+                                     int64_t number);
+
+/* Where a value is: an element of the file itself, or of the first item of a
+ * sequence.  A sequence is looked for among the functional groups of a frame
+ * (from 0), then among those that all frames share, then in the file itself. */
+typedef struct dicom_place {
+    int64_t frame;
+    uint32_t sequence; /* 0: none */
+    uint32_t tag;
+} dicom_place;
+
+/* Copies up to `room` bytes of a value as they are in the file; returns how
+ * many, 0 where there is no such value. */
+size_t snow_dicom_value(dicom_reader *reader, dicom_place place, void *out,
+                        size_t room);
 
 /* --- dicom_series.c ------------------------------------------------------- */
 
@@ -125,23 +183,8 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);
 
-#if SNOW_HAVE_GDCM
-
-#include "volume/gdcm_bridge.h"
-
-/* --- dicom_header.c ------------------------------------------------------- */
-
-/* A file of which GDCM has a look: `store` outlives it. */
-typedef struct dicom_reader {
-    gdcm_bytes bytes;
-    gdcm_file *file;
-} dicom_reader;
-
-/* Walks the file, then lets GDCM parse it.
- * Errors: SNOW_BAD_INPUT. */
-snow_status snow_dicom_open(snow_context *context, snow_random *store,
-                            bool pixels, dicom_reader *out);
-void snow_dicom_close(dicom_reader *reader);
+/* --- dicom_header.c -------------------------------------------------------
+ */
 
 /* What the header tells; rows is 0 where it has no image.
  * Errors: SNOW_BAD_INPUT (sizes that are none). */
@@ -152,6 +195,45 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
 void snow_dicom_read_frame(snow_context *context, dicom_reader *reader,
                            const dicom_image *image, int64_t number,
                            dicom_frame *out);
+
+/* --- dicom_pixels.c -------------------------------------------------------
+ */
+
+/* What a frame's words are like, which a codec may say otherwise than the
+ * header. */
+typedef struct dicom_words {
+    int size;         /* bytes of a word: 1, 2 or 4 */
+    int stored, high; /* bits of a value; the highest one, from 0 */
+    bool is_signed;
+    bool planes; /* one for each sample, not side by side */
+} dicom_words;
+
+/* Bytes of a frame: columns * rows * samples words. */
+uint64_t snow_dicom_frame_bytes(const dicom_image *image);
+
+/* A frame's words in the machine's byte order into `out`, as many bytes as
+ * above.
+ * Errors: SNOW_BAD_INPUT (what is cut, damaged, or packed in a way that is not
+ * known), SNOW_NO_MEMORY. */
+snow_status snow_dicom_read_words(dicom_reader *reader,
+                                  const dicom_image *image, int64_t number,
+                                  void *out, dicom_words *words);
+
+/* --- dicom_codec.c --------------------------------------------------------
+ */
+
+/* Whether the packed bytes of a frame are what the image is, by their own
+ * head, and what their words are like.
+ * Errors: SNOW_BAD_INPUT. */
+snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
+                                    const dicom_image *image,
+                                    const unsigned char *bytes, size_t size);
+
+/* Run lengths (PS3.5, annex G), as planes of bytes; false when they are not
+ * those of the image. */
+bool snow_dicom_unpack_runs(const dicom_image *image,
+                            const unsigned char *bytes, size_t size,
+                            unsigned char *out);
 
 /* --- dicom_voxels.c ------------------------------------------------------- */
 
@@ -167,5 +249,4 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);
 
-#endif
 #endif

@@ -5,7 +5,6 @@
  * image (reports, indices), are passed by; one that is damaged is not, as it
  * may be a slice. */
 #include "volume/dicom.h"
-#include "volume/optional.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -35,8 +34,6 @@ bool snow_dicom_among(snow_context *context, const snow_folder *files) {
     }
     return false;
 }
-
-#if SNOW_HAVE_GDCM
 
 /* Series that a remark names; a disk can have hundreds. */
 #define MOST_LISTED 12
@@ -354,35 +351,6 @@ static snow_status read_dicom(snow_source *source,
     snow_random_close(store);
     return status;
 }
-
-#else
-
-static snow_status fail_without(snow_context *context) {
-    return snow_fail(context, SNOW_BAD_INPUT,
-                     "this build cannot read DICOM: it has no GDCM; install "
-                     "libgdcm-dev and g++, and build again");
-}
-
-snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
-                                  const snow_volume_options *options,
-                                  snow_volume_info *info, snow_volume **out) {
-    (void)files;
-    (void)options;
-    (void)info;
-    (void)out;
-    return fail_without(context);
-}
-
-static snow_status read_dicom(snow_source *source,
-                              const snow_volume_options *options,
-                              snow_volume_info *info, snow_volume **out) {
-    (void)options;
-    (void)info;
-    (void)out;
-    return fail_without(snow_source_context(source));
-}
-
-#endif
 
 const snow_format snow_format_dicom = {
     .name = "dicom",

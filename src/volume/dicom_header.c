@@ -3,8 +3,6 @@
  * functional groups of frames, C.8.4 nuclear medicine, C.8.8.3 doses). */
 #include "volume/dicom.h"
 
-#if SNOW_HAVE_GDCM
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -65,28 +63,36 @@ static int parse_numbers(char *text, double *out, int most) {
     return count;
 }
 
-static int numbers_at(dicom_reader *reader, gdcm_place place, storage kind,
+/* One number of a file in either byte order. */
+static double binary(const unsigned char *bytes, size_t size, bool big) {
+    unsigned char native[8];
+    uint16_t s;
+    uint32_t l;
+    double d;
+    memcpy(native, bytes, size);
+    if (big != snow_machine_big_endian())
+        snow_swap_bytes(native, 1, size);
+    memcpy(&s, native, sizeof s);
+    memcpy(&l, native, sizeof l);
+    memcpy(&d, native, sizeof d);
+    return size == 2 ? s : size == 4 ? l : d;
+}
+
+static int numbers_at(dicom_reader *reader, dicom_place place, storage kind,
                       double *out, int most) {
     static const size_t sizes[] = {[SHORTS] = 2, [LONGS] = 4, [DOUBLES] = 8};
     char text[1024];
     if (kind == TEXT) {
-        size_t length =
-            snow_gdcm_value(reader->file, place, text, sizeof text - 1);
+        size_t length = snow_dicom_value(reader, place, text, sizeof text - 1);
         text[length] = 0;
         return length ? parse_numbers(text, out, most) : 0;
     }
     size_t size = sizes[kind], room = (size_t)most * size;
     room = room < sizeof text ? room : sizeof text;
-    int count = (int)(snow_gdcm_value(reader->file, place, text, room) / size);
+    int count = (int)(snow_dicom_value(reader, place, text, room) / size);
     for (int i = 0; i < count; i++) {
-        uint16_t s;
-        uint32_t l;
-        if (kind == SHORTS)
-            memcpy(&s, text + 2 * i, 2), out[i] = s;
-        else if (kind == LONGS)
-            memcpy(&l, text + 4 * i, 4), out[i] = l;
-        else
-            memcpy(&out[i], text + 8 * i, 8);
+        out[i] = binary((const unsigned char *)text + (size_t)i * size, size,
+                        reader->big_endian);
         if (!isfinite(out[i]))
             return i;
     }
@@ -98,11 +104,11 @@ static int numbers(dicom_reader *reader, const number_field *field,
                    int64_t frame, double *out, int most) {
     int count = 0;
     if (field->sequence)
-        count =
-            numbers_at(reader, (gdcm_place){frame, field->sequence, field->tag},
-                       field->kind, out, most);
+        count = numbers_at(reader,
+                           (dicom_place){frame, field->sequence, field->tag},
+                           field->kind, out, most);
     if (!count && field->alone)
-        count = numbers_at(reader, (gdcm_place){0, 0, field->alone},
+        count = numbers_at(reader, (dicom_place){0, 0, field->alone},
                            field->alone_kind, out, most);
     return count;
 }
@@ -111,7 +117,7 @@ static int numbers(dicom_reader *reader, const number_field *field,
 static double number(dicom_reader *reader, uint32_t tag, storage kind,
                      double otherwise) {
     double value;
-    return numbers_at(reader, (gdcm_place){0, 0, tag}, kind, &value, 1)
+    return numbers_at(reader, (dicom_place){0, 0, tag}, kind, &value, 1)
                ? value
                : otherwise;
 }
@@ -119,7 +125,7 @@ static double number(dicom_reader *reader, uint32_t tag, storage kind,
 /* Text without blanks around it. */
 static void text(dicom_reader *reader, uint32_t tag, char *out, size_t room) {
     size_t length =
-        snow_gdcm_value(reader->file, (gdcm_place){0, 0, tag}, out, room - 1);
+        snow_dicom_value(reader, (dicom_place){0, 0, tag}, out, room - 1);
     out[length] = 0;
     length = strlen(out);
     while (length && (out[length - 1] == ' ' || out[length - 1] == '\n'))
@@ -152,29 +158,6 @@ static void patient(dicom_reader *reader, char *out, size_t room) {
 
 /* --- the file --------------------------------------------------------------
  */
-
-static size_t read_store(void *user, uint64_t from, void *bytes, size_t size) {
-    return snow_random_read(user, from, bytes, size);
-}
-
-snow_status snow_dicom_open(snow_context *context, snow_random *store,
-                            bool pixels, dicom_reader *out) {
-    SNOW_TRY(snow_dicom_walk(context, store, pixels));
-    dicom_reader reader = {{read_store, store, snow_random_size(store)}, NULL};
-    reader.file = snow_gdcm_open(&reader.bytes, pixels);
-    if (!reader.file)
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         pixels ? "its pixels cannot be read; it is damaged, "
-                                  "or of a kind that GDCM does not know"
-                                : "is no DICOM file that can be read; it is "
-                                  "cut or damaged");
-    *out = reader;
-    return SNOW_OK;
-}
-
-void snow_dicom_close(dicom_reader *reader) {
-    snow_gdcm_close(reader->file);
-}
 
 /* Padding is a word as pixels are: its sign is theirs. */
 static double padding(dicom_reader *reader, uint32_t tag,
@@ -211,7 +194,8 @@ static snow_status check_sizes(snow_context *context, dicom_reader *reader,
                       (uint64_t)image->frames, &bytes) ||
         !snow_mul_u64(bytes, (uint64_t)(image->samples * image->allocated),
                       &bytes) ||
-        !snow_mul_u64(reader->bytes.size, 8 * SNOW_DEFLATE_RATIO, &most) ||
+        !snow_mul_u64(snow_random_size(reader->store), 8 * SNOW_DEFLATE_RATIO,
+                      &most) ||
         bytes > most + ((uint64_t)1 << 31))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "says that it has %lld frames of %lldx%lld pixels, "
@@ -219,7 +203,7 @@ static snow_status check_sizes(snow_context *context, dicom_reader *reader,
                          "damaged",
                          (long long)image->frames, (long long)image->columns,
                          (long long)image->rows,
-                         (unsigned long long)reader->bytes.size);
+                         (unsigned long long)snow_random_size(reader->store));
     return SNOW_OK;
 }
 
@@ -233,6 +217,10 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
         *out = image;
         return SNOW_OK;
     }
+    if (!reader->has_pixels)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "has no pixels of whole numbers, which alone are "
+                         "read; it is cut, or a map of floats");
     double frames = number(reader, 0x00280008, TEXT, 1);
     image.frames = frames >= 1 && frames < 1e9 ? (int64_t)frames : 0;
     image.samples = (int)number(reader, 0x00280002, SHORTS, 1);
@@ -240,13 +228,13 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
     image.stored = (int)number(reader, 0x00280101, SHORTS, image.allocated);
     image.high = (int)number(reader, 0x00280102, SHORTS, image.stored - 1);
     image.is_signed = number(reader, 0x00280103, SHORTS, 0) > 0;
+    image.planes = number(reader, 0x00280006, SHORTS, 0) > 0;
     double series = number(reader, 0x00200011, TEXT, 0);
     image.series_number = fabs(series) < 1e15 ? (int64_t)series : 0;
     text(reader, 0x0020000e, image.series, sizeof image.series);
     text(reader, 0x00080018, image.instance, sizeof image.instance);
     text(reader, 0x00280004, image.photometric, sizeof image.photometric);
     text(reader, 0x00080060, image.modality, sizeof image.modality);
-    text(reader, 0x00020010, image.syntax, sizeof image.syntax);
     patient(reader, image.patient, sizeof image.patient);
     read_padding(reader, &image);
     SNOW_TRY(check_sizes(context, reader, &image));
@@ -282,19 +270,19 @@ static double offset_of(dicom_reader *reader, snow_context *context,
         snow_allocate_array(context, (uint64_t)image->frames, sizeof *list);
     char *raw = snow_allocate(context, TEXT_BYTES);
     double offset = (double)frame->number * frame->depth;
-    gdcm_place offsets = {0, 0, 0x3004000c}, slices = {0, 0, 0x00540080};
+    dicom_place offsets = {0, 0, 0x3004000c}, slices = {0, 0, 0x00540080};
     if (list && raw) {
-        size_t length =
-            snow_gdcm_value(reader->file, offsets, raw, TEXT_BYTES - 1);
+        size_t length = snow_dicom_value(reader, offsets, raw, TEXT_BYTES - 1);
         raw[length] = 0;
-        uint16_t slice;
         if (length &&
             parse_numbers(raw, list, (int)image->frames) == (int)image->frames)
             offset = list[frame->number];
-        else if (snow_gdcm_value(reader->file, slices, raw, TEXT_BYTES) ==
+        else if (snow_dicom_value(reader, slices, raw, TEXT_BYTES) ==
                  2 * (size_t)image->frames) {
-            memcpy(&slice, raw + 2 * frame->number, 2);
-            offset = ((double)slice - 1) * frame->depth;
+            double slice =
+                binary((const unsigned char *)raw + 2 * frame->number, 2,
+                       reader->big_endian);
+            offset = (slice - 1) * frame->depth;
         }
     }
     snow_release(context, raw);
@@ -392,5 +380,3 @@ void snow_dicom_read_frame(snow_context *context, dicom_reader *reader,
         numbers(reader, &key_fields[i], frame_number, &frame.keys[i], 1);
     *out = frame;
 }
-
-#endif

@@ -7,10 +7,8 @@
  * where padding is told, which is then NaN, where slices differ in scale, and
  * where slices are made between others.
  *
- * A file is decoded whole, and kept until another is needed. */
+ * A file stays open until another is needed. */
 #include "volume/dicom.h"
-
-#if SNOW_HAVE_GDCM
 
 #include "volume/array.h"
 
@@ -25,9 +23,12 @@ typedef struct plane {
 
 typedef struct decoder {
     const dicom_input *input;
-    const dicom_image *image; /* what is decoded; NULL: nothing */
-    unsigned char *bytes;
-    gdcm_pixels pixels;
+    const dicom_image *image; /* whose file is open; NULL: none */
+    snow_source *source;      /* NULL: the given file's store is read */
+    snow_random *store;
+    dicom_reader reader;
+    unsigned char *bytes; /* of a frame */
+    dicom_words words;
     const snow_window *window;
     int64_t channel;
     bool scales; /* each frame by its own slope and intercept */
@@ -37,87 +38,30 @@ typedef struct decoder {
 /* --- a file ----------------------------------------------------------------
  */
 
-static snow_status fail_unlike(snow_context *context) {
-    return snow_fail(context, SNOW_BAD_INPUT,
-                     "its pixels are other than its header says; it is "
-                     "damaged, or was not packed rightly");
-}
-
-/* What the codec says beside what the header says, before memory is taken. */
-static snow_status check_pixels(snow_context *context, const dicom_image *image,
-                                const gdcm_pixels *pixels) {
-    int words = pixels->allocated / 8;
-    uint64_t bytes = (uint64_t)image->columns * (uint64_t)image->rows *
-                     (uint64_t)image->frames * (uint64_t)image->samples;
-    if (pixels->columns != image->columns || pixels->rows != image->rows ||
-        pixels->frames != image->frames || pixels->samples != image->samples ||
-        pixels->allocated % 8 || (words != 1 && words != 2 && words != 4) ||
-        pixels->stored < 1 || pixels->stored > pixels->allocated ||
-        pixels->high < pixels->stored - 1 ||
-        pixels->high >= pixels->allocated ||
-        bytes * (uint64_t)words != pixels->bytes)
-        return fail_unlike(context);
-    if (image->samples > 1 && strcmp(pixels->photometric, "RGB") != 0)
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "its colours are %s, which are not read; convert it "
-                         "to RGB, with gdcmconv say",
-                         pixels->photometric);
-    return SNOW_OK;
-}
-
-static snow_status decode_store(decoder *d, snow_random *store,
-                                const dicom_image *image) {
-    snow_context *context = d->input->context;
-    dicom_reader reader;
-    SNOW_TRY(snow_dicom_open(context, store, true, &reader));
-    snow_status status = SNOW_OK;
-    if (!snow_gdcm_describe(reader.file, &d->pixels))
-        status = snow_fail(context, SNOW_BAD_INPUT,
-                           "has no pixels that can be read (transfer syntax "
-                           "%s); convert it with gdcmconv or dcmdjpeg",
-                           *image->syntax ? image->syntax : "not told");
-    if (status == SNOW_OK)
-        status = check_pixels(context, image, &d->pixels);
-    if (status == SNOW_OK) {
-        d->bytes = snow_allocate_array(context, d->pixels.bytes, 1);
-        status = d->bytes ? SNOW_OK : SNOW_NO_MEMORY;
+static void close_image(decoder *d) {
+    if (d->image)
+        snow_dicom_close(&d->reader);
+    if (d->source) {
+        snow_random_close(d->store);
+        snow_source_close(d->source);
     }
-    if (status == SNOW_OK && !snow_gdcm_decode(reader.file, d->bytes))
-        status = snow_fail(context, SNOW_BAD_INPUT,
-                           "its pixels cannot be decoded (transfer syntax "
-                           "%s); it is cut or damaged",
-                           *image->syntax ? image->syntax : "not told");
-    snow_dicom_close(&reader);
-    return status;
+    d->image = NULL;
+    d->source = NULL;
+    d->store = NULL;
 }
 
-static snow_status decode_path(decoder *d, const dicom_image *image) {
+/* The file of an image is what is open from here on. */
+static snow_status open_image(decoder *d, const dicom_image *image) {
     snow_context *context = d->input->context;
-    snow_source *source;
-    snow_random *store = NULL;
-    SNOW_TRY(snow_source_open(context, image->path, &source));
-    snow_status status = snow_random_open(source, &store);
-    if (status == SNOW_OK)
-        status = decode_store(d, store, image);
-    const char *name = snow_source_name(source);
-    size_t length = strlen(name);
-    if (status != SNOW_OK && (strncmp(context->message, name, length) != 0 ||
-                              context->message[length] != ':'))
-        snow_fail_within(context, status, "%s", name);
-    snow_random_close(store);
-    snow_source_close(source);
-    return status;
-}
-
-/* The file of an image is what is held from here on. */
-static snow_status decode(decoder *d, const dicom_image *image) {
     if (d->image == image)
         return SNOW_OK;
-    snow_release(d->input->context, d->bytes);
-    d->bytes = NULL;
-    d->image = NULL;
-    SNOW_TRY(image->path ? decode_path(d, image)
-                         : decode_store(d, d->input->store, image));
+    close_image(d);
+    d->store = image->path ? NULL : d->input->store;
+    if (image->path) {
+        SNOW_TRY(snow_source_open(context, image->path, &d->source));
+        SNOW_TRY(snow_random_open(d->source, &d->store));
+    }
+    SNOW_TRY(snow_dicom_open(context, d->store, true, &d->reader));
     d->image = image;
     return SNOW_OK;
 }
@@ -131,11 +75,11 @@ typedef struct bits {
     int shift;
 } bits;
 
-static bits bits_of(const gdcm_pixels *pixels) {
+static bits bits_of(const dicom_words *words) {
     uint32_t mask =
-        pixels->stored == 32 ? UINT32_MAX : ((uint32_t)1 << pixels->stored) - 1;
-    return (bits){mask, pixels->is_signed ? mask ^ mask >> 1 : 0,
-                  pixels->high + 1 - pixels->stored};
+        words->stored == 32 ? UINT32_MAX : ((uint32_t)1 << words->stored) - 1;
+    return (bits){mask, words->is_signed ? mask ^ mask >> 1 : 0,
+                  words->high + 1 - words->stored};
 }
 
 static double value_of(uint32_t word, bits b) {
@@ -169,34 +113,47 @@ static bool is_padding(const dicom_image *image, double value, uint32_t word,
 /* A row of the box from its first word on, `step` bytes from word to word. */
 static void take_row(const decoder *d, const dicom_frame *frame,
                      const unsigned char *at, size_t step, double *out) {
-    bits b = bits_of(&d->pixels);
-    int size = d->pixels.allocated / 8;
-    bool pads = d->image->pads;
+    bits b = bits_of(&d->words);
+    int size = d->words.size;
+    bool pads = frame->image->pads;
     double slope = d->scales ? frame->slope : 1;
     double intercept = d->scales ? frame->intercept : 0;
     for (int64_t x = 0; x < d->window->count[0]; x++, at += step) {
         uint32_t word = word_at(at, size);
         double value = value_of(word, b);
-        if (pads && is_padding(d->image, value, word, size))
+        if (pads && is_padding(frame->image, value, word, size))
             out[x] = NAN;
         else
             out[x] = slope * value + intercept;
     }
 }
 
+/* A failure is of the file that the frame is in. */
+static snow_status take_words(decoder *d, const dicom_frame *frame) {
+    snow_context *context = d->input->context;
+    const char *path = frame->image->path;
+    snow_status status = open_image(d, frame->image);
+    if (status == SNOW_OK)
+        status = snow_dicom_read_words(&d->reader, frame->image, frame->number,
+                                       d->bytes, &d->words);
+    if (status != SNOW_OK && path &&
+        (strncmp(context->message, path, strlen(path)) != 0 ||
+         context->message[strlen(path)] != ':'))
+        snow_fail_within(context, status, "%s", path);
+    return status;
+}
+
 static snow_status take_frame(decoder *d, const dicom_frame *frame,
                               double *out) {
-    SNOW_TRY(decode(d, frame->image));
+    SNOW_TRY(take_words(d, frame));
     const snow_window *w = d->window;
     const dicom_image *image = frame->image;
-    size_t size = (size_t)d->pixels.allocated / 8;
+    size_t size = (size_t)d->words.size;
     size_t samples = (size_t)image->samples, columns = (size_t)image->columns;
     size_t area = columns * (size_t)image->rows;
-    size_t step = d->pixels.planes ? size : size * samples;
-    size_t apart = d->pixels.planes ? area * size : size;
-    const unsigned char *at = d->bytes +
-                              (size_t)frame->number * area * samples * size +
-                              (size_t)d->channel * apart;
+    size_t step = d->words.planes ? size : size * samples;
+    size_t apart = d->words.planes ? area * size : size;
+    const unsigned char *at = d->bytes + (size_t)d->channel * apart;
     for (int64_t y = 0; y < w->count[1]; y++) {
         size_t first =
             (size_t)(w->first[1] + y) * columns + (size_t)w->first[0];
@@ -287,27 +244,30 @@ static snow_status fill_slice(decoder *d, const dicom_stack *stack, int64_t z,
         values = mixed;
     }
     if (!put(volume->info.type, values, count, to))
-        return fail_unlike(volume->context);
+        return snow_fail(volume->context, SNOW_BAD_INPUT,
+                         "its packed pixels have values that its header's type "
+                         "cannot hold; it is damaged");
     return SNOW_OK;
 }
 
 static snow_status fill_volume(decoder *d, const dicom_stack *stack,
                                snow_volume *volume) {
+    snow_context *context = volume->context;
     size_t count = (size_t)(d->window->count[0] * d->window->count[1]);
-    double *block =
-        snow_allocate_array(volume->context, count, 3 * sizeof *block);
-    if (!block)
-        return SNOW_NO_MEMORY;
+    double *block = snow_allocate_array(context, count, 3 * sizeof *block);
+    d->bytes = snow_allocate_array(
+        context, snow_dicom_frame_bytes(stack->frames->image), 1);
+    snow_status status = block && d->bytes ? SNOW_OK : SNOW_NO_MEMORY;
     d->planes[0].values = block;
-    d->planes[1].values = block + count;
-    snow_status status = SNOW_OK;
+    d->planes[1].values = block ? block + count : NULL;
     unsigned char *to = volume->owned;
     size_t bytes = count * snow_type_size(volume->info.type);
     for (int64_t z = 0; z < d->window->count[2] && status == SNOW_OK; z++)
         status = fill_slice(d, stack, d->window->first[2] + z, volume,
                             block + 2 * count, to + (size_t)z * bytes);
-    snow_release(volume->context, block);
-    snow_release(volume->context, d->bytes);
+    close_image(d);
+    snow_release(context, d->bytes);
+    snow_release(context, block);
     return status;
 }
 
@@ -336,10 +296,12 @@ static snow_status stored_type(snow_context *context, const dicom_image *image,
                          "pixels of %d bits are not read; those of 8, 16 and "
                          "32 are",
                          image->allocated);
-    if (image->stored < 1 || image->stored > image->allocated)
+    if (image->stored < 1 || image->high < image->stored - 1 ||
+        image->high >= image->allocated)
         return snow_fail(context, SNOW_BAD_INPUT,
-                         "says that %d of %d bits are stored; it is damaged",
-                         image->stored, image->allocated);
+                         "says that %d of %d bits are stored, up to number "
+                         "%d; it is damaged",
+                         image->stored, image->allocated, image->high);
     return SNOW_OK;
 }
 
@@ -389,6 +351,11 @@ static snow_status describe(const dicom_input *input, const dicom_stack *stack,
     bool pads;
     *info = snow_volume_info_default("dicom");
     SNOW_TRY(stored_type(context, image, &info->type));
+    if (image->samples != 1 && strcmp(image->photometric, "RGB") != 0)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "its colours are %.16s with %d values a pixel, which "
+                         "are not read; convert it to RGB, with gdcmconv say",
+                         image->photometric, image->samples);
     if (!strcmp(image->photometric, "PALETTE COLOR"))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "its values are numbers of a palette's colours, which "
@@ -433,5 +400,3 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
     *out = volume;
     return SNOW_OK;
 }
-
-#endif
