@@ -15,3 +15,12 @@ LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH")
     $(pkg-config --define-variable=prefix="$place" --cflags --libs snowglass)
 "$place/program" "$place/picture.png"
 [ -s "$place/picture.png" ]
+
+# The archive, with all that it needs.
+archive=$(find "$place" -name libsnowglass.a)
+# shellcheck disable=SC2046
+"${CC:-cc}" -std=c11 "$2" -o "$place/static" \
+    $(pkg-config --define-variable=prefix="$place" --static --cflags --libs \
+        snowglass | sed "s|-lsnowglass|$archive|")
+LD_LIBRARY_PATH='' "$place/static" "$place/again.png"
+cmp "$place/picture.png" "$place/again.png"

@@ -23,6 +23,7 @@ typedef struct facts {
     snow_volume_measures measures;
     double thresholds[3], ratios[3];
     size_t threshold_count;
+    const char *patient; /* NULL: not asked for, or not told */
 } facts;
 
 /* Every figure is taken before the first one is printed, so that a failure
@@ -110,6 +111,8 @@ static void print_geometry(const facts *f) {
         info->intercept > 0)
         printf("%-14svalue = %g * stored + %g\n", "scale", info->slope,
                info->intercept);
+    if (f->patient)
+        printf("%-14s%s\n", "patient", f->patient);
 }
 
 /* The look and the sparse ratios are those that render would have with the same
@@ -222,6 +225,8 @@ static json_t *sparse_json(const facts *f) {
 static int tell_json(const facts *f) {
     json_t *object = json_object();
     set_geometry(object, f->info);
+    if (f->patient)
+        json_object_set_new(object, "patient", json_string(f->patient));
     set_values(object, &f->measures);
     json_object_set_new(object, "look",
                         json_string(snow_transfer_text(f->transfer)));
@@ -251,6 +256,8 @@ int cmd_info(const options *asked) {
         done = open_look(context, asked, volume, &transfer);
     if (done == GO_ON) {
         facts f = {.volume = volume, .transfer = transfer};
+        if (asked->patient && *snow_volume_patient(volume))
+            f.patient = snow_volume_patient(volume);
         snow_status status = gather(asked, &f);
         if (status != SNOW_OK)
             done = fail_status(context, status);

@@ -169,6 +169,7 @@ static void fill_data(const options *asked, snow_recipe *out) {
     data->time = asked->time;
     data->channel = asked->channel;
     data->dataset = asked->dataset;
+    data->series = asked->series;
     if (asked->endian)
         data->endian = strcmp(asked->endian, "big") == 0 ? SNOW_ENDIAN_BIG
                                                          : SNOW_ENDIAN_LITTLE;

@@ -14,7 +14,8 @@ snow_volume_options data_options(const options *asked) {
                                 .offset = asked->offset,
                                 .time = asked->time,
                                 .channel = asked->channel,
-                                .dataset = asked->dataset};
+                                .dataset = asked->dataset,
+                                .series = asked->series};
     for (int i = 0; i < 3; i++) {
         data.dims[i] = asked->dims[i];
         data.spacing[i] = asked->spacing[i];

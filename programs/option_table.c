@@ -188,7 +188,9 @@ const option_row option_table[] = {
     {"crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA, INPUT, read_crop, FIELD(crop),
      0, 0, "", "a box of the volume, all that is read: first voxel and one past "
      "the last; one left out is the volume's end"},
-    LATER("series", 0, "UID|N", TOPIC_DATA, "DICOM is not read yet"),
+    {"series", 0, "UID|N", TOPIC_DATA, INPUT, read_text, FIELD(series), 0, 0,
+     "", "of DICOM images of several series, by UID or number as listed (the "
+     "largest)"},
     LATER("mask", 0, "FILE", TOPIC_DATA, "give a masked file"),
     LATER("labels", 0, "LIST", TOPIC_DATA, "give a masked file"),
 
@@ -249,6 +251,8 @@ const option_row option_table[] = {
 
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR | TF, read_flag,
      FIELD(json), 0, 0, "", "write one JSON object"},
+    {"patient", 0, NULL, TOPIC_MORE, INFO, read_flag, FIELD(patient), 0, 0, "",
+     "tell the patient's name too, where the file has one"},
     {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
      "moves what is random in a phantom (0)"},
     {"tolerance", 0, "X", TOPIC_MORE, COMPARE, read_tolerance, FIELD(tolerance),

@@ -91,6 +91,7 @@ typedef struct options {
     int64_t time;
     int64_t channel;
     const char *dataset; /* NULL: not told */
+    const char *series;  /* NULL: not told */
     int64_t crop[3][2];  /* 0: the end */
     uint64_t seed;
 
@@ -100,6 +101,7 @@ typedef struct options {
 
     double tolerance;
     bool json;
+    bool patient;
     const char *stats; /* NULL: none */
     const char *progress, *isa, *quality;
     int64_t threads; /* 0: not told */

@@ -56,7 +56,7 @@ typedef struct snow_volume_info {
     char unit[16];       /* of spacing and matrix: "mm", "um", ... or "" */
     const char *format;  /* constant: "raw", "nrrd", "nifti", "metaimage",
                             "npy", "mrc", "vtk", "vti", "tiff", "png",
-                            "hdf5", "netcdf", "den", "phantom",
+                            "hdf5", "netcdf", "dicom", "den", "phantom",
                             "memory" */
     int64_t times;       /* time steps in the file, at least 1 */
     int64_t time;        /* the one that was read, from 0 */
@@ -84,6 +84,9 @@ typedef struct snow_volume_options {
     const char *dataset; /* of a file with several data sets, the one to read:
                             a path in HDF5, a name in VTK, VTI and NetCDF; NULL:
                             the only one, or the file's own choice */
+    const char *series;  /* of DICOM images of several series, the one to read:
+                            its UID, or its number in the remark that lists
+                            them; NULL: the largest */
 } snow_volume_options;
 
 /* Opens a volume file.  The format is found from the first bytes, then from
@@ -179,6 +182,10 @@ SNOW_API void snow_volume_close(snow_volume *volume);
 
 /* What is known of it; owned by the volume. */
 SNOW_API const snow_volume_info *snow_volume_describe(const snow_volume *);
+
+/* The patient's name in UTF-8, where the file tells one: "" where not.  It is
+ * in nothing else that the library writes or says.  Owned by the volume. */
+SNOW_API const char *snow_volume_patient(const snow_volume *volume);
 
 /* Its voxels: dims[0]*dims[1]*dims[2] values of the native type, x fastest;
  * owned by the volume. */

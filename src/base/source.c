@@ -29,6 +29,10 @@ const char *snow_source_name(const snow_source *source) {
     return source->name;
 }
 
+bool snow_source_has_siblings(const snow_source *source) {
+    return source->siblings;
+}
+
 /* On failure the source keeps its layers and is closed as usual. */
 snow_status snow_source_unpack(snow_source *source) {
     return snow_layer_open_inflate(source->top, &source->top);

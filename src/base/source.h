@@ -52,6 +52,9 @@ snow_context *snow_source_context(const snow_source *source);
 /* The path or name that it was opened by. */
 const char *snow_source_name(const snow_source *source);
 
+/* Whether it is a file in a folder, with others beside it. */
+bool snow_source_has_siblings(const snow_source *source);
+
 /* Copies up to `size` (at most SNOW_PEEK_BYTES) of the bytes that come next
  * without taking them; *got is smaller only where the data end. */
 snow_status snow_source_peek(snow_source *source, void *bytes, size_t size,

@@ -594,6 +594,7 @@ const recipe_key recipe_keys[] = {
     {"channel", read_long, write_told_long, AT(data.channel), 0, 9e15, 0, NULL,
      NULL},
     TEXT("dataset", data.dataset),
+    TEXT("series", data.series),
     {"time", read_long, write_told_long, AT(data.time), 0, 9e15, 0, NULL, NULL},
     {NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };

@@ -13,13 +13,15 @@
 
 #define PHANTOM "phantom:"
 
-/* Raw, which recognises nothing, is the last. */
+/* DICOM comes before all: its 128 bytes without a meaning are TIFF in files
+ * that are both, for programs that know slices only as that.  Raw, which
+ * recognises nothing, is the last. */
 static const snow_format *const formats[] = {
-    &snow_format_nrrd, &snow_format_nifti,  &snow_format_metaimage,
-    &snow_format_npy,  &snow_format_vtk,    &snow_format_vti,
-    &snow_format_mrc,  &snow_format_tiff,   &snow_format_png,
-    &snow_format_hdf5, &snow_format_netcdf, &snow_format_den,
-    &snow_format_raw,
+    &snow_format_dicom,     &snow_format_nrrd, &snow_format_nifti,
+    &snow_format_metaimage, &snow_format_npy,  &snow_format_vtk,
+    &snow_format_vti,       &snow_format_mrc,  &snow_format_tiff,
+    &snow_format_png,       &snow_format_hdf5, &snow_format_netcdf,
+    &snow_format_den,       &snow_format_raw,
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
@@ -177,6 +179,11 @@ static snow_status check_choice(snow_context *context,
                          "there is no channel %lld; a %s file has one value a "
                          "voxel, so leave --channel out",
                          (long long)options->channel, format->name);
+    if (options->series && !format->series)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "--series %.64s: a %s file has no series; leave the "
+                         "option out",
+                         options->series, format->name);
     return SNOW_OK;
 }
 
@@ -267,12 +274,13 @@ static snow_status open_phantom(snow_context *context, const char *name,
                                 snow_volume_info *info, snow_volume **out) {
     SNOW_TRY(check_options(context, options));
     if (options->type || options->endian || options->offset || options->time ||
-        options->channel || options->dataset)
+        options->channel || options->dataset || options->series)
         return snow_fail(
             context, SNOW_BAD_USAGE,
             PHANTOM
             "%s: a phantom has its own type; leave out "
-            "--type, --endian, --offset, --time, --channel and --dataset",
+            "--type, --endian, --offset, --time, --channel, --dataset and "
+            "--series",
             name);
     snow_volume *volume = NULL;
     snow_volume_info told;

@@ -8,6 +8,7 @@ static const struct {
     {"expat", SNOW_VERSION_EXPAT, "vti", SNOW_HAVE_EXPAT},
     {"libtiff", SNOW_VERSION_TIFF, "tiff", SNOW_HAVE_TIFF},
     {"libhdf5", SNOW_VERSION_HDF5, "hdf5, NetCDF-4", SNOW_HAVE_HDF5},
+    {"gdcm", SNOW_VERSION_GDCM, "packed dicom", SNOW_HAVE_GDCM},
 };
 
 const char *snow_library_name(size_t index, const char **version,

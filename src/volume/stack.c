@@ -3,9 +3,10 @@
  * The files' own reader makes a volume of one slice of each, cropped in x and
  * y; they are put one behind the other.  Files outside the box along z are not
  * opened.  A number that is missing among the names is a slice that is missing,
- * and refused. */
+ * and refused.  Where any file is DICOM, dicom_files.c reads them. */
 #include "volume/stack.h"
 #include "base/folder.h"
+#include "volume/dicom.h"
 
 #include <string.h>
 
@@ -47,8 +48,8 @@ static snow_status choose_files(stack *s, snow_folder *files) {
                          kept, s->format->name);
     if (!kept)
         return snow_fail(s->context, SNOW_BAD_INPUT,
-                         "names no slices; give a folder or a pattern of .tif "
-                         "or .png files");
+                         "names no slices; give a folder or a pattern of .tif, "
+                         ".png or DICOM files");
     files->count = kept;
     s->files = files;
     return SNOW_OK;
@@ -161,6 +162,11 @@ static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
 static snow_status read_stack(stack *s, const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
     snow_window window;
+    if (options->series)
+        return snow_fail(s->context, SNOW_BAD_USAGE,
+                         "--series %.64s: only DICOM files have series; leave "
+                         "the option out",
+                         options->series);
     s->options = *options;
     memset(s->options.crop, 0, sizeof s->options.crop);
     SNOW_TRY(check_numbers(s));
@@ -192,9 +198,14 @@ snow_status snow_stack_read(snow_context *context, const char *path,
     snow_folder files;
     stack s = {.context = context};
     SNOW_TRY(snow_folder_list(context, path, &files));
-    snow_status status = choose_files(&s, &files);
-    if (status == SNOW_OK)
-        status = read_stack(&s, options, info, out);
+    snow_status status;
+    if (snow_dicom_among(context, &files)) {
+        status = snow_dicom_read_files(context, &files, options, info, out);
+    } else {
+        status = choose_files(&s, &files);
+        if (status == SNOW_OK)
+            status = read_stack(&s, options, info, out);
+    }
     snow_folder_free(&files);
     return status;
 }

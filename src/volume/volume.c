@@ -302,6 +302,10 @@ const snow_volume_info *snow_volume_describe(const snow_volume *volume) {
     return &volume->info;
 }
 
+const char *snow_volume_patient(const snow_volume *volume) {
+    return volume->patient;
+}
+
 const void *snow_volume_voxels(const snow_volume *volume) {
     return volume->voxels;
 }

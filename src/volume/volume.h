@@ -24,6 +24,7 @@ struct snow_volume {
     snow_part part; /* where is_part */
     bool knows_origin;
     double origin[3]; /* the last column of the whole's matrix, where known */
+    char patient[256]; /* "" when not told */
 };
 
 /* What is known of the whole that a volume is a part of: its dims and its
@@ -57,6 +58,7 @@ typedef struct snow_format {
     bool slices;   /* a folder or a pattern of its files is a volume */
     bool sets;     /* heeds the option that chooses a data set */
     bool channels; /* heeds the option that chooses a channel */
+    bool series;   /* heeds the option that chooses a series */
     snow_status (*read)(snow_source *source, const snow_volume_options *options,
                         snow_volume_info *info, snow_volume **out);
     snow_status (*write)(const snow_volume *volume, const char *path,
@@ -76,6 +78,7 @@ extern const snow_format snow_format_png;
 extern const snow_format snow_format_hdf5;
 extern const snow_format snow_format_netcdf;
 extern const snow_format snow_format_den;
+extern const snow_format snow_format_dicom;
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */

@@ -1,0 +1,159 @@
+/* volume/dicom_codec.c - packed frames, as far as they are looked at here: what
+ * their own heads say, and run lengths, which need no library.
+ *
+ * A codec makes as many words as its head says; GDCM then copies as many as the
+ * image has.  So the heads of JPEG and JPEG-LS (ITU T.81, B.2.2; T.87, C.2.2)
+ * and of JPEG 2000 (T.800, A.5.1) must agree with the image's before GDCM sees
+ * them. */
+#include "volume/dicom.h"
+
+#include <string.h>
+
+/* What a head says. */
+typedef struct packed_head {
+    uint32_t columns, rows, samples;
+    int bits;
+} packed_head;
+
+static uint32_t big(const unsigned char *at, int bytes) {
+    uint32_t value = 0;
+    for (int i = 0; i < bytes; i++)
+        value = value << 8 | at[i];
+    return value;
+}
+
+/* Start of a frame in JPEG: SOF0 to SOF15 but for tables (C4, C8, CC), and
+ * SOF55 of JPEG-LS. */
+static bool is_frame_marker(int marker) {
+    return (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 &&
+            marker != 0xc8 && marker != 0xcc) ||
+           marker == 0xf7;
+}
+
+/* From segment to segment up to the start of the frame. */
+static bool read_jpeg(const unsigned char *bytes, size_t size,
+                      packed_head *out) {
+    size_t at = 2;
+    if (size < 4 || bytes[0] != 0xff || bytes[1] != 0xd8)
+        return false;
+    while (at + 10 <= size && bytes[at] == 0xff) {
+        int marker = bytes[at + 1];
+        if (marker == 0xff) { /* filling */
+            at++;
+            continue;
+        }
+        if (is_frame_marker(marker)) {
+            *out = (packed_head){.bits = bytes[at + 4],
+                                 .rows = big(bytes + at + 5, 2),
+                                 .columns = big(bytes + at + 7, 2),
+                                 .samples = bytes[at + 9]};
+            return true;
+        }
+        at += 2 + (size_t)big(bytes + at + 2, 2);
+    }
+    return false;
+}
+
+/* A bare code stream, or one in the boxes of a file: SIZ follows its start. */
+static bool read_jpeg2000(const unsigned char *bytes, size_t size,
+                          packed_head *out) {
+    static const unsigned char start[4] = {0xff, 0x4f, 0xff, 0x51};
+    for (size_t at = 0; at + 43 <= size && at < 4096; at++)
+        if (!memcmp(bytes + at, start, 4)) {
+            const unsigned char *siz = bytes + at + 4; /* at its length */
+            uint32_t x1 = big(siz + 4, 4), y1 = big(siz + 8, 4);
+            uint32_t x0 = big(siz + 12, 4), y0 = big(siz + 16, 4);
+            *out = (packed_head){.columns = x1 - x0,
+                                 .rows = y1 - y0,
+                                 .samples = big(siz + 36, 2),
+                                 .bits = (siz[38] & 0x7f) + 1};
+            return x1 > x0 && y1 > y0;
+        }
+    return false;
+}
+
+static bool is_jpeg2000(const char *syntax) {
+    return !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
+}
+
+snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
+                                    const dicom_image *image,
+                                    const unsigned char *bytes, size_t size) {
+    packed_head head;
+    bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
+                                     : read_jpeg(bytes, size, &head);
+    if (known && head.columns == (uint32_t)image->columns &&
+        head.rows == (uint32_t)image->rows &&
+        head.samples == (uint32_t)image->samples &&
+        head.bits <= image->allocated &&
+        (head.bits > 8) == (image->allocated > 8))
+        return SNOW_OK;
+    if (known)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "its packed pixels are %lux%lu of %lu values with %d "
+                         "bits where its header says %lldx%lld of %d with %d; "
+                         "it is damaged",
+                         (unsigned long)head.columns, (unsigned long)head.rows,
+                         (unsigned long)head.samples, head.bits,
+                         (long long)image->columns, (long long)image->rows,
+                         image->samples, image->allocated);
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "its packed pixels do not begin as those of the transfer "
+                     "syntax %s do; it is damaged",
+                     syntax);
+}
+
+/* One segment: a byte n from 0 to 127 stands before n + 1 others, one from 129
+ * on before a byte that is repeated 257 - n times. */
+static bool unpack_segment(const unsigned char *in, size_t size,
+                           unsigned char *out, size_t step, size_t count) {
+    size_t at = 0, made = 0;
+    while (made < count) {
+        if (at >= size)
+            return false;
+        int n = in[at++];
+        size_t run = n < 128 ? (size_t)n + 1 : (size_t)(257 - n);
+        size_t taken = n < 128 ? run : 1;
+        if (n == 128)
+            continue;
+        if (taken > size - at)
+            return false;
+        run = run < count - made ? run : count - made;
+        for (size_t i = 0; i < run; i++)
+            out[step * (made + i)] = in[n < 128 ? at + i : at];
+        at += taken;
+        made += run;
+    }
+    return true;
+}
+
+/* Sixteen numbers stand first: how many segments, and where each begins.  The
+ * high byte of a sample comes before the low one. */
+bool snow_dicom_unpack_runs(const dicom_image *image,
+                            const unsigned char *bytes, size_t size,
+                            unsigned char *out) {
+    size_t word = (size_t)image->allocated / 8;
+    size_t segments = word * (size_t)image->samples;
+    size_t area = (size_t)(image->columns * image->rows);
+    uint32_t begin[17];
+    if (size < 64 || segments > 15)
+        return false;
+    for (size_t i = 0; i < 16; i++)
+        begin[i] = (uint32_t)bytes[4 * i] | (uint32_t)bytes[4 * i + 1] << 8 |
+                   (uint32_t)bytes[4 * i + 2] << 16 |
+                   (uint32_t)bytes[4 * i + 3] << 24;
+    if (begin[0] != segments)
+        return false;
+    begin[segments + 1] = (uint32_t)size;
+    for (size_t i = 0; i < segments; i++) {
+        size_t from = begin[i + 1], end = begin[i + 2];
+        size_t sample = i / word, byte = i % word;
+        if (snow_machine_big_endian() == false)
+            byte = word - 1 - byte;
+        if (from < 64 || from > end || end > size ||
+            !unpack_segment(bytes + from, end - from,
+                            out + sample * area * word + byte, word, area))
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,364 @@
+/* volume/dicom_files.c - which files' images are looked at: one file with those
+ * of its series beside it, or all of a folder, of which one series is chosen.
+ *
+ * A folder is one level deep.  Files that are no DICOM, and those without an
+ * image (reports, indices), are passed by; one that is damaged is not, as it
+ * may be a slice. */
+#include "volume/dicom.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Enough to tell DICOM by. */
+#define PROBE_BYTES 4096
+
+/* Opens a file and looks at its first bytes; no file and no DICOM are one. */
+static bool is_dicom(snow_context *context, const char *path) {
+    unsigned char bytes[PROBE_BYTES];
+    size_t got = 0;
+    snow_source *source;
+    if (snow_source_open(context, path, &source) != SNOW_OK)
+        return false;
+    bool is = snow_source_peek(source, bytes, sizeof bytes, &got) == SNOW_OK &&
+              snow_dicom_probe(bytes, got);
+    snow_source_close(source);
+    return is;
+}
+
+bool snow_dicom_among(snow_context *context, const snow_folder *files) {
+    for (size_t i = 0; i < files->count; i++) {
+        const snow_format *format = snow_format_of_name(files->paths[i]);
+        if ((!format || format == &snow_format_dicom) &&
+            is_dicom(context, files->paths[i]))
+            return true;
+    }
+    return false;
+}
+
+/* Series that a remark names; a disk can have hundreds. */
+#define MOST_LISTED 12
+
+typedef struct collection {
+    snow_context *context;
+    dicom_image **images; /* a block each: frames point to them */
+    size_t image_count, image_room;
+    dicom_frame *frames;
+    size_t frame_count, frame_room;
+    size_t copies; /* files with an image that another has too */
+} collection;
+
+static void free_collection(collection *c) {
+    for (size_t i = 0; i < c->image_count; i++)
+        snow_release(c->context, c->images[i]);
+    snow_release(c->context, c->images);
+    snow_release(c->context, c->frames);
+}
+
+static bool is_copy(const collection *c, const dicom_image *image) {
+    for (size_t i = 0; i < c->image_count && *image->instance; i++)
+        if (!strcmp(c->images[i]->instance, image->instance))
+            return true;
+    return false;
+}
+
+static snow_status add_frames(collection *c, dicom_reader *reader,
+                              const dicom_image *image) {
+    for (int64_t n = 0; n < image->frames; n++) {
+        SNOW_TRY(snow_reserve(c->context, &c->frames, &c->frame_room,
+                              c->frame_count * sizeof *c->frames,
+                              (c->frame_count + 1) * sizeof *c->frames));
+        snow_dicom_read_frame(c->context, reader, image, n,
+                              &c->frames[c->frame_count++]);
+    }
+    return SNOW_OK;
+}
+
+/* Where `series` is told, an image of another is left out. */
+static snow_status add_image(collection *c, dicom_reader *reader, char *path,
+                             const char *series) {
+    dicom_image image;
+    SNOW_TRY(snow_dicom_read_image(c->context, reader, &image));
+    if (!image.rows || (series && strcmp(image.series, series) != 0))
+        return SNOW_OK;
+    if (is_copy(c, &image)) {
+        c->copies++;
+        return SNOW_OK;
+    }
+    SNOW_TRY(snow_reserve(c->context, &c->images, &c->image_room,
+                          c->image_count * sizeof *c->images,
+                          (c->image_count + 1) * sizeof *c->images));
+    dicom_image *kept = snow_allocate(c->context, sizeof *kept);
+    if (!kept)
+        return SNOW_NO_MEMORY;
+    *kept = image;
+    kept->path = path;
+    c->images[c->image_count++] = kept;
+    return add_frames(c, reader, kept);
+}
+
+static snow_status add_store(collection *c, snow_random *store, char *path,
+                             const char *series) {
+    dicom_reader reader;
+    SNOW_TRY(snow_dicom_open(c->context, store, false, &reader));
+    snow_status status = add_image(c, &reader, path, series);
+    snow_dicom_close(&reader);
+    return status;
+}
+
+static snow_status add_path(collection *c, char *path, const char *series) {
+    snow_source *source;
+    snow_random *store = NULL;
+    SNOW_TRY(snow_source_open(c->context, path, &source));
+    snow_status status = snow_random_open(source, &store);
+    if (status == SNOW_OK)
+        status = add_store(c, store, path, series);
+    size_t length = strlen(path);
+    if (status != SNOW_OK && (strncmp(c->context->message, path, length) != 0 ||
+                              c->context->message[length] != ':'))
+        snow_fail_within(c->context, status, "%s", path);
+    snow_random_close(store);
+    snow_source_close(source);
+    return status;
+}
+
+/* --- choice ----------------------------------------------------------------
+ */
+
+/* Frames of the collection in groups. */
+typedef struct choice {
+    collection *c;
+    dicom_group *groups;
+    size_t count;
+} choice;
+
+static const dicom_image *image_of(const choice *all, size_t index) {
+    return all->c->frames[all->groups[index].first].image;
+}
+
+/* One line: "0 CT 512x512x20, 1 MR ...". */
+static void list_series(const choice *all, size_t taken, char *out,
+                        size_t room) {
+    size_t used = 0;
+    for (size_t i = 0; i < all->count && used < room; i++) {
+        const dicom_image *image = image_of(all, i);
+        if (i == MOST_LISTED) {
+            snprintf(out + used, room - used, ", and %zu more", all->count - i);
+            return;
+        }
+        used += (size_t)snprintf(
+            out + used, room - used, "%s%zu: %s%s%lldx%lld, %zu image%s%s",
+            i ? "; " : "", i, image->modality, *image->modality ? " " : "",
+            (long long)image->columns, (long long)image->rows,
+            all->groups[i].count, all->groups[i].count > 1 ? "s" : "",
+            i == taken ? " (taken)" : "");
+    }
+}
+
+/* A whole number in text, below `count`; a UID has points in it. */
+static bool is_index(const char *text, size_t count, size_t *out) {
+    int64_t value;
+    if (strchr(text, '.') || !snow_parse_int64(text, &value) || value < 0 ||
+        (uint64_t)value >= count)
+        return false;
+    *out = (size_t)value;
+    return true;
+}
+
+/* The largest group of those that `series` allows, a UID or NULL; `count` when
+ * it allows none. */
+static size_t largest(const choice *all, const char *series) {
+    size_t best = all->count;
+    for (size_t i = 0; i < all->count; i++)
+        if ((!series || !strcmp(image_of(all, i)->series, series)) &&
+            (best == all->count ||
+             all->groups[i].count > all->groups[best].count))
+            best = i;
+    return best;
+}
+
+static snow_status choose_group(const choice *all, const char *series,
+                                size_t *out) {
+    char text[1024];
+    size_t taken = all->count;
+    if (!series || !is_index(series, all->count, &taken))
+        taken = largest(all, series);
+    list_series(all, taken, text, sizeof text);
+    if (taken == all->count)
+        return snow_fail(all->c->context, SNOW_BAD_USAGE,
+                         "--series %.64s: there is no such series; it has %zu: "
+                         "%s",
+                         series, all->count, text);
+    if (all->count > 1 && !series)
+        snow_notify(all->c->context,
+                    "has %zu series of images: %s; --series takes another by "
+                    "its number or UID",
+                    all->count, text);
+    *out = taken;
+    return SNOW_OK;
+}
+
+/* A volume of the group that is chosen of all that was collected. */
+static snow_status read_chosen(collection *c, snow_random *store,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    size_t taken = 0;
+    const dicom_input input = {c->context, store};
+    choice all = {.c = c};
+    all.groups =
+        snow_allocate_array(c->context, c->frame_count, sizeof *all.groups);
+    if (!all.groups)
+        return SNOW_NO_MEMORY;
+    all.count = snow_dicom_group(c->frames, c->frame_count, all.groups);
+    snow_status status = choose_group(&all, options->series, &taken);
+    dicom_stack stack;
+    if (status == SNOW_OK)
+        status =
+            snow_dicom_stack(c->context, c->frames + all.groups[taken].first,
+                             all.groups[taken].count, &stack);
+    if (status == SNOW_OK) {
+        status = snow_dicom_read_stack(&input, &stack, options, info, out);
+        snow_dicom_stack_free(&stack);
+    }
+    snow_release(c->context, all.groups);
+    return status;
+}
+
+snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info, snow_volume **out) {
+    collection c = {.context = context};
+    snow_status status = SNOW_OK;
+    for (size_t i = 0; i < files->count && status == SNOW_OK; i++)
+        if (is_dicom(context, files->paths[i]))
+            status = add_path(&c, files->paths[i], NULL);
+    if (status == SNOW_OK && !c.frame_count)
+        status = snow_fail(context, SNOW_BAD_INPUT,
+                           "its DICOM files have no images; folders in it are "
+                           "not looked at, so name the one with the images");
+    if (status == SNOW_OK && c.copies)
+        snow_notify(context,
+                    "%zu file%s of an image that another file has too %s left "
+                    "out",
+                    c.copies, c.copies > 1 ? "s" : "",
+                    c.copies > 1 ? "are" : "is");
+    if (status == SNOW_OK)
+        status = read_chosen(&c, NULL, options, info, out);
+    free_collection(&c);
+    return status;
+}
+
+/* --- one file --------------------------------------------------------------
+ */
+
+/* The other files of the folder that a path is in; an empty list where it
+ * cannot be read. */
+static void list_siblings(snow_context *context, const char *path,
+                          snow_folder *out) {
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) + 1 : 0;
+    char *folder = snow_allocate_clear(context, length + 2);
+    *out = (snow_folder){.context = context};
+    if (!folder)
+        return;
+    memcpy(folder, slash ? path : ".", slash ? length : 1);
+    if (snow_folder_list(context, folder, out) != SNOW_OK)
+        *out = (snow_folder){.context = context};
+    snow_release(context, folder);
+}
+
+/* Adds the images of the same series in the folder; a file that cannot be read
+ * is none of them, as far as is known. */
+static void add_siblings(collection *c, snow_folder *files) {
+    const char *series = c->images[0]->series;
+    for (size_t i = 0; i < files->count; i++)
+        if (is_dicom(c->context, files->paths[i]))
+            (void)add_path(c, files->paths[i], series);
+}
+
+/* Whether the frames of the folder's files are slices of one volume with the
+ * one that was given, which is the first; then these are kept alone. */
+static bool gather_stack(collection *c, dicom_stack *out) {
+    dicom_group *groups =
+        snow_allocate_array(c->context, c->frame_count, sizeof *groups);
+    if (!groups)
+        return false;
+    bool made = false;
+    size_t count = snow_dicom_group(c->frames, c->frame_count, groups);
+    for (size_t i = 0; i < count && !made; i++)
+        for (size_t k = 0; k < groups[i].count && !made; k++)
+            made = !c->frames[groups[i].first + k].image->path &&
+                   snow_dicom_stack(c->context, c->frames + groups[i].first,
+                                    groups[i].count, out) == SNOW_OK;
+    snow_release(c->context, groups);
+    return made;
+}
+
+/* The volume that a slice is of.  *done is false where it is of none, and is to
+ * be shown alone. */
+static snow_status read_with_siblings(collection *c, snow_source *source,
+                                      snow_random *store,
+                                      const snow_volume_options *options,
+                                      snow_volume_info *info, snow_volume **out,
+                                      bool *done) {
+    const dicom_input input = {c->context, store};
+    const dicom_frame alone = c->frames[0];
+    snow_folder files;
+    dicom_stack stack;
+    snow_status status = SNOW_OK;
+    list_siblings(c->context, snow_source_name(source), &files);
+    add_siblings(c, &files);
+    *done = false;
+    if (c->frame_count > 1 && gather_stack(c, &stack)) {
+        *done = stack.places * stack.times > 1;
+        if (*done) {
+            snow_notify(c->context,
+                        "is one of %zu images of a series in its folder; all "
+                        "are taken",
+                        stack.places * stack.times);
+            status = snow_dicom_read_stack(&input, &stack, options, info, out);
+        }
+        snow_dicom_stack_free(&stack);
+    } else if (c->frame_count > 1)
+        snow_notify(c->context, "is taken alone, without those of its series "
+                                "in its folder, which make no volume; open the "
+                                "folder to see why");
+    c->frames[0] = alone;
+    c->frame_count = 1;
+    snow_folder_free(&files);
+    return status;
+}
+
+static snow_status read_dicom(snow_source *source,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    collection c = {.context = context};
+    snow_random *store;
+    SNOW_TRY(snow_random_open(source, &store));
+    bool done = false;
+    snow_status status = add_store(&c, store, NULL, NULL);
+    if (status == SNOW_OK && !c.frame_count)
+        status = snow_fail(context, SNOW_BAD_INPUT,
+                           "is a DICOM file without an image; open one with "
+                           "an image, or their folder");
+    if (status == SNOW_OK && c.frame_count == 1 && c.frames[0].placed &&
+        *c.images[0]->series && snow_source_has_siblings(source))
+        status =
+            read_with_siblings(&c, source, store, options, info, out, &done);
+    if (status == SNOW_OK && !done)
+        status = read_chosen(&c, store, options, info, out);
+    free_collection(&c);
+    snow_random_close(store);
+    return status;
+}
+
+const snow_format snow_format_dicom = {
+    .name = "dicom",
+    .text = "DICOM: a folder, a slice of a series, frames in one file (.dcm)",
+    .suffixes = {".dcm", ".dcm.gz", ".dicom", ".ima"},
+    .probe = snow_dicom_probe,
+    .crops = true,
+    .series = true,
+    .channels = true,
+    .read = read_dicom,
+};

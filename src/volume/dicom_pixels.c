@@ -1,0 +1,264 @@
+/* volume/dicom_pixels.c - the words of a frame: read where they lie, or
+ * unpacked from the fragments that hold them (PS3.5, annex A).
+ *
+ * Fragments are a frame's by the table in front of them, or one each, or all of
+ * them where there is one frame; else a frame begins with a fragment that
+ * begins as a code stream does. */
+#include "volume/dicom.h"
+
+#if SNOW_HAVE_GDCM
+#include "volume/gdcm_bridge.h"
+#endif
+
+#include <string.h>
+
+#define RUN_LENGTHS "1.2.840.10008.1.2.5"
+
+uint64_t snow_dicom_frame_bytes(const dicom_image *image) {
+    return (uint64_t)image->columns * (uint64_t)image->rows *
+           (uint64_t)(image->samples * image->allocated / 8);
+}
+
+/* --- plain ------------------------------------------------------------------
+ */
+
+static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
+                              const dicom_element *pixels, int64_t number,
+                              unsigned char *out) {
+    uint64_t bytes = snow_dicom_frame_bytes(image);
+    uint64_t first = (uint64_t)number * bytes;
+    if (first + bytes > pixels->length ||
+        snow_random_read(reader->store, pixels->at + first, out,
+                         (size_t)bytes) < bytes)
+        return snow_fail(reader->context, SNOW_BAD_INPUT,
+                         "is cut or damaged: its pixels have %lu bytes, where "
+                         "%lld frames of %lldx%lld need %llu; fetch the file "
+                         "again",
+                         (unsigned long)pixels->length,
+                         (long long)image->frames, (long long)image->columns,
+                         (long long)image->rows,
+                         (unsigned long long)(bytes * (uint64_t)image->frames));
+    size_t size = (size_t)image->allocated / 8;
+    /* bytes that were written as words are swapped like these */
+    if (size == 1 && pixels->words && reader->big_endian)
+        snow_swap_bytes(out, bytes / 2, 2);
+    else if (reader->big_endian != snow_machine_big_endian())
+        snow_swap_bytes(out, bytes / size, size);
+    return SNOW_OK;
+}
+
+/* --- packed -----------------------------------------------------------------
+ */
+
+/* Fragments first .. first + count - 1 of the pixels, the table being 0. */
+typedef struct span {
+    int64_t first, count;
+} span;
+
+static int64_t count_fragments(const dicom_reader *reader,
+                               const dicom_element *pixels) {
+    size_t at = (size_t)(pixels - reader->elements) + 1;
+    int64_t count = (int64_t)(pixels->next - at);
+    return count > 0 ? count - 1 : 0;
+}
+
+static const dicom_element *fragment(const dicom_element *pixels,
+                                     int64_t index) {
+    return pixels + 1 + index;
+}
+
+/* Where a frame begins: in the table, counted from behind it. */
+static bool table_entry(dicom_reader *reader, const dicom_element *pixels,
+                        int64_t number, uint64_t *out) {
+    unsigned char bytes[4];
+    const dicom_element *table = fragment(pixels, 0);
+    if ((uint64_t)number * 4 + 4 > table->length ||
+        snow_random_read(reader->store, table->at + (uint64_t)number * 4, bytes,
+                         4) < 4)
+        return false;
+    uint64_t offset = 0;
+    for (int i = 0; i < 4; i++)
+        offset |= (uint64_t)bytes[reader->big_endian ? 3 - i : i] << 8 * i;
+    /* from the item behind the table, whose head has 8 bytes */
+    *out = table->at + table->length + offset + 8;
+    return true;
+}
+
+static bool begins_stream(dicom_reader *reader, const dicom_element *at) {
+    unsigned char bytes[12];
+    if (snow_random_read(reader->store, at->at, bytes, 12) < 12)
+        return false;
+    return (bytes[0] == 0xff && (bytes[1] == 0xd8 || bytes[1] == 0x4f)) ||
+           !memcmp(bytes + 4, "jP  \r\n\x87\n", 8);
+}
+
+/* Whether fragment `index` is the first of frame `number`, or of the one that
+ * has been counted to. */
+static bool begins_frame(dicom_reader *reader, const dicom_element *pixels,
+                         int64_t index, int64_t number, bool table) {
+    uint64_t at;
+    if (table)
+        return table_entry(reader, pixels, number, &at) &&
+               fragment(pixels, index)->at == at;
+    return begins_stream(reader, fragment(pixels, index));
+}
+
+static bool find_span(dicom_reader *reader, const dicom_image *image,
+                      const dicom_element *pixels, int64_t number, span *out) {
+    int64_t count = count_fragments(reader, pixels), frame = -1;
+    uint64_t ignored;
+    if (image->frames == 1 || count == image->frames) {
+        *out = image->frames == 1 ? (span){1, count} : (span){number + 1, 1};
+        return count > 0;
+    }
+    if (count < image->frames)
+        return false;
+    bool table = table_entry(reader, pixels, image->frames - 1, &ignored);
+    *out = (span){0, 0};
+    for (int64_t i = 1; i <= count; i++) {
+        if (begins_frame(reader, pixels, i, frame + 1, table))
+            frame++;
+        if (frame == number && !out->count)
+            out->first = i;
+        out->count += frame == number;
+    }
+    return out->count > 0;
+}
+
+/* The bytes of a frame, one fragment behind the other. */
+static snow_status gather(dicom_reader *reader, const dicom_element *pixels,
+                          span where, unsigned char **out, size_t *size) {
+    uint64_t all = 0;
+    for (int64_t i = 0; i < where.count; i++)
+        all += fragment(pixels, where.first + i)->length;
+    unsigned char *bytes = snow_allocate_array(reader->context, all, 1);
+    if (!bytes)
+        return SNOW_NO_MEMORY;
+    *size = 0;
+    for (int64_t i = 0; i < where.count; i++) {
+        const dicom_element *part = fragment(pixels, where.first + i);
+        *size += snow_random_read(reader->store, part->at, bytes + *size,
+                                  part->length);
+    }
+    *out = bytes;
+    return SNOW_OK;
+}
+
+static snow_status fail_unpack(dicom_reader *reader) {
+    return snow_fail(reader->context, SNOW_BAD_INPUT,
+                     "its pixels cannot be unpacked (transfer syntax %s); it "
+                     "is cut or damaged",
+                     reader->syntax);
+}
+
+#if SNOW_HAVE_GDCM
+
+/* What GDCM has codecs for: JPEG, JPEG-LS and JPEG 2000 of one component or
+ * colour. */
+static bool is_known(const char *syntax) {
+    static const char *const known[] = {".50", ".51", ".57", ".70", ".80",
+                                        ".81", ".90", ".91", NULL};
+    static const char common[] = "1.2.840.10008.1.2.4";
+    if (strncmp(syntax, common, sizeof common - 1) != 0)
+        return false;
+    for (const char *const *end = known; *end; end++)
+        if (!strcmp(syntax + sizeof common - 1, *end))
+            return true;
+    return false;
+}
+
+static snow_status unpack(dicom_reader *reader, const dicom_image *image,
+                          const unsigned char *bytes, size_t size, void *out,
+                          dicom_words *words) {
+    if (!is_known(reader->syntax))
+        return snow_fail(reader->context, SNOW_BAD_INPUT,
+                         "its pixels are packed in a way that is not read "
+                         "(transfer syntax %.64s); unpack it, with gdcmconv "
+                         "--raw say",
+                         reader->syntax);
+    SNOW_TRY(snow_dicom_check_packed(reader->context, reader->syntax, image,
+                                     bytes, size));
+    gdcm_frame frame = {.syntax = reader->syntax,
+                        .photometric = image->photometric,
+                        .columns = (unsigned)image->columns,
+                        .rows = (unsigned)image->rows,
+                        .samples = image->samples,
+                        .planes = words->planes,
+                        .allocated = image->allocated,
+                        .stored = image->stored,
+                        .high = image->high,
+                        .is_signed = image->is_signed};
+    if (!snow_gdcm_unpack(&frame, bytes, size, out,
+                          (size_t)snow_dicom_frame_bytes(image)))
+        return fail_unpack(reader);
+    words->stored = frame.stored;
+    words->high = frame.high;
+    words->is_signed = frame.is_signed;
+    words->planes = frame.planes;
+    return SNOW_OK;
+}
+
+#else
+
+static snow_status unpack(dicom_reader *reader, const dicom_image *image,
+                          const unsigned char *bytes, size_t size, void *out,
+                          dicom_words *words) {
+    (void)image;
+    (void)bytes;
+    (void)size;
+    (void)out;
+    (void)words;
+    return snow_fail(reader->context, SNOW_BAD_INPUT,
+                     "this build cannot read DICOM images that are packed "
+                     "(transfer syntax %.64s): it has no GDCM; install "
+                     "libgdcm-dev and g++, and build again",
+                     reader->syntax);
+}
+
+#endif
+
+static snow_status read_packed(dicom_reader *reader, const dicom_image *image,
+                               const dicom_element *pixels, int64_t number,
+                               unsigned char *out, dicom_words *words) {
+    span where;
+    unsigned char *bytes;
+    size_t size;
+    if (!find_span(reader, image, pixels, number, &where))
+        return snow_fail(reader->context, SNOW_BAD_INPUT,
+                         "has %lld packed pieces of pixels, in which frame "
+                         "%lld of %lld is not found; it is damaged",
+                         (long long)count_fragments(reader, pixels),
+                         (long long)number, (long long)image->frames);
+    SNOW_TRY(gather(reader, pixels, where, &bytes, &size));
+    snow_status status = SNOW_OK;
+    if (strcmp(reader->syntax, RUN_LENGTHS) != 0)
+        status = unpack(reader, image, bytes, size, out, words);
+    else if (snow_dicom_unpack_runs(image, bytes, size, out))
+        words->planes = true;
+    else
+        status = fail_unpack(reader);
+    snow_release(reader->context, bytes);
+    return status;
+}
+
+snow_status snow_dicom_read_words(dicom_reader *reader,
+                                  const dicom_image *image, int64_t number,
+                                  void *out, dicom_words *words) {
+    const dicom_element *pixels =
+        snow_dicom_find(reader, 0, reader->count, DICOM_TAG_PIXELS);
+    *words = (dicom_words){.size = image->allocated / 8,
+                           .stored = image->stored,
+                           .high = image->high,
+                           .is_signed = image->is_signed,
+                           .planes = image->planes};
+    if (!pixels)
+        return snow_fail(reader->context, SNOW_BAD_INPUT,
+                         "has no pixels; it is cut");
+    if (!reader->packed)
+        return read_plain(reader, image, pixels, number, out);
+    SNOW_TRY(read_packed(reader, image, pixels, number, out, words));
+    if (words->stored < 1 || words->stored > image->allocated ||
+        words->high < words->stored - 1 || words->high >= image->allocated)
+        return fail_unpack(reader);
+    return SNOW_OK;
+}
