@@ -31,6 +31,7 @@ struct snow_frame {
     snow_ranks *ranks;       /* of snow_ranks_render; NULL until needed */
     int64_t own_interesting; /* of the part that was encoded last */
     snow_ramp ramp;          /* of modes other than over */
+    snow_mode_colors mode_colors;
 };
 
 /* What one picture is made from; lives as long as the call that makes it. */

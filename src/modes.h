@@ -19,6 +19,7 @@
 #include "base/base.h"
 
 #include <snowglass/render.h>
+#include <stdbool.h>
 
 /* Kept for as long as volume and mode stay. */
 typedef struct snow_ramp {
@@ -29,6 +30,14 @@ typedef struct snow_ramp {
     double low, high;
     snow_transfer *transfer;
 } snow_ramp;
+
+/* Colours of values from one end of a range to the other. */
+#define SNOW_MODE_COLORS 256
+typedef struct snow_mode_colors {
+    double from, range;
+    float rgb[SNOW_MODE_COLORS + 1][3];
+    bool bent[SNOW_MODE_COLORS]; /* a control point is near: look there */
+} snow_mode_colors;
 
 void snow_ramp_fini(snow_ramp *ramp);
 
