@@ -6,6 +6,7 @@
 #include "composite/reduce.h"
 #include "frame.h"
 #include "image/image.h"
+#include "iso.h"
 #include "sheared_modes.h"
 #include "volume/volume.h"
 
@@ -43,36 +44,62 @@ static snow_status make_transfer(snow_context *context, snow_ramp *ramp) {
     /* A step belongs to its own value: what ends at the highest ends just
      * beyond it.  Infinities are outside. */
     double beyond = nextafter(high, INFINITY);
+    double from = ramp->steps ? fmin(fmax(ramp->level, low), beyond) : low;
     const snow_opacity_point finite[] = {
-        {low, 0}, {low, 1}, {beyond, 1}, {beyond, 0}};
+        {from, 0}, {from, 1}, {beyond, 1}, {beyond, 0}};
     const snow_opacity_point above[] = {{low, falls}, {high, 1 - falls}};
     return snow_transfer_new(context, colors, 2, ramp->sparse ? above : finite,
                              ramp->sparse ? 2 : 4, &ramp->transfer);
 }
 
-/* Makes the ramp of a picture, unless it is there already; leaves to footprints
- * what the sheared method cannot do. */
-static snow_status prepare_ramp(snow_job *job, snow_ramp *ramp) {
-    snow_ramp made = {.serial = job->volume->serial,
-                      .falls = job->settings.mode == SNOW_MODE_MINIP};
-    bool measured = made.serial && ramp->serial == made.serial;
-    if (measured) {
-        made.whole = ramp->whole;
-        made.low = ramp->low;
-        made.high = ramp->high;
-    } else {
-        SNOW_TRY(measure(job->context, job->volume, &made));
-    }
-    if (job->settings.method == SNOW_METHOD_SHEARED &&
-        !(made.whole && snow_sheared_modes_fits(&job->placement)))
-        job->settings.method = SNOW_METHOD_FOOTPRINT;
-    made.sparse = job->settings.method == SNOW_METHOD_SHEARED;
-    if (measured && ramp->falls == made.falls && ramp->sparse == made.sparse)
+snow_status snow_ramp_measure(snow_job *job, snow_ramp *ramp) {
+    snow_ramp made = {.serial = job->volume->serial};
+    if (made.serial && ramp->serial == made.serial)
         return SNOW_OK;
-    SNOW_TRY(make_transfer(job->context, &made));
+    SNOW_TRY(measure(job->context, job->volume, &made));
     snow_ramp_fini(ramp);
     *ramp = made;
     return SNOW_OK;
+}
+
+/* Makes the transfer function of a ramp that is measured, unless it is there
+ * already. */
+static snow_status prepare_ramp(const snow_job *job, const snow_ramp *wanted,
+                                snow_ramp *ramp) {
+    snow_ramp made = *ramp;
+    if (ramp->transfer && ramp->serial && ramp->falls == wanted->falls &&
+        ramp->sparse == wanted->sparse && ramp->steps == wanted->steps &&
+        ramp->level == wanted->level)
+        return SNOW_OK;
+    made.falls = wanted->falls;
+    made.sparse = wanted->sparse;
+    made.steps = wanted->steps;
+    made.level = wanted->level;
+    SNOW_TRY(make_transfer(job->context, &made));
+    snow_transfer_free(ramp->transfer);
+    *ramp = made;
+    return SNOW_OK;
+}
+
+/* A little below, as the pictures of iso (iso.c). */
+snow_status snow_ramp_above(snow_job *job, snow_ramp *ramp) {
+    double margin = 2e-6 * (ramp->high - ramp->low);
+    const snow_ramp wanted = {.steps = true,
+                              .level = job->settings.iso - margin};
+    return prepare_ramp(job, &wanted, ramp);
+}
+
+/* The ramp of a picture of pairs; what the sheared method cannot do is left to
+ * footprints. */
+static snow_status choose_ramp(snow_job *job, snow_ramp *ramp) {
+    SNOW_TRY(snow_ramp_measure(job, ramp));
+    if (job->settings.method == SNOW_METHOD_SHEARED &&
+        !(ramp->whole && snow_sheared_modes_fits(&job->placement)))
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    const snow_ramp wanted = {.falls = job->settings.mode == SNOW_MODE_MINIP,
+                              .sparse =
+                                  job->settings.method == SNOW_METHOD_SHEARED};
+    return prepare_ramp(job, &wanted, ramp);
 }
 
 /* --- from pairs to a picture -----------------------------------------------
@@ -276,7 +303,9 @@ snow_status snow_modes_render(snow_frame *frame, snow_job *job,
     bool values = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
     snow_image *image = NULL;
     SNOW_TRY(check(job));
-    SNOW_TRY(prepare_ramp(job, &frame->ramp));
+    if (mode == SNOW_MODE_ISO)
+        return snow_iso_render(frame, job, out);
+    SNOW_TRY(choose_ramp(job, &frame->ramp));
     SNOW_TRY(render_pairs(frame, job));
     SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
                             values ? 1 : job->channels, &image));

@@ -95,6 +95,11 @@ void reference_shade(const reference_scene *scene,
 
 /* The samples that are splatted: (shaded c a', a') of every voxel, four
  * doubles each, zeros for uninteresting ones.  Free with free(). */
+/* Central differences of native values in index space; one-sided beside what is
+ * not finite or outside. */
+void reference_gradient(const reference_scene *scene, int64_t i, int64_t j,
+                        int64_t k, double gradient[3]);
+
 double reference_opacity_length(const reference_scene *scene);
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis);
@@ -108,6 +113,10 @@ double *reference_render_back_to_front(const reference_scene *scene);
  * minip and iso; of mean and sum width * height in data units, NaN where the
  * ray misses. */
 double *reference_mode(const reference_scene *scene);
+
+/* The depth of a picture in modes over and iso: width * height doubles, NaN
+ * where there is none. */
+double *reference_depth(const reference_scene *scene);
 
 /* The ray caster: trilinear values every quarter of the smallest spacing along
  * each ray within the voxel boxes, classified after interpolation, shaded as

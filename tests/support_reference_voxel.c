@@ -81,7 +81,7 @@ static double difference(double before, double here, double after) {
     return isfinite(before) ? here - before : 0;
 }
 
-static void gradient_at(const reference_scene *scene, int64_t i, int64_t j,
+void reference_gradient(const reference_scene *scene, int64_t i, int64_t j,
                         int64_t k, double gradient[3]) {
     double here = reference_native(scene, i, j, k);
     gradient[0] = difference(reference_native(scene, i - 1, j, k), here,
@@ -179,7 +179,7 @@ double *reference_samples(const reference_scene *scene,
                 if (!interesting(rgba[3], scene->settings.threshold))
                     continue;
                 if (scene->settings.shade == SNOW_SHADE_PHONG) {
-                    gradient_at(scene, i, j, k, gradient);
+                    reference_gradient(scene, i, j, k, gradient);
                     reference_shade(scene, camera, gradient, rgba);
                 }
                 double index[3] = {(double)i, (double)j, (double)k};
