@@ -42,7 +42,13 @@ void snow_frame_free(snow_frame *frame) {
         snow_release(frame->context, frame->spare[n]);
     snow_release(frame->context, frame->layer);
     snow_ramp_fini(&frame->ramp);
+    snow_iso_free(frame->iso);
+    snow_image_free(frame->depth);
     snow_release(frame->context, frame);
+}
+
+const snow_image *snow_frame_depth(const snow_frame *frame) {
+    return frame->depth;
 }
 
 const snow_stats *snow_frame_stats(const snow_frame *frame) {
@@ -341,6 +347,21 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     return SNOW_OK;
 }
 
+/* Room for the depths of a picture, if they are asked for. */
+static snow_status make_depth(snow_frame *frame, const snow_job *job) {
+    snow_mode mode = job->settings.mode;
+    snow_image_free(frame->depth);
+    frame->depth = NULL;
+    if (!job->settings.depth)
+        return SNOW_OK;
+    if (mode != SNOW_MODE_OVER && mode != SNOW_MODE_ISO)
+        return snow_fail(frame->context, SNOW_BAD_USAGE,
+                         "mode %s has no depth; take over or iso",
+                         snow_mode_name(mode));
+    return snow_image_new(frame->context, job->view->width, job->view->height,
+                          1, &frame->depth);
+}
+
 /* Lines 03 to 13 and the picture of them. */
 static snow_status render_over(snow_frame *frame, snow_job *job,
                                snow_image **out) {
@@ -367,6 +388,7 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
     /* 01 - 02 */ SNOW_TRY(snow_job_begin(frame, volume, transfer, view,
                                           settings, parts, part, &job));
     bool over = job.settings.mode == SNOW_MODE_OVER;
+    SNOW_TRY(make_depth(frame, &job));
     SNOW_TRY(over ? render_over(frame, &job, &image)
                   : snow_modes_render(frame, &job, &image));
     frame->stats.seconds_frame = snow_seconds() - start;

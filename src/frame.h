@@ -6,6 +6,7 @@
 #include "base/base.h"
 #include "composite/over.h"
 #include "decompose/slab.h"
+#include "iso.h"
 #include "modes.h"
 #include "sheared.h"
 #include "splat/splat.h"
@@ -31,6 +32,9 @@ struct snow_frame {
     snow_ranks *ranks;       /* of snow_ranks_render; NULL until needed */
     int64_t own_interesting; /* of the part that was encoded last */
     snow_ramp ramp;          /* of modes other than over */
+    snow_mode_colors mode_colors;
+    snow_iso *iso;     /* of mode iso; NULL until needed */
+    snow_image *depth; /* of the last picture; NULL: not asked for */
 };
 
 /* What one picture is made from; lives as long as the call that makes it. */

@@ -6,9 +6,12 @@
 #include "composite/reduce.h"
 #include "frame.h"
 #include "image/image.h"
+#include "iso.h"
+#include "sheared_modes.h"
 #include "volume/volume.h"
 
 #include <math.h>
+#include <string.h>
 
 /* --- the ramp --------------------------------------------------------------
  */
@@ -41,33 +44,62 @@ static snow_status make_transfer(snow_context *context, snow_ramp *ramp) {
     /* A step belongs to its own value: what ends at the highest ends just
      * beyond it.  Infinities are outside. */
     double beyond = nextafter(high, INFINITY);
+    double from = ramp->steps ? fmin(fmax(ramp->level, low), beyond) : low;
     const snow_opacity_point finite[] = {
-        {low, 0}, {low, 1}, {beyond, 1}, {beyond, 0}};
+        {from, 0}, {from, 1}, {beyond, 1}, {beyond, 0}};
     const snow_opacity_point above[] = {{low, falls}, {high, 1 - falls}};
     return snow_transfer_new(context, colors, 2, ramp->sparse ? above : finite,
                              ramp->sparse ? 2 : 4, &ramp->transfer);
 }
 
-/* Makes the ramp of a picture, unless it is there already. */
-static snow_status prepare_ramp(const snow_job *job, snow_ramp *ramp) {
-    bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
-    snow_ramp made = {.serial = job->volume->serial,
-                      .falls = job->settings.mode == SNOW_MODE_MINIP,
-                      .sparse = sheared};
-    bool measured = made.serial && ramp->serial == made.serial;
-    if (measured && ramp->falls == made.falls && ramp->sparse == made.sparse)
+snow_status snow_ramp_measure(snow_job *job, snow_ramp *ramp) {
+    snow_ramp made = {.serial = job->volume->serial};
+    if (made.serial && ramp->serial == made.serial)
         return SNOW_OK;
-    if (measured) {
-        made.whole = ramp->whole;
-        made.low = ramp->low;
-        made.high = ramp->high;
-    } else {
-        SNOW_TRY(measure(job->context, job->volume, &made));
-    }
-    SNOW_TRY(make_transfer(job->context, &made));
+    SNOW_TRY(measure(job->context, job->volume, &made));
     snow_ramp_fini(ramp);
     *ramp = made;
     return SNOW_OK;
+}
+
+/* Makes the transfer function of a ramp that is measured, unless it is there
+ * already. */
+static snow_status prepare_ramp(const snow_job *job, const snow_ramp *wanted,
+                                snow_ramp *ramp) {
+    snow_ramp made = *ramp;
+    if (ramp->transfer && ramp->serial && ramp->falls == wanted->falls &&
+        ramp->sparse == wanted->sparse && ramp->steps == wanted->steps &&
+        ramp->level == wanted->level)
+        return SNOW_OK;
+    made.falls = wanted->falls;
+    made.sparse = wanted->sparse;
+    made.steps = wanted->steps;
+    made.level = wanted->level;
+    SNOW_TRY(make_transfer(job->context, &made));
+    snow_transfer_free(ramp->transfer);
+    *ramp = made;
+    return SNOW_OK;
+}
+
+/* A little below, as the pictures of iso (iso.c). */
+snow_status snow_ramp_above(snow_job *job, snow_ramp *ramp) {
+    double margin = 2e-6 * (ramp->high - ramp->low);
+    const snow_ramp wanted = {.steps = true,
+                              .level = job->settings.iso - margin};
+    return prepare_ramp(job, &wanted, ramp);
+}
+
+/* The ramp of a picture of pairs; what the sheared method cannot do is left to
+ * footprints. */
+static snow_status choose_ramp(snow_job *job, snow_ramp *ramp) {
+    SNOW_TRY(snow_ramp_measure(job, ramp));
+    if (job->settings.method == SNOW_METHOD_SHEARED &&
+        !(ramp->whole && snow_sheared_modes_fits(&job->placement)))
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    const snow_ramp wanted = {.falls = job->settings.mode == SNOW_MODE_MINIP,
+                              .sparse =
+                                  job->settings.method == SNOW_METHOD_SHEARED};
+    return prepare_ramp(job, &wanted, ramp);
 }
 
 /* --- from pairs to a picture -----------------------------------------------
@@ -76,30 +108,71 @@ static snow_status prepare_ramp(const snow_job *job, snow_ramp *ramp) {
 typedef struct finish_job {
     const snow_job *job;
     const snow_ramp *ramp;
-    const float *pairs;
+    const snow_mode_colors *colors;
+    const snow_sheared_image *sheared; /* that pairs are warped from; or NULL */
+    float *pairs; /* of all lines; or one for each worker */
     snow_image *image;
     double share; /* of a sum: of the weights in its unit */
     double least; /* weights of a ray that does not miss */
 } finish_job;
 
+/* Colours of numbers 0 to 1 at equal steps.  Between two of them colours are
+ * linear but where a control point lies. */
+static void fill_colors(const snow_job *job, const snow_ramp *ramp,
+                        snow_mode_colors *colors) {
+    const snow_transfer *transfer = job->transfer;
+    double range = ramp->high - ramp->low;
+    colors->from = ramp->falls ? ramp->high : ramp->low;
+    colors->range = ramp->falls ? -range : range;
+    memset(colors->bent, 0, sizeof colors->bent);
+    for (int n = 0; n <= SNOW_MODE_COLORS; n++) {
+        double part = (double)n / SNOW_MODE_COLORS, rgb[3];
+        snow_transfer_color(transfer, colors->from + part * colors->range, rgb);
+        for (int c = 0; c < 3; c++)
+            colors->rgb[n][c] = (float)rgb[c];
+    }
+    for (size_t n = 0; n < transfer->color_count; n++) {
+        double part =
+            (transfer->colors[n].value - colors->from) / colors->range;
+        double cell = floor(part * SNOW_MODE_COLORS);
+        for (double near = cell - 1; near <= cell + 1; near++)
+            if (near >= 0 && near < SNOW_MODE_COLORS)
+                colors->bent[(int)near] = true;
+    }
+}
+
+/* The colour of a number 0 to 1. */
+static inline void find_color(const snow_transfer *transfer,
+                              const snow_mode_colors *colors, float number,
+                              float rgb[3]) {
+    float place = number * SNOW_MODE_COLORS;
+    int cell = (int)place;
+    if (cell >= 0 && cell < SNOW_MODE_COLORS && !colors->bent[cell]) {
+        const float *a = colors->rgb[cell], *b = colors->rgb[cell + 1];
+        float part = place - (float)cell;
+        for (int c = 0; c < 3; c++)
+            rgb[c] = a[c] + part * (b[c] - a[c]);
+        return;
+    }
+    double exact[3];
+    snow_transfer_color(transfer, colors->from + (double)number * colors->range,
+                        exact);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (float)exact[c];
+}
+
 /* (value of 0 to 1, hit) to a colour, opaque; where nothing was hit the picture
  * stays transparent. */
 static void color_line(const finish_job *f, const float *pairs, int count,
                        float *pixels) {
-    const snow_transfer *transfer = f->job->transfer;
     size_t channels = (size_t)f->image->channels;
-    double from = f->ramp->falls ? f->ramp->high : f->ramp->low;
-    double range = f->ramp->high - f->ramp->low;
-    snow_transfer_hint hint = {0, 0};
-    double step = f->ramp->falls ? -range : range;
     for (int x = 0; x < count; x++, pairs += 2, pixels += channels) {
-        double rgba[4];
+        float rgb[3];
         if (!(pairs[1] >= SNOW_WEIGHT_ENOUGH))
             continue;
-        snow_transfer_near(
-            transfer, from + step * (double)(pairs[0] / pairs[1]), &hint, rgba);
+        find_color(f->job->transfer, f->colors, pairs[0] / pairs[1], rgb);
         for (size_t c = 0; c + 1 < channels; c++)
-            pixels[c] = (float)rgba[c];
+            pixels[c] = rgb[c];
         pixels[channels - 1] = 1;
     }
 }
@@ -126,48 +199,95 @@ static void finish_line(void *of, int64_t y, int worker) {
     int width = f->image->width;
     size_t at = (size_t)y * (size_t)width;
     float *pixels = f->image->pixels + at * (size_t)f->image->channels;
-    (void)worker;
+    float *pairs = f->pairs + 2 * at;
+    if (f->sheared) {
+        pairs = f->pairs + 2 * (size_t)worker * (size_t)width;
+        snow_sheared_warp(f->sheared, (int)y, 0, width, pairs);
+    }
     if (f->image->channels == 1)
-        value_line(f, f->pairs + 2 * at, width, pixels);
+        value_line(f, pairs, width, pixels);
     else
-        color_line(f, f->pairs + 2 * at, width, pixels);
+        color_line(f, pairs, width, pixels);
 }
 
 /* A ray misses where the weights of all its sheets add up to less than half of
  * one.  In perspective a sum's pairs hold lengths already, and half a sheet is
  * that of the ray to the target. */
-static void finish(const snow_job *job, const snow_ramp *ramp,
-                   const float *pairs, snow_image *image) {
+static void finish(snow_frame *frame, const snow_job *job,
+                   const snow_sheared_image *drawn, snow_image *image) {
     double path = job->placement.path / job->settings.opacity_length;
+    bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
     bool weighed =
         job->settings.mode == SNOW_MODE_SUM && job->placement.perspective;
+    double slices = sheared ? (double)job->placement.slices : 1;
+    double mark = snow_seconds();
+    if (image->channels > 1)
+        fill_colors(job, &frame->ramp, &frame->mode_colors);
     finish_job f = {.job = job,
-                    .ramp = ramp,
-                    .pairs = pairs,
+                    .ramp = &frame->ramp,
+                    .colors = &frame->mode_colors,
+                    .sheared = sheared ? drawn : NULL,
+                    .pairs = frame->layer,
                     .image = image,
-                    .share = weighed ? 1 : path,
-                    .least = SNOW_WEIGHT_ENOUGH * (weighed ? path : 1)};
+                    .share = weighed ? 1 : path * slices,
+                    .least =
+                        SNOW_WEIGHT_ENOUGH * (weighed ? path : 1 / slices)};
     snow_parallel(job->context, job->settings.threads, image->height,
                   finish_line, &f);
+    if (sheared)
+        job->stats->seconds_warp += snow_seconds() - mark;
 }
 
 /* --- a picture -------------------------------------------------------------
  */
 
-/* The same job with the ramp for a look. */
+static snow_status render_exact(snow_frame *frame, snow_job *pairs) {
+    size_t bytes = 2 * (size_t)pairs->view->width *
+                   (size_t)pairs->view->height * sizeof *frame->layer;
+    SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
+                          0, bytes));
+    memset(frame->layer, 0, bytes);
+    pairs->pixels = frame->layer;
+    return snow_job_render_exact(frame, pairs);
+}
+
+static snow_status render_sheared(snow_frame *frame, const snow_job *pairs,
+                                  snow_sheared_image *drawn) {
+    const snow_ramp *ramp = &frame->ramp;
+    snow_mode mode = pairs->settings.mode;
+    double range = ramp->high > ramp->low ? ramp->high - ramp->low : 1;
+    snow_value_scale scale = {ramp->falls ? ramp->high : ramp->low,
+                              ramp->falls ? -range : range};
+    snow_placement placement;
+    snow_sheared_order order;
+    SNOW_TRY(snow_reserve(
+        frame->context, &frame->layer, &frame->layer_capacity, 0,
+        2 * (size_t)pairs->view->width * (size_t)pairs->settings.threads *
+            sizeof *frame->layer));
+    SNOW_TRY(
+        snow_job_order(pairs, pairs->placement.slice_axis, &placement, &order));
+    if (!frame->sheared[0])
+        SNOW_TRY(snow_sheared_new(frame->context, &frame->sheared[0]));
+    return snow_sheared_reduce(frame->sheared[0], &order,
+                               mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP,
+                               &scale, pairs->stats, drawn);
+}
+
+/* The same job with the ramp for a look.  There is nothing between slices. */
 static snow_status render_pairs(snow_frame *frame, const snow_job *job,
-                                snow_image **out) {
+                                snow_sheared_image *drawn) {
     snow_job pairs = *job;
-    SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
-                            2, out));
     pairs.transfer = frame->ramp.transfer;
     pairs.channels = 2;
     pairs.settings.shade = SNOW_SHADE_NONE;
     pairs.settings.threshold = 0;
     pairs.settings.deterministic = 0; /* of one part, by the scalar loops */
+    if (pairs.settings.quality == SNOW_QUALITY_HIGH)
+        pairs.settings.quality = SNOW_QUALITY_NORMAL;
     pairs.lay = snow_reduce_of(job->settings.mode);
-    pairs.pixels = snow_image_pixels(*out);
-    SNOW_TRY(snow_job_render_exact(frame, &pairs));
+    SNOW_TRY(job->settings.method == SNOW_METHOD_SHEARED
+                 ? render_sheared(frame, &pairs, drawn)
+                 : render_exact(frame, &pairs));
     return snow_job_finish(frame, &pairs);
 }
 
@@ -184,22 +304,18 @@ snow_status snow_modes_render(snow_frame *frame, snow_job *job,
                               snow_image **out) {
     snow_mode mode = job->settings.mode;
     bool values = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
-    snow_image *pairs = NULL, *image = NULL;
+    snow_sheared_image drawn;
+    snow_image *image = NULL;
     SNOW_TRY(check(job));
-    if (job->settings.method == SNOW_METHOD_SHEARED)
-        job->settings.method = SNOW_METHOD_FOOTPRINT;
-    SNOW_TRY(prepare_ramp(job, &frame->ramp));
-    snow_status status = render_pairs(frame, job, &pairs);
-    if (status == SNOW_OK)
-        status =
-            snow_image_new(job->context, job->view->width, job->view->height,
-                           values ? 1 : job->channels, &image);
-    if (status == SNOW_OK) {
-        finish(job, &frame->ramp, snow_image_pixels(pairs), image);
-        *out = image;
-    }
-    snow_image_free(pairs);
-    return status;
+    if (mode == SNOW_MODE_ISO)
+        return snow_iso_render(frame, job, out);
+    SNOW_TRY(choose_ramp(job, &frame->ramp));
+    SNOW_TRY(render_pairs(frame, job, &drawn));
+    SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
+                            values ? 1 : job->channels, &image));
+    finish(frame, job, &drawn, image);
+    *out = image;
+    return SNOW_OK;
 }
 
 /* --- values as colours -----------------------------------------------------

@@ -19,20 +19,37 @@
 #include "base/base.h"
 
 #include <snowglass/render.h>
+#include <stdbool.h>
 
 /* Kept for as long as volume and mode stay. */
 typedef struct snow_ramp {
     uint64_t serial; /* of the volume; 0: of none */
     bool falls;      /* 1 is the smallest value: of minip */
     bool sparse;     /* voxels of 0 are left out */
-    bool whole;      /* every voxel is finite */
+    bool steps;      /* and those below `level`: of iso */
+    double level;
+    bool whole; /* every voxel is finite */
     double low, high;
     snow_transfer *transfer;
 } snow_ramp;
 
+/* Colours of values from one end of a range to the other. */
+#define SNOW_MODE_COLORS 256
+typedef struct snow_mode_colors {
+    double from, range;
+    float rgb[SNOW_MODE_COLORS + 1][3];
+    bool bent[SNOW_MODE_COLORS]; /* a control point is near: look there */
+} snow_mode_colors;
+
 void snow_ramp_fini(snow_ramp *ramp);
 
 struct snow_job;
+
+/* Finds the range of a job's volume, unless the ramp has it already. */
+snow_status snow_ramp_measure(struct snow_job *job, snow_ramp *ramp);
+
+/* The same for mode iso: the voxels that are not below its value. */
+snow_status snow_ramp_above(struct snow_job *job, snow_ramp *ramp);
 
 /* A picture in a mode other than over; of lines 03 to 20 what differs.  As
  * snow_frame_render_slab, for a job that is begun. */

@@ -74,6 +74,21 @@ static void gather_pixel(const gather *g, const reference_ray *ray,
     }
 }
 
+double reference_passes(const gather *g, const reference_ray *ray) {
+    int64_t count = g->scene->info.dims[g->axis];
+    double step = ray->step[g->axis] > 0 ? 1 : -1, pixel[4] = {0};
+    for (int64_t n = 0; n < count; n++) {
+        double sheet[4], before = pixel[3];
+        int64_t slice = step > 0 ? n : count - 1 - n;
+        gather_sheet(g, ray, slice, sheet);
+        lay_over(pixel, sheet, pixel);
+        if (pixel[3] >= 0.5)
+            return (double)slice +
+                   step * ((0.5 - before) / (pixel[3] - before) - 0.5);
+    }
+    return (double)NAN;
+}
+
 /* How many voxels a pixel is wide along each axis of a slice: by how much
  * (u, v) moves from a bit to the left of the pixel position at which the
  * slice's middle is seen to a bit to the right, and from above to below. */

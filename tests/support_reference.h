@@ -118,6 +118,10 @@ double *reference_render_back_to_front(const reference_scene *scene);
  * ray misses. */
 double *reference_mode(const reference_scene *scene);
 
+/* The depth of a picture in modes over and iso: width * height doubles, NaN
+ * where there is none. */
+double *reference_depth(const reference_scene *scene);
+
 /* The ray caster: trilinear values every quarter of the smallest spacing along
  * each ray within the voxel boxes, classified after interpolation, shaded as
  * the model says, composited front to back with the opacity of that step. */

@@ -28,4 +28,10 @@ bool reference_meet_slice(const reference_gather *gather,
                           const reference_ray *ray, int64_t slice, double *u,
                           double *v);
 
+/* The slice position at which opacity passes 1/2 along a ray, NaN where it does
+ * not: what a sheet adds grows evenly from half a slice before it to half a
+ * slice behind. */
+double reference_passes(const reference_gather *gather,
+                        const reference_ray *ray);
+
 #endif

@@ -1,5 +1,6 @@
 /* tests/test_modes.c - pictures in modes other than over equal the reference's.
  */
+#include "image/image.h"
 #include "support_model.h"
 
 #include <math.h>
@@ -147,12 +148,103 @@ static void every_type_and_matrix_in_perspective(void **state) {
     exact_pictures(1);
 }
 
+/* --- iso and depth -----------------------------------------------------------
+ */
+
+static void compare_depth(const model_stage *stage,
+                          const reference_scene *scene, tally *t) {
+    const snow_image *depth = snow_frame_depth(stage->frame);
+    assert_non_null(depth);
+    assert_int_equal(snow_image_channels(depth), 1);
+    const float *pixels = depth->pixels;
+    double *wanted = reference_depth(scene);
+    for (int n = 0; n < scene->view.width * scene->view.height; n++) {
+        bool here = !isnan(pixels[n]), there = !isnan(wanted[n]);
+        t->pixels++;
+        t->shown += there;
+        t->missing += here != there;
+        if (!here || !there)
+            continue;
+        double most = fabs((double)pixels[n] - wanted[n]);
+        t->largest = fmax(t->largest, most);
+        t->total += most;
+    }
+    free(wanted);
+}
+
+/* Where a sheet is just at the level, tables of weights decide. */
+static void iso_pictures(bool seen) {
+    model_stage stage = model_open();
+    uint64_t random = 21;
+    tally t = {0}, depths = {0};
+    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 4; n++) {
+        reference_scene scene = mode_scene(&random, n, SNOW_MODE_ISO);
+        scene.settings.iso = 45 + 30 * support_uniform(&random);
+        scene.settings.depth = 1;
+        scene.settings.shade =
+            draw(&random, 4) ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+        if (n % 5 == 0)
+            scene.settings.method = SNOW_METHOD_ORIGINAL;
+        if (seen)
+            scene.view.fov = fovs[draw(&random, COUNT(fovs))];
+        add_picture(&stage, &scene, &t);
+        compare_depth(&stage, &scene, &depths);
+        model_free(&scene);
+    }
+    report("iso", &t);
+    report("depth of iso", &depths);
+    assert_true(t.shown > t.pixels / 10);
+    assert_true(t.total / (double)t.shown < 1e-4);
+    assert_true(t.missing * 1000 <= t.pixels);
+    assert_true(depths.total / (double)depths.shown < 1e-3);
+    model_close(&stage);
+}
+
+static void the_first_sheet_not_below_the_value(void **state) {
+    (void)state;
+    iso_pictures(false);
+}
+
+static void and_in_perspective(void **state) {
+    (void)state;
+    iso_pictures(true);
+}
+
+/* What the sheared method makes of smooth data: the largest difference is where
+ * a slice ends in the picture, so that quantiles and the mean are told. */
+static void sheared_pictures(snow_quality quality) {
+    model_stage stage = model_open();
+    uint64_t random = 12;
+    for (size_t m = 0; m < COUNT(modes); m++) {
+        tally t = {0};
+        for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3; n++) {
+            reference_scene scene = mode_scene(&random, n, modes[m]);
+            scene.settings.method = SNOW_METHOD_SHEARED;
+            scene.settings.quality = quality;
+            scene.settings.kernel = SNOW_KERNEL_BSPLINE;
+            scene.settings.footprint = 4;
+            add_picture(&stage, &scene, &t);
+            model_free(&scene);
+        }
+        report(snow_mode_name(modes[m]), &t);
+    }
+    model_close(&stage);
+}
+
+static void sheared_pictures_are_near(void **state) {
+    (void)state;
+    sheared_pictures(SNOW_QUALITY_NORMAL);
+}
+
 #define UNIT(name) cmocka_unit_test(name)
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         UNIT(every_type_and_matrix_from_every_side),
         UNIT(every_type_and_matrix_in_perspective),
+        UNIT(the_first_sheet_not_below_the_value),
+        UNIT(and_in_perspective),
+        UNIT(sheared_pictures_are_near),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -109,6 +109,8 @@ typedef struct snow_settings {
                                scalar kernels (0) */
     snow_mode mode;         /* (over) */
     double iso;             /* data value of mode iso, finite (0) */
+    int depth;              /* not 0: with snow_frame_depth, in modes over and
+                               iso (0) */
 } snow_settings;
 
 /* The defaults, as far as a record of `size` bytes reaches. */
@@ -166,6 +168,13 @@ SNOW_API void snow_frame_free(snow_frame *frame);
 SNOW_API snow_status snow_frame_render(
     snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
+
+/* How far away the last picture is: values of one channel, NaN where there is
+ * nothing; NULL unless settings.depth asked for it.  It is the world distance
+ * from the target's plane along the camera's line of sight, larger farther
+ * away, to where opacity passes 1/2, or to the surface of mode iso.  Owned by
+ * the frame, until its next picture. */
+SNOW_API const snow_image *snow_frame_depth(const snow_frame *frame);
 
 /* The smallest and the largest value of a picture of modes mean and sum; 0 and
  * 1 when it has none. */

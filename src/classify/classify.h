@@ -167,6 +167,13 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
 void snow_shade_strip(const snow_shader *shader, int channels,
                       snow_strip *strip);
 
+/* The same for `count` samples one after another whose gradients, in index
+ * space, are given; up to SNOW_SHADE_BLOCK, of which all must be numbers. */
+#define SNOW_SHADE_BLOCK 128
+void snow_shade_gradients(const snow_shader *shader,
+                          const double gradients[3][SNOW_SHADE_BLOCK],
+                          int count, int channels, float *samples);
+
 /* --- perspective: classify/paths.c -----------------------------------------
  */
 

@@ -72,7 +72,7 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
 
 /* Voxels that are shaded at once: their gradients lie in the first-level
  * cache. */
-#define SHADE_BLOCK 128
+#define SHADE_BLOCK SNOW_SHADE_BLOCK
 
 /* What no one sees becomes 0: the far side of a highlight has powers that are
  * subnormal as floats, with which splatting takes twice as long. */
@@ -139,4 +139,10 @@ void snow_shade_strip(const snow_shader *shader, int channels,
             n += count;
         }
     }
+}
+
+void snow_shade_gradients(const snow_shader *shader,
+                          const double gradients[3][SNOW_SHADE_BLOCK],
+                          int count, int channels, float *samples) {
+    block_of(shader->isa)(shader, gradients, count, channels, samples);
 }

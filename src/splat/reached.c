@@ -1,0 +1,107 @@
+/* splat/reached.c - see reached.h.  A voxel at column c is in the windows at
+ * places c + 1 to c + taps: its bit is smeared over them, by doubling. */
+#include "splat/reached.h"
+
+#include "base/parallel.h"
+
+#include <string.h>
+
+/* What slices are made of. */
+typedef struct reached_job {
+    const snow_bands *bands;
+    const snow_window_fns *windows;
+    snow_reached *reached;
+    char *scratch; /* of all workers */
+    size_t scratch_bytes;
+} reached_job;
+
+/* Adds the bits of a row, moved up by `shift`, to itself. */
+static void smear(uint64_t *row, size_t words, int shift) {
+    for (size_t n = words; n-- > 0;) {
+        uint64_t below = n > 0 ? row[n - 1] >> (64 - shift) : 0;
+        row[n] |= row[n] << shift | below;
+    }
+}
+
+/* A row of voxels as places along u. */
+static void spread_row(const reached_job *job, const snow_mask_rows *rows,
+                       int row, uint64_t *out) {
+    const snow_reached *r = job->reached;
+    const uint64_t *bits = rows->bits + row + SNOW_WINDOW_ROWS;
+    uint64_t below = 0;
+    for (size_t n = 0; n < r->words; n++) {
+        uint64_t word = n + 1 < rows->words ? bits[n * SNOW_WINDOW_ROWS] : 0;
+        out[n] = word << 1 | below; /* place c + 1 is the first */
+        below = word >> 63;
+    }
+    for (int have = 1; have < r->taps[0];) {
+        int more = r->taps[0] - have < have ? r->taps[0] - have : have;
+        more = more < 63 ? more : 63;
+        smear(out, r->words, more);
+        have += more;
+    }
+}
+
+/* Adds a row of voxels to the rows of places of its windows. */
+static void add_row(const reached_job *job, int64_t slice, int64_t row,
+                    const uint64_t *spread) {
+    const snow_reached *r = job->reached;
+    uint64_t *to =
+        r->bits + (size_t)(slice * r->places[1] + row + 1) * r->words;
+    for (int n = 0; n < r->taps[1]; n++, to += r->words)
+        for (size_t word = 0; word < r->words; word++)
+            to[word] |= spread[word];
+}
+
+static void make_slice(void *of, int64_t slice, int worker) {
+    const reached_job *job = of;
+    size_t words = snow_window_words(job->bands->columns) * SNOW_WINDOW_ROWS;
+    snow_mask_rows rows = {.words = words / SNOW_WINDOW_ROWS};
+    char *at = job->scratch + (size_t)worker * job->scratch_bytes;
+    rows.bits = (uint64_t *)(void *)at;
+    uint64_t *spread = rows.bits + words;
+    rows.rank = (uint32_t *)(void *)(spread + job->reached->words);
+    snow_span *spans = (snow_span *)(void *)(rows.rank + words);
+    for (int64_t row = 0; row < job->bands->rows; row += SNOW_WINDOW_ROWS) {
+        job->windows->read(job->bands, slice, row, SNOW_WINDOW_ROWS, spans,
+                           &rows);
+        for (uint64_t held = rows.held; held; held &= held - 1) {
+            int n = __builtin_ctzll(held);
+            spread_row(job, &rows, n, spread);
+            add_row(job, slice, row + n, spread);
+        }
+    }
+}
+
+snow_status snow_reached_make(const snow_bands *bands, const int taps[2],
+                              const snow_window_fns *windows, int threads,
+                              snow_reached *r) {
+    snow_context *context = bands->context;
+    uint64_t rows, bytes;
+    size_t words = snow_window_words(bands->columns) * SNOW_WINDOW_ROWS;
+    r->taps[0] = taps[0];
+    r->taps[1] = taps[1];
+    r->places[0] = bands->columns + taps[0] + 1;
+    r->places[1] = bands->rows + taps[1] + 1;
+    r->slices = bands->slices;
+    r->words = (size_t)r->places[0] / 64 + 1;
+    if (!snow_mul_u64((uint64_t)r->places[1], (uint64_t)r->slices, &rows) ||
+        !snow_mul_u64(rows, r->words * sizeof *r->bits, &bytes) ||
+        bytes > SIZE_MAX)
+        return snow_fail(context, SNOW_NO_MEMORY,
+                         "no memory for a map of what is in reach");
+    SNOW_TRY(snow_reserve(context, &r->bits, &r->capacity, 0, (size_t)bytes));
+    memset(r->bits, 0, (size_t)bytes);
+    reached_job job = {bands, windows, r, NULL, 0};
+    job.scratch_bytes = words * (sizeof(uint64_t) + sizeof(uint32_t)) +
+                        r->words * sizeof(uint64_t) +
+                        ((size_t)bands->columns / 2 + 1) * sizeof(snow_span);
+    job.scratch_bytes = (job.scratch_bytes + 63) / 64 * 64;
+    job.scratch =
+        snow_allocate_array(context, (uint64_t)threads, job.scratch_bytes);
+    if (!job.scratch)
+        return SNOW_NO_MEMORY;
+    snow_parallel(context, threads, r->slices, make_slice, &job);
+    snow_release(context, job.scratch);
+    return SNOW_OK;
+}
