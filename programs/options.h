@@ -98,8 +98,10 @@ typedef struct options {
     const char *progress, *isa, *quality;
     int64_t threads; /* 0: not told */
     const char *cut, *combine;
-    int64_t radix; /* 0: chosen */
-    bool deterministic, no_labels;
+    int64_t radix;  /* 0: chosen */
+    double timeout; /* seconds; 0: none */
+    bool deterministic;
+    bool no_labels, legend, time_label;
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 
     bool version, help;

@@ -28,6 +28,8 @@ snow_transfer *model_transfer(snow_context *context,
     if (status == SNOW_OK)
         status = snow_transfer_set_gradient_opacity(transfer, scene->gradients,
                                                     scene->gradient_count);
+    if (status == SNOW_OK && scene->log)
+        status = snow_transfer_set_log(transfer);
     if (status != SNOW_OK)
         fail_msg("%s: %s", model_words(scene), snow_context_message(context));
     return transfer;
