@@ -23,8 +23,6 @@ snow_transfer *model_transfer(snow_context *context,
     snow_status status =
         snow_transfer_new(context, scene->colors, scene->color_count,
                           scene->opacities, scene->opacity_count, &transfer);
-    if (status == SNOW_OK && scene->log)
-        status = snow_transfer_set_log(transfer);
     if (status == SNOW_OK)
         status = snow_transfer_set_gradient_opacity(transfer, scene->gradients,
                                                     scene->gradient_count);

@@ -20,9 +20,9 @@ typedef struct reference_scene {
     size_t color_count;
     const snow_opacity_point *opacities;
     size_t opacity_count;
+    bool log; /* points are joined by the logarithms of values */
     const snow_opacity_point *gradients; /* the gradient opacity */
     size_t gradient_count;               /* 0: none */
-    bool log; /* points are joined by the logarithms of values */
     snow_view view;
     snow_settings settings; /* method and encoding do not matter here */
 } reference_scene;

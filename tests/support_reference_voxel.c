@@ -53,7 +53,7 @@ static void color_at(const reference_scene *scene, double value,
               : a->blue;
 }
 
-static double opacity_of(bool log, const snow_opacity_point *p, size_t count,
+static double opacity_of(const snow_opacity_point *p, size_t count, bool log,
                          double value) {
     size_t next = 0;
     while (next < count && p[next].value <= value)
@@ -74,7 +74,7 @@ void reference_classify(const reference_scene *scene, double value,
     }
     color_at(scene, value, rgba);
     rgba[3] =
-        opacity_of(scene->log, scene->opacities, scene->opacity_count, value);
+        opacity_of(scene->opacities, scene->opacity_count, scene->log, value);
 }
 
 /* Half the difference of both neighbours, or the difference to the one that is
@@ -127,7 +127,7 @@ double reference_fade(const reference_scene *scene, const double gradient[3]) {
     if (!scene->gradient_count)
         return 1;
     to_world(scene, gradient, world);
-    return opacity_of(false, scene->gradients, scene->gradient_count,
+    return opacity_of(scene->gradients, scene->gradient_count, false,
                       fabs(scene->info.slope) * sqrt(dot(world, world)));
 }
 
