@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "launch.h"
+#include "marks.h"
 #include "outputs.h"
 #include "paint.h"
 #include "render_stats.h"
@@ -36,7 +37,8 @@ int check_settings(const options *asked) {
     if (asked->view && asked->position.given)
         return fail_usage("--position: --view says where the camera is as "
                           "well; leave one of the two out");
-    return check_look(asked);
+    int done = marks_check(asked);
+    return done == GO_ON ? check_look(asked) : done;
 }
 
 /* Needs no file, so it comes before everything else. */
@@ -158,6 +160,13 @@ typedef struct work {
     char painted[PAINT_TOLD_BYTES]; /* what was made of values */
 } work;
 
+static snow_status make_marks(const work *w, snow_overlay **out) {
+    const scene *s = &w->scene;
+    const picture_marks marks = {s->asked, s->whole, s->view, s->transfer};
+    marks_tell(s->asked);
+    return marks_make(&marks, s->asked->azimuth, -1, s->context, out);
+}
+
 /* A pipe is written through and may block, so there an interruption does not
  * wait. */
 static int write_picture(work *w, const options *asked) {
@@ -166,13 +175,18 @@ static int write_picture(work *w, const options *asked) {
         .bits = asked->bits ? (asked->bits[0] == '8' ? 8 : 16) : 0,
         .overwrite = asked->overwrite};
     memcpy(form.background, asked->background.rgb, sizeof form.background);
+    snow_overlay *overlay = NULL;
     double begin = seconds_now();
     if (!is_special(asked->output))
         interrupt_hold(); /* before the word, so that who reads it may rely */
     if (!launch_talks())
         return GO_ON;
     progress(asked, "writing");
-    snow_status status = snow_image_save(w->image, asked->output, &form);
+    snow_status status = make_marks(w, &overlay);
+    form.overlay = overlay;
+    if (status == SNOW_OK)
+        status = snow_image_save(w->image, asked->output, &form);
+    snow_overlay_free(overlay);
     w->scene.times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->scene.context, status);
 }

@@ -224,6 +224,9 @@ static void fill_recipe(const options *asked, snow_recipe *out) {
     fill_data(asked, out);
     fill_look(asked, out);
     fill_view(asked, out);
+    out->no_labels = asked->no_labels;
+    out->legend = asked->legend;
+    out->time_label = asked->time_label;
     fill_settings(asked, &out->settings);
 }
 

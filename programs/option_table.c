@@ -18,6 +18,7 @@
 /* Shorter names for sets of verbs: the rows are dense enough. */
 enum {
     TURNTABLE = VERB_TURNTABLE,
+    MOVIE = VERB_MOVIE,
     MOVIES = VERB_TURNTABLE | VERB_MOVIE,
     RENDER = VERB_RENDER | MOVIES, /* all that render */
     INFO = VERB_INFO,
@@ -149,8 +150,15 @@ const option_row option_table[] = {
      "0,0,1, or 0,1,0 along z)"},
 
     {"no-labels", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(no_labels), 0,
-     0, "", "without orientation letters (there are none yet)"},
-    LATER("legend", 0, NULL, TOPIC_LABELS, "leave it out"),
+     0, "", "without the letters R L A P S I at the edges, which tell the sides "
+     "of a patient (drawn where the file gives a medical orientation; never "
+     "into files of floats)"},
+    {"legend", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(legend), 0, 0,
+     "", "draw a colour bar with the values, and the opacity as a line, and in a "
+     "parallel projection a scale bar (without)"},
+    {"time-label", 0, NULL, TOPIC_LABELS, MOVIE, read_flag, FIELD(time_label),
+     0, 0, "", "draw the number of the time step: that in the file's name, or "
+     "in the file (without)"},
 
     {"dims", 0, "XxYxZ", TOPIC_DATA, INPUT | PHANTOM, read_dims, FIELD(dims), 0,
      0, "", "voxels of raw data or of a phantom, x fastest"},
@@ -279,8 +287,7 @@ const topic_row topic_table[] = {
     {"quality", "one word for speed or beauty",
      "one quality, set by --kernel and --footprint"},
     {"camera", "where the picture is taken from", NULL},
-    {"labels", "letters and bars in the picture",
-     "none yet: the picture shows the volume alone"},
+    {"labels", "letters and bars in the picture", NULL},
     {"data", "raw files, time steps", NULL},
     {"run", "threads, figures, talk", NULL},
     {"ranks", "many processors: parts of the volume, one picture", NULL},

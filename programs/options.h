@@ -100,7 +100,8 @@ typedef struct options {
     const char *cut, *combine;
     int64_t radix;  /* 0: chosen */
     double timeout; /* seconds; 0: none */
-    bool deterministic, no_labels;
+    bool deterministic;
+    bool no_labels, legend, time_label;
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 
     bool version, help;

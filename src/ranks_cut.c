@@ -48,8 +48,8 @@ snow_status snow_cut_order_make(snow_context *context,
                                 const snow_volume_info *whole,
                                 const snow_view *view,
                                 const snow_settings *settings,
-                                const snow_ranks_options *asked, int ranks,
-                                snow_cut_order *out) {
+                                const snow_ranks_options *asked, bool fades,
+                                int ranks, snow_cut_order *out) {
     snow_ranks_options how = known_options(asked);
     snow_settings resolved = snow_settings_known(settings);
     snow_placement placement;
@@ -63,8 +63,8 @@ snow_status snow_cut_order_make(snow_context *context,
                             .threshold = resolved.threshold,
                             .isa = resolved.isa};
     memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
-    SNOW_TRY(snow_ghosts_needed(context, whole, view, settings, how.turns,
-                                out->layers));
+    SNOW_TRY(snow_ghosts_needed(context, whole, view, settings, fades,
+                                how.turns, out->layers));
     if (resolved.deterministic)
         set_borders(out);
     /* Groups of slices are laid over one another as such. */

@@ -45,7 +45,6 @@ info --perspective x|no option of info
 --memory 1G x|--memory is not built yet
 --tf f x|--tf is not built yet
 --log x|--log is not built yet
---legend x|--legend is not built yet
 --labels 1 x|--labels is not built yet
 --mask m x|--mask is not built yet
 --azim 10 x|--azim: unknown option; did you mean --azimuth

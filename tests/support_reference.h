@@ -21,6 +21,8 @@ typedef struct reference_scene {
     const snow_opacity_point *opacities;
     size_t opacity_count;
     bool log; /* points are joined by the logarithms of values */
+    const snow_opacity_point *gradients; /* the gradient opacity */
+    size_t gradient_count;               /* 0: none */
     snow_view view;
     snow_settings settings; /* method and encoding do not matter here */
 } reference_scene;
@@ -88,6 +90,12 @@ double reference_native(const reference_scene *scene, int64_t i, int64_t j,
                         int64_t k);
 void reference_classify(const reference_scene *scene, double value,
                         double rgba[4]);
+
+/* The gradient at a voxel in index space, of native values; and the gradient
+ * opacity where it is such a one. */
+void reference_gradient(const reference_scene *scene, const int64_t at[3],
+                        double gradient[3]);
+double reference_fade(const reference_scene *scene, const double gradient[3]);
 
 /* Phong's model at a point whose gradient in index space is `gradient`. */
 void reference_shade(const reference_scene *scene,

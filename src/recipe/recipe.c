@@ -248,6 +248,9 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
         status = snow_insitu_set_view(insitu, &view);
     if (status == SNOW_OK)
         status = snow_insitu_set_settings(insitu, &settings);
+    if (status == SNOW_OK)
+        status =
+            snow_insitu_set_marks(insitu, recipe->legend, recipe->time_label);
     if (status == SNOW_OK && recipe->output)
         status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
     return status;
