@@ -2,6 +2,8 @@
  * threads of one process.  The same options are read by the program of
  * simulated networks (mpi_combine.c). */
 #include "combine.h"
+#include "line.h"
+#include "words.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -49,61 +51,10 @@ static const char help[] =
 
 /* --- options -------------------------------------------------------------- */
 
-typedef enum kind { WORD, WHOLE_NUMBER, NUMBER, CHOICE } kind;
-
-/* An option: where its value goes, and what values there are. */
-typedef struct setting {
-    const char *name;
-    kind kind;
-    void *value;
-    double low, high;
-    const char *const *choices; /* of a CHOICE, NULL at the end */
-} setting;
-
 static const char *const methods[] = {"auto",   "tree",  "swap",
                                       "direct", "radix", NULL};
 static const char *const piece_names[] = {"auto", "even", "counted",
                                           "interlaced", NULL};
-
-static bool parse_number(const char *text, double low, double high,
-                         double *out) {
-    char *end;
-    double value = strtod(text, &end);
-    if (end == text || *end || !(value >= low && value <= high))
-        return false;
-    *out = value;
-    return true;
-}
-
-/* Takes a value; false when it is none. */
-static bool take(const setting *o, const char *text) {
-    double number;
-    if (o->kind == CHOICE) {
-        for (int i = 0; o->choices[i]; i++)
-            if (strcmp(text, o->choices[i]) == 0) {
-                *(int *)o->value = i;
-                return true;
-            }
-        return false;
-    }
-    if (!parse_number(text, o->low, o->high, &number))
-        return false;
-    if (o->kind == NUMBER) {
-        *(double *)o->value = number;
-        return true;
-    }
-    *(int *)o->value = (int)number;
-    return (double)(int)number == number;
-}
-
-static int usage_error(FILE *said, const char *what, const char *word) {
-    if (said)
-        fprintf(said,
-                "snowglass: bench combine: %s '%s'; see snowglass bench "
-                "combine --help\n",
-                what, word);
-    return SNOW_BAD_USAGE;
-}
 
 int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
     int method = 0, pieces = 0;
@@ -115,50 +66,41 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
                              .fill = 0.3,
                              .cube = 0.68,
                              .grain = 1,
-                             .alpha = 1.5e-6,
-                             .beta = 1 / 12.125e9,
+                             .alpha = BENCH_ALPHA,
+                             .beta = BENCH_BETA,
                              .scan = 0.1e-9,
                              .blend = 0.25e-9};
-    const setting settings[] = {
-        {"--ranks", WHOLE_NUMBER, &out->ranks, 1, 4096, NULL},
-        {"--size", WHOLE_NUMBER, &out->size, 1, 32768, NULL},
-        {"--method", CHOICE, &method, 0, 0, methods},
-        {"--radix", WHOLE_NUMBER, &out->radix, 2, 4096, NULL},
-        {"--gather", WHOLE_NUMBER, &out->gather, 2, 4096, NULL},
-        {"--pieces", CHOICE, &pieces, 0, 0, piece_names},
-        {"--whole", WORD, &out->whole, 0, 0, NULL},
-        {"--grey", WORD, &grey, 0, 0, NULL},
-        {"--floats", WORD, &floats, 0, 0, NULL},
-        {"--check", WORD, &out->check, 0, 0, NULL},
-        {"--sizes-only", WORD, &out->sizes_only, 0, 0, NULL},
-        {"--rates", WORD, &out->rates, 0, 0, NULL},
-        {"--runs", WHOLE_NUMBER, &out->runs, 1, 1000, NULL},
-        {"--json", WORD, &out->json, 0, 0, NULL},
-        {"--azimuth", NUMBER, &out->azimuth, -1e6, 1e6, NULL},
-        {"--elevation", NUMBER, &out->elevation, -1e6, 1e6, NULL},
-        {"--cube", NUMBER, &out->cube, 0, 4, NULL},
-        {"--fill", NUMBER, &out->fill, 0, 1, NULL},
-        {"--grain", WHOLE_NUMBER, &out->grain, 1, 32768, NULL},
-        {"--alpha", NUMBER, &out->alpha, 0, 1, NULL},
-        {"--beta", NUMBER, &out->beta, 0, 1, NULL},
-        {"--scan", NUMBER, &out->scan, 0, 1, NULL},
-        {"--blend", NUMBER, &out->blend, 0, 1, NULL},
-        {"--help", WORD, &helps, 0, 0, NULL},
+    const bench_word words[] = {
+        {"--ranks", BENCH_WHOLE, &out->ranks, 1, 4096, NULL},
+        {"--size", BENCH_WHOLE, &out->size, 1, 32768, NULL},
+        {"--method", BENCH_CHOICE, &method, 0, 0, methods},
+        {"--radix", BENCH_WHOLE, &out->radix, 2, 4096, NULL},
+        {"--gather", BENCH_WHOLE, &out->gather, 2, 4096, NULL},
+        {"--pieces", BENCH_CHOICE, &pieces, 0, 0, piece_names},
+        {"--whole", BENCH_WORD, &out->whole, 0, 0, NULL},
+        {"--grey", BENCH_WORD, &grey, 0, 0, NULL},
+        {"--floats", BENCH_WORD, &floats, 0, 0, NULL},
+        {"--check", BENCH_WORD, &out->check, 0, 0, NULL},
+        {"--sizes-only", BENCH_WORD, &out->sizes_only, 0, 0, NULL},
+        {"--rates", BENCH_WORD, &out->rates, 0, 0, NULL},
+        {"--runs", BENCH_WHOLE, &out->runs, 1, 1000, NULL},
+        {"--json", BENCH_WORD, &out->json, 0, 0, NULL},
+        {"--azimuth", BENCH_NUMBER, &out->azimuth, -1e6, 1e6, NULL},
+        {"--elevation", BENCH_NUMBER, &out->elevation, -1e6, 1e6, NULL},
+        {"--cube", BENCH_NUMBER, &out->cube, 0, 4, NULL},
+        {"--fill", BENCH_NUMBER, &out->fill, 0, 1, NULL},
+        {"--grain", BENCH_WHOLE, &out->grain, 1, 32768, NULL},
+        {"--alpha", BENCH_NUMBER, &out->alpha, 0, 1, NULL},
+        {"--beta", BENCH_NUMBER, &out->beta, 0, 1, NULL},
+        {"--scan", BENCH_NUMBER, &out->scan, 0, 1, NULL},
+        {"--blend", BENCH_NUMBER, &out->blend, 0, 1, NULL},
+        {"--help", BENCH_WORD, &helps, 0, 0, NULL},
     };
-    for (int i = 1; i < argc; i++) {
-        const setting *o = NULL;
-        for (size_t k = 0; k < sizeof settings / sizeof *settings; k++)
-            if (strcmp(argv[i], settings[k].name) == 0)
-                o = &settings[k];
-        if (!o)
-            return usage_error(said, "there is no option", argv[i]);
-        if (o->kind == WORD)
-            *(bool *)o->value = true;
-        else if (i + 1 == argc)
-            return usage_error(said, "a value is missing after", argv[i]);
-        else if (!take(o, argv[++i]))
-            return usage_error(said, "this value is not possible:", argv[i]);
-    }
+    const bench_words table = {"combine", words, sizeof words / sizeof *words,
+                               NULL};
+    int code = bench_words_read(&table, argc, argv, said);
+    if (code >= 0)
+        return code;
     out->method = (snow_combining)method;
     out->pieces = (snow_pieces)pieces;
     out->channels = grey ? 2 : 4;
@@ -168,8 +110,9 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
     if (helps)
         return SNOW_OK;
     if (out->check && out->sizes_only)
-        return usage_error(said, "there are no pixels to look at; leave out",
-                           "--check");
+        return bench_words_fail(&table, said,
+                                "there are no pixels to look at; leave out",
+                                "--check");
     return -1;
 }
 

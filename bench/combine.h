@@ -14,6 +14,7 @@
 #define SNOW_BENCH_COMBINE_H
 
 #include "combine/exchange.h"
+#include "hosts.h"
 
 #include <stdio.h>
 
@@ -78,6 +79,7 @@ typedef struct combine_figures {
 /* Over all ranks. */
 typedef struct combine_result {
     int ranks;
+    bench_hosts hosts;
     snow_exchange_figures told;
     combine_figures most, sum;
 } combine_result;

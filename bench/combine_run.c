@@ -285,6 +285,9 @@ static snow_status measure(rank_state *state, combine_result *out) {
         status = compare_picture(state, &difference);
     best.most.difference = difference;
     SNOW_TRY(snow_comm_agree(comm, status));
+    best.hosts = (bench_hosts){comm->ranks, 1}; /* as those simulated are */
+    if (!state->options->simulated)
+        SNOW_TRY(bench_hosts_count(comm, &best.hosts));
     if (comm->rank == 0)
         *out = best;
     return SNOW_OK;

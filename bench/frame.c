@@ -44,6 +44,10 @@ static const char help[] =
     "                   one after another, then each splatted while the one "
     "before\n"
     "                   it is combined; the fastest of --runs times counts\n"
+    "  --alpha SECONDS  of the bound: a message's latency (1.5e-6, or that "
+    "of\n"
+    "                   --network)\n"
+    "  --beta SECONDS   for a byte (1 / 12.125e9, or that of --network)\n"
     "  --json           print a JSON object\n"
     "\n"
     "voxels are the interesting ones of a rank's own part; their sum is "
@@ -54,10 +58,17 @@ static const char help[] =
     "picture,\n"
     "all else of a later one, whose encoding is there.  total is until the "
     "last\n"
-    "rank is done.  read, first and total are also told in processor time of "
-    "the\n"
-    "ranks, which is what counts where ranks share processors.  projected_ms "
-    "is\n"
+    "rank is done.  All are also told in processor time of the ranks (_cpu), "
+    "which\n"
+    "is what counts where ranks share processors; that of encode is what the "
+    "first\n"
+    "picture took more than a later one, and of splat what else it is to make "
+    "a\n"
+    "local image.  rank_per_node is the most that a machine has.  bound is "
+    "what "
+    "no\n"
+    "method of exchange and gather can beat, ratio what these took over it.\n"
+    "projected_ms is\n"
     "what the modelled machine takes for a picture, t1_ms what one rank takes\n"
     "(processor time), efficiency t1_ms over ranks and projected_ms.  turn_ms "
     "and\n"
@@ -182,6 +193,8 @@ static int parse(int argc, char **argv, const snow_comm *comm, FILE *said,
         {"--no-check", BENCH_WORD, &out->no_check, 0, 0, NULL},
         {"--network", BENCH_TEXT, &t.network, 0, 0, NULL},
         {"--runs", BENCH_WHOLE, &out->runs, 1, 1000, NULL},
+        {"--alpha", BENCH_NUMBER, &out->alpha, 0, 1, NULL},
+        {"--beta", BENCH_NUMBER, &out->beta, 0, 1, NULL},
         {"--turn", BENCH_WHOLE, &out->turn, 2, 10000, NULL},
         {"--json", BENCH_WORD, &out->json, 0, 0, NULL},
         {"--help", BENCH_WORD, &helps, 0, 0, NULL},
@@ -235,7 +248,8 @@ static int run_threads(frame_session *session) {
 }
 
 int frame_main(int argc, char **argv, snow_comm *comm) {
-    frame_options options = {.width = 512, .height = 512, .runs = 3};
+    frame_options options = {
+        .width = 512, .height = 512, .runs = 3, .alpha = -1, .beta = -1};
     frame_session session = {.options = &options, .threads = !comm};
     bool talks = !comm || snow_comm_rank(comm) == 0;
     int code = parse(argc, argv, comm, talks ? stderr : NULL, &options);

@@ -19,6 +19,9 @@
  * that many share may be more than one can hold. */
 #define FRAME_CHECKED_RANKS 64
 
+/* Rounds of the exchange that are told. */
+#define FRAME_ROUNDS_MOST 16
+
 typedef struct frame_options {
     const char *path;
     snow_volume_options data;
@@ -31,6 +34,8 @@ typedef struct frame_options {
     int runs;  /* further pictures, of which the fastest counts */
     int turn;  /* pictures of a turning volume; 0: none */
     bool check, no_check, json;
+    double alpha, beta;   /* seconds a message, a byte, of the bound; below 0:
+                             those of the network */
     bool modelled;        /* whether `network` is, and time with it */
     snow_network network; /* one processor a node */
 } frame_options;
@@ -46,7 +51,13 @@ typedef enum frame_stage {
     FRAME_GATHER,
     FRAME_TOTAL, /* a picture of what is encoded already */
     FRAME_FIRST, /* the first picture */
+    /* The same in processor time. */
     FRAME_READ_CPU,
+    FRAME_ENCODE_CPU, /* what the first picture took more than a later one */
+    FRAME_SPLAT_CPU,
+    FRAME_EXCHANGE_CPU,
+    FRAME_WARP_CPU,
+    FRAME_GATHER_CPU,
     FRAME_TOTAL_CPU,
     FRAME_FIRST_CPU,
     FRAME_STAGES
@@ -56,21 +67,25 @@ typedef enum frame_stage {
 typedef struct frame_figures {
     double seconds[FRAME_STAGES];
     uint64_t messages, bytes; /* that it sent for a later picture */
-    int64_t voxels; /* interesting ones that it encodes: its own, and of
-                       bricks those at the borders that neighbours own */
-    int64_t slices; /* of its part, along the view's slice axis */
+    int64_t voxels;     /* interesting ones that it encodes: its own, and of
+                           bricks those at the borders that neighbours own */
+    int64_t slices;     /* of its part, along the view's slice axis */
+    int64_t active;     /* pixels of its local image */
+    double first_local; /* processor time of the first local image */
+    int rounds, radices[FRAME_ROUNDS_MOST];
     snow_method method;
     double hidden; /* seconds a picture of a turning volume */
-    char host[64];
 } frame_figures;
 
 /* Over all ranks. */
 typedef struct frame_result {
-    int ranks, nodes;
+    int ranks, nodes, node_ranks; /* the most that a node has */
+    int channels, rounds, radices[FRAME_ROUNDS_MOST];
     snow_method method;
     double most[FRAME_STAGES], mean[FRAME_STAGES];
     uint64_t messages_most, bytes_most, bytes_sum;
-    int64_t voxels_most, voxels_sum, slices_least;
+    int64_t voxels_most, voxels_sum, slices_least, active_most;
+    int64_t shown; /* pixels of the picture that are not transparent */
     bool checked;
     double difference; /* from the picture of one rank, if checked */
     /* Processor time of one rank, if checked: of a later picture, and of the

@@ -16,12 +16,17 @@ static void put_setting(bench_line *out, const frame_options *options,
     snprintf(size, sizeof size, "%dx%d", options->width, options->height);
     bench_line_int(out, "ranks", result->ranks);
     bench_line_int(out, "nodes", result->nodes);
+    bench_line_int(out, "rank_per_node", result->node_ranks);
     bench_line_int(out, "threads", 1);
     bench_line_int(out, "modelled", options->modelled);
     bench_line_text(out, "method", snow_method_name(result->method));
     bench_line_text(out, "cut", cuts[options->cut]);
     bench_line_text(out, "combine", combinings[options->combining]);
+    bench_line_int(out, "rounds", result->rounds);
+    bench_line_radices(out, result->radices, result->rounds);
     bench_line_text(out, "image", size);
+    bench_line_int(out, "pixel_bytes", result->channels * 4);
+    bench_line_int(out, "gather_bytes", result->channels);
 }
 
 static void put_counters(bench_line *out, const frame_result *result) {
@@ -29,6 +34,7 @@ static void put_counters(bench_line *out, const frame_result *result) {
     bench_line_int(out, "bytes_sent_max", (int64_t)result->bytes_most);
     bench_line_int(out, "bytes_sent_sum", (int64_t)result->bytes_sum);
     bench_line_int(out, "msgs_max", (int64_t)result->messages_most);
+    bench_line_int(out, "active_px_max", result->active_most);
     bench_line_int(out, "voxels_max", result->voxels_most);
     bench_line_int(out, "voxels_sum", result->voxels_sum);
     bench_line_number(out, "voxels_mean", mean);
@@ -45,8 +51,10 @@ static void put_times(bench_line *out, const frame_result *result) {
         [FRAME_SPLAT] = "splat",         [FRAME_EXCHANGE] = "exchange",
         [FRAME_WARP] = "warp",           [FRAME_GATHER] = "gather",
         [FRAME_TOTAL] = "total",         [FRAME_FIRST] = "first",
-        [FRAME_READ_CPU] = "read_cpu",   [FRAME_TOTAL_CPU] = "total_cpu",
-        [FRAME_FIRST_CPU] = "first_cpu",
+        [FRAME_READ_CPU] = "read_cpu",   [FRAME_ENCODE_CPU] = "encode_cpu",
+        [FRAME_SPLAT_CPU] = "splat_cpu", [FRAME_EXCHANGE_CPU] = "exchange_cpu",
+        [FRAME_WARP_CPU] = "warp_cpu",   [FRAME_GATHER_CPU] = "gather_cpu",
+        [FRAME_TOTAL_CPU] = "total_cpu", [FRAME_FIRST_CPU] = "first_cpu",
     };
     for (int i = 0; i < FRAME_STAGES; i++) {
         char key[32];
@@ -55,6 +63,25 @@ static void put_times(bench_line *out, const frame_result *result) {
         snprintf(key, sizeof key, "%s_mean_ms", names[i]);
         bench_line_ms(out, key, result->mean[i]);
     }
+}
+
+/* Of exchange and gather together. */
+static void put_bound(bench_line *out, const frame_options *options,
+                      const frame_result *result) {
+    const bool modelled = options->modelled;
+    const double alpha = options->alpha >= 0 ? options->alpha
+                         : modelled          ? options->network.latency
+                                             : BENCH_ALPHA;
+    const double beta = options->beta >= 0 ? options->beta
+                        : modelled         ? 1 / options->network.bandwidth
+                                           : BENCH_BETA;
+    const double bound = bench_bound(
+        result->ranks, (double)result->active_most * result->channels * 4,
+        (double)result->shown * result->channels, alpha, beta);
+    const double took =
+        result->most[FRAME_EXCHANGE] + result->most[FRAME_GATHER];
+    bench_line_ms(out, "bound_ms", bound);
+    bench_line_number(out, "ratio", bound > 0 ? took / bound : 0);
 }
 
 /* Time of the modelled machine is the picture's: its ranks' processor time and
@@ -92,6 +119,7 @@ int frame_print(const frame_options *options, const frame_result *result) {
         bench_line_number(&out, "max_abs_diff", result->difference);
     put_counters(&out, result);
     put_times(&out, result);
+    put_bound(&out, options, result);
     put_projection(&out, options, result);
     if (options->turn)
         put_turn(&out, result);

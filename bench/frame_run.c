@@ -5,10 +5,10 @@
  * nothing but the view changes.  Each rank works on one thread, so that its
  * processor time is that of its thread, or process. */
 #include "frame.h"
+#include "hosts.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static double cpu_seconds(const frame_rank *s) {
     struct timespec now;
@@ -49,7 +49,6 @@ static snow_status prepare(frame_rank *s) {
     if (!s->all)
         return snow_context_fail(s->context, SNOW_NO_MEMORY,
                                  "no memory for figures; close other programs");
-    gethostname(s->mine.host, sizeof s->mine.host - 1);
     snow_status status = fill_view(s);
     return status == SNOW_OK ? snow_frame_new(s->context, &s->frame) : status;
 }
@@ -89,6 +88,20 @@ static void take_stats(frame_rank *s, bool first) {
     seconds[FRAME_EXCHANGE] = stats->seconds_combine;
     seconds[FRAME_WARP] = stats->seconds_warp;
     seconds[FRAME_GATHER] = stats->seconds_gather;
+    if (first)
+        s->mine.first_local = stats->cpu_splat;
+    else
+        seconds[FRAME_ENCODE_CPU] = s->mine.first_local > stats->cpu_splat
+                                        ? s->mine.first_local - stats->cpu_splat
+                                        : 0;
+    seconds[FRAME_SPLAT_CPU] = stats->cpu_splat;
+    seconds[FRAME_EXCHANGE_CPU] = stats->cpu_combine;
+    seconds[FRAME_WARP_CPU] = stats->cpu_warp;
+    seconds[FRAME_GATHER_CPU] = stats->cpu_gather;
+    s->mine.active = stats->active_pixels;
+    s->mine.rounds =
+        stats->rounds < FRAME_ROUNDS_MOST ? stats->rounds : FRAME_ROUNDS_MOST;
+    memcpy(s->mine.radices, stats->radices, sizeof s->mine.radices);
     s->mine.voxels = stats->interesting;
     s->mine.slices = part.count[stats->slice_axis];
     s->mine.method = stats->method;
@@ -121,17 +134,6 @@ static snow_status draw(frame_rank *s, bool first) {
 /* --- all ranks -------------------------------------------------------------
  */
 
-static int count_hosts(const frame_figures *all, int ranks) {
-    int hosts = 0;
-    for (int i = 0; i < ranks; i++) {
-        int before = 0;
-        while (before < i && strcmp(all[before].host, all[i].host) != 0)
-            before++;
-        hosts += before == i;
-    }
-    return hosts;
-}
-
 static void add_rank(const frame_figures *f, int ranks, frame_result *out) {
     for (int i = 0; i < FRAME_STAGES; i++) {
         if (f->seconds[i] > out->most[i])
@@ -146,8 +148,19 @@ static void add_rank(const frame_figures *f, int ranks, frame_result *out) {
         out->messages_most = f->messages;
     if (f->voxels > out->voxels_most)
         out->voxels_most = f->voxels;
+    if (f->active > out->active_most)
+        out->active_most = f->active;
     if (f->slices < out->slices_least)
         out->slices_least = f->slices;
+}
+
+/* Channels, and pixels that are not transparent: the last channel's. */
+static void count_pixels(snow_image *image, frame_result *out) {
+    const float *pixels = snow_image_pixels(image);
+    int64_t count = (int64_t)snow_image_width(image) * snow_image_height(image);
+    out->channels = snow_image_channels(image);
+    for (int64_t i = 1; i <= count; i++)
+        out->shown += pixels[i * out->channels - 1] > 0;
 }
 
 /* Collective: the figures of all, summed up on each. */
@@ -161,7 +174,20 @@ static snow_status sum_up(frame_rank *s, frame_result *out) {
     for (int i = 0; i < ranks; i++)
         add_rank(&s->all[i], ranks, out);
     out->method = s->all[0].method;
-    out->nodes = s->options->modelled ? ranks : count_hosts(s->all, ranks);
+    out->nodes = ranks; /* that are modelled, of one processor */
+    out->node_ranks = 1;
+    if (!s->options->modelled) {
+        bench_hosts hosts;
+        status = bench_hosts_count(s->comm, &hosts);
+        if (status != SNOW_OK)
+            return status;
+        out->nodes = hosts.nodes;
+        out->node_ranks = hosts.node_ranks;
+    }
+    if (s->image)
+        count_pixels(s->image, out);
+    out->rounds = s->all[0].rounds;
+    memcpy(out->radices, s->all[0].radices, sizeof out->radices);
     return SNOW_OK;
 }
 

@@ -4,7 +4,6 @@
 #include "classify/tally.h"
 #include "frame.h"
 #include "ghosts.h"
-#include "sheared.h"
 #include "simd/isa.h"
 
 #include <string.h>
@@ -68,20 +67,13 @@ snow_status snow_cut_order_make(snow_context *context,
                                 how.turns, out->layers));
     if (resolved.deterministic)
         set_borders(out);
-    /* What falls on the picture itself is laid over slab by slab, and so are
-     * groups of slices. */
-    bool any = resolved.method == SNOW_METHOD_SHEARED &&
-               !resolved.deterministic &&
-               snow_sheared_fits(&placement, &resolved);
-    out->slabs_only = resolved.deterministic || !any ||
-                      how.cut == SNOW_CUT_EQUAL || how.cut == SNOW_CUT_COUNTED;
+    /* Groups of slices are laid over one another as such. */
+    out->slabs_only = resolved.deterministic || how.cut == SNOW_CUT_EQUAL ||
+                      how.cut == SNOW_CUT_COUNTED;
     out->cut = how.cut ? how.cut : choose_cut(out, resolved.method);
-    if (out->cut == SNOW_CUT_BRICKS && !any) {
-        snow_notify(context, "%s; slabs are cut",
-                    resolved.deterministic
-                        ? "bricks cannot share a deterministic picture"
-                        : "bricks cannot share this picture, whose voxels fall "
-                          "on it directly");
+    if (out->cut == SNOW_CUT_BRICKS && resolved.deterministic) {
+        snow_notify(context, "bricks cannot share a deterministic picture; "
+                             "slabs are cut");
         out->cut = SNOW_CUT_COUNTED;
     }
     return SNOW_OK;

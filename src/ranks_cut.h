@@ -17,7 +17,7 @@ typedef struct snow_cut_order {
     int64_t borders[SNOW_GROUPS + 1];
     int64_t layers[3]; /* of ghost voxels */
     bool slabs_only;   /* along the slices' axis: boxes of another kind would
-                          not give the picture, or were not asked for */
+                          not give the same bits, or were not asked for */
     double threshold;
     snow_isa isa;
 } snow_cut_order;

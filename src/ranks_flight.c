@@ -110,13 +110,25 @@ double snow_ranks_clock(const snow_ranks *r) {
     return snow_comm_seconds(r->comm) - r->hidden;
 }
 
+static double processor_time(const snow_picture *p) {
+    return p->job.settings.threads == 1 ? snow_thread_seconds()
+                                        : snow_cpu_seconds();
+}
+
+double snow_picture_cpu(const snow_picture *p) {
+    return processor_time(p) - p->ranks->hidden_cpu;
+}
+
 /* One band of the picture that is drawn. */
 static bool draw_meanwhile(void *of) {
     snow_ranks *r = of;
-    double mark = snow_comm_seconds(r->comm);
+    double mark = snow_comm_seconds(r->comm), cpu = processor_time(r->drawn);
     bool any = snow_sheared_step(r->drawn->work.sheared);
     double took = snow_comm_seconds(r->comm) - mark;
+    cpu = processor_time(r->drawn) - cpu;
     r->hidden += took;
+    r->hidden_cpu += cpu;
+    r->drawn->stats.cpu_splat += cpu;
     r->drawn->stats.seconds_hidden += took;
     return any;
 }
@@ -156,11 +168,14 @@ static void render_alone(snow_picture *p, const snow_volume *volume,
                          const snow_transfer *transfer,
                          const snow_settings *settings) {
     snow_stats last = p->frame->stats;
+    double cpu = snow_thread_seconds();
     snow_status status = snow_frame_render(p->frame, volume, transfer, &p->view,
                                            settings, &p->image);
     if (status == SNOW_OK && p->how.pixel_bits == 8 && p->image->channels > 1)
         round_pixels(p->image);
     p->stats = p->frame->stats;
+    p->stats.cpu_splat = p->stats.threads == 1 ? snow_thread_seconds() - cpu
+                                               : p->stats.cpu_frame;
     p->frame->stats = last;
     p->done = true;
     snow_picture_fail(p, status);

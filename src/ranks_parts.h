@@ -66,6 +66,7 @@ struct snow_ranks {
     int first, under_way;   /* the oldest; how many */
     snow_picture *drawn;    /* in waits for messages; or NULL */
     double hidden;          /* seconds of that, of all pictures */
+    double hidden_cpu;      /* the same in processor time */
     /* Every rank's part, shared when one has changed. */
     uint64_t serial; /* of the volume that `parts` were shared for */
     snow_part *parts;
@@ -97,6 +98,9 @@ bool snow_ranks_busy(const snow_ranks *ranks);
 
 /* The communicator's clock, which stands while other pictures are drawn. */
 double snow_ranks_clock(const snow_ranks *ranks);
+
+/* Processor time for a picture (snow_stats.cpu_splat), which stands alike. */
+double snow_picture_cpu(const snow_picture *picture);
 
 /* Not collective: the beginning of a picture, up to its local image where that
  * may be drawn ahead; `aside`: of another the local image is still needed. What

@@ -95,7 +95,9 @@ static snow_status begin_axis(snow_picture *p, int axis, bool aside,
 
 /* What is counted is counted now, while there is a volume. */
 static snow_status begin_ahead(snow_picture *p, int axis, bool aside) {
+    double cpu = snow_picture_cpu(p);
     SNOW_TRY(begin_axis(p, axis, aside, &p->work));
+    p->stats.cpu_splat += snow_picture_cpu(p) - cpu;
     p->drawing = true;
     return snow_job_finish(p->frame, &p->job);
 }
@@ -122,10 +124,11 @@ void snow_picture_begin(snow_picture *p, const snow_volume *volume,
 void snow_picture_settle(snow_picture *p) {
     if (!p->drawing)
         return;
-    double mark = snow_ranks_clock(p->ranks);
+    double mark = snow_ranks_clock(p->ranks), cpu = snow_picture_cpu(p);
     snow_sheared_end(p->work.sheared);
     p->drawing = false;
     p->stats.seconds_splat += snow_ranks_clock(p->ranks) - mark;
+    p->stats.cpu_splat += snow_picture_cpu(p) - cpu;
 }
 
 /* --- meeting --------------------------------------------------------------
@@ -242,6 +245,15 @@ static snow_status prepare_exchange(snow_picture *p, const snow_local *local,
                             &sight, p->ranks->order);
 }
 
+static void tell_rounds(snow_picture *p, const snow_exchange_figures *told) {
+    snow_stats *stats = &p->stats;
+    const int most = (int)(sizeof stats->radices / sizeof *stats->radices);
+    stats->rounds = told->rounds;
+    for (int i = 0; i < told->rounds && i < most; i++)
+        stats->radices[i] = told->radices[i];
+    stats->active_pixels = told->active;
+}
+
 /* Collective.  Local images to pieces, of `grain` pixels or multiples. */
 static snow_status exchange(snow_picture *p, const snow_local *local,
                             const snow_placement *placement, int grain,
@@ -260,6 +272,7 @@ static snow_status exchange(snow_picture *p, const snow_local *local,
                                        .radix = p->how.radix,
                                        .grain = grain};
     SNOW_TRY(snow_exchange(r->combiner, &order, piece));
+    tell_rounds(p, snow_exchange_told(r->combiner));
     snow_exchange_pieces(r->combiner, r->firsts, r->counts);
     return SNOW_OK;
 }
@@ -289,7 +302,10 @@ static snow_status deliver(snow_picture *p, int pixel_bits, snow_image *image) {
         return SNOW_OK;
     }
     const snow_delivery delivery = {pixel_bits, image, p->bytes, &p->stats};
-    return snow_pixels_gather(p->ranks, &p->job, &delivery);
+    double cpu = snow_picture_cpu(p);
+    snow_status status = snow_pixels_gather(p->ranks, &p->job, &delivery);
+    p->stats.cpu_gather += snow_picture_cpu(p) - cpu;
+    return status;
 }
 
 /* --- the sheared method ---------------------------------------------------
@@ -352,15 +368,17 @@ static snow_status combine_axis(snow_picture *p, const snow_axis_work *work,
     snow_piece piece;
     if (!work->image.width) /* the same on all ranks */
         return SNOW_OK;
-    double mark = snow_ranks_clock(r);
+    double mark = snow_ranks_clock(r), cpu = snow_picture_cpu(p);
     SNOW_TRY(
         exchange(p, &work->local, &work->placement, work->image.width, &piece));
     SNOW_TRY(snow_lines_exchange(r, &work->image, &piece));
-    double combined = snow_ranks_clock(r);
+    double combined = snow_ranks_clock(r), combined_cpu = snow_picture_cpu(p);
     p->stats.seconds_combine += combined - mark;
+    p->stats.cpu_combine += combined_cpu - cpu;
     snow_status status =
         snow_pixels_warp(r, &work->image, &p->job, &piece, pixel_bits);
     p->stats.seconds_warp += snow_ranks_clock(r) - combined;
+    p->stats.cpu_warp += snow_picture_cpu(p) - combined_cpu;
     SNOW_TRY(snow_comm_agree(r->comm, status));
     return deliver(p, pixel_bits, image);
 }
@@ -378,11 +396,13 @@ static snow_status render_ahead(snow_picture *p, snow_status status) {
 
 /* Collective.  The picture with slices along one axis of several. */
 static snow_status render_axis(snow_picture *p, int axis, snow_image *image) {
+    double cpu = snow_picture_cpu(p);
     snow_status status = begin_axis(p, axis, false, &p->work);
     if (status == SNOW_OK) {
         double mark = snow_ranks_clock(p->ranks);
         snow_sheared_end(p->work.sheared);
         p->stats.seconds_splat += snow_ranks_clock(p->ranks) - mark;
+        p->stats.cpu_splat += snow_picture_cpu(p) - cpu;
         status = prepare_axis(p, &p->work);
     }
     SNOW_TRY(snow_comm_agree(p->ranks->comm, status));
@@ -467,10 +487,15 @@ static snow_status render_exact(snow_picture *p) {
     snow_ranks *r = p->ranks;
     snow_local local;
     snow_piece piece;
-    SNOW_TRY(snow_comm_agree(r->comm, render_exact_local(p, &local)));
+    double cpu = snow_picture_cpu(p);
+    snow_status status = render_exact_local(p, &local);
+    p->stats.cpu_splat += snow_picture_cpu(p) - cpu;
+    SNOW_TRY(snow_comm_agree(r->comm, status));
     double mark = snow_ranks_clock(r);
+    cpu = snow_picture_cpu(p);
     SNOW_TRY(exchange(p, &local, &p->job.placement, 1, &piece));
     p->stats.seconds_combine += snow_ranks_clock(r) - mark;
+    p->stats.cpu_combine += snow_picture_cpu(p) - cpu;
     SNOW_TRY(snow_comm_agree(
         r->comm, snow_pixels_copy(r, &p->job, &piece, p->how.pixel_bits)));
     return deliver(p, p->how.pixel_bits, p->image);

@@ -6,7 +6,7 @@ for way in auto tree swap direct "radix --radix 3"; do
     # shellcheck disable=SC2086
     run 0 "$way of 7 ranks" "$TOOL" bench combine --ranks 7 --size 97 \
         --runs 1 --check --method $way
-    prints '^ranks=7 .* check=ok max_abs_diff=0\.00'
+    prints '^ranks=7 nodes=1 rank_per_node=7 threads=1 .* check=ok max_abs_diff=0\.00'
 done
 run 0 "grey floats, interlaced" "$TOOL" bench combine --ranks 4 --size 64 \
     --runs 1 --check --grey --floats --pieces interlaced

@@ -15,7 +15,7 @@ frame() {
 
 for ranks in 1 3 5; do
     run 0 "a picture by $ranks ranks" frame --ranks $ranks --azimuth 30
-    prints "^ranks=$ranks nodes=1 threads=1 .* image=96x80 check=ok max_abs_diff="
+    prints "^ranks=$ranks nodes=1 rank_per_node=$ranks threads=1 .* k=[0-9x]+ image=96x80 pixel_bytes=[0-9]+ gather_bytes=[0-9]+ check=ok max_abs_diff="
     check "it is one line" [ "$(wc -l <"$OUT")" -eq 1 ]
     run 0 "as JSON" frame --ranks $ranks --azimuth 30 --json
     cp "$OUT" "r$ranks.json"
@@ -35,8 +35,9 @@ def read(name):
     return json.load(open(name + ".json"))
 
 stages = """read encode splat exchange warp gather total first read_cpu
-    total_cpu first_cpu""".split()
-counters = """bytes_sent_max bytes_sent_sum msgs_max voxels_max voxels_sum
+    encode_cpu splat_cpu exchange_cpu warp_cpu gather_cpu total_cpu
+    first_cpu""".split()
+counters = """bytes_sent_max bytes_sent_sum msgs_max active_px_max voxels_max voxels_sum
     slices_min""".split()
 told = {name: read(name) for name in ("r1", "r3", "r5", "again", "equal",
                                       "modelled")}
@@ -54,6 +55,19 @@ for name, t in told.items():
     assert t["voxels_whole"] == told["r1"]["voxels_sum"] > 0, name
     assert t["voxels_sum"] == t["voxels_whole"], name
     assert t["t1_ms"] > 0 and t["total_ms"] > 0 and t["first_ms"] > 0, t
+    assert t["splat_cpu_ms"] > 0, t
+    if ranks > 1:
+        parts = sum(t[key + "_cpu_mean_ms"] for key in
+                    ("splat", "exchange", "warp", "gather"))
+        assert 0.3 * t["total_cpu_mean_ms"] < parts, (name, parts, t)
+        assert parts <= 1.001 * t["total_cpu_mean_ms"], (name, parts, t)
+        k = [int(x) for x in str(t["k"]).split("x")]
+        assert len(k) == t["rounds"] and math.prod(k) >= ranks, t
+        most = max(t["active_px_max"] * t["pixel_bytes"], 1)
+        assert t["bound_ms"] > most * (ranks - 1) / ranks * 1e3 * \
+            (1 / 12.125e9 if name != "modelled" else 1e-10), t
+        took = t["exchange_ms"] + t["gather_ms"]
+        assert math.isclose(t["ratio"], took / t["bound_ms"], rel_tol=1e-3), t
     assert t["bytes_sent_sum"] <= ranks * t["bytes_sent_max"], t
 assert told["r1"]["bytes_sent_sum"] == 0, told["r1"]
 assert told["r1"]["imbalance"] == 1
@@ -64,7 +78,7 @@ for key in counters:
 assert told["equal"]["slices_min"] == 36 / 3, told["equal"]
 assert told["equal"]["imbalance"] > told["r3"]["imbalance"], told["equal"]
 modelled = told["modelled"]
-assert modelled["nodes"] == 3 and modelled["modelled"] == 1, modelled
+assert modelled["nodes"] == 3 and modelled["rank_per_node"] == 1 and modelled["modelled"] == 1, modelled
 assert modelled["projected_ms"] == modelled["total_ms"], modelled
 assert math.isclose(modelled["efficiency"], modelled["t1_ms"] / 3 /
                     modelled["projected_ms"], rel_tol=1e-4), modelled
@@ -90,7 +104,7 @@ check "no picture of one rank is timed" [ -z "$(grep t1_ms "$OUT")" ]
 raw_cube v.raw 16
 run 0 "a raw file" "$TOOL" bench frame v.raw --dims 16x16x16 --type uint8 \
     --size 64 --runs 1 --ranks 3
-prints " image=64x64 check=ok "
+prints " image=64x64 .* check=ok "
 run 0 "help" "$TOOL" bench frame --help
 prints "^usage: snowglass bench frame INPUT"
 
@@ -118,6 +132,8 @@ a --size 4x4x4|this value is not possible: '4x4x4'
 a --cut thin|this value is not possible: 'thin'
 a --network 1,2|this value is not possible: '1,2'
 a --network 1,0,0|this value is not possible: '1,0,0'
+a --alpha -1|this value is not possible: '-1'
+a --beta x|this value is not possible: 'x'
 a --radix 4|only --combine radix has a radix
 a --check --no-check|leave out --check or '--no-check'
 END

@@ -5,7 +5,7 @@ head="phantom:head --dims 40x36x44 --size 96 --runs 1 --azimuth 30"
 
 run 0 "combine" bench combine --size 64 --runs 1 --check
 check "the line is printed once" [ "$(wc -l <"$OUT")" -eq 1 ]
-prints "^ranks=3 .* check=ok "
+prints "^ranks=3 nodes=1 rank_per_node=3 .* check=ok "
 run 2 "combine with a wrong option" bench combine --foo
 check "it is told once" [ "$(grep -c "there is no option '--foo'" "$ERR")" = 1 ]
 

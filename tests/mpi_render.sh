@@ -25,6 +25,15 @@ for view in "--view +x" "--view -y" "--view +z" \
     done
 done
 
+# What falls on the picture itself is shared in any boxes as well.
+for method in footprint original; do
+    way="--method $method --azimuth 33 --elevation 21 --perspective 60"
+    # shellcheck disable=SC2086
+    run 0 "$way alone" "$TOOL" $head $way -y -o one.npy
+    # shellcheck disable=SC2086
+    TOLERANCE=1e-6 render "$MOST" "$way in bricks" $way --cut bricks
+done
+
 # The last view is oblique enough for bricks.
 for way in "--cut equal" "--cut bricks" "--combine tree" "--combine swap" \
     "--combine direct" "--combine radix --radix 3"; do

@@ -413,6 +413,42 @@ static void bricks_for_turns_stay_where_they_are(void **state) {
     snow_volume_close(whole);
 }
 
+/* Parts that are not all of the volume across its slices. */
+static int count_bricks(const order *o, int ranks, int slice_axis) {
+    int bricks = 0;
+    for (int rank = 0; rank < ranks; rank++)
+        for (int axis = 0; axis < 3; axis++)
+            bricks += axis != slice_axis &&
+                      o->parts[rank].count[axis] != o->parts[rank].dims[axis];
+    return bricks;
+}
+
+static void
+every_method_is_cut_into_bricks_but_deterministic_pictures(void **state) {
+    support_place *place = *state;
+    const snow_method methods[] = {SNOW_METHOD_SHEARED, SNOW_METHOD_FOOTPRINT,
+                                   SNOW_METHOD_ORIGINAL};
+    snow_volume *whole;
+    const int64_t dims[3] = {40, 36, 30};
+    assert_int_equal(
+        snow_volume_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_OK);
+    for (int n = 0; n < 6; n++) {
+        order o;
+        begin_order(&o, whole);
+        assert_int_equal(snow_view_named(place->context, "+z", &o.view),
+                         SNOW_OK);
+        o.path = "phantom:engine";
+        memcpy(o.options.dims, dims, sizeof dims);
+        o.settings.method = methods[n % 3];
+        o.settings.deterministic = n >= 3;
+        o.how.cut = SNOW_CUT_BRICKS;
+        open_by(place, &o, 8);
+        assert_int_equal(count_bricks(&o, 8, 2) > 0, n < 3);
+    }
+    snow_volume_close(whole);
+}
+
 static void a_file_that_one_rank_lacks_fails_all(void **state) {
     support_place *place = *state;
     char path[256], other[256];
@@ -715,6 +751,7 @@ int main(void) {
         TEST(the_file_is_read_once),
         TEST(another_view_is_served_without_the_file),
         TEST(bricks_for_turns_stay_where_they_are),
+        TEST(every_method_is_cut_into_bricks_but_deterministic_pictures),
         TEST(a_file_that_one_rank_lacks_fails_all),
         TEST(a_file_that_differs_on_one_rank_is_refused),
         TEST(a_pipe_is_read_by_one_rank_and_sent_to_all),

@@ -23,6 +23,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 # What the program is made of: nothing that renders.
 SOURCES = ["bench/mpi_combine.c", "bench/combine.c", "bench/combine_*.c",
+           "bench/hosts.c", "bench/line.c", "bench/words.c",
            "src/combine/active.c", "src/combine/borders.c",
            "src/combine/exchange.c", "src/combine/gather.c",
            "src/combine/pixels.c", "src/combine/rounds.c", "src/simd/isa.c", "src/comm/*.c", "src/base/context.c",

@@ -154,6 +154,16 @@ typedef struct snow_stats {
     double seconds_gather;  /* the picture brought to rank 0 */
     double seconds_hidden;  /* of splatting and compositing, done where the
                                thread would have waited for messages */
+    /* Processor time: of the calling thread where it renders alone (threads 1),
+     * else of the process. */
+    double cpu_splat; /* all up to the local image, encoding too; of a group
+                         of one rank, the warp too */
+    double cpu_combine, cpu_warp, cpu_gather;
+    /* What the combination was like: ranks that exchange at once in each of its
+     * rounds, the first of which are told, and active pixels of this rank's
+     * local image. */
+    int rounds, radices[16];
+    int64_t active_pixels;
 } snow_stats;
 
 /* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */

@@ -80,6 +80,7 @@ bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out);
  * differences mean something. */
 double snow_seconds(void);
 double snow_cpu_seconds(void);
+double snow_thread_seconds(void); /* of the calling thread */
 
 /* --- text ------------------------------------------------------------------
  */
