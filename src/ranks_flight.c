@@ -158,7 +158,7 @@ static void render_alone(snow_picture *p, const snow_volume *volume,
     snow_stats last = p->frame->stats;
     snow_status status = snow_frame_render(p->frame, volume, transfer, &p->view,
                                            settings, &p->image);
-    if (status == SNOW_OK && p->how.pixel_bits == 8)
+    if (status == SNOW_OK && p->how.pixel_bits == 8 && p->image->channels > 1)
         round_pixels(p->image);
     p->stats = p->frame->stats;
     p->frame->stats = last;

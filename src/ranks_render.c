@@ -48,6 +48,11 @@ static snow_status begin_picture(snow_picture *p, const snow_volume *volume,
                          "floats",
                          p->how.pixel_bits);
     SNOW_TRY(begin_job(p, volume, transfer, settings));
+    if (p->job.settings.mode != SNOW_MODE_OVER)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "mode %s is not built for many ranks yet; render on "
+                         "one, or take mode over",
+                         snow_mode_name(p->job.settings.mode));
     if (p->ranks->rank != 0 && !p->how.scattered)
         return SNOW_OK;
     SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,
@@ -144,10 +149,13 @@ static int64_t terms_of(const snow_picture *p) {
         s->deterministic,      place->width,       place->height,
         (int)p->how.combining, p->how.radix,       p->how.pixel_bits,
         place->slice_axis,     place->perspective, p->how.scattered};
-    const double reals[] = {place->back[0],  place->back[1], place->back[2],
-                            place->up[0],    place->up[1],   place->up[2],
-                            place->path,     s->threshold,   s->opacity_length,
-                            job->view->zoom, job->view->fov};
+    const double reals[] = {
+        place->back[0],   place->back[1],   place->back[2],
+        place->up[0],     place->up[1],     place->up[2],
+        place->path,      s->threshold,     s->opacity_length,
+        job->view->zoom,  job->view->fov,   place->origin[0],
+        place->origin[1], place->eye.at[0], place->eye.at[1],
+        place->eye.at[2]};
     uint64_t hash = UINT64_C(14695981039346656037);
     mix(&hash, numbers, sizeof numbers);
     mix(&hash, reals, sizeof reals);

@@ -10,6 +10,10 @@
  * mpi.h replaces by macros (malloc, free, sleep, ...). */
 #include <snowglass/mpi.h>
 
+#ifndef SMPI_H /* where time is simulated, tests would be counted */
+#include "mpi/watch.h"
+#endif
+
 #include <stdint.h>
 #include <string.h>
 
@@ -32,10 +36,14 @@ typedef struct mpi_side {
     int slot_count;
     /* Of the last wait: what was asked for. */
     MPI_Request *requests;
-    int *places;                  /* of the requests among the messages */
-    int room;                     /* of the two */
+    int *places; /* of the requests among the messages */
+    int *peers;  /* of the requests */
+    int room;    /* of the three */
+#ifndef SMPI_H
     snow_meanwhile_fn *meanwhile; /* what is done in waits, or NULL */
     void *meanwhile_user;
+    mpi_watch *watch;
+#endif
 } mpi_side;
 
 /* --- failures --------------------------------------------------------------
@@ -119,6 +127,8 @@ static snow_status make_room(mpi_side *side, int count) {
         grow(side, &side->requests, 0, room * sizeof(MPI_Request));
     if (status == SNOW_OK)
         status = grow(side, &side->places, 0, room * sizeof(int));
+    if (status == SNOW_OK)
+        status = grow(side, &side->peers, 0, room * sizeof(int));
     if (status == SNOW_OK)
         side->room = (int)room;
     return status;
@@ -206,7 +216,9 @@ static int gather(mpi_side *side, const snow_message *messages, int count) {
     int asked = 0;
     for (int i = 0; i < count; i++)
         if (messages[i].handle) {
-            side->requests[asked] = slot_of(side, &messages[i])->request;
+            const mpi_slot *slot = slot_of(side, &messages[i]);
+            side->requests[asked] = slot->request;
+            side->peers[asked] = slot->peer;
             side->places[asked++] = i;
         }
     return asked;
@@ -236,38 +248,28 @@ static void finish(mpi_side *side, snow_message *message,
     message->handle = NULL;
 }
 
-/* Does a piece of other work; false where there is none. */
-static bool work_meanwhile(const mpi_side *side) {
-    return side->meanwhile && side->meanwhile(side->meanwhile_user);
-}
-
-/* Until one of the requests is done: MPI_Waitany, with other work as long as
- * there is some. */
-static int wait_for_any(mpi_side *side, int asked, int *found,
-                        MPI_Status *done) {
-    int error = MPI_SUCCESS, flag = 0;
-    while (side->meanwhile) {
-        error = MPI_Testany(asked, side->requests, found, &flag, done);
-        if (error != MPI_SUCCESS || flag)
-            return error;
-        if (!work_meanwhile(side))
-            break;
+/* Waits for one of the first `asked` requests, which it has in *found where MPI
+ * tells; its error is in *error.  Errors: of the watch. */
+static snow_status await(mpi_side *side, int asked, int *found,
+                         MPI_Status *done, int *error) {
+    *found = -1;
+#ifdef SMPI_H
+    *error = MPI_Waitany(asked, side->requests, found, done);
+    return SNOW_OK;
+#else
+    bool busy = side->meanwhile != NULL; /* as long as there is a piece */
+    snow_status status = snow_watch_begin(side->watch);
+    while (status == SNOW_OK) {
+        int there = 0;
+        *error = MPI_Testany(asked, side->requests, found, &there, done);
+        if (*error != MPI_SUCCESS || there)
+            return SNOW_OK;
+        busy = busy && side->meanwhile(side->meanwhile_user);
+        status = snow_watch_turn(side->watch, side->peers, asked);
     }
-    return MPI_Waitany(asked, side->requests, found, done);
-}
-
-/* The same for one. */
-static int wait_for(const mpi_side *side, MPI_Request *request,
-                    MPI_Status *done) {
-    int error = MPI_SUCCESS, flag = 0;
-    while (side->meanwhile) {
-        error = MPI_Test(request, &flag, done);
-        if (error != MPI_SUCCESS || flag)
-            return error;
-        if (!work_meanwhile(side))
-            break;
-    }
-    return MPI_Wait(request, done);
+    side->failed = true;
+    return status;
+#endif
 }
 
 static snow_status wait_any(void *self, snow_message *messages, int count,
@@ -276,13 +278,15 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
     snow_status status = make_room(side, count);
     if (status != SNOW_OK)
         return status;
-    int asked = gather(side, messages, count), found = -1;
+    int asked = gather(side, messages, count), found, error;
     if (!asked) {
         *which = -1;
         return SNOW_OK;
     }
     MPI_Status done;
-    int error = wait_for_any(side, asked, &found, &done);
+    status = await(side, asked, &found, &done, &error);
+    if (status != SNOW_OK)
+        return status;
     if (error != MPI_SUCCESS) {
         bool known = found >= 0 && found < asked;
         return fail_side(
@@ -298,17 +302,22 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
  */
 static snow_status wait_all(void *self, snow_message *messages, int count) {
     mpi_side *side = self;
-    for (int i = 0; i < count; i++) {
+    snow_status status = make_room(side, 1);
+    for (int i = 0; i < count && status == SNOW_OK; i++) {
         if (!messages[i].handle)
             continue;
-        MPI_Status found;
-        mpi_slot *slot = slot_of(side, &messages[i]);
-        int error = wait_for(side, &slot->request, &found);
+        MPI_Status done;
+        int found, error;
+        gather(side, &messages[i], 1);
+        status = await(side, 1, &found, &done, &error);
+        if (status != SNOW_OK)
+            return status;
         if (error != MPI_SUCCESS)
-            return fail_side(side, error, "exchange messages with", slot->peer);
-        finish(side, &messages[i], &found);
+            return fail_side(side, error, "exchange messages with",
+                             side->peers[0]);
+        finish(side, &messages[i], &done);
     }
-    return SNOW_OK;
+    return status;
 }
 
 static double seconds(void *self) {
@@ -316,17 +325,24 @@ static double seconds(void *self) {
     return MPI_Wtime();
 }
 
+#ifndef SMPI_H
 static void occupy(void *self, snow_meanwhile_fn *meanwhile, void *user) {
     mpi_side *side = self;
     side->meanwhile = meanwhile;
     side->meanwhile_user = user;
 }
+#endif
 
 #ifdef SMPI_H
 /* In a simulation work takes the time that it is told to. */
 static void work(void *self, double length) {
     (void)self;
     smpi_execute(length);
+}
+#else
+static void limit_waits(void *self, double length) {
+    mpi_side *side = self;
+    snow_watch_limit(side->watch, length);
 }
 #endif
 
@@ -368,9 +384,13 @@ static void end(void *self) {
             }
         drop_group(&side->group);
     }
+#ifndef SMPI_H
+    snow_watch_free(side->watch, !finalized && !side->failed);
+#endif
     snow_context_release(side->context, side->slots);
     snow_context_release(side->context, side->requests);
     snow_context_release(side->context, side->places);
+    snow_context_release(side->context, side->peers);
     snow_context_release(side->context, side);
 }
 
@@ -408,16 +428,18 @@ static void remark_threads(snow_context *context) {
 
 /* This rank's objects over `ours`. */
 static snow_status equip(snow_context *context, MPI_Comm ours,
-                         snow_comm **out) {
+                         mpi_side **out_side, snow_comm **out) {
     static const snow_comm_ops ops = {.size = sizeof ops,
                                       .send = send_bytes,
                                       .receive = receive_bytes,
                                       .wait_any = wait_any,
                                       .wait_all = wait_all,
                                       .seconds = seconds,
-                                      .occupy = occupy,
 #ifdef SMPI_H
                                       .work = work,
+#else
+                                      .timeout = limit_waits,
+                                      .occupy = occupy,
 #endif
                                       .end = end};
     int rank = 0, ranks = 1;
@@ -430,6 +452,8 @@ static snow_status equip(snow_context *context, MPI_Comm ours,
     snow_status status = snow_comm_new(context, &ops, side, rank, ranks, out);
     if (status != SNOW_OK)
         snow_context_release(context, side);
+    else
+        *out_side = side;
     return status;
 }
 
@@ -450,6 +474,7 @@ static snow_status agree(snow_context *context, MPI_Comm ours,
 snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
                           snow_comm **out) {
     MPI_Comm ours;
+    mpi_side *side = NULL;
     snow_comm *comm = NULL;
     snow_status status = check_group(context, group);
     if (status != SNOW_OK)
@@ -458,7 +483,12 @@ snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
     if (error != MPI_SUCCESS)
         return fail_mpi(context, error, "duplicate the group", -1);
     MPI_Comm_set_errhandler(ours, MPI_ERRORS_RETURN);
-    status = agree(context, ours, equip(context, ours, &comm));
+    status = agree(context, ours, equip(context, ours, &side, &comm));
+#ifndef SMPI_H
+    if (status == SNOW_OK)
+        status =
+            agree(context, ours, snow_watch_new(context, ours, &side->watch));
+#endif
     if (status != SNOW_OK) {
         if (comm)
             snow_comm_free(comm); /* and the duplicate with it */
