@@ -58,14 +58,14 @@ typedef struct snow_comm_ops {
     double (*seconds)(void *self);
     /* Lets so much simulated time pass; NULL where time is real. */
     void (*work)(void *self, double seconds);
-    /* The longest that a wait may last in which nobody who is waited for
-     * answers, after which it fails; 0: for ever.  NULL where ranks cannot
-     * stop alone. */
-    void (*timeout)(void *self, double seconds);
     /* From now on waits do pieces of `work` as long as there is one and none of
      * their messages is done; NULL: no more.  A transport without this function
      * waits idly. */
     void (*occupy)(void *self, snow_meanwhile_fn *work, void *user);
+    /* The longest that a wait may last in which nobody who is waited for
+     * answers, after which it fails; 0: for ever.  NULL where ranks cannot
+     * stop alone. */
+    void (*timeout)(void *self, double seconds);
     /* Frees self. */
     void (*end)(void *self);
 } snow_comm_ops;

@@ -36,12 +36,12 @@ typedef struct mpi_side {
     int slot_count;
     /* Of the last wait: what was asked for. */
     MPI_Request *requests;
-    int *places;                  /* of the requests among the messages */
-    int *peers;                   /* of the requests */
-    int room;                     /* of the three */
+    int *places; /* of the requests among the messages */
+    int *peers;  /* of the requests */
+    int room;    /* of the three */
+#ifndef SMPI_H
     snow_meanwhile_fn *meanwhile; /* what is done in waits, or NULL */
     void *meanwhile_user;
-#ifndef SMPI_H
     mpi_watch *watch;
 #endif
 } mpi_side;
@@ -248,47 +248,29 @@ static void finish(mpi_side *side, snow_message *message,
     message->handle = NULL;
 }
 
-/* Does a piece of other work; false where there is none. */
-static bool work_meanwhile(const mpi_side *side) {
-    return side->meanwhile && side->meanwhile(side->meanwhile_user);
-}
-
-#ifdef SMPI_H
-/* Where time is simulated, tests take some of it. */
+/* Waits for one of the first `asked` requests, which it has in *found where MPI
+ * tells; its error is in *error.  Errors: of the watch. */
 static snow_status await(mpi_side *side, int asked, int *found,
                          MPI_Status *done, int *error) {
-    int there = 0;
     *found = -1;
-    while (side->meanwhile) {
-        *error = MPI_Testany(asked, side->requests, found, &there, done);
-        if (*error != MPI_SUCCESS || there)
-            return SNOW_OK;
-        if (!work_meanwhile(side))
-            break;
-    }
+#ifdef SMPI_H
     *error = MPI_Waitany(asked, side->requests, found, done);
     return SNOW_OK;
-}
 #else
-/* Waits for one of the first `asked` requests, which it has in *found where MPI
- * tells, and does other work as long as there is some; MPI's error is in
- * *error.  Errors: of the watch. */
-static snow_status await(mpi_side *side, int asked, int *found,
-                         MPI_Status *done, int *error) {
-    *found = -1;
+    bool busy = side->meanwhile != NULL; /* as long as there is a piece */
     snow_status status = snow_watch_begin(side->watch);
     while (status == SNOW_OK) {
         int there = 0;
         *error = MPI_Testany(asked, side->requests, found, &there, done);
         if (*error != MPI_SUCCESS || there)
             return SNOW_OK;
-        work_meanwhile(side);
+        busy = busy && side->meanwhile(side->meanwhile_user);
         status = snow_watch_turn(side->watch, side->peers, asked);
     }
     side->failed = true;
     return status;
-}
 #endif
+}
 
 static snow_status wait_any(void *self, snow_message *messages, int count,
                             int *which) {
@@ -343,11 +325,13 @@ static double seconds(void *self) {
     return MPI_Wtime();
 }
 
+#ifndef SMPI_H
 static void occupy(void *self, snow_meanwhile_fn *meanwhile, void *user) {
     mpi_side *side = self;
     side->meanwhile = meanwhile;
     side->meanwhile_user = user;
 }
+#endif
 
 #ifdef SMPI_H
 /* In a simulation work takes the time that it is told to. */
@@ -451,11 +435,11 @@ static snow_status equip(snow_context *context, MPI_Comm ours,
                                       .wait_any = wait_any,
                                       .wait_all = wait_all,
                                       .seconds = seconds,
-                                      .occupy = occupy,
 #ifdef SMPI_H
                                       .work = work,
 #else
                                       .timeout = limit_waits,
+                                      .occupy = occupy,
 #endif
                                       .end = end};
     int rank = 0, ranks = 1;
