@@ -7,6 +7,7 @@
 #include "launch.h"
 #include "marks.h"
 #include "outputs.h"
+#include "paint.h"
 #include "render_stats.h"
 #include "report.h"
 #include "scene.h"
@@ -116,6 +117,7 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->isa = (snow_isa)snow_isa_named(asked->isa);
     out->threads = (int)asked->threads;
     out->deterministic = asked->deterministic;
+    out->mode = (snow_mode)snow_mode_named(asked->mode);
 }
 
 int make_settings(const options *asked, const snow_volume_info *info,
@@ -159,6 +161,7 @@ typedef struct work {
     scene scene;
     snow_image *image; /* NULL on ranks that do not write */
     double begin;
+    char painted[PAINT_TOLD_BYTES]; /* what was made of values */
 } work;
 
 static snow_status make_marks(const work *w, snow_overlay **out) {
@@ -208,7 +211,7 @@ static void tell_choices(const work *w) {
     char text[1024];
     scene_choices(&w->scene, text, sizeof text);
     if (w->scene.asked->verbosity >= 0)
-        say("%s", text);
+        say("%s%s", text, w->painted);
 }
 
 /* What can be refused before anything is read; outputs by the rank that
@@ -234,6 +237,9 @@ static int run(work *w, const options *asked) {
         return done;
     progress_begin(asked, "rendering");
     done = scene_draw(&w->scene, asked->azimuth, &w->image);
+    if (done == GO_ON)
+        done = paint_values(asked, w->scene.context, w->scene.transfer, false,
+                            &w->image, w->painted);
     progress_end(asked);
     if (done != GO_ON)
         return done;

@@ -184,6 +184,9 @@ static void fill_look(const options *asked, snow_recipe *out) {
     out->opacity_count = asked->opacities.count;
     memcpy(out->opacities, asked->opacities.points,
            asked->opacities.count * sizeof *out->opacities);
+    out->gradient_opacity_count = asked->gradient_opacities.count;
+    memcpy(out->gradient_opacities, asked->gradient_opacities.points,
+           asked->gradient_opacities.count * sizeof *out->gradient_opacities);
     out->opacity_per_mm = strcmp(asked->opacity_unit, "mm") == 0;
 }
 

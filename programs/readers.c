@@ -280,6 +280,16 @@ bool read_points(const option_row *row, const char *text, void *field,
     return true;
 }
 
+bool read_gradient_points(const option_row *row, const char *text, void *field,
+                          char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_points(text, field))
+        return refuse(wrong, "are no control points; give MAGNITUDE:FACTOR "
+                             "pairs, magnitudes rising, factors 0 to 1, at "
+                             "most 256, such as 0:0,20:1");
+    return true;
+}
+
 /* Any angle: what is beyond a turn means the same as within it. */
 bool read_directions(const option_row *row, const char *text, void *field,
                      char wrong[WRONG_BYTES]) {

@@ -13,6 +13,7 @@
 #include "frames.h"
 #include "interrupt.h"
 #include "outputs.h"
+#include "paint.h"
 #include "report.h"
 #include "sequence_encoder.h"
 #include "sequence_place.h"
@@ -67,7 +68,8 @@ int sequence_check(const options *asked) {
     if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
                          same_place(asked->stats, asked->output)))
         return fail_usage("--stats: goes where --output goes; name two places");
-    return check_settings(asked);
+    int done = paint_check(asked, true);
+    return done == GO_ON ? check_settings(asked) : done;
 }
 
 /* --- one frame, by the workers ---------------------------------------------

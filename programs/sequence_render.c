@@ -69,8 +69,8 @@ static void tell_choices(const shot_renderer *shots) {
     char text[1024];
     scene_choices(&shots->scene, text, sizeof text);
     if (asked->verbosity >= 0)
-        say("%s; %" PRId64 " frames of %lldx%lld to %s", text, shots->count,
-            (long long)asked->size[0], (long long)asked->size[1],
+        say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text, shots->painted,
+            shots->count, (long long)asked->size[0], (long long)asked->size[1],
             asked->output);
     marks_tell(asked);
 }
@@ -80,6 +80,9 @@ static int render(void *self, const movie_shot *shot, snow_image **image) {
     int done = shots_volume(shots, shot);
     if (done == GO_ON)
         done = scene_draw(&shots->scene, shot->azimuth, image);
+    if (done == GO_ON)
+        done = paint_values(shots->scene.asked, shots->scene.context,
+                            shots->scene.transfer, true, image, shots->painted);
     if (done != GO_ON)
         return done;
     if (!shots->drawn)

@@ -386,6 +386,7 @@ static snow_status look_around(snow_insitu *insitu, snow_placement *placement,
     SNOW_TRY(
         snow_placement_make(insitu->context, &insitu->whole, &view, placement));
     return snow_ghosts_needed(insitu->context, &insitu->whole, &view, &settings,
+                              insitu->look.look.gradient_opacities != NULL,
                               true, layers);
 }
 

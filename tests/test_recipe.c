@@ -9,10 +9,11 @@
 static const char all_keys[] =
     "{\"input\": \"a.raw\", \"output\": \"b_%04d.png\", \"overwrite\": true,"
     " \"size\": [640, 480], \"background\": [1, 0.5, 0], \"bits\": 16,"
-    " \"mode\": \"over\", \"threshold\": 10.5, \"encoding\": \"rle\","
+    " \"mode\": \"mip\", \"threshold\": 10.5, \"encoding\": \"rle\","
     " \"method\": \"footprint\", \"kernel\": \"gauss\", \"footprint\": 5,"
     " \"preset\": \"ct-bone\", \"colormap\": \"viridis\","
     " \"opacity\": [[-10, 0], [0.25, 0.5], [90, 1]],"
+    " \"gradient-opacity\": [[0, 0.125], [30, 1]],"
     " \"range\": [\"p1\", \"p99.5\"], \"opacity-unit\": \"mm\","
     " \"shade\": \"none\", \"light\": [30, -40.5], \"ambient\": 0.1,"
     " \"diffuse\": 0.3, \"specular\": 0.4, \"shininess\": 7,"
@@ -55,6 +56,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_true(r.image.background[1] == 0.5);
     assert_true(r.width == 640 && r.height == 480);
     assert_true(r.settings.threshold == 10.5);
+    assert_int_equal(r.settings.mode, SNOW_MODE_MIP);
     assert_int_equal(r.settings.encoding, SNOW_ENCODING_RLE);
     assert_int_equal(r.settings.method, SNOW_METHOD_FOOTPRINT);
     assert_int_equal(r.settings.kernel, SNOW_KERNEL_GAUSS);
@@ -63,6 +65,9 @@ static void every_key_reaches_its_field(void **state) {
     assert_string_equal(r.colormap, "viridis");
     assert_int_equal(r.opacity_count, 3);
     assert_true(r.opacities[1].value == 0.25 && r.opacities[1].opacity == 0.5);
+    assert_int_equal(r.gradient_opacity_count, 2);
+    assert_true(r.gradient_opacities[0].opacity == 0.125 &&
+                r.gradient_opacities[1].value == 30);
     assert_int_equal(r.range, SNOW_RANGE_PERCENTILES);
     assert_true(r.low == 1 && r.high == 99.5);
     assert_true(r.opacity_per_mm);
@@ -147,6 +152,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"azimuth\": \"30\"}", "\"azimuth\" must be a number"},
         {"{\"opacity\": [[0, 0], [-1, 1]]}", "values that do not fall"},
         {"{\"opacity\": [[0, 1.5]]}", "opacities 0 to 1"},
+        {"{\"gradient-opacity\": [[0, 2]]}", "\"gradient-opacity\" must be"},
         {"{\"opacity\": []}", "\"opacity\" must be"},
         {"{\"range\": [2, 1]}", "\"range\" must be"},
         {"{\"range\": [\"p1\", 3]}", "\"range\" must be"},
@@ -161,7 +167,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"window\": 3, \"level\": 1, \"range\": [0, 1]}", "go together"},
         {"{\"type\": \"int12\"}", "\"type\" must be one of"},
         {"{\"overwrite\": 1}", "true or false"},
-        {"{\"mode\": \"mip\"}", "\"mode\" must be \"over\""},
+        {"{\"mode\": \"most\"}", "\"mode\" must be one of"},
         {"{\"roll\": 1, \"roll\": 2}", "duplicate"},
         {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},
         {"[1]", "one JSON object"},

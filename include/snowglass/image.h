@@ -1,7 +1,9 @@
 /* snowglass/image.h - the picture: float pixels, premultiplied, linear.
  *
  * Row 0 is the top.  Grey pictures have two channels (grey, alpha), colour
- * pictures four (red, green, blue, alpha). */
+ * pictures four (red, green, blue, alpha).  One channel is no picture yet but
+ * an array of values in data units (modes mean and sum, depths), NaN where
+ * there is none. */
 #ifndef SNOWGLASS_IMAGE_H
 #define SNOWGLASS_IMAGE_H
 
@@ -15,7 +17,8 @@ extern "C" {
 typedef struct snow_image snow_image;
 typedef struct snow_overlay snow_overlay; /* snowglass/overlay.h */
 
-/* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels.
+/* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels, or
+ * an array of zeros with 1.
  * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.  Free with snow_image_free. */
 SNOW_API snow_status snow_image_new(snow_context *context, int width,
                                     int height, int channels, snow_image **out);
@@ -49,19 +52,23 @@ typedef struct snow_image_options {
  *   .png  straight alpha, round(255 x) or round(65535 x), x limited to 0 to 1;
  *         pixels with a NaN are transparent; without alpha when flattened; grey
  *         when the picture has two channels (and the background no colour)
- *   .npy  float32 (height, width, 4), premultiplied RGBA
- *   .pfm  float32 RGB, premultiplied, without alpha
- *   .exr  OpenEXR: float32 RGBA, premultiplied, packed without loss (ZIP)
+ *   .npy  float32 (height, width, 4), premultiplied RGBA; values (height,
+ *         width)
+ *   .pfm  float32 RGB, premultiplied, without alpha; values as grey
+ *   .exr  OpenEXR: float32 RGBA, premultiplied, packed without loss (ZIP);
+ *         values as channel Y
  *   .tif  TIFF: float32 RGBA, premultiplied (associated alpha), packed without
- *         loss (Deflate); also .tiff
+ *         loss (Deflate); values as one sample; also .tiff
  *   .webp straight alpha as in PNG, 8 bits, packed without loss; at most 16383
  *         pixels a side
  * The last three need libraries that a build may lack (snow_image_suffix).
+ * Values are no colours: a PNG or WebP of them is refused (snow_values_paint in
+ * render.h makes colours of them).
  * The file is written aside and renamed, so that it is whole or absent; an
  * existing one is kept, and an error, unless options->overwrite.  `options`
  * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix, or
- * one that this build lacks; a background, bits or an overlay for floats),
- * SNOW_NO_MEMORY. */
+ * one that this build lacks; a background, bits or an overlay for floats;
+ * values into levels), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
 
@@ -122,8 +129,8 @@ typedef struct snow_image_difference {
     int x, y;       /* a pixel of the largest difference */
 } snow_image_difference;
 
-/* Compares two pictures of one size (2 channels count as grey).  NaN equals
- * NaN only, an infinity itself only: else they are infinitely far apart.
+/* Compares two pictures of one size (1 and 2 channels count as grey).  NaN
+ * equals NaN only, an infinity itself only: else they are infinitely far apart.
  * Errors: SNOW_DIFFERENT when the sizes differ (the message gives them),
  * SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_compare(const snow_image *a,

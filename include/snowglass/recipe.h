@@ -51,6 +51,8 @@ typedef struct snow_recipe {
                                  length stays 0 */
     snow_image_options image; /* of the file */
     void *owned;              /* what texts lie in; NULL: the caller's */
+    size_t gradient_opacity_count; /* of the look; 0: none */
+    snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS];
 } snow_recipe;
 
 /* The defaults. */

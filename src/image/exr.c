@@ -1,7 +1,8 @@
 /* image/exr.c - OpenEXR files, by the core library of OpenEXR 3 (in C).
  *
  * Written: one part of scan lines with channels A, B, G, R of 32-bit floats,
- * premultiplied as the format wants it, ZIP packed.  The format means light to
+ * premultiplied as the format wants it, or Y of values in data units, ZIP
+ * packed.  The format means light to
  * be linear; our values are written as they are.  Read: parts of scan lines,
  * any packing, channels R, G, B, A or Y, halves and integers too.
  *
@@ -99,8 +100,9 @@ static exr_result_t begin_part(exr_file *file, const snow_image *image) {
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(
             file->exr, part, image->width, image->height, EXR_COMPRESSION_ZIP);
-    for (int n = 0; n < 4 && code == EXR_ERR_SUCCESS; n++)
-        code = exr_add_channel(file->exr, part, channels[n].name,
+    bool values = image->channels == 1;
+    for (int n = 0; n < (values ? 1 : 4) && code == EXR_ERR_SUCCESS; n++)
+        code = exr_add_channel(file->exr, part, values ? "Y" : channels[n].name,
                                EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1);
     return code == EXR_ERR_SUCCESS ? exr_write_header(file->exr) : code;
 }
@@ -125,7 +127,9 @@ static exr_result_t write_chunk(exr_file *file, int y, const float *lines,
     for (int n = 0; n < pipe->channel_count; n++) {
         exr_coding_channel_info_t *channel = &pipe->channels[n];
         channel->encode_from_ptr =
-            (const uint8_t *)(lines + channels[n].sample);
+            (const uint8_t *)(lines + (pipe->channel_count == 1
+                                           ? 0
+                                           : channels[n].sample));
         channel->user_bytes_per_element = 4;
         channel->user_data_type = EXR_PIXEL_FLOAT;
         channel->user_pixel_stride = 16;

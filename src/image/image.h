@@ -22,16 +22,16 @@ struct snow_image {
 snow_status snow_image_make(snow_context *context, int width, int height,
                             int channels, snow_image **out);
 
-/* Pixel `index` (y * width + x) as red, green, blue, alpha; grey is r = g = b.
- */
+/* Pixel `index` (y * width + x) as red, green, blue, alpha; grey is r = g = b,
+ * and so are values, of alpha 1. */
 static inline void snow_image_rgba(const snow_image *image, size_t index,
                                    float rgba[4]) {
     const float *pixel = image->pixels + index * (size_t)image->channels;
-    bool grey = image->channels == 2;
+    bool grey = image->channels <= 2;
     rgba[0] = pixel[0];
     rgba[1] = pixel[grey ? 0 : 1];
     rgba[2] = pixel[grey ? 0 : 2];
-    rgba[3] = pixel[grey ? 1 : 3];
+    rgba[3] = image->channels == 1 ? 1 : pixel[grey ? 1 : 3];
 }
 
 /* --- formats -------------------------------------------------------------- */
@@ -107,7 +107,8 @@ snow_status snow_image_read_floats(snow_source *source, int64_t width,
                                    const snow_float_layout *layout,
                                    snow_image **out);
 
-/* Appends all pixels as little-endian 32-bit floats, 3 or 4 a pixel. */
+/* Appends all pixels as little-endian 32-bit floats, 3 or 4 a pixel, or 1 of
+ * values. */
 snow_status snow_image_write_floats(const snow_image *image, int channels,
                                     bool bottom_up, snow_writer *writer);
 

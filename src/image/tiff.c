@@ -126,16 +126,19 @@ static void open_tiff(tiff_file *file, const char *name, const char *mode) {
 
 static bool set_tags(TIFF *tiff, const snow_image *image, int strip) {
     uint16_t extra = EXTRASAMPLE_ASSOCALPHA;
-    bool good = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, image->width) &&
-                TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, image->height) &&
-                TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32) &&
-                TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP) &&
-                TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 4) &&
-                TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &extra) &&
-                TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB) &&
-                TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
-                TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) &&
-                TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, strip);
+    bool values = image->channels == 1;
+    bool good =
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, image->width) &&
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, image->height) &&
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32) &&
+        TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP) &&
+        TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, values ? 1 : 4) &&
+        (values || TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &extra)) &&
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC,
+                     values ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) &&
+        TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
+        TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) &&
+        TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, strip);
     if (good && TIFFIsCODECConfigured(COMPRESSION_ADOBE_DEFLATE))
         good = TIFFSetField(tiff, TIFFTAG_COMPRESSION,
                             COMPRESSION_ADOBE_DEFLATE) &&
@@ -153,7 +156,8 @@ static snow_status fail_writing(const tiff_file *file) {
 }
 
 static snow_status make_file(tiff_file *file, const snow_image *image) {
-    int row = 16 * image->width;
+    int samples = image->channels == 1 ? 1 : 4,
+        row = 4 * samples * image->width;
     int strip = STRIP_BYTES / row < 1 ? 1 : STRIP_BYTES / row;
     open_tiff(file, "picture.tif", "w");
     if (!file->tiff || !set_tags(file->tiff, image, strip))
@@ -165,8 +169,11 @@ static snow_status make_file(tiff_file *file, const snow_image *image) {
     bool good = true;
     for (int y = 0; y < image->height && good; y++) {
         size_t first = (size_t)y * (size_t)image->width;
-        for (int x = 0; x < image->width; x++)
-            snow_image_rgba(image, first + (size_t)x, line + 4 * x);
+        for (int x = 0; x < image->width; x++) {
+            float rgba[4];
+            snow_image_rgba(image, first + (size_t)x, rgba);
+            memcpy(line + samples * x, rgba, (size_t)samples * sizeof *line);
+        }
         good = TIFFWriteScanline(file->tiff, line, (uint32_t)y, 0) == 1;
     }
     snow_release(file->context, line);

@@ -163,6 +163,10 @@ void snow_recipe_look(const snow_recipe *recipe, snow_look *out) {
         out->opacities = recipe->opacities;
         out->opacity_count = recipe->opacity_count;
     }
+    if (recipe->gradient_opacity_count) {
+        out->gradient_opacities = recipe->gradient_opacities;
+        out->gradient_opacity_count = recipe->gradient_opacity_count;
+    }
 }
 
 static bool take_place(const double told[3], double out[3]) {
