@@ -10,10 +10,10 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Formats that are written: the library names them by suffix only. */
+/* Formats of volumes that are written: the library names them by suffix only.
+ */
 static const char *const volume_suffixes =
     ".nrrd .nii .nii.gz .mha .raw .raw.gz";
-static const char *const picture_suffixes = ".png .npy .pfm";
 
 static const char *encoding_at(size_t i) {
     return i < 3 ? snow_encoding_name((snow_encoding)(i + SNOW_ENCODING_CRS))
@@ -30,6 +30,24 @@ static const char *method_at(size_t i) {
     static const snow_method methods[] = {SNOW_METHOD_ORIGINAL,
                                           SNOW_METHOD_FOOTPRINT};
     return i < 2 ? snow_method_name(methods[i]) : NULL;
+}
+
+/* Of pictures, those that this build writes. */
+static const char *picture_suffix_at(size_t i) {
+    const char *suffix;
+    bool built;
+    for (size_t n = 0; (suffix = snow_image_suffix(n, &built)); n++)
+        if (built && i-- == 0)
+            return suffix;
+    return NULL;
+}
+
+static bool writes_webp(void) {
+    const char *suffix;
+    for (size_t i = 0; (suffix = picture_suffix_at(i)); i++)
+        if (strcmp(suffix, ".webp") == 0)
+            return true;
+    return false;
 }
 
 /* Keys of JSON and first words of lines alike. */
@@ -102,7 +120,7 @@ static int tell_json(void) {
     for (size_t i = 0; i < LISTS; i++)
         json_object_set_new(o, lists[i].key, list_json(lists[i].at));
     json_object_set_new(o, "volume_outputs", words_json(volume_suffixes));
-    json_object_set_new(o, "picture_outputs", words_json(picture_suffixes));
+    json_object_set_new(o, "picture_outputs", list_json(picture_suffix_at));
     json_object_set_new(o, "ffmpeg", json_boolean(encoder_is_there()));
     json_object_set_new(o, "libraries", libraries_json());
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
@@ -138,10 +156,15 @@ static int tell_text(void) {
         printf("\n");
     }
     print_row("volume outputs", volume_suffixes);
-    print_row("picture outputs", picture_suffixes);
-    print_row("movie outputs", encoder_is_there()
-                                   ? ".mp4 .webm .gif, by ffmpeg"
-                                   : "frames only: there is no ffmpeg");
+    printf("%-16s", "picture outputs");
+    for (size_t k = 0; picture_suffix_at(k); k++)
+        printf("%s%s", k ? " " : "", picture_suffix_at(k));
+    printf("\n");
+    printf("%-16s%s%s%s\n", "movie outputs", writes_webp() ? ".webp" : "",
+           encoder_is_there() && writes_webp() ? ", " : "",
+           encoder_is_there() ? ".mp4 .webm .gif by ffmpeg"
+           : writes_webp()    ? "; of others frames only: there is no ffmpeg"
+                              : "frames only: there is no ffmpeg");
     print_libraries();
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());

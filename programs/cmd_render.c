@@ -21,14 +21,6 @@ static bool is_stream(const char *path) {
     return path && strcmp(path, "-") == 0;
 }
 
-/* Whether a path gets a PNG, the only format with bits and a background. */
-static bool is_png(const char *path) {
-    size_t length = strlen(path);
-    return is_stream(path) ||
-           (length >= 4 && strcmp(path + length - 4, ".png") == 0) ||
-           (length >= 4 && strcmp(path + length - 4, ".PNG") == 0);
-}
-
 int check_settings(const options *asked) {
     if (strcmp(asked->method, "original") == 0 &&
         strcmp(asked->encoding, "auto") != 0)
@@ -45,9 +37,10 @@ int check_settings(const options *asked) {
 static int check_combination(const options *asked) {
     if (!asked->output)
         return fail_usage("no output is named; add -o OUT.png");
-    if (!is_png(asked->output) && (asked->background.given || asked->bits))
-        return fail_usage("%s: --background and --bits are for PNG files; "
-                          "leave them out or name a .png",
+    if (snow_image_bits(asked->output) == 0 &&
+        (asked->background.given || asked->bits))
+        return fail_usage("%s: --background and --bits are for PNG and WebP "
+                          "files; leave them out or name a .png",
                           asked->output);
     if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
                          same_place(asked->stats, asked->output)))
@@ -59,11 +52,22 @@ static int check_combination(const options *asked) {
     return done == GO_ON ? check_settings(asked) : done;
 }
 
+snow_image_options picture_form(const options *asked) {
+    snow_image_options form = {
+        .flatten = asked->background.given,
+        .bits = asked->bits ? (asked->bits[0] == '8' ? 8 : 16) : 0,
+        .overwrite = asked->overwrite};
+    memcpy(form.background, asked->background.rgb, sizeof form.background);
+    return form;
+}
+
 /* A long rendering must not end in an output that could have been refused at
  * once. */
 static int check_paths(snow_context *context, const options *asked) {
+    snow_image_options form = picture_form(asked);
     snow_status status =
-        snow_image_check_path(context, asked->output, asked->overwrite);
+        snow_image_check(context, asked->output, (int)asked->size[0],
+                         (int)asked->size[1], &form);
     if (status != SNOW_OK)
         return fail_status(context, status);
     return asked->stats ? check_stats_path(asked->stats, asked->overwrite)
@@ -177,19 +181,15 @@ static snow_status make_marks(const work *w, snow_overlay **out) {
 /* A pipe is written through and may block, so there an interruption does not
  * wait. */
 static int write_picture(work *w, const options *asked) {
-    snow_image_options form = {
-        .flatten = asked->background.given,
-        .bits = asked->bits ? (asked->bits[0] == '8' ? 8 : 16) : 0,
-        .overwrite = asked->overwrite};
-    memcpy(form.background, asked->background.rgb, sizeof form.background);
+    snow_image_options form = picture_form(asked);
     snow_overlay *overlay = NULL;
     double begin = seconds_now();
     if (!is_special(asked->output))
         interrupt_hold(); /* before the word, so that who reads it may rely */
     if (!launch_talks())
         return GO_ON;
-    progress(asked, "writing");
     snow_status status = make_marks(w, &overlay);
+    progress_begin(asked, "writing");
     form.overlay = overlay;
     if (status == SNOW_OK)
         status = snow_image_save(w->image, asked->output, &form);
@@ -237,21 +237,22 @@ static int run(work *w, const options *asked) {
     int done = launch_agree(check(w, asked));
     if (done != GO_ON)
         return done;
-    progress(asked, "reading");
+    progress_begin(asked, "reading");
     done = scene_open(&w->scene, asked->operands[0], asked->time);
-    if (done == GO_ON) {
-        progress(asked, "rendering");
-        done = scene_draw(&w->scene, asked->azimuth, &w->image);
-    }
+    progress_end(asked);
+    if (done != GO_ON)
+        return done;
+    progress_begin(asked, "rendering");
+    done = scene_draw(&w->scene, asked->azimuth, &w->image);
     if (done == GO_ON)
         done = paint_values(asked, w->scene.context, w->scene.transfer, false,
                             &w->image, w->painted);
-    progress(asked, NULL);
+    progress_end(asked);
     if (done != GO_ON)
         return done;
     tell_choices(w);
     done = launch_agree(write_picture(w, asked));
-    progress(asked, NULL);
+    progress_end(asked);
     return done == GO_ON ? tell_figures(w, asked) : done;
 }
 

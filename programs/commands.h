@@ -58,6 +58,9 @@ int make_settings(const options *asked, const snow_volume_info *info,
 int make_view(snow_context *context, const options *asked,
               const snow_volume_info *info, snow_view *out);
 
+/* How the options ask for a picture's file. */
+snow_image_options picture_form(const options *asked);
+
 /* Refuses settings that contradict each other, before a volume is read.
  * Answers GO_ON or an exit code. */
 int check_settings(const options *asked);

@@ -37,15 +37,15 @@ const option_row option_table[] = {
     {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
      read_text,
      FIELD(output), 0, 0, "",
-     "where to write: .png .npy .pfm, or - for a PNG on standard output; a "
-     "movie: .mp4 .webm .gif, or frames by a pattern such as f_%04d.png; a "
-     "volume: .nrrd .nii .nii.gz .mha .npy .raw .raw.gz"},
+     "where to write: .png .webp, of floats .npy .exr .tif .pfm, or - for a PNG "
+     "on standard output; a movie: .mp4 .webm .gif .webp, or frames by a pattern "
+     "such as f_%04d.png; a volume: .nrrd .nii .nii.gz .mha .npy .raw .raw.gz"},
     {"size", 's', "WxH", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
      "pixels of the picture (512x512)"},
     {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
      FIELD(background), 0, 0, "",
-     "lay the PNG on a colour: a name, #rgb, #rrggbb or r,g,b of 0 to 1 (none: "
-     "it stays transparent, a movie black)"},
+     "lay a PNG or WebP on a colour: a name, #rgb, #rrggbb or r,g,b of 0 to 1 "
+     "(none: it stays transparent, a movie by ffmpeg black)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
      "", "bits a channel of the PNG (8)"},
     {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
@@ -206,9 +206,9 @@ const option_row option_table[] = {
      "this machine)"},
     {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
      FIELD(progress), 0, 0, "",
-     "only names each stage on stderr as it begins, without a bar (auto: on a "
-     "terminal); movies tell frames a second and the time left, without a "
-     "terminal every 10 s"},
+     "on stderr; a terminal shows the stage and its seconds, or a bar with frames "
+     "a second and the time left; without one a line comes every 10 s (auto), "
+     "and one for each stage too (always)"},
     {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
      "write figures of the run as JSON; - is standard output; a file that "
      "exists needs --overwrite"},
@@ -231,7 +231,7 @@ const option_row option_table[] = {
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
      1000000, "", "pictures of one turn (120)"},
     {"fps", 0, "N", TOPIC_MORE, MOVIES, read_real, FIELD(fps), 0.01, 1000, "",
-     "frames a second of .mp4, .webm and .gif (25)"},
+     "frames a second of a movie (25)"},
     {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
      "go on where an earlier run was ended, with the frames that it left whole; "
      "the other options must be the same"},

@@ -7,6 +7,8 @@
 
 #include <errno.h>
 #include <math.h>
+#include <pthread.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,6 +24,10 @@ static bool stage_shown;
 
 /* What a rank that does not talk would have said last. */
 static char kept[LINE_BYTES];
+
+/* Held while the terminal's last line changes: a stage that lasts is told by a
+ * thread of its own. */
+static pthread_mutex_t talking = PTHREAD_MUTEX_INITIALIZER;
 
 static void wipe_stage(void) {
     if (stage_shown)
@@ -42,8 +48,10 @@ static void say_list(const char *format, va_list arguments) {
         memcpy(kept, line, sizeof kept);
         return;
     }
+    pthread_mutex_lock(&talking);
     wipe_stage();
     fprintf(stderr, "snowglass: %s\n", line);
+    pthread_mutex_unlock(&talking);
 }
 
 const char *last_said(void) {
@@ -142,14 +150,90 @@ void progress(const options *asked, const char *stage) {
     if (!progress_is_wanted(asked))
         return;
     bool always = strcmp(asked->progress, "always") == 0;
+    bool live = progress_is_live();
+    pthread_mutex_lock(&talking);
     wipe_stage();
-    if (progress_is_live()) {
+    if (live)
         fputs(stage ? stage : "", stderr);
-        stage_shown = stage != NULL;
-    } else if (always && stage) {
-        say("%s", stage);
-    }
+    stage_shown = live && stage;
     fflush(stderr);
+    pthread_mutex_unlock(&talking);
+    if (!live && always && stage)
+        say("%s", stage);
+}
+
+/* --- a stage that lasts -----------------------------------------------------
+ */
+
+/* Seconds between two words of a stage that lasts: on a terminal, elsewhere. */
+#define LIVE_SECONDS 1
+#define LINE_SECONDS 10
+
+/* The thread that speaks of it; only one stage is under way. */
+static struct {
+    pthread_t thread;
+    pthread_mutex_t lock;
+    pthread_cond_t ended;
+    bool running, ending;
+    const options *asked;
+    const char *stage;
+    double begin;
+} clock_of_stage = {.lock = PTHREAD_MUTEX_INITIALIZER,
+                    .ended = PTHREAD_COND_INITIALIZER};
+
+static void tell_stage(void) {
+    char line[80];
+    snprintf(line, sizeof line, "%s, %.0f s", clock_of_stage.stage,
+             seconds_now() - clock_of_stage.begin);
+    if (progress_is_live())
+        progress(clock_of_stage.asked, line);
+    else
+        say("%s", line);
+}
+
+static void *watch_stage(void *unused) {
+    (void)unused;
+    pthread_mutex_lock(&clock_of_stage.lock);
+    while (!clock_of_stage.ending) {
+        struct timespec until;
+        clock_gettime(CLOCK_REALTIME, &until);
+        until.tv_sec += progress_is_live() ? LIVE_SECONDS : LINE_SECONDS;
+        if (pthread_cond_timedwait(&clock_of_stage.ended, &clock_of_stage.lock,
+                                   &until) == ETIMEDOUT &&
+            !clock_of_stage.ending)
+            tell_stage();
+    }
+    pthread_mutex_unlock(&clock_of_stage.lock);
+    return NULL;
+}
+
+/* Signals are for the thread that waits for them. */
+void progress_begin(const options *asked, const char *stage) {
+    sigset_t all, before;
+    progress(asked, stage);
+    if (!progress_is_wanted(asked))
+        return;
+    clock_of_stage.asked = asked;
+    clock_of_stage.stage = stage;
+    clock_of_stage.begin = seconds_now();
+    clock_of_stage.ending = false;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    clock_of_stage.running =
+        pthread_create(&clock_of_stage.thread, NULL, watch_stage, NULL) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+void progress_end(const options *asked) {
+    if (clock_of_stage.running) {
+        pthread_mutex_lock(&clock_of_stage.lock);
+        clock_of_stage.ending = true;
+        pthread_cond_signal(&clock_of_stage.ended);
+        pthread_mutex_unlock(&clock_of_stage.lock);
+        pthread_join(clock_of_stage.thread, NULL);
+        clock_of_stage.running = false;
+    }
+    progress(asked, NULL);
 }
 
 /* printf only fills a buffer: a full disk or a reader that went away shows

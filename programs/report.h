@@ -40,6 +40,12 @@ double seconds_now(void);
 /* Names a stage on standard error as --progress says; NULL ends the last. */
 void progress(const options *asked, const char *stage);
 
+/* The same of a stage that may last: its seconds are told every 10 s, on a
+ * terminal every second, until progress_end.  Between the two only the library
+ * may speak, and nobody else begins a stage. */
+void progress_begin(const options *asked, const char *stage);
+void progress_end(const options *asked);
+
 /* Whether --progress may say anything, and whether it goes to a terminal, where
  * a line is written over. */
 bool progress_is_wanted(const options *asked);

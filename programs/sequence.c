@@ -19,6 +19,7 @@
 #include "sequence_place.h"
 #include "sequence_record.h"
 #include "sequence_report.h"
+#include "sequence_webp.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -51,12 +52,6 @@ struct sequence {
     bool has_marks;
 };
 
-static bool is_png(const char *path) {
-    size_t length = strlen(path);
-    return length >= 4 && (strcmp(path + length - 4, ".png") == 0 ||
-                           strcmp(path + length - 4, ".PNG") == 0);
-}
-
 int sequence_check(const options *asked) {
     if (!asked->output)
         return fail_usage("no output is named; add -o OUT.mp4 or "
@@ -65,10 +60,10 @@ int sequence_check(const options *asked) {
     if (movie && asked->bits)
         return fail_usage("%s: --bits is for PNG files; leave it out",
                           asked->output);
-    if (!movie && !is_png(asked->output) &&
+    if (!movie && snow_image_bits(asked->output) == 0 &&
         (asked->background.given || asked->bits))
-        return fail_usage("%s: --background and --bits are for PNG files and "
-                          "movies; leave them out or name a .png",
+        return fail_usage("%s: --background and --bits are for PNG and WebP "
+                          "files and movies; leave them out or name a .png",
                           asked->output);
     if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
                          same_place(asked->stats, asked->output)))
@@ -79,6 +74,10 @@ int sequence_check(const options *asked) {
 
 /* --- one frame, by the workers ---------------------------------------------
  */
+
+static bool needs_encoder(const sequence *s) {
+    return s->place.format && s->place.format->arguments;
+}
 
 static snow_status fault(frame_slot *slot, const char *path, int number) {
     snprintf(slot->fault, sizeof slot->fault,
@@ -199,13 +198,13 @@ static void release(void *user, frame_slot *slot) {
 /* --- the beginning ---------------------------------------------------------
  */
 
-/* A movie has no transparency: black, unless another background is asked for.
- * Its frames are kept as what the encoder gets. */
+/* A movie by ffmpeg has no transparency: black, unless another background is
+ * asked for.  Its frames are kept as what the encoder gets. */
 static void set_form(sequence *s) {
     const color_value *color = &s->asked->background;
     if (color->given)
         memcpy(s->form.background, color->rgb, sizeof s->form.background);
-    s->form.flatten = color->given || s->place.format;
+    s->form.flatten = color->given || needs_encoder(s);
     s->form.bits = s->asked->bits ? (s->asked->bits[0] == '8' ? 8 : 16) : 0;
     s->form.overwrite = true; /* of names aside */
 }
@@ -292,9 +291,9 @@ static int begin_parts(sequence *s) {
         return done;
     place_sweep(&s->place);
     s->begun = !s->record.anew;
-    if (s->place.format && encoder_is_there())
+    if (needs_encoder(s) && encoder_is_there())
         done = start_encoder(s);
-    else if (s->place.format && s->asked->verbosity >= 0)
+    else if (needs_encoder(s) && s->asked->verbosity >= 0)
         say("%s: no ffmpeg is on the PATH: only frames are made, in %s",
             s->place.output, s->place.folder);
     if (done != GO_ON)
@@ -420,13 +419,8 @@ static int tell_encoder(sequence *s, const char *text) {
                        s->place.output, text, s->place.folder);
 }
 
-/* The movie gets its name when ffmpeg says that it is whole. */
-static int finish_movie(sequence *s) {
-    char text[600];
-    if (!encoder_finish(&s->encoder, text, sizeof text)) {
-        unlink(s->place.movie);
-        return tell_encoder(s, text);
-    }
+/* The movie gets its name when it is whole. */
+static int name_movie(sequence *s) {
     int number =
         place_output(s->place.movie, s->place.output, s->asked->overwrite);
     if (number == 0) {
@@ -436,6 +430,30 @@ static int finish_movie(sequence *s) {
     }
     return fail_output("%s: %s; the frames are in %s: give another place, or "
                        "make room and go on with --resume",
+                       s->place.output, strerror(number), s->place.folder);
+}
+
+static int finish_encoder(sequence *s) {
+    char text[600];
+    if (encoder_finish(&s->encoder, text, sizeof text))
+        return name_movie(s);
+    unlink(s->place.movie);
+    return tell_encoder(s, text);
+}
+
+/* Of frames that all lie there. */
+static int join_movie(sequence *s) {
+    const webp_job job = {.count = s->list->count,
+                          .width = (int)s->asked->size[0],
+                          .height = (int)s->asked->size[1],
+                          .rate = s->asked->fps,
+                          .alpha = !s->form.flatten};
+    int number = webp_join(&job, &s->place);
+    if (number == 0)
+        return name_movie(s);
+    unlink(s->place.movie);
+    return fail_output("%s: %s; the frames are in %s: put it right and give "
+                       "the same command with --resume",
                        s->place.output, strerror(number), s->place.folder);
 }
 
@@ -473,7 +491,9 @@ static int finish(sequence *s, int done) {
     if (status != SNOW_OK)
         done = tell_queue(s, status);
     if (done == GO_ON && s->encoding)
-        done = finish_movie(s);
+        done = finish_encoder(s);
+    else if (done == GO_ON && s->place.format && !needs_encoder(s))
+        done = join_movie(s);
     else if (done == GO_ON && s->place.format)
         done = fail_output("%s: no ffmpeg is on the PATH; the frames are in "
                            "%s: install it and give the same command with "

@@ -61,14 +61,15 @@ static const char *const gif[] = {
     NULL};
 
 static const movie_format formats[] = {
-    {".mp4", mp4}, {".webm", webm}, {".gif", gif}};
+    {".mp4", mp4}, {".webm", webm}, {".gif", gif}, {".webp", NULL}};
 
 const movie_format *movie_format_of(const char *path) {
     size_t length = strlen(path);
     for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
         size_t suffix = strlen(formats[i].suffix);
         if (length > suffix &&
-            strcmp(path + length - suffix, formats[i].suffix) == 0)
+            strcmp(path + length - suffix, formats[i].suffix) == 0 &&
+            (formats[i].arguments || !strchr(path, '%')))
             return &formats[i];
     }
     return NULL;

@@ -8,13 +8,15 @@
 #include <stddef.h>
 #include <sys/types.h>
 
-/* A movie format that ffmpeg shall write. */
+/* A movie format. */
 typedef struct movie_format {
     const char *suffix;           /* ".mp4" */
-    const char *const *arguments; /* of ffmpeg, before the file's name */
+    const char *const *arguments; /* of ffmpeg, before the file's name; NULL:
+                                     we write it ourselves (sequence_webp.h) */
 } movie_format;
 
-/* The format of a path's suffix; NULL when it is none of a movie. */
+/* The format of a path's suffix; NULL when it is none of a movie, or that of
+ * pictures which a pattern numbers. */
 const movie_format *movie_format_of(const char *path);
 
 /* Whether the program is on the PATH. */

@@ -7,6 +7,7 @@
  *     .f_%04d.png.frames              spin.mp4.frames/record
  *                                     spin.mp4.frames/movie.mp4, ffmpeg.log */
 #include "sequence_place.h"
+#include "commands.h"
 #include "outputs.h"
 #include "report.h"
 
@@ -18,7 +19,11 @@
 #include <unistd.h>
 
 #define ASIDE ".unfinished-"
-#define MOVIE_FRAMES "%06d.png"
+
+/* Of a movie: what an encoder gets, and what an animated WebP is made of. */
+static const char *frames_suffix(const sequence_place *place) {
+    return place->format->arguments ? ".png" : ".webp";
+}
 
 /* The library's own mark of files that are not whole, and six letters. */
 #define LIBRARY_MARK ".snow-"
@@ -36,13 +41,14 @@ static int fail_length(const char *output) {
 
 /* A movie's own files, all in one folder beside it. */
 static int read_movie(sequence_place *out) {
-    char frames[PATH_MAX], name[32];
+    char frames[PATH_MAX], name[32], numbers[32];
     if (names_are_meant(out->output))
         return fail_usage("%s: a movie is one file; leave out the %%",
                           out->output);
     snprintf(name, sizeof name, "movie%s", out->format->suffix);
+    snprintf(numbers, sizeof numbers, "%%06d%s", frames_suffix(out));
     if (!join(out->folder, sizeof out->folder, out->output, ".frames/") ||
-        !join(frames, sizeof frames, out->folder, MOVIE_FRAMES) ||
+        !join(frames, sizeof frames, out->folder, numbers) ||
         !join(out->movie, sizeof out->movie, out->folder, name) ||
         !join(out->log, sizeof out->log, out->folder, "ffmpeg.log") ||
         !join(out->record, sizeof out->record, out->folder, "record"))
@@ -53,9 +59,10 @@ static int read_movie(sequence_place *out) {
 
 static int read_pattern(sequence_place *out) {
     if (!names_are_meant(out->output))
-        return fail_usage("%s: one file for all frames; let it end with .mp4, "
-                          ".webm or .gif, or number them, as in f_%%04d.png",
-                          out->output);
+        return fail_usage(
+            "%s: one file for all frames; let it end with .mp4, "
+            ".webm, .gif or .webp, or number them, as in f_%%04d.png",
+            out->output);
     const char *fault = names_read(out->output, &out->names);
     if (fault)
         return fail_usage("%s: %s", out->output, fault);
@@ -88,45 +95,54 @@ bool place_aside(const sequence_place *place, int64_t index, char *out,
     return length >= 0 && (size_t)length < size;
 }
 
+static int check_frame(snow_context *context, const char *path,
+                       const options *asked) {
+    snow_image_options form = picture_form(asked);
+    form.overwrite = true;
+    snow_status status = snow_image_check(context, path, (int)asked->size[0],
+                                          (int)asked->size[1], &form);
+    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+}
+
 /* The library knows which names it can write, and where.  Whether frames are
  * there already is asked later. */
-static int check_pattern(snow_context *context, const sequence_place *place) {
+static int check_pattern(snow_context *context, const sequence_place *place,
+                         const options *asked) {
     char aside[PATH_MAX];
     char frame[PATH_MAX];
     if (!place_aside(place, INT64_C(1000000000), aside, sizeof aside) ||
         !place_frame(place, 0, frame, sizeof frame))
         return fail_length(place->output);
-    snow_status status = snow_image_check_path(context, frame, true);
-    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+    return check_frame(context, frame, asked);
 }
 
 /* A folder can be made where a file of the same name could be: a picture's
  * check says so without leaving one. */
 static int check_movie(snow_context *context, const sequence_place *place,
-                       bool overwrite) {
+                       const options *asked) {
     struct stat what;
-    char probe[PATH_MAX];
+    char probe[PATH_MAX], name[32];
     if (lstat(place->output, &what) == 0) {
         if (S_ISDIR(what.st_mode))
             return fail_output("%s: is a folder; name a file", place->output);
         if (!S_ISREG(what.st_mode) && !S_ISLNK(what.st_mode))
             return fail_output("%s: is no plain file; name one", place->output);
-        if (!overwrite)
+        if (!asked->overwrite)
             return fail_output("%s: exists; give --overwrite or another name",
                                place->output);
     }
     if (stat(place->folder, &what) == 0)
         return GO_ON;
-    if (!join(probe, sizeof probe, place->output, ".frames.png"))
+    snprintf(name, sizeof name, ".frames%s", frames_suffix(place));
+    if (!join(probe, sizeof probe, place->output, name))
         return fail_length(place->output);
-    snow_status status = snow_image_check_path(context, probe, true);
-    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+    return check_frame(context, probe, asked);
 }
 
 int place_check(snow_context *context, const sequence_place *place,
                 const options *asked) {
-    return place->format ? check_movie(context, place, asked->overwrite)
-                         : check_pattern(context, place);
+    return place->format ? check_movie(context, place, asked)
+                         : check_pattern(context, place, asked);
 }
 
 int64_t place_first(const sequence_place *place, int64_t from) {

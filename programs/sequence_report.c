@@ -31,6 +31,18 @@ static void write_time(double seconds, char *out, size_t size) {
         snprintf(out, size, "%d s", (int)whole);
 }
 
+#define BAR_CELLS 20
+
+/* "[######--------------] " */
+static int write_bar(const sequence_progress *progress, int64_t index,
+                     char *out, size_t size) {
+    char bar[BAR_CELLS + 1] = "";
+    int64_t full = (index + 1) * BAR_CELLS / progress->count;
+    for (int64_t i = 0; i < BAR_CELLS; i++)
+        bar[i] = i < full ? '#' : '-';
+    return snprintf(out, size, "[%s] ", bar);
+}
+
 /* Frames that were kept cost nothing, and say nothing of the rest. */
 static void write_line(const sequence_progress *progress, int64_t index,
                        double now, char *out, size_t size) {
@@ -57,7 +69,8 @@ void sequence_progress_step(sequence_progress *p, int64_t index,
         now - p->last < (live ? LIVE_SECONDS : LINE_SECONDS))
         return;
     p->last = now;
-    write_line(p, index, now, line, sizeof line);
+    int bar = live ? write_bar(p, index, line, sizeof line) : 0;
+    write_line(p, index, now, line + bar, sizeof line - (size_t)bar);
     if (live)
         progress(p->asked, line);
     else

@@ -133,8 +133,8 @@ info nope.nii --preset foo|--preset: 'foo' is unknown
 phantom --seed -1 cube|whole number from 0
 compare --tolerance 2 a b|is not a difference
 compare --tolerance 1/0 a b|is not a difference
-x -o y.npy --background white|are for PNG files
-x -o y.pfm --bits 16|are for PNG files
+x -o y.npy --background white|are for PNG and WebP
+x -o y.pfm --bits 16|are for PNG and WebP
 END
 
 # These need a volume to be found wrong.

@@ -39,12 +39,12 @@ SNOW_API float *snow_image_pixels(snow_image *image);
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 typedef struct snow_image_options {
-    bool flatten;                /* PNG: lay the picture on `background` */
-    double background[3];        /* red, green, blue, 0 to 1 */
-    int bits;                    /* PNG: 8 or 16 bits a channel; 0 means 8 */
-    bool overwrite;              /* replace an existing file */
-    const snow_overlay *overlay; /* PNG: drawn over the picture, whose size it
-                                    has; NULL: nothing */
+    bool flatten;         /* PNG, WebP: lay the picture on `background` */
+    double background[3]; /* red, green, blue, 0 to 1 */
+    int bits;             /* PNG: 8 or 16 bits a channel; 0 means 8 */
+    bool overwrite;       /* replace an existing file */
+    const snow_overlay *overlay; /* PNG, WebP: drawn over the picture, whose
+                                    size it has; NULL: nothing */
 } snow_image_options;
 
 /* Writes a picture in the format of the path's suffix; "-" is standard output,
@@ -55,19 +55,31 @@ typedef struct snow_image_options {
  *   .npy  float32 (height, width, 4), premultiplied RGBA; values (height,
  *         width)
  *   .pfm  float32 RGB, premultiplied, without alpha; values as grey
- * Values are no colours: a PNG of them is refused (snow_values_paint in
+ *   .exr  OpenEXR: float32 RGBA, premultiplied, packed without loss (ZIP);
+ *         values as channel Y
+ *   .tif  TIFF: float32 RGBA, premultiplied (associated alpha), packed without
+ *         loss (Deflate); values as one sample; also .tiff
+ *   .webp straight alpha as in PNG, 8 bits, packed without loss; at most 16383
+ *         pixels a side
+ * The last three need libraries that a build may lack (snow_image_suffix).
+ * Values are no colours: a PNG or WebP of them is refused (snow_values_paint in
  * render.h makes colours of them).
  * The file is written aside and renamed, so that it is whole or absent; an
  * existing one is kept, and an error, unless options->overwrite.  `options`
- * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; a
- * background or bits for other than PNG; values into a PNG), SNOW_NO_MEMORY. */
+ * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix, or
+ * one that this build lacks; a background, bits or an overlay for floats;
+ * values into levels), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
 
 /* The most bits a channel that the format of a path's suffix has for levels: 16
- * for .png and "-"; 0 where it holds floats, which takes neither bits, a
- * background nor an overlay; -1: none that snow_image_save writes. */
+ * for .png and "-", 8 for .webp; 0 where it holds floats, which takes neither
+ * bits, a background nor an overlay; -1: none that snow_image_save writes. */
 SNOW_API int snow_image_bits(const char *path);
+
+/* The suffix of picture format `index` (from 0), and whether this build writes
+ * and reads it; NULL past the end. */
+SNOW_API const char *snow_image_suffix(size_t index, bool *built);
 
 /* The picture on a background (red, green, blue, 0 to 1) as rows of bytes, red,
  * green, blue for each pixel: width * height * 3 of them, with the levels that
@@ -87,10 +99,18 @@ SNOW_API void snow_image_bytes_drawn(const snow_image *image,
 SNOW_API snow_status snow_image_check_path(snow_context *context,
                                            const char *path, bool overwrite);
 
+/* The same of all that snow_image_save would refuse for a picture of a size
+ * with these options, which may be NULL.  Errors: SNOW_BAD_USAGE,
+ * SNOW_BAD_OUTPUT. */
+SNOW_API snow_status snow_image_check(snow_context *context, const char *path,
+                                      int width, int height,
+                                      const snow_image_options *options);
+
 /* Reads a picture: PNG (8 or 16 bits, grey or colour, with or without alpha;
- * straight alpha is multiplied in), NPY (float32 or float64, (h, w) or (h, w, 1
- * to 4)), PFM.  It has four channels; alpha is 1 where the file has none.
- * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
+ * straight alpha is multiplied in), WebP, NPY (float32 or float64, (h, w) or
+ * (h, w, 1 to 4)), PFM, EXR (scan lines; R, G, B, A or Y), TIFF (8 or 16 bits,
+ * or floats; strips).  It has four channels; alpha is 1 where the file has
+ * none. Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_load(snow_context *context, const char *path,
                                      snow_image **out);
 

@@ -170,9 +170,9 @@ SNOW_API const char *snow_phantom_text(size_t index);
 SNOW_API const char *snow_format_name(size_t index);
 SNOW_API const char *snow_format_text(size_t index);
 
-/* Name of optional library `index` (from 0) that input formats are read with;
- * NULL past the end.  *version is that of the build, NULL where it was built
- * without; *formats names the formats that need it. */
+/* Name of optional library `index` (from 0) that formats of volumes and
+ * pictures need; NULL past the end.  *version is that of the build, NULL where
+ * it was built without; *formats names the formats that need it. */
 SNOW_API const char *snow_library_name(size_t index, const char **version,
                                        const char **formats);
 

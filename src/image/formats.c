@@ -9,9 +9,8 @@
 
 /* The first is what standard output gets. */
 static const snow_image_format *const formats[] = {
-    &snow_image_png,
-    &snow_image_npy,
-    &snow_image_pfm,
+    &snow_image_png, &snow_image_npy,  &snow_image_pfm,
+    &snow_image_exr, &snow_image_tiff, &snow_image_webp,
 };
 
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
@@ -25,9 +24,17 @@ static const snow_image_format *format_of(const char *path) {
     if (strcmp(path, "-") == 0)
         return formats[0];
     for (size_t i = 0; i < FORMAT_COUNT; i++)
-        if (snow_has_suffix(path, formats[i]->suffix))
+        if (snow_has_suffix(path, formats[i]->suffix) ||
+            (formats[i]->other && snow_has_suffix(path, formats[i]->other)))
             return formats[i];
     return NULL;
+}
+
+const char *snow_image_suffix(size_t index, bool *built) {
+    if (index >= FORMAT_COUNT)
+        return NULL;
+    *built = !formats[index]->package;
+    return formats[index]->suffix;
 }
 
 int snow_image_bits(const char *path) {
@@ -38,56 +45,72 @@ int snow_image_bits(const char *path) {
 static snow_status choose_format(snow_context *context, const char *path,
                                  const snow_image_format **out) {
     const snow_image_format *format = format_of(path);
+    if (format && format->package)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: this build writes no %s; install %s and build "
+                         "again, or write a %s",
+                         path, format->name, format->package,
+                         format->bits ? ".png" : ".npy");
     if (format) {
         *out = format;
         return SNOW_OK;
     }
     return snow_fail(context, SNOW_BAD_USAGE,
                      "%s: the name does not tell a picture format; let it end "
-                     "with .png, .npy or .pfm",
+                     "with .png, .webp, .npy, .exr, .tif or .pfm",
                      path);
 }
 
-/* Refuses what a format cannot heed, rather than to ignore it. */
-static snow_status check_options(const snow_image *image, const char *path,
+static snow_status check_overlay(snow_context *context, const char *path,
+                                 int width, int height,
                                  const snow_image_format *format,
-                                 const snow_image_options *options) {
-    snow_context *context = image->context;
-    if (format->bits && image->channels == 1)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "%s: %s holds colours, not values in data units; "
-                         "write .npy or .pfm, or paint them first",
-                         path, format->name);
-    if (!format->bits && (options->flatten || options->bits))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "%s: %s takes neither a background nor a number of "
-                         "bits; leave them out, or write a .png",
-                         path, format->name);
-    if (options->bits != 0 && options->bits != 8 && options->bits != 16)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "%s: %d bits a channel are not possible; take 8 or "
-                         "16",
-                         path, options->bits);
-    const snow_overlay *overlay = options->overlay;
+                                 const snow_overlay *overlay) {
     if (overlay && !format->bits)
         return snow_fail(context, SNOW_BAD_USAGE,
                          "%s: %s takes no overlay; leave it out, or write a "
                          ".png",
                          path, format->name);
-    if (overlay &&
-        (overlay->width != image->width || overlay->height != image->height))
+    if (overlay && (overlay->width != width || overlay->height != height))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "%s: the overlay is of %d x %d pixels, the picture of "
                          "%d x %d; make one for it",
-                         path, overlay->width, overlay->height, image->width,
-                         image->height);
+                         path, overlay->width, overlay->height, width, height);
+    return SNOW_OK;
+}
+
+/* Refuses what a format cannot heed, rather than to ignore it. */
+static snow_status check_options(snow_context *context, const char *path,
+                                 int width, int height,
+                                 const snow_image_format *format,
+                                 const snow_image_options *options) {
+    if (!format->bits && (options->flatten || options->bits))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: %s takes neither a background nor a number of "
+                         "bits; leave them out, or write a .png",
+                         path, format->name);
+    if (options->bits > format->bits && options->bits == 16)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: %s has %d bits a channel; leave 16 out, or write "
+                         "a .png",
+                         path, format->name, format->bits);
+    if (format->most_side &&
+        (width > format->most_side || height > format->most_side))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: %s has at most %d pixels a side; write a .png",
+                         path, format->name, format->most_side);
+    if (options->bits != 0 && options->bits != 8 && options->bits != 16)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: %d bits a channel are not possible; take 8 or "
+                         "16",
+                         path, options->bits);
     for (int i = 0; options->flatten && i < 3; i++)
         if (!(options->background[i] >= 0 && options->background[i] <= 1))
             return snow_fail(context, SNOW_BAD_USAGE,
                              "%s: the background has a channel of %g; take 0 "
                              "to 1",
                              path, options->background[i]);
-    return SNOW_OK;
+    return check_overlay(context, path, width, height, format,
+                         options->overlay);
 }
 
 /* Puts the file's name before messages of layers that know none. */
@@ -98,16 +121,23 @@ static snow_status name_file(snow_context *context, snow_status status,
     return status;
 }
 
+static const snow_image_options standard = {0};
+
 /* Refusals come first, before there is a file; then the writer sees to it that
  * there is a whole one or none. */
 snow_status snow_image_save(const snow_image *image, const char *path,
                             const snow_image_options *options) {
-    static const snow_image_options standard = {0};
     if (!options)
         options = &standard;
     const snow_image_format *format = NULL;
     SNOW_TRY(choose_format(image->context, path, &format));
-    SNOW_TRY(check_options(image, path, format, options));
+    if (format->bits && image->channels == 1)
+        return snow_fail(image->context, SNOW_BAD_USAGE,
+                         "%s: %s holds colours, not values in data units; "
+                         "write .npy, .exr, .tif or .pfm, or paint them first",
+                         path, format->name);
+    SNOW_TRY(check_options(image->context, path, image->width, image->height,
+                           format, options));
     snow_writer *writer = NULL;
     SNOW_TRY(
         snow_writer_open(image->context, path, options->overwrite, &writer));
@@ -133,6 +163,16 @@ snow_status snow_image_check_path(snow_context *context, const char *path,
     return SNOW_OK;
 }
 
+snow_status snow_image_check(snow_context *context, const char *path, int width,
+                             int height, const snow_image_options *options) {
+    const snow_image_format *format = NULL;
+    if (!options)
+        options = &standard;
+    SNOW_TRY(choose_format(context, path, &format));
+    SNOW_TRY(check_options(context, path, width, height, format, options));
+    return snow_image_check_path(context, path, options->overwrite);
+}
+
 snow_status snow_image_check_sides(const snow_source *source, int64_t width,
                                    int64_t height) {
     if (width >= 1 && height >= 1 && width <= SNOW_IMAGE_SIDE &&
@@ -151,16 +191,24 @@ static snow_status probe_source(snow_source *source,
     unsigned char start[PROBE_BYTES];
     size_t got = 0;
     SNOW_TRY(snow_source_peek(source, start, sizeof start, &got));
-    for (size_t i = 0; i < FORMAT_COUNT; i++)
-        if (formats[i]->probe(start, got)) {
-            *out = formats[i];
-            return SNOW_OK;
-        }
+    for (size_t i = 0; i < FORMAT_COUNT; i++) {
+        if (!formats[i]->probe(start, got))
+            continue;
+        *out = formats[i];
+        return formats[i]->package
+                   ? snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                               "%s: this build reads no %s; install %s and "
+                               "build again",
+                               snow_source_name(source), formats[i]->name,
+                               formats[i]->package)
+                   : SNOW_OK;
+    }
     return snow_fail(snow_source_context(source), SNOW_BAD_INPUT, "%s: %s",
                      snow_source_name(source),
-                     got ? "is no picture of a known format; give a PNG, NPY "
-                           "or PFM file"
-                         : "is empty; give a PNG, NPY or PFM file");
+                     got ? "is no picture of a known format; give a PNG, "
+                           "WebP, NPY, EXR, TIFF or PFM file"
+                         : "is empty; give a PNG, WebP, NPY, EXR, TIFF or PFM "
+                           "file");
 }
 
 /* Reads the picture that an open source holds, to its end: a gzip stream is
@@ -173,7 +221,8 @@ static snow_status read_picture(snow_source *source, snow_image **out) {
     if (status != SNOW_OK)
         return name_file(snow_source_context(source), status,
                          snow_source_name(source));
-    status = snow_source_finish(source);
+    if (!format->in_any_order)
+        status = snow_source_finish(source);
     if (status != SNOW_OK) {
         snow_image_free(image);
         return status;

@@ -39,10 +39,15 @@ static inline void snow_image_rgba(const snow_image *image, size_t index,
 /* What one file format can do.  A new one is a file that defines its record,
  * and a line in the table of formats.c. */
 typedef struct snow_image_format {
-    const char *name;   /* for messages: "PNG" */
-    const char *suffix; /* of the files it writes: ".png" */
-    int bits;           /* the most a channel, of levels; 0: floats, without
-                           background and overlay */
+    const char *name;    /* for messages: "PNG" */
+    const char *suffix;  /* of the files it writes: ".png" */
+    const char *other;   /* another one, or NULL */
+    const char *package; /* Debian's, of the library that this build lacks: then
+                            there is neither write nor read; NULL: none */
+    bool in_any_order;   /* reads the source by base/random.h */
+    int most_side;       /* pixels; 0: SNOW_IMAGE_SIDE */
+    int bits;            /* the most a channel, of levels; 0: floats, without
+                            background and overlay */
 
     /* Writes the picture.  The caller opened the writer, and commits it. */
     snow_status (*write)(const snow_image *image,
@@ -56,7 +61,8 @@ typedef struct snow_image_format {
     snow_status (*read)(snow_source *source, snow_image **out);
 } snow_image_format;
 
-extern const snow_image_format snow_image_png, snow_image_npy, snow_image_pfm;
+extern const snow_image_format snow_image_png, snow_image_npy, snow_image_pfm,
+    snow_image_exr, snow_image_tiff, snow_image_webp;
 
 /* Rows of a picture as files of 8 and 16 bits hold them: overlay drawn, laid on
  * the background or with straight alpha, rounded. */

@@ -22,7 +22,7 @@ static void plan(const snow_image *image, const snow_image_options *options,
                          .bits = options->bits == 16 ? 16 : 8,
                          .channels = grey ? 2 : 4};
     if (b && (b[0] != b[1] || b[1] != b[2]))
-        grey = false;
+        grey = false; /* snow_flatten_row spreads grey over all three */
     out->samples = (grey ? 1 : 3) + (b ? 0 : 1);
 }
 

@@ -1,4 +1,4 @@
-/* volume/libraries.c - which optional libraries this build reads files with. */
+/* volume/libraries.c - which optional libraries this build has. */
 #include "volume/volume.h"
 
 static const struct {
@@ -6,9 +6,11 @@ static const struct {
     bool built;
 } libraries[] = {
     {"expat", SNOW_VERSION_EXPAT, "vti", SNOW_HAVE_EXPAT},
-    {"libtiff", SNOW_VERSION_TIFF, "tiff", SNOW_HAVE_TIFF},
+    {"libtiff", SNOW_VERSION_TIFF, "tiff, and tiff pictures", SNOW_HAVE_TIFF},
     {"libhdf5", SNOW_VERSION_HDF5, "hdf5, NetCDF-4", SNOW_HAVE_HDF5},
     {"gdcm", SNOW_VERSION_GDCM, "packed dicom", SNOW_HAVE_GDCM},
+    {"OpenEXR", SNOW_VERSION_EXR, "exr pictures", SNOW_HAVE_EXR},
+    {"libwebp", SNOW_VERSION_WEBP, "webp pictures and movies", SNOW_HAVE_WEBP},
 };
 
 const char *snow_library_name(size_t index, const char **version,

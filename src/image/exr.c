@@ -1,0 +1,389 @@
+/* image/exr.c - OpenEXR files, by the core library of OpenEXR 3 (in C).
+ *
+ * Written: one part of scan lines with channels A, B, G, R of 32-bit floats,
+ * premultiplied as the format wants it, or Y of values in data units, ZIP
+ * packed.  The format means light to
+ * be linear; our values are written as they are.  Read: parts of scan lines,
+ * any packing, channels R, G, B, A or Y, halves and integers too.
+ *
+ * The library takes its own memory, which no context counts: of a chunk of 16
+ * lines at a time. */
+#include "image/image.h"
+
+#include "base/random.h"
+#include "image/store.h"
+
+static bool probe_exr(const unsigned char *bytes, size_t size) {
+    return size >= 4 && bytes[0] == 0x76 && bytes[1] == 0x2f &&
+           bytes[2] == 0x31 && bytes[3] == 0x01;
+}
+
+#if SNOW_HAVE_EXR
+
+#include <openexr.h>
+#include <stdio.h>
+
+/* What the library's functions see. */
+typedef struct exr_file {
+    snow_context *context;
+    exr_context_t exr;
+    snow_store store;   /* when writing */
+    snow_random *bytes; /* when reading */
+    snow_status status; /* of ours, beneath the library */
+    char complaint[200];
+} exr_file;
+
+static exr_file *file_of(exr_const_context_t exr) {
+    void *user = NULL;
+    exr_get_user_data(exr, &user);
+    return user;
+}
+
+/* The first complaint says most. */
+static void hear_error(exr_const_context_t exr, exr_result_t code,
+                       const char *text) {
+    exr_file *file = file_of(exr);
+    (void)code;
+    if (file && !*file->complaint)
+        snprintf(file->complaint, sizeof file->complaint, "%s", text);
+}
+
+static int64_t write_bytes(exr_const_context_t exr, void *user,
+                           const void *bytes, uint64_t size, uint64_t at,
+                           exr_stream_error_func_ptr_t fail) {
+    exr_file *file = user;
+    (void)exr;
+    (void)fail;
+    file->status = snow_store_put(&file->store, at, bytes, (size_t)size);
+    return file->status == SNOW_OK ? (int64_t)size : -1;
+}
+
+static int64_t read_bytes(exr_const_context_t exr, void *user, void *bytes,
+                          uint64_t size, uint64_t at,
+                          exr_stream_error_func_ptr_t fail) {
+    exr_file *file = user;
+    (void)exr;
+    (void)fail;
+    return (int64_t)snow_random_read(file->bytes, at, bytes, (size_t)size);
+}
+
+static int64_t tell_size(exr_const_context_t exr, void *user) {
+    (void)exr;
+    return (int64_t)snow_random_size(((exr_file *)user)->bytes);
+}
+
+static exr_context_initializer_t hooks_of(exr_file *file) {
+    exr_context_initializer_t hooks = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    hooks.error_handler_fn = hear_error;
+    hooks.user_data = file;
+    hooks.read_fn = read_bytes;
+    hooks.size_fn = tell_size;
+    hooks.write_fn = write_bytes;
+    hooks.max_image_width = hooks.max_image_height = SNOW_IMAGE_SIDE;
+    return hooks;
+}
+
+/* --- writing ---------------------------------------------------------------
+ */
+
+/* In the order of their names, as the format has them, and the sample of a
+ * pixel that each is. */
+static const struct {
+    const char *name;
+    int sample;
+} channels[4] = {{"A", 3}, {"B", 2}, {"G", 1}, {"R", 0}};
+
+static exr_result_t begin_part(exr_file *file, const snow_image *image) {
+    int part = 0;
+    exr_result_t code =
+        exr_add_part(file->exr, "picture", EXR_STORAGE_SCANLINE, &part);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_initialize_required_attr_simple(
+            file->exr, part, image->width, image->height, EXR_COMPRESSION_ZIP);
+    bool values = image->channels == 1;
+    for (int n = 0; n < (values ? 1 : 4) && code == EXR_ERR_SUCCESS; n++)
+        code = exr_add_channel(file->exr, part, values ? "Y" : channels[n].name,
+                               EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    return code == EXR_ERR_SUCCESS ? exr_write_header(file->exr) : code;
+}
+
+/* Lines from y on, as RGBA. */
+static void fill_lines(const snow_image *image, int y, int count, float *out) {
+    size_t width = (size_t)image->width, first = (size_t)y * width;
+    for (size_t i = 0; i < (size_t)count * width; i++)
+        snow_image_rgba(image, first + i, out + 4 * i);
+}
+
+static exr_result_t write_chunk(exr_file *file, int y, const float *lines,
+                                int width, exr_encode_pipeline_t *pipe) {
+    exr_chunk_info_t info;
+    exr_result_t code = exr_write_scanline_chunk_info(file->exr, 0, y, &info);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    code = y == 0 ? exr_encoding_initialize(file->exr, 0, &info, pipe)
+                  : exr_encoding_update(file->exr, 0, &info, pipe);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    for (int n = 0; n < pipe->channel_count; n++) {
+        exr_coding_channel_info_t *channel = &pipe->channels[n];
+        channel->encode_from_ptr =
+            (const uint8_t *)(lines + (pipe->channel_count == 1
+                                           ? 0
+                                           : channels[n].sample));
+        channel->user_bytes_per_element = 4;
+        channel->user_data_type = EXR_PIXEL_FLOAT;
+        channel->user_pixel_stride = 16;
+        channel->user_line_stride = 16 * width;
+    }
+    if (y == 0)
+        code = exr_encoding_choose_default_routines(file->exr, 0, pipe);
+    return code == EXR_ERR_SUCCESS ? exr_encoding_run(file->exr, 0, pipe)
+                                   : code;
+}
+
+static exr_result_t write_lines(exr_file *file, const snow_image *image,
+                                float *lines, int at_once) {
+    exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
+    exr_result_t code = EXR_ERR_SUCCESS;
+    for (int y = 0; y < image->height && code == EXR_ERR_SUCCESS;
+         y += at_once) {
+        int rest = image->height - y;
+        fill_lines(image, y, rest < at_once ? rest : at_once, lines);
+        code = write_chunk(file, y, lines, image->width, &pipe);
+    }
+    exr_encoding_destroy(file->exr, &pipe);
+    return code;
+}
+
+static snow_status make_file(exr_file *file, const snow_image *image) {
+    exr_context_initializer_t hooks = hooks_of(file);
+    int at_once = 0;
+    float *lines = NULL;
+    exr_result_t code = exr_start_write(&file->exr, "picture.exr",
+                                        EXR_WRITE_FILE_DIRECTLY, &hooks);
+    if (code == EXR_ERR_SUCCESS)
+        code = begin_part(file, image);
+    if (code == EXR_ERR_SUCCESS)
+        code = exr_get_scanlines_per_chunk(file->exr, 0, &at_once);
+    if (code == EXR_ERR_SUCCESS) {
+        uint64_t pixels = (uint64_t)image->width * (uint64_t)at_once;
+        lines = snow_allocate_array(file->context, pixels, 16);
+        if (!lines)
+            return SNOW_NO_MEMORY;
+        code = write_lines(file, image, lines, at_once);
+    }
+    snow_release(file->context, lines);
+    if (code == EXR_ERR_SUCCESS)
+        return SNOW_OK;
+    if (file->status != SNOW_OK)
+        return file->status;
+    return snow_fail(file->context, SNOW_FAILED,
+                     "the EXR file cannot be made (OpenEXR: %s); write a .npy "
+                     "instead",
+                     *file->complaint ? file->complaint
+                                      : exr_get_default_error_message(code));
+}
+
+static snow_status write_exr(const snow_image *image,
+                             const snow_image_options *options,
+                             snow_writer *writer) {
+    exr_file file = {.context = image->context,
+                     .store = {.context = image->context}};
+    (void)options;
+    snow_status status = make_file(&file, image);
+    if (file.exr)
+        exr_finish(&file.exr);
+    if (status == SNOW_OK)
+        status = snow_writer_write(writer, file.store.bytes, file.store.size);
+    snow_store_free(&file.store);
+    return status;
+}
+
+/* --- reading ---------------------------------------------------------------
+ */
+
+/* Packed bytes are never fewer: of the lossy packings, which take the most, a
+ * block of 64 values becomes nothing but its share of a Deflate stream. */
+#define PACKED_MOST (64 * SNOW_DEFLATE_RATIO)
+
+static snow_status refuse(const exr_file *file, const snow_source *source) {
+    return snow_fail(file->context, SNOW_BAD_INPUT,
+                     "%s: is a damaged or cut EXR file (OpenEXR: %s); get it "
+                     "anew",
+                     snow_source_name(source),
+                     *file->complaint ? file->complaint : "no more bytes");
+}
+
+/* Which sample a channel is: 0 to 3, -1 none, of Y all colours. */
+static int sample_of(const char *name, bool *grey) {
+    *grey = name[0] == 'Y' && !name[1];
+    if (*grey)
+        return 0;
+    for (int n = 0; n < 4; n++)
+        if (name[0] == channels[n].name[0] && !name[1])
+            return channels[n].sample;
+    return -1;
+}
+
+/* What of the picture the file has; grey is copied to all colours later. */
+typedef struct exr_plan {
+    int x0, y0, width, height;
+    int at_once;
+    bool grey, has_alpha;
+} exr_plan;
+
+static snow_status find_channels(const exr_file *file,
+                                 const snow_source *source, exr_plan *plan) {
+    const exr_attr_chlist_t *list = NULL;
+    int colors = 0;
+    if (exr_get_channels(file->exr, 0, &list) != EXR_ERR_SUCCESS)
+        return refuse(file, source);
+    for (int n = 0; n < list->num_channels; n++) {
+        const exr_attr_chlist_entry_t *entry = &list->entries[n];
+        bool grey;
+        int sample = sample_of(entry->name.str, &grey);
+        if (sample < 0)
+            continue;
+        if (entry->x_sampling != 1 || entry->y_sampling != 1)
+            colors = -9;
+        plan->grey |= grey;
+        plan->has_alpha |= sample == 3;
+        colors += sample < 3 && !grey;
+    }
+    if (colors == 3 || (colors == 0 && plan->grey))
+        return SNOW_OK;
+    return snow_fail(file->context, SNOW_BAD_INPUT,
+                     "%s: has neither whole channels R, G and B nor Y alone; "
+                     "give a file with these",
+                     snow_source_name(source));
+}
+
+static snow_status read_header(const exr_file *file, const snow_source *source,
+                               exr_plan *plan) {
+    exr_storage_t storage;
+    exr_attr_box2i_t box;
+    int32_t at_once = 0;
+    if (exr_get_storage(file->exr, 0, &storage) != EXR_ERR_SUCCESS ||
+        exr_get_data_window(file->exr, 0, &box) != EXR_ERR_SUCCESS)
+        return refuse(file, source);
+    if (storage != EXR_STORAGE_SCANLINE)
+        return snow_fail(file->context, SNOW_BAD_INPUT,
+                         "%s: its first part is of tiles or deep; give one of "
+                         "scan lines",
+                         snow_source_name(source));
+    int64_t width = (int64_t)box.max.x - box.min.x + 1;
+    int64_t height = (int64_t)box.max.y - box.min.y + 1;
+    SNOW_TRY(snow_image_check_sides(source, width, height));
+    if ((uint64_t)(width * height) / PACKED_MOST >
+        snow_random_size(file->bytes))
+        return refuse(file, source);
+    if (exr_get_scanlines_per_chunk(file->exr, 0, &at_once) !=
+            EXR_ERR_SUCCESS ||
+        at_once < 1)
+        return refuse(file, source);
+    *plan = (exr_plan){.x0 = box.min.x,
+                       .y0 = box.min.y,
+                       .width = (int)width,
+                       .height = (int)height,
+                       .at_once = at_once};
+    return find_channels(file, source, plan);
+}
+
+static exr_result_t read_chunk(const exr_file *file, const exr_plan *plan,
+                               int y, float *pixels,
+                               exr_decode_pipeline_t *pipe) {
+    exr_chunk_info_t info;
+    exr_result_t code =
+        exr_read_scanline_chunk_info(file->exr, 0, plan->y0 + y, &info);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    code = y == 0 ? exr_decoding_initialize(file->exr, 0, &info, pipe)
+                  : exr_decoding_update(file->exr, 0, &info, pipe);
+    if (code != EXR_ERR_SUCCESS)
+        return code;
+    if (info.start_y != plan->y0 + y || info.width != plan->width ||
+        info.height > plan->height - y)
+        return EXR_ERR_CORRUPT_CHUNK;
+    for (int n = 0; n < pipe->channel_count; n++) {
+        exr_coding_channel_info_t *channel = &pipe->channels[n];
+        bool grey;
+        int sample = sample_of(channel->channel_name, &grey);
+        if (sample < 0 || (grey && !plan->grey))
+            continue;
+        channel->decode_to_ptr =
+            (uint8_t *)(pixels + 4 * (size_t)y * (size_t)plan->width + sample);
+        channel->user_bytes_per_element = 4;
+        channel->user_data_type = EXR_PIXEL_FLOAT;
+        channel->user_pixel_stride = 16;
+        channel->user_line_stride = 16 * plan->width;
+    }
+    if (y == 0)
+        code = exr_decoding_choose_default_routines(file->exr, 0, pipe);
+    return code == EXR_ERR_SUCCESS ? exr_decoding_run(file->exr, 0, pipe)
+                                   : code;
+}
+
+static snow_status read_lines(const exr_file *file, const snow_source *source,
+                              const exr_plan *plan, snow_image *image) {
+    exr_decode_pipeline_t pipe = EXR_DECODE_PIPELINE_INITIALIZER;
+    exr_result_t code = EXR_ERR_SUCCESS;
+    size_t pixels = (size_t)plan->width * (size_t)plan->height;
+    for (int y = 0; y < plan->height && code == EXR_ERR_SUCCESS;
+         y += plan->at_once)
+        code = read_chunk(file, plan, y, image->pixels, &pipe);
+    exr_decoding_destroy(file->exr, &pipe);
+    if (code != EXR_ERR_SUCCESS)
+        return refuse(file, source);
+    for (size_t i = 0; i < pixels; i++) {
+        float *pixel = image->pixels + 4 * i;
+        if (plan->grey)
+            pixel[1] = pixel[2] = pixel[0];
+        if (!plan->has_alpha)
+            pixel[3] = 1;
+    }
+    return SNOW_OK;
+}
+
+static snow_status read_file(exr_file *file, const snow_source *source,
+                             snow_image **out) {
+    exr_context_initializer_t hooks = hooks_of(file);
+    exr_plan plan = {0};
+    snow_image *image = NULL;
+    if (exr_start_read(&file->exr, snow_source_name(source), &hooks) !=
+        EXR_ERR_SUCCESS)
+        return refuse(file, source);
+    SNOW_TRY(read_header(file, source, &plan));
+    SNOW_TRY(snow_image_new(file->context, plan.width, plan.height, 4, &image));
+    snow_status status = read_lines(file, source, &plan, image);
+    if (status == SNOW_OK)
+        *out = image;
+    else
+        snow_image_free(image);
+    return status;
+}
+
+static snow_status read_exr(snow_source *source, snow_image **out) {
+    exr_file file = {.context = snow_source_context(source)};
+    SNOW_TRY(snow_random_open(source, &file.bytes));
+    snow_status status = read_file(&file, source, out);
+    if (file.exr)
+        exr_finish(&file.exr);
+    snow_random_close(file.bytes);
+    return status;
+}
+
+const snow_image_format snow_image_exr = {.name = "EXR",
+                                          .suffix = ".exr",
+                                          .write = write_exr,
+                                          .probe = probe_exr,
+                                          .read = read_exr,
+                                          .in_any_order = true};
+
+#else
+
+const snow_image_format snow_image_exr = {.name = "EXR",
+                                          .suffix = ".exr",
+                                          .package = "libopenexr-dev",
+                                          .probe = probe_exr};
+
+#endif

@@ -1,0 +1,354 @@
+/* image/tiff.c - TIFF pictures of floats, by libtiff.
+ *
+ * Written: 32-bit floats, red, green, blue and associated (premultiplied)
+ * alpha, in strips packed by Deflate.  Read: 8 and 16 bits or floats, 1 to 4
+ * samples a pixel that lie beside each other, in strips; straight alpha is
+ * multiplied in.
+ *
+ * libtiff takes its own memory, limited to what the file can be worth; it tells
+ * its complaints to the file's own handler: nothing is printed, no state is
+ * shared. */
+#include "image/image.h"
+
+#include "base/random.h"
+#include "image/store.h"
+
+static bool probe_tiff(const unsigned char *bytes, size_t size) {
+    static const unsigned char magic[4][4] = {{'I', 'I', 42, 0},
+                                              {'M', 'M', 0, 42},
+                                              {'I', 'I', 43, 0},
+                                              {'M', 'M', 0, 43}};
+    for (int i = 0; i < 4 && size >= 4; i++)
+        if (!memcmp(bytes, magic[i], 4))
+            return true;
+    return false;
+}
+
+#if SNOW_HAVE_TIFF
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <tiffio.h>
+
+/* Bytes of a strip before it is packed, about. */
+#define STRIP_BYTES 65536
+
+/* The most that libtiff may take at once beside the size of the file. */
+#define LIBRARY_BYTES ((uint64_t)64 << 20)
+
+typedef struct tiff_file {
+    snow_context *context;
+    snow_store store;   /* when writing */
+    snow_random *bytes; /* when reading */
+    uint64_t at;        /* where libtiff reads or writes next */
+    snow_status status; /* of ours, beneath libtiff */
+    TIFF *tiff;
+    char complaint[200]; /* the first */
+} tiff_file;
+
+static tmsize_t read_bytes(thandle_t handle, void *bytes, tmsize_t size) {
+    tiff_file *file = (tiff_file *)handle;
+    size_t got = 0;
+    if (file->bytes)
+        got = snow_random_read(file->bytes, file->at, bytes, (size_t)size);
+    file->at += got;
+    return (tmsize_t)got;
+}
+
+static tmsize_t write_bytes(thandle_t handle, void *bytes, tmsize_t size) {
+    tiff_file *file = (tiff_file *)handle;
+    if (file->bytes)
+        return 0;
+    file->status = snow_store_put(&file->store, file->at, bytes, (size_t)size);
+    if (file->status != SNOW_OK)
+        return 0;
+    file->at += (uint64_t)size;
+    return size;
+}
+
+static toff_t tell_size(thandle_t handle) {
+    const tiff_file *file = (const tiff_file *)handle;
+    return file->bytes ? snow_random_size(file->bytes) : file->store.size;
+}
+
+static toff_t seek_byte(thandle_t handle, toff_t offset, int whence) {
+    tiff_file *file = (tiff_file *)handle;
+    if (whence == SEEK_CUR)
+        offset += file->at;
+    else if (whence == SEEK_END)
+        offset += tell_size(handle);
+    file->at = offset;
+    return offset;
+}
+
+static int close_nothing(thandle_t handle) {
+    (void)handle;
+    return 0;
+}
+
+static int hear_error(TIFF *tiff, void *user, const char *module,
+                      const char *format, va_list arguments) {
+    tiff_file *file = user;
+    (void)tiff;
+    (void)module;
+    if (!*file->complaint)
+        vsnprintf(file->complaint, sizeof file->complaint, format, arguments);
+    return 1;
+}
+
+static int hear_warning(TIFF *tiff, void *user, const char *module,
+                        const char *format, va_list arguments) {
+    (void)tiff;
+    (void)user;
+    (void)module;
+    (void)format;
+    (void)arguments;
+    return 1;
+}
+
+/* NULL with a complaint, or without memory. */
+static void open_tiff(tiff_file *file, const char *name, const char *mode) {
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    if (!options)
+        return;
+    uint64_t most = tell_size((thandle_t)file) + LIBRARY_BYTES;
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)most);
+    TIFFOpenOptionsSetErrorHandlerExtR(options, hear_error, file);
+    TIFFOpenOptionsSetWarningHandlerExtR(options, hear_warning, file);
+    file->tiff = TIFFClientOpenExt(name, mode, (thandle_t)file, read_bytes,
+                                   write_bytes, seek_byte, close_nothing,
+                                   tell_size, NULL, NULL, options);
+    TIFFOpenOptionsFree(options);
+}
+
+/* --- writing ---------------------------------------------------------------
+ */
+
+static bool set_tags(TIFF *tiff, const snow_image *image, int strip) {
+    uint16_t extra = EXTRASAMPLE_ASSOCALPHA;
+    bool values = image->channels == 1;
+    bool good =
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, image->width) &&
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, image->height) &&
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 32) &&
+        TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP) &&
+        TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, values ? 1 : 4) &&
+        (values || TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &extra)) &&
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC,
+                     values ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) &&
+        TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
+        TIFFSetField(tiff, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT) &&
+        TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, strip);
+    if (good && TIFFIsCODECConfigured(COMPRESSION_ADOBE_DEFLATE))
+        good = TIFFSetField(tiff, TIFFTAG_COMPRESSION,
+                            COMPRESSION_ADOBE_DEFLATE) &&
+               TIFFSetField(tiff, TIFFTAG_ZIPQUALITY, 1);
+    return good;
+}
+
+static snow_status fail_writing(const tiff_file *file) {
+    if (file->status != SNOW_OK)
+        return file->status;
+    return snow_fail(file->context, SNOW_FAILED,
+                     "the TIFF file cannot be made (libtiff: %s); write a .npy "
+                     "instead",
+                     *file->complaint ? file->complaint : "no memory");
+}
+
+static snow_status make_file(tiff_file *file, const snow_image *image) {
+    int samples = image->channels == 1 ? 1 : 4,
+        row = 4 * samples * image->width;
+    int strip = STRIP_BYTES / row < 1 ? 1 : STRIP_BYTES / row;
+    open_tiff(file, "picture.tif", "w");
+    if (!file->tiff || !set_tags(file->tiff, image, strip))
+        return fail_writing(file);
+    float *line =
+        snow_allocate_array(file->context, (uint64_t)image->width, 16);
+    if (!line)
+        return SNOW_NO_MEMORY;
+    bool good = true;
+    for (int y = 0; y < image->height && good; y++) {
+        size_t first = (size_t)y * (size_t)image->width;
+        for (int x = 0; x < image->width; x++) {
+            float rgba[4];
+            snow_image_rgba(image, first + (size_t)x, rgba);
+            memcpy(line + samples * x, rgba, (size_t)samples * sizeof *line);
+        }
+        good = TIFFWriteScanline(file->tiff, line, (uint32_t)y, 0) == 1;
+    }
+    snow_release(file->context, line);
+    good =
+        good && TIFFWriteDirectory(file->tiff) == 1 && file->status == SNOW_OK;
+    return good ? SNOW_OK : fail_writing(file);
+}
+
+static snow_status write_tiff(const snow_image *image,
+                              const snow_image_options *options,
+                              snow_writer *writer) {
+    tiff_file file = {.context = image->context,
+                      .store = {.context = image->context}};
+    (void)options;
+    snow_status status = make_file(&file, image);
+    if (file.tiff)
+        TIFFClose(file.tiff);
+    if (status == SNOW_OK)
+        status = snow_writer_write(writer, file.store.bytes, file.store.size);
+    snow_store_free(&file.store);
+    return status;
+}
+
+/* --- reading ---------------------------------------------------------------
+ */
+
+typedef struct tiff_plan {
+    uint32_t width, height;
+    uint16_t samples, bits, format;
+    bool straight; /* alpha is to be multiplied in */
+} tiff_plan;
+
+static snow_status refuse(const tiff_file *file, const snow_source *source) {
+    return snow_fail(file->context, SNOW_BAD_INPUT,
+                     "%s: is a damaged or cut TIFF file (libtiff: %s); get it "
+                     "anew",
+                     snow_source_name(source),
+                     *file->complaint ? file->complaint : "no more bytes");
+}
+
+static bool is_known(TIFF *tiff, const tiff_plan *plan) {
+    uint16_t planes = 0, photometric = 0;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planes);
+    TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+    bool levels = plan->format == SAMPLEFORMAT_UINT &&
+                  (plan->bits == 8 || plan->bits == 16);
+    bool floats = plan->format == SAMPLEFORMAT_IEEEFP &&
+                  (plan->bits == 32 || plan->bits == 64);
+    bool colors = photometric == PHOTOMETRIC_RGB && plan->samples >= 3;
+    bool greys = photometric == PHOTOMETRIC_MINISBLACK && plan->samples <= 2;
+    return (levels || floats) && (colors || greys) && plan->samples <= 4 &&
+           planes == PLANARCONFIG_CONTIG && !TIFFIsTiled(tiff);
+}
+
+static snow_status read_header(const tiff_file *file, const snow_source *source,
+                               tiff_plan *plan) {
+    TIFF *tiff = file->tiff;
+    uint16_t count = 0;
+    const uint16_t *extra = NULL;
+    *plan = (tiff_plan){.width = 0};
+    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &plan->width);
+    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &plan->height);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &plan->samples);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &plan->bits);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &plan->format);
+    if (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &extra) && count)
+        plan->straight = extra[0] == EXTRASAMPLE_UNASSALPHA;
+    SNOW_TRY(snow_image_check_sides(source, plan->width, plan->height));
+    if (!is_known(tiff, plan))
+        return snow_fail(file->context, SNOW_BAD_INPUT,
+                         "%s: is a TIFF of %u samples of %u bits; give one of "
+                         "1 to 4 samples beside each other, of 8 or 16 bits or "
+                         "floats, in strips",
+                         snow_source_name(source), plan->samples, plan->bits);
+    if ((uint64_t)plan->width * plan->height / SNOW_DEFLATE_RATIO >
+        snow_random_size(file->bytes))
+        return refuse(file, source);
+    return SNOW_OK;
+}
+
+/* Samples lie in the machine's order. */
+static double sample_at(const tiff_plan *plan, const unsigned char *line,
+                        size_t index) {
+    uint16_t level;
+    float single;
+    double value;
+    switch (plan->bits) {
+    case 8:
+        return line[index] / 255.0;
+    case 16:
+        memcpy(&level, line + 2 * index, sizeof level);
+        return level / 65535.0;
+    case 32:
+        memcpy(&single, line + 4 * index, sizeof single);
+        return (double)single;
+    default:
+        memcpy(&value, line + 8 * index, sizeof value);
+        return value;
+    }
+}
+
+static void widen_line(const tiff_plan *plan, const unsigned char *line,
+                       float *out) {
+    int colors = plan->samples < 3 ? 1 : 3;
+    bool alpha = plan->samples > colors;
+    for (size_t x = 0; x < plan->width; x++, out += 4) {
+        size_t first = x * plan->samples;
+        double a = alpha ? sample_at(plan, line, first + (size_t)colors) : 1;
+        for (int c = 0; c < 3; c++) {
+            size_t at = first + (size_t)(colors == 1 ? 0 : c);
+            double value = sample_at(plan, line, at);
+            out[c] = (float)(plan->straight ? value * a : value);
+        }
+        out[3] = (float)a;
+    }
+}
+
+static snow_status read_lines(const tiff_file *file, const snow_source *source,
+                              const tiff_plan *plan, snow_image *image) {
+    uint64_t bytes = (uint64_t)TIFFScanlineSize64(file->tiff);
+    unsigned char *line = snow_allocate_array(file->context, bytes, 1);
+    bool good = bytes == (uint64_t)plan->width * plan->samples * plan->bits / 8;
+    if (!line)
+        return SNOW_NO_MEMORY;
+    for (uint32_t y = 0; y < plan->height && good; y++) {
+        good = TIFFReadScanline(file->tiff, line, y, 0) == 1;
+        if (good)
+            widen_line(plan, line, image->pixels + 4 * (size_t)y * plan->width);
+    }
+    snow_release(file->context, line);
+    return good ? SNOW_OK : refuse(file, source);
+}
+
+static snow_status read_file(tiff_file *file, const snow_source *source,
+                             snow_image **out) {
+    tiff_plan plan;
+    snow_image *image = NULL;
+    open_tiff(file, snow_source_name(source), "rm");
+    if (!file->tiff)
+        return refuse(file, source);
+    SNOW_TRY(read_header(file, source, &plan));
+    SNOW_TRY(snow_image_make(file->context, (int)plan.width, (int)plan.height,
+                             4, &image));
+    snow_status status = read_lines(file, source, &plan, image);
+    if (status == SNOW_OK)
+        *out = image;
+    else
+        snow_image_free(image);
+    return status;
+}
+
+static snow_status read_tiff(snow_source *source, snow_image **out) {
+    tiff_file file = {.context = snow_source_context(source)};
+    SNOW_TRY(snow_random_open(source, &file.bytes));
+    snow_status status = read_file(&file, source, out);
+    if (file.tiff)
+        TIFFClose(file.tiff);
+    snow_random_close(file.bytes);
+    return status;
+}
+
+const snow_image_format snow_image_tiff = {.name = "TIFF",
+                                           .suffix = ".tif",
+                                           .other = ".tiff",
+                                           .write = write_tiff,
+                                           .probe = probe_tiff,
+                                           .read = read_tiff,
+                                           .in_any_order = true};
+
+#else
+
+const snow_image_format snow_image_tiff = {.name = "TIFF",
+                                           .suffix = ".tif",
+                                           .other = ".tiff",
+                                           .package = "libtiff-dev",
+                                           .probe = probe_tiff};
+
+#endif

@@ -1,0 +1,53 @@
+#!/bin/bash
+# --progress: seconds and a bar on a terminal, a line every 10 s elsewhere.
+. "$(dirname "$0")/support_shell.sh"
+
+command -v python3 >/dev/null || exit 77
+run 0 "a volume" "$TOOL" phantom shells --dims 24x24x24 -o a.nrrd
+cat >watch.py <<'PY'
+"""watch.py SECONDS TERMINAL COMMAND...: runs a command that gets a.nrrd on its
+standard input after so many seconds; prints what it says on standard error."""
+import os, pty, subprocess, sys, threading, time
+wait, live, command = float(sys.argv[1]), sys.argv[2] == "yes", sys.argv[3:]
+reader, writer = pty.openpty() if live else os.pipe()
+os.environ["TERM"] = "xterm"
+process = subprocess.Popen(command, stdin=subprocess.PIPE, stderr=writer)
+os.close(writer)
+def feed():
+    time.sleep(wait)
+    try:
+        process.stdin.write(open("a.nrrd", "rb").read())
+        process.stdin.close()
+    except BrokenPipeError:
+        pass
+threading.Thread(target=feed).start()
+said = b""
+while True:
+    try:
+        more = os.read(reader, 4096)
+    except OSError:
+        break
+    if not more:
+        break
+    said += more
+sys.stdout.write(said.decode().replace("\r", "\n"))
+sys.exit(process.wait())
+PY
+watch() { python3 watch.py "$@"; }
+
+run 0 "on a terminal" watch 2.5 yes "$TOOL" - -o a.png -s 32x32
+prints '^reading'
+prints 'reading, 2 s'
+prints 'rendering'
+run 0 "where nothing shall be said" watch 1.5 yes "$TOOL" - -o b.png -s 32x32 \
+    --progress never
+check "nothing is" bash -c "! grep -q reading '$OUT'"
+run 0 "without a terminal" watch 10.6 no "$TOOL" - -o c.png -s 32x32
+prints '^snowglass: reading, 10 s$'
+check "once" [ "$(grep -c reading "$OUT")" = 1 ]
+run 0 "always" watch 0 no "$TOOL" - -o d.png -s 32x32 --progress always
+prints '^snowglass: rendering$'
+run 0 "a bar" watch 0 yes "$TOOL" turntable a.nrrd -o e.npy.%d.npy -s 300x300 \
+    --frames 300 -j 1
+prints '\[#+-+\] frame [0-9]+ of 300, [0-9.e+]+ a second, .* left'
+finish
