@@ -263,5 +263,7 @@ int config_save(const options *asked) {
     if (!tree)
         return fail_output("%s: no memory for its text; close other programs",
                            asked->save_config);
+    if (!options_told(asked, "shade")) /* then the look may say */
+        json_object_del(tree, "shade");
     return write_json(tree, asked->save_config, asked->overwrite);
 }

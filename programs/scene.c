@@ -54,6 +54,14 @@ static int place_camera(scene *s) {
                          : done;
 }
 
+/* A look that was chosen for a volume without surfaces is not shaded, unless
+ * that is asked for. */
+static void choose_shade(scene *s) {
+    if (s->transfer && snow_transfer_is_flat(s->transfer) &&
+        !options_told(s->asked, "shade"))
+        s->settings.shade = SNOW_SHADE_NONE;
+}
+
 /* Decompression and conversion are part of the reading. */
 static int open_alone(scene *s, const options *step) {
     double begin = seconds_now();
@@ -66,7 +74,10 @@ static int open_alone(scene *s, const options *step) {
     if (!s->transfer)
         done = open_look(s->context, step, s->volume, &s->transfer);
     s->times.look += seconds_now() - begin;
-    return done == GO_ON ? place_camera(s) : done;
+    if (done == GO_ON)
+        done = place_camera(s);
+    choose_shade(s);
+    return done;
 }
 
 /* Eight bits are enough on the way where the picture is laid on its background
@@ -112,6 +123,7 @@ static int open_part(scene *s, const options *step) {
         snow_transfer_free(transfer);
     else
         s->transfer = transfer;
+    choose_shade(s);
     s->times.read += seconds_now() - begin;
     return GO_ON;
 }
@@ -247,9 +259,10 @@ void scene_choices(const scene *s, char *out, size_t size) {
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
     char volume[256];
     describe_volume(&s->whole, volume, sizeof volume);
-    snprintf(out, size, "%s: %s; %s; opacity per %s; view %s; method %s%s%s",
+    snprintf(out, size, "%s: %s; %s; opacity per %s%s; view %s; method %s%s%s",
              name_of_input(s->path), volume, snow_transfer_text(s->transfer),
-             s->settings.opacity_length > 0 ? "mm" : "voxel", view,
+             s->settings.opacity_length > 0 ? "mm" : "voxel",
+             s->settings.shade == SNOW_SHADE_NONE ? "; not shaded" : "", view,
              snow_method_name(s->stats.method), encoded ? ", encoding " : "",
              encoded ? snow_encoding_name(s->stats.encoding) : "");
 }
