@@ -85,6 +85,10 @@ snow_look look_options(const options *asked) {
                       .log = asked->log,
                       .points =
                           asked->loaded ? snow_tf_points(asked->loaded) : NULL};
+    /* Grey over all values, as people know such pictures. */
+    if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0 &&
+        !look.preset)
+        look.preset = "linear";
     if (!isnan(asked->window)) { /* another way to write a range */
         look.range = SNOW_RANGE_VALUES;
         look.low = asked->level - asked->window / 2;

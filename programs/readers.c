@@ -301,3 +301,14 @@ bool read_directions(const option_row *row, const char *text, void *field,
     memcpy(field, pair, sizeof pair);
     return true;
 }
+
+bool read_place(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    place_value place = {.given = true};
+    if (!value_reals(text, ',', 3, place.at))
+        return refuse(wrong, "is no place; give X,Y,Z in the volume's world, "
+                             "such as 0,250,-12.5");
+    *(place_value *)field = place;
+    return true;
+}

@@ -420,6 +420,12 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
     return SNOW_OK;
 }
 
+snow_status snow_insitu_set_marks(snow_insitu *insitu, bool legend, bool step) {
+    insitu->legend = legend;
+    insitu->step_label = step;
+    return SNOW_OK;
+}
+
 bool snow_insitu_path(const snow_insitu *insitu, int64_t step, char *out,
                       size_t room) {
     int digits = 0;

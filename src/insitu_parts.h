@@ -71,6 +71,7 @@ struct snow_insitu {
     snow_ranks_options how;
     char *pattern; /* NULL: no output */
     snow_image_options form;
+    bool legend, step_label; /* drawn over them */
     double limit_seconds;
     uint64_t limit_bytes;
 

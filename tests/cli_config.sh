@@ -63,6 +63,18 @@ run 0 "a range on the command line" render phantom:cube --config w.json \
     -o p.png --range 75,125
 check "which is the same" cmp -s o.png p.png
 
+# --- places of the camera -----------------------------------------------------
+run 0 "a place, a target and an up" render phantom:shells --dims 24x20x22 \
+    -o pa.png -s 60x50 --position 500,-300.5,400 --target 10,8,12 --up 0,1,0.25 \
+    --perspective 20 --save-config p.json
+run 0 "are kept" render --config p.json -o pb.png
+check "and give the same picture" cmp -s pa.png pb.png
+run 0 "a view on the command line" render --config p.json --view left -o pc.png
+run 0 "takes the place's place" render phantom:shells --dims 24x20x22 \
+    -o pd.png -s 60x50 --view left --target 10,8,12 --up 0,1,0.25 \
+    --perspective 20
+check "with target and up" cmp -s pc.png pd.png
+
 # --- refused ------------------------------------------------------------------
 refused 3 "a file that is not there" 'none.json: cannot be opened' \
     "$TOOL" render --config none.json phantom:cube -o x.png

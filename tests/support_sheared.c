@@ -293,15 +293,18 @@ static void make_sample(const sheared_job *job, double exponent, int64_t sheet,
     const reference_scene *scene = job->scene;
     double value = scene->info.slope * native_of_sheet(job, sheet, u, v) +
                    scene->info.intercept;
-    double rgba[4], threshold = scene->settings.threshold;
+    double rgba[4], gradient[3], threshold = scene->settings.threshold;
+    gradient_of_sheet(job, sheet, u, v, gradient);
+    double fade = reference_fade(scene, gradient);
     reference_classify(scene, value, rgba);
+    rgba[3] *= fade;
     if (!(rgba[3] > 0) || (threshold > 0 && 255 * rgba[3] <= threshold + 1e-4))
         return;
-    if (snow_type_size(scene->info.type) > 2 && !job->options->exact_values)
+    if (snow_type_size(scene->info.type) > 2 && !job->options->exact_values) {
         reference_classify(scene, coded(scene, value), rgba);
+        rgba[3] *= fade;
+    }
     if (scene->settings.shade == SNOW_SHADE_PHONG) {
-        double gradient[3];
-        gradient_of_sheet(job, sheet, u, v, gradient);
         if (!job->options->exact_normals)
             quantise(job, gradient);
         reference_shade(scene, &job->camera, gradient, rgba);

@@ -134,6 +134,10 @@ SNOW_API const char *snow_transfer_text(const snow_transfer *transfer);
 SNOW_API void snow_transfer_at(const snow_transfer *transfer, double value,
                                double rgba[4]);
 
+/* The data values of the first and the last colour. */
+SNOW_API void snow_transfer_span(const snow_transfer *transfer, double *low,
+                                 double *high);
+
 /* True when every colour is grey, so that pictures need two channels. */
 SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);
 

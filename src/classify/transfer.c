@@ -173,6 +173,12 @@ const char *snow_transfer_text(const snow_transfer *transfer) {
     return transfer->text;
 }
 
+void snow_transfer_span(const snow_transfer *transfer, double *low,
+                        double *high) {
+    *low = transfer->colors[0].value;
+    *high = transfer->colors[transfer->color_count - 1].value;
+}
+
 bool snow_transfer_is_grey(const snow_transfer *transfer) {
     return transfer->grey;
 }
