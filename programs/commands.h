@@ -28,15 +28,15 @@ snow_look look_options(const options *asked);
 int open_input(snow_context *context, const options *asked, const char *path,
                snow_volume **out);
 
-/* Writes a volume to the output that the options name, and says so.  Answers an
- * exit code. */
-int save_volume(snow_context *context, const options *asked,
-                const snow_volume *volume);
-
 /* Reads the file of --tf, if that is there, into the options; and frees it.
  * Answers GO_ON or an exit code. */
 int look_load(options *asked);
 void look_unload(options *asked);
+
+/* Writes a volume to the output that the options name, and says so.  Answers an
+ * exit code. */
+int save_volume(snow_context *context, const options *asked,
+                const snow_volume *volume);
 
 /* Refuses look options that contradict each other: asked before a volume is
  * read.  Answers GO_ON or an exit code. */

@@ -83,14 +83,14 @@ static bool gives_way(const options *out, const char *key) {
     bool window = options_told(out, "window") || options_told(out, "level");
     if (strcmp(key, "range") == 0)
         return window;
-    if (strcmp(key, "view") == 0)
-        return options_told(out, "position");
-    if (strcmp(key, "position") == 0)
-        return options_told(out, "view");
     if (strcmp(key, "tf") == 0)
         return options_told(out, "preset");
     if (strcmp(key, "preset") == 0)
         return options_told(out, "tf");
+    if (strcmp(key, "view") == 0)
+        return options_told(out, "position");
+    if (strcmp(key, "position") == 0)
+        return options_told(out, "view");
     return (strcmp(key, "window") == 0 || strcmp(key, "level") == 0) &&
            options_told(out, "range");
 }
@@ -279,5 +279,7 @@ int config_save(const options *asked) {
     if (!tree)
         return fail_output("%s: no memory for its text; close other programs",
                            asked->save_config);
+    if (!options_told(asked, "shade")) /* then the look may say */
+        json_object_del(tree, "shade");
     return write_json(tree, asked->save_config, asked->overwrite);
 }

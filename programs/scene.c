@@ -57,6 +57,14 @@ static int place_camera(scene *s) {
                          : done;
 }
 
+/* A look that was chosen for a volume without surfaces is not shaded, unless
+ * that is asked for. */
+static void choose_shade(scene *s) {
+    if (s->transfer && snow_transfer_is_flat(s->transfer) &&
+        !options_told(s->asked, "shade"))
+        s->settings.shade = SNOW_SHADE_NONE;
+}
+
 /* Decompression and conversion are part of the reading. */
 static int open_alone(scene *s, const options *step) {
     snow_volume_options data = data_options(step);
@@ -72,7 +80,10 @@ static int open_alone(scene *s, const options *step) {
     if (!s->transfer)
         done = open_look(s->context, step, s->volume, &s->transfer);
     s->times.look += seconds_now() - begin;
-    return done == GO_ON ? place_camera(s) : done;
+    if (done == GO_ON)
+        done = place_camera(s);
+    choose_shade(s);
+    return done;
 }
 
 /* Eight bits are enough on the way where the picture is laid on its background
@@ -118,6 +129,7 @@ static int open_part(scene *s, const options *step) {
         snow_transfer_free(transfer);
     else
         s->transfer = transfer;
+    choose_shade(s);
     s->times.read += seconds_now() - begin;
     return GO_ON;
 }
@@ -279,12 +291,13 @@ void scene_choices(const scene *s, char *out, size_t size) {
     char volume[256];
     describe_volume(&s->drawn.whole, volume, sizeof volume);
     bool over = s->settings.mode == SNOW_MODE_OVER;
-    snprintf(out, size, "%s: %s; %s%s%s; view %s; %s%s%smethod %s%s%s",
+    snprintf(out, size, "%s: %s; %s%s%s%s; view %s; %s%s%smethod %s%s%s",
              name_of_input(s->drawn.path), volume,
              snow_transfer_text(s->transfer), over ? "; opacity per " : "",
              !over                            ? ""
              : s->settings.opacity_length > 0 ? "mm"
                                               : "voxel",
+             over && s->settings.shade == SNOW_SHADE_NONE ? "; not shaded" : "",
              view, over ? "" : "mode ",
              over ? "" : snow_mode_name(s->settings.mode),
              over                        ? ""

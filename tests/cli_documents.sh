@@ -14,6 +14,7 @@ for name in head.nii.gz ct.nii.gz ct.nrrd sim.nrrd volume.mha; do
 done
 "$tool" phantom engine -q -o engine.raw.gz || exit 1
 echo '{"input": "sim.nrrd", "output": "sim.png"}' >look.json
+"$tool" tf convert ct-bone -q -o bone.json || exit 1
 for step in 0 1 2; do
     "$tool" phantom shells --dims 16x16x16 --seed $step -q \
         -o run_000$step.nrrd || exit 1

@@ -288,6 +288,62 @@ static void categories_are_not_mixed(void **state) {
     snow_context_free(context);
 }
 
+/* --- volumes without surfaces --------------------------------------------- */
+
+static snow_transfer *look_at_block(snow_context *context, const float *values,
+                                    const int64_t dims[3]) {
+    snow_volume_info info = {.dims = {dims[0], dims[1], dims[2]},
+                             .type = SNOW_FLOAT32};
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_share(context, &info, values, &volume),
+                     SNOW_OK);
+    snow_transfer *transfer = look_at(volume, (snow_look){.preset = NULL});
+    snow_volume_close(volume);
+    return transfer;
+}
+
+/* Twelve dice make one heap. */
+static void fill_heap(float *values, int count, double middle, double width) {
+    uint64_t seed = 4;
+    for (int i = 0; i < count; i++) {
+        double sum = 0;
+        for (int n = 0; n < 12; n++)
+            sum += support_uniform(&seed) - 0.5;
+        values[i] = (float)(middle + width * sum);
+    }
+}
+
+static void one_heap_of_values_is_a_solid_block(void **state) {
+    (void)state;
+    static float values[20 * 20 * 20];
+    const int64_t cube[3] = {20, 20, 20}, slice[3] = {80, 100, 1};
+    snow_context *context = support_context();
+    fill_heap(values, 8000, 100, 10);
+    snow_transfer *transfer = look_at_block(context, values, cube);
+    assert_true(snow_transfer_is_flat(transfer));
+    assert_true(opacity_at(transfer, 100) > 0.3);
+    assert_true(red_at(transfer, 100) > 0.3 && red_at(transfer, 100) < 0.7);
+    snow_transfer_free(transfer);
+    /* Densities about a mean of 0 are not. */
+    fill_heap(values, 8000, 0, 10);
+    transfer = look_at_block(context, values, cube);
+    assert_false(snow_transfer_is_flat(transfer));
+    assert_true(opacity_at(transfer, -5) == 0);
+    snow_transfer_free(transfer);
+    /* An object in its background is not. */
+    for (int i = 0; i < 8000; i++)
+        values[i] = i % 3 ? 0 : 100 + (float)(i % 7);
+    transfer = look_at_block(context, values, cube);
+    assert_false(snow_transfer_is_flat(transfer));
+    snow_transfer_free(transfer);
+    /* A slice is a picture, whatever its values. */
+    transfer = look_at_block(context, values, slice);
+    assert_true(snow_transfer_is_flat(transfer));
+    assert_true(opacity_at(transfer, 100) == 1);
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(linear_over_decades_is_linear_in_decades),
@@ -300,6 +356,7 @@ int main(void) {
         cmocka_unit_test(hundreds_of_points_are_taken),
         cmocka_unit_test(presets_and_colour_maps_are_data),
         cmocka_unit_test(categories_are_not_mixed),
+        cmocka_unit_test(one_heap_of_values_is_a_solid_block),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

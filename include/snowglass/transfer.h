@@ -141,6 +141,11 @@ SNOW_API void snow_transfer_span(const snow_transfer *transfer, double *low,
 /* True when every colour is grey, so that pictures need two channels. */
 SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);
 
+/* True when it was chosen by itself for a volume that has no surfaces to shade
+ * (one that its object fills, or of one slice): pictures of it are better
+ * without shading, which is the caller's to choose. */
+SNOW_API bool snow_transfer_is_flat(const snow_transfer *transfer);
+
 /* Share of uninteresting voxels, 0 to 1 (the paper's sparse ratio SR, section
  * 5.2): those with opacity 0 or, for threshold T > 0, 255 a <= T + 0.0001.  The
  * opacity a is that with the gradient opacity.

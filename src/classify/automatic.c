@@ -4,10 +4,17 @@
  * that can be shaded, and show what is denser inside as denser.  The threshold
  * between background and object is Otsu's (N. Otsu, "A threshold selection
  * method from gray-level histograms", IEEE Trans. SMC 9, 1979) on a histogram
- * whose ends are robust.  Two additions were found by looking at many volumes:
+ * whose ends are robust.  Some additions were found by looking at many volumes:
  *
  *   - When the "object" is most of the volume there was no background at all;
  *     the upper part is then parted once more.
+ *   - When the values are one heap instead of two, with no threshold that
+ *     explains much, and its upper part is no small share, the object fills the
+ *     volume (a cut-out of a brain, say).  There are no surfaces then; the
+ *     faces of the block show most: all is nearly solid, black to white over
+ *     all values, and is best not shaded.  So are volumes of one slice.  Values
+ *     that go as far below 0 as above are densities about a mean (of proteins),
+ *     whose upper part is what matters.
  *   - Structure below the threshold (leaves, lung vessels, smoke) is kept as a
  *     faint veil from Otsu's threshold of the lower part on, provided that it
  *     is sparse; else it would be fog.
@@ -33,6 +40,15 @@
 
 /* More of the volume than this above the threshold: no background there. */
 #define MOST_OBJECT 0.6
+
+/* Otsu's threshold explains so much of the variance of one heap of values (a
+ * normal distribution: 0.64, an even one 0.75), and at least so much of the
+ * volume lies above it. */
+#define ONE_HEAP 0.70
+#define UPPER_PART 0.25
+
+/* Values that reach below 0 by this share of what they reach above it. */
+#define ABOUT_0 0.25
 
 /* A veil is drawn when the object is at most, and the veil itself at most,
  * this share of the volume. */
@@ -85,14 +101,36 @@ static double share_of(const uint64_t *counts, int first, int last,
     return sum / (double)all;
 }
 
+/* How much of the variance of all values the two parts explain, 0 to 1. */
+static double explained(const uint64_t *counts, const split *s) {
+    double all = 0, moment = 0, square = 0;
+    for (int i = 0; i < BINS; i++) {
+        double count = (double)counts[i], at = i + 0.5;
+        all += count;
+        moment += count * at;
+        square += count * at * at;
+    }
+    double mean = moment / all, variance = square / all - mean * mean;
+    double between = (mean - s->below) * (s->above - mean);
+    return variance > 0 ? between / variance : 1;
+}
+
+static bool fills_volume(const uint64_t *counts, uint64_t all, const split *s,
+                         double low, double high) {
+    return share_of(counts, (int)s->at, BINS, all) >= UPPER_PART &&
+           explained(counts, s) < ONE_HEAP && low > -ABOUT_0 * high;
+}
+
 static void read_counts(const uint64_t *counts, uint64_t all, bool log,
                         double low, double high, snow_parting *out) {
     split s = {0}, veil = {0};
-    out->top = high;
+    out->top = out->high = high;
+    out->low = low;
     if (!part_bins(counts, 0, BINS, &s)) {
         out->constant = true;
         return;
     }
+    out->solid = fills_volume(counts, all, &s, low, high);
     for (int tries = 0; tries < 3; tries++) {
         split upper = {0};
         if (share_of(counts, (int)s.at, BINS, all) < MOST_OBJECT ||
@@ -153,28 +191,63 @@ static void draft_grey(snow_draft *draft, double low, double high) {
     draft->colors[1] = (snow_color_point){high, 1, 1, 1};
 }
 
+/* One slice: a picture, in which everything but its darkest is to be seen; or
+ * more of them that are as solid as lets some light through. */
+static void draft_solid(const snow_parting *p, bool slice, bool log,
+                        snow_draft *draft) {
+    draft_grey(draft, p->low, p->high);
+    draft->colors[0].red = draft->colors[0].green = draft->colors[0].blue = 0;
+    draft->flat = true;
+    add_opacity(draft, p->low, 0);
+    if (slice) {
+        add_opacity(draft, snow_between_on(log, p->low, p->high, 0.05), 1);
+        return;
+    }
+    add_opacity(draft, snow_between_on(log, p->low, p->high, 0.15), 0);
+    add_opacity(draft, snow_between_on(log, p->low, p->high, 0.30), 0.30);
+    add_opacity(draft, p->high, 0.70);
+}
+
+/* How many axes have one voxel: 1 is a slice, 2 a row. */
+static int axes_of_one(const snow_census *census) {
+    snow_part part;
+    snow_volume_get_part(census->volume, &part);
+    return (part.dims[0] == 1) + (part.dims[1] == 1) + (part.dims[2] == 1);
+}
+
+/* All voxels have one value, or none is finite. */
+static void draft_constant(const snow_census *census, snow_draft *draft) {
+    double low, high;
+    snow_full_range(census, &low, &high);
+    draft_grey(draft, low, high);
+    add_opacity(draft, low, 0);
+    add_opacity(draft, high, 0.8);
+    draft->reason = "one value only";
+    draft->flat = true;
+}
+
 snow_status snow_draft_automatic(const snow_census *census, snow_draft *draft) {
+    bool log = census->log;
     snow_parting p;
     SNOW_TRY(snow_part_histogram(census, &p));
     draft->reason = "from the histogram";
     draft->opacity_count = 0;
     if (p.constant) {
-        double low, high;
-        snow_full_range(census, &low, &high);
-        draft_grey(draft, low, high);
-        add_opacity(draft, low, 0);
-        add_opacity(draft, high, 0.8);
-        draft->reason = "one value only";
+        draft_constant(census, draft);
         return SNOW_OK;
     }
-    double start = p.with_faint ? p.faint
-                                : snow_between_on(census->log, p.background,
-                                                  p.threshold, 0.6);
+    if (p.solid || axes_of_one(census) == 1) {
+        draft_solid(&p, axes_of_one(census) == 1, log, draft);
+        return SNOW_OK;
+    }
+    draft->flat = axes_of_one(census) > 1;
+    double start = p.with_faint
+                       ? p.faint
+                       : snow_between_on(log, p.background, p.threshold, 0.6);
     add_opacity(draft, start, 0);
     if (p.with_faint)
         add_opacity(draft, p.threshold, 0.05);
-    add_opacity(
-        draft, snow_between_on(census->log, p.threshold, p.object, 0.15), 0.25);
+    add_opacity(draft, snow_between_on(log, p.threshold, p.object, 0.15), 0.25);
     add_opacity(draft, p.object, 0.4);
     add_opacity(draft, p.top, 0.8);
     draft_grey(draft, start, draft->opacities[draft->opacity_count - 1].value);

@@ -16,6 +16,7 @@ typedef struct snow_draft {
     const char *name;   /* of the colours, for people */
     const char *reason; /* why these values, for people */
     double low, high;   /* the data values that it is spread over */
+    bool flat;          /* for pictures without shading */
     bool log;           /* spread, and to be joined, by logarithms */
     snow_color_point *colors;
     size_t color_count;
@@ -76,6 +77,8 @@ typedef struct snow_parting {
     double top;      /* robust largest value */
     double faint;    /* where faint structure starts below the threshold */
     bool with_faint; /* there is such structure, and it is sparse */
+    bool solid;      /* the object fills the volume: there is nothing to part */
+    double low, high; /* robust ends */
 } snow_parting;
 
 /* Reads the histogram.  Errors: SNOW_NO_MEMORY. */

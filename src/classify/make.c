@@ -172,6 +172,7 @@ static snow_status fill_draft(const snow_census *census, const snow_look *look,
     draft->reason = look->points ? "from the file" : look->preset;
     double low = draft->low, high = draft->high;
     SNOW_TRY(snow_draft_points(points, census, draft));
+    draft->flat = draft->flat && !points->opacity_count;
     /* Colours alone that have no values go where the histogram says. */
     if (!points->opacity_count && points->values != SNOW_VALUES_DATA) {
         for (size_t i = 0; i < draft->color_count; i++)
@@ -260,6 +261,7 @@ static snow_status build(const snow_volume *volume, const snow_draft *draft,
     snow_status status = snow_transfer_set_gradient_opacity(
         transfer, own ? look->gradient_opacities : draft->gradients,
         own ? look->gradient_opacity_count : draft->gradient_count);
+    transfer->flat = draft->flat && !look->opacities;
     if (status == SNOW_OK && draft->log)
         status = snow_transfer_set_log(transfer);
     if (status != SNOW_OK) {

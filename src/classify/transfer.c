@@ -195,6 +195,10 @@ snow_status snow_transfer_set_log(snow_transfer *transfer) {
     return SNOW_OK;
 }
 
+bool snow_transfer_is_flat(const snow_transfer *transfer) {
+    return transfer->flat;
+}
+
 bool snow_transfer_is_log(const snow_transfer *transfer) {
     return transfer->log;
 }

@@ -14,7 +14,8 @@ struct snow_transfer {
     size_t color_count;       /* at least 1 */
     snow_opacity_point *opacities;
     size_t opacity_count;
-    bool log; /* joined in the logarithm of values, all above 0 */
+    bool flat; /* chosen for pictures without shading */
+    bool log;  /* joined in the logarithm of values, all above 0 */
     snow_opacity_point *gradients;       /* factors by gradient magnitude */
     size_t gradient_count;               /* 0: none, not even factors of 1 */
     bool grey;                           /* red = green = blue everywhere */
