@@ -59,6 +59,7 @@ typedef struct slice_rows {
     snow_mask_rows rows;
     const snow_comb *u, *v;
     int reach;                  /* rows that a cell needs */
+    int64_t column;             /* the first voxel of tile 0's windows */
     int64_t low, high;          /* tiles that it may touch: low .. high - 1 */
     uint64_t cells;             /* cells that it may touch */
     int u_range[2], v_range[2]; /* a part's pixels of the plane; where it cuts
@@ -70,6 +71,7 @@ typedef struct snow_scratch {
     slice_rows *slices;
     uint64_t *bits; /* of the rows of the slices */
     uint32_t *rank;
+    uint64_t *any;
     float *samples; /* windows of a tile */
     snow_sample_room *room;
     float *ring; /* filtered rows of a tile */
@@ -87,7 +89,8 @@ typedef struct snow_stroke {
     snow_scratch scratch;
     int64_t first_cell;
     int cells;
-    bool finished; /* a cell is not alive any more */
+    uint64_t alive; /* cells that something shines through in any tile */
+    bool fetch;     /* and so they do in most tiles */
     snow_band_shape shape;
     float *pixels;        /* of the plane */
     unsigned char *drawn; /* tiles of the band that were drawn on */
@@ -344,9 +347,9 @@ static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
     const snow_pass *pass = stroke->pass;
     const snow_scratch *scratch = &stroke->scratch;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
-    int64_t column =
-        (u->first / u->phases + index * SNOW_TILE_COLUMNS) * u->stride +
-        slice->u->offset - pass->order->clip.stored[0];
+    int64_t column = slice->column + index * SNOW_TILE_COLUMNS * u->stride;
+    if (!snow_window_any(&slice->rows, column, pass->window))
+        return;
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
     uint64_t alive = scratch->alive[index] & slice->cells;
@@ -395,7 +398,6 @@ static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
                             ? draw_cut_tile(stroke, slice, index, &tile)
                             : pass->tile(&tile);
     scratch->alive[index] &= ~finished;
-    stroke->finished |= finished != 0;
     stroke->drawn[index] = 1;
 }
 
@@ -449,13 +451,15 @@ static void read_slice(snow_stroke *stroke, int64_t number, slice_rows *slice) {
         return;
     int64_t first = (v->first / v->phases + stroke->first_cell) * v->stride +
                     slice->v->offset - clip->stored[1];
+    slice->rows.fetch = stroke->fetch;
     pass->windows->read(&pass->sheared->bands, number, first,
-                        (stroke->cells - 1) * v->stride + slice->reach,
+                        rows_of_cells(stroke->alive, v->stride, slice->reach),
                         stroke->scratch.spans, &slice->rows);
     int64_t step = SNOW_TILE_COLUMNS * u->stride;
-    int64_t start =
+    slice->column =
         u->first / u->phases * u->stride + slice->u->offset - clip->stored[0];
-    int64_t low = -start - pass->window + 1, high = pass->columns - start;
+    int64_t low = -slice->column - pass->window + 1;
+    int64_t high = pass->columns - slice->column;
     slice->low = low > 0 ? (low + step - 1) / step : 0;
     slice->high = high > 0 ? (high + step - 1) / step : 0;
     if (clip->cuts)
@@ -500,6 +504,7 @@ static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
     PART(slices, SLICES_AT_ONCE * sizeof *out->slices);
     PART(bits, SLICES_AT_ONCE * words * sizeof *out->bits);
     PART(rank, SLICES_AT_ONCE * words * sizeof *out->rank);
+    PART(any, SLICES_AT_ONCE * (words / SNOW_WINDOW_ROWS) * sizeof *out->any);
     PART(samples,
          (SNOW_WINDOW_ROWS * pass->window_floats + 64) * sizeof(float));
     PART(room, sizeof *out->room);
@@ -518,25 +523,40 @@ static size_t lay_out(const snow_pass *pass, char *base, snow_scratch *out) {
     return at;
 }
 
+/* Finds what may still be drawn on; whether that is most of what was drawn on
+ * tells how much of the slices to come will be used. */
+static void look_through(snow_stroke *stroke) {
+    int64_t open = 0;
+    stroke->alive = 0;
+    for (int64_t tile = 0; tile < stroke->pass->tiles; tile++) {
+        uint64_t alive = stroke->scratch.alive[tile];
+        stroke->alive |= alive;
+        if (stroke->drawn[tile])
+            open += 2 * __builtin_popcountll(alive) - stroke->cells;
+    }
+    stroke->fetch = open >= 0;
+}
+
 /* Line 07 for one band of lines: slices from front to back. */
 static void draw_slab(void *of, int64_t first, int64_t count,
                       const snow_band *band) {
     snow_stroke *stroke = of;
     uint64_t *alive = stroke->scratch.alive;
     int64_t tiles = stroke->pass->tiles;
-    stroke->finished = false;
     stroke->pixels = band->pixels;
     stroke->drawn = band->drawn;
     stroke->first = first;
     stroke->count = count;
     for (int64_t tile = 0; tile < tiles; tile++)
         alive[tile] = ~UINT64_C(0) >> (64 - stroke->cells);
-    for (int64_t n = 0;
-         n < count && (!stroke->finished || snow_any_alive(alive, tiles));
-         n += SLICES_AT_ONCE)
+    for (int64_t n = 0; n < count; n += SLICES_AT_ONCE) {
+        look_through(stroke);
+        if (!stroke->alive)
+            break;
         draw_slices(stroke, n,
                     count - n < SLICES_AT_ONCE ? (int)(count - n)
                                                : SLICES_AT_ONCE);
+    }
 }
 
 /* Groups of slices, each by itself and then together. */
@@ -590,6 +610,7 @@ static void splat_band(void *job, int64_t item, int worker) {
         snow_mask_rows *rows = &stroke.scratch.slices[n].rows;
         rows->bits = stroke.scratch.bits + n * words * SNOW_WINDOW_ROWS;
         rows->rank = stroke.scratch.rank + n * words * SNOW_WINDOW_ROWS;
+        rows->any = stroke.scratch.any + n * words;
         rows->words = words;
     }
     stroke.first_cell = item * pass->cells;

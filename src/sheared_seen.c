@@ -61,6 +61,7 @@ typedef struct seen_pass {
 typedef struct seen_scratch {
     uint64_t *bits; /* of the rows of a slice */
     uint32_t *rank;
+    uint64_t *any;
     float *samples; /* windows of a tile */
     float *ring;    /* filtered rows of a tile */
     float *zero;
@@ -355,6 +356,8 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
     int64_t here = column - pass->stored[0];
     if (here <= -count || here >= pass->voxel_columns)
         return;
+    if (!snow_window_any(&stroke->rows, here, count))
+        return;
     uint64_t bits[SNOW_WINDOW_ROWS];
     uint32_t before[SNOW_WINDOW_ROWS];
     uint64_t alive = scratch->alive[index] & own_lines(stroke);
@@ -465,8 +468,8 @@ static void draw_slice(seen_stroke *stroke, int64_t index) {
     if (end <= pass->stored[1] || here >= pass->voxel_rows)
         return;
     pass->windows->read(&pass->sheared->bands, index, here,
-                        (int)(end - stroke->row), stroke->scratch.spans,
-                        &stroke->rows);
+                        ~UINT64_C(0) >> (64 - (end - stroke->row)),
+                        stroke->scratch.spans, &stroke->rows);
     if (!stroke->rows.held)
         return;
     fill_lines(stroke);
@@ -495,6 +498,7 @@ static size_t lay_out(const seen_pass *pass, char *base, seen_scratch *out) {
     } while (0)
     PART(bits, words * sizeof *out->bits);
     PART(rank, words * sizeof *out->rank);
+    PART(any, words / SNOW_WINDOW_ROWS * sizeof *out->any);
     PART(samples, SNOW_WINDOW_ROWS * pass->window_floats * sizeof(float));
     PART(ring, SNOW_WINDOW_ROWS * filtered);
     PART(zero, filtered);
@@ -577,6 +581,7 @@ static void splat_band(void *job, int64_t item, int worker) {
             &stroke.scratch);
     stroke.rows.bits = stroke.scratch.bits;
     stroke.rows.rank = stroke.scratch.rank;
+    stroke.rows.any = stroke.scratch.any;
     stroke.rows.words = snow_window_words(pass->voxel_columns);
     stroke.first_line = (int)item * pass->lines;
     stroke.lines = pass->scaled.v.count - stroke.first_line;

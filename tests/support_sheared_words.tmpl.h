@@ -38,5 +38,14 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
     V(spread4)(in->table, in->bits, 16, out->spread4);
     out->found =
         V(windows)(in->low, in->high, in->shift, in->within, out->windows);
+    for (int at = 0; at < 16; at += LANES) {
+        V(vec) left, right;
+        V(twins2)(in->table, in->at + at / 2, &left, &right);
+        V(store)(out->left2 + at, left);
+        V(store)(out->right2 + at, right);
+        V(twins4)(in->table, in->at + at / 4, &left, &right);
+        V(store)(out->left4 + at, left);
+        V(store)(out->right4 + at, right);
+    }
     out->popcount = V(popcount)(in->mask);
 }

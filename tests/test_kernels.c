@@ -752,27 +752,54 @@ static bool holds_voxels(const band_case *b, int slice, int64_t row) {
     return false;
 }
 
+/* Whether `any` tells of the columns of those rows that are held. */
+static void check_any(const band_case *b, const snow_mask_rows *rows, int slice,
+                      int64_t first) {
+    for (int column = 0; column < b->columns; column++) {
+        bool any = false;
+        for (int n = 0; n < SNOW_WINDOW_ROWS; n++)
+            any |= rows->held >> n & 1 &&
+                   b->voxels[((size_t)slice * (size_t)b->rows +
+                              (size_t)(first + n)) *
+                                 (size_t)b->columns +
+                             (size_t)column] >= 128;
+        assert_int_equal(snow_window_any(rows, column, 1), any);
+    }
+    assert_false(snow_window_any(rows, b->columns, SNOW_WINDOW_MOST));
+    assert_false(snow_window_any(rows, -SNOW_WINDOW_MOST, SNOW_WINDOW_MOST));
+    assert_int_equal(
+        snow_window_any(rows, 1 - SNOW_WINDOW_MOST, SNOW_WINDOW_MOST),
+        snow_window_any(rows, 0, 1));
+}
+
 static void check_read(const band_case *b, snow_isa isa, int slice,
-                       int64_t first, int count) {
+                       int64_t first, uint64_t wanted) {
+    int low = __builtin_ctzll(wanted), high = 63 - __builtin_clzll(wanted);
     size_t words = snow_window_words(b->columns);
     guarded bits = guarded_new(SNOW_WINDOW_ROWS * words * sizeof(uint64_t));
     guarded rank = guarded_new(SNOW_WINDOW_ROWS * words * sizeof(uint32_t));
     guarded spans =
         guarded_new(((size_t)b->columns / 2 + 1) * sizeof(snow_span));
-    snow_mask_rows rows = {
-        .bits = guarded_at(&bits), .rank = guarded_at(&rank), .words = words};
-    snow_window_fns_of(isa)->read(&b->bands, slice, first, count,
+    guarded any = guarded_new(words * sizeof(uint64_t));
+    snow_mask_rows rows = {.bits = guarded_at(&bits),
+                           .rank = guarded_at(&rank),
+                           .any = guarded_at(&any),
+                           .words = words,
+                           .fetch = first % 2 == 0};
+    snow_window_fns_of(isa)->read(&b->bands, slice, first, wanted,
                                   guarded_at(&spans), &rows);
     for (int n = 0; n < SNOW_WINDOW_ROWS; n++) {
-        bool held = n < count && holds_voxels(b, slice, first + n);
+        bool held = n >= low && n <= high && holds_voxels(b, slice, first + n);
         if ((rows.held >> n & 1) != held)
             fail_msg("%s: row %d of %dx%d is%s held", snow_isa_name(isa),
                      (int)first + n, b->columns, b->rows, held ? " not" : "");
         if (held)
             check_read_row(b, &rows, slice, first + n, n, snow_isa_name(isa));
     }
+    check_any(b, &rows, slice, first);
     bool sound = guarded_end(&bits);
     sound &= guarded_end(&rank);
+    sound &= guarded_end(&any);
     if (!guarded_end(&spans) || !sound)
         fail_msg("a guard of %s is broken: %dx%d", snow_isa_name(isa),
                  b->columns, b->rows);
@@ -792,7 +819,8 @@ static void rows_of_bands_are_read_as_bits(void **state) {
                 int count = 1 + draw(&random, SNOW_WINDOW_ROWS);
                 int64_t first = draw(&random, b.rows + count) - count;
                 if (snow_isa_runs(isa))
-                    check_read(&b, isa, draw(&random, SLICES), first, count);
+                    check_read(&b, isa, draw(&random, SLICES), first,
+                               draw_mask(&random, count) | 1);
             }
             end_bands(&b);
         }
@@ -980,6 +1008,7 @@ typedef struct word_input {
     uint16_t shorts[32];
     uint32_t bits;
     uint64_t mask, low[8], high[8], within;
+    int64_t at[16]; /* of pixels of the table */
     unsigned shift;
 } word_input;
 
@@ -991,6 +1020,7 @@ typedef struct word_output {
     int lane_count, popcount;
     uint32_t expand8[16], expand16[16], widen8[16], widen16[16];
     float low[16], high[16], spread2[16 * 2 + 16], spread4[16 * 4 + 16];
+    float left2[16], right2[16], left4[16], right4[16];
     uint64_t windows[8];
     unsigned found;
 } word_output;
@@ -1150,6 +1180,17 @@ static void check_windows(const word_input *in, const word_output *out) {
     }
 }
 
+static void check_pixels(const word_input *in, const word_output *out,
+                         const char *name) {
+    for (int i = 0; i < 16; i++) {
+        const float *two = in->table + in->at[i / 2] + i % 2;
+        const float *four = in->table + in->at[i / 4] + i % 4;
+        if (out->left2[i] != two[0] || out->right2[i] != two[2] ||
+            out->left4[i] != four[0] || out->right4[i] != four[4])
+            fail_msg("%s: pixels apart differ in lane %d", name, i);
+    }
+}
+
 static float odd_value(uint64_t *random) {
     static const float odd[] = {0,      -0.0f,    1,         -1,
                                 1e-40f, INFINITY, -INFINITY, NAN};
@@ -1182,6 +1223,8 @@ static void draw_words(word_input *in, uint64_t *random) {
     }
     in->within = (UINT64_C(1) << draw(random, 64)) - 1;
     in->shift = (unsigned)draw(random, 64);
+    for (int i = 0; i < 16; i++)
+        in->at[i] = 2 * draw(random, ENTRIES * 2 - 3);
 }
 
 static void words_mean_what_they_say(void **state) {
@@ -1201,6 +1244,7 @@ static void words_mean_what_they_say(void **state) {
             check_vectors(&in, &out, name);
             check_bits(&in, &out, name);
             check_windows(&in, &out);
+            check_pixels(&in, &out, name);
         }
     }
 }
@@ -1320,8 +1364,8 @@ typedef struct timed_read {
 static void call_read(void *user, snow_isa isa) {
     timed_read *t = user;
     snow_span spans[66];
-    snow_window_fns_of(isa)->read(&t->bands.bands, 0, 16, 36, spans,
-                                  &t->window.rows);
+    snow_window_fns_of(isa)->read(&t->bands.bands, 0, 16, ~UINT64_C(0) >> 28,
+                                  spans, &t->window.rows);
 }
 
 static void time_windows(uint64_t *random) {
@@ -1333,6 +1377,8 @@ static void time_windows(uint64_t *random) {
     t.window.wanted = ~UINT64_C(0);
     t.window.count = 20;
     t.window.column = 55;
+    static uint64_t any[8];
+    t.window.rows.any = any;
     time_kernel("windows of 36 rows", call_windows, &t.window);
     for (int n = 0; n < 3; n++) {
         char name[64];

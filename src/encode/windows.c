@@ -3,6 +3,9 @@
 
 #include <string.h>
 
+/* Bytes that the cache fetches at once. */
+#define LINE 64
+
 /* Sets bits [from, to) of a row. */
 static void set_bits(uint64_t *bits, size_t from, size_t to) {
     for (size_t word = from / 64; word * 64 < to; word++) {

@@ -7,6 +7,7 @@
  *   bits    64 zeros | one bit a column, lowest first | zeros to the end
  *   rank    per word: voxels of the row before it
  *   voxel   per row: its first voxel in IA
+ *   any     per word: columns that hold a voxel in any of the rows
  *
  * The same word of all rows lies together, so that a window is cut out of
  * several rows at once. */
@@ -22,16 +23,29 @@
 typedef struct snow_mask_rows {
     uint64_t *bits; /* [word * SNOW_WINDOW_ROWS + row] */
     uint32_t *rank;
+    uint64_t *any;                                /* [word] */
     const unsigned char *codes[SNOW_WINDOW_ROWS]; /* of the row's first voxel */
     const uint16_t *normals[SNOW_WINDOW_ROWS];    /* NULL: none */
     const uint16_t *fades[SNOW_WINDOW_ROWS];      /* NULL: none */
     size_t words;                                 /* a row, padding included */
-    uint64_t held;                                /* rows that hold a voxel */
+    bool fetch;    /* set by who reads: whether the cache is asked for the rows'
+                      part of IA, most of which is to be used */
+    uint64_t held; /* rows that hold a voxel */
 } snow_mask_rows;
 
 /* Words of a row of so many columns. */
 static inline size_t snow_window_words(int64_t columns) {
     return (size_t)columns / 64 + 3;
+}
+
+/* Whether any row has a voxel in the `count` columns from `column` on, up to
+ * SNOW_WINDOW_MOST, which overlap the rows. */
+static inline bool snow_window_any(const snow_mask_rows *rows, int64_t column,
+                                   int count) {
+    size_t at = (size_t)(column + SNOW_WINDOW_PAD);
+    const uint64_t *any = rows->any + at / 64;
+    uint64_t window = any[0] >> at % 64 | any[1] << 1 << (63 - at % 64);
+    return (window & ((UINT64_C(1) << count) - 1)) != 0;
 }
 
 /* Windows of `count` columns from `column` on, up to SNOW_WINDOW_MOST, which
@@ -42,11 +56,12 @@ typedef uint64_t snow_windows_fn(const snow_mask_rows *rows, uint64_t wanted,
                                  int64_t column, int count, uint64_t *bits,
                                  uint32_t *before);
 
-/* Decodes rows first .. first + count - 1 of a slice of the bands, `count` at
- * most SNOW_WINDOW_ROWS; rows that do not exist are empty.  `spans` is room for
- * one row's. */
+/* Decodes rows first + n of a slice of the bands, for n from the lowest to the
+ * highest bit of `wanted`; rows that do not exist are empty, as are the others.
+ * `spans` is room for one row's.  The rows' part of IA is asked of the cache.
+ */
 typedef void snow_mask_rows_fn(const snow_bands *bands, int64_t slice,
-                               int64_t first, int count, snow_span *spans,
+                               int64_t first, uint64_t wanted, snow_span *spans,
                                snow_mask_rows *rows);
 
 typedef struct snow_window_fns {

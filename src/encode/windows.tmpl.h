@@ -25,15 +25,35 @@ TARGET static uint64_t NAME(windows)(const snow_mask_rows *rows,
     return found;
 }
 
-/* The ranks of a row's words; returns its voxels. */
+/* The ranks of a row's words, which are added to `any`; returns its voxels. */
 TARGET static size_t NAME(rank)(const uint64_t *bits, size_t words,
-                                uint32_t *rank) {
+                                uint32_t *rank, uint64_t *any) {
     uint32_t sum = 0;
     for (size_t word = 0; word < words; word++) {
         rank[word * SNOW_WINDOW_ROWS] = sum;
+        any[word] |= bits[word * SNOW_WINDOW_ROWS];
         sum += (uint32_t)V(popcount)(bits[word * SNOW_WINDOW_ROWS]);
     }
     return sum;
+}
+
+/* Asks the cache for voxels `from` to `to` - 1 of a band, which follow one
+ * another: cut into windows they would be too far apart to be guessed.  Inlined
+ * in any case: a function that asks only is one without effect to gcc, which
+ * leaves its calls out. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(fetch)(const snow_bands *bands, const snow_sparse *band, size_t from,
+            size_t to) {
+    const unsigned char *end = snow_bands_codes(band, to);
+    for (const unsigned char *at = snow_bands_codes(band, from); at < end;
+         at += LINE)
+        __builtin_prefetch(at);
+    const uint16_t *arrays[] = {bands->with_normals ? band->normals : NULL,
+                                bands->with_fades ? band->fades : NULL};
+    for (size_t n = 0; n < sizeof arrays / sizeof *arrays; n++)
+        for (size_t voxel = from; arrays[n] && voxel < to;
+             voxel += LINE / sizeof *arrays[n])
+            __builtin_prefetch(arrays[n] + voxel);
 }
 
 /* Rows begin .. end - 1, which lie in one band, into the places from n on. */
@@ -45,6 +65,7 @@ TARGET static void NAME(read_band)(const snow_bands *bands, int64_t slice,
     snow_walk_begin(&walk, band, slice);
     if (begin % SNOW_BAND_ROWS)
         snow_walk_skip(&walk, begin % SNOW_BAND_ROWS);
+    size_t from = walk.voxel;
     for (int64_t row = begin; row < end; row++, n++) {
         next_mask(&walk, spans, rows->bits + n, rows->words);
         rows->codes[n] = snow_bands_codes(band, walk.voxel);
@@ -52,20 +73,29 @@ TARGET static void NAME(read_band)(const snow_bands *bands, int64_t slice,
             bands->with_normals ? snow_bands_normals(band, walk.voxel) : NULL;
         rows->fades[n] =
             bands->with_fades ? snow_bands_fades(band, walk.voxel) : NULL;
-        size_t voxels = NAME(rank)(rows->bits + n, rows->words, rows->rank + n);
+        size_t voxels =
+            NAME(rank)(rows->bits + n, rows->words, rows->rank + n, rows->any);
         walk.voxel += voxels;
         walk.row++;
         rows->held |= (uint64_t)(voxels != 0) << n;
     }
+    if (rows->fetch)
+        NAME(fetch)(bands, band, from, walk.voxel);
 }
 
 TARGET static void NAME(read)(const snow_bands *bands, int64_t slice,
-                              int64_t first, int count, snow_span *spans,
+                              int64_t first, uint64_t wanted, snow_span *spans,
                               snow_mask_rows *rows) {
-    int64_t row = first < 0 ? 0 : first, last = first + count;
+    rows->held = 0;
+    memset(rows->any, 0, rows->words * sizeof *rows->any);
+    if (!wanted)
+        return;
+    int64_t row = first + __builtin_ctzll(wanted);
+    int64_t last = first + 64 - __builtin_clzll(wanted);
+    if (row < 0)
+        row = 0;
     if (last > bands->rows)
         last = bands->rows;
-    rows->held = 0;
     while (row < last) {
         int64_t band = row / SNOW_BAND_ROWS, end = (band + 1) * SNOW_BAND_ROWS;
         const snow_slice_pointer *pa = bands->bands[band].pa + slice;

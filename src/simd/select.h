@@ -38,6 +38,10 @@
  *                                    one, the 64 bits from bit `shift` (0 to 63)
  *                                    on which are in `within` too; returns a bit
  *                                    for each that is not 0
+ *   V(twins2)(p, at, left, right), V(twins4)
+ *                                    pixels of 2 or 4 floats at p + at[0], p +
+ *                                    at[1] ..., as many as a vector holds, and
+ *                                    those behind each of them
  *   V(popcount)(x)                   bits that are set in a uint64_t
  *   V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4 floats) of a
  *                                    and b in turns: a0 b0 a1 b1 ...

@@ -222,6 +222,29 @@ SNOW_AVX2_INLINE void snow_avx2_spread4(const float *p, uint64_t bits,
     }
 }
 
+/* Two pixels and those behind them, or two runs of four floats. */
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_halves(const float *low,
+                                                const float *high) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(low)),
+                                _mm_loadu_ps(high), 1);
+}
+
+SNOW_AVX2_INLINE void snow_avx2_twins2(const float *p, const int64_t *at,
+                                       snow_avx2_vec *left,
+                                       snow_avx2_vec *right) {
+    __m256d a = _mm256_castps_pd(snow_avx2_halves(p + at[0], p + at[2]));
+    __m256d b = _mm256_castps_pd(snow_avx2_halves(p + at[1], p + at[3]));
+    *left = _mm256_castpd_ps(_mm256_unpacklo_pd(a, b));
+    *right = _mm256_castpd_ps(_mm256_unpackhi_pd(a, b));
+}
+
+SNOW_AVX2_INLINE void snow_avx2_twins4(const float *p, const int64_t *at,
+                                       snow_avx2_vec *left,
+                                       snow_avx2_vec *right) {
+    *left = snow_avx2_halves(p + at[0], p + at[1]);
+    *right = snow_avx2_halves(p + at[0] + 4, p + at[1] + 4);
+}
+
 SNOW_AVX2_INLINE int snow_avx2_popcount(uint64_t x) {
     return __builtin_popcountll(x);
 }

@@ -207,6 +207,33 @@ SNOW_AVX512_INLINE void snow_avx512_spread4(const float *p, uint64_t bits,
     }
 }
 
+/* Four runs of four floats. */
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_runs(const float *p,
+                                                    const int64_t *at) {
+    __m512 v = _mm512_castps128_ps512(_mm_loadu_ps(p + at[0]));
+    v = _mm512_insertf32x4(v, _mm_loadu_ps(p + at[1]), 1);
+    v = _mm512_insertf32x4(v, _mm_loadu_ps(p + at[2]), 2);
+    return _mm512_insertf32x4(v, _mm_loadu_ps(p + at[3]), 3);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_twins2(const float *p, const int64_t *at,
+                                           snow_avx512_vec *left,
+                                           snow_avx512_vec *right) {
+    __m512d a = _mm512_castps_pd(snow_avx512_runs(p, at));
+    __m512d b = _mm512_castps_pd(snow_avx512_runs(p, at + 4));
+    const __m512i even = _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14);
+    const __m512i odd = _mm512_setr_epi64(1, 3, 5, 7, 9, 11, 13, 15);
+    *left = _mm512_castpd_ps(_mm512_permutex2var_pd(a, even, b));
+    *right = _mm512_castpd_ps(_mm512_permutex2var_pd(a, odd, b));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_twins4(const float *p, const int64_t *at,
+                                           snow_avx512_vec *left,
+                                           snow_avx512_vec *right) {
+    *left = snow_avx512_runs(p, at);
+    *right = snow_avx512_runs(p + 4, at);
+}
+
 SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {
     return __builtin_popcountll(x);
 }

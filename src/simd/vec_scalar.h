@@ -186,6 +186,22 @@ static inline void snow_scalar_spread4(const float *p, uint64_t bits, int count,
 }
 
 /* By adding neighbouring groups of bits (Wilkes, Wheeler and Gill 1957). */
+static inline void snow_scalar_twins2(const float *p, const int64_t *at,
+                                      snow_scalar_vec *left,
+                                      snow_scalar_vec *right) {
+    snow_scalar_vec a = snow_scalar_load(p + at[0]);
+    snow_scalar_vec b = snow_scalar_load(p + at[1]);
+    *left = (snow_scalar_vec){a[0], a[1], b[0], b[1]};
+    *right = (snow_scalar_vec){a[2], a[3], b[2], b[3]};
+}
+
+static inline void snow_scalar_twins4(const float *p, const int64_t *at,
+                                      snow_scalar_vec *left,
+                                      snow_scalar_vec *right) {
+    *left = snow_scalar_load(p + *at);
+    *right = snow_scalar_load(p + *at + 4);
+}
+
 static inline int snow_scalar_popcount(uint64_t x) {
     x -= x >> 1 & UINT64_C(0x5555555555555555);
     x = (x & UINT64_C(0x3333333333333333)) +

@@ -51,14 +51,14 @@ WARP_NAME(_mix)(const snow_plane *plane, const warp_group *group,
     float along_y[4][GROUP];
     for (int m = 0; m < 4; m++)
         for (int n = 0; n < GROUP; n++) {
-            float f = group->down[2 * n], w = catmull_rom[3][m];
+            float f = group->down[n], w = catmull_rom[3][m];
             for (int power = 2; power >= 0; power--)
                 w = w * f + catmull_rom[power][m];
             along_y[m][n] = w;
         }
     for (int n = 0; n < GROUP; n++) {
         V(vec) part[WARP_VECTORS];
-        WARP_NAME(_along_x)(group->across[2 * n], part);
+        WARP_NAME(_along_x)(group->across[n], part);
         snow_scalar_vec pixel = WARP_NAME(_pixel)(
             plane->pixels + group->at[n], plane->stride, &along_y[0][n], part);
         memcpy(pixels + n * WARP_CHANNELS, &pixel,

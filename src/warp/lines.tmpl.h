@@ -22,8 +22,8 @@ WARP_NAME(_place)(const snow_plane *plane, const int64_t *x, const int64_t *y,
         group->at[n] = (int64_t)(int32_t)(y[n] >> 32) * stride +
                        (x[n] >> 32) * WARP_CHANNELS - before;
     for (int n = 0; n < GROUP; n++) {
-        group->across[2 * n] = group->across[2 * n + 1] = fraction_of(x[n]);
-        group->down[2 * n] = group->down[2 * n + 1] = fraction_of(y[n]);
+        group->across[n] = fraction_of(x[n]);
+        group->down[n] = fraction_of(y[n]);
     }
     for (int n = count; n < GROUP; n++)
         group->at[n] = group->at[0];

@@ -23,27 +23,14 @@ static inline float fraction_of(int64_t place) {
     return (float)(int32_t)((uint32_t)place >> 8) * 0x1p-24f;
 }
 
-/* (1 - part) a + part b */
-static inline snow_scalar_vec mixed(snow_scalar_vec a, snow_scalar_vec b,
-                                    snow_scalar_vec part) {
-    return a + part * (b - a);
-}
-
-static inline snow_scalar_vec two_pixels(const float *a, const float *b) {
-    float both[4];
-    memcpy(both, a, 2 * sizeof *a);
-    memcpy(both + 2, b, 2 * sizeof *b);
-    return snow_scalar_load(both);
-}
-
 #define GROUP 16
 
 /* Where the pixels of a group lie. */
 typedef struct warp_group {
     int64_t at[GROUP];       /* the first one that is read, in floats from the
                                 plane's first */
-    float across[2 * GROUP]; /* fractions, each twice */
-    float down[2 * GROUP];
+    float across[2 * GROUP]; /* fractions of GROUP pixels; a vector of them */
+    float down[2 * GROUP];   /* may be read from each on */
 } warp_group;
 
 #define SELECT_SCALAR
