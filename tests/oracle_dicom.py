@@ -196,7 +196,7 @@ with open(first, "rb") as file, gzip.open(first + ".gz", "wb") as to:
 os.remove(first)
 oracle.expect("mixed", small, wanted, name="one of them packed by gzip")
 oracle.expect(f"mixed/{names[4]}", small, wanted, name="one slice of them")
-says("one slice of them", f"mixed/{names[4]}", "one of 9 images of a series")
+says("one slice of them", f"mixed/{names[4]}", "one of 9 slices of a series")
 with open(f"mixed/{names[4]}", "rb") as file:
     alone = file.read()
 oracle.checked += 1
@@ -289,6 +289,13 @@ series("beats", beats.reshape(12, 6, 5), rising[:4] * 3,
 for time, index in enumerate((1, 0, 2)):
     oracle.expect("beats", beats[index], wanted, ["--time", time])
 oracle.refuse("beats", "3", ["--time", "3"], 2)
+names = sorted(glob.glob("beats/*"), key=lambda n: int(n.split("_")[1][:-4]))
+oracle.expect(names[9], beats[2], wanted, name="a slice of a time")
+series("cardiac", beats[:, 0], rising[:1] * 3, TriggerTime=Each([3, 1, 2]))
+oracle.expect("cardiac", beats[1:2, 0], grid((0.5, 0.75, 9), rising[0]),
+              name="times of one slice")
+oracle.expect("cardiac/s_2.dcm", beats[2:, 0],
+              grid((0.5, 0.75, 9), rising[0]), name="one of one place")
 
 # --- values -------------------------------------------------------------------
 
@@ -333,6 +340,20 @@ dose = image(long, (1, 2, 3), SOPClassUID="1.2.840.10008.5.1.4.1.1.481.2",
 write("dose.dcm", dose)
 oracle.expect("dose.dcm", long * 0.25, grid((0.5, 0.75, 2), (1, 2, 3)),
               dtype="u4", name="a dose")
+
+# What GDCM packs, each way that has a code for the type.
+gdcmconv = shutil.which("gdcmconv")
+for kind in ("u1", "u2", "i2") if gdcmconv else ():
+    voxels = oracle.sample(kind, (5, 20, 30)) // 16
+    series("raw", voxels, rising[:5], BitsStored=16 if "2" in kind else 8)
+    for way in ("--jpeg", "--jpegls", "--j2k", "--rle", "--implicit",
+                "--explicit", "--deflated"):
+        shutil.rmtree("packed", ignore_errors=True)
+        os.mkdir("packed")
+        for path in glob.glob("raw/*"):
+            subprocess.run([gdcmconv, way, path,
+                            path.replace("raw", "packed")], check=True)
+        oracle.expect("packed", voxels, wanted, name=f"{kind} {way}")
 
 # --- several frames -----------------------------------------------------------
 
