@@ -25,10 +25,11 @@ import tarfile
 
 import oracle
 
-if not json.loads(subprocess.run([oracle.TOOL, "doctor", "--json"],
+# Without GDCM what is packed by JPEG's kinds is refused, and nothing else.
+GDCM = json.loads(subprocess.run([oracle.TOOL, "doctor", "--json"],
                                  capture_output=True).stdout
-                  )["libraries"].get("gdcm"):
-    oracle.skip("this build has no GDCM")
+                  )["libraries"].get("gdcm")
+UNBUILT = "this build cannot read DICOM images that are packed"
 
 place = oracle.folder()
 CT = "1.2.840.10008.5.1.4.1.1.2"
@@ -353,7 +354,10 @@ for kind in ("u1", "u2", "i2") if gdcmconv else ():
         for path in glob.glob("raw/*"):
             subprocess.run([gdcmconv, way, path,
                             path.replace("raw", "packed")], check=True)
-        oracle.expect("packed", voxels, wanted, name=f"{kind} {way}")
+        if GDCM or way not in ("--jpeg", "--jpegls", "--j2k"):
+            oracle.expect("packed", voxels, wanted, name=f"{kind} {way}")
+        else:
+            oracle.refuse("packed", UNBUILT)
 
 # --- several frames -----------------------------------------------------------
 
@@ -430,8 +434,7 @@ oracle.expect("odd.dcm", small[:1], grid((1, 1, 9), rising[0]),
 says("a spacing of 0", "odd.dcm", "1 mm is taken")
 oracle.refuse("odd.dcm", "a dicom file, which tells its sizes",
               ["--dims", "5x6x1"], 2)
-oracle.refuse("odd.dcm", "no data set", ["--dataset", "x"], 2) \
-    if False else oracle.refuse("odd.dcm", "--dataset x", ["--dataset", "x"], 2)
+oracle.refuse("odd.dcm", "--dataset x", ["--dataset", "x"], 2)
 with open("odd.dcm", "rb") as file:
     whole = file.read()
 os.mkdir("cut")
@@ -483,6 +486,10 @@ def same_as_plain(names, plain):
         path = oracle.data(f"dicom/syntax/{name}")
         if not path:
             return
+        if not GDCM and opened(path).file_meta.TransferSyntaxUID.startswith(
+                "1.2.840.10008.1.2.4"):
+            oracle.refuse(path, UNBUILT)
+            continue
         oracle.checked += 1
         status, text, errors = told(path)
         if status:
