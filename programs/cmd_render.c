@@ -5,7 +5,9 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "launch.h"
+#include "marks.h"
 #include "outputs.h"
+#include "paint.h"
 #include "render_stats.h"
 #include "report.h"
 #include "scene.h"
@@ -32,7 +34,11 @@ int check_settings(const options *asked) {
         strcmp(asked->encoding, "auto") != 0)
         return fail_usage("--encoding: method original encodes nothing; leave "
                           "one of the two out");
-    return check_look(asked);
+    if (asked->view && asked->position.given)
+        return fail_usage("--position: --view says where the camera is as "
+                          "well; leave one of the two out");
+    int done = marks_check(asked);
+    return done == GO_ON ? check_look(asked) : done;
 }
 
 /* Needs no file, so it comes before everything else. */
@@ -107,6 +113,7 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->isa = (snow_isa)snow_isa_named(asked->isa);
     out->threads = (int)asked->threads;
     out->deterministic = asked->deterministic;
+    out->mode = (snow_mode)snow_mode_named(asked->mode);
 }
 
 int make_settings(const options *asked, const snow_volume_info *info,
@@ -115,6 +122,15 @@ int make_settings(const options *asked, const snow_volume_info *info,
     if (!out->threads)
         out->threads = launch_threads();
     return opacity_length(asked, info, &out->opacity_length);
+}
+
+static void place_camera(const options *asked, snow_view *out) {
+    out->has_position = asked->position.given;
+    out->has_target = asked->target.given;
+    out->has_up = asked->up.given;
+    memcpy(out->position, asked->position.at, sizeof out->position);
+    memcpy(out->target, asked->target.at, sizeof out->target);
+    memcpy(out->upward, asked->up.at, sizeof out->upward);
 }
 
 /* A named view sets size and angles too, hence it comes before them. */
@@ -132,6 +148,7 @@ int make_view(snow_context *context, const options *asked,
     out->roll = asked->roll;
     out->zoom = asked->zoom;
     out->fov = asked->fov;
+    place_camera(asked, out);
     return GO_ON;
 }
 
@@ -140,7 +157,15 @@ typedef struct work {
     scene scene;
     snow_image *image; /* NULL on ranks that do not write */
     double begin;
+    char painted[PAINT_TOLD_BYTES]; /* what was made of values */
 } work;
+
+static snow_status make_marks(const work *w, snow_overlay **out) {
+    const scene *s = &w->scene;
+    const picture_marks marks = {s->asked, s->whole, s->view, s->transfer};
+    marks_tell(s->asked);
+    return marks_make(&marks, s->asked->azimuth, -1, s->context, out);
+}
 
 /* A pipe is written through and may block, so there an interruption does not
  * wait. */
@@ -150,13 +175,18 @@ static int write_picture(work *w, const options *asked) {
         .bits = asked->bits ? (asked->bits[0] == '8' ? 8 : 16) : 0,
         .overwrite = asked->overwrite};
     memcpy(form.background, asked->background.rgb, sizeof form.background);
+    snow_overlay *overlay = NULL;
     double begin = seconds_now();
     if (!is_special(asked->output))
         interrupt_hold(); /* before the word, so that who reads it may rely */
     if (!launch_talks())
         return GO_ON;
     progress(asked, "writing");
-    snow_status status = snow_image_save(w->image, asked->output, &form);
+    snow_status status = make_marks(w, &overlay);
+    form.overlay = overlay;
+    if (status == SNOW_OK)
+        status = snow_image_save(w->image, asked->output, &form);
+    snow_overlay_free(overlay);
     w->scene.times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->scene.context, status);
 }
@@ -181,7 +211,7 @@ static void tell_choices(const work *w) {
     char text[1024];
     scene_choices(&w->scene, text, sizeof text);
     if (w->scene.asked->verbosity >= 0)
-        say("%s", text);
+        say("%s%s", text, w->painted);
 }
 
 /* What can be refused before anything is read; outputs by the rank that
@@ -206,6 +236,9 @@ static int run(work *w, const options *asked) {
         progress(asked, "rendering");
         done = scene_draw(&w->scene, asked->azimuth, &w->image);
     }
+    if (done == GO_ON)
+        done = paint_values(asked, w->scene.context, w->scene.transfer, false,
+                            &w->image, w->painted);
     progress(asked, NULL);
     if (done != GO_ON)
         return done;

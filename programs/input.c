@@ -60,6 +60,10 @@ snow_look look_options(const options *asked) {
                       .range = asked->range.kind,
                       .low = asked->range.low,
                       .high = asked->range.high};
+    /* Grey over all values, as people know such pictures. */
+    if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0 &&
+        !look.preset)
+        look.preset = "linear";
     if (!isnan(asked->window)) { /* another way to write a range */
         look.range = SNOW_RANGE_VALUES;
         look.low = asked->level - asked->window / 2;
@@ -68,6 +72,10 @@ snow_look look_options(const options *asked) {
     if (asked->opacities.count) {
         look.opacities = asked->opacities.points;
         look.opacity_count = asked->opacities.count;
+    }
+    if (asked->gradient_opacities.count) {
+        look.gradient_opacities = asked->gradient_opacities.points;
+        look.gradient_opacity_count = asked->gradient_opacities.count;
     }
     return look;
 }

@@ -241,15 +241,27 @@ render_report scene_report(const scene *s) {
 }
 
 void scene_choices(const scene *s, char *out, size_t size) {
+    const double *from = s->asked->position.at;
     const char *view = s->asked->view     ? s->asked->view
                        : s->whole.medical ? "anterior"
                                           : "+z";
+    char place[96];
+    if (s->asked->position.given) {
+        snprintf(place, sizeof place, "from %g,%g,%g", from[0], from[1],
+                 from[2]);
+        view = place;
+    }
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
     char volume[256];
     describe_volume(&s->whole, volume, sizeof volume);
-    snprintf(out, size, "%s: %s; %s; view %s; method %s%s%s",
+    bool over = s->settings.mode == SNOW_MODE_OVER;
+    snprintf(out, size, "%s: %s; %s; view %s; %s%s%smethod %s%s%s",
              name_of_input(s->path), volume, snow_transfer_text(s->transfer),
-             view, snow_method_name(s->stats.method),
-             encoded ? ", encoding " : "",
+             view, over ? "" : "mode ",
+             over ? "" : snow_mode_name(s->settings.mode),
+             over                        ? ""
+             : s->settings.threshold > 0 ? " of all voxels (no threshold), "
+                                         : " of all voxels, ",
+             snow_method_name(s->stats.method), encoded ? ", encoding " : "",
              encoded ? snow_encoding_name(s->stats.encoding) : "");
 }

@@ -69,9 +69,10 @@ static void tell_choices(const shot_renderer *shots) {
     char text[1024];
     scene_choices(&shots->scene, text, sizeof text);
     if (asked->verbosity >= 0)
-        say("%s; %" PRId64 " frames of %lldx%lld to %s", text, shots->count,
-            (long long)asked->size[0], (long long)asked->size[1],
+        say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text, shots->painted,
+            shots->count, (long long)asked->size[0], (long long)asked->size[1],
             asked->output);
+    marks_tell(asked);
 }
 
 static int render(void *self, const movie_shot *shot, snow_image **image) {
@@ -79,6 +80,9 @@ static int render(void *self, const movie_shot *shot, snow_image **image) {
     int done = shots_volume(shots, shot);
     if (done == GO_ON)
         done = scene_draw(&shots->scene, shot->azimuth, image);
+    if (done == GO_ON)
+        done = paint_values(shots->scene.asked, shots->scene.context,
+                            shots->scene.transfer, true, image, shots->painted);
     if (done != GO_ON)
         return done;
     if (!shots->drawn)
@@ -92,6 +96,11 @@ static void report(void *self, render_report *out) {
     *out = scene_report(&shots->scene);
 }
 
+static void marks(void *self, picture_marks *out) {
+    const scene *s = &((const shot_renderer *)self)->scene;
+    *out = (picture_marks){s->asked, s->whole, s->view, s->transfer};
+}
+
 static int share(void *self, int word) {
     (void)self;
     return launch_share(word);
@@ -101,6 +110,7 @@ sequence_renderer shots_renderer(shot_renderer *shots) {
     return (sequence_renderer){.self = shots,
                                .render = render,
                                .report = report,
+                               .marks = marks,
                                .share = share,
                                .writes = launch_talks(),
                                .ranks = launch_ranks()};

@@ -3,6 +3,7 @@
 #ifndef SEQUENCE_RENDER_H
 #define SEQUENCE_RENDER_H
 
+#include "paint.h"
 #include "scene.h"
 #include "sequence.h"
 
@@ -14,6 +15,7 @@ typedef struct shot_renderer {
     bool whole_files;      /* a file with several time steps is an error: it is
                               one of many, and nobody said which step */
     bool drawn;            /* a picture has been made, and choices told */
+    char painted[PAINT_TOLD_BYTES]; /* what was made of values */
 } shot_renderer;
 
 /* Answers GO_ON or an exit code. */

@@ -184,7 +184,8 @@ static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
 static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
     const snow_settings *settings = &job->settings;
     exact->gathers = false;
-    exact->over = snow_over_pick(settings->isa, job->channels);
+    exact->over =
+        job->lay ? job->lay : snow_over_pick(settings->isa, job->channels);
     if (settings->method != SNOW_METHOD_FOOTPRINT)
         return SNOW_OK;
     return snow_gatherer_make(exact->context, &job->stored, settings->kernel,
@@ -436,7 +437,7 @@ static snow_status throw_band(const pass *work, int64_t band, worker *w) {
             throw_classified(work, w, slice, first, end);
         mark = snow_seconds();
         snow_job_clip_sheet(job, slice, &w->sheet);
-        snow_composite_sheet(job->pixels, &w->sheet);
+        snow_lay_sheet(job->pixels, &w->sheet, snow_job_lay(job));
         lap(&mark, &w->seconds[COMPOSITE]);
     }
     return SNOW_OK;

@@ -3,6 +3,7 @@
  * 03 to 13.  How a stage works is told in its folder. */
 #include "frame.h"
 #include "base/base.h"
+#include "classify/fade.h"
 #include "classify/tally.h"
 #include "classify/transfer.h"
 #include "combine/combine.h"
@@ -40,6 +41,7 @@ void snow_frame_free(snow_frame *frame) {
     for (int n = 0; n < SNOW_GROUP_RANKS; n++)
         snow_release(frame->context, frame->spare[n]);
     snow_release(frame->context, frame->layer);
+    snow_ramp_fini(&frame->ramp);
     snow_release(frame->context, frame);
 }
 
@@ -69,7 +71,8 @@ static snow_status check_part(const snow_job *job) {
                          "this part of the volume is none",
                          "xyz"[job->placement.slice_axis]);
     return snow_ghosts_check(job->context, job->volume, job->view,
-                             &job->settings);
+                             &job->settings,
+                             snow_transfer_fades(job->transfer));
 }
 
 static snow_status place(snow_job *job, int parts, int part) {
@@ -338,6 +341,21 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     return SNOW_OK;
 }
 
+/* Lines 03 to 13 and the picture of them. */
+static snow_status render_over(snow_frame *frame, snow_job *job,
+                               snow_image **out) {
+    snow_image *image = NULL;
+    SNOW_TRY(snow_image_new(frame->context, job->view->width, job->view->height,
+                            job->channels, &image));
+    job->pixels = snow_image_pixels(image);
+    snow_status status = render_slab(frame, job);
+    if (status == SNOW_OK)
+        *out = image;
+    else
+        snow_image_free(image);
+    return status;
+}
+
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
                                    const snow_transfer *transfer,
                                    const snow_view *view,
@@ -348,14 +366,12 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
     snow_image *image = NULL;
     /* 01 - 02 */ SNOW_TRY(snow_job_begin(frame, volume, transfer, view,
                                           settings, parts, part, &job));
-    SNOW_TRY(snow_image_new(frame->context, view->width, view->height,
-                            job.channels, &image));
-    job.pixels = snow_image_pixels(image);
-    snow_status status = render_slab(frame, &job);
+    bool over = job.settings.mode == SNOW_MODE_OVER;
+    SNOW_TRY(over ? render_over(frame, &job, &image)
+                  : snow_modes_render(frame, &job, &image));
     frame->stats.seconds_frame = snow_seconds() - start;
     frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
-    if (status == SNOW_OK)
-        status = snow_job_finish(frame, &job);
+    snow_status status = over ? snow_job_finish(frame, &job) : SNOW_OK;
     if (status == SNOW_OK)
         *out = image;
     else

@@ -4,7 +4,9 @@
 #define SNOW_FRAME_H
 
 #include "base/base.h"
+#include "composite/over.h"
 #include "decompose/slab.h"
+#include "modes.h"
 #include "sheared.h"
 #include "splat/splat.h"
 #include "transform/clip.h"
@@ -28,6 +30,7 @@ struct snow_frame {
     size_t spare_capacity[SNOW_GROUP_RANKS];
     snow_ranks *ranks;       /* of snow_ranks_render; NULL until needed */
     int64_t own_interesting; /* of the part that was encoded last */
+    snow_ramp ramp;          /* of modes other than over */
 };
 
 /* What one picture is made from; lives as long as the call that makes it. */
@@ -45,7 +48,8 @@ typedef struct snow_job {
     snow_placement stored;
     snow_slab stored_slab;
     int channels;
-    float *pixels; /* the local image: transparent, to be filled */
+    snow_over_fn *lay; /* in the place of over; NULL: over */
+    float *pixels;     /* the local image: transparent, to be filled */
     snow_stats *stats;
 } snow_job;
 
@@ -78,6 +82,11 @@ bool snow_group_rises(const snow_placement *placement, snow_group_node node);
 
 /* What was chosen for the picture, and counts of voxels and bytes. */
 snow_status snow_job_finish(snow_frame *frame, const snow_job *job);
+
+/* How sheets get into the local image. */
+static inline snow_over_fn *snow_job_lay(const snow_job *job) {
+    return job->lay ? job->lay : snow_over_pick(SNOW_ISA_SCALAR, job->channels);
+}
 
 /* Clears what a sheet of slice `slice` of the stored ones holds of samples that
  * are not the part's. */

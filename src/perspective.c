@@ -82,8 +82,12 @@ static void classify_and_shade(pass *s, int64_t slice, int64_t row) {
     if (o->settings.shade == SNOW_SHADE_PHONG)
         snow_shade_strip(&s->shader, o->channels, strip);
     lap(&mark, &s->stats->seconds_shade);
-    snow_lengthen_strip(&o->stored, o->settings.opacity_length, o->channels,
-                        strip);
+    if (o->settings.mode == SNOW_MODE_OVER)
+        snow_lengthen_strip(&o->stored, o->settings.opacity_length, o->channels,
+                            strip);
+    else if (o->settings.mode == SNOW_MODE_SUM)
+        snow_weigh_strip(&o->stored, o->settings.opacity_length, o->channels,
+                         strip);
     lap(&mark, &s->stats->seconds_classify);
 }
 
@@ -179,7 +183,7 @@ static snow_status splat_and_composite(pass *s) {
             splat_classified_slice(s, slice);
         double mark = snow_seconds();
         snow_job_clip_sheet(o, slice, &s->sheet);
-        snow_composite_sheet(s->pixels, &s->sheet);
+        snow_lay_sheet(s->pixels, &s->sheet, snow_job_lay(o));
         lap(&mark, &s->stats->seconds_composite);
     }
     return SNOW_OK;

@@ -106,6 +106,11 @@ static snow_status begin_picture(picture *p, const snow_volume *volume,
     p->ranks = p->frame->ranks;
     SNOW_TRY(snow_job_begin(p->frame, volume, transfer, view, settings, 1, 0,
                             &p->job));
+    if (p->job.settings.mode != SNOW_MODE_OVER)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "mode %s is not built for many ranks yet; render on "
+                         "one, or take mode over",
+                         snow_mode_name(p->job.settings.mode));
     if (snow_comm_rank(p->comm) != 0 && !p->how.scattered)
         return SNOW_OK;
     SNOW_TRY(snow_image_new(context, view->width, view->height, p->job.channels,
@@ -136,10 +141,13 @@ static int64_t terms_of(const picture *p) {
         s->deterministic,      place->width,       place->height,
         (int)p->how.combining, p->how.radix,       p->how.pixel_bits,
         place->slice_axis,     place->perspective, p->how.scattered};
-    const double reals[] = {place->back[0],  place->back[1], place->back[2],
-                            place->up[0],    place->up[1],   place->up[2],
-                            place->path,     s->threshold,   s->opacity_length,
-                            job->view->zoom, job->view->fov};
+    const double reals[] = {
+        place->back[0],   place->back[1],   place->back[2],
+        place->up[0],     place->up[1],     place->up[2],
+        place->path,      s->threshold,     s->opacity_length,
+        job->view->zoom,  job->view->fov,   place->origin[0],
+        place->origin[1], place->eye.at[0], place->eye.at[1],
+        place->eye.at[2]};
     uint64_t hash = UINT64_C(14695981039346656037);
     mix(&hash, numbers, sizeof numbers);
     mix(&hash, reals, sizeof reals);
@@ -477,7 +485,7 @@ static snow_status render_alone(picture *p, const snow_volume *volume,
                                 const snow_settings *settings) {
     SNOW_TRY(snow_frame_render(p->frame, volume, transfer, view, settings,
                                &p->image));
-    if (p->how.pixel_bits == 8)
+    if (p->how.pixel_bits == 8 && p->image->channels > 1)
         round_pixels(p->image->pixels, (size_t)p->image->width *
                                            (size_t)p->image->height *
                                            (size_t)p->image->channels);

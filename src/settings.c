@@ -27,6 +27,12 @@ static const char *const qualities[] = {
     [SNOW_QUALITY_HIGH] = "high",
 };
 
+static const char *const modes[] = {
+    [SNOW_MODE_OVER] = "over",   [SNOW_MODE_MIP] = "mip",
+    [SNOW_MODE_MINIP] = "minip", [SNOW_MODE_MEAN] = "mean",
+    [SNOW_MODE_SUM] = "sum",     [SNOW_MODE_ISO] = "iso",
+};
+
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
 
 /* The index of a name, or -1. */
@@ -59,6 +65,14 @@ const char *snow_quality_name(snow_quality quality) {
 
 int snow_quality_named(const char *name) {
     return find_name(qualities, COUNT(qualities), name);
+}
+
+const char *snow_mode_name(snow_mode mode) {
+    return (int)mode < COUNT(modes) ? modes[mode] : NULL;
+}
+
+int snow_mode_named(const char *name) {
+    return find_name(modes, COUNT(modes), name);
 }
 
 static const snow_settings defaults = {
@@ -155,6 +169,10 @@ snow_status snow_settings_resolve(snow_context *context,
     SNOW_TRY(
         check_choice(context, "quality", (int)s->quality, COUNT(qualities)));
     SNOW_TRY(check_choice(context, "isa", (int)s->isa, SNOW_ISA_NEON + 1));
+    SNOW_TRY(check_choice(context, "mode", (int)s->mode, COUNT(modes)));
+    if (!isfinite(s->iso))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "iso is %g; take a finite data value", s->iso);
     SNOW_TRY(check_numbers(context, s));
     SNOW_TRY(resolve_machine(context, s));
     if (s->method == SNOW_METHOD_AUTO)

@@ -2,30 +2,19 @@
  *
  * Points 5 and 7 of the model in their plainest form: every pixel visits every
  * slice, and every slice is interpolated anew. */
-#include "support_reference.h"
+#include "support_reference_gather.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* What stays the same over all pixels of one picture. */
-typedef struct gather {
-    const reference_scene *scene;
-    const double *samples;
-    snow_kernel kernel;
-    int support;
-    int axis, u_axis, v_axis;  /* of the slices; the two within a slice */
-    double *u_width, *v_width; /* per slice: how much the kernel is widened */
-    double *u_weights, *v_weights;
-} gather;
+typedef reference_gather gather;
 
 static int64_t voxel_offset(const int64_t dims[3], const int64_t at[3]) {
     return (at[2] * dims[1] + at[1]) * dims[0] + at[0];
 }
 
-/* Where the ray meets the plane of slice `slice`; false when that is not in
- * front of the eye. */
-static bool meet_slice(const gather *g, const reference_ray *ray, int64_t slice,
-                       double *u, double *v) {
+bool reference_meet_slice(const gather *g, const reference_ray *ray,
+                          int64_t slice, double *u, double *v) {
     double t = ((double)slice - ray->start[g->axis]) / ray->step[g->axis];
     *u = ray->start[g->u_axis] + t * ray->step[g->u_axis];
     *v = ray->start[g->v_axis] + t * ray->step[g->v_axis];
@@ -40,7 +29,7 @@ static void gather_sheet(const gather *g, const reference_ray *ray,
     int64_t u0, u1, v0, v1;
     for (int c = 0; c < 4; c++)
         sheet[c] = 0;
-    if (!meet_slice(g, ray, slice, &u, &v))
+    if (!reference_meet_slice(g, ray, slice, &u, &v))
         return;
     reference_weights(g->kernel, g->support, g->u_width[slice], u,
                       dims[g->u_axis], g->u_weights, &u0, &u1);
@@ -101,7 +90,7 @@ static void widen_kernel(gather *g, const reference_camera *camera,
         double y = n == 2 ? -bit : n == 3 ? bit : 0;
         reference_ray ray =
             reference_ray_at(g->scene, camera, pixel[0] + x, pixel[1] + y);
-        meet_slice(g, &ray, slice, &u[n], &v[n]);
+        reference_meet_slice(g, &ray, slice, &u[n], &v[n]);
     }
     g->u_width[slice] = reference_widening(
         g->kernel, g->support, hypot(u[1] - u[0], u[3] - u[2]) / (2 * bit));
@@ -109,24 +98,37 @@ static void widen_kernel(gather *g, const reference_camera *camera,
         g->kernel, g->support, hypot(v[1] - v[0], v[3] - v[2]) / (2 * bit));
 }
 
+void reference_gather_begin(const reference_scene *scene,
+                            const reference_camera *camera, gather *g) {
+    *g = (gather){.scene = scene};
+    g->kernel = scene->settings.kernel;
+    g->support = reference_support(&scene->settings);
+    g->axis = reference_slice_axis(scene, camera);
+    g->u_axis = g->axis == 0 ? 1 : 0;
+    g->v_axis = g->axis == 2 ? 1 : 2;
+    size_t slices = (size_t)scene->info.dims[g->axis];
+    g->u_width = calloc(slices, sizeof(double));
+    g->v_width = calloc(slices, sizeof(double));
+    for (int64_t slice = 0; slice < scene->info.dims[g->axis]; slice++)
+        widen_kernel(g, camera, slice);
+    g->u_weights = calloc((size_t)scene->info.dims[g->u_axis], sizeof(double));
+    g->v_weights = calloc((size_t)scene->info.dims[g->v_axis], sizeof(double));
+}
+
+void reference_gather_end(gather *g) {
+    free(g->u_width);
+    free(g->v_width);
+    free(g->u_weights);
+    free(g->v_weights);
+}
+
 static double *render(const reference_scene *scene, bool back_to_front) {
     reference_camera camera;
+    gather g;
     reference_camera_of(scene, &camera);
-    gather g = {.scene = scene};
-    g.kernel = scene->settings.kernel;
-    g.support = reference_support(&scene->settings);
-    g.axis = reference_slice_axis(scene, &camera);
-    g.u_axis = g.axis == 0 ? 1 : 0;
-    g.v_axis = g.axis == 2 ? 1 : 2;
-    size_t slices = (size_t)scene->info.dims[g.axis];
-    g.u_width = calloc(slices, sizeof(double));
-    g.v_width = calloc(slices, sizeof(double));
-    for (int64_t slice = 0; slice < scene->info.dims[g.axis]; slice++)
-        widen_kernel(&g, &camera, slice);
+    reference_gather_begin(scene, &camera, &g);
     double *samples = reference_samples(scene, &camera, g.axis);
     g.samples = samples;
-    g.u_weights = calloc((size_t)scene->info.dims[g.u_axis], sizeof(double));
-    g.v_weights = calloc((size_t)scene->info.dims[g.v_axis], sizeof(double));
     int width = scene->view.width, height = scene->view.height;
     double *pixels = calloc((size_t)width * (size_t)height * 4, sizeof(double));
     for (int y = 0; y < height; y++) {
@@ -137,10 +139,7 @@ static double *render(const reference_scene *scene, bool back_to_front) {
             gather_pixel(&g, &ray, back_to_front, pixels + 4 * at);
         }
     }
-    free(g.u_width);
-    free(g.v_width);
-    free(g.u_weights);
-    free(g.v_weights);
+    reference_gather_end(&g);
     free(samples);
     return pixels;
 }

@@ -1,7 +1,9 @@
 /* snowglass/image.h - the picture: float pixels, premultiplied, linear.
  *
  * Row 0 is the top.  Grey pictures have two channels (grey, alpha), colour
- * pictures four (red, green, blue, alpha). */
+ * pictures four (red, green, blue, alpha).  One channel is no picture yet but
+ * an array of values in data units (modes mean and sum, depths), NaN where
+ * there is none. */
 #ifndef SNOWGLASS_IMAGE_H
 #define SNOWGLASS_IMAGE_H
 
@@ -13,8 +15,10 @@ extern "C" {
 #endif
 
 typedef struct snow_image snow_image;
+typedef struct snow_overlay snow_overlay; /* snowglass/overlay.h */
 
-/* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels.
+/* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels, or
+ * an array of zeros with 1.
  * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.  Free with snow_image_free. */
 SNOW_API snow_status snow_image_new(snow_context *context, int width,
                                     int height, int channels, snow_image **out);
@@ -35,10 +39,12 @@ SNOW_API float *snow_image_pixels(snow_image *image);
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 typedef struct snow_image_options {
-    bool flatten;         /* PNG: lay the picture on `background` */
-    double background[3]; /* red, green, blue, 0 to 1 */
-    int bits;             /* PNG: 8 or 16 bits a channel; 0 means 8 */
-    bool overwrite;       /* replace an existing file */
+    bool flatten;                /* PNG: lay the picture on `background` */
+    double background[3];        /* red, green, blue, 0 to 1 */
+    int bits;                    /* PNG: 8 or 16 bits a channel; 0 means 8 */
+    bool overwrite;              /* replace an existing file */
+    const snow_overlay *overlay; /* PNG: drawn over the picture, whose size it
+                                    has; NULL: nothing */
 } snow_image_options;
 
 /* Writes a picture in the format of the path's suffix; "-" is standard output,
@@ -46,20 +52,34 @@ typedef struct snow_image_options {
  *   .png  straight alpha, round(255 x) or round(65535 x), x limited to 0 to 1;
  *         pixels with a NaN are transparent; without alpha when flattened; grey
  *         when the picture has two channels (and the background no colour)
- *   .npy  float32 (height, width, 4), premultiplied RGBA
- *   .pfm  float32 RGB, premultiplied, without alpha
+ *   .npy  float32 (height, width, 4), premultiplied RGBA; values (height,
+ *         width)
+ *   .pfm  float32 RGB, premultiplied, without alpha; values as grey
+ * Values are no colours: a PNG of them is refused (snow_values_paint in
+ * render.h makes colours of them).
  * The file is written aside and renamed, so that it is whole or absent; an
  * existing one is kept, and an error, unless options->overwrite.  `options`
  * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; a
- * background or bits for other than PNG), SNOW_NO_MEMORY. */
+ * background or bits for other than PNG; values into a PNG), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
+
+/* The most bits a channel that the format of a path's suffix has for levels: 16
+ * for .png and "-"; 0 where it holds floats, which takes neither bits, a
+ * background nor an overlay; -1: none that snow_image_save writes. */
+SNOW_API int snow_image_bits(const char *path);
 
 /* The picture on a background (red, green, blue, 0 to 1) as rows of bytes, red,
  * green, blue for each pixel: width * height * 3 of them, with the levels that
  * a PNG of 8 bits on that background stores. */
 SNOW_API void snow_image_bytes(const snow_image *image,
                                const double background[3], unsigned char *rgb);
+
+/* The same with all options: the background where `flatten`, black elsewhere,
+ * and the overlay. */
+SNOW_API void snow_image_bytes_drawn(const snow_image *image,
+                                     const snow_image_options *options,
+                                     unsigned char *rgb);
 
 /* Whether a path's suffix (or "-") is one that snow_image_save writes: asked
  * before a long rendering.  Errors: SNOW_BAD_USAGE, SNOW_BAD_OUTPUT (it exists
@@ -89,8 +109,8 @@ typedef struct snow_image_difference {
     int x, y;       /* a pixel of the largest difference */
 } snow_image_difference;
 
-/* Compares two pictures of one size (2 channels count as grey).  NaN equals
- * NaN only, an infinity itself only: else they are infinitely far apart.
+/* Compares two pictures of one size (1 and 2 channels count as grey).  NaN
+ * equals NaN only, an infinity itself only: else they are infinitely far apart.
  * Errors: SNOW_DIFFERENT when the sizes differ (the message gives them),
  * SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_compare(const snow_image *a,

@@ -68,6 +68,19 @@ typedef enum snow_isa {
 
 typedef enum snow_shade { SNOW_SHADE_PHONG = 0, SNOW_SHADE_NONE } snow_shade;
 
+/* How the sheets that a ray meets make a pixel (model, point 8).  All but over
+ * use every finite voxel, whatever its opacity and the threshold. */
+typedef enum snow_mode {
+    SNOW_MODE_OVER = 0, /* laid over one another, front to back */
+    SNOW_MODE_MIP,      /* their largest value, as a colour */
+    SNOW_MODE_MINIP,    /* their smallest value, as a colour */
+    SNOW_MODE_MEAN,     /* their mean value: a picture of one channel, in data
+                           units, NaN where a ray misses the volume */
+    SNOW_MODE_SUM,      /* the same of values times the length of the ray in a
+                           sheet, in reference lengths (opacity_length) */
+    SNOW_MODE_ISO       /* the first that is not below `iso`, shaded */
+} snow_mode;
+
 /* What a picture is made with.  Fill with snow_settings_init, then change.
  * The record may grow: `size` tells the library which fields the caller knows;
  * the others keep their defaults. */
@@ -94,6 +107,8 @@ typedef struct snow_settings {
                                the picture is the same for any number (0) */
     int deterministic;      /* not 0: the same bits on every machine, by the
                                scalar kernels (0) */
+    snow_mode mode;         /* (over) */
+    double iso;             /* data value of mode iso, finite (0) */
 } snow_settings;
 
 /* The defaults, as far as a record of `size` bytes reaches. */
@@ -150,6 +165,20 @@ SNOW_API snow_status snow_frame_render(
     snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
 
+/* The smallest and the largest value of a picture of modes mean and sum; 0 and
+ * 1 when it has none. */
+SNOW_API void snow_values_range(const snow_image *values, double *low,
+                                double *high);
+
+/* Makes colours of such a picture: those of the transfer function, from its
+ * first control point to its last, spread over low to high (low <= high);
+ * opaque, and transparent where there is no value.  Errors: SNOW_BAD_USAGE,
+ * SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_values_paint(const snow_image *values,
+                                       const snow_transfer *transfer,
+                                       double low, double high,
+                                       snow_image **out);
+
 /* Figures of the last picture; owned by the frame.  Zeros before the first one;
  * after a failure what was counted until then. */
 SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
@@ -166,6 +195,8 @@ SNOW_API const char *snow_quality_name(snow_quality quality);
 SNOW_API int snow_quality_named(const char *name);
 SNOW_API const char *snow_isa_name(snow_isa isa);
 SNOW_API int snow_isa_named(const char *name);
+SNOW_API const char *snow_mode_name(snow_mode mode);
+SNOW_API int snow_mode_named(const char *name);
 
 #ifdef __cplusplus
 }

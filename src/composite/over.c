@@ -53,7 +53,7 @@ void snow_over_row(float *front, const float *back, size_t count,
         over_rgba(front, back, count);
 }
 
-void snow_composite_sheet(float *image, snow_sheet *sheet) {
+void snow_lay_sheet(float *image, snow_sheet *sheet, snow_over_fn *lay) {
     size_t channels = (size_t)sheet->channels;
     if (sheet->x0 < sheet->x1) {
         size_t count = (size_t)(sheet->x1 - sheet->x0);
@@ -61,8 +61,7 @@ void snow_composite_sheet(float *image, snow_sheet *sheet) {
             size_t width = (size_t)sheet->width, x = (size_t)sheet->x0;
             size_t line = (size_t)(y - sheet->top);
             float *back = sheet->pixels + (line * width + x) * channels;
-            snow_over_row(image + ((size_t)y * width + x) * channels, back,
-                          count, sheet->channels);
+            lay(image + ((size_t)y * width + x) * channels, back, count);
             memset(back, 0, count * channels * sizeof *back);
         }
     }

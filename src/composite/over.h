@@ -18,8 +18,9 @@ typedef void snow_over_fn(float *front, const float *back, size_t count);
  */
 snow_over_fn *snow_over_pick(snow_isa isa, int channels);
 
-/* Lays a sheet behind what the image holds so far, and clears the sheet.  They
- * have one size and number of channels. */
-void snow_composite_sheet(float *image, snow_sheet *sheet);
+/* Lays a sheet behind what the image holds so far, row by row with `lay`, which
+ * is for their number of channels, and clears the sheet.  They have one size.
+ */
+void snow_lay_sheet(float *image, snow_sheet *sheet, snow_over_fn *lay);
 
 #endif

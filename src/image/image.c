@@ -16,10 +16,11 @@ snow_status snow_image_make(snow_context *context, int width, int height,
                          "a picture of %d x %d pixels cannot be made; take 1 "
                          "to %d a side",
                          width, height, SNOW_IMAGE_SIDE);
-    if (channels != 2 && channels != 4)
+    if (channels != 1 && channels != 2 && channels != 4)
         return snow_fail(context, SNOW_BAD_USAGE,
-                         "a picture of %d channels cannot be made; take 2 "
-                         "(grey, alpha) or 4 (red, green, blue, alpha)",
+                         "a picture of %d channels cannot be made; take 1 "
+                         "(values), 2 (grey, alpha) or 4 (red, green, blue, "
+                         "alpha)",
                          channels);
     snow_image *image = snow_allocate(context, sizeof *image);
     if (!image)

@@ -22,16 +22,16 @@ struct snow_image {
 snow_status snow_image_make(snow_context *context, int width, int height,
                             int channels, snow_image **out);
 
-/* Pixel `index` (y * width + x) as red, green, blue, alpha; grey is r = g = b.
- */
+/* Pixel `index` (y * width + x) as red, green, blue, alpha; grey is r = g = b,
+ * and so are values, of alpha 1. */
 static inline void snow_image_rgba(const snow_image *image, size_t index,
                                    float rgba[4]) {
     const float *pixel = image->pixels + index * (size_t)image->channels;
-    bool grey = image->channels == 2;
+    bool grey = image->channels <= 2;
     rgba[0] = pixel[0];
     rgba[1] = pixel[grey ? 0 : 1];
     rgba[2] = pixel[grey ? 0 : 2];
-    rgba[3] = pixel[grey ? 1 : 3];
+    rgba[3] = image->channels == 1 ? 1 : pixel[grey ? 1 : 3];
 }
 
 /* --- formats -------------------------------------------------------------- */
@@ -41,7 +41,8 @@ static inline void snow_image_rgba(const snow_image *image, size_t index,
 typedef struct snow_image_format {
     const char *name;   /* for messages: "PNG" */
     const char *suffix; /* of the files it writes: ".png" */
-    bool has_depth;     /* heeds options->bits and the background */
+    int bits;           /* the most a channel, of levels; 0: floats, without
+                           background and overlay */
 
     /* Writes the picture.  The caller opened the writer, and commits it. */
     snow_status (*write)(const snow_image *image,
@@ -56,6 +57,30 @@ typedef struct snow_image_format {
 } snow_image_format;
 
 extern const snow_image_format snow_image_png, snow_image_npy, snow_image_pfm;
+
+/* Rows of a picture as files of 8 and 16 bits hold them: overlay drawn, laid on
+ * the background or with straight alpha, rounded. */
+typedef struct snow_levels {
+    const snow_image *image;
+    const snow_overlay *overlay; /* NULL: none */
+    const double *background;    /* NULL: with alpha */
+    int bits;                    /* 8 or 16 */
+    int samples;  /* a pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
+    int channels; /* of a row before that: 2 or 4 */
+    float *drawn;
+    double *row;
+    unsigned char *bytes; /* of the row that was made last */
+} snow_levels;
+
+/* Begins with a picture, which stays grey where nothing of it has a colour,
+ * unless `colored`.  snow_levels_end must follow, also after a failure. */
+snow_status snow_levels_begin(const snow_image *image,
+                              const snow_image_options *options, bool colored,
+                              snow_levels *out);
+void snow_levels_end(snow_levels *levels);
+
+/* Makes row y: width * samples samples, of 16 bits the high byte first. */
+const unsigned char *snow_levels_row(snow_levels *levels, int y);
 
 /* Refuses, on behalf of a reader, sides outside 1 to SNOW_IMAGE_SIDE. */
 snow_status snow_image_check_sides(const snow_source *source, int64_t width,
@@ -76,7 +101,8 @@ snow_status snow_image_read_floats(snow_source *source, int64_t width,
                                    const snow_float_layout *layout,
                                    snow_image **out);
 
-/* Appends all pixels as little-endian 32-bit floats, 3 or 4 a pixel. */
+/* Appends all pixels as little-endian 32-bit floats, 3 or 4 a pixel, or 1 of
+ * values. */
 snow_status snow_image_write_floats(const snow_image *image, int channels,
                                     bool bottom_up, snow_writer *writer);
 

@@ -1,8 +1,9 @@
 /* image/npy.c - pictures as NumPy arrays.
  *
  * What such a file is stands in base/npy.h.  Written are float32
- * arrays of (height, width, 4), premultiplied; read are floats of both sizes
- * and byte orders with 1 to 4 channels. */
+ * arrays of (height, width, 4), premultiplied, or (height, width) of values in
+ * data units; read are floats of both sizes and byte orders with 1 to 4
+ * channels. */
 #include "base/npy.h"
 #include "image/image.h"
 
@@ -21,17 +22,19 @@ static snow_status write_npy(const snow_image *image,
     memset(header, ' ', sizeof header);
     memcpy(header, magic, sizeof magic);
     memcpy(header + 6, "\1\0", 2);
-    int length = 10 + snprintf(header + 10, sizeof header - 10,
-                               "{'descr': '<f4', 'fortran_order': False, "
-                               "'shape': (%d, %d, 4), }",
-                               image->height, image->width);
+    int channels = image->channels == 1 ? 1 : 4;
+    int length =
+        10 + snprintf(header + 10, sizeof header - 10,
+                      "{'descr': '<f4', 'fortran_order': False, "
+                      "'shape': (%d, %d%s), }",
+                      image->height, image->width, channels == 1 ? "" : ", 4");
     /* The longest text, for sides of 32768, still leaves the newline room. */
     header[length] = ' ';
     header[sizeof header - 1] = '\n';
     header[8] = (char)(sizeof header - 10);
     header[9] = 0;
     SNOW_TRY(snow_writer_write(writer, header, sizeof header));
-    return snow_image_write_floats(image, 4, false, writer);
+    return snow_image_write_floats(image, channels, false, writer);
 }
 
 static snow_status refuse(snow_source *source, const char *reason) {

@@ -7,8 +7,8 @@
  *   -1.0          the scale; negative: little-endian
  *   rows of floats, the lowest row first, no padding
  *
- * Written are colour maps without alpha, of the premultiplied pixels; read are
- * both kinds and both byte orders. */
+ * Written are colour maps without alpha, of the premultiplied pixels, and
+ * values in data units as grey; read are both kinds and both byte orders. */
 #include "image/image.h"
 
 #include <stdio.h>
@@ -20,10 +20,11 @@ static snow_status write_pfm(const snow_image *image,
                              snow_writer *writer) {
     (void)options;
     char header[64];
-    int length = snprintf(header, sizeof header, "PF\n%d %d\n-1.0\n",
-                          image->width, image->height);
+    bool values = image->channels == 1;
+    int length = snprintf(header, sizeof header, "%s\n%d %d\n-1.0\n",
+                          values ? "Pf" : "PF", image->width, image->height);
     SNOW_TRY(snow_writer_write(writer, header, (size_t)length));
-    return snow_image_write_floats(image, 3, true, writer);
+    return snow_image_write_floats(image, values ? 1 : 3, true, writer);
 }
 
 static bool is_blank(unsigned char c) {

@@ -144,6 +144,12 @@ static json_t *write_told_reals(const recipe_key *key, const void *field) {
     return numbers[0] != 0 ? write_reals(key, field) : NULL;
 }
 
+/* Of numbers that are NaN where they are not told. */
+static json_t *write_place(const recipe_key *key, const void *field) {
+    const double *numbers = field;
+    return isnan(numbers[0]) ? NULL : write_reals(key, field);
+}
+
 static bool read_longs(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     int64_t numbers[3];
@@ -280,6 +286,7 @@ NAMES(encoding)
 NAMES(kernel)
 NAMES(quality)
 NAMES(isa)
+NAMES(mode)
 
 static const char *preset_name(int value) {
     return snow_preset_name((size_t)value);
@@ -353,21 +360,6 @@ static json_t *write_unit(const recipe_key *key, const void *field) {
     return *(const bool *)field ? json_string("mm") : NULL;
 }
 
-/* How samples of a ray make a pixel: there is one way so far. */
-static bool read_mode(const recipe_key *key, const json_t *value, void *field,
-                      char wrong[WRONG_BYTES]) {
-    (void)key;
-    (void)field;
-    const char *text = json_string_value(value);
-    return (text && strcmp(text, "over") == 0) || refuse(wrong, "\"over\"");
-}
-
-static json_t *write_nothing(const recipe_key *key, const void *field) {
-    (void)key;
-    (void)field;
-    return NULL;
-}
-
 /* --- ranges, points, colours ---------------------------------------------- */
 
 /* A percentile "p99"; false for any other text. */
@@ -438,8 +430,11 @@ typedef struct point_fields {
 } point_fields;
 
 static_assert(offsetof(snow_recipe, opacities) -
-                      offsetof(snow_recipe, opacity_count) ==
-                  offsetof(point_fields, points),
+                          offsetof(snow_recipe, opacity_count) ==
+                      offsetof(point_fields, points) &&
+                  offsetof(snow_recipe, gradient_opacities) -
+                          offsetof(snow_recipe, gradient_opacity_count) ==
+                      offsetof(point_fields, points),
               "the record's fields lie as they are read");
 
 static bool read_point(const json_t *pair, const snow_opacity_point *before,
@@ -547,7 +542,7 @@ const recipe_key recipe_keys[] = {
     MADE("size", size, width, 1, 32768, 2),
     MADE("background", color, image, 0, 1, 3),
     {"bits", read_bits, write_told_int, AT(image.bits), 8, 16, 0, NULL, NULL},
-    {"mode", read_mode, write_nothing, 0, 0, 0, 0, NULL, NULL},
+    NAME("mode", settings.mode, mode_name, snow_mode_named),
     REAL("threshold", settings.threshold, 0, 255),
     NAME("encoding", settings.encoding, encoding_name, snow_encoding_named),
     NAME("method", settings.method, method_name, snow_method_named),
@@ -557,6 +552,7 @@ const recipe_key recipe_keys[] = {
     KNOWN("preset", preset, preset_name, snow_preset_named),
     KNOWN("colormap", colormap, colormap_name, snow_colormap_named),
     MADE("opacity", points, opacity_count, 0, 0, 0),
+    MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
     NAME("shade", settings.shade, shade_name, shade_named),
@@ -572,6 +568,12 @@ const recipe_key recipe_keys[] = {
     REAL("roll", roll, 0, 0),
     REAL("zoom", zoom, 1e-6, 1e6),
     REAL("perspective", fov, 0, SNOW_FOV_MOST),
+    {"position", read_reals, write_place, AT(position), 0, 0, 3, NULL, NULL},
+    {"target", read_reals, write_place, AT(target), 0, 0, 3, NULL, NULL},
+    {"up", read_reals, write_place, AT(up), 0, 0, 3, NULL, NULL},
+    MADE("no-labels", flag, no_labels, 0, 0, 0),
+    MADE("legend", flag, legend, 0, 0, 0),
+    MADE("time-label", flag, time_label, 0, 0, 0),
     {"threads", read_int, write_told_int, AT(settings.threads), 1, 4096, 0,
      NULL, NULL},
     MADE("deterministic", switch, settings.deterministic, 0, 0, 0),

@@ -1,0 +1,25 @@
+/* composite/reduce.c - the loops of composite/reduce.h. */
+#include "composite/reduce.h"
+
+static void keep_largest(float *restrict image, const float *restrict sheet,
+                         size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        if (!(sheet[2 * i + 1] >= SNOW_WEIGHT_ENOUGH))
+            continue;
+        float value = sheet[2 * i] / sheet[2 * i + 1];
+        if (value > image[2 * i])
+            image[2 * i] = value;
+        image[2 * i + 1] = 1;
+    }
+}
+
+static void add_up(float *restrict image, const float *restrict sheet,
+                   size_t count) {
+    for (size_t i = 0; i < 2 * count; i++)
+        image[i] += sheet[i];
+}
+
+snow_over_fn *snow_reduce_of(snow_mode mode) {
+    return mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP ? keep_largest
+                                                            : add_up;
+}

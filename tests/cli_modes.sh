@@ -1,0 +1,65 @@
+#!/bin/bash
+# Pictures in modes other than over: in every encoding and method, as colours
+# and as values in data units.
+. "$(dirname "$0")/support_shell.sh"
+
+small="phantom:head --dims 24x24x20 -s 40x30 --azimuth 30 --elevation 20"
+# shellcheck disable=SC2086
+render() { "$TOOL" $small "$@"; }
+# The shape that the header of a .npy tells.
+shape() { head -c 128 "$1" | tr -d '\0' | grep -ao "'shape': ([0-9, ]*)"; }
+
+run 0 "over" render -q -o over.npy
+for mode in mip minip mean sum; do
+    run 0 "mode $mode" render -m $mode -o $mode.npy
+    check "it is told on one line" [ "$(wc -l <"$ERR")" -eq 1 ]
+    says "mode $mode of all voxels, method"
+    says "grey .* \(linear\)"
+    run 6 "$mode is another picture than over" \
+        "$TOOL" compare over.npy $mode.npy
+    for encoding in crs bitmap rle; do
+        run 0 "$mode in $encoding" render -q -m $mode --encoding $encoding \
+            -o $mode.$encoding.npy
+        run 0 "encoding $encoding does not change $mode" \
+            "$TOOL" compare $mode.npy $mode.$encoding.npy
+    done
+    run 0 "$mode with a threshold" render -m $mode --threshold 30 \
+        -o $mode.threshold.npy
+    says "of all voxels \(no threshold\)"
+    run 0 "a threshold has no part in $mode" \
+        "$TOOL" compare $mode.npy $mode.threshold.npy
+    run 0 "$mode in perspective" render -q -m $mode --perspective \
+        -o $mode.eye.npy
+    run 6 "perspective changes $mode" \
+        "$TOOL" compare $mode.npy $mode.eye.npy
+    run 0 "$mode as PNG" render -q -m $mode -o $mode.png
+    run 0 "$mode on a background" render -q -m $mode -o $mode.back.png \
+        --background white
+    run 0 "$mode as PFM" render -q -m $mode -o $mode.pfm
+done
+check "mip is colours" [ "$(shape mip.npy)" = "'shape': (30, 40, 4)" ]
+check "a mean is values" [ "$(shape mean.npy)" = "'shape': (30, 40)" ]
+check "a sum is values" [ "$(shape sum.npy)" = "'shape': (30, 40)" ]
+check "a mean's PFM is grey" [ "$(head -c 2 mean.pfm)" = "Pf" ]
+check "a mip's PFM is colour" [ "$(head -c 2 mip.pfm)" = "PF" ]
+run 0 "a mean is the same in both formats" "$TOOL" compare mean.npy mean.pfm
+
+run 0 "a PNG of means tells its range" render -m mean -o told.png
+says "means of [-0-9.e]+\.\.[-0-9.e]+ in the look's colours"
+run 0 "a range that is asked for" render -m sum --range 10,500 -o range.png
+says "sums of 10\.\.500 in the look's colours"
+run 0 "a colour map" render -q -m mean -c viridis -o viridis.png
+run 6 "changes the colours" "$TOOL" compare told.png viridis.png
+
+run 2 "a movie of sums has one range" "$TOOL" turntable phantom:head \
+    --dims 12x12x12 -m sum -o "sum_%02d.png" --frames 2
+says "--mode sum: frames of a movie share one range"
+run 0 "a movie of sums" "$TOOL" turntable phantom:head --dims 12x12x12 -m sum \
+    --range 0,1000 -o "sum_%02d.png" --frames 2 -s 20x20
+run 0 "a movie of maxima" "$TOOL" turntable phantom:head --dims 12x12x12 \
+    -m mip -o "mip_%02d.png" --frames 2 -s 20x20
+run 0 "a recipe keeps the mode" render -q -m minip -o keep.npy \
+    --save-config keep.json
+run 0 "and gives it again" "$TOOL" render --config keep.json -q -y -o again.npy
+run 0 "the same" "$TOOL" compare keep.npy again.npy
+finish
