@@ -49,7 +49,8 @@ info --perspective x|no option of info
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint
 --crop 0:1,0:1 x|--crop: 
---series 1 x|--series is not built yet
+--series= x|--series
+--patient x|--patient: no option of render; it belongs to info
 --quality best x|'best' is unknown
 --frames 3 x|--frames: no option of render; it belongs to turntable
 movie --frames 3 x -o y.mp4|--frames: no option of movie

@@ -24,7 +24,8 @@ static const char all_keys[] =
     " \"threads\": 3, \"deterministic\": true, \"isa\": \"scalar\","
     " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
     " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
-    " \"channel\": 1, \"dataset\": \"/a/b\", \"crop\": [[1, 5], [0, 0], [3, "
+    " \"channel\": 1, \"dataset\": \"/a/b\", \"series\": \"1.2\", \"crop\": "
+    "[[1, 5], [0, 0], [3, "
     "0]]}";
 
 static snow_status parse(snow_context *context, const char *text,
@@ -91,6 +92,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_true(r.data.offset == 352 && r.data.time == 2);
     assert_true(r.data.channel == 1);
     assert_string_equal(r.data.dataset, "/a/b");
+    assert_string_equal(r.data.series, "1.2");
     assert_true(r.data.crop[0][1] == 5 && r.data.crop[2][0] == 3);
     snow_recipe_clear(&r);
     snow_context_free(context);
@@ -117,7 +119,9 @@ static void what_is_written_reads_as_it_was(void **state) {
         assert_true(a.image.flatten == b.image.flatten);
         assert_memory_equal(&a.settings, &b.settings, sizeof a.settings);
         assert_int_equal(a.data.dataset == NULL, b.data.dataset == NULL);
+        assert_int_equal(a.data.series == NULL, b.data.series == NULL);
         a.data.dataset = b.data.dataset = NULL;
+        a.data.series = b.data.series = NULL;
         assert_memory_equal(&a.data, &b.data, sizeof a.data);
         free(again);
         free(text);

@@ -54,6 +54,24 @@ static bool read_jpeg(const unsigned char *bytes, size_t size,
     return false;
 }
 
+/* Whether segment follows segment up to the start of the scan, Huffman tables
+ * among them where the frame needs such: at others GDCM ends the process. */
+static bool has_scan(const unsigned char *bytes, size_t size) {
+    bool tables = false;
+    for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
+        int marker = bytes[at + 1];
+        if (marker == 0xff) {
+            at++;
+            continue;
+        }
+        tables |= marker == 0xc4 || marker == 0xf7; /* JPEG-LS needs none */
+        if (marker == 0xda)
+            return tables;
+        at += 2 + (size_t)big(bytes + at + 2, 2);
+    }
+    return false;
+}
+
 /* A bare code stream, or one in the boxes of a file: SIZ follows its start. */
 static bool read_jpeg2000(const unsigned char *bytes, size_t size,
                           packed_head *out) {
@@ -82,13 +100,14 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
     packed_head head;
     bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
                                      : read_jpeg(bytes, size, &head);
-    if (known && head.columns == (uint32_t)image->columns &&
-        head.rows == (uint32_t)image->rows &&
-        head.samples == (uint32_t)image->samples &&
-        head.bits <= image->allocated &&
-        (head.bits > 8) == (image->allocated > 8))
+    bool same = known && head.columns == (uint32_t)image->columns &&
+                head.rows == (uint32_t)image->rows &&
+                head.samples == (uint32_t)image->samples &&
+                head.bits <= image->allocated &&
+                (head.bits > 8) == (image->allocated > 8);
+    if (same && (is_jpeg2000(syntax) || has_scan(bytes, size)))
         return SNOW_OK;
-    if (known)
+    if (known && !same)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "its packed pixels are %lux%lu of %lu values with %d "
                          "bits where its header says %lldx%lld of %d with %d; "

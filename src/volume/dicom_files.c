@@ -275,8 +275,23 @@ static void add_siblings(collection *c, snow_folder *files) {
             (void)add_path(c, files->paths[i], series);
 }
 
+/* Of a stack of several times the one that the given file is in; false where it
+ * is in none. */
+static bool keep_its_time(dicom_stack *stack, dicom_frame *frames) {
+    size_t times = stack->times, count = stack->places * times, time = times;
+    for (size_t i = 0; i < count; i++)
+        if (!frames[i].image->path)
+            time = i % times;
+    if (time == times)
+        return false;
+    for (size_t i = 0; i < stack->places; i++)
+        frames[i] = frames[i * times + time];
+    stack->times = 1;
+    return true;
+}
+
 /* Whether the frames of the folder's files are slices of one volume with the
- * one that was given, which is the first; then these are kept alone. */
+ * one that was given. */
 static bool gather_stack(collection *c, dicom_stack *out) {
     dicom_group *groups =
         snow_allocate_array(c->context, c->frame_count, sizeof *groups);
@@ -284,11 +299,15 @@ static bool gather_stack(collection *c, dicom_stack *out) {
         return false;
     bool made = false;
     size_t count = snow_dicom_group(c->frames, c->frame_count, groups);
-    for (size_t i = 0; i < count && !made; i++)
-        for (size_t k = 0; k < groups[i].count && !made; k++)
-            made = !c->frames[groups[i].first + k].image->path &&
-                   snow_dicom_stack(c->context, c->frames + groups[i].first,
-                                    groups[i].count, out) == SNOW_OK;
+    for (size_t i = 0; i < count && !made; i++) {
+        dicom_frame *frames = c->frames + groups[i].first;
+        if (snow_dicom_stack(c->context, frames, groups[i].count, out) !=
+            SNOW_OK)
+            continue;
+        made = keep_its_time(out, frames);
+        if (!made)
+            snow_dicom_stack_free(out);
+    }
     snow_release(c->context, groups);
     return made;
 }
@@ -309,19 +328,20 @@ static snow_status read_with_siblings(collection *c, snow_source *source,
     add_siblings(c, &files);
     *done = false;
     if (c->frame_count > 1 && gather_stack(c, &stack)) {
-        *done = stack.places * stack.times > 1;
+        *done = stack.places > 1;
         if (*done) {
             snow_notify(c->context,
-                        "is one of %zu images of a series in its folder; all "
+                        "is one of %zu slices of a series in its folder; all "
                         "are taken",
-                        stack.places * stack.times);
+                        stack.places);
             status = snow_dicom_read_stack(&input, &stack, options, info, out);
         }
         snow_dicom_stack_free(&stack);
-    } else if (c->frame_count > 1)
+    } else if (c->frame_count > 1) {
         snow_notify(c->context, "is taken alone, without those of its series "
                                 "in its folder, which make no volume; open the "
                                 "folder to see why");
+    }
     c->frames[0] = alone;
     c->frame_count = 1;
     snow_folder_free(&files);

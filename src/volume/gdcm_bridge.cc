@@ -2,14 +2,20 @@
  * function that C can call.
  *
  * GDCM's parser is not used: as Debian builds it, it ends the process at many a
- * damaged file.  GDCM says what it dislikes on the program's standard error
- * unless told not to, for the whole process: it is told so before each use. */
+ * damaged file.  Nor is its choice of codecs, which runs another program,
+ * pvrg-jpeg, with a file of its own where JPEG fails.  GDCM says what it
+ * dislikes on the program's standard error unless told not to, for the whole
+ * process: it is told so before each use. */
 #include "volume/gdcm_bridge.h"
 
-#include <gdcmBitmap.h>
+#include <cstring>
 #include <gdcmFragment.h>
+#include <gdcmJPEG2000Codec.h>
+#include <gdcmJPEGCodec.h>
+#include <gdcmJPEGLSCodec.h>
 #include <gdcmSequenceOfFragments.h>
 #include <gdcmTrace.h>
+#include <gdcmTransferSyntax.h>
 
 namespace {
 
@@ -33,21 +39,42 @@ gdcm::DataElement wrap(const void *packed, size_t size) {
     return element;
 }
 
-void describe(const gdcm_frame &frame, gdcm::Bitmap &image) {
+/* A codec takes the image's description, and may change it by what it finds. */
+void describe(const gdcm_frame &frame, gdcm::ImageCodec &codec) {
     typedef unsigned short word;
-    image.SetNumberOfDimensions(2);
-    image.SetDimension(0, frame.columns);
-    image.SetDimension(1, frame.rows);
-    image.SetTransferSyntax(
-        gdcm::TransferSyntax(gdcm::TransferSyntax::GetTSType(frame.syntax)));
-    image.SetPhotometricInterpretation(
+    const unsigned sizes[3] = {frame.columns, frame.rows, 1};
+    codec.SetNumberOfDimensions(2);
+    codec.SetDimensions(sizes);
+    codec.SetPhotometricInterpretation(
         gdcm::PhotometricInterpretation::GetPIType(frame.photometric));
-    image.SetPixelFormat(gdcm::PixelFormat(
+    codec.SetPixelFormat(gdcm::PixelFormat(
         static_cast<word>(frame.samples), static_cast<word>(frame.allocated),
         static_cast<word>(frame.stored), static_cast<word>(frame.high),
         frame.is_signed ? 1 : 0));
+    codec.SetPlanarConfiguration(frame.samples > 1 && frame.planes ? 1 : 0);
+    codec.SetNeedOverlayCleanup(false);
+}
+
+template <class Codec>
+bool decode(gdcm_frame &frame, const gdcm::DataElement &packed, char *out,
+            size_t room) {
+    Codec codec;
+    gdcm::DataElement made;
+    describe(frame, codec);
+    if (!codec.Decode(packed, made))
+        return false;
+    const gdcm::ByteValue *value = made.GetByteValue();
+    const gdcm::PixelFormat &format = codec.GetPixelFormat();
+    if (!value || static_cast<uint32_t>(value->GetLength()) != room ||
+        format.GetBitsAllocated() != frame.allocated)
+        return false;
+    std::memcpy(out, value->GetPointer(), room);
+    frame.stored = format.GetBitsStored();
+    frame.high = format.GetHighBit();
+    frame.is_signed = format.GetPixelRepresentation() != 0;
     if (frame.samples > 1)
-        image.SetPlanarConfiguration(frame.planes ? 1 : 0);
+        frame.planes = codec.GetPlanarConfiguration() == 1;
+    return true;
 }
 
 } // namespace
@@ -56,22 +83,16 @@ extern "C" bool snow_gdcm_unpack(gdcm_frame *frame, const void *packed,
                                  size_t size, void *out, size_t room) {
     try {
         be_silent();
-        gdcm::Bitmap image;
-        describe(*frame, image);
-        image.SetDataElement(wrap(packed, size));
-        if (image.GetBufferLength() != room ||
-            !image.GetBuffer(static_cast<char *>(out)))
-            return false;
-        const gdcm::PixelFormat &format = image.GetPixelFormat();
-        if (image.GetBufferLength() != room ||
-            format.GetBitsAllocated() != frame->allocated)
-            return false;
-        frame->stored = format.GetBitsStored();
-        frame->high = format.GetHighBit();
-        frame->is_signed = format.GetPixelRepresentation() != 0;
-        if (frame->samples > 1)
-            frame->planes = image.GetPlanarConfiguration() == 1;
-        return true;
+        gdcm::TransferSyntax syntax(
+            gdcm::TransferSyntax::GetTSType(frame->syntax));
+        gdcm::DataElement element = wrap(packed, size);
+        char *to = static_cast<char *>(out);
+        if (gdcm::JPEGLSCodec().CanDecode(syntax))
+            return decode<gdcm::JPEGLSCodec>(*frame, element, to, room);
+        if (gdcm::JPEG2000Codec().CanDecode(syntax))
+            return decode<gdcm::JPEG2000Codec>(*frame, element, to, room);
+        return gdcm::JPEGCodec().CanDecode(syntax) &&
+               decode<gdcm::JPEGCodec>(*frame, element, to, room);
     } catch (...) {
         return false;
     }

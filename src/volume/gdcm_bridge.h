@@ -1,7 +1,8 @@
 /* volume/gdcm_bridge.h - what the C side sees of GDCM: a frame's packed bytes
  * go in, its words come out.
  *
- * No exception leaves it, and nothing is printed. */
+ * No exception leaves it.  GDCM prints nothing, but for a line on standard
+ * error that its libjpeg has for some damaged pixels. */
 #ifndef SNOW_GDCM_BRIDGE_H
 #define SNOW_GDCM_BRIDGE_H
 
