@@ -63,6 +63,8 @@ typedef struct options {
     int64_t footprint; /* 0: the kernel's own */
 
     const char *mode;
+    double iso;        /* NaN: not told */
+    const char *depth; /* NULL: none */
     const char *colormap, *preset; /* NULL: automatic */
     point_list opacities;
     double window, level; /* NaN: not told */

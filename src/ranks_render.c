@@ -111,6 +111,10 @@ static snow_status begin_picture(picture *p, const snow_volume *volume,
                          "mode %s is not built for many ranks yet; render on "
                          "one, or take mode over",
                          snow_mode_name(p->job.settings.mode));
+    if (p->job.settings.depth)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "depths are not built for many ranks yet; render on "
+                         "one, or leave them out");
     if (snow_comm_rank(p->comm) != 0 && !p->how.scattered)
         return SNOW_OK;
     SNOW_TRY(snow_image_new(context, view->width, view->height, p->job.channels,

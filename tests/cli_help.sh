@@ -28,7 +28,7 @@ for word in output mode sparse kernel look quality camera labels data run \
     run 0 "--help $word" "$TOOL" --help $word
     check "--help $word is the same page" cmp -s page "$OUT"
 done
-for word in mode labels; do
+for word in labels; do
     run 0 "help $word" "$TOOL" help $word
     prints '^  built: [a-z]'
     prints '^  not built yet: --'
