@@ -13,6 +13,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Seconds: rank 0 makes a picture alone while the others wait. */
+#define RANKS_TIMEOUT 3600
+
 static const char help[] =
     "usage: snowglass bench NAME [options]\n"
     "\n"
@@ -360,8 +363,11 @@ bool bench_for_all(int argc, char **argv) {
 
 int bench_main(int argc, char **argv) {
     const struct bench_ranks *ranks = find_of_ranks(argc, argv);
-    if (ranks)
+    if (ranks) {
+        if (launch_comm())
+            snow_comm_set_timeout(launch_comm(), RANKS_TIMEOUT);
         return ranks->run(argc - 1, argv + 1, launch_comm());
+    }
     bench_options options = {.kernel = SNOW_KERNEL_GAUSS};
     bench_command command = {0};
     int code = parse(argc, argv, &options, &command);

@@ -5,6 +5,7 @@
 #include "commands.h"
 #include "interrupt.h"
 #include "launch.h"
+#include "marks.h"
 #include "outputs.h"
 #include "paint.h"
 #include "render_stats.h"
@@ -39,7 +40,11 @@ int check_settings(const options *asked) {
         return fail_usage("--%s: needs --%s beside it",
                           iso ? "mode iso" : "iso",
                           iso ? "iso VALUE" : "mode iso");
-    return check_look(asked);
+    if (asked->view && asked->position.given)
+        return fail_usage("--position: --view says where the camera is as "
+                          "well; leave one of the two out");
+    int done = marks_check(asked);
+    return done == GO_ON ? check_look(asked) : done;
 }
 
 static bool has_suffix(const char *path, const char *suffix) {
@@ -157,6 +162,15 @@ int make_settings(const options *asked, const snow_volume_info *info,
     return opacity_length(asked, info, &out->opacity_length);
 }
 
+static void place_camera(const options *asked, snow_view *out) {
+    out->has_position = asked->position.given;
+    out->has_target = asked->target.given;
+    out->has_up = asked->up.given;
+    memcpy(out->position, asked->position.at, sizeof out->position);
+    memcpy(out->target, asked->target.at, sizeof out->target);
+    memcpy(out->upward, asked->up.at, sizeof out->upward);
+}
+
 /* A named view sets size and angles too, hence it comes before them. */
 int make_view(snow_context *context, const options *asked,
               const snow_volume_info *info, snow_view *out) {
@@ -172,6 +186,7 @@ int make_view(snow_context *context, const options *asked,
     out->roll = asked->roll;
     out->zoom = asked->zoom;
     out->fov = asked->fov;
+    place_camera(asked, out);
     return GO_ON;
 }
 
@@ -183,6 +198,13 @@ typedef struct work {
     char painted[PAINT_TOLD_BYTES]; /* what was made of values */
 } work;
 
+static snow_status make_marks(const work *w, snow_overlay **out) {
+    const scene *s = &w->scene;
+    const picture_marks marks = {s->asked, s->whole, s->view, s->transfer};
+    marks_tell(s->asked);
+    return marks_make(&marks, s->asked->azimuth, -1, s->context, out);
+}
+
 /* A pipe is written through and may block, so there an interruption does not
  * wait. */
 static int write_picture(work *w, const options *asked) {
@@ -191,6 +213,7 @@ static int write_picture(work *w, const options *asked) {
         .bits = asked->bits ? (asked->bits[0] == '8' ? 8 : 16) : 0,
         .overwrite = asked->overwrite};
     memcpy(form.background, asked->background.rgb, sizeof form.background);
+    snow_overlay *overlay = NULL;
     double begin = seconds_now();
     if (!is_special(asked->output))
         interrupt_hold(); /* before the word, so that who reads it may rely */
@@ -198,10 +221,14 @@ static int write_picture(work *w, const options *asked) {
         return GO_ON;
     progress(asked, "writing");
     const snow_image_options plain = {.overwrite = asked->overwrite};
-    snow_status status = snow_image_save(w->image, asked->output, &form);
+    snow_status status = make_marks(w, &overlay);
+    form.overlay = overlay;
+    if (status == SNOW_OK)
+        status = snow_image_save(w->image, asked->output, &form);
     if (status == SNOW_OK && asked->depth)
         status = snow_image_save(snow_frame_depth(w->scene.frame), asked->depth,
                                  &plain);
+    snow_overlay_free(overlay);
     w->scene.times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->scene.context, status);
 }

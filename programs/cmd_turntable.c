@@ -20,11 +20,11 @@ static int make_shots(const options *asked, shot_list *out) {
         return SNOW_NO_MEMORY;
     }
     for (int64_t i = 0; i < out->count; i++)
-        out->shots[i] =
-            (movie_shot){.path = asked->operands[0],
-                         .time = asked->time,
-                         .azimuth = asked->azimuth +
-                                    360 * (double)i / (double)asked->frames};
+        out->shots[i] = (movie_shot){
+            .path = asked->operands[0],
+            .time = asked->time,
+            .azimuth = asked->azimuth + 360 * (double)i / (double)asked->frames,
+            .step = -1};
     return GO_ON;
 }
 

@@ -10,6 +10,7 @@ int cmd_turntable(const options *asked);
 int cmd_movie(const options *asked);
 int cmd_info(const options *asked);
 int cmd_phantom(const options *asked);
+int cmd_convert(const options *asked);
 int cmd_compare(const options *asked);
 int cmd_doctor(const options *asked);
 
@@ -25,6 +26,11 @@ snow_look look_options(const options *asked);
  * standard input.  Answers GO_ON or an exit code. */
 int open_input(snow_context *context, const options *asked, const char *path,
                snow_volume **out);
+
+/* Writes a volume to the output that the options name, and says so.  Answers an
+ * exit code. */
+int save_volume(snow_context *context, const options *asked,
+                const snow_volume *volume);
 
 /* Refuses look options that contradict each other: asked before a volume is
  * read.  Answers GO_ON or an exit code. */

@@ -83,6 +83,10 @@ static bool gives_way(const options *out, const char *key) {
     bool window = options_told(out, "window") || options_told(out, "level");
     if (strcmp(key, "range") == 0)
         return window;
+    if (strcmp(key, "view") == 0)
+        return options_told(out, "position");
+    if (strcmp(key, "position") == 0)
+        return options_told(out, "view");
     return (strcmp(key, "window") == 0 || strcmp(key, "level") == 0) &&
            options_told(out, "range");
 }
@@ -180,7 +184,15 @@ static void fill_look(const options *asked, snow_recipe *out) {
     out->opacity_count = asked->opacities.count;
     memcpy(out->opacities, asked->opacities.points,
            asked->opacities.count * sizeof *out->opacities);
+    out->gradient_opacity_count = asked->gradient_opacities.count;
+    memcpy(out->gradient_opacities, asked->gradient_opacities.points,
+           asked->gradient_opacities.count * sizeof *out->gradient_opacities);
     out->opacity_per_mm = strcmp(asked->opacity_unit, "mm") == 0;
+}
+
+static void fill_place(const place_value *place, double out[3]) {
+    if (place->given)
+        memcpy(out, place->at, sizeof place->at);
 }
 
 static void fill_view(const options *asked, snow_recipe *out) {
@@ -192,6 +204,9 @@ static void fill_view(const options *asked, snow_recipe *out) {
     out->roll = asked->roll;
     out->zoom = asked->zoom;
     out->fov = asked->fov;
+    fill_place(&asked->position, out->position);
+    fill_place(&asked->target, out->target);
+    fill_place(&asked->up, out->up);
 }
 
 /* A movie of many files has no one input. */
@@ -209,6 +224,9 @@ static void fill_recipe(const options *asked, snow_recipe *out) {
     fill_data(asked, out);
     fill_look(asked, out);
     fill_view(asked, out);
+    out->no_labels = asked->no_labels;
+    out->legend = asked->legend;
+    out->time_label = asked->time_label;
     fill_settings(asked, &out->settings);
 }
 

@@ -72,6 +72,10 @@ snow_look look_options(const options *asked) {
         look.opacities = asked->opacities.points;
         look.opacity_count = asked->opacities.count;
     }
+    if (asked->gradient_opacities.count) {
+        look.gradient_opacities = asked->gradient_opacities.points;
+        look.gradient_opacity_count = asked->gradient_opacities.count;
+    }
     return look;
 }
 

@@ -35,18 +35,20 @@ bool launch_talks(void) {
     return launch_rank() == 0;
 }
 
-/* A rank that does not talk has kept what it would have said. */
+/* What has broken the communicator was told when it did.  A rank that does not
+ * talk has kept what it would have said. */
 int launch_agree(int done) {
     if (launch_ranks() == 1)
         return done;
     snow_context *context = snow_comm_context(now.comm);
+    const bool told = snow_comm_broken(now.comm);
     snow_status mine = done == GO_ON ? SNOW_OK : (snow_status)done;
-    if (mine != SNOW_OK && !launch_talks())
+    if (mine != SNOW_OK && !launch_talks() && !told)
         snow_context_fail(context, mine, "%s", last_said());
     snow_status all = snow_comm_agree(now.comm, mine);
     if (all == SNOW_OK)
         return done;
-    if (mine == SNOW_OK && launch_talks())
+    if (mine == SNOW_OK && launch_talks() && !told)
         return fail_status(context, all);
     return (int)all;
 }
@@ -55,8 +57,11 @@ int launch_share(int word) {
     int shared = word;
     if (launch_ranks() == 1)
         return word;
+    const bool told = snow_comm_broken(now.comm);
     snow_status status =
         snow_comm_broadcast(now.comm, &shared, sizeof shared, 0);
-    return status == SNOW_OK ? shared
-                             : fail_status(snow_comm_context(now.comm), status);
+    if (status == SNOW_OK)
+        return shared;
+    return told ? (int)status
+                : fail_status(snow_comm_context(now.comm), status);
 }

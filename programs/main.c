@@ -52,6 +52,8 @@ static int run_verb(const verb_row *verb, const options *asked) {
         return cmd_info(asked);
     case VERB_PHANTOM:
         return cmd_phantom(asked);
+    case VERB_CONVERT:
+        return cmd_convert(asked);
     case VERB_COMPARE:
         return cmd_compare(asked);
     case VERB_DOCTOR:
@@ -59,6 +61,12 @@ static int run_verb(const verb_row *verb, const options *asked) {
     default:
         return run_help(asked);
     }
+}
+
+/* Verbs that render are for all ranks; any other is for one, and the others
+ * learn its exit code, and wait for it as long as it takes. */
+static bool is_for_all(const verb_row *verb) {
+    return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
 }
 
 /* `named` tells a verb that was written from the one that is understood. */
@@ -75,6 +83,8 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
     if (asked.help)
         return help_print(asked.help_word,
                           named && verb->bit != VERB_HELP ? verb : NULL);
+    if (launch_ranks() > 1 && is_for_all(verb))
+        snow_comm_set_timeout(launch_comm(), asked.timeout);
     done = config_check(&asked);
     if (done != GO_ON)
         return done;
@@ -85,12 +95,6 @@ static int run(const verb_row *verb, bool named, int argc, char **argv) {
     if (asked.verbosity > 0 && verb->bit != VERB_RENDER) /* it tells more */
         say("seconds: total %.3f", seconds_now() - begin);
     return done;
-}
-
-/* Verbs that render are for all ranks; any other is for one, and the others
- * learn its exit code. */
-static bool is_for_all(const verb_row *verb) {
-    return (verb->bit & (VERB_RENDER | VERB_TURNTABLE | VERB_MOVIE)) != 0;
 }
 
 static int run_bench(int argc, char **argv) {

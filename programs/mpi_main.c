@@ -8,11 +8,17 @@
 #include "report.h"
 
 #include <sched.h>
+#include <signal.h>
 #include <snowglass/mpi.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+
+/* More than thousands of processes take to start. */
+#ifndef MPI_SECONDS
+#define MPI_SECONDS 300
+#endif
 
 /* Where launchers tell how many processes they started, and which one this is.
  */
@@ -82,11 +88,33 @@ static int share_processors(void) {
     return threads > 1 ? threads : 1;
 }
 
-/* A broken communicator leaves nobody to agree with. */
+/* A broken communicator leaves nobody to agree with.  The rank that talks has
+ * said why already. */
 static void end_job(const launch *how, int code) {
-    fprintf(stderr, "snowglass: rank %d: %s\n", launch_rank(),
-            snow_context_message(snow_comm_context(how->comm)));
+    if (!launch_talks())
+        fprintf(stderr, "snowglass: rank %d: %s\n", launch_rank(),
+                snow_context_message(snow_comm_context(how->comm)));
     MPI_Abort(MPI_COMM_WORLD, code ? code : SNOW_FAILED);
+}
+
+/* Where MPI itself begins and ends, all ranks wait in it for one that is
+ * stopped, and nothing but a signal comes between. */
+static void give_up(int number) {
+    static const char text[] =
+        "snowglass: another rank does not come to MPI's start or end; look "
+        "whether all processes still run\n";
+    (void)number;
+    ssize_t told = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)told;
+    _exit(SNOW_FAILED);
+}
+
+/* The first that gives up ends the job: not all at the same time. */
+static void limit_seconds(unsigned seconds) {
+    long rank = 0;
+    for (size_t i = 0; i < sizeof launchers / sizeof *launchers && !rank; i++)
+        rank = number_of(launchers[i].rank);
+    alarm(seconds + (unsigned)(rank < 30 ? rank : 30));
 }
 
 static int run(int argc, char **argv) {
@@ -101,10 +129,12 @@ static int run(int argc, char **argv) {
     if (snow_context_new(NULL, &context) != SNOW_OK)
         MPI_Abort(MPI_COMM_WORLD, SNOW_NO_MEMORY);
     snow_status status = snow_comm_mpi(context, MPI_COMM_WORLD, &how.comm);
+    alarm(0);
     if (status == SNOW_OK) {
         done = tool_run(argc, argv, &how);
         if (snow_comm_broken(how.comm))
             end_job(&how, done);
+        limit_seconds(MPI_SECONDS);
         snow_comm_free(how.comm);
     } else {
         done = fail_status(context, status);
@@ -115,6 +145,8 @@ static int run(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     int level;
+    signal(SIGALRM, give_up);
+    limit_seconds(MPI_SECONDS);
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level) !=
         MPI_SUCCESS)
         return SNOW_FAILED;
@@ -122,5 +154,6 @@ int main(int argc, char **argv) {
     MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN);
     int done = run(argc, argv);
     MPI_Finalize();
+    alarm(0);
     return done;
 }

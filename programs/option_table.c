@@ -18,24 +18,27 @@
 /* Shorter names for sets of verbs: the rows are dense enough. */
 enum {
     TURNTABLE = VERB_TURNTABLE,
+    MOVIE = VERB_MOVIE,
     MOVIES = VERB_TURNTABLE | VERB_MOVIE,
     RENDER = VERB_RENDER | MOVIES, /* all that render */
     INFO = VERB_INFO,
     PHANTOM = VERB_PHANTOM,
     COMPARE = VERB_COMPARE,
     DOCTOR = VERB_DOCTOR,
-    INPUT = RENDER | VERB_INFO,
-    EVERY = RENDER | VERB_INFO | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR |
+    CONVERT = VERB_CONVERT,
+    LOOKED = RENDER | VERB_INFO, /* a volume with a look */
+    INPUT = LOOKED | CONVERT,    /* all that read one */
+    EVERY = INPUT | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR |
             VERB_HELP
 };
 
 /* clang-format off */
 const option_row option_table[] = {
-    {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM, read_text,
+    {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT, read_text,
      FIELD(output), 0, 0, "",
      "where to write: .png .npy .pfm, or - for a PNG on standard output; a "
      "movie: .mp4 .webm .gif, or frames by a pattern such as f_%04d.png; a "
-     "phantom: .nrrd .nii .nii.gz .mha .raw .raw.gz"},
+     "volume: .nrrd .nii .nii.gz .mha .npy .raw .raw.gz"},
     {"size", 's', "WxH", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
      "pixels of the picture (512x512)"},
     {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
@@ -44,7 +47,7 @@ const option_row option_table[] = {
      "it stays transparent, a movie black)"},
     {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
      "", "bits a channel of the PNG (8)"},
-    {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM, read_flag,
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT, read_flag,
      FIELD(overwrite), 0, 0, "",
      "replace files that exist, of --output, --depth and --stats (they are "
      "kept)"},
@@ -62,7 +65,7 @@ const option_row option_table[] = {
     {"iso", 0, "VALUE", TOPIC_MODE, RENDER, read_real, FIELD(iso), 0, 0, "",
      "data value of the surface of mode iso: where rays first meet it, shaded"},
 
-    {"threshold", 0, "T", TOPIC_SPARSE, INPUT, read_real, FIELD(threshold), 0,
+    {"threshold", 0, "T", TOPIC_SPARSE, LOOKED, read_real, FIELD(threshold), 0,
      255, "", "a voxel with opacity greater than T of 255 is interesting; info "
      "lists 0, 10 and 30 (0)"},
     {"encoding", 0, "auto|crs|bitmap|rle", TOPIC_SPARSE, RENDER, read_choice,
@@ -79,16 +82,20 @@ const option_row option_table[] = {
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "", "its support in voxels, 2 to 9 (2 for tent and box, else 4)"},
 
-    {"preset", 0, "NAME", TOPIC_LOOK, INPUT, read_preset, FIELD(preset), 0, 0,
+    {"preset", 0, "NAME", TOPIC_LOOK, LOOKED, read_preset, FIELD(preset), 0, 0,
      "",
      "a transfer function by name (chosen from the histogram)"},
-    {"colormap", 'c', "NAME", TOPIC_LOOK, INPUT, read_colormap, FIELD(colormap),
+    {"colormap", 'c', "NAME", TOPIC_LOOK, LOOKED, read_colormap, FIELD(colormap),
      0, 0, "", "colours along the range (grey, or the preset's)"},
-    {"opacity", 0, "V:O,V:O", TOPIC_LOOK, INPUT, read_points, FIELD(opacities),
+    {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED, read_points, FIELD(opacities),
      0, 0, "", "opacities 0 to 1 at data values, linear between them"},
-    {"window", 'w', "W", TOPIC_LOOK, INPUT, read_real, FIELD(window), 1e-300,
+    {"gradient-opacity", 0, "G:O,G:O", TOPIC_LOOK, LOOKED, read_gradient_points,
+     FIELD(gradient_opacities), 0, 0, "",
+     "factors 0 to 1 of the opacity at gradient magnitudes, in data units per "
+     "mm: 0:0,20:1 shows boundaries and lets what is even fade (none)"},
+    {"window", 'w', "W", TOPIC_LOOK, LOOKED, read_real, FIELD(window), 1e-300,
      1e300, "", "width of the range of data values, with --level"},
-    {"level", 0, "L", TOPIC_LOOK, INPUT, read_real, FIELD(level), 0, 0, "",
+    {"level", 0, "L", TOPIC_LOOK, LOOKED, read_real, FIELD(level), 0, 0, "",
      "middle of the range of data values, with --window"},
     {"range", 0, "LO,HI|pLO,pHI|full", TOPIC_LOOK, INPUT, read_range,
      FIELD(range), 0, 0, "",
@@ -136,20 +143,34 @@ const option_row option_table[] = {
      "from an eye whose field of view is so many degrees over the shorter side, "
      "up to 120; 30 where no number follows (without it: a parallel "
      "projection)"},
-    LATER("position", 0, "X,Y,Z", TOPIC_CAMERA,
-          "give --view, --azimuth and --elevation"),
-    LATER("target", 0, "X,Y,Z", TOPIC_CAMERA,
-          "the camera looks at the middle of the volume"),
-    LATER("up", 0, "X,Y,Z", TOPIC_CAMERA, "give --view and --roll"),
+    {"position", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(position),
+     0, 0, "", "where the camera stands, in the world (mm), in place of --view; "
+     "a parallel projection takes the direction alone (by --view)"},
+    {"target", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(target), 0,
+     0, "", "what it looks at and turns about, the middle of the picture (the "
+     "middle of the volume)"},
+    {"up", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(up), 0, 0, "",
+     "the direction that is up in the picture (the view's; of a --position "
+     "0,0,1, or 0,1,0 along z)"},
 
     {"no-labels", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(no_labels), 0,
-     0, "", "without orientation letters (there are none yet)"},
-    LATER("legend", 0, NULL, TOPIC_LABELS, "leave it out"),
+     0, "", "without the letters R L A P S I at the edges, which tell the sides "
+     "of a patient (drawn where the file gives a medical orientation; never "
+     "into files of floats)"},
+    {"legend", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(legend), 0, 0,
+     "", "draw a colour bar with the values, and the opacity as a line, and in a "
+     "parallel projection a scale bar (without)"},
+    {"time-label", 0, NULL, TOPIC_LABELS, MOVIE, read_flag, FIELD(time_label),
+     0, 0, "", "draw the number of the time step: that in the file's name, or "
+     "in the file (without)"},
 
     {"dims", 0, "XxYxZ", TOPIC_DATA, INPUT | PHANTOM, read_dims, FIELD(dims), 0,
      0, "", "voxels of raw data or of a phantom, x fastest"},
     {"type", 0, "TYPE", TOPIC_DATA, INPUT, read_type, FIELD(type), 0, 0, "",
      "of raw data: int8 to int64, uint8 to uint64, float32, float64"},
+    {"as", 0, "TYPE", TOPIC_DATA, CONVERT, read_type, FIELD(as), 0, 0, "",
+     "type to convert to, by rounding; with --range spread over all of it (the "
+     "input's, or the least one that holds the values)"},
     {"spacing", 0, "XxYxZ", TOPIC_DATA, INPUT, read_spacing, FIELD(spacing), 0,
      0, "", "voxel size; replaces the file's (raw data: 1x1x1)"},
     {"endian", 0, "little|big", TOPIC_DATA, INPUT, read_choice, FIELD(endian),
@@ -193,7 +214,7 @@ const option_row option_table[] = {
      0, "", "tell nothing but errors"},
     LATER("memory", 0, "SIZE", TOPIC_RUN,
           "limit the process with ulimit -v or a cgroup"),
-    {"config", 0, "FILE", TOPIC_RUN, INPUT, read_text, FIELD(config), 0, 0, "",
+    {"config", 0, "FILE", TOPIC_RUN, LOOKED, read_text, FIELD(config), 0, 0, "",
      "take options from a JSON object: long names for keys, and input; what "
      "stands on the command line counts more"},
     {"save-config", 0, "FILE", TOPIC_RUN, RENDER, read_text,
@@ -218,6 +239,9 @@ const option_row option_table[] = {
      "ranks and size)"},
     {"radix", 0, "K", TOPIC_RANKS, RENDER, read_integer, FIELD(radix), 2, 64,
      "", "ranks that exchange at once, of --combine radix (chosen)"},
+    {"timeout", 0, "SECONDS", TOPIC_RANKS, RENDER, read_real, FIELD(timeout), 0,
+     1e9, "", "the longest that ranks wait for one that neither sends nor waits "
+     "itself; then the job ends and names it; 0: for ever (300)"},
 
     {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR, read_flag,
      FIELD(json), 0, 0, "", "write one JSON object"},
@@ -243,13 +267,14 @@ const verb_row verb_table[] = {
     {"info", VERB_INFO, 1, "INPUT [--json]",
      "geometry, type, range, histogram, sparse ratio"},
     {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},
+    {"convert", VERB_CONVERT, 1, "IN -o OUT [--as TYPE] [--crop ...]",
+     "a volume into another format"},
     {"compare", VERB_COMPARE, 2, "A B [--tolerance X]",
      "largest difference, PSNR and SSIM of two pictures"},
     {"bench", VERB_BENCH, -1, "table1|table2|table3|speed",
      "the paper's tables, measured; how fast pictures are made"},
     {"doctor", VERB_DOCTOR, 0, "[--json]", "what this build and machine can do"},
     {"help", VERB_HELP, -1, "[TOPIC|VERB]", "help on a topic or a verb"},
-    {"convert", 0, 0, "", "phantom writes volumes, other tools convert them"},
     {"tf", 0, 0, "", "snowglass help look lists presets and colour maps"},
     {"serve", 0, 0, "", "render writes pictures"},
     {.name = NULL},
@@ -266,8 +291,7 @@ const topic_row topic_table[] = {
     {"quality", "one word for speed or beauty",
      "one quality, set by --kernel and --footprint"},
     {"camera", "where the picture is taken from", NULL},
-    {"labels", "letters and bars in the picture",
-     "none yet: the picture shows the volume alone"},
+    {"labels", "letters and bars in the picture", NULL},
     {"data", "raw files, time steps", NULL},
     {"run", "threads, figures, talk", NULL},
     {"ranks", "many processors: parts of the volume, one picture", NULL},

@@ -45,6 +45,7 @@ void options_init(options *out) {
         .quality = "normal",
         .cut = "auto",
         .combine = "auto",
+        .timeout = 300,
         .frames = 120,
         .fps = 25,
     };

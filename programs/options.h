@@ -25,7 +25,8 @@ enum {
     VERB_DOCTOR = 1 << 5,
     VERB_HELP = 1 << 6,
     VERB_TURNTABLE = 1 << 7,
-    VERB_MOVIE = 1 << 8
+    VERB_MOVIE = 1 << 8,
+    VERB_CONVERT = 1 << 9
 };
 
 typedef enum topic {
@@ -66,7 +67,7 @@ typedef struct options {
     double iso;        /* NaN: not told */
     const char *depth; /* NULL: none */
     const char *colormap, *preset; /* NULL: automatic */
-    point_list opacities;
+    point_list opacities, gradient_opacities;
     double window, level; /* NaN: not told */
     range_value range;
     const char *opacity_unit, *shade;
@@ -76,9 +77,10 @@ typedef struct options {
     const char *view; /* NULL: the volume's own */
     double azimuth, elevation, roll, zoom;
     double fov; /* 0: parallel */
+    place_value position, target, up;
 
     int64_t dims[3]; /* 0: not told */
-    snow_type type;
+    snow_type type, as;
     double spacing[3];  /* 0: not told */
     const char *endian; /* NULL: not told */
     uint64_t offset;
@@ -98,8 +100,10 @@ typedef struct options {
     const char *progress, *isa, *quality;
     int64_t threads; /* 0: not told */
     const char *cut, *combine;
-    int64_t radix; /* 0: chosen */
-    bool deterministic, no_labels;
+    int64_t radix;  /* 0: chosen */
+    double timeout; /* seconds; 0: none */
+    bool deterministic;
+    bool no_labels, legend, time_label;
     int verbosity; /* -1 quiet, 0, 1 verbose: the last one counts */
 
     bool version, help;

@@ -280,6 +280,16 @@ bool read_points(const option_row *row, const char *text, void *field,
     return true;
 }
 
+bool read_gradient_points(const option_row *row, const char *text, void *field,
+                          char wrong[WRONG_BYTES]) {
+    (void)row;
+    if (!value_points(text, field))
+        return refuse(wrong, "are no control points; give MAGNITUDE:FACTOR "
+                             "pairs, magnitudes rising, factors 0 to 1, at "
+                             "most 256, such as 0:0,20:1");
+    return true;
+}
+
 /* Any angle: what is beyond a turn means the same as within it. */
 bool read_directions(const option_row *row, const char *text, void *field,
                      char wrong[WRONG_BYTES]) {
@@ -289,5 +299,16 @@ bool read_directions(const option_row *row, const char *text, void *field,
         return refuse(wrong, "is no direction; give AZIMUTH,ELEVATION in "
                              "degrees, such as 30,45");
     memcpy(field, pair, sizeof pair);
+    return true;
+}
+
+bool read_place(const option_row *row, const char *text, void *field,
+                char wrong[WRONG_BYTES]) {
+    (void)row;
+    place_value place = {.given = true};
+    if (!value_reals(text, ',', 3, place.at))
+        return refuse(wrong, "is no place; give X,Y,Z in the volume's world, "
+                             "such as 0,250,-12.5");
+    *(place_value *)field = place;
     return true;
 }

@@ -241,9 +241,16 @@ render_report scene_report(const scene *s) {
 }
 
 void scene_choices(const scene *s, char *out, size_t size) {
+    const double *from = s->asked->position.at;
     const char *view = s->asked->view     ? s->asked->view
                        : s->whole.medical ? "anterior"
                                           : "+z";
+    char place[96];
+    if (s->asked->position.given) {
+        snprintf(place, sizeof place, "from %g,%g,%g", from[0], from[1],
+                 from[2]);
+        view = place;
+    }
     bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
     char volume[256];
     describe_volume(&s->whole, volume, sizeof volume);

@@ -47,7 +47,8 @@ struct sequence {
     bool begun;    /* the record is written */
     bool made_folder;
     snow_image_options form; /* of the frames' files */
-    double background[3];    /* of the movie */
+    picture_marks marks;     /* of the frames, from the first picture on */
+    bool has_marks;
 };
 
 static bool is_png(const char *path) {
@@ -101,7 +102,8 @@ static snow_status load_frame(const sequence *s, frame_slot *slot,
     return SNOW_BAD_INPUT;
 }
 
-static snow_status fill_bytes(const sequence *s, frame_slot *slot) {
+static snow_status fill_bytes(const sequence *s, frame_slot *slot,
+                              const snow_image_options *form) {
     if (!slot->work) /* once: all frames have one size */
         slot->work =
             malloc((size_t)s->asked->size[0] * (size_t)s->asked->size[1] * 3);
@@ -110,22 +112,37 @@ static snow_status fill_bytes(const sequence *s, frame_slot *slot) {
                  "no memory for the bytes of a frame; make smaller ones");
         return SNOW_NO_MEMORY;
     }
-    snow_image_bytes(slot->image, s->background, slot->work);
+    snow_image_bytes_drawn(slot->image, form, slot->work);
     return SNOW_OK;
+}
+
+/* A new frame: its file, aside, and its bytes. */
+static snow_status make_frame(const sequence *s, frame_slot *slot) {
+    const movie_shot *shot = &s->list->shots[slot->index];
+    snow_overlay *overlay = NULL;
+    snow_image_options form = s->form;
+    char path[PATH_MAX];
+    snow_status status = marks_make(&s->marks, shot->azimuth, shot->step,
+                                    slot->context, &overlay);
+    form.overlay = overlay;
+    place_aside(&s->place, slot->index, path, sizeof path);
+    if (status == SNOW_OK)
+        status = snow_image_save(slot->image, path, &form);
+    if (status == SNOW_OK && s->encoding)
+        status = fill_bytes(s, slot, &form);
+    snow_overlay_free(overlay);
+    return status;
 }
 
 static snow_status prepare(void *user, frame_slot *slot) {
     const sequence *s = user;
     char path[PATH_MAX];
-    snow_status status;
-    if (s->record.kept[slot->index]) {
-        place_frame(&s->place, slot->index, path, sizeof path);
-        status = load_frame(s, slot, path);
-    } else {
-        place_aside(&s->place, slot->index, path, sizeof path);
-        status = snow_image_save(slot->image, path, &s->form);
-    }
-    return status == SNOW_OK && s->encoding ? fill_bytes(s, slot) : status;
+    if (!s->record.kept[slot->index])
+        return make_frame(s, slot);
+    place_frame(&s->place, slot->index, path, sizeof path);
+    snow_status status = load_frame(s, slot, path);
+    return status == SNOW_OK && s->encoding ? fill_bytes(s, slot, &s->form)
+                                            : status;
 }
 
 /* The record comes before the first frame that it tells of. */
@@ -187,8 +204,7 @@ static void release(void *user, frame_slot *slot) {
 static void set_form(sequence *s) {
     const color_value *color = &s->asked->background;
     if (color->given)
-        memcpy(s->background, color->rgb, sizeof s->background);
-    memcpy(s->form.background, s->background, sizeof s->background);
+        memcpy(s->form.background, color->rgb, sizeof s->form.background);
     s->form.flatten = color->given || s->place.format;
     s->form.bits = s->asked->bits ? (s->asked->bits[0] == '8' ? 8 : 16) : 0;
     s->form.overwrite = true; /* of names aside */
@@ -337,6 +353,9 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
     render_report report = {0};
     r->renderer->report(r->renderer->self, &report);
     sequence_figures_add(&r->figures, report.stats);
+    if (!r->s->has_marks) /* the queue's lock shows them to the workers */
+        r->renderer->marks(r->renderer->self, &r->s->marks);
+    r->s->has_marks = true;
     (void)frames_put(r->s->queue, index, image);
     snow_image_free(r->last);
     r->last = image;

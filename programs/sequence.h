@@ -16,6 +16,7 @@
 #ifndef SEQUENCE_H
 #define SEQUENCE_H
 
+#include "marks.h"
 #include "options.h"
 
 /* One frame to be. */
@@ -23,6 +24,7 @@ typedef struct movie_shot {
     const char *path; /* of the volume */
     int64_t time;     /* the step in that file */
     double azimuth;   /* of the camera, in degrees */
+    int64_t step;     /* the number that people know it by, -1: none */
 } movie_shot;
 
 typedef struct shot_list {
@@ -47,6 +49,10 @@ typedef struct sequence_renderer {
     /* Figures of the last picture; their `image` is filled in by the caller.
      * Called on the rank that writes. */
     void (*report)(void *self, render_report *out);
+
+    /* What is drawn over the pictures, after the first one.  Called on the rank
+     * that writes. */
+    void (*marks)(void *self, picture_marks *out);
 
     /* Every rank gets the word of the one that writes.  NULL: there is one. */
     int (*share)(void *self, int word);

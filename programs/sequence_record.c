@@ -22,9 +22,9 @@
     (INT64_C(1) << 30) /* bytes; a million frames take a tenth */
 
 static const char *const without_effect[] = {
-    "output",  "overwrite", "resume",    "frames",     "fps",
-    "threads", "progress",  "stats",     "verbose",    "quiet",
-    "memory",  "config",    "no-labels", "save-config"};
+    "output",  "overwrite", "resume",      "frames",  "fps",
+    "threads", "progress",  "stats",       "verbose", "quiet",
+    "memory",  "config",    "save-config", "timeout"};
 
 static bool has_effect(const char *name) {
     for (size_t i = 0; i < sizeof without_effect / sizeof *without_effect; i++)

@@ -72,6 +72,7 @@ static void tell_choices(const shot_renderer *shots) {
         say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text, shots->painted,
             shots->count, (long long)asked->size[0], (long long)asked->size[1],
             asked->output);
+    marks_tell(asked);
 }
 
 static int render(void *self, const movie_shot *shot, snow_image **image) {
@@ -95,6 +96,11 @@ static void report(void *self, render_report *out) {
     *out = scene_report(&shots->scene);
 }
 
+static void marks(void *self, picture_marks *out) {
+    const scene *s = &((const shot_renderer *)self)->scene;
+    *out = (picture_marks){s->asked, s->whole, s->view, s->transfer};
+}
+
 static int share(void *self, int word) {
     (void)self;
     return launch_share(word);
@@ -104,6 +110,7 @@ sequence_renderer shots_renderer(shot_renderer *shots) {
     return (sequence_renderer){.self = shots,
                                .render = render,
                                .report = report,
+                               .marks = marks,
                                .share = share,
                                .writes = launch_talks(),
                                .ranks = launch_ranks()};

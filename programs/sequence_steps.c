@@ -194,9 +194,25 @@ static int inspect(const shot_renderer *shots, const movie_shot *shot,
                              : fail_status(shots->scene.context, status);
 }
 
+/* The last number in a file's name, before its suffix: that of run_0010.nrrd is
+ * 10.  `usual` where there is none. */
+static int64_t number_in(const char *path, int64_t usual) {
+    const char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path;
+    const char *end = strrchr(name, '.');
+    int64_t number = usual;
+    while (*name && name != end) {
+        size_t digits = strspn(name, "0123456789");
+        if (digits > 0 && digits <= 15)
+            number = strtoll(name, NULL, 10);
+        name += digits ? digits : 1;
+    }
+    return number;
+}
+
 int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     const options *asked = shots->scene.asked;
-    movie_shot first = {files->paths[0], asked->time, asked->azimuth};
+    movie_shot first = {files->paths[0], asked->time, asked->azimuth, 0};
     out->count = files->count;
     if (files->count == 1 && !was_told(asked, "time")) {
         snow_volume_info info;
@@ -210,13 +226,17 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
         return fail_memory();
-    for (int64_t i = 0; i < out->count; i++)
-        out->shots[i] =
-            files->count == 1
-                ? (movie_shot){first.path,
-                               was_told(asked, "time") ? first.time : i,
-                               first.azimuth}
-                : (movie_shot){files->paths[i], first.time, first.azimuth};
+    for (int64_t i = 0; i < out->count; i++) {
+        movie_shot *shot = &out->shots[i];
+        *shot = first;
+        if (files->count > 1) {
+            shot->path = files->paths[i];
+            shot->step = number_in(shot->path, i);
+        } else {
+            shot->time = was_told(asked, "time") ? first.time : i;
+            shot->step = shot->time;
+        }
+    }
     return GO_ON;
 }
 

@@ -23,6 +23,12 @@ typedef struct range_value {
     double low, high;
 } range_value;
 
+/* A place, or a direction, in the world. */
+typedef struct place_value {
+    bool given;
+    double at[3];
+} place_value;
+
 typedef struct color_value {
     bool given; /* false: transparent */
     double rgb[3];

@@ -8,15 +8,19 @@
 
 void snow_depth_place(const snow_job *job, double of[4]) {
     const snow_placement *p = &job->placement;
+    const snow_volume_info *info = &job->volume->info;
     const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
     const int64_t sides[3] = {p->columns, p->rows, p->slices};
     of[3] = 0;
     for (int n = 0; n < 3; n++) {
         of[n] = 0;
         for (int r = 0; r < 3; r++)
-            of[n] -= job->volume->info.matrix[r][axes[n]] * p->back[r];
-        of[3] -= of[n] * (double)(sides[n] - 1) / 2;
+            of[n] -= info->matrix[r][axes[n]] * p->back[r];
+        if (!job->view->has_target)
+            of[3] -= of[n] * (double)(sides[n] - 1) / 2;
     }
+    for (int r = 0; job->view->has_target && r < 3; r++)
+        of[3] -= (info->matrix[r][3] - job->view->target[r]) * p->back[r];
 }
 
 /* Where the ray of a pixel meets slice k, which need not be a whole number. */

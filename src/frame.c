@@ -3,6 +3,7 @@
  * 03 to 13.  How a stage works is told in its folder. */
 #include "frame.h"
 #include "base/base.h"
+#include "classify/fade.h"
 #include "classify/tally.h"
 #include "classify/transfer.h"
 #include "combine/combine.h"
@@ -77,7 +78,8 @@ static snow_status check_part(const snow_job *job) {
                          "this part of the volume is none",
                          "xyz"[job->placement.slice_axis]);
     return snow_ghosts_check(job->context, job->volume, job->view,
-                             &job->settings);
+                             &job->settings,
+                             snow_transfer_fades(job->transfer));
 }
 
 static snow_status place(snow_job *job, int parts, int part) {

@@ -3,7 +3,7 @@
  * A part that owns voxels a to b along an axis makes the samples of sheets at
  * grid positions [a - 1/2, b + 1/2) (section 4 of the paper, with boxes in the
  * place of slabs).  A kernel that reaches h voxels sums voxels down to
- * a - 1/2 - h, and a gradient takes one more:
+ * a - 1/2 - h, and a gradient, of shading or of opacity, takes one more:
  *
  *        a - 3   a - 2   a - 1 |  a    a + 1
  *          o       o       o   |  *      *        h = 2: layers a - 1, a - 2,
@@ -29,6 +29,7 @@ typedef struct question {
     const snow_volume_info *whole;
     const snow_view *view;
     const snow_settings *settings; /* resolved */
+    bool gradients;                /* of voxels are wanted */
 } question;
 
 static void at_least(int64_t *layers, double wanted, int64_t most) {
@@ -44,15 +45,13 @@ static double layers_of(const question *q, double width) {
     const snow_settings *settings = q->settings;
     snow_taper taper =
         snow_taper_make(settings->kernel, settings->footprint, width);
-    return floor(snow_taper_reach(&taper) + 0.5) +
-           (settings->shade == SNOW_SHADE_PHONG);
+    return floor(snow_taper_reach(&taper) + 0.5) + q->gradients;
 }
 
 /* Those across slices. */
 static double layers_across(const question *q) {
-    return (q->settings->shade == SNOW_SHADE_PHONG) +
-           (q->settings->quality == SNOW_QUALITY_HIGH &&
-            q->settings->method == SNOW_METHOD_SHEARED);
+    return q->gradients + (q->settings->quality == SNOW_QUALITY_HIGH &&
+                           q->settings->method == SNOW_METHOD_SHEARED);
 }
 
 /* The widest pixel on any slice of a placement, voxels along u and v. */
@@ -141,15 +140,14 @@ static double least_cosine(double gradients[3][3]) {
 }
 
 /* How obliquely a slice may be seen: the least |d . n|; 0 where there is no
- * bound. */
-static double least_slant(const question *q, double gradients[3][3]) {
+ * bound.  A ray that meets the volume leaves the line of sight by an angle
+ * whose sine is `spread` at most. */
+static double least_slant(const question *q, double gradients[3][3],
+                          double spread) {
     double cosine = least_cosine(gradients);
     if (q->settings->quality == SNOW_QUALITY_HIGH) /* blends of axes */
         cosine -= sqrt(2.0) * sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
-    /* A ray leaves the line of sight by half the field of view at most where it
-     * meets the volume. */
-    double angle =
-        acos(fmax(cosine, 0)) + q->view->fov / 2 * 0.017453292519943295769;
+    double angle = acos(fmax(cosine, 0)) + asin(spread);
     return angle < 1.57 ? cos(angle) : 0;
 }
 
@@ -170,13 +168,17 @@ static double steepest(double gradients[3][3], int axis) {
 static snow_status ask_all(const question *q, int64_t layers[3]) {
     double gradients[3][3];
     snow_placement checked;
+    snow_camera camera;
     SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &checked));
+    SNOW_TRY(snow_camera_make(q->context, q->whole, q->view, &camera));
     if (!index_gradients(q->whole, gradients))
         return snow_fail(q->context, SNOW_BAD_INPUT,
                          "the volume's matrix cannot be inverted");
-    double slant = least_slant(q, gradients);
-    double pitch = snow_pixel_pitch(q->whole, q->view) *
-                   (1 + sin(q->view->fov / 2 * 0.017453292519943295769));
+    /* The volume stays within a sphere about the target. */
+    double reach = snow_length(camera.middle) + snow_volume_radius(q->whole);
+    double spread = camera.distance > 0 ? reach / camera.distance : 0;
+    double slant = least_slant(q, gradients, fmin(spread, 1));
+    double pitch = camera.pitch * (1 + spread);
     for (int axis = 0; axis < 3; axis++) {
         double width =
             slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;
@@ -190,12 +192,13 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
 snow_status snow_ghosts_needed(snow_context *context,
                                const snow_volume_info *whole,
                                const snow_view *view,
-                               const snow_settings *settings, bool any_turn,
-                               int64_t layers[3]) {
+                               const snow_settings *settings, bool fades,
+                               bool any_turn, int64_t layers[3]) {
     snow_settings resolved = snow_settings_known(settings);
     int64_t found[3] = {0, 0, 0};
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
-    question q = {context, whole, view, &resolved};
+    question q = {context, whole, view, &resolved,
+                  fades || resolved.shade == SNOW_SHADE_PHONG};
     SNOW_TRY(any_turn ? ask_all(&q, found) : ask_view(&q, found));
     memcpy(layers, found, sizeof found);
     return SNOW_OK;
@@ -204,7 +207,7 @@ snow_status snow_ghosts_needed(snow_context *context,
 /* A part without voxels of its own makes no samples. */
 snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               const snow_view *view,
-                              const snow_settings *settings) {
+                              const snow_settings *settings, bool fades) {
     const char names[] = "xyz";
     int64_t layers[3] = {0, 0, 0};
     snow_volume_info whole;
@@ -213,7 +216,8 @@ snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
     snow_volume_get_part(volume, &part);
     if (!part.count[0] || !part.count[1] || !part.count[2])
         return SNOW_OK;
-    question q = {context, &whole, view, settings};
+    question q = {context, &whole, view, settings,
+                  fades || settings->shade == SNOW_SHADE_PHONG};
     SNOW_TRY(ask_view(&q, layers));
     for (int axis = 0; axis < 3; axis++) {
         int64_t below = part.first[axis] - part.stored[axis];

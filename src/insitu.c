@@ -73,6 +73,7 @@ void snow_insitu_free(snow_insitu *insitu) {
     snow_release(context, insitu->moved);
     snow_release(context, insitu->bricks);
     snow_release(context, insitu->look.opacities);
+    snow_release(context, insitu->look.gradients);
     snow_release(context, insitu->pattern);
     snow_release(context, insitu);
     if (owns_comm)
@@ -291,10 +292,22 @@ static const char *keep_name(const char *name, char out[64]) {
     return out;
 }
 
+/* Points and where they are kept; none stay none. */
+static snow_status keep_points(snow_insitu *insitu,
+                               const snow_opacity_point *points, size_t count,
+                               snow_opacity_point **room, size_t *capacity,
+                               const snow_opacity_point **out) {
+    size_t bytes = points ? count * sizeof *points : 0;
+    SNOW_TRY(answer(insitu,
+                    snow_reserve(insitu->context, room, capacity, 0, bytes)));
+    if (bytes)
+        memcpy(*room, points, bytes);
+    *out = bytes ? *room : NULL;
+    return SNOW_OK;
+}
+
 snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
     snow_own_look *own = &insitu->look;
-    size_t bytes =
-        look->opacities ? look->opacity_count * sizeof *own->opacities : 0;
     if ((look->preset && snow_preset_named(look->preset) < 0) ||
         (look->colormap && snow_colormap_named(look->colormap) < 0))
         return refuse(insitu,
@@ -302,14 +315,17 @@ snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
                       "leave out what is not known",
                       look->preset ? look->preset : "",
                       look->colormap ? look->colormap : "");
-    SNOW_TRY(answer(insitu, snow_reserve(insitu->context, &own->opacities,
-                                         &own->opacity_bytes, 0, bytes)));
+    const snow_opacity_point *opacities, *gradients;
+    SNOW_TRY(keep_points(insitu, look->opacities, look->opacity_count,
+                         &own->opacities, &own->opacity_bytes, &opacities));
+    SNOW_TRY(keep_points(insitu, look->gradient_opacities,
+                         look->gradient_opacity_count, &own->gradients,
+                         &own->gradient_bytes, &gradients));
     own->look = *look;
     own->look.preset = keep_name(look->preset, own->preset);
     own->look.colormap = keep_name(look->colormap, own->colormap);
-    own->look.opacities = bytes ? own->opacities : NULL;
-    if (bytes)
-        memcpy(own->opacities, look->opacities, bytes);
+    own->look.opacities = opacities;
+    own->look.gradient_opacities = gradients;
     snow_transfer_free(insitu->transfer);
     insitu->transfer = NULL;
     return SNOW_OK;
@@ -373,6 +389,12 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
     snow_release(insitu->context, insitu->pattern);
     insitu->pattern = copy;
     insitu->form = options ? *options : plain;
+    return SNOW_OK;
+}
+
+snow_status snow_insitu_set_marks(snow_insitu *insitu, bool legend, bool step) {
+    insitu->legend = legend;
+    insitu->step_label = step;
     return SNOW_OK;
 }
 

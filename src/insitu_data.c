@@ -164,6 +164,17 @@ static uint64_t add_print(uint64_t print, const void *bytes, size_t count) {
     return print;
 }
 
+/* Points that place the camera, where there are any. */
+static uint64_t add_points(uint64_t print, const snow_view *view) {
+    const bool has[] = {view->has_position, view->has_target, view->has_up};
+    const double *points[] = {view->position, view->target, view->upward};
+    for (int n = 0; n < 3; n++)
+        if (has[n])
+            print = add_print(add_print(print, &n, sizeof n), points[n],
+                              sizeof view->position);
+    return print;
+}
+
 /* A print of what must be the same everywhere, as numbers, since records have
  * gaps between their fields. */
 static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
@@ -188,6 +199,7 @@ static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
     uint64_t print = UINT64_C(0xcbf29ce484222325);
     print = add_print(print, reals, sizeof reals);
     print = add_print(print, wholes, sizeof wholes);
+    print = add_points(print, view);
     print = add_print(print, insitu->whole.dims, sizeof insitu->whole.dims);
     print = add_print(print, insitu->whole.matrix, sizeof insitu->whole.matrix);
     return (int64_t)(print >> 2);
@@ -374,6 +386,7 @@ static snow_status look_around(snow_insitu *insitu, snow_placement *placement,
     SNOW_TRY(
         snow_placement_make(insitu->context, &insitu->whole, &view, placement));
     return snow_ghosts_needed(insitu->context, &insitu->whole, &view, &settings,
+                              insitu->look.look.gradient_opacities != NULL,
                               true, layers);
 }
 

@@ -10,7 +10,11 @@
 #include "insitu_parts.h"
 #include "volume/volume.h"
 
+#include <snowglass/overlay.h>
+
+#include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* Share of the limit that a better picture may be expected to take. */
@@ -252,6 +256,39 @@ static snow_status draw(snow_insitu *insitu, snow_image **out) {
     return SNOW_OK;
 }
 
+/* Bars and the step's number for a picture that was enlarged to its size, where
+ * it was drawn smaller. */
+static snow_status add_marks(snow_insitu *insitu, int64_t step,
+                             snow_overlay *overlay) {
+    snow_view view = snow_insitu_view(insitu);
+    char text[40];
+    if (insitu->legend) {
+        SNOW_TRY(snow_overlay_color_bar(overlay, insitu->transfer, NULL));
+        SNOW_TRY(snow_overlay_scale_bar(overlay, &insitu->whole, &view));
+    }
+    if (!insitu->step_label)
+        return SNOW_OK;
+    snprintf(text, sizeof text, "step %" PRId64, step);
+    return snow_overlay_note(overlay, text);
+}
+
+static snow_status save(snow_insitu *insitu, int64_t step, const char *path,
+                        const snow_image *image) {
+    snow_image_options form = insitu->form;
+    snow_overlay *overlay = NULL;
+    bool marked = insitu->legend || insitu->step_label;
+    if (!marked || form.overlay || snow_image_bits(path) <= 0)
+        return snow_image_save(image, path, &form);
+    SNOW_TRY(snow_overlay_new(insitu->context, image->width, image->height,
+                              &overlay));
+    snow_status status = add_marks(insitu, step, overlay);
+    form.overlay = overlay;
+    if (status == SNOW_OK)
+        status = snow_image_save(image, path, &form);
+    snow_overlay_free(overlay);
+    return status;
+}
+
 /* Collective.  Rank 0 writes, all hear how it went. */
 static snow_status write(snow_insitu *insitu, int64_t step,
                          const snow_image *image) {
@@ -263,7 +300,7 @@ static snow_status write(snow_insitu *insitu, int64_t step,
                            "%.100s...: the path is too long; shorten it",
                            insitu->pattern);
     if (image && status == SNOW_OK)
-        status = snow_image_save(image, path, &insitu->form);
+        status = save(insitu, step, path, image);
     insitu->seconds.write = snow_comm_seconds(insitu->comm) - start;
     return snow_comm_agree(insitu->comm, status);
 }

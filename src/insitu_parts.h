@@ -24,8 +24,8 @@ typedef struct snow_insitu_brick {
 typedef struct snow_own_look {
     snow_look look;
     char preset[64], colormap[64];
-    snow_opacity_point *opacities;
-    size_t opacity_bytes;
+    snow_opacity_point *opacities, *gradients;
+    size_t opacity_bytes, gradient_bytes;
 } snow_own_look;
 
 /* Of the last picture. */
@@ -68,6 +68,7 @@ struct snow_insitu {
     snow_ranks_options how;
     char *pattern; /* NULL: no output */
     snow_image_options form;
+    bool legend, step_label; /* drawn over them */
     double limit_seconds;
     uint64_t limit_bytes;
 

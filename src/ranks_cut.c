@@ -49,8 +49,8 @@ snow_status snow_cut_order_make(snow_context *context,
                                 const snow_volume_info *whole,
                                 const snow_view *view,
                                 const snow_settings *settings,
-                                const snow_ranks_options *asked, int ranks,
-                                snow_cut_order *out) {
+                                const snow_ranks_options *asked, bool fades,
+                                int ranks, snow_cut_order *out) {
     snow_ranks_options how = known_options(asked);
     snow_settings resolved = snow_settings_known(settings);
     snow_placement placement;
@@ -64,8 +64,8 @@ snow_status snow_cut_order_make(snow_context *context,
                             .threshold = resolved.threshold,
                             .isa = resolved.isa};
     memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
-    SNOW_TRY(snow_ghosts_needed(context, whole, view, settings, how.turns,
-                                out->layers));
+    SNOW_TRY(snow_ghosts_needed(context, whole, view, settings, fades,
+                                how.turns, out->layers));
     if (resolved.deterministic)
         set_borders(out);
     /* What falls on the picture itself is laid over slab by slab, and so are

@@ -22,14 +22,15 @@ typedef struct snow_cut_order {
     snow_isa isa;
 } snow_cut_order;
 
-/* What picture and ranks ask for.  Not to be copied, for its borders.
- * Errors: SNOW_BAD_USAGE (view, settings, options), SNOW_BAD_INPUT. */
+/* What picture and ranks ask for; `fades` as in ghosts.h.  Not to be copied,
+ * for its borders. Errors: SNOW_BAD_USAGE (view, settings, options),
+ * SNOW_BAD_INPUT. */
 snow_status snow_cut_order_make(snow_context *context,
                                 const snow_volume_info *whole,
                                 const snow_view *view,
                                 const snow_settings *settings,
-                                const snow_ranks_options *how, int ranks,
-                                snow_cut_order *out);
+                                const snow_ranks_options *how, bool fades,
+                                int ranks, snow_cut_order *out);
 
 /* The boxes of all ranks, and (unless NULL) their interesting voxels, which are
  * 0 for equal slabs unless asked for.  Counted are the voxels that the volumes

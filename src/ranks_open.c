@@ -12,6 +12,7 @@
  * than the largest box will be, since that has at least the mean, and so the
  * most that any rank stores does not rise for it.  Invariant: the owned boxes
  * of all ranks cover the grid and do not overlap, before and after. */
+#include "classify/fade.h"
 #include "classify/look.h"
 #include "decompose/slab.h"
 #include "decompose/voxels.h"
@@ -316,9 +317,9 @@ static snow_status open_file(opening *o, const snow_look *look,
     snow_cut_order order;
     int64_t stream;
     SNOW_TRY(begin(o, &stream, share));
-    snow_status status =
-        snow_cut_order_make(o->context, &o->whole, view, settings, how,
-                            snow_comm_ranks(o->comm), &order);
+    snow_status status = snow_cut_order_make(
+        o->context, &o->whole, view, settings, how,
+        look && look->gradient_opacities, snow_comm_ranks(o->comm), &order);
     SNOW_TRY(snow_comm_agree(o->comm, status));
     if (order.cut == SNOW_CUT_EQUAL && !stream)
         return open_equal(o, &order, look, volume, transfer);
@@ -394,9 +395,9 @@ snow_status snow_ranks_recut(snow_comm *comm, const snow_transfer *transfer,
     snow_volume *recut;
     snow_cut_order order;
     snow_volume_whole(*volume, &whole);
-    snow_status status =
-        snow_cut_order_make(snow_comm_context(comm), &whole, view, settings,
-                            how, snow_comm_ranks(comm), &order);
+    snow_status status = snow_cut_order_make(
+        snow_comm_context(comm), &whole, view, settings, how,
+        snow_transfer_fades(transfer), snow_comm_ranks(comm), &order);
     /* One round: 0, all serve; 1, some do not; 2, some failed. */
     int64_t worst = status != SNOW_OK ? 2 : !serves(*volume, &order);
     SNOW_TRY(snow_comm_reduce_ints(comm, &worst, 1, SNOW_MAX));

@@ -145,10 +145,13 @@ static int64_t terms_of(const picture *p) {
         s->deterministic,      place->width,       place->height,
         (int)p->how.combining, p->how.radix,       p->how.pixel_bits,
         place->slice_axis,     place->perspective, p->how.scattered};
-    const double reals[] = {place->back[0],  place->back[1], place->back[2],
-                            place->up[0],    place->up[1],   place->up[2],
-                            place->path,     s->threshold,   s->opacity_length,
-                            job->view->zoom, job->view->fov};
+    const double reals[] = {
+        place->back[0],   place->back[1],   place->back[2],
+        place->up[0],     place->up[1],     place->up[2],
+        place->path,      s->threshold,     s->opacity_length,
+        job->view->zoom,  job->view->fov,   place->origin[0],
+        place->origin[1], place->eye.at[0], place->eye.at[1],
+        place->eye.at[2]};
     uint64_t hash = UINT64_C(14695981039346656037);
     mix(&hash, numbers, sizeof numbers);
     mix(&hash, reals, sizeof reals);

@@ -37,6 +37,7 @@ typedef struct snow_pass {
     size_t code_bytes;
     const float *palette;
     const snow_gloss *gloss; /* NULL: unshaded */
+    float exponent;          /* of a faded picture */
     const snow_window_fns *windows;
     snow_sample_fn *sample;
     snow_tile_fn *tile;
@@ -110,6 +111,8 @@ void snow_sheared_free(snow_sheared *s) {
     snow_coder_fini(s->context, &s->coder);
     snow_coder_fini(s->context, &s->next);
     snow_palette_fini(s->context, &s->palette);
+    snow_release(s->context, s->fade_key);
+    snow_release(s->context, s->next_fade_key);
     snow_release(s->context, s->gloss);
     snow_release(s->context, s->combs);
     snow_release(s->context, s->plane);
@@ -144,7 +147,8 @@ bool snow_sheared_fits(const snow_placement *p, const snow_settings *settings) {
 static bool same_key(const snow_encoded_key *a, const snow_encoded_key *b) {
     return a->serial && a->serial == b->serial &&
            a->slice_axis == b->slice_axis && a->shaded == b->shaded &&
-           a->between == b->between && a->encoding == b->encoding &&
+           a->between == b->between && a->faded == b->faded &&
+           a->encoding == b->encoding && a->threshold == b->threshold &&
            a->slab.first == b->slab.first && a->slab.count == b->slab.count;
 }
 
@@ -172,16 +176,21 @@ static snow_status encode_bands(snow_sheared *s,
                                 const snow_sheared_order *order,
                                 const snow_encoded_key *key) {
     snow_normal_maker maker;
+    snow_fader fader;
     snow_placement stored;
     snow_clip_placement(&order->clip, order->placement, &stored);
     bool shaded = order->settings->shade == SNOW_SHADE_PHONG;
     if (shaded)
         SNOW_TRY(snow_normal_maker_init(s->context, order->volume, &maker));
+    if (key->faded)
+        SNOW_TRY(snow_fader_init(s->context, order->volume, order->transfer,
+                                 key->threshold, order->settings->isa, &fader));
     snow_bands_order bands = {
         .volume = order->volume,
         .placement = &stored,
         .coder = &s->coder,
         .maker = shaded ? &maker : NULL,
+        .fader = key->faded ? &fader : NULL,
         .encoding = order->settings->encoding,
         .first_slice = key->slab.first,
         .slice_count = key->slab.count,
@@ -190,6 +199,38 @@ static snow_status encode_bands(snow_sheared *s,
         .threads = order->settings->threads,
     };
     return snow_bands_encode(&s->bands, &bands);
+}
+
+/* Takes all that the bands depend on of a gradient opacity into the key; *same
+ * tells whether it was the same.  Where a threshold has to be passed by the
+ * product with the opacity, that is the opacity function too. */
+static snow_status take_fade_key(snow_sheared *s,
+                                 const snow_sheared_order *order, bool *same) {
+    const snow_transfer *t = order->transfer;
+    size_t curve = t->gradient_count, bytes = sizeof *s->fade_key;
+    size_t count =
+        curve + (order->settings->threshold > 0 ? t->opacity_count : 0);
+    *same = true;
+    if (!curve)
+        return SNOW_OK;
+    /* Both at once, so that a second picture takes no memory. */
+    SNOW_TRY(snow_reserve(s->context, &s->fade_key, &s->fade_key_capacity,
+                          s->fade_points * bytes, count * bytes));
+    SNOW_TRY(snow_reserve(s->context, &s->next_fade_key,
+                          &s->next_fade_key_capacity, 0, count * bytes));
+    snow_opacity_point *key = s->next_fade_key;
+    memcpy(key, t->gradients, curve * bytes);
+    if (count > curve)
+        memcpy(key + curve, t->opacities, (count - curve) * bytes);
+    *same =
+        count == s->fade_points && memcmp(key, s->fade_key, count * bytes) == 0;
+    size_t capacity = s->next_fade_key_capacity;
+    s->next_fade_key_capacity = s->fade_key_capacity;
+    s->next_fade_key = s->fade_key;
+    s->fade_key_capacity = capacity;
+    s->fade_key = key;
+    s->fade_points = count;
+    return SNOW_OK;
 }
 
 snow_status snow_sheared_encode(snow_sheared *s,
@@ -201,12 +242,18 @@ snow_status snow_sheared_encode(snow_sheared *s,
         .slice_axis = order->placement->slice_axis,
         .shaded = settings->shade == SNOW_SHADE_PHONG,
         .between = settings->quality == SNOW_QUALITY_HIGH,
+        .faded = snow_transfer_fades(order->transfer),
+        .threshold =
+            snow_transfer_fades(order->transfer) ? settings->threshold : 0,
         .encoding = settings->encoding,
     };
+    bool same_fade;
     key.slab = encoded_slab(order, key.between);
     SNOW_TRY(snow_coder_make(s->context, order->volume, order->transfer,
                              settings->threshold, &s->next));
-    bool kept = same_key(&key, &s->key) && snow_coder_same(&s->next, &s->coder);
+    SNOW_TRY(take_fade_key(s, order, &same_fade));
+    bool kept = same_key(&key, &s->key) && same_fade &&
+                snow_coder_same(&s->next, &s->coder);
     snow_coder coder = s->coder;
     s->coder = s->next;
     s->next = coder;
@@ -316,7 +363,9 @@ static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
                            pass->gloss,
                            scratch->room,
                            scratch->samples,
-                           floats};
+                           floats,
+                           slice->rows.fades,
+                           pass->exponent};
     pass->sample(&job);
     snow_tile tile = {u,
                       v,
@@ -630,16 +679,31 @@ snow_status snow_sheared_shade(snow_sheared *s,
     return SNOW_OK;
 }
 
+snow_status snow_sheared_classify(snow_sheared *s,
+                                  const snow_sheared_order *order,
+                                  double exponent) {
+    const snow_settings *settings = order->settings;
+    bool shaded = settings->shade == SNOW_SHADE_PHONG;
+    if (s->key.faded) /* opacities wait for the factors */
+        return snow_palette_make(s->context, &s->coder, order->transfer, 1,
+                                 false, settings->threads, &s->palette);
+    if (exponent < 0)
+        return snow_palette_make_clear(s->context, &s->coder, order->transfer,
+                                       settings->threads, &s->palette);
+    return snow_palette_make(s->context, &s->coder, order->transfer, exponent,
+                             !shaded, settings->threads, &s->palette);
+}
+
 /* Lines 02 and 03: tables for this look, light and view. */
 static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     snow_sheared *s = pass->sheared;
     const snow_settings *settings = pass->order->settings;
     bool shaded = settings->shade == SNOW_SHADE_PHONG;
     double path = pass->order->placement->path / (s->key.between ? 2 : 1);
+    double exponent = path / settings->opacity_length;
     double mark = snow_seconds();
-    SNOW_TRY(snow_palette_make(s->context, &s->coder, pass->order->transfer,
-                               path / settings->opacity_length, !shaded,
-                               settings->threads, &s->palette));
+    SNOW_TRY(snow_sheared_classify(s, pass->order, exponent));
+    pass->exponent = (float)fmin(exponent, 1e30);
     double classified = snow_seconds();
     SNOW_TRY(snow_sheared_shade(s, pass->order));
     stats->seconds_classify += classified - mark;
@@ -647,8 +711,8 @@ static snow_status classify_and_shade(snow_pass *pass, snow_stats *stats) {
     pass->palette = s->palette.samples;
     pass->gloss = shaded ? s->gloss + 1 : NULL;
     pass->channels = pass->order->channels;
-    pass->sample =
-        snow_sample_of(settings->isa, s->coder.bytes, pass->channels, shaded);
+    pass->sample = snow_sample_of(settings->isa, s->coder.bytes, pass->channels,
+                                  shaded, s->key.faded);
     pass->code_bytes = (size_t)s->coder.bytes;
     pass->tile = snow_tile_of(settings->isa, pass->channels);
     pass->windows = snow_window_fns_of(settings->isa);

@@ -34,8 +34,10 @@ typedef struct snow_sheared_warping {
 typedef struct snow_encoded_key {
     uint64_t serial; /* of the volume; 0: nothing is encoded */
     int slice_axis;
-    bool shaded, between;
+    bool shaded, between, faded;
     snow_encoding encoding; /* as asked for */
+    double threshold;       /* where opacity depends on gradients, else 0: the
+                               coder tells */
     snow_slab slab;
 } snow_encoded_key;
 
@@ -44,6 +46,11 @@ struct snow_sheared {
     snow_coder coder, next; /* of the bands; room for the next picture's */
     snow_bands bands;
     snow_encoded_key key;
+    snow_opacity_point *fade_key; /* of the bands: the curve of the gradient
+                                     opacity, and with a threshold the opacity
+                                     function behind it */
+    snow_opacity_point *next_fade_key;
+    size_t fade_points, fade_key_capacity, next_fade_key_capacity;
     snow_palette palette;
     snow_gloss *gloss;    /* an entry of zeros, and SNOW_NORMALS */
     snow_comb *combs;     /* of all slices, along u and v */
@@ -70,6 +77,12 @@ int64_t snow_sheared_slices(const snow_sheared_order *order);
 snow_status snow_sheared_encode(snow_sheared *sheared,
                                 const snow_sheared_order *order,
                                 snow_stats *stats);
+
+/* The palette of a picture whose rays all run `exponent` reference lengths; in
+ * perspective, where they differ, -1.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_sheared_classify(snow_sheared *sheared,
+                                  const snow_sheared_order *order,
+                                  double exponent);
 
 /* The table of shading for a view and light.  Errors: SNOW_NO_MEMORY. */
 snow_status snow_sheared_shade(snow_sheared *sheared,

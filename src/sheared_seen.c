@@ -295,11 +295,13 @@ static void sample_rows(const seen_stroke *stroke, uint64_t held, int column,
     for (; held; held &= held - 1) {
         int row = __builtin_ctzll(held);
         const uint16_t *normals = stroke->rows.normals[row];
+        const uint16_t *fades = stroke->rows.fades[row];
         float square[3];
         exponents_of_row(pass, stroke->slice->height, column, stroke->row + row,
                          square);
         pass->sample(stroke->rows.codes[row] + before[row] * pass->code_bytes,
-                     normals ? normals + before[row] : NULL, bits[row], count,
+                     normals ? normals + before[row] : NULL,
+                     fades ? fades + before[row] : NULL, bits[row], count,
                      pass->palette, pass->gloss, square,
                      stroke->scratch.samples +
                          (size_t)row * pass->window_floats);
@@ -600,9 +602,7 @@ static snow_status classify_and_shade(seen_pass *pass, snow_stats *stats) {
     const snow_settings *settings = pass->order->settings;
     bool shaded = settings->shade == SNOW_SHADE_PHONG;
     double mark = snow_seconds();
-    SNOW_TRY(snow_palette_make_clear(s->context, &s->coder,
-                                     pass->order->transfer, settings->threads,
-                                     &s->palette));
+    SNOW_TRY(snow_sheared_classify(s, pass->order, -1));
     double classified = snow_seconds();
     SNOW_TRY(snow_sheared_shade(s, pass->order));
     stats->seconds_classify += classified - mark;
@@ -613,7 +613,7 @@ static snow_status classify_and_shade(seen_pass *pass, snow_stats *stats) {
     pass->channels = pass->order->channels;
     pass->code_bytes = (size_t)s->coder.bytes;
     pass->sample = snow_ray_sample_of(settings->isa, s->coder.bytes,
-                                      pass->channels, shaded);
+                                      pass->channels, shaded, s->key.faded);
     pass->tile = snow_ray_tile_of(settings->isa, pass->channels);
     pass->windows = snow_window_fns_of(settings->isa);
     return SNOW_OK;

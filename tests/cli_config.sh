@@ -11,6 +11,7 @@ run 0 "a picture with many wishes is saved" "$TOOL" render \
     -s 130x110 --background '#102030' --bits 16 --threshold 2.5 \
     --kernel gauss --footprint 5 --preset linear -c inferno \
     --opacity 0.1:0,0.5:0.05,0.5:0.2,1:1 --range 0.1,0.9 --opacity-unit mm \
+    --gradient-opacity 0:0.1,0.2:0.7,0.2:0.8,1.25:1 \
     --light 20,-10 --ambient 0.31 --diffuse 0.6 --specular 0.1 --shininess 7 \
     --view iso --azimuth 33.3 --elevation -12 --roll 5 --zoom 1.1 \
     --perspective 25 --quality high --isa scalar -j 1 --crop 3:39,2:,:40 \
@@ -61,6 +62,18 @@ run 0 "a window in a file" render phantom:cube --config w.json -o o.png
 run 0 "a range on the command line" render phantom:cube --config w.json \
     -o p.png --range 75,125
 check "which is the same" cmp -s o.png p.png
+
+# --- places of the camera -----------------------------------------------------
+run 0 "a place, a target and an up" render phantom:shells --dims 24x20x22 \
+    -o pa.png -s 60x50 --position 500,-300.5,400 --target 10,8,12 --up 0,1,0.25 \
+    --perspective 20 --save-config p.json
+run 0 "are kept" render --config p.json -o pb.png
+check "and give the same picture" cmp -s pa.png pb.png
+run 0 "a view on the command line" render --config p.json --view left -o pc.png
+run 0 "takes the place's place" render phantom:shells --dims 24x20x22 \
+    -o pd.png -s 60x50 --view left --target 10,8,12 --up 0,1,0.25 \
+    --perspective 20
+check "with target and up" cmp -s pc.png pd.png
 
 # --- refused ------------------------------------------------------------------
 refused 3 "a file that is not there" 'none.json: cannot be opened' \

@@ -29,7 +29,7 @@ phantom snowman -o x.nrrd|snowman
 phantom cube -o x.txt|x.txt
 turntable -o y.mp4|give snowglass turntable INPUT -o OUT
 turntable x y -o y.mp4|one word too many for turntable
-convert a b|convert is not built yet
+convert a b|one word too many for convert
 tf list|tf is not built yet
 serve x|serve is not built yet
 help serve|serve is not built yet
@@ -40,15 +40,11 @@ help serve|serve is not built yet
 --perspective x y -o y.png|one word too many
 --persp x -o y.png|did you mean --perspective
 info --perspective x|no option of info
---position 1,2,3 x|--position is not built yet
---target 1,2,3 x|--target is not built yet
---up 1,2,3 x|--up is not built yet
 --depth d.npy x|--depth is not built yet
 --iso 3 x|--iso is not built yet
 --memory 1G x|--memory is not built yet
 --tf f x|--tf is not built yet
 --log x|--log is not built yet
---legend x|--legend is not built yet
 --labels 1 x|--labels is not built yet
 --mask m x|--mask is not built yet
 --azim 10 x|--azim: unknown option; did you mean --azimuth
@@ -101,12 +97,18 @@ turntable --depth d.npy x -o y.mp4|--depth: no option of turntable
 --azimuth 0x10 x|is not a finite number
 --azimuth 3deg x|is not a finite number
 --azimuth '' x|is not a finite number
+--position 1,2 x|is no place
+--target 1,2,nan x|is no place
+--up up x|is no place
 --zoom 0 x|out of range
 --zoom -2 x|out of range
 --opacity 80 x|VALUE:OPACITY
 --opacity 80:2 x|VALUE:OPACITY
 --opacity 80:0.1,70:0.2 x|VALUE:OPACITY
 --opacity 80:0.1, x|VALUE:OPACITY
+--gradient-opacity 80 x|MAGNITUDE:FACTOR
+--gradient-opacity 0:0,20:2 x|MAGNITUDE:FACTOR
+--gradient-opacity 9:0,8:1 x|MAGNITUDE:FACTOR
 --range 3,2 x|is no range
 --range 3,nan x|is no range
 --range p99,p1 x|is no range

@@ -4,15 +4,6 @@
 . "$(dirname "$0")/support_mpi.sh"
 LIMIT=60
 
-# Whether a process is the tool as rank 2, started by this test.
-is_victim() {
-    [ "$(cat "/proc/$1/comm" 2>/dev/null)" = snowglass-mpi ] &&
-        tr '\0' '\n' <"/proc/$1/environ" 2>/dev/null |
-        grep -qx "PWD=$WORK" &&
-        tr '\0' '\n' <"/proc/$1/environ" 2>/dev/null |
-        grep -Eqx '(OMPI_COMM_WORLD_RANK|PMI_RANK)=2'
-}
-
 # killed NAME WHEN COMMAND...: kills rank 2 once WHEN is true, and looks how
 # long the others go on.
 killed() {
@@ -24,9 +15,7 @@ killed() {
         sleep 0.1
         tries=$((tries + 1))
         eval "$when" || continue
-        for process in /proc/[0-9]*; do
-            is_victim "${process#/proc/}" && victim=${process#/proc/}
-        done
+        victim=$(process_of_rank 2)
     done
     check "$name: there is a rank 2" [ -n "$victim" ]
     [ -n "$victim" ] && kill -KILL "$victim"

@@ -17,18 +17,30 @@ void model_close(model_stage *stage) {
     snow_context_free(stage->context);
 }
 
+snow_transfer *model_transfer(snow_context *context,
+                              const reference_scene *scene) {
+    snow_transfer *transfer = NULL;
+    snow_status status =
+        snow_transfer_new(context, scene->colors, scene->color_count,
+                          scene->opacities, scene->opacity_count, &transfer);
+    if (status == SNOW_OK)
+        status = snow_transfer_set_gradient_opacity(transfer, scene->gradients,
+                                                    scene->gradient_count);
+    if (status == SNOW_OK && scene->log)
+        status = snow_transfer_set_log(transfer);
+    if (status != SNOW_OK)
+        fail_msg("%s: %s", model_words(scene), snow_context_message(context));
+    return transfer;
+}
+
 snow_image *model_image(const model_stage *stage,
                         const reference_scene *scene) {
     snow_volume *volume = NULL;
-    snow_transfer *transfer = NULL;
-    snow_image *image = NULL;
     snow_context *context = stage->context;
+    snow_transfer *transfer = model_transfer(context, scene);
+    snow_image *image = NULL;
     snow_status status =
         snow_volume_share(context, &scene->info, scene->voxels, &volume);
-    if (status == SNOW_OK)
-        status = snow_transfer_new(context, scene->colors, scene->color_count,
-                                   scene->opacities, scene->opacity_count,
-                                   &transfer);
     if (status == SNOW_OK)
         status = snow_frame_render(stage->frame, volume, transfer, &scene->view,
                                    &scene->settings, &image);

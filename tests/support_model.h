@@ -42,6 +42,10 @@ typedef enum model_matrix {
 reference_scene model_scene(const int64_t dims[3], snow_type type, bool grey,
                             model_matrix matrix, uint64_t seed);
 
+/* Gives a scene from model_scene a gradient opacity that takes away some of its
+ * voxels, and with a step. */
+void model_fade(reference_scene *scene);
+
 /* A scene of float32 voxels that the caller fills; opacity 0 below data value
  * 0.5 and `opacity` from there, white. */
 reference_scene model_blank(const int64_t dims[3], double opacity);
@@ -71,6 +75,10 @@ typedef struct model_stand {
 
 void model_stand_at(reference_scene *scene, const model_stand *stand,
                     double zoom);
+
+/* The scene's transfer function; the test fails unless it can be made. */
+snow_transfer *model_transfer(snow_context *context,
+                              const reference_scene *scene);
 
 /* The scene by snow_frame_render; the test fails unless that succeeds. */
 snow_image *model_image(const model_stage *stage, const reference_scene *scene);

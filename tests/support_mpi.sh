@@ -28,6 +28,21 @@ launch() {
     timeout -k 5 "${LIMIT:-120}" "$MPIEXEC" -n "$ranks" "$@"
 }
 
+# process_of_rank N: of the tool, in a job that this test has started; nothing
+# where there is none yet.
+process_of_rank() {
+    local process name
+    for process in /proc/[0-9]*; do
+        read -r name 2>/dev/null <"$process/comm" &&
+            [ "$name" = snowglass-mpi ] &&
+            tr '\0' '\n' 2>/dev/null <"$process/environ" |
+            grep -qx "PWD=$WORK" &&
+            tr '\0' '\n' 2>/dev/null <"$process/environ" |
+            grep -Eqx "(OMPI_COMM_WORLD_RANK|PMI_RANK)=$1" &&
+            echo "${process#/proc/}" && return
+    done
+}
+
 # How many ranks are tried: MPICH waits busily, and many ranks on few
 # processors take long.
 if is_open_mpi; then

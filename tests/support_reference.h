@@ -20,6 +20,9 @@ typedef struct reference_scene {
     size_t color_count;
     const snow_opacity_point *opacities;
     size_t opacity_count;
+    bool log; /* points are joined by the logarithms of values */
+    const snow_opacity_point *gradients; /* the gradient opacity */
+    size_t gradient_count;               /* 0: none */
     snow_view view;
     snow_settings settings; /* method and encoding do not matter here */
 } reference_scene;
@@ -28,8 +31,8 @@ typedef struct reference_scene {
  * world, where `back` points from the target to the camera. */
 typedef struct reference_camera {
     double right[3], up[3], back[3];
-    double target[3]; /* middle of the voxel boxes */
-    double radius;    /* from the target to the farthest corner of a box */
+    double target[3]; /* middle of the voxel boxes, or what is looked at */
+    double radius;    /* from their middle to the farthest corner of a box */
     double distance;  /* of the eye from the target; 0: parallel */
     double pitch;     /* world length of a pixel's side, at the target */
 } reference_camera;
@@ -88,6 +91,12 @@ double reference_native(const reference_scene *scene, int64_t i, int64_t j,
 void reference_classify(const reference_scene *scene, double value,
                         double rgba[4]);
 
+/* The gradient at a voxel in index space, of native values; and the gradient
+ * opacity where it is such a one. */
+void reference_gradient(const reference_scene *scene, const int64_t at[3],
+                        double gradient[3]);
+double reference_fade(const reference_scene *scene, const double gradient[3]);
+
 /* Phong's model at a point whose gradient in index space is `gradient`. */
 void reference_shade(const reference_scene *scene,
                      const reference_camera *camera, const double gradient[3],
@@ -95,11 +104,6 @@ void reference_shade(const reference_scene *scene,
 
 /* The samples that are splatted: (shaded c a', a') of every voxel, four
  * doubles each, zeros for uninteresting ones.  Free with free(). */
-/* Central differences of native values in index space; one-sided beside what is
- * not finite or outside. */
-void reference_gradient(const reference_scene *scene, int64_t i, int64_t j,
-                        int64_t k, double gradient[3]);
-
 double reference_opacity_length(const reference_scene *scene);
 double *reference_samples(const reference_scene *scene,
                           const reference_camera *camera, int axis);

@@ -49,17 +49,49 @@ static void measure_boxes(const snow_volume_info *info,
     }
 }
 
+/* The direction from what is looked at to where the camera stands; its length
+ * is returned. */
+static double place_back(const snow_view *view, reference_camera *out) {
+    double step[3];
+    for (int n = 0; n < 3; n++)
+        step[n] = view->position[n] - out->target[n];
+    double length = sqrt(dot(step, step));
+    for (int n = 0; n < 3; n++)
+        out->back[n] = step[n] / length;
+    return length;
+}
+
+/* Right is across the direction that is meant to be up and the line of sight,
+ * up then across these. */
+static void place_up(const double upward[3], reference_camera *out) {
+    cross(upward, out->back, out->right);
+    double length = sqrt(dot(out->right, out->right));
+    for (int n = 0; n < 3; n++)
+        out->right[n] /= length;
+    cross(out->back, out->right, out->up);
+}
+
 void reference_camera_of(const reference_scene *scene, reference_camera *out) {
     const snow_view *view = &scene->view;
+    double length = 0;
+    measure_boxes(&scene->info, out); /* the radius is the boxes' always */
     for (int n = 0; n < 3; n++) {
         out->back[n] = view->back[n];
         out->up[n] = view->up[n];
+        if (view->has_target)
+            out->target[n] = view->target[n];
     }
+    if (view->has_position)
+        length = place_back(view, out);
+    bool along_z = hypot(out->back[0], out->back[1]) < 1e-6;
     cross(out->up, out->back, out->right);
+    if (view->has_up)
+        place_up(view->upward, out);
+    else if (view->has_position)
+        place_up(along_z ? (double[]){0, 1, 0} : (double[]){0, 0, 1}, out);
     turn(out->back, out->right, view->azimuth);
     turn(out->back, out->up, view->elevation);
     turn(out->up, out->right, view->roll);
-    measure_boxes(&scene->info, out);
     int side = view->width < view->height ? view->width : view->height;
     out->pitch = 2 * out->radius / (view->zoom * side);
     out->distance = 0;
@@ -67,7 +99,7 @@ void reference_camera_of(const reference_scene *scene, reference_camera *out) {
         return;
     /* The field of view spans the shorter side at the target's distance. */
     double half = view->fov / 2 * acos(-1.0) / 180;
-    out->distance = out->radius / sin(half);
+    out->distance = length > 0 ? length : out->radius / sin(half);
     out->pitch = 2 * out->distance * tan(half) / (view->zoom * side);
 }
 

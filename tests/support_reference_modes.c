@@ -113,7 +113,7 @@ static void gradient_of(const reference_gather *g, const reference_ray *ray,
             at[g->v_axis] = j;
             if (!isfinite(value_at(g->scene, at)) || weight == 0)
                 continue;
-            reference_gradient(g->scene, at[0], at[1], at[2], here);
+            reference_gradient(g->scene, at, here);
             sum += weight;
             for (int n = 0; n < 3; n++)
                 gradient[n] += weight * here[n];

@@ -25,7 +25,11 @@ double reference_native(const reference_scene *scene, int64_t i, int64_t j,
     return (double)NAN;
 }
 
-static double between(double x0, double y0, double x1, double y1, double x) {
+static double between(bool log, double x0, double y0, double x1, double y1,
+                      double x) {
+    if (log)
+        return y0 +
+               (y1 - y0) * (log10(x) - log10(x0)) / (log10(x1) - log10(x0));
     return y0 + (y1 - y0) * ((x - x0) / (x1 - x0));
 }
 
@@ -39,34 +43,38 @@ static void color_at(const reference_scene *scene, double value,
     const snow_color_point *a = next > 0 ? &p[next - 1] : b;
     bool inner = a->value < b->value;
     rgb[0] =
-        inner ? between(a->value, a->red, b->value, b->red, value) : a->red;
-    rgb[1] = inner ? between(a->value, a->green, b->value, b->green, value)
+        inner ? between(scene->log, a->value, a->red, b->value, b->red, value)
+              : a->red;
+    rgb[1] = inner ? between(scene->log, a->value, a->green, b->value, b->green,
+                             value)
                    : a->green;
     rgb[2] =
-        inner ? between(a->value, a->blue, b->value, b->blue, value) : a->blue;
+        inner ? between(scene->log, a->value, a->blue, b->value, b->blue, value)
+              : a->blue;
 }
 
-static double opacity_at(const reference_scene *scene, double value) {
-    const snow_opacity_point *p = scene->opacities;
-    size_t count = scene->opacity_count, next = 0;
+static double opacity_of(const snow_opacity_point *p, size_t count, bool log,
+                         double value) {
+    size_t next = 0;
     while (next < count && p[next].value <= value)
         next++;
     if (next == 0)
         return p[0].opacity;
     if (next == count)
         return p[count - 1].opacity;
-    return between(p[next - 1].value, p[next - 1].opacity, p[next].value,
+    return between(log, p[next - 1].value, p[next - 1].opacity, p[next].value,
                    p[next].opacity, value);
 }
 
 void reference_classify(const reference_scene *scene, double value,
                         double rgba[4]) {
-    if (isnan(value)) {
+    if (isnan(value) || (scene->log && value <= 0)) {
         rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
         return;
     }
     color_at(scene, value, rgba);
-    rgba[3] = opacity_at(scene, value);
+    rgba[3] =
+        opacity_of(scene->opacities, scene->opacity_count, scene->log, value);
 }
 
 /* Half the difference of both neighbours, or the difference to the one that is
@@ -81,8 +89,9 @@ static double difference(double before, double here, double after) {
     return isfinite(before) ? here - before : 0;
 }
 
-void reference_gradient(const reference_scene *scene, int64_t i, int64_t j,
-                        int64_t k, double gradient[3]) {
+void reference_gradient(const reference_scene *scene, const int64_t at[3],
+                        double gradient[3]) {
+    int64_t i = at[0], j = at[1], k = at[2];
     double here = reference_native(scene, i, j, k);
     gradient[0] = difference(reference_native(scene, i - 1, j, k), here,
                              reference_native(scene, i + 1, j, k));
@@ -103,6 +112,25 @@ static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* By the transpose of the inverse. */
+static void to_world(const reference_scene *scene, const double gradient[3],
+                     double world[3]) {
+    double inverse[3][3];
+    reference_inverse(scene->info.matrix, inverse);
+    for (int c = 0; c < 3; c++)
+        world[c] = inverse[0][c] * gradient[0] + inverse[1][c] * gradient[1] +
+                   inverse[2][c] * gradient[2];
+}
+
+double reference_fade(const reference_scene *scene, const double gradient[3]) {
+    double world[3];
+    if (!scene->gradient_count)
+        return 1;
+    to_world(scene, gradient, world);
+    return opacity_of(scene->gradients, scene->gradient_count, false,
+                      fabs(scene->info.slope) * sqrt(dot(world, world)));
+}
+
 /* The direction to the light: from the camera's back to its right, then up. */
 static void light_of(const snow_settings *settings,
                      const reference_camera *camera, double light[3]) {
@@ -119,11 +147,8 @@ void reference_shade(const reference_scene *scene,
                      const reference_camera *camera, const double gradient[3],
                      double rgb[3]) {
     const snow_settings *s = &scene->settings;
-    double inverse[3][3], n[3], light[3], half[3];
-    reference_inverse(scene->info.matrix, inverse);
-    for (int c = 0; c < 3; c++) /* by the transpose of the inverse */
-        n[c] = inverse[0][c] * gradient[0] + inverse[1][c] * gradient[1] +
-               inverse[2][c] * gradient[2];
+    double n[3], light[3], half[3];
+    to_world(scene, gradient, n);
     double length = normalise(n);
     bool flat = !(length > 0);
     double turned = dot(n, camera->back) < 0 ? -1 : 1;
@@ -176,12 +201,12 @@ double *reference_samples(const reference_scene *scene,
                                            reference_native(scene, i, j, k) +
                                        scene->info.intercept,
                                    rgba);
+                reference_gradient(scene, (int64_t[]){i, j, k}, gradient);
+                rgba[3] *= reference_fade(scene, gradient);
                 if (!interesting(rgba[3], scene->settings.threshold))
                     continue;
-                if (scene->settings.shade == SNOW_SHADE_PHONG) {
-                    reference_gradient(scene, i, j, k, gradient);
+                if (scene->settings.shade == SNOW_SHADE_PHONG)
                     reference_shade(scene, camera, gradient, rgba);
-                }
                 double index[3] = {(double)i, (double)j, (double)k};
                 double step = reference_slice_step(scene, camera, axis, index);
                 sample[3] = 1 - pow(1 - rgba[3], step / length);

@@ -41,6 +41,8 @@ static const snow_color_point colored[] = {{20, 0.9, 0.3, 0.1},
 static const snow_color_point greys[] = {{10, 0.1, 0.1, 0.1},
                                          {90, 0.95, 0.95, 0.95}};
 static const snow_color_point white[] = {{0, 1, 1, 1}};
+static const snow_opacity_point steep[] = {
+    {3, 0}, {9, 0.5}, {9, 0.8}, {14, 0.3}, {30, 1}};
 static const snow_opacity_point ramp[] = {
     {40, 0}, {60, 0.12}, {60, 0.3}, {85, 0.05}, {99, 0.8}};
 
@@ -163,6 +165,11 @@ reference_scene model_scene(const int64_t dims[3], snow_type type, bool grey,
     scene.opacities = ramp;
     scene.opacity_count = sizeof ramp / sizeof *ramp;
     return scene;
+}
+
+void model_fade(reference_scene *scene) {
+    scene->gradients = steep;
+    scene->gradient_count = sizeof steep / sizeof *steep;
 }
 
 reference_scene model_blank(const int64_t dims[3], double opacity) {

@@ -269,6 +269,10 @@ static double coded(const reference_scene *scene, double value) {
         return value; /* constant there */
     double parts = floor(65534.0 / (double)(count - 1));
     double a = stops[above - 1], b = stops[above];
+    if (scene->log) {
+        double steps = floor(log10(value / a) / log10(b / a) * parts);
+        return a * pow(b / a, (fmin(steps, parts - 1) + 0.5) / parts);
+    }
     double place = fmin(floor((value - a) / (b - a) * parts), parts - 1);
     return a + (b - a) * (place + 0.5) / parts;
 }
@@ -289,15 +293,18 @@ static void make_sample(const sheared_job *job, double exponent, int64_t sheet,
     const reference_scene *scene = job->scene;
     double value = scene->info.slope * native_of_sheet(job, sheet, u, v) +
                    scene->info.intercept;
-    double rgba[4], threshold = scene->settings.threshold;
+    double rgba[4], gradient[3], threshold = scene->settings.threshold;
+    gradient_of_sheet(job, sheet, u, v, gradient);
+    double fade = reference_fade(scene, gradient);
     reference_classify(scene, value, rgba);
+    rgba[3] *= fade;
     if (!(rgba[3] > 0) || (threshold > 0 && 255 * rgba[3] <= threshold + 1e-4))
         return;
-    if (snow_type_size(scene->info.type) > 2 && !job->options->exact_values)
+    if (snow_type_size(scene->info.type) > 2 && !job->options->exact_values) {
         reference_classify(scene, coded(scene, value), rgba);
+        rgba[3] *= fade;
+    }
     if (scene->settings.shade == SNOW_SHADE_PHONG) {
-        double gradient[3];
-        gradient_of_sheet(job, sheet, u, v, gradient);
         if (!job->options->exact_normals)
             quantise(job, gradient);
         reference_shade(scene, &job->camera, gradient, rgba);

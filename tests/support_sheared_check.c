@@ -22,10 +22,7 @@ float *sheared_picture(const model_stage *stage, const reference_scene *scene,
     assert_int_equal(
         snow_volume_share(stage->context, &scene->info, scene->voxels, &volume),
         SNOW_OK);
-    assert_int_equal(snow_transfer_new(stage->context, scene->colors,
-                                       scene->color_count, scene->opacities,
-                                       scene->opacity_count, &transfer),
-                     SNOW_OK);
+    transfer = model_transfer(stage->context, scene);
     assert_int_equal(snow_frame_render_slab(stage->frame, volume, transfer,
                                             &scene->view, &scene->settings,
                                             parts, part, &image),

@@ -234,6 +234,102 @@ static void steep_tiny_and_huge_stretches_are_exact_too(void **state) {
     check_wide(SNOW_FLOAT32, 1, 0, black, 1, nothing, 2);
 }
 
+/* Ramps, steps and gaps over many decades. */
+static const snow_opacity_point decades[] = {
+    {1e-3, 0}, {0.5, 0.4}, {0.5, 0}, {3, 0},      {10, 0.9},
+    {1e4, 0},  {1e5, 0},   {1e5, 1}, {1e5, 0.02}, {1e9, 0.06}};
+#define DECADES (sizeof decades / sizeof *decades)
+
+/* Values of which each decade has as many. */
+static void check_wide_log(snow_type type, double slope, double intercept,
+                           double threshold) {
+    const snow_color_point colors[] = {{0.01, 0, 1, 0.5}, {1e8, 1, 0, 0.5}};
+    scene s = scene_of(type, slope, intercept, colors, 2, decades, DECADES);
+    assert_int_equal(snow_transfer_set_log(s.transfer), SNOW_OK);
+    snow_coder coder = coder_of(&s, threshold);
+    double bound = 0.5 * (double)(2 + DECADES) / 65000;
+    uint64_t seed = 5;
+    check_wide_codes(&coder);
+    for (int n = 0; n < 40000; n++) {
+        double data = pow(10, 14 * support_uniform(&seed) - 4);
+        check_wide_value(&s, &coder, threshold, (data - intercept) / slope,
+                         bound);
+        check_wide_value(&s, &coder, threshold, (-data - intercept) / slope,
+                         bound);
+    }
+    for (size_t n = 0; n < DECADES; n++) {
+        double native = (decades[n].value - intercept) / slope;
+        double beside[] = {native, nextafter(native, INFINITY),
+                           nextafter(native, -INFINITY), -native};
+        for (int i = 0; i < 4; i++)
+            check_wide_value(&s, &coder, threshold, beside[i], bound);
+    }
+    const double odd[] = {0, -0.0, INFINITY, -INFINITY, NAN, 0x1p-1074};
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
+        check_wide_value(&s, &coder, threshold, odd[i], bound);
+    snow_coder_fini(s.context, &coder);
+    scene_end(&s);
+}
+
+static void
+codes_of_logarithmic_scales_are_as_fine_in_each_decade(void **state) {
+    (void)state;
+    for (int t = 0; t < 2; t++) {
+        check_wide_log(SNOW_FLOAT64, 1, 0, t * 12.75);
+        check_wide_log(SNOW_FLOAT64, -0.5, 3, t * 12.75);
+        check_wide_log(SNOW_FLOAT32, 1, 0, t * 12.75);
+    }
+}
+
+/* What is not above 0 is no voxel, wherever the first point's opacity lies. */
+static void on_a_logarithmic_scale_0_and_below_is_empty(void **state) {
+    (void)state;
+    const snow_opacity_point points[] = {{1, 0.5}, {100, 0.7}};
+    const snow_color_point colors[] = {{1, 1, 1, 1}};
+    for (snow_type type = SNOW_INT8; type <= SNOW_UINT16; type++) {
+        scene s = scene_of(type, 1, -3, colors, 1, points, 2);
+        assert_int_equal(snow_transfer_set_log(s.transfer), SNOW_OK);
+        snow_coder coder = coder_of(&s, 0);
+        assert_int_equal(coder.run_count, 1);
+        assert_int_equal(coder.runs[0].first + coder.lowest, 4);
+        assert_int_equal(coder.runs[0].last, coder.codes - 1);
+        double rgba[4];
+        snow_transfer_at(s.transfer, 10, rgba);
+        assert_true(fabs(rgba[3] - 0.6) < 1e-15);
+        snow_transfer_at(s.transfer, -1, rgba);
+        assert_true(rgba[0] == 0 && rgba[3] == 0);
+        snow_coder_fini(s.context, &coder);
+        scene_end(&s);
+    }
+}
+
+static void logarithms_never_fall(void **state) {
+    (void)state;
+    double last = -INFINITY, x = 0x1p-1074;
+    for (int n = 0; n < 200000; n++) {
+        double found = snow_log2_rising(x);
+        assert_true(found >= last);
+        if (isfinite(x))
+            assert_true(fabs(found - log2(x)) <= 1e-15 + 3e-16 * fabs(log2(x)));
+        last = found;
+        /* Neighbours, and now and then a leap: about powers of two too. */
+        x = n % 16 ? nextafter(x, INFINITY) : x * 1.09;
+        if (n % 997 == 0)
+            x = fmax(x, nextafter(exp2(floor(log2(x)) + 1), 0));
+        if (!(x < 1e300))
+            x = 1e300;
+    }
+    last = -1;
+    for (double m = 1 - 0x1p-40; m < 1 + 0x1p-40; m = nextafter(m, 2)) {
+        double found = snow_log2_rising(m);
+        assert_true(found >= last);
+        last = found;
+    }
+    assert_true(snow_log2_rising(INFINITY) == 1024);
+    for (double e = -1021; e < 1023; e += 0.37)
+        assert_true(fabs(snow_exp2(e) / exp2(e) - 1) < 1e-10);
+}
+
 static void hundreds_of_points_share_the_codes(void **state) {
     (void)state;
     snow_opacity_point points[700];
@@ -446,6 +542,10 @@ int main(void) {
         cmocka_unit_test(many_runs_are_told_by_the_table_alone),
         cmocka_unit_test(codes_of_wide_types_keep_to_their_stretch),
         cmocka_unit_test(steep_tiny_and_huge_stretches_are_exact_too),
+        cmocka_unit_test(
+            codes_of_logarithmic_scales_are_as_fine_in_each_decade),
+        cmocka_unit_test(on_a_logarithmic_scale_0_and_below_is_empty),
+        cmocka_unit_test(logarithms_never_fall),
         cmocka_unit_test(hundreds_of_points_share_the_codes),
         cmocka_unit_test(more_points_than_codes_still_have_codes),
         cmocka_unit_test(new_colours_keep_the_codes),

@@ -94,7 +94,7 @@ static void no_reader_is_lost_without_memory(void **state) {
         {"npy_volume", "a.npy"}, {"mrc", "a.mrc"},       {"vtk", "a.vtk"},
         {"vti", "a.vti"},        {"tiff", "a.tif"},      {"png_slice", "a.png"},
         {"hdf5", "a.h5"},        {"netcdf", "a.nc"},     {"nrrd", "a.nrrd"},
-        {"nifti", "a.nii"},      {"metaimage", "a.mha"},
+        {"nifti", "a.nii"},      {"metaimage", "a.mha"}, {"den", "a.den"},
     };
     for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++)
         check_corpus(subjects[i][0], subjects[i][1]);

@@ -443,8 +443,9 @@ static void make_samples(const sample_case *s, snow_isa isa, size_t window,
     snow_sample_job job = {
         s->held, s->count,  s->bits,    codes,
         normals, s->before, s->palette, s->shaded ? s->gloss : NULL,
-        room,    out,       window};
-    snow_sample_of(isa, s->code_bytes, s->channels, s->shaded)(&job);
+        room,    out,       window,     NULL,
+        0};
+    snow_sample_of(isa, s->code_bytes, s->channels, s->shaded, false)(&job);
 }
 
 static void check_row(const sample_case *s, int row, const float *samples,

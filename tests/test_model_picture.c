@@ -419,6 +419,34 @@ static void transfer_functions_of_any_shape(void **state) {
     model_close(&stage);
 }
 
+/* Values of 0 and below among them; int8 has a negative intercept here. */
+static void logarithmic_scales(void **state) {
+    (void)state;
+    static const snow_opacity_point points[] = {
+        {0.5, 0.1}, {4, 0}, {40, 0.3}, {40, 0}, {95, 0.8}};
+    static const snow_color_point colors[] = {
+        {1, 1, 0, 0}, {10, 0, 1, 0.5}, {100, 0, 0.3, 1}};
+    model_stage stage = model_open();
+    model_tally tally = {0};
+    for (size_t n = 0; n < 3 * COUNT(types); n++) {
+        reference_scene scene = model_scene(
+            dims, types[n / 3], false, (model_matrix)(n % MODEL_MATRICES), n);
+        scene.log = true;
+        scene.opacities = points;
+        scene.opacity_count = COUNT(points);
+        scene.colors = colors;
+        scene.color_count = COUNT(colors);
+        scene.info.intercept -= n % 3 == 2 ? 30 : 0;
+        scene.view.width = 24;
+        scene.view.height = 18;
+        stand_at(&scene, n, 1);
+        model_check(&stage, &scene, BOUND, &tally);
+        free((void *)(uintptr_t)scene.voxels);
+    }
+    model_report(&tally);
+    model_close(&stage);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kernel_and_footprint_from_every_side),
@@ -434,6 +462,7 @@ int main(void) {
         cmocka_unit_test(slices_that_are_shifted_a_little),
         cmocka_unit_test(values_of_any_magnitude_are_shaded_alike),
         cmocka_unit_test(transfer_functions_of_any_shape),
+        cmocka_unit_test(logarithmic_scales),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

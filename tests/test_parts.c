@@ -98,8 +98,8 @@ static void ghosts(const snow_view *view, const snow_settings *settings,
     whole.dims[1] = 80;
     whole.dims[2] = 60;
     whole.type = SNOW_UINT8;
-    if (snow_ghosts_needed(context, &whole, view, settings, any_turn, layers) !=
-        SNOW_OK)
+    if (snow_ghosts_needed(context, &whole, view, settings, false, any_turn,
+                           layers) != SNOW_OK)
         fail_msg("%s", snow_context_message(context));
     snow_context_free(context);
 }
@@ -139,6 +139,35 @@ static void kernels_and_gradients_need_ghosts(void **state) {
     view.azimuth = 45;
     ghosts(&view, &settings, false, layers);
     assert_layers(layers, 2, 2, 2);
+    snow_context_free(context);
+}
+
+static void a_gradient_opacity_needs_those_of_shading(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume_info whole = snow_volume_info_default("memory");
+    whole.dims[0] = whole.dims[1] = whole.dims[2] = 60;
+    whole.type = SNOW_UINT8;
+    for (int n = 0; n < 12; n++) {
+        snow_settings settings;
+        snow_view view;
+        int64_t shaded[3], faded[3], both[3];
+        snow_settings_init(&settings);
+        settings.quality = (snow_quality)(n % 3);
+        assert_int_equal(snow_view_named(context, n % 2 ? "iso" : "-y", &view),
+                         SNOW_OK);
+        bool any_turn = n / 6;
+        snow_ghosts_needed(context, &whole, &view, &settings, false, any_turn,
+                           shaded);
+        snow_ghosts_needed(context, &whole, &view, &settings, true, any_turn,
+                           both);
+        settings.shade = SNOW_SHADE_NONE;
+        snow_ghosts_needed(context, &whole, &view, &settings, true, any_turn,
+                           faded);
+        assert_memory_equal(faded, shaded, sizeof faded);
+        assert_memory_equal(both, shaded, sizeof both);
+        assert_true(faded[0] > 0 && faded[1] > 0 && faded[2] > 0);
+    }
     snow_context_free(context);
 }
 
@@ -224,10 +253,7 @@ static void open_whole(stage *s) {
     assert_int_equal(
         snow_volume_share(s->context, &scene->info, scene->voxels, &s->whole),
         SNOW_OK);
-    assert_int_equal(snow_transfer_new(s->context, scene->colors,
-                                       scene->color_count, scene->opacities,
-                                       scene->opacity_count, &s->transfer),
-                     SNOW_OK);
+    s->transfer = model_transfer(s->context, scene);
     s->settings = scene->settings;
     assert_int_equal(
         snow_settings_resolve(s->context, &s->whole->info, &s->settings),
@@ -276,7 +302,8 @@ static void open_part(stage *s, int n, const int64_t layers[3]) {
 static void open_parts(stage *s) {
     int64_t layers[3];
     if (snow_ghosts_needed(s->context, &s->whole->info, &s->scene.view,
-                           &s->scene.settings, false, layers) != SNOW_OK)
+                           &s->scene.settings, s->scene.gradient_count > 0,
+                           false, layers) != SNOW_OK)
         fail_msg("%s", snow_context_message(s->context));
     for (int n = 0; n < s->count; n++)
         open_part(s, n, layers);
@@ -479,6 +506,8 @@ static reference_scene scene_of(int n, double fov) {
         (model_matrix)(n % MODEL_MATRICES), (uint64_t)(n + 1));
     const double *turn = turns[n % TURNS];
     model_turn(&scene, turn[0], turn[1], turn[2], zooms[n % 5]);
+    if (n / 6 % 2)
+        model_fade(&scene);
     scene.view.fov = fov;
     scene.settings.method = SNOW_METHOD_SHEARED;
     scene.settings.quality = (snow_quality)(n / 2 % 3);
@@ -802,6 +831,7 @@ int main(void) {
         cmocka_unit_test(a_part_knows_its_place_in_the_whole),
         cmocka_unit_test(boxes_that_do_not_lie_in_one_another_are_refused),
         cmocka_unit_test(kernels_and_gradients_need_ghosts),
+        cmocka_unit_test(a_gradient_opacity_needs_those_of_shading),
         cmocka_unit_test(wide_pixels_need_more_ghosts),
         cmocka_unit_test(every_turn_needs_no_more_than_the_bound),
         cmocka_unit_test(parts_make_up_the_intermediate_image),

@@ -110,7 +110,8 @@ static snow_status open_part(snow_context *context, const play *p,
     snow_part part = {{0}, {0}, {0}, {0}};
     bool none = !snow_box_voxels(box);
     SNOW_TRY(snow_ghosts_needed(context, &p->info, &p->view, &p->settings,
-                                false, layers));
+                                p->transfer->gradient_count > 0, false,
+                                layers));
     for (int axis = 0; axis < 3; axis++) {
         int64_t low = none ? 0 : box->first[axis] - layers[axis];
         int64_t high =
@@ -143,8 +144,10 @@ static snow_status open_part(snow_context *context, const play *p,
 
 static snow_status copy_transfer(snow_context *context, const snow_transfer *t,
                                  snow_transfer **out) {
-    return snow_transfer_new(context, t->colors, t->color_count, t->opacities,
-                             t->opacity_count, out);
+    SNOW_TRY(snow_transfer_new(context, t->colors, t->color_count, t->opacities,
+                               t->opacity_count, out));
+    return snow_transfer_set_gradient_opacity(*out, t->gradients,
+                                              t->gradient_count);
 }
 
 /* What a rank does. */
@@ -313,6 +316,8 @@ static play play_of(int n, int64_t depth, reference_scene *scene) {
                          n % 3 ? SNOW_UINT8 : SNOW_INT16, n % 4 == 0,
                          (model_matrix)(n % MODEL_MATRICES), (uint64_t)n + 1);
     model_turn(scene, turn[0], turn[1], turn[2], zooms[n % 5]);
+    if (n / 6 % 2)
+        model_fade(scene);
     scene->settings.method = SNOW_METHOD_SHEARED;
     scene->settings.quality = (snow_quality)(n / 2 % 3);
     scene->settings.shade = n / 3 % 2 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
@@ -339,10 +344,7 @@ static void sweep(const char *title, int scenes, double fov,
         play p = play_of(n, 24, &scene);
         p.view.fov = fov;
         p.settings.method = methods[n % method_count];
-        assert_int_equal(snow_transfer_new(context, scene.colors,
-                                           scene.color_count, scene.opacities,
-                                           scene.opacity_count, &transfer),
-                         SNOW_OK);
+        transfer = model_transfer(context, &scene);
         p.transfer = transfer;
         float *serial = serial_picture(context, &p, &strongest);
         for (int i = 0; i < COUNTS; i++) {
@@ -485,10 +487,7 @@ static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
             p.settings.quality = SNOW_QUALITY_NORMAL;
         p.view.fov = n % 3 == 2 ? 40 : 0;
         p.settings.method = methods[n % 5];
-        assert_int_equal(snow_transfer_new(context, scene.colors,
-                                           scene.color_count, scene.opacities,
-                                           scene.opacity_count, &transfer),
-                         SNOW_OK);
+        transfer = model_transfer(context, &scene);
         p.transfer = transfer;
         float *usual = serial_picture(context, &p, &strongest);
         p.settings.deterministic = 1;
@@ -624,10 +623,7 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
                     .spoil = cases[n].spoil,
                     .wrong = cases[n].spoil ? 2 : -1,
                     .again = cases[n].again};
-        assert_int_equal(snow_transfer_new(context, scene.colors,
-                                           scene.color_count, scene.opacities,
-                                           scene.opacity_count, &transfer),
-                         SNOW_OK);
+        transfer = model_transfer(context, &scene);
         m.play.transfer = transfer;
         m.play.cut = cases[n].cut;
         m.play.settings.deterministic = cases[n].deterministic;
@@ -680,10 +676,7 @@ static void ranks_without_memory_fail_together(void **state) {
         p.settings.threads = 1;
         p.cut = GROUPED;
         p.how.pixel_bits = 8;
-        assert_int_equal(snow_transfer_new(maker, scene.colors,
-                                           scene.color_count, scene.opacities,
-                                           scene.opacity_count, &transfer),
-                         SNOW_OK);
+        transfer = model_transfer(maker, &scene);
         p.transfer = transfer;
         p.channels = transfer->grey ? 2 : 4;
         cut_up(maker, &p, 3);

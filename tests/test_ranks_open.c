@@ -23,6 +23,7 @@ typedef struct order {
     snow_volume_options options;
     snow_view view, turned;
     bool turn;
+    snow_look look; /* zeros: automatic */
     snow_settings settings;
     snow_ranks_options how;
     const snow_volume *whole;
@@ -92,8 +93,9 @@ static snow_status check_ghosts(snow_comm *comm, const order *o,
     snow_part part;
     int64_t layers[3];
     snow_volume_get_part(volume, &part);
-    SNOW_TRY(snow_ghosts_needed(snow_comm_context(comm), &o->whole->info, view,
-                                &o->settings, o->how.turns != 0, layers));
+    SNOW_TRY(snow_ghosts_needed(
+        snow_comm_context(comm), &o->whole->info, view, &o->settings,
+        o->look.gradient_opacities != NULL, o->how.turns != 0, layers));
     for (int i = 0; i < 3 && part.count[0] && part.count[1] && part.count[2];
          i++) {
         int64_t below = part.first[i] - layers[i];
@@ -141,8 +143,8 @@ static snow_status open_part(snow_comm *comm, void *user) {
     snow_volume *volume;
     snow_transfer *transfer;
     SNOW_TRY(snow_ranks_open(comm, rank == o->odd ? o->wrong : o->path,
-                             &o->options, NULL, &o->view, &o->settings, &o->how,
-                             &volume, &transfer));
+                             &o->options, &o->look, &o->view, &o->settings,
+                             &o->how, &volume, &transfer));
     o->read[rank] = snow_context_bytes_read(snow_comm_context(comm));
     snow_status status = check_transfer(comm, o, transfer);
     if (status == SNOW_OK)
@@ -351,6 +353,7 @@ static void the_file_is_read_once(void **state) {
 static void another_view_is_served_without_the_file(void **state) {
     support_place *place = *state;
     static const int ranks[] = {1, 4, 9, 33};
+    static const snow_opacity_point curve[] = {{5, 0}, {30, 1}};
     snow_volume *whole;
     const int64_t dims[3] = {40, 36, 30};
     assert_int_equal(
@@ -365,6 +368,11 @@ static void another_view_is_served_without_the_file(void **state) {
         o.settings.deterministic = n % 3 == 0;
         o.settings.method = n % 5 ? SNOW_METHOD_SHEARED : SNOW_METHOD_FOOTPRINT;
         o.turn = true;
+        if (n % 2) { /* gradients without shading */
+            o.settings.shade = SNOW_SHADE_NONE;
+            o.look.gradient_opacities = curve;
+            o.look.gradient_opacity_count = 2;
+        }
         assert_int_equal(snow_view_named(place->context, "+z", &o.view),
                          SNOW_OK);
         o.turned = o.view;

@@ -2,6 +2,7 @@
  * again. */
 #include "support.h"
 
+#include <math.h>
 #include <snowglass/recipe.h>
 
 /* Every key but window and level, none with its default. */
@@ -12,11 +13,14 @@ static const char all_keys[] =
     " \"method\": \"footprint\", \"kernel\": \"gauss\", \"footprint\": 5,"
     " \"preset\": \"ct-bone\", \"colormap\": \"viridis\","
     " \"opacity\": [[-10, 0], [0.25, 0.5], [90, 1]],"
+    " \"gradient-opacity\": [[0, 0.125], [30, 1]],"
     " \"range\": [\"p1\", \"p99.5\"], \"opacity-unit\": \"mm\","
     " \"shade\": \"none\", \"light\": [30, -40.5], \"ambient\": 0.1,"
     " \"diffuse\": 0.3, \"specular\": 0.4, \"shininess\": 7,"
     " \"quality\": \"high\", \"view\": \"iso\", \"azimuth\": 1,"
     " \"elevation\": -2, \"roll\": 3.25, \"zoom\": 1.5, \"perspective\": 40,"
+    " \"target\": [1, 2.5, -3], \"up\": [0, 0, 1],"
+    " \"no-labels\": true, \"legend\": true, \"time-label\": true,"
     " \"threads\": 3, \"deterministic\": true, \"isa\": \"scalar\","
     " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
     " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
@@ -61,6 +65,9 @@ static void every_key_reaches_its_field(void **state) {
     assert_string_equal(r.colormap, "viridis");
     assert_int_equal(r.opacity_count, 3);
     assert_true(r.opacities[1].value == 0.25 && r.opacities[1].opacity == 0.5);
+    assert_int_equal(r.gradient_opacity_count, 2);
+    assert_true(r.gradient_opacities[0].opacity == 0.125 &&
+                r.gradient_opacities[1].value == 30);
     assert_int_equal(r.range, SNOW_RANGE_PERCENTILES);
     assert_true(r.low == 1 && r.high == 99.5);
     assert_true(r.opacity_per_mm);
@@ -71,6 +78,8 @@ static void every_key_reaches_its_field(void **state) {
                 r.settings.specular == 0.4 && r.settings.shininess == 7);
     assert_int_equal(r.settings.quality, SNOW_QUALITY_HIGH);
     assert_string_equal(r.view, "iso");
+    assert_true(r.no_labels && r.legend && r.time_label);
+    assert_true(isnan(r.position[0]) && r.target[1] == 2.5 && r.up[2] == 1);
     assert_true(r.azimuth == 1 && r.elevation == -2 && r.roll == 3.25);
     assert_true(r.zoom == 1.5 && r.fov == 40);
     assert_int_equal(r.settings.threads, 3);
@@ -136,12 +145,14 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"colormap\": \"nothing\"}", "must be one of grey"},
         {"{\"size\": [640]}", "\"size\" must be [width, height]"},
         {"{\"size\": [640, 0]}", "\"size\" must be"},
+        {"{\"target\": [1, 2]}", "\"target\" must be an array of 3"},
         {"{\"zoom\": 0}", "\"zoom\" must be a number from"},
         {"{\"footprint\": 2.5}", "\"footprint\" must be a whole number"},
         {"{\"footprint\": 10}", "from 2 to 9"},
         {"{\"azimuth\": \"30\"}", "\"azimuth\" must be a number"},
         {"{\"opacity\": [[0, 0], [-1, 1]]}", "values that do not fall"},
         {"{\"opacity\": [[0, 1.5]]}", "opacities 0 to 1"},
+        {"{\"gradient-opacity\": [[0, 2]]}", "\"gradient-opacity\" must be"},
         {"{\"opacity\": []}", "\"opacity\" must be"},
         {"{\"range\": [2, 1]}", "\"range\" must be"},
         {"{\"range\": [\"p1\", 3]}", "\"range\" must be"},
@@ -188,9 +199,20 @@ static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
     assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
     assert_memory_equal(view.back, usual.back, sizeof view.back);
     assert_true(view.azimuth == 5 && view.width == 9 && view.height == 8);
+    assert_false(view.has_position || view.has_target || view.has_up);
     r.view = "iso";
     assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
     assert_memory_equal(view.back, named.back, sizeof view.back);
+    snow_recipe_clear(&r);
+    assert_int_equal(
+        parse(context, "{\"position\": [1, 2, -3.5], \"up\": [0, 1, 0]}", &r),
+        SNOW_OK);
+    assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
+    assert_true(view.has_position && !view.has_target && view.has_up);
+    assert_true(view.position[2] == -3.5 && view.upward[1] == 1);
+    r.view = "iso";
+    assert_int_equal(snow_recipe_view(context, &r, &usual, &view),
+                     SNOW_BAD_USAGE);
     snow_recipe_clear(&r);
     snow_context_free(context);
 }

@@ -232,6 +232,35 @@ static void transfer_functions_of_any_shape(void **state) {
     model_close(&stage);
 }
 
+static void logarithmic_scales(void **state) {
+    (void)state;
+    static const snow_opacity_point points[] = {
+        {0.5, 0.1}, {4, 0}, {40, 0.3}, {40, 0}, {95, 0.8}};
+    static const snow_color_point colors[] = {
+        {1, 1, 0, 0}, {10, 0, 1, 0.5}, {100, 0, 0.3, 1}};
+    model_stage stage = model_open();
+    uint64_t random = 8;
+    sheared_tally tally = {0};
+    for (size_t n = 0; n < 4 * COUNT(types); n++) {
+        reference_scene scene = model_scene(
+            dims, types[n / 4], false, (model_matrix)(n % MODEL_MATRICES), n);
+        make_plain(&scene, &random);
+        scene.log = true;
+        scene.opacities = points;
+        scene.opacity_count = COUNT(points);
+        scene.colors = colors;
+        scene.color_count = COUNT(colors);
+        scene.info.intercept -= n % 4 == 2 ? 30 : 0;
+        scene.view.width = 24;
+        scene.view.height = 18;
+        stand_at(&scene, n, 1);
+        sheared_check(&stage, &scene, NULL, SHEARED_BOUND, &tally);
+        free_voxels(&scene);
+    }
+    sheared_report("logarithmic scales", &tally);
+    model_close(&stage);
+}
+
 static void volumes_thin_along_some_axes(void **state) {
     (void)state;
     static const int64_t thin[][3] = {{1, 1, 1}, {9, 1, 1}, {1, 9, 1},
@@ -572,6 +601,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(every_type_matrix_and_threshold),
         cmocka_unit_test(codes_of_wide_types_are_close_to_their_values),
         cmocka_unit_test(transfer_functions_of_any_shape),
+        cmocka_unit_test(logarithmic_scales),
         cmocka_unit_test(volumes_thin_along_some_axes),
         cmocka_unit_test(rows_longer_than_words_bands_and_tiles),
         cmocka_unit_test(slabs_alone_equal_theirs),

@@ -51,12 +51,8 @@ static void close_studio(studio *s) {
 /* A picture by a frame, as it is; the caller frees it. */
 static snow_image *shoot_with(const studio *s, snow_frame *frame) {
     const reference_scene *scene = &s->scene;
-    snow_transfer *transfer = NULL;
+    snow_transfer *transfer = model_transfer(s->context, scene);
     snow_image *image = NULL;
-    assert_int_equal(snow_transfer_new(s->context, scene->colors,
-                                       scene->color_count, scene->opacities,
-                                       scene->opacity_count, &transfer),
-                     SNOW_OK);
     snow_status status = snow_frame_render(
         frame, s->volume, transfer, &scene->view, &scene->settings, &image);
     snow_transfer_free(transfer);
@@ -103,15 +99,18 @@ static const snow_type types[] = {SNOW_UINT8, SNOW_INT16, SNOW_FLOAT32};
 static const snow_quality qualities[] = {SNOW_QUALITY_NORMAL,
                                          SNOW_QUALITY_DRAFT, SNOW_QUALITY_HIGH};
 
-/* Scenes of all types, qualities, colours and shades, in turn. */
+/* Scenes of all types, qualities, colours, shades and then the same with a
+ * gradient opacity, in turn. */
 static studio numbered_studio(size_t n) {
     studio s = open_studio(types[n % COUNT(types)], n / 3 % 2, n);
     s.scene.settings.quality = qualities[n / 6 % COUNT(qualities)];
     s.scene.settings.shade = n / 18 % 2 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+    if (n / 36 % 2)
+        model_fade(&s.scene);
     return s;
 }
 
-#define STUDIOS 36
+#define STUDIOS 72
 
 static void any_number_of_threads_gives_the_same_bits(void **state) {
     (void)state;
@@ -242,6 +241,46 @@ static void an_encoding_is_used_until_it_does_not_fit(void **state) {
     }
 }
 
+/* A curve belongs to the encoding, and where a threshold has to be passed so
+ * does the opacity; colours do not. */
+static void an_encoding_has_its_gradient_opacity(void **state) {
+    (void)state;
+    static const snow_color_point blue[] = {
+        {20, 0, 0.2, 1}, {45, 0.1, 0.1, 1}, {45, 0.3, 0, 1}, {90, 1, 1, 1}};
+    static const snow_opacity_point gentle[] = {{3, 0}, {30, 1}};
+    static const snow_opacity_point strong[] = {
+        {40, 0}, {60, 0.3}, {60, 0.25}, {85, 0.2}, {99, 0.9}};
+    for (size_t n = 0; n < STUDIOS / 2; n++) {
+        studio s = numbered_studio(n);
+        reference_scene *scene = &s.scene;
+        expect_encoded(&s, 1);
+        model_fade(scene);
+        expect_encoded(&s, 1);
+        expect_encoded(&s, 0);
+        scene->colors = blue; /* at the same values: of greys another grid */
+        scene->color_count = COUNT(blue);
+        expect_encoded(&s, snow_type_size(types[n % 3]) > 2 && n / 3 % 2);
+        scene->opacities = strong;
+        expect_encoded(&s, 0);
+        model_turn(scene, 12, -20, 50, 2);
+        expect_encoded(&s, 0);
+        scene->gradients = gentle;
+        scene->gradient_count = COUNT(gentle);
+        expect_encoded(&s, 1);
+        scene->settings.threshold = 10;
+        expect_encoded(&s, 1);
+        expect_encoded(&s, 0);
+        static const snow_opacity_point other[] = {
+            {40, 0}, {60, 0.3}, {60, 0.25}, {85, 0.2}, {99, 0.8}};
+        scene->opacities = other; /* what passes by itself stays the same, */
+        expect_encoded(&s, 1);    /* but not what does under a factor */
+        scene->gradient_count = 0;
+        expect_encoded(&s, 1);
+        expect_encoded(&s, 0);
+        close_studio(&s);
+    }
+}
+
 /* Writes another value into every third voxel. */
 static void change_voxels(studio *s) {
     unsigned char *voxels = (void *)(uintptr_t)s->scene.voxels;
@@ -307,12 +346,8 @@ static void another_volume_is_encoded_anew(void **state) {
 static snow_image *shoot_slab(const studio *s, snow_frame *frame, int parts,
                               int part) {
     const reference_scene *scene = &s->scene;
-    snow_transfer *transfer = NULL;
+    snow_transfer *transfer = model_transfer(s->context, scene);
     snow_image *image = NULL;
-    assert_int_equal(snow_transfer_new(s->context, scene->colors,
-                                       scene->color_count, scene->opacities,
-                                       scene->opacity_count, &transfer),
-                     SNOW_OK);
     assert_int_equal(snow_frame_render_slab(frame, s->volume, transfer,
                                             &scene->view, &scene->settings,
                                             parts, part, &image),
@@ -381,10 +416,7 @@ static long allocations_when_warm(const reference_scene *scene) {
         snow_volume_share(context, &scene->info, scene->voxels, &volume),
         SNOW_OK);
     snow_volume_freeze(volume);
-    assert_int_equal(snow_transfer_new(context, scene->colors,
-                                       scene->color_count, scene->opacities,
-                                       scene->opacity_count, &transfer),
-                     SNOW_OK);
+    transfer = model_transfer(context, scene);
     uint64_t held[2] = {0};
     long before = 0;
     for (int n = 0; n < 2; n++) {
@@ -483,6 +515,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(all_encodings_give_the_same_bits),
         cmocka_unit_test(vector_levels_differ_as_stated),
         cmocka_unit_test(an_encoding_is_used_until_it_does_not_fit),
+        cmocka_unit_test(an_encoding_has_its_gradient_opacity),
         cmocka_unit_test(shared_voxels_may_change_until_they_are_frozen),
         cmocka_unit_test(another_volume_is_encoded_anew),
         cmocka_unit_test(slabs_are_encoded_each_for_itself),

@@ -41,15 +41,15 @@ static void opacities_of_rays_are_within_a_quarter_step(void **state) {
         if (!snow_isa_runs((snow_isa)isa))
             continue;
         snow_ray_sample_fn *sample =
-            snow_ray_sample_of((snow_isa)isa, 1, 4, false);
+            snow_ray_sample_of((snow_isa)isa, 1, 4, false, false);
         for (double base = 0.001; base < 300; base *= 1.37)
             for (int at = 0; at < CODES - 16; at += 16) {
                 /* The root of a square whose root is linear: base + x / 40. */
                 float square[3] = {(float)(base * base), (float)(base / 20),
                                    1.0f / 1600};
                 float samples[(16 + 16) * 4];
-                sample(codes + at, NULL, 0xFFFF, 16, palette + 4, NULL, square,
-                       samples);
+                sample(codes + at, NULL, NULL, 0xFFFF, 16, palette + 4, NULL,
+                       square, samples);
                 for (int x = 0; x < 16; x++) {
                     double a = (at + x) / 255.0;
                     double exact = 1 - pow(1 - a, base + x / 40.0);
@@ -71,8 +71,9 @@ static void voxels_that_are_not_there_leave_nothing(void **state) {
     float palette[2 * 2] = {0, 0, 1, -1}, square[3] = {1, 0, 0};
     unsigned char codes[128] = {0};
     float samples[(40 + 16) * 2];
-    snow_ray_sample_of(SNOW_ISA_SCALAR, 1, 2, false)(
-        codes, NULL, UINT64_C(1) << 7, 40, palette + 2, NULL, square, samples);
+    snow_ray_sample_of(SNOW_ISA_SCALAR, 1, 2, false,
+                       false)(codes, NULL, NULL, UINT64_C(1) << 7, 40,
+                              palette + 2, NULL, square, samples);
     for (int n = 0; n < 40; n++) {
         assert_true(fabsf(samples[2 * n] - (n == 7 ? 0.5f : 0)) < 1e-6f);
         assert_true(n == 7 || samples[2 * n + 1] == 0);
@@ -290,6 +291,8 @@ static void pictures_are_those_of_the_method_in_double(void **state) {
         reference_scene scene =
             model_scene(sizes[n % 3], types[n % 2], n / 2 % 2 == 0,
                         (model_matrix)(n % MODEL_MATRICES), n);
+        if (n / 2 % 3 == 1)
+            model_fade(&scene);
         stand_at(&scene, n, zooms[n / 7 % 4]);
         scene.view.fov = fovs[n / 3 % 4];
         scene.view.width = 40 + (int)(n % 5) * 9;

@@ -155,6 +155,106 @@ static void bad_points_are_refused(void **state) {
     snow_context_free(context);
 }
 
+/* --- gradient opacity ----------------------------------------------------- */
+
+static void a_gradient_opacity_is_a_curve_of_its_own(void **state) {
+    (void)state;
+    const snow_opacity_point points[] = {{0, 0.5}};
+    const snow_opacity_point curve[] = {{2, 0}, {4, 0.5}, {4, 0.75}, {9, 1}};
+    snow_context *context = support_context();
+    snow_transfer *transfer = opacities_only(context, points, 1);
+    assert_true(snow_transfer_gradient_opacity(transfer, 0) == 1);
+    assert_null(strstr(snow_transfer_text(transfer), "gradient"));
+    assert_int_equal(snow_transfer_set_gradient_opacity(transfer, curve, 4),
+                     SNOW_OK);
+    assert_true(snow_transfer_gradient_opacity(transfer, 0) == 0);
+    assert_true(near(snow_transfer_gradient_opacity(transfer, 3), 0.25));
+    assert_true(snow_transfer_gradient_opacity(transfer, 4) == 0.75);
+    assert_true(snow_transfer_gradient_opacity(transfer, INFINITY) == 1);
+    assert_true(snow_transfer_gradient_opacity(transfer, NAN) == 1);
+    assert_true(opacity_at(transfer, 3) == 0.5); /* that of the value alone */
+    assert_non_null(strstr(snow_transfer_text(transfer),
+                           "; gradient opacity 0 at 2, 0.5 at 4, 0.75 at 4, 1 "
+                           "at 9"));
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void a_gradient_opacity_is_taken_away_by_none_and_by_ones(void **state) {
+    (void)state;
+    const snow_opacity_point points[] = {{0, 0.5}};
+    const snow_opacity_point curve[] = {{2, 0}, {4, 1}};
+    const snow_opacity_point ones[] = {{0, 1}, {255, 1}};
+    snow_context *context = support_context();
+    snow_transfer *transfer = opacities_only(context, points, 1);
+    char before[SNOW_TRANSFER_TEXT_BYTES];
+    snprintf(before, sizeof before, "%s", snow_transfer_text(transfer));
+    for (size_t count = 0; count <= 2; count += 2) {
+        assert_int_equal(snow_transfer_set_gradient_opacity(transfer, curve, 2),
+                         SNOW_OK);
+        assert_int_equal(
+            snow_transfer_set_gradient_opacity(transfer, ones, count), SNOW_OK);
+        assert_true(snow_transfer_gradient_opacity(transfer, 2) == 1);
+        assert_int_equal(transfer->gradient_count, 0);
+        assert_string_equal(snow_transfer_text(transfer), before);
+    }
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void a_bad_gradient_opacity_changes_nothing(void **state) {
+    (void)state;
+    const snow_opacity_point points[] = {{0, 0.5}};
+    const snow_opacity_point curve[] = {{2, 0}, {4, 1}};
+    const snow_opacity_point falling[] = {{5, 0}, {4, 1}};
+    const snow_opacity_point beyond[] = {{5, 1.5}};
+    snow_context *context = support_context();
+    snow_transfer *transfer = opacities_only(context, points, 1);
+    assert_int_equal(snow_transfer_set_gradient_opacity(transfer, curve, 2),
+                     SNOW_OK);
+    assert_int_equal(snow_transfer_set_gradient_opacity(transfer, falling, 2),
+                     SNOW_BAD_USAGE);
+    assert_non_null(strstr(snow_context_message(context),
+                           "gradient opacity point 2 at 4 comes after 5"));
+    assert_int_equal(snow_transfer_set_gradient_opacity(transfer, beyond, 1),
+                     SNOW_BAD_USAGE);
+    assert_non_null(strstr(snow_context_message(context), "1.5"));
+    assert_true(near(snow_transfer_gradient_opacity(transfer, 3), 0.5));
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void a_look_has_a_gradient_opacity(void **state) {
+    (void)state;
+    const uint8_t bytes[] = {0, 7, 200};
+    const snow_opacity_point curve[] = {{2, 0}, {4, 1}};
+    snow_opacity_point many[256];
+    for (int i = 0; i < 256; i++)
+        many[i] = (snow_opacity_point){-1.23456e-100 / (i + 1), 0.12345};
+    snow_context *context = support_context();
+    snow_volume *volume = share(context, SNOW_UINT8, bytes, 3);
+    snow_look look = {.preset = "linear",
+                      .gradient_opacities = curve,
+                      .gradient_opacity_count = 2};
+    snow_transfer *transfer = look_at(volume, look), *none = NULL;
+    assert_true(near(snow_transfer_gradient_opacity(transfer, 3), 0.5));
+    assert_non_null(strstr(snow_transfer_text(transfer),
+                           "); gradient opacity 0 at 2, 1 at 4"));
+    snow_transfer_free(transfer);
+    look.gradient_opacities = look.opacities = many;
+    look.gradient_opacity_count = look.opacity_count = 256;
+    transfer = look_at(volume, look); /* more than there is room to tell */
+    assert_non_null(strstr(snow_transfer_text(transfer), ", ... ("));
+    assert_non_null(strstr(snow_transfer_text(transfer), "; gradient opacity"));
+    snow_transfer_free(transfer);
+    look.gradient_opacity_count = 0;
+    assert_int_equal(snow_transfer_make(volume, &look, &none), SNOW_BAD_USAGE);
+    assert_non_null(
+        strstr(snow_context_message(context), "0 gradient opacities"));
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
 /* --- ranges --------------------------------------------------------------- */
 
 static void linear_on_8_bits_is_the_value_itself(void **state) {
@@ -778,6 +878,10 @@ int main(void) {
         cmocka_unit_test(nan_is_transparent_and_black),
         cmocka_unit_test(points_as_far_apart_as_doubles_go_do_not_overflow),
         cmocka_unit_test(bad_points_are_refused),
+        cmocka_unit_test(a_gradient_opacity_is_a_curve_of_its_own),
+        cmocka_unit_test(a_gradient_opacity_is_taken_away_by_none_and_by_ones),
+        cmocka_unit_test(a_bad_gradient_opacity_changes_nothing),
+        cmocka_unit_test(a_look_has_a_gradient_opacity),
         cmocka_unit_test(linear_on_8_bits_is_the_value_itself),
         cmocka_unit_test(table_1_of_the_real_engine_comes_out),
         cmocka_unit_test(a_range_of_values_spreads_any_look),

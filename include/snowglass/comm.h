@@ -54,6 +54,10 @@ typedef struct snow_comm_ops {
     double (*seconds)(void *self);
     /* Lets so much simulated time pass; NULL where time is real. */
     void (*work)(void *self, double seconds);
+    /* The longest that a wait may last in which nobody who is waited for
+     * answers, after which it fails; 0: for ever.  NULL where ranks cannot
+     * stop alone. */
+    void (*timeout)(void *self, double seconds);
     /* Frees self. */
     void (*end)(void *self);
 } snow_comm_ops;
@@ -126,6 +130,14 @@ SNOW_API snow_status snow_comm_share(snow_comm *comm, const void *mine,
  * All further calls on the communicator fail with the same status, and the
  * other ranks may not know: a program of several processes ends them all. */
 SNOW_API bool snow_comm_broken(const snow_comm *comm);
+
+/* Alike on all ranks: the longest that a rank is waited for that neither sends
+ * nor waits itself, in seconds; 0, as it is at first: for ever.  Beyond it the
+ * wait fails and names that rank, and the communicator is broken.  A rank at
+ * work for longer is taken for one that hangs, so be generous: all that one
+ * rank may do while others wait, reading and writing of files too, must be
+ * shorter.  Between threads nothing is watched: they stop together. */
+SNOW_API void snow_comm_set_timeout(snow_comm *comm, double seconds);
 
 /* The time that messages of this communicator take time on, in seconds from
  * any beginning: wall time, but where time is modelled. */

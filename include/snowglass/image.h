@@ -15,6 +15,7 @@ extern "C" {
 #endif
 
 typedef struct snow_image snow_image;
+typedef struct snow_overlay snow_overlay; /* snowglass/overlay.h */
 
 /* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels, or
  * an array of zeros with 1.
@@ -38,10 +39,12 @@ SNOW_API float *snow_image_pixels(snow_image *image);
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 typedef struct snow_image_options {
-    bool flatten;         /* PNG: lay the picture on `background` */
-    double background[3]; /* red, green, blue, 0 to 1 */
-    int bits;             /* PNG: 8 or 16 bits a channel; 0 means 8 */
-    bool overwrite;       /* replace an existing file */
+    bool flatten;                /* PNG: lay the picture on `background` */
+    double background[3];        /* red, green, blue, 0 to 1 */
+    int bits;                    /* PNG: 8 or 16 bits a channel; 0 means 8 */
+    bool overwrite;              /* replace an existing file */
+    const snow_overlay *overlay; /* PNG: drawn over the picture, whose size it
+                                    has; NULL: nothing */
 } snow_image_options;
 
 /* Writes a picture in the format of the path's suffix; "-" is standard output,
@@ -61,11 +64,22 @@ typedef struct snow_image_options {
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
 
+/* The most bits a channel that the format of a path's suffix has for levels: 16
+ * for .png and "-"; 0 where it holds floats, which takes neither bits, a
+ * background nor an overlay; -1: none that snow_image_save writes. */
+SNOW_API int snow_image_bits(const char *path);
+
 /* The picture on a background (red, green, blue, 0 to 1) as rows of bytes, red,
  * green, blue for each pixel: width * height * 3 of them, with the levels that
  * a PNG of 8 bits on that background stores. */
 SNOW_API void snow_image_bytes(const snow_image *image,
                                const double background[3], unsigned char *rgb);
+
+/* The same with all options: the background where `flatten`, black elsewhere,
+ * and the overlay. */
+SNOW_API void snow_image_bytes_drawn(const snow_image *image,
+                                     const snow_image_options *options,
+                                     unsigned char *rgb);
 
 /* Whether a path's suffix (or "-") is one that snow_image_save writes: asked
  * before a long rendering.  Errors: SNOW_BAD_USAGE, SNOW_BAD_OUTPUT (it exists

@@ -166,6 +166,12 @@ SNOW_API snow_status snow_insitu_set_output(snow_insitu *insitu,
                                             const char *pattern,
                                             const snow_image_options *options);
 
+/* What snow_insitu_step draws over its pictures (snowglass/overlay.h): colour
+ * bar and scale bar, and the number of the step (nothing, unless told).  Files
+ * of floats have none. */
+SNOW_API snow_status snow_insitu_set_marks(snow_insitu *insitu, bool legend,
+                                           bool step);
+
 /* What pictures may cost; 0: whatever they do.
  *
  * `seconds`: for each step, on the mean.  What the last pictures took decides:

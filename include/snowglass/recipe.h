@@ -42,10 +42,17 @@ typedef struct snow_recipe {
     double azimuth, elevation, roll;
     double zoom;              /* (1) */
     double fov;               /* 0: parallel */
+    double position[3];       /* of the camera in the world, in place of the */
+    double target[3];         /*   name; what it looks at; and what is up: as */
+    double up[3];             /*   in snow_view.  NaN: not told (NaN) */
+    bool no_labels;           /* without letters of orientation */
+    bool legend, time_label;  /* with bars, and the number of the step */
     snow_settings settings;   /* as snow_settings_init makes them; the opacity
                                  length stays 0 */
     snow_image_options image; /* of the file */
     void *owned;              /* what texts lie in; NULL: the caller's */
+    size_t gradient_opacity_count; /* of the look; 0: none */
+    snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS];
 } snow_recipe;
 
 /* The defaults. */

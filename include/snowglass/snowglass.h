@@ -12,6 +12,7 @@
 
 #include <snowglass/context.h>
 #include <snowglass/image.h>
+#include <snowglass/overlay.h>
 #include <snowglass/render.h>
 #include <snowglass/status.h>
 #include <snowglass/transfer.h>

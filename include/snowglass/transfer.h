@@ -4,7 +4,11 @@
  * Colour (straight, linear as stored) and opacity are each piecewise linear
  * between control points in data units, constant beyond the ends; where a
  * value repeats there is a step, and the value itself belongs to the later
- * point.  Opacity is that of one reference length (see snow_settings). */
+ * point.  Opacity is that of one reference length (see snow_settings).
+ *
+ * It may be multiplied with a gradient opacity: a factor that depends on the
+ * magnitude of the data's gradient, so that boundaries stand out and what is
+ * even fades. */
 #ifndef SNOWGLASS_TRANSFER_H
 #define SNOWGLASS_TRANSFER_H
 
@@ -40,6 +44,28 @@ SNOW_API snow_status snow_transfer_new(snow_context *context,
 
 SNOW_API void snow_transfer_free(snow_transfer *transfer);
 
+/* From now on points are joined linearly in the logarithm of the value; values
+ * of 0 and below are transparent.  Errors: SNOW_BAD_USAGE (a point that is not
+ * above 0). */
+SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
+SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
+
+/* Gives a transfer function a gradient opacity: the opacity of a voxel is then
+ * that of its value times the factor that `points` give for the magnitude of
+ * its gradient.  Their values are magnitudes, in data units per unit of the
+ * volume's world (a millimetre, as a rule), of central differences; their
+ * opacities are the factors, 0 to 1.  Between points they are linear, beyond
+ * the ends constant.  The points are copied; a count of 0, or points that are
+ * all 1, take away what was given before.  snow_transfer_text tells of it.
+ * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY; then all stays as it was. */
+SNOW_API snow_status snow_transfer_set_gradient_opacity(
+    snow_transfer *transfer, const snow_opacity_point *points, size_t count);
+
+/* The factor for a magnitude; 1 without a gradient opacity.  NaN, which has no
+ * place in the curve, counts as a magnitude beyond its end. */
+SNOW_API double snow_transfer_gradient_opacity(const snow_transfer *transfer,
+                                               double magnitude);
+
 /* Over which data values a look is spread. */
 typedef enum snow_range_kind {
     SNOW_RANGE_AUTO = 0,   /* chosen from the histogram */
@@ -56,6 +82,10 @@ typedef struct snow_look {
     double low, high; /* for VALUES and PERCENTILES; low < high */
     const snow_opacity_point *opacities; /* replace the preset's; NULL: keep */
     size_t opacity_count;
+    /* Factors by gradient magnitude, as in snow_transfer_set_gradient_opacity;
+     * NULL: none. */
+    const snow_opacity_point *gradient_opacities;
+    size_t gradient_opacity_count;
 } snow_look;
 
 /* The transfer function that `look` asks for on `volume`.  A preset in data
@@ -71,7 +101,8 @@ SNOW_API snow_status snow_transfer_make(const snow_volume *volume,
  * 213 (from the histogram)".  Owned by the transfer function. */
 SNOW_API const char *snow_transfer_text(const snow_transfer *transfer);
 
-/* Colour and opacity at a data value, straight; NaN gives zeros. */
+/* Colour and opacity at a data value, straight, without the gradient opacity;
+ * NaN gives zeros. */
 SNOW_API void snow_transfer_at(const snow_transfer *transfer, double value,
                                double rgba[4]);
 
@@ -83,7 +114,8 @@ SNOW_API void snow_transfer_span(const snow_transfer *transfer, double *low,
 SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);
 
 /* Share of uninteresting voxels, 0 to 1 (the paper's sparse ratio SR, section
- * 5.2): those with opacity 0 or, for threshold T > 0, 255 a <= T + 0.0001.
+ * 5.2): those with opacity 0 or, for threshold T > 0, 255 a <= T + 0.0001.  The
+ * opacity a is that with the gradient opacity.
  * Errors: SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
                                                 const snow_volume *volume,

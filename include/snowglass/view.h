@@ -2,12 +2,19 @@
  *
  * The camera looks at the middle of the voxel boxes from a named side; azimuth
  * turns it about the up axis, elevation about the new right, roll about the
- * line of sight.  R is the distance from the target to the farthest corner.
+ * line of sight.  R is the distance from the middle to the farthest corner.
  *
  * Parallel projection: the pixel pitch is 2R / (zoom min(W, H)).  Perspective:
  * the eye is R / sin(fov / 2) from the target, and at zoom 1 the field of view
  * spans the shorter side of the image; zoom scales the image.  In both, at zoom
- * 1, the whole volume is in the picture whatever its turn. */
+ * 1, the whole volume is in the picture whatever its turn.
+ *
+ * A camera may also be placed by points of the world: `target` is what it looks
+ * at in place of the middle, and falls on the middle of the picture; `position`
+ * is where it stands, so that the line of sight leads from there to the target.
+ * In perspective the eye is there, whatever R; in parallel projection, which
+ * has no eye, only the direction counts, and the pitch stays as it is.  The
+ * angles then turn the camera about the target. */
 #ifndef SNOWGLASS_VIEW_H
 #define SNOWGLASS_VIEW_H
 
@@ -26,15 +33,24 @@ extern "C" {
 /* Make one with snow_view_named or snow_view_default, or set it to zeros first:
  * it may grow at its end, and 0 is the default of what is added. */
 typedef struct snow_view {
-    int width, height; /* image in pixels, 1 to 32768 each */
-    double back[3];    /* unit vector, target to camera, in the world */
-    double up[3];      /* unit vector, at right angles to back */
-    double azimuth;    /* degrees: moves the camera to its right */
-    double elevation;  /* degrees: moves the camera up */
-    double roll;       /* degrees: turns the camera clockwise */
-    double zoom;       /* above 0; 2 shows everything twice as large */
-    double fov;        /* degrees over the shorter side, SNOW_FOV_LEAST to
-                          SNOW_FOV_MOST; 0: a parallel projection */
+    int width, height;  /* image in pixels, 1 to 32768 each */
+    double back[3];     /* unit vector, target to camera, in the world */
+    double up[3];       /* unit vector, at right angles to back */
+    double azimuth;     /* degrees: moves the camera to its right */
+    double elevation;   /* degrees: moves the camera up */
+    double roll;        /* degrees: turns the camera clockwise */
+    double zoom;        /* above 0; 2 shows everything twice as large */
+    double fov;         /* degrees over the shorter side, SNOW_FOV_LEAST to
+                           SNOW_FOV_MOST; 0: a parallel projection */
+    bool has_position;  /* `position` counts, in place of `back` */
+    bool has_target;    /* `target` counts, in place of the middle */
+    bool has_up;        /* `upward` counts, in place of `up` */
+    double position[3]; /* world; of the camera */
+    double target[3];   /* world; what it looks at */
+    double upward[3];   /* a direction in the world that is up in the picture;
+                           neither 0 nor along the line of sight.  Without it a
+                           camera with a position has +z up, or +y where it
+                           looks along z, as named views have */
 } snow_view;
 
 /* The view by name: anterior posterior left right superior inferior iso +x -x

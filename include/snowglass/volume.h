@@ -56,7 +56,8 @@ typedef struct snow_volume_info {
     char unit[16];       /* of spacing and matrix: "mm", "um", ... or "" */
     const char *format;  /* constant: "raw", "nrrd", "nifti", "metaimage",
                             "npy", "mrc", "vtk", "vti", "tiff", "png",
-                            "hdf5", "netcdf", "phantom", "memory" */
+                            "hdf5", "netcdf", "den", "phantom",
+                            "memory" */
     int64_t times;       /* time steps in the file, at least 1 */
     int64_t time;        /* the one that was read, from 0 */
 } snow_volume_info;
@@ -206,13 +207,25 @@ SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
                                            double hi, size_t bins,
                                            uint64_t *counts);
 
+/* The same grid with its data values, slope and intercept applied, in another
+ * scalar type; SNOW_TYPE_NONE: the least one that holds them all as they are.
+ * `range` NULL keeps the values: to integers they are rounded, a remark says
+ * how many, and one that does not fit is an error.  Otherwise range[0] to
+ * range[1] are spread over all that an integer type of up to 32 bits holds, and
+ * values beyond are the ends.  The volume may be closed before the new one.
+ * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.
+ */
+SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
+                                         snow_type type, const double range[2],
+                                         snow_volume **out);
+
 /* Writes a volume with its geometry, in the format of the path's suffix:
- * .nrrd, .nii, .nii.gz, .mha, .raw, .raw.gz.  The file is written aside and
- * renamed, so that it is whole or absent; an existing one is kept, and an
+ * .nrrd, .nii, .nii.gz, .mha, .npy, .raw, .raw.gz.  The file is written aside
+ * and renamed, so that it is whole or absent; an existing one is kept, and an
  * error, unless `overwrite`.  .nii keeps geometry in single precision where
- * that holds it; .raw keeps none, and a remark tells how to open it again.
- * Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; slope and intercept,
- * which .nrrd and .raw cannot say), SNOW_NO_MEMORY. */
+ * that holds it; .npy and .raw keep none, and a remark tells how to open them
+ * again.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; slope and
+ * intercept, which .nrrd, .npy and .raw cannot say), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_volume_save(const snow_volume *volume,
                                       const char *path, bool overwrite);
 

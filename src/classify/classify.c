@@ -3,7 +3,8 @@
  *
  * A voxel is interesting when its opacity is above 0 and, for a threshold
  * T > 0, 255 a > T + 0.0001; a is the opacity before it is corrected for the
- * path length.  What is uninteresting contributes nothing. */
+ * path length, with the gradient opacity where there is one.  What is
+ * uninteresting contributes nothing. */
 #include "classify/classify.h"
 #include "classify/keep_bytes.h"
 
@@ -122,6 +123,15 @@ snow_status snow_classifier_make(snow_context *context,
     c->exponent = options->opacity_exponent;
     c->classify_row = row->classify_row;
     c->keep_bytes = snow_keep_bytes_pick(options->isa);
+    c->fades = snow_transfer_fades(transfer);
+    if (c->fades) {
+        SNOW_TRY(snow_fader_init(context, volume, transfer, c->threshold,
+                                 options->isa, &c->fader));
+        c->fade_premultiply = c->premultiply;
+        c->fade_exponent = c->exponent;
+        c->premultiply = false;
+        c->exponent = 1;
+    }
     return row->values ? make_table(context, c, row) : SNOW_OK;
 }
 
@@ -143,6 +153,53 @@ const void *snow_row_voxels(const snow_volume *volume,
            (size_t)first * snow_type_size(volume->info.type);
 }
 
+/* What a gradient opacity makes of up to SNOW_FADE_BLOCK voxels of a row: those
+ * that stay interesting move up to `kept` and `out`, which lie at or before
+ * where they come from.  Returns their number.  Where every voxel is wanted,
+ * opacity counts and the threshold does not, as it is without. */
+static size_t fade_block(const snow_classifier *c, const double *factors,
+                         size_t count, const uint32_t *columns,
+                         const float *samples, uint32_t *kept, float *out) {
+    size_t channels = (size_t)c->channels, stay = 0;
+    double opacities[SNOW_FADE_BLOCK];
+    for (size_t n = 0; n < count; n++) {
+        double opacity = (double)samples[(n + 1) * channels - 1] * factors[n];
+        kept[stay] = columns[n];
+        for (size_t i = 0; i < channels; i++)
+            out[stay * channels + i] = samples[n * channels + i];
+        opacities[stay] = opacity;
+        stay += c->keep_all || snow_is_interesting(opacity, c->threshold);
+    }
+    snow_fade_correct(&c->fader, c->fade_exponent, stay, opacities);
+    for (size_t n = 0; n < stay; n++) {
+        double weight = c->fade_premultiply ? opacities[n] : 1;
+        float *sample = out + n * channels;
+        for (size_t i = 0; i + 1 < channels; i++)
+            sample[i] = (float)((double)sample[i] * weight);
+        sample[channels - 1] = (float)opacities[n];
+    }
+    return stay;
+}
+
+/* The same for the `count` voxels of a row from entry `first` of the strip on.
+ */
+static size_t fade_row(const snow_classifier *c, const snow_fade_row *row,
+                       size_t first, size_t count, snow_strip *strip) {
+    size_t channels = (size_t)c->channels, stay = 0;
+    uint32_t *columns = strip->columns + first;
+    float *samples = strip->samples + first * channels;
+    for (size_t n = 0; n < count; n += SNOW_FADE_BLOCK) {
+        size_t left = count - n;
+        size_t some = left < SNOW_FADE_BLOCK ? left : SNOW_FADE_BLOCK;
+        double factors[SNOW_FADE_BLOCK];
+        snow_fade_factors(&c->fader, row, columns + n, some, factors);
+        stay +=
+            fade_block(c, factors, some, columns + n, samples + n * channels,
+                       columns + stay, samples + stay * channels);
+    }
+    return stay;
+}
+
 void snow_classify_strip(const snow_classifier *classifier,
                          const snow_placement *placement, int64_t slice,
                          int64_t first, int64_t rows, snow_strip *strip) {
@@ -154,10 +211,16 @@ void snow_classify_strip(const snow_classifier *classifier,
         int64_t stride;
         const void *voxels = snow_row_voxels(classifier->volume, placement,
                                              slice, first + row, &stride);
-        strip->count += classifier->classify_row(
+        size_t count = classifier->classify_row(
             classifier, voxels, stride, placement->columns,
             strip->columns + strip->count,
             strip->samples + strip->count * (size_t)classifier->channels);
+        if (classifier->fades)
+            count =
+                fade_row(classifier,
+                         &(snow_fade_row){placement, slice, first + row, false},
+                         strip->count, count, strip);
+        strip->count += count;
         strip->row_end[row] = strip->count;
     }
 }

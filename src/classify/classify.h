@@ -12,6 +12,7 @@
 #ifndef SNOW_CLASSIFY_H
 #define SNOW_CLASSIFY_H
 
+#include "classify/fade.h"
 #include "classify/transfer.h"
 #include "transform/transform.h"
 #include "volume/volume.h"
@@ -63,9 +64,15 @@ struct snow_classifier {
     double threshold; /* opacity 0 to 255 */
     double exponent;  /* path length / reference length */
     snow_classify_row_fn *classify_row;
-    snow_keep_bytes_fn *keep_bytes;       /* NULL: the plain loop */
-    unsigned char *keep;                  /* per native value: is it kept? */
-    float *table;                         /* per native value: its sample */
+    snow_keep_bytes_fn *keep_bytes; /* NULL: the plain loop */
+    unsigned char *keep;            /* per native value: is it kept? */
+    float *table;                   /* per native value: its sample */
+    /* With a gradient opacity the table holds straight colours and opacities of
+     * the reference length; what is left to be done to them is told here. */
+    bool fades;
+    snow_fader fader;
+    bool fade_premultiply;
+    double fade_exponent;
     size_t keep_capacity, table_capacity; /* bytes */
 };
 
@@ -78,7 +85,8 @@ typedef struct snow_classify_options {
 } snow_classify_options;
 
 /* Readies a classifier; the record begins as zeros, and keeps the memory of its
- * tables.  Errors: SNOW_NO_MEMORY.  Free with snow_classifier_fini. */
+ * tables.  Errors: SNOW_BAD_USAGE (a singular matrix, with a gradient opacity),
+ * SNOW_NO_MEMORY.  Free with snow_classifier_fini. */
 snow_status snow_classifier_make(snow_context *context,
                                  const snow_volume *volume,
                                  const snow_transfer *transfer,
@@ -86,8 +94,8 @@ snow_status snow_classifier_make(snow_context *context,
                                  snow_classifier *classifier);
 void snow_classifier_fini(snow_context *context, snow_classifier *classifier);
 
-/* The sample of one native value; true when it is interesting.  An
- * uninteresting one has a sample of zeros. */
+/* The sample of one native value, without a gradient opacity; true when it is
+ * interesting.  An uninteresting one has a sample of zeros. */
 bool snow_classify_value(const snow_classifier *classifier, double native,
                          float *sample);
 

@@ -116,6 +116,8 @@ static size_t survey_all(const survey *s, place_run *runs) {
     const snow_transfer *transfer = s->transfer;
     size_t count = 0;
     int64_t begin = s->first;
+    if (transfer->log) /* what is not above 0 is transparent */
+        begin = place_of(s, snow_double_of(1), begin);
     for (size_t n = 0; n <= transfer->opacity_count; n++) {
         int64_t end = s->last + 1;
         if (n < transfer->opacity_count)
@@ -248,11 +250,19 @@ static size_t wide_code(const snow_coder *coder, double value) {
     if (up_to == coder->stop_count)
         return first;
     double a = coder->stops[up_to - 1], b = coder->stops[up_to];
-    double part = isfinite(b - a) ? (value - a) / (b - a)
-                                  : (value / 2 - a / 2) / (b / 2 - a / 2);
+    double part = coder->log        ? snow_part_of_decades(value, a, b)
+                  : isfinite(b - a) ? (value - a) / (b - a)
+                                    : (value / 2 - a / 2) / (b / 2 - a / 2);
     size_t place = (size_t)(part * (double)coder->stretch_codes);
     return first +
            (place < coder->stretch_codes ? place : coder->stretch_codes - 1);
+}
+
+/* The value that is such a part of the way from a to b in its logarithm. */
+static double between_decades(double a, double b, double part) {
+    double from = snow_log2_rising(a), to = snow_log2_rising(b);
+    double value = snow_exp2(from + (to - from) * part);
+    return value > a ? value : a;
 }
 
 /* The middle of a code's part of its stretch, which stays within the stretch
@@ -271,6 +281,8 @@ static double wide_value(const snow_coder *coder, size_t code) {
     double a = stops[stretch], b = stops[stretch + 1];
     double value =
         isfinite(b - a) ? a + (b - a) * part : a * (1 - part) + b * part;
+    if (coder->log)
+        value = between_decades(a, b, part);
     return value < b ? value : nextafter(b, -INFINITY);
 }
 
@@ -292,6 +304,7 @@ snow_status snow_coder_make(snow_context *context, const snow_volume *volume,
     coder->bytes = snow_type_size(info->type) == 1 ? 1 : 2;
     coder->codes = snow_type_size(info->type) == 1 ? 256 : 65536;
     coder->lowest = lowest_of(info->type);
+    coder->log = transfer->log;
     coder->run_count = 0;
     coder->stop_count = coder->stretch_codes = 0;
     SNOW_TRY(find_native_runs(context, transfer, coder));
@@ -317,7 +330,7 @@ bool snow_coder_same(const snow_coder *a, const snow_coder *b) {
     if (!is_wide(a->type))
         return true;
     if (a->slope != b->slope || a->intercept != b->intercept ||
-        a->stop_count != b->stop_count)
+        a->stop_count != b->stop_count || a->log != b->log)
         return false;
     for (size_t n = 0; n < a->stop_count; n++)
         if (a->stops[n] != b->stops[n])

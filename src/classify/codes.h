@@ -51,6 +51,7 @@ typedef struct snow_coder {
      * how many codes lie between two of them.  Code 0 is below the first. */
     double *stops;
     size_t stop_count, stretch_codes;
+    bool log; /* codes are dealt out by the logarithm */
     void *places; /* where runs were looked for */
     size_t keep_capacity, native_runs_capacity, places_capacity,
         stops_capacity; /* bytes */

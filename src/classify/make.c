@@ -2,7 +2,8 @@
  *
  * A preset, or the histogram, drafts control points over values of its own; a
  * range that was asked for stretches the draft over it; a colour map then
- * replaces the colours, and opacities replace the opacities. */
+ * replaces the colours, and opacities replace the opacities.  The gradient
+ * opacity is what was asked for, or none. */
 #include "classify/look.h"
 
 #include <math.h>
@@ -33,6 +34,10 @@ static snow_status check_look(snow_context *context, const snow_look *look) {
         return snow_fail(context, SNOW_BAD_USAGE,
                          "a list of 0 opacities says nothing; give at least "
                          "one point");
+    if (look->gradient_opacities && !look->gradient_opacity_count)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a list of 0 gradient opacities says nothing; give at "
+                         "least one point");
     if (look->range != SNOW_RANGE_VALUES &&
         look->range != SNOW_RANGE_PERCENTILES)
         return SNOW_OK;
@@ -139,8 +144,8 @@ static void tell_reason(const snow_draft *draft, const snow_look *look,
 /* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)" */
 static void describe(snow_transfer *transfer, const snow_draft *draft,
                      const snow_look *look) {
-    char *text = transfer->text;
-    size_t room = sizeof transfer->text, used;
+    char text[SNOW_TRANSFER_TEXT_BYTES / 2]; /* the rest is the gradients' */
+    size_t room = sizeof text, used;
     snprintf(text, room, "%s %.5g..%.5g; opacity", draft->name, draft->low,
              draft->high);
     for (size_t i = 0; i < transfer->opacity_count; i++) {
@@ -155,6 +160,7 @@ static void describe(snow_transfer *transfer, const snow_draft *draft,
     }
     used = strlen(text);
     tell_reason(draft, look, text + used, room - used);
+    snow_transfer_tell(transfer, text);
 }
 
 /* The same on all ranks, but for the memory that it takes. */
@@ -167,6 +173,12 @@ static snow_status build(const snow_volume *volume, const snow_draft *draft,
         look->opacities ? look->opacity_count : draft->opacity_count,
         &transfer));
     describe(transfer, draft, look);
+    snow_status status = snow_transfer_set_gradient_opacity(
+        transfer, look->gradient_opacities, look->gradient_opacity_count);
+    if (status != SNOW_OK) {
+        snow_transfer_free(transfer);
+        return status;
+    }
     *out = transfer;
     return SNOW_OK;
 }

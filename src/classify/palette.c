@@ -100,7 +100,10 @@ static size_t add_numbers(double *key, size_t count, const void *numbers,
 static snow_status take_key(snow_context *context, const snow_coder *coder,
                             const snow_transfer *transfer,
                             snow_palette *palette, bool *changed) {
-    const double head[] = {(double)coder->type, coder->slope, coder->intercept,
+    const double head[] = {(double)coder->type,
+                           coder->slope,
+                           coder->intercept,
+                           (double)transfer->log,
                            (double)transfer->color_count,
                            (double)transfer->opacity_count};
     size_t stops = coder->stop_count * sizeof *coder->stops;

@@ -1,8 +1,10 @@
 /* classify/rays.c - the loops of classify/rays.h for all levels. */
 #include "classify/rays.h"
 
-/* By bytes of a code, channels, and whether shaded. */
-typedef snow_ray_sample_fn *ray_table[2][2][2];
+#include <string.h>
+
+/* By bytes of a code, channels, whether shaded, and whether faded. */
+typedef snow_ray_sample_fn *ray_table[2][2][2][2];
 
 /* The places of a window as numbers, and beyond, for vectors. */
 static const float ray_places[SNOW_WINDOW_MOST + 17] = {
@@ -29,14 +31,14 @@ static const float ray_places[SNOW_WINDOW_MOST + 17] = {
 #endif
 
 snow_ray_sample_fn *snow_ray_sample_of(snow_isa isa, int code_bytes,
-                                       int channels, bool shaded) {
+                                       int channels, bool shaded, bool faded) {
     int bytes = code_bytes == 2, color = channels == 4;
 #if SNOW_HAS_AVX
     if (isa == SNOW_ISA_AVX512)
-        return ray_samples_avx512[bytes][color][shaded];
+        return ray_samples_avx512[bytes][color][shaded][faded];
     if (isa == SNOW_ISA_AVX2)
-        return ray_samples_avx2[bytes][color][shaded];
+        return ray_samples_avx2[bytes][color][shaded][faded];
 #endif
     (void)isa;
-    return ray_samples_scalar[bytes][color][shaded];
+    return ray_samples_scalar[bytes][color][shaded][faded];
 }

@@ -16,13 +16,15 @@
 
 /* As snow_sample_fn, with a palette of snow_palette_make_clear; the exponent of
  * place x is the root of square[0] + square[1] x + square[2] x^2.  `gloss` and
- * `normals` may be NULL.  `samples` has room for 16 more. */
+ * `normals` may be NULL.  `samples` has room for 16 more.  With a gradient
+ * opacity `fades` are the voxels' factors, and the palette is a straight one of
+ * the reference length; else NULL. */
 typedef void snow_ray_sample_fn(const void *codes, const uint16_t *normals,
-                                uint64_t bits, int count, const float *palette,
-                                const snow_gloss *gloss, const float square[3],
-                                float *samples);
+                                const uint16_t *fades, uint64_t bits, int count,
+                                const float *palette, const snow_gloss *gloss,
+                                const float square[3], float *samples);
 
 snow_ray_sample_fn *snow_ray_sample_of(snow_isa isa, int code_bytes,
-                                       int channels, bool shaded);
+                                       int channels, bool shaded, bool faded);
 
 #endif

@@ -5,15 +5,16 @@
  *   RAY_EXPAND    V(expand8) or V(expand16), as the code
  *   RAY_CHANNELS  floats of a sample: 2 or 4
  *   RAY_SHADED    whether normals and gloss are used: 0 or 1
+ *   RAY_FADED     whether factors are used: 0 or 1
  *   RAY_GATHER, RAY_REPEAT, RAY_ALPHA, RAY_WITH_ALPHA
  *                 as in classify/sample.tmpl.h
  *   RAY_NAME      name of the function
  *
  * All are undefined at the end. */
 TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
-                            uint64_t bits, int count, const float *palette,
-                            const snow_gloss *gloss, const float square[3],
-                            float *samples) {
+                            const uint16_t *fades, uint64_t bits, int count,
+                            const float *palette, const snow_gloss *gloss,
+                            const float square[3], float *samples) {
     const float *entries = palette - RAY_CHANNELS;
     uint32_t entry[SNOW_WINDOW_MOST + 17];
     float exponents[SNOW_WINDOW_MOST + 33];
@@ -23,10 +24,20 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
 #else
     (void)normals, (void)gloss;
 #endif
+#if RAY_FADED
+    float opacities[SNOW_WINDOW_MOST + 33];
+    uint32_t fade[SNOW_WINDOW_MOST + 17];
+#else
+    (void)fades;
+#endif
     for (int at = 0; at < count; at += 16) {
         uint32_t here = (uint32_t)(bits >> at) & 0xFFFF;
         RAY_EXPAND(code, here, entry + at);
         code += V(popcount)(here);
+#if RAY_FADED
+        V(expand16)(fades, here, fade + at); /* one more than the code */
+        fades += V(popcount)(here);
+#endif
 #if RAY_SHADED
         uint32_t normal[16];
         V(expand16)(normals, here, normal);
@@ -34,15 +45,32 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         normals += V(popcount)(here);
 #endif
     }
-    for (int at = 0; at < count; at += LANES) {
+    /* To a multiple of 16, as factors are taken. */
+    for (int at = 0; at < (RAY_FADED ? (count + 15) / 16 * 16 : count);
+         at += LANES) {
         V(vec) x = V(load)(ray_places + at);
         V(vec) sum = V(fma)(V(set1)(square[2]), x, V(set1)(square[1]));
         V(store)(exponents + at, V(sqrt)(V(fma)(sum, x, V(set1)(square[0]))));
     }
+#if RAY_FADED
+    for (int at = 0; at < count; at += 16) {
+        for (int i = at; i < at + 16; i++) {
+            opacities[i] = entries[entry[i] * RAY_CHANNELS + RAY_CHANNELS - 1];
+            fade[i] -= fade[i] != 0;
+        }
+        NAME(fade16)(fade + at, exponents + at, opacities + at);
+    }
+#else
+    const V(vec) round = V(set1)(0x1.8p23f);
+#endif
     const V(places) spread = RAY_REPEAT();
-    const V(vec) one = V(set1)(1), round = V(set1)(0x1.8p23f);
+    const V(vec) one = V(set1)(1);
+    (void)one;
     for (int i = 0; i < count; i += LANES / RAY_CHANNELS) {
         V(vec) straight = RAY_GATHER(entries, entry + i);
+#if RAY_FADED
+        V(vec) alpha = V(pick)(opacities + i, spread);
+#else
         V(vec)
         power = V(mul)(RAY_ALPHA(straight), V(pick)(exponents + i, spread));
         power = V(max)(power, V(set1)(-126));
@@ -56,6 +84,7 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
         series = V(fma)(series, f, V(set1)(0.693147180560f));
         V(vec) scale = V(power2)(whole);
         V(vec) alpha = V(fnma)(V(mul)(scale, f), series, V(sub)(one, scale));
+#endif
         V(vec) color = straight;
 #if RAY_SHADED
         V(vec) factor = V(pick)(factors + i, spread);
@@ -73,6 +102,7 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
 #undef RAY_EXPAND
 #undef RAY_CHANNELS
 #undef RAY_SHADED
+#undef RAY_FADED
 #undef RAY_NAME
 #undef RAY_GATHER
 #undef RAY_REPEAT

@@ -1,9 +1,12 @@
 /* classify/rays_levels.h - the sample functions of one level in perspective;
  * simd/select.h's words are in force. */
+#include "classify/faded.tmpl.h"
+
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
 #define RAY_CHANNELS 2
 #define RAY_SHADED 0
+#define RAY_FADED 0
 #define RAY_GATHER V(gather2)
 #define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
@@ -13,7 +16,19 @@
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
 #define RAY_CHANNELS 2
+#define RAY_SHADED 0
+#define RAY_FADED 1
+#define RAY_GATHER V(gather2)
+#define RAY_REPEAT V(repeat2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_byte2_plain_faded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 2
 #define RAY_SHADED 1
+#define RAY_FADED 0
 #define RAY_GATHER V(gather2)
 #define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
@@ -22,8 +37,20 @@
 #include "classify/rays.tmpl.h"
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 2
+#define RAY_SHADED 1
+#define RAY_FADED 1
+#define RAY_GATHER V(gather2)
+#define RAY_REPEAT V(repeat2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_byte2_shaded_faded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
 #define RAY_CHANNELS 4
 #define RAY_SHADED 0
+#define RAY_FADED 0
 #define RAY_GATHER V(gather4)
 #define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
@@ -33,17 +60,41 @@
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
 #define RAY_CHANNELS 4
+#define RAY_SHADED 0
+#define RAY_FADED 1
+#define RAY_GATHER V(gather4)
+#define RAY_REPEAT V(repeat4)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_byte4_plain_faded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 4
 #define RAY_SHADED 1
+#define RAY_FADED 0
 #define RAY_GATHER V(gather4)
 #define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
 #define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME NAME(ray_byte4_shaded)
 #include "classify/rays.tmpl.h"
+#define RAY_CODE uint8_t
+#define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 4
+#define RAY_SHADED 1
+#define RAY_FADED 1
+#define RAY_GATHER V(gather4)
+#define RAY_REPEAT V(repeat4)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_byte4_shaded_faded)
+#include "classify/rays.tmpl.h"
 #define RAY_CODE uint16_t
 #define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 2
 #define RAY_SHADED 0
+#define RAY_FADED 0
 #define RAY_GATHER V(gather2)
 #define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
@@ -53,7 +104,19 @@
 #define RAY_CODE uint16_t
 #define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 2
+#define RAY_SHADED 0
+#define RAY_FADED 1
+#define RAY_GATHER V(gather2)
+#define RAY_REPEAT V(repeat2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_word2_plain_faded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 2
 #define RAY_SHADED 1
+#define RAY_FADED 0
 #define RAY_GATHER V(gather2)
 #define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
@@ -62,8 +125,20 @@
 #include "classify/rays.tmpl.h"
 #define RAY_CODE uint16_t
 #define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 2
+#define RAY_SHADED 1
+#define RAY_FADED 1
+#define RAY_GATHER V(gather2)
+#define RAY_REPEAT V(repeat2)
+#define RAY_ALPHA V(alpha2)
+#define RAY_WITH_ALPHA V(with_alpha2)
+#define RAY_NAME NAME(ray_word2_shaded_faded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 4
 #define RAY_SHADED 0
+#define RAY_FADED 0
 #define RAY_GATHER V(gather4)
 #define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
@@ -73,17 +148,43 @@
 #define RAY_CODE uint16_t
 #define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 4
+#define RAY_SHADED 0
+#define RAY_FADED 1
+#define RAY_GATHER V(gather4)
+#define RAY_REPEAT V(repeat4)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_word4_plain_faded)
+#include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 4
 #define RAY_SHADED 1
+#define RAY_FADED 0
 #define RAY_GATHER V(gather4)
 #define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
 #define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME NAME(ray_word4_shaded)
 #include "classify/rays.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
+#define RAY_CHANNELS 4
+#define RAY_SHADED 1
+#define RAY_FADED 1
+#define RAY_GATHER V(gather4)
+#define RAY_REPEAT V(repeat4)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME NAME(ray_word4_shaded_faded)
+#include "classify/rays.tmpl.h"
 
+#define RAY_PAIR(name) \
+    { NAME(ray_##name), NAME(ray_##name##_faded) }
 static const ray_table NAME(ray_samples) = {
-    {{NAME(ray_byte2_plain), NAME(ray_byte2_shaded)},
-     {NAME(ray_byte4_plain), NAME(ray_byte4_shaded)}},
-    {{NAME(ray_word2_plain), NAME(ray_word2_shaded)},
-     {NAME(ray_word4_plain), NAME(ray_word4_shaded)}},
+    {{RAY_PAIR(byte2_plain), RAY_PAIR(byte2_shaded)},
+     {RAY_PAIR(byte4_plain), RAY_PAIR(byte4_shaded)}},
+    {{RAY_PAIR(word2_plain), RAY_PAIR(word2_shaded)},
+     {RAY_PAIR(word4_plain), RAY_PAIR(word4_shaded)}},
 };
+#undef RAY_PAIR

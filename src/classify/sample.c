@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-/* By bytes of a code, channels, and whether shaded. */
-typedef snow_sample_fn *snow_sample_table[2][2][2];
+/* By bytes of a code, channels, and how: plain, shaded, and both faded. */
+typedef snow_sample_fn *snow_sample_table[2][2][4];
 
 /* Copies as many numbers as a window of so many places can hold: a length that
  * is that of the row would often be guessed wrong. */
@@ -33,14 +33,15 @@ typedef snow_sample_fn *snow_sample_table[2][2][2];
 #endif
 
 snow_sample_fn *snow_sample_of(snow_isa isa, int code_bytes, int channels,
-                               bool shaded) {
+                               bool shaded, bool faded) {
     int bytes = code_bytes == 2, color = channels == 4;
+    int how = shaded + 2 * faded;
 #if SNOW_HAS_AVX
     if (isa == SNOW_ISA_AVX512)
-        return samples_avx512[bytes][color][shaded];
+        return samples_avx512[bytes][color][how];
     if (isa == SNOW_ISA_AVX2)
-        return samples_avx2[bytes][color][shaded];
+        return samples_avx2[bytes][color][how];
 #endif
     (void)isa;
-    return samples_scalar[bytes][color][shaded];
+    return samples_scalar[bytes][color][how];
 }

@@ -4,6 +4,7 @@
 #define SNOW_SAMPLE_H
 
 #include "classify/codes.h"
+#include "classify/fade.h"
 #include "classify/normals.h"
 #include "simd/isa.h"
 
@@ -23,6 +24,9 @@ typedef struct snow_sample_room {
     uint32_t entries[SNOW_SAMPLES_MOST + 64]; /* of the palette */
     float factors[SNOW_SAMPLES_MOST + 64], whites[SNOW_SAMPLES_MOST + 64];
     float samples[4 * (SNOW_SAMPLES_MOST + 64)];
+    /* With a gradient opacity: */
+    uint16_t fades[SNOW_SAMPLES_MOST + 64];
+    float opacities[SNOW_SAMPLES_MOST + 64];
 } snow_sample_room;
 
 /* Windows of `count` places, of which samples are to be made: premultiplied, 2
@@ -31,7 +35,11 @@ typedef struct snow_sample_room {
  * zeros before it; before `gloss` lies an entry that is a number at least.
  * Shaded, the palette holds straight colours, `normals` the voxels' normals and
  * `gloss` the shading table; unshaded, the palette is premultiplied and both
- * are NULL. */
+ * are NULL.
+ *
+ * With a gradient opacity `fades` are the voxels' factors; the palette then
+ * holds straight colours and opacities of the reference length, shaded or not,
+ * and they become those of `exponent` reference lengths here. */
 typedef struct snow_sample_job {
     uint64_t held; /* rows that have a voxel: bit i; the others are passed over,
                       as is what is told of them below */
@@ -47,6 +55,8 @@ typedef struct snow_sample_job {
                        beyond the last row are written, and so are rows that
                        are not held */
     size_t window;  /* floats */
+    const uint16_t *const *fades; /* faded only, as the normals */
+    float exponent;
 } snow_sample_job;
 
 #define SNOW_SAMPLE_BEYOND 16
@@ -54,6 +64,6 @@ typedef struct snow_sample_job {
 typedef void snow_sample_fn(const snow_sample_job *job);
 
 snow_sample_fn *snow_sample_of(snow_isa isa, int code_bytes, int channels,
-                               bool shaded);
+                               bool shaded, bool faded);
 
 #endif

@@ -7,7 +7,8 @@
  *   SAMPLE_GATHER, SAMPLE_REPEAT, SAMPLE_ALPHA, SAMPLE_WITH_ALPHA,
  * SAMPLE_SPREAD V(gather2), V(repeat2), V(alpha2), V(with_alpha2), V(spread2),
  * or V(gather4), V(repeat4), V(alpha4), V(with_alpha4), V(spread4), as the
- * channels SAMPLE_NAME      name of the functions: SAMPLE_NAME(plain), (shaded)
+ * channels SAMPLE_NAME      name of the functions: SAMPLE_NAME(plain),
+ * (shaded), (faded_plain), (faded_shaded)
  *
  * All are undefined at the end.  The voxels of all windows are first set down
  * one after another, so that no lane of a vector is spent on a place without
@@ -89,6 +90,72 @@ TARGET static void SAMPLE_NAME(shaded)(const snow_sample_job *job) {
         V(store)
         (room->samples + i * SAMPLE_CHANNELS,
          SAMPLE_WITH_ALPHA(color, straight));
+    }
+    SAMPLE_NAME(spread)(job);
+}
+
+/* --- with a gradient opacity ---------------------------------------------- */
+
+/* The opacities of all voxels under their factors; the entries are known. */
+TARGET static inline void SAMPLE_NAME(fade)(const snow_sample_job *job,
+                                            int total) {
+    snow_sample_room *room = job->room;
+    uint16_t *fades = room->fades;
+    const float *last = job->palette + SAMPLE_CHANNELS - 1;
+    float exponents[16];
+    for (int i = 0; i < 16; i++)
+        exponents[i] = job->exponent;
+    for (uint64_t left = job->held; left; left &= left - 1) {
+        int row = __builtin_ctzll(left);
+        SAMPLE_COPY(fades, job->fades[row] + job->before[row], job->count);
+        fades += V(popcount)(job->bits[row]);
+    }
+    for (int i = 0; i < total; i += 16) {
+        uint32_t codes[16];
+        V(widen16)(room->fades + i, codes);
+        for (int n = i; n < i + 16; n++)
+            room->opacities[n] =
+                last[(size_t)room->entries[n] * SAMPLE_CHANNELS];
+        NAME(fade16)(codes, exponents, room->opacities + i);
+    }
+}
+
+TARGET static void SAMPLE_NAME(faded_plain)(const snow_sample_job *job) {
+    snow_sample_room *room = job->room;
+    const SAMPLE_CODE *codes = (const SAMPLE_CODE *)(void *)room->codes;
+    const V(places) repeat = SAMPLE_REPEAT();
+    int total = SAMPLE_NAME(codes)(job, false);
+    for (int i = 0; i < total; i += 16)
+        SAMPLE_WIDEN(codes + i, room->entries + i);
+    SAMPLE_NAME(fade)(job, total);
+    for (int i = 0; i < total; i += LANES / SAMPLE_CHANNELS) {
+        V(vec) straight = SAMPLE_GATHER(job->palette, room->entries + i);
+        V(vec) opacity = V(pick)(room->opacities + i, repeat);
+        V(store)
+        (room->samples + i * SAMPLE_CHANNELS,
+         SAMPLE_WITH_ALPHA(V(mul)(straight, opacity), opacity));
+    }
+    SAMPLE_NAME(spread)(job);
+}
+
+TARGET static void SAMPLE_NAME(faded_shaded)(const snow_sample_job *job) {
+    snow_sample_room *room = job->room;
+    const V(places) repeat = SAMPLE_REPEAT();
+    const V(vec) one = V(set1)(SNOW_GLOSS_ONE);
+    const V(vec) step = V(set1)(1 / SNOW_GLOSS_ONE);
+    int total = SAMPLE_NAME(codes)(job, true);
+    SAMPLE_NAME(look_up)(job, total);
+    SAMPLE_NAME(fade)(job, total);
+    for (int i = 0; i < total; i += LANES / SAMPLE_CHANNELS) {
+        V(vec) straight = SAMPLE_GATHER(job->palette, room->entries + i);
+        V(vec) factor = V(pick)(room->factors + i, repeat);
+        V(vec) white = V(pick)(room->whites + i, repeat);
+        V(vec) opacity = V(pick)(room->opacities + i, repeat);
+        V(vec) color = V(min)(V(fma)(straight, factor, white), one);
+        color = V(mul)(color, V(mul)(opacity, step));
+        V(store)
+        (room->samples + i * SAMPLE_CHANNELS,
+         SAMPLE_WITH_ALPHA(color, opacity));
     }
     SAMPLE_NAME(spread)(job);
 }

@@ -1,5 +1,7 @@
 /* classify/sample_levels.h - the sample functions of one level; simd/select.h's
  * words are in force. */
+#include "classify/faded.tmpl.h"
+
 #define SAMPLE_CODE uint8_t
 #define SAMPLE_WIDEN V(widen8)
 #define SAMPLE_CHANNELS 2
@@ -42,8 +44,12 @@
 #include "classify/sample.tmpl.h"
 
 static const snow_sample_table NAME(samples) = {
-    {{NAME(sample_byte2_plain), NAME(sample_byte2_shaded)},
-     {NAME(sample_byte4_plain), NAME(sample_byte4_shaded)}},
-    {{NAME(sample_word2_plain), NAME(sample_word2_shaded)},
-     {NAME(sample_word4_plain), NAME(sample_word4_shaded)}},
+    {{NAME(sample_byte2_plain), NAME(sample_byte2_shaded),
+      NAME(sample_byte2_faded_plain), NAME(sample_byte2_faded_shaded)},
+     {NAME(sample_byte4_plain), NAME(sample_byte4_shaded),
+      NAME(sample_byte4_faded_plain), NAME(sample_byte4_faded_shaded)}},
+    {{NAME(sample_word2_plain), NAME(sample_word2_shaded),
+      NAME(sample_word2_faded_plain), NAME(sample_word2_faded_shaded)},
+     {NAME(sample_word4_plain), NAME(sample_word4_shaded),
+      NAME(sample_word4_faded_plain), NAME(sample_word4_faded_shaded)}},
 };

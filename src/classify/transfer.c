@@ -2,8 +2,12 @@
  *
  * Points lie in rising order, so a value is looked up by bisection.  The
  * search is for the first point beyond the value: where a value repeats, the
- * value itself then belongs to the later point, and the step is above it. */
+ * value itself then belongs to the later point, and the step is above it.
+ *
+ * With a logarithmic scale only the way from one point to the next changes:
+ * places of values among points are compared as values, exactly. */
 #include "classify/transfer.h"
+#include "base/power.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -43,17 +47,16 @@ static snow_status check_colors(snow_context *context,
     return SNOW_OK;
 }
 
-static snow_status check_opacities(snow_context *context,
+static snow_status check_opacities(snow_context *context, const char *kind,
                                    const snow_opacity_point *opacities,
                                    size_t count) {
     for (size_t i = 0; i < count; i++) {
-        SNOW_TRY(check_point(context, "opacity", i, opacities[i].value,
+        SNOW_TRY(check_point(context, kind, i, opacities[i].value,
                              i ? opacities[i - 1].value : 0));
         if (!in_unit(opacities[i].opacity))
             return snow_fail(context, SNOW_BAD_USAGE,
-                             "opacity point %zu is %g; opacity goes from 0 to "
-                             "1",
-                             i + 1, opacities[i].opacity);
+                             "%s point %zu is %g; opacity goes from 0 to 1",
+                             kind, i + 1, opacities[i].opacity);
     }
     return SNOW_OK;
 }
@@ -84,7 +87,7 @@ snow_status snow_transfer_new(snow_context *context,
                          "is incomplete; give at least one point of each",
                          color_count, opacity_count);
     SNOW_TRY(check_colors(context, colors, color_count));
-    SNOW_TRY(check_opacities(context, opacities, opacity_count));
+    SNOW_TRY(check_opacities(context, "opacity", opacities, opacity_count));
     snow_transfer *transfer = snow_allocate_clear(context, sizeof *transfer);
     if (!transfer)
         return SNOW_NO_MEMORY;
@@ -99,8 +102,10 @@ snow_status snow_transfer_new(snow_context *context,
         snow_transfer_free(transfer);
         return SNOW_NO_MEMORY;
     }
-    snprintf(transfer->text, sizeof transfer->text,
-             "%zu colour and %zu opacity points", color_count, opacity_count);
+    char text[80];
+    snprintf(text, sizeof text, "%zu colour and %zu opacity points",
+             color_count, opacity_count);
+    snow_transfer_tell(transfer, text);
     *out = transfer;
     return SNOW_OK;
 }
@@ -110,7 +115,58 @@ void snow_transfer_free(snow_transfer *transfer) {
         return;
     snow_release(transfer->context, transfer->colors);
     snow_release(transfer->context, transfer->opacities);
+    snow_release(transfer->context, transfer->gradients);
     snow_release(transfer->context, transfer);
+}
+
+/* Appends "; gradient opacity 0 at 2, 1 at 10", as far as there is room. */
+static void tell_gradients(snow_transfer *transfer) {
+    char *text = transfer->text;
+    size_t room = sizeof transfer->text, used = transfer->look_bytes;
+    text[used] = 0;
+    for (size_t i = 0; i < transfer->gradient_count; i++) {
+        used = strlen(text);
+        if (used + 40 > room) { /* the longest, and an end */
+            snprintf(text + used, room - used, ", ...");
+            break;
+        }
+        snprintf(text + used, room - used, "%s %.4g at %.5g",
+                 i ? "," : "; gradient opacity", transfer->gradients[i].opacity,
+                 transfer->gradients[i].value);
+    }
+}
+
+void snow_transfer_tell(snow_transfer *transfer, const char *chosen) {
+    snprintf(transfer->text, sizeof transfer->text, "%s", chosen);
+    transfer->look_bytes = strlen(transfer->text);
+    tell_gradients(transfer);
+}
+
+static bool all_one(const snow_opacity_point *points, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (points[i].opacity != 1)
+            return false;
+    return true;
+}
+
+snow_status snow_transfer_set_gradient_opacity(snow_transfer *transfer,
+                                               const snow_opacity_point *points,
+                                               size_t count) {
+    snow_opacity_point *gradients = NULL;
+    SNOW_TRY(
+        check_opacities(transfer->context, "gradient opacity", points, count));
+    if (all_one(points, count))
+        count = 0;
+    if (count) {
+        gradients = copy(transfer->context, points, count, sizeof *points);
+        if (!gradients)
+            return SNOW_NO_MEMORY;
+    }
+    snow_release(transfer->context, transfer->gradients);
+    transfer->gradients = gradients;
+    transfer->gradient_count = count;
+    tell_gradients(transfer);
+    return SNOW_OK;
 }
 
 const char *snow_transfer_text(const snow_transfer *transfer) {
@@ -127,9 +183,36 @@ bool snow_transfer_is_grey(const snow_transfer *transfer) {
     return transfer->grey;
 }
 
+snow_status snow_transfer_set_log(snow_transfer *transfer) {
+    double color = transfer->colors[0].value;
+    double opacity = transfer->opacities[0].value;
+    if (!(color > 0) || !(opacity > 0))
+        return snow_fail(transfer->context, SNOW_BAD_USAGE,
+                         "on a logarithmic scale a control point at %g has no "
+                         "place; give values above 0",
+                         color > 0 ? opacity : color);
+    transfer->log = true;
+    return SNOW_OK;
+}
+
+bool snow_transfer_is_log(const snow_transfer *transfer) {
+    return transfer->log;
+}
+
+/* As part_of_way on a logarithmic scale; points that it does not tell apart are
+ * joined by a straight line. */
+double snow_part_of_decades(double value, double a, double b) {
+    double from = snow_log2_rising(a), to = snow_log2_rising(b);
+    if (!(from < to))
+        return (value - a) / (b - a);
+    return (snow_log2_rising(value) - from) / (to - from);
+}
+
 /* How far `value` is on the way from a to b, which differ; halves where their
  * distance is more than a double can hold. */
-static double part_of_way(double value, double a, double b) {
+static double part_of_way(bool log, double value, double a, double b) {
+    if (log)
+        return snow_part_of_decades(value, a, b);
     if (isfinite(b - a))
         return (value - a) / (b - a);
     return (value / 2 - a / 2) / (b / 2 - a / 2);
@@ -163,14 +246,15 @@ static inline size_t points_up_to(const void *points, size_t size, size_t count,
     return low;
 }
 
-static inline double opacity_behind(const snow_transfer *transfer, size_t up_to,
+static inline double opacity_behind(const snow_opacity_point *points,
+                                    size_t count, bool log, size_t up_to,
                                     double value) {
-    const snow_opacity_point *points = transfer->opacities;
     if (up_to == 0)
         return points[0].opacity;
-    if (up_to == transfer->opacity_count)
+    if (up_to == count)
         return points[up_to - 1].opacity;
-    double t = part_of_way(value, points[up_to - 1].value, points[up_to].value);
+    double t =
+        part_of_way(log, value, points[up_to - 1].value, points[up_to].value);
     return mix(points[up_to - 1].opacity, points[up_to].opacity, t);
 }
 
@@ -181,7 +265,7 @@ static inline void color_behind(const snow_transfer *transfer, size_t up_to,
     double t = 0;
     if (up_to > 0 && up_to < transfer->color_count) {
         b = a + 1;
-        t = part_of_way(value, a->value, b->value);
+        t = part_of_way(transfer->log, value, a->value, b->value);
     }
     rgb[0] = mix(a->red, b->red, t);
     rgb[1] = mix(a->green, b->green, t);
@@ -189,16 +273,33 @@ static inline void color_behind(const snow_transfer *transfer, size_t up_to,
 }
 
 double snow_transfer_opacity(const snow_transfer *transfer, double value) {
-    if (isnan(value))
+    if (isnan(value) || (transfer->log && !(value > 0)))
         return 0;
     size_t up_to =
         points_up_to(transfer->opacities, sizeof *transfer->opacities,
                      transfer->opacity_count, value, 0);
-    return opacity_behind(transfer, up_to, value);
+    return opacity_behind(transfer->opacities, transfer->opacity_count,
+                          transfer->log, up_to, value);
+}
+
+double snow_transfer_gradient_opacity(const snow_transfer *transfer,
+                                      double magnitude) {
+    const snow_opacity_point *points = transfer->gradients;
+    size_t count = transfer->gradient_count;
+    if (!count)
+        return 1;
+    if (isnan(magnitude))
+        return points[count - 1].opacity;
+    size_t up_to = points_up_to(points, sizeof *points, count, magnitude, 0);
+    return opacity_behind(points, count, false, up_to, magnitude);
 }
 
 void snow_transfer_color(const snow_transfer *transfer, double value,
                          double rgb[3]) {
+    if (transfer->log && !(value > 0)) {
+        memset(rgb, 0, 3 * sizeof *rgb);
+        return;
+    }
     size_t up_to = points_up_to(transfer->colors, sizeof *transfer->colors,
                                 transfer->color_count, value, 0);
     color_behind(transfer, up_to, value, rgb);
@@ -206,13 +307,18 @@ void snow_transfer_color(const snow_transfer *transfer, double value,
 
 void snow_transfer_near(const snow_transfer *transfer, double value,
                         snow_transfer_hint *hint, double rgba[4]) {
+    if (transfer->log && !(value > 0)) {
+        memset(rgba, 0, 4 * sizeof *rgba);
+        return;
+    }
     hint->color = points_up_to(transfer->colors, sizeof *transfer->colors,
                                transfer->color_count, value, hint->color);
     hint->opacity =
         points_up_to(transfer->opacities, sizeof *transfer->opacities,
                      transfer->opacity_count, value, hint->opacity);
     color_behind(transfer, hint->color, value, rgba);
-    rgba[3] = opacity_behind(transfer, hint->opacity, value);
+    rgba[3] = opacity_behind(transfer->opacities, transfer->opacity_count,
+                             transfer->log, hint->opacity, value);
 }
 
 void snow_transfer_at(const snow_transfer *transfer, double value,

@@ -6,7 +6,7 @@
 
 #include <snowglass/transfer.h>
 
-#define SNOW_TRANSFER_TEXT_BYTES 256
+#define SNOW_TRANSFER_TEXT_BYTES 512
 
 struct snow_transfer {
     snow_context *context;
@@ -14,8 +14,12 @@ struct snow_transfer {
     size_t color_count;       /* at least 1 */
     snow_opacity_point *opacities;
     size_t opacity_count;
+    bool log; /* joined in the logarithm of values, all above 0 */
+    snow_opacity_point *gradients;       /* factors by gradient magnitude */
+    size_t gradient_count;               /* 0: none, not even factors of 1 */
     bool grey;                           /* red = green = blue everywhere */
-    char text[SNOW_TRANSFER_TEXT_BYTES]; /* what was chosen, for people */
+    char text[SNOW_TRANSFER_TEXT_BYTES]; /* what was chosen, for people: */
+    size_t look_bytes; /* of it without the gradient opacity, which follows */
 };
 
 /* Opacity alone: most voxels need no more; and colour alone, of a value that
@@ -23,6 +27,9 @@ struct snow_transfer {
 double snow_transfer_opacity(const snow_transfer *transfer, double value);
 void snow_transfer_color(const snow_transfer *transfer, double value,
                          double rgb[3]);
+
+/* Writes what was chosen, and what the gradient opacity is, to the text. */
+void snow_transfer_tell(snow_transfer *transfer, const char *chosen);
 
 /* Both, of a value that is not NaN, as snow_transfer_at has them: faster for
  * values that come in order.  The hint begins as zeros and is handed on. */
@@ -32,6 +39,10 @@ typedef struct snow_transfer_hint {
 
 void snow_transfer_near(const snow_transfer *transfer, double value,
                         snow_transfer_hint *hint, double rgba[4]);
+
+/* How far a value is on the way from a to b on a logarithmic scale, 0 < a < b,
+ * a <= value <= b: from 0 to 1, never falling. */
+double snow_part_of_decades(double value, double a, double b);
 
 /* So that rounding never decides whether a voxel is above the threshold. */
 #define SNOW_THRESHOLD_MARGIN 0.0001

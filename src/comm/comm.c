@@ -108,6 +108,11 @@ double snow_comm_seconds(snow_comm *comm) {
     return comm->ops.seconds(comm->self);
 }
 
+void snow_comm_set_timeout(snow_comm *comm, double seconds) {
+    if (comm->ops.timeout)
+        comm->ops.timeout(comm->self, seconds);
+}
+
 void snow_comm_work(snow_comm *comm, double seconds) {
     if (comm->ops.work)
         comm->ops.work(comm->self, seconds);

@@ -2,9 +2,10 @@
  * of figure 8, with codes instead of samples.
  *
  * A band is one item of work: its slices one after another, and of each the
- * rows: native voxels (fetch.h) to masks and codes (rows.h), masks to EA (the
- * schemes), and for shading the normals of the interesting voxels.  The result
- * does not depend on the number of threads, nor on the level of instructions.
+ * rows: native voxels (fetch.h) to masks and codes (rows.h), of which a
+ * gradient opacity strikes out some, masks to EA (the schemes), and for shading
+ * the normals of the interesting voxels.  The result does not depend on the
+ * number of threads, nor on the level of instructions.
  */
 #include "encode/bands.h"
 
@@ -54,18 +55,22 @@ static row_buffers buffers_of(const encode_job *job, int worker) {
 }
 
 /* Room in IA for a slice of a band in which every voxel is interesting. */
-static snow_status reserve_ia(snow_sparse *band, bool with_normals) {
+static snow_status reserve_ia(snow_sparse *band, bool with_normals,
+                              bool with_fades) {
     size_t voxels = (size_t)band->columns * (size_t)band->rows;
-    size_t size = (size_t)band->code_bytes;
+    size_t size = (size_t)band->code_bytes, word = sizeof(uint16_t);
+    size_t begin = band->ia_voxels, end = band->ia_voxels + voxels;
     SNOW_TRY(snow_reserve(band->context, &band->codes, &band->codes_capacity,
-                          band->ia_voxels * size,
-                          (band->ia_voxels + voxels) * size + SNOW_ROW_MARGIN));
-    if (!with_normals)
-        return SNOW_OK;
-    size = sizeof *band->normals;
-    return snow_reserve(band->context, &band->normals, &band->normals_capacity,
-                        band->ia_voxels * size,
-                        (band->ia_voxels + voxels) * size + SNOW_ROW_MARGIN);
+                          begin * size, end * size + SNOW_ROW_MARGIN));
+    if (with_normals)
+        SNOW_TRY(snow_reserve(band->context, &band->normals,
+                              &band->normals_capacity, begin * word,
+                              end * word + SNOW_ROW_MARGIN));
+    if (with_fades)
+        SNOW_TRY(snow_reserve(band->context, &band->fades,
+                              &band->fades_capacity, begin * word,
+                              end * word + SNOW_ROW_MARGIN));
+    return SNOW_OK;
 }
 
 /* Rows that lie end to end, and fill their masks, are one long row. */
@@ -101,20 +106,69 @@ static void make_normals(const encode_job *job, const row_buffers *buffers,
     }
 }
 
+/* Moves the codes and factors that stay from `from` on to `to` on, and strikes
+ * the bits of the others out of a row's mask.  Returns how many stay. */
+static size_t strike_out(snow_sparse *band, const uint32_t *columns,
+                         size_t count, size_t from, size_t to, uint64_t *mask) {
+    size_t size = (size_t)band->code_bytes, stay = 0;
+    for (size_t n = 0; n < count; n++) {
+        uint16_t fade = band->fades[to + n];
+        if (fade == SNOW_NO_FADE)
+            mask[columns[n] / 64] &= ~(UINT64_C(1) << columns[n] % 64);
+        band->fades[to + stay] = fade;
+        if (size == 1)
+            band->codes[to + stay] = band->codes[from + n];
+        else
+            memcpy(band->codes + (to + stay) * 2, band->codes + (from + n) * 2,
+                   2);
+        stay += fade != SNOW_NO_FADE;
+    }
+    return stay;
+}
+
+/* Lets a gradient opacity judge voxels that are interesting by their values:
+ * `rows` of a slice, in bands from `voxel` on.  Returns how many stay. */
+static size_t fade_rows(const snow_bands_order *order, const snow_rows *rows,
+                        const row_buffers *buffers, snow_sparse *band,
+                        snow_fade_row row, size_t voxel) {
+    size_t words = (rows->columns + 63) / 64, from = voxel, to = voxel;
+    row.placement = order->placement;
+    for (size_t n = 0; n < rows->rows; n++, row.row++) {
+        uint64_t *mask = buffers->masks + n * words;
+        size_t count = snow_columns_of_masks(mask, words, buffers->columns);
+        snow_fade_codes(order->fader, &row, rows->voxels + n * rows->stride,
+                        buffers->columns, count, band->fades + to);
+        to += strike_out(band, buffers->columns, count, from, to, mask);
+        from += count;
+    }
+    return to - voxel;
+}
+
 static snow_status encode_slice(const encode_job *job,
                                 const row_buffers *buffers, snow_fetch *fetch,
                                 snow_sparse *band, int64_t first_row,
                                 int64_t slice) {
+    const snow_bands_order *order = job->order;
     size_t begin = band->ia_voxels;
-    snow_rows rows;
-    SNOW_TRY(reserve_ia(band, job->order->maker != NULL));
-    snow_fetch_slice(fetch, slice, &rows);
+    snow_rows rows, apart;
+    SNOW_TRY(reserve_ia(band, order->maker != NULL, order->fader != NULL));
+    snow_fetch_slice(fetch, slice, &apart);
+    rows = apart;
     join_rows(&rows, fetch->size);
     size_t count =
         job->rows.encode_rows(&job->rows, &rows, buffers->masks,
                               band->codes + begin * (size_t)band->code_bytes);
+    if (order->fader && count)
+        count = fade_rows(order, &apart, buffers, band,
+                          (snow_fade_row){
+                              .slice = order->first_slice +
+                                       (order->between ? slice / 2 : slice),
+                              .row = first_row,
+                              .between = order->between && slice % 2,
+                          },
+                          begin);
     band->ia_voxels += count;
-    if (job->order->maker && count)
+    if (order->maker && count)
         make_normals(job, buffers, band, first_row, slice, begin);
     return snow_sparse_add_masks(band, buffers->masks, count);
 }
@@ -202,10 +256,11 @@ static snow_status choose(encode_job *job) {
     int64_t step = sample_step(bands, rows);
     uint64_t voxels = 0, interesting = 0, runs = 0;
     row_buffers buffers = buffers_of(job, 0);
-    snow_sparse *codes = &bands->bands[0]; /* lends its buffer */
-    SNOW_TRY(snow_reserve(
-        bands->context, &codes->codes, &codes->codes_capacity, 0,
-        (size_t)bands->columns * (size_t)bands->code_bytes + SNOW_ROW_MARGIN));
+    snow_sparse *codes = &bands->bands[0]; /* lends its buffers */
+    SNOW_TRY(snow_sparse_begin_band(codes, &snow_scheme_bitmap, bands->columns,
+                                    1, bands->slices, bands->code_bytes,
+                                    order->isa));
+    SNOW_TRY(reserve_ia(codes, false, order->fader != NULL));
     for (int64_t n = 0; n < rows; n += step) {
         snow_fetch_order from = fetch_order(
             order, order->first_slice + n / bands->rows, 1, n % bands->rows, 1);
@@ -214,8 +269,14 @@ static snow_status choose(encode_job *job) {
         from.between = false;
         snow_fetch_begin(&fetch, &from, buffers.fetch);
         snow_fetch_slice(&fetch, 0, &row);
-        interesting += job->rows.encode_rows(&job->rows, &row, buffers.masks,
+        size_t count = job->rows.encode_rows(&job->rows, &row, buffers.masks,
                                              codes->codes);
+        if (order->fader && count)
+            count = fade_rows(order, &row, &buffers, codes,
+                              (snow_fade_row){.slice = from.first_slice,
+                                              .row = from.first_row},
+                              0);
+        interesting += count;
         runs += count_runs(buffers.masks, words);
         voxels += (uint64_t)bands->columns;
     }
@@ -253,6 +314,7 @@ static snow_status measure(snow_bands *bands, const snow_bands_order *order) {
         bands->slices = 2 * order->slice_count - 1;
     bands->code_bytes = order->coder->bytes;
     bands->with_normals = order->maker != NULL;
+    bands->with_fades = order->fader != NULL;
     bands->encoding = order->encoding;
     return SNOW_OK;
 }
@@ -285,6 +347,8 @@ static void add_up(snow_bands *bands) {
     }
     uint64_t size = (uint64_t)bands->code_bytes;
     if (bands->with_normals)
+        size += sizeof(uint16_t);
+    if (bands->with_fades)
         size += sizeof(uint16_t);
     bands->voxels = voxels;
     bands->ea_bytes = ea;

@@ -7,8 +7,9 @@
  *        |  +-----------+ <-----+
  *     32 +  |  band 1   |
  *        |  +-----------+       IA: codes (classify/codes.h), and normals
- *      0 +  |  band 0   |           (classify/normals.h) where shading is on
- *           +-----------+--- u
+ *      0 +  |  band 0   |           (classify/normals.h) where shading is on,
+ *           +-----------+--- u      factors (classify/fade.h) where opacity
+ *                                   depends on gradients
  *
  * A thread encodes or reads whole bands, front to back, and meets nobody.  The
  * same three schemes write EA, and they are read as the same spans. */
@@ -30,7 +31,7 @@ typedef struct snow_bands {
     size_t scratch_capacity;
     int64_t columns, rows, slices;
     int code_bytes;
-    bool with_normals;
+    bool with_normals, with_fades;
     snow_encoding encoding; /* as chosen */
     uint64_t voxels;        /* interesting ones */
     uint64_t ea_bytes, ia_bytes, pa_bytes;
@@ -42,6 +43,7 @@ typedef struct snow_bands_order {
     const snow_placement *placement;
     const snow_coder *coder;
     const snow_normal_maker *maker;   /* NULL: no normals */
+    const snow_fader *fader;          /* NULL: no gradient opacity */
     snow_encoding encoding;           /* AUTO: by measured density and runs */
     int64_t first_slice, slice_count; /* the slab; slice 0 of the bands is
                                          first_slice of the volume */
@@ -73,6 +75,11 @@ static inline const unsigned char *snow_bands_codes(const snow_sparse *band,
 static inline const uint16_t *snow_bands_normals(const snow_sparse *band,
                                                  size_t voxel) {
     return band->normals + voxel;
+}
+
+static inline const uint16_t *snow_bands_fades(const snow_sparse *band,
+                                               size_t voxel) {
+    return band->fades + voxel;
 }
 
 #endif

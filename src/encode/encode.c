@@ -151,6 +151,7 @@ void snow_sparse_fini(snow_sparse *s) {
     snow_release(s->context, s->ia);
     snow_release(s->context, s->codes);
     snow_release(s->context, s->normals);
+    snow_release(s->context, s->fades);
     snow_release(s->context, s->pa);
     *s = (snow_sparse){.context = s->context};
 }

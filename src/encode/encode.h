@@ -48,12 +48,13 @@ typedef struct snow_sparse {
     int64_t filled;    /* slices ended so far */
     unsigned char *ea; /* with bytes beyond its end, to be read past */
     size_t ea_bytes, ea_capacity;
-    /* IA holds samples (footprint), or codes and normals (encode/bands.h). */
+    /* IA holds samples (footprint), or codes, normals and factors
+     * (encode/bands.h). */
     float *ia;
     size_t ia_voxels, ia_capacity; /* capacity in bytes */
     unsigned char *codes;
-    uint16_t *normals;
-    size_t codes_capacity, normals_capacity; /* bytes */
+    uint16_t *normals, *fades;
+    size_t codes_capacity, normals_capacity, fades_capacity; /* bytes */
     int code_bytes; /* 1 or 2: this is a band; 0: a whole volume */
     const snow_mask_loops *loops; /* bands, while encoding */
     snow_slice_pointer *pa;       /* one more than slices */

@@ -24,6 +24,7 @@ typedef struct snow_mask_rows {
     uint32_t *rank;
     const unsigned char *codes[SNOW_WINDOW_ROWS]; /* of the row's first voxel */
     const uint16_t *normals[SNOW_WINDOW_ROWS];    /* NULL: none */
+    const uint16_t *fades[SNOW_WINDOW_ROWS];      /* NULL: none */
     size_t words;                                 /* a row, padding included */
     uint64_t held;                                /* rows that hold a voxel */
 } snow_mask_rows;

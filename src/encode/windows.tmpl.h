@@ -50,6 +50,8 @@ TARGET static void NAME(read_band)(const snow_bands *bands, int64_t slice,
         rows->codes[n] = snow_bands_codes(band, walk.voxel);
         rows->normals[n] =
             bands->with_normals ? snow_bands_normals(band, walk.voxel) : NULL;
+        rows->fades[n] =
+            bands->with_fades ? snow_bands_fades(band, walk.voxel) : NULL;
         size_t voxels = NAME(rank)(rows->bits + n, rows->words, rows->rank + n);
         walk.voxel += voxels;
         walk.row++;

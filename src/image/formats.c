@@ -3,6 +3,7 @@
  * A file is written in the format that its name asks for, and read in the one
  * that its first bytes show.  Nothing here knows what is inside a format. */
 #include "image/image.h"
+#include "image/overlay.h"
 
 #include <string.h>
 
@@ -18,19 +19,29 @@ static const snow_image_format *const formats[] = {
 /* The bytes that formats are told apart by. */
 #define PROBE_BYTES 16
 
-/* Finds the format that a path is to be written in.  There is no default for
+/* The format that a path's suffix stands for, or NULL.  There is no default for
  * other names: a picture in a format that nobody asked for would surprise. */
+static const snow_image_format *format_of(const char *path) {
+    if (strcmp(path, "-") == 0)
+        return formats[0];
+    for (size_t i = 0; i < FORMAT_COUNT; i++)
+        if (snow_has_suffix(path, formats[i]->suffix))
+            return formats[i];
+    return NULL;
+}
+
+int snow_image_bits(const char *path) {
+    const snow_image_format *format = format_of(path);
+    return format ? format->bits : -1;
+}
+
 static snow_status choose_format(snow_context *context, const char *path,
                                  const snow_image_format **out) {
-    if (strcmp(path, "-") == 0) {
-        *out = formats[0];
+    const snow_image_format *format = format_of(path);
+    if (format) {
+        *out = format;
         return SNOW_OK;
     }
-    for (size_t i = 0; i < FORMAT_COUNT; i++)
-        if (snow_has_suffix(path, formats[i]->suffix)) {
-            *out = formats[i];
-            return SNOW_OK;
-        }
     return snow_fail(context, SNOW_BAD_USAGE,
                      "%s: the name does not tell a picture format; let it end "
                      "with .png, .npy or .pfm",
@@ -38,16 +49,16 @@ static snow_status choose_format(snow_context *context, const char *path,
 }
 
 /* Refuses what a format cannot heed, rather than to ignore it. */
-static snow_status check_options(snow_context *context, const char *path,
+static snow_status check_options(const snow_image *image, const char *path,
                                  const snow_image_format *format,
-                                 const snow_image_options *options,
-                                 int channels) {
-    if (format->has_colors && channels == 1)
+                                 const snow_image_options *options) {
+    snow_context *context = image->context;
+    if (format->bits && image->channels == 1)
         return snow_fail(context, SNOW_BAD_USAGE,
                          "%s: %s holds colours, not values in data units; "
                          "write .npy or .pfm, or paint them first",
                          path, format->name);
-    if (!format->has_depth && (options->flatten || options->bits))
+    if (!format->bits && (options->flatten || options->bits))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "%s: %s takes neither a background nor a number of "
                          "bits; leave them out, or write a .png",
@@ -57,6 +68,19 @@ static snow_status check_options(snow_context *context, const char *path,
                          "%s: %d bits a channel are not possible; take 8 or "
                          "16",
                          path, options->bits);
+    const snow_overlay *overlay = options->overlay;
+    if (overlay && !format->bits)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: %s takes no overlay; leave it out, or write a "
+                         ".png",
+                         path, format->name);
+    if (overlay &&
+        (overlay->width != image->width || overlay->height != image->height))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: the overlay is of %d x %d pixels, the picture of "
+                         "%d x %d; make one for it",
+                         path, overlay->width, overlay->height, image->width,
+                         image->height);
     for (int i = 0; options->flatten && i < 3; i++)
         if (!(options->background[i] >= 0 && options->background[i] <= 1))
             return snow_fail(context, SNOW_BAD_USAGE,
@@ -83,8 +107,7 @@ snow_status snow_image_save(const snow_image *image, const char *path,
         options = &standard;
     const snow_image_format *format = NULL;
     SNOW_TRY(choose_format(image->context, path, &format));
-    SNOW_TRY(
-        check_options(image->context, path, format, options, image->channels));
+    SNOW_TRY(check_options(image, path, format, options));
     snow_writer *writer = NULL;
     SNOW_TRY(
         snow_writer_open(image->context, path, options->overwrite, &writer));

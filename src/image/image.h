@@ -41,8 +41,8 @@ static inline void snow_image_rgba(const snow_image *image, size_t index,
 typedef struct snow_image_format {
     const char *name;   /* for messages: "PNG" */
     const char *suffix; /* of the files it writes: ".png" */
-    bool has_depth;     /* heeds options->bits and the background */
-    bool has_colors;    /* and nothing else: no values in data units */
+    int bits;           /* the most a channel, of levels; 0: floats, without
+                           background and overlay */
 
     /* Writes the picture.  The caller opened the writer, and commits it. */
     snow_status (*write)(const snow_image *image,
@@ -57,6 +57,30 @@ typedef struct snow_image_format {
 } snow_image_format;
 
 extern const snow_image_format snow_image_png, snow_image_npy, snow_image_pfm;
+
+/* Rows of a picture as files of 8 and 16 bits hold them: overlay drawn, laid on
+ * the background or with straight alpha, rounded. */
+typedef struct snow_levels {
+    const snow_image *image;
+    const snow_overlay *overlay; /* NULL: none */
+    const double *background;    /* NULL: with alpha */
+    int bits;                    /* 8 or 16 */
+    int samples;  /* a pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
+    int channels; /* of a row before that: 2 or 4 */
+    float *drawn;
+    double *row;
+    unsigned char *bytes; /* of the row that was made last */
+} snow_levels;
+
+/* Begins with a picture, which stays grey where nothing of it has a colour,
+ * unless `colored`.  snow_levels_end must follow, also after a failure. */
+snow_status snow_levels_begin(const snow_image *image,
+                              const snow_image_options *options, bool colored,
+                              snow_levels *out);
+void snow_levels_end(snow_levels *levels);
+
+/* Makes row y: width * samples samples, of 16 bits the high byte first. */
+const unsigned char *snow_levels_row(snow_levels *levels, int y);
 
 /* Refuses, on behalf of a reader, sides outside 1 to SNOW_IMAGE_SIDE. */
 snow_status snow_image_check_sides(const snow_source *source, int64_t width,

@@ -10,7 +10,6 @@
  * fails.  So that no variable is lost on the way, everything that must survive
  * lies in a `png_job` of the function above the one that calls setjmp. */
 #include "image/image.h"
-#include "image/samples.h"
 
 #include <assert.h>
 #include <png.h>
@@ -107,57 +106,11 @@ static snow_status refuse_library(png_job *job) {
 
 /* --- writing -------------------------------------------------------------- */
 
-/* What is written, and the buffers of one row. */
-typedef struct png_plan {
-    const snow_image *image;
-    const double *background; /* NULL: with alpha */
-    int bits;
-    int samples; /* a pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
-    double *row;
-    unsigned char *bytes;
-} png_plan;
-
-/* A grey picture on a background that has a colour has one as well. */
-static png_plan make_plan(const snow_image *image,
-                          const snow_image_options *options) {
-    const double *background = options->flatten ? options->background : NULL;
-    bool grey = image->channels == 2;
-    if (background &&
-        (background[0] != background[1] || background[1] != background[2]))
-        grey = false;
-    return (png_plan){
-        .image = image,
-        .background = background,
-        .bits = options->bits == 16 ? 16 : 8,
-        .samples = (grey ? 1 : 3) + (background ? 0 : 1),
-    };
-}
-
-/* Fills plan->bytes with row y as the file stores it, before filtering. */
-static void encode_row(const png_plan *plan, int y) {
-    const snow_image *image = plan->image;
-    int width = image->width, channels = image->channels;
-    const float *row =
-        image->pixels + (size_t)y * (size_t)width * (size_t)channels;
-    size_t count = (size_t)width * (size_t)plan->samples;
-    if (plan->background)
-        snow_flatten_row(row, width, channels, plan->background, plan->samples,
-                         plan->row);
-    else if (channels == 2)
-        snow_straighten_row(row, width, 2, plan->row);
-    else
-        snow_straighten_row(row, width, 4, plan->row);
-    if (plan->bits == 8)
-        snow_quantise_8(plan->row, count, plan->bytes);
-    else
-        snow_quantise_16(plan->row, count, plan->bytes);
-}
-
 /* Level 1, the filter "up" and runs alone (Z_RLE) were measured to be the best
  * trade on renderings: as fast as deflate's quickest matching at 8 bits and a
  * third faster at 16, in somewhat less space; level 6 takes four times as long
  * for a fifth less. */
-static void write_header(png_job *job, const png_plan *plan) {
+static void write_header(png_job *job, snow_levels *levels) {
     static const int types[] = {0, PNG_COLOR_TYPE_GRAY,
                                 PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
                                 PNG_COLOR_TYPE_RGB_ALPHA};
@@ -166,15 +119,15 @@ static void write_header(png_job *job, const png_plan *plan) {
     png_set_compression_strategy(job->png, Z_RLE);
     png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
     png_set_compression_buffer_size(job->png, 1 << 16);
-    png_set_IHDR(job->png, job->info, (png_uint_32)plan->image->width,
-                 (png_uint_32)plan->image->height, plan->bits,
-                 types[plan->samples], PNG_INTERLACE_NONE,
+    png_set_IHDR(job->png, job->info, (png_uint_32)levels->image->width,
+                 (png_uint_32)levels->image->height, levels->bits,
+                 types[levels->samples], PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(job->png, job->info);
 }
 
 /* Whatever fails in libpng comes back here, once. */
-static snow_status run_writer(png_job *job, const png_plan *plan) {
+static snow_status run_writer(png_job *job, snow_levels *levels) {
     if (setjmp(job->jump))
         return job->status;
     job->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, job, hear_error,
@@ -184,11 +137,9 @@ static snow_status run_writer(png_job *job, const png_plan *plan) {
         job->info = png_create_info_struct(job->png);
     if (!job->info)
         return refuse_library(job);
-    write_header(job, plan);
-    for (int y = 0; y < plan->image->height; y++) {
-        encode_row(plan, y);
-        png_write_row(job->png, plan->bytes);
-    }
+    write_header(job, levels);
+    for (int y = 0; y < levels->image->height; y++)
+        png_write_row(job->png, snow_levels_row(levels, y));
     png_write_end(job->png, job->info);
     return SNOW_OK;
 }
@@ -196,21 +147,17 @@ static snow_status run_writer(png_job *job, const png_plan *plan) {
 static snow_status write_png(const snow_image *image,
                              const snow_image_options *options,
                              snow_writer *writer) {
-    png_plan plan = make_plan(image, options);
-    size_t count = (size_t)image->width * (size_t)plan.samples;
+    snow_levels levels;
     png_job job = {.context = image->context,
                    .refusal = SNOW_FAILED,
                    .prefix = "the PNG file cannot be made",
                    .remedy = "write a .npy instead",
                    .writer = writer};
-    plan.row = snow_allocate_array(image->context, count, sizeof(double));
-    plan.bytes = snow_allocate_array(image->context, count, 2);
-    snow_status status = SNOW_NO_MEMORY;
-    if (plan.row && plan.bytes)
-        status = run_writer(&job, &plan);
+    snow_status status = snow_levels_begin(image, options, false, &levels);
+    if (status == SNOW_OK)
+        status = run_writer(&job, &levels);
     png_destroy_write_struct(&job.png, &job.info);
-    snow_release(image->context, plan.bytes);
-    snow_release(image->context, plan.row);
+    snow_levels_end(&levels);
     return status;
 }
 
@@ -359,8 +306,7 @@ static snow_status read_png(snow_source *source, snow_image **out) {
 const snow_image_format snow_image_png = {
     .name = "PNG",
     .suffix = ".png",
-    .has_depth = true,
-    .has_colors = true,
+    .bits = 16,
     .write = write_png,
     .probe = probe_png,
     .read = read_png,

@@ -10,6 +10,10 @@
  * mpi.h replaces by macros (malloc, free, sleep, ...). */
 #include <snowglass/mpi.h>
 
+#ifndef SMPI_H /* where time is simulated, tests would be counted */
+#include "mpi/watch.h"
+#endif
+
 #include <stdint.h>
 #include <string.h>
 
@@ -33,7 +37,11 @@ typedef struct mpi_side {
     /* Of the last wait: what was asked for. */
     MPI_Request *requests;
     int *places; /* of the requests among the messages */
-    int room;    /* of the two */
+    int *peers;  /* of the requests */
+    int room;    /* of the three */
+#ifndef SMPI_H
+    mpi_watch *watch;
+#endif
 } mpi_side;
 
 /* --- failures --------------------------------------------------------------
@@ -117,6 +125,8 @@ static snow_status make_room(mpi_side *side, int count) {
         grow(side, &side->requests, 0, room * sizeof(MPI_Request));
     if (status == SNOW_OK)
         status = grow(side, &side->places, 0, room * sizeof(int));
+    if (status == SNOW_OK)
+        status = grow(side, &side->peers, 0, room * sizeof(int));
     if (status == SNOW_OK)
         side->room = (int)room;
     return status;
@@ -204,7 +214,9 @@ static int gather(mpi_side *side, const snow_message *messages, int count) {
     int asked = 0;
     for (int i = 0; i < count; i++)
         if (messages[i].handle) {
-            side->requests[asked] = slot_of(side, &messages[i])->request;
+            const mpi_slot *slot = slot_of(side, &messages[i]);
+            side->requests[asked] = slot->request;
+            side->peers[asked] = slot->peer;
             side->places[asked++] = i;
         }
     return asked;
@@ -234,19 +246,43 @@ static void finish(mpi_side *side, snow_message *message,
     message->handle = NULL;
 }
 
+/* Waits for one of the first `asked` requests, which it has in *found where MPI
+ * tells; its error is in *error.  Errors: of the watch. */
+static snow_status await(mpi_side *side, int asked, int *found,
+                         MPI_Status *done, int *error) {
+    *found = -1;
+#ifdef SMPI_H
+    *error = MPI_Waitany(asked, side->requests, found, done);
+    return SNOW_OK;
+#else
+    snow_status status = snow_watch_begin(side->watch);
+    while (status == SNOW_OK) {
+        int there = 0;
+        *error = MPI_Testany(asked, side->requests, found, &there, done);
+        if (*error != MPI_SUCCESS || there)
+            return SNOW_OK;
+        status = snow_watch_turn(side->watch, side->peers, asked);
+    }
+    side->failed = true;
+    return status;
+#endif
+}
+
 static snow_status wait_any(void *self, snow_message *messages, int count,
                             int *which) {
     mpi_side *side = self;
     snow_status status = make_room(side, count);
     if (status != SNOW_OK)
         return status;
-    int asked = gather(side, messages, count), found = -1;
+    int asked = gather(side, messages, count), found, error;
     if (!asked) {
         *which = -1;
         return SNOW_OK;
     }
     MPI_Status done;
-    int error = MPI_Waitany(asked, side->requests, &found, &done);
+    status = await(side, asked, &found, &done, &error);
+    if (status != SNOW_OK)
+        return status;
     if (error != MPI_SUCCESS) {
         bool known = found >= 0 && found < asked;
         return fail_side(
@@ -262,17 +298,22 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
  */
 static snow_status wait_all(void *self, snow_message *messages, int count) {
     mpi_side *side = self;
-    for (int i = 0; i < count; i++) {
+    snow_status status = make_room(side, 1);
+    for (int i = 0; i < count && status == SNOW_OK; i++) {
         if (!messages[i].handle)
             continue;
-        MPI_Status found;
-        mpi_slot *slot = slot_of(side, &messages[i]);
-        int error = MPI_Wait(&slot->request, &found);
+        MPI_Status done;
+        int found, error;
+        gather(side, &messages[i], 1);
+        status = await(side, 1, &found, &done, &error);
+        if (status != SNOW_OK)
+            return status;
         if (error != MPI_SUCCESS)
-            return fail_side(side, error, "exchange messages with", slot->peer);
-        finish(side, &messages[i], &found);
+            return fail_side(side, error, "exchange messages with",
+                             side->peers[0]);
+        finish(side, &messages[i], &done);
     }
-    return SNOW_OK;
+    return status;
 }
 
 static double seconds(void *self) {
@@ -285,6 +326,11 @@ static double seconds(void *self) {
 static void work(void *self, double length) {
     (void)self;
     smpi_execute(length);
+}
+#else
+static void limit_waits(void *self, double length) {
+    mpi_side *side = self;
+    snow_watch_limit(side->watch, length);
 }
 #endif
 
@@ -326,9 +372,13 @@ static void end(void *self) {
             }
         drop_group(&side->group);
     }
+#ifndef SMPI_H
+    snow_watch_free(side->watch, !finalized && !side->failed);
+#endif
     snow_context_release(side->context, side->slots);
     snow_context_release(side->context, side->requests);
     snow_context_release(side->context, side->places);
+    snow_context_release(side->context, side->peers);
     snow_context_release(side->context, side);
 }
 
@@ -366,7 +416,7 @@ static void remark_threads(snow_context *context) {
 
 /* This rank's objects over `ours`. */
 static snow_status equip(snow_context *context, MPI_Comm ours,
-                         snow_comm **out) {
+                         mpi_side **out_side, snow_comm **out) {
     static const snow_comm_ops ops = {.size = sizeof ops,
                                       .send = send_bytes,
                                       .receive = receive_bytes,
@@ -375,6 +425,8 @@ static snow_status equip(snow_context *context, MPI_Comm ours,
                                       .seconds = seconds,
 #ifdef SMPI_H
                                       .work = work,
+#else
+                                      .timeout = limit_waits,
 #endif
                                       .end = end};
     int rank = 0, ranks = 1;
@@ -387,6 +439,8 @@ static snow_status equip(snow_context *context, MPI_Comm ours,
     snow_status status = snow_comm_new(context, &ops, side, rank, ranks, out);
     if (status != SNOW_OK)
         snow_context_release(context, side);
+    else
+        *out_side = side;
     return status;
 }
 
@@ -407,6 +461,7 @@ static snow_status agree(snow_context *context, MPI_Comm ours,
 snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
                           snow_comm **out) {
     MPI_Comm ours;
+    mpi_side *side = NULL;
     snow_comm *comm = NULL;
     snow_status status = check_group(context, group);
     if (status != SNOW_OK)
@@ -415,7 +470,12 @@ snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
     if (error != MPI_SUCCESS)
         return fail_mpi(context, error, "duplicate the group", -1);
     MPI_Comm_set_errhandler(ours, MPI_ERRORS_RETURN);
-    status = agree(context, ours, equip(context, ours, &comm));
+    status = agree(context, ours, equip(context, ours, &side, &comm));
+#ifndef SMPI_H
+    if (status == SNOW_OK)
+        status =
+            agree(context, ours, snow_watch_new(context, ours, &side->watch));
+#endif
     if (status != SNOW_OK) {
         if (comm)
             snow_comm_free(comm); /* and the duplicate with it */

@@ -144,6 +144,12 @@ static json_t *write_told_reals(const recipe_key *key, const void *field) {
     return numbers[0] != 0 ? write_reals(key, field) : NULL;
 }
 
+/* Of numbers that are NaN where they are not told. */
+static json_t *write_place(const recipe_key *key, const void *field) {
+    const double *numbers = field;
+    return isnan(numbers[0]) ? NULL : write_reals(key, field);
+}
+
 static bool read_longs(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     int64_t numbers[3];
@@ -445,8 +451,11 @@ typedef struct point_fields {
 } point_fields;
 
 static_assert(offsetof(snow_recipe, opacities) -
-                      offsetof(snow_recipe, opacity_count) ==
-                  offsetof(point_fields, points),
+                          offsetof(snow_recipe, opacity_count) ==
+                      offsetof(point_fields, points) &&
+                  offsetof(snow_recipe, gradient_opacities) -
+                          offsetof(snow_recipe, gradient_opacity_count) ==
+                      offsetof(point_fields, points),
               "the record's fields lie as they are read");
 
 static bool read_point(const json_t *pair, const snow_opacity_point *before,
@@ -565,6 +574,7 @@ const recipe_key recipe_keys[] = {
     KNOWN("preset", preset, preset_name, snow_preset_named),
     KNOWN("colormap", colormap, colormap_name, snow_colormap_named),
     MADE("opacity", points, opacity_count, 0, 0, 0),
+    MADE("gradient-opacity", points, gradient_opacity_count, 0, 0, 0),
     MADE("range", range, range, 0, 0, 0),
     MADE("opacity-unit", unit, opacity_per_mm, 0, 0, 0),
     NAME("shade", settings.shade, shade_name, shade_named),
@@ -580,6 +590,12 @@ const recipe_key recipe_keys[] = {
     REAL("roll", roll, 0, 0),
     REAL("zoom", zoom, 1e-6, 1e6),
     REAL("perspective", fov, 0, SNOW_FOV_MOST),
+    {"position", read_reals, write_place, AT(position), 0, 0, 3, NULL, NULL},
+    {"target", read_reals, write_place, AT(target), 0, 0, 3, NULL, NULL},
+    {"up", read_reals, write_place, AT(up), 0, 0, 3, NULL, NULL},
+    MADE("no-labels", flag, no_labels, 0, 0, 0),
+    MADE("legend", flag, legend, 0, 0, 0),
+    MADE("time-label", flag, time_label, 0, 0, 0),
     {"threads", read_int, write_told_int, AT(settings.threads), 1, 4096, 0,
      NULL, NULL},
     MADE("deterministic", switch, settings.deterministic, 0, 0, 0),

@@ -11,6 +11,8 @@
 void snow_recipe_init(snow_recipe *recipe) {
     *recipe = (snow_recipe){
         .size = sizeof *recipe, .width = 512, .height = 512, .zoom = 1};
+    for (int i = 0; i < 3; i++)
+        recipe->position[i] = recipe->target[i] = recipe->up[i] = NAN;
     snow_settings_init(&recipe->settings);
 }
 
@@ -161,6 +163,17 @@ void snow_recipe_look(const snow_recipe *recipe, snow_look *out) {
         out->opacities = recipe->opacities;
         out->opacity_count = recipe->opacity_count;
     }
+    if (recipe->gradient_opacity_count) {
+        out->gradient_opacities = recipe->gradient_opacities;
+        out->gradient_opacity_count = recipe->gradient_opacity_count;
+    }
+}
+
+static bool take_place(const double told[3], double out[3]) {
+    if (isnan(told[0]))
+        return false;
+    memcpy(out, told, 3 * sizeof *out);
+    return true;
 }
 
 snow_status snow_recipe_view(snow_context *context, const snow_recipe *recipe,
@@ -178,6 +191,13 @@ snow_status snow_recipe_view(snow_context *context, const snow_recipe *recipe,
     view.roll = recipe->roll;
     view.zoom = recipe->zoom;
     view.fov = recipe->fov;
+    view.has_position = take_place(recipe->position, view.position);
+    view.has_target = take_place(recipe->target, view.target);
+    view.has_up = take_place(recipe->up, view.upward);
+    if (view.has_position && recipe->view)
+        return snow_context_fail(context, SNOW_BAD_USAGE,
+                                 "\"position\" and \"view\" both say where "
+                                 "the camera is; leave one of the two out");
     *out = view;
     return SNOW_OK;
 }
@@ -228,6 +248,9 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
         status = snow_insitu_set_view(insitu, &view);
     if (status == SNOW_OK)
         status = snow_insitu_set_settings(insitu, &settings);
+    if (status == SNOW_OK)
+        status =
+            snow_insitu_set_marks(insitu, recipe->legend, recipe->time_label);
     if (status == SNOW_OK && recipe->output)
         status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
     return status;

@@ -4,16 +4,6 @@
 
 #include <math.h>
 
-#define RADIAN 0.017453292519943295769 /* pi / 180 */
-
-double snow_pixel_pitch(const snow_volume_info *info, const snow_view *view) {
-    double side = view->zoom * fmin(view->width, view->height);
-    double across = 2 * snow_volume_radius(info);
-    /* The cone of the field of view touches the sphere of radius R, and is
-     * R / cos(fov / 2) wide where the target is. */
-    return across / side / cos(view->fov / 2 * RADIAN);
-}
-
 static double determinant(double m[3][3]) {
     double cross[3];
     snow_cross(m[1], m[2], cross);
@@ -50,10 +40,9 @@ static void carry_to_camera(const snow_volume_info *info,
     }
 }
 
-bool snow_eye_place(const snow_volume_info *info, const snow_view *view,
+bool snow_eye_place(const snow_volume_info *info, const snow_camera *at,
                     snow_placement *p) {
-    double pitch = snow_pixel_pitch(info, view);
-    double distance = snow_volume_radius(info) / sin(view->fov / 2 * RADIAN);
+    double pitch = at->pitch, distance = at->distance;
     double camera[3][3], steps[3][3];
     snow_eye eye;
     carry_to_camera(info, p, camera);
@@ -65,7 +54,9 @@ bool snow_eye_place(const snow_volume_info *info, const snow_view *view,
     const double half[2] = {p->width / 2.0, p->height / 2.0};
     for (int i = 0; i < 3; i++) {
         eye.middle[i] = middle[i];
-        eye.at[i] = middle[i] - distance * steps[i][2];
+        eye.at[i] = middle[i] - at->middle[0] * steps[i][0] +
+                    at->middle[1] * steps[i][1] -
+                    (distance - at->middle[2]) * steps[i][2];
         eye.ray[i][1] = pitch * steps[i][0];
         eye.ray[i][2] = pitch * steps[i][1];
         eye.ray[i][0] = distance * steps[i][2] - half[0] * eye.ray[i][1] -

@@ -15,7 +15,8 @@
  *    /  |  \                    of the picture than that of slice 1
  *   /   |   \    slice 1
  *
- * No voxel is behind the camera, for the eye is farther than R from the target.
+ * No voxel is behind the camera: the eye is farther than R from the target, or
+ * snow_camera_make has seen to it.
  * Yet with a wide field of view the plane of a slice may pass beside the eye,
  * and slices on either side of it are seen, in different parts of the picture:
  * a ray meets those in front of it only. */
@@ -28,13 +29,9 @@
  * shows nothing. */
 #define SNOW_EDGE_ON 1e-6
 
-/* The world length of a pixel's side, at the target where the view is in
- * perspective. */
-double snow_pixel_pitch(const snow_volume_info *info, const snow_view *view);
-
 /* Sets the eye of a placement that holds everything else.  False where a
  * number is beyond all measure. */
-bool snow_eye_place(const snow_volume_info *info, const snow_view *view,
+bool snow_eye_place(const snow_volume_info *info, const snow_camera *camera,
                     snow_placement *placement);
 
 /* The direction of the ray through pixel position (x, y). */

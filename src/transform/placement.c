@@ -95,16 +95,16 @@ static void to_pixels(const snow_placement *p, const double step[3],
     pixels[1] = -snow_dot(step, p->up) / pitch;
 }
 
-static void place_slices(const snow_volume_info *info, const snow_view *view,
-                         snow_placement *p) {
-    double pitch = snow_pixel_pitch(info, view);
+static void place_slices(const snow_volume_info *info,
+                         const snow_camera *camera, snow_placement *p) {
+    double pitch = camera->pitch;
     double *steps[3];
     steps[p->u_axis] = p->step_u;
     steps[p->v_axis] = p->step_v;
     steps[p->slice_axis] = p->step_slice;
-    /* The target, the middle of the boxes, falls on the image's middle. */
-    p->origin[0] = view->width / 2.0;
-    p->origin[1] = view->height / 2.0;
+    /* The target falls on the image's middle. */
+    p->origin[0] = p->width / 2.0 + camera->middle[0] / pitch;
+    p->origin[1] = p->height / 2.0 - camera->middle[1] / pitch;
     for (int axis = 0; axis < 3; axis++) {
         double step[3];
         step_of(info, axis, step);
@@ -130,58 +130,29 @@ static bool invert_slice_map(snow_placement *p) {
     return true;
 }
 
-static snow_status check_view(snow_context *context, const snow_view *view) {
-    if (view->width < 1 || view->width > 32768 || view->height < 1 ||
-        view->height > 32768)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "an image of %dx%d pixels is not possible; take 1 to "
-                         "32768 a side",
-                         view->width, view->height);
-    if (!(view->zoom > 0) || !isfinite(view->zoom))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "zoom is %g; take a number above 0", view->zoom);
-    if (view->fov != 0 &&
-        !(view->fov >= SNOW_FOV_LEAST && view->fov <= SNOW_FOV_MOST))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "a field of view of %g degrees is not possible; take "
-                         "%g to %g, or 0 for a parallel projection",
-                         view->fov, SNOW_FOV_LEAST, (double)SNOW_FOV_MOST);
-    if (!isfinite(view->azimuth) || !isfinite(view->elevation) ||
-        !isfinite(view->roll))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "a camera angle is not a finite number");
-    if (!(fabs(snow_length(view->back) - 1) <= 1e-6) ||
-        !(fabs(snow_length(view->up) - 1) <= 1e-6) ||
-        !(fabs(snow_dot(view->back, view->up)) <= 1e-6))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "back and up must be unit vectors at right angles; "
-                         "begin with snow_view_named");
-    return SNOW_OK;
-}
-
 /* The camera of a view, and a placement with nothing else in it. */
-static snow_status place_camera(snow_context *context, const snow_view *view,
+static snow_status place_camera(snow_context *context,
+                                const snow_volume_info *info,
+                                const snow_view *view, snow_camera *camera,
                                 snow_placement *p) {
-    SNOW_TRY(check_view(context, view));
+    SNOW_TRY(snow_camera_make(context, info, view, camera));
     *p = (snow_placement){.width = view->width, .height = view->height};
-    memcpy(p->back, view->back, sizeof p->back);
-    memcpy(p->up, view->up, sizeof p->up);
-    snow_cross(p->up, p->back, p->right);
-    snow_frame_turn(p->right, p->up, p->back, view->azimuth, view->elevation,
-                    view->roll);
+    memcpy(p->right, camera->right, sizeof p->right);
+    memcpy(p->up, camera->up, sizeof p->up);
+    memcpy(p->back, camera->back, sizeof p->back);
     return SNOW_OK;
 }
 
 static snow_status place(snow_context *context, const snow_volume_info *info,
-                         const snow_view *view, int slice_axis,
-                         snow_placement *p) {
+                         const snow_view *view, const snow_camera *camera,
+                         int slice_axis, snow_placement *p) {
     cut_along(info, slice_axis, p);
     measure_path(info, p);
-    place_slices(info, view, p);
+    place_slices(info, camera, p);
     bool fits = isfinite(p->path) && isfinite(p->origin[0]) &&
                 isfinite(p->origin[1]) && invert_slice_map(p);
     if (fits && view->fov > 0)
-        fits = snow_eye_place(info, view, p);
+        fits = snow_eye_place(info, camera, p);
     if (fits)
         return SNOW_OK;
     return snow_fail(context, SNOW_BAD_INPUT,
@@ -195,8 +166,10 @@ snow_status snow_placement_make(snow_context *context,
                                 const snow_volume_info *info,
                                 const snow_view *view, snow_placement *out) {
     snow_placement p;
-    SNOW_TRY(place_camera(context, view, &p));
-    SNOW_TRY(place(context, info, view, choose_axis(info, p.back), &p));
+    snow_camera camera;
+    SNOW_TRY(place_camera(context, info, view, &camera, &p));
+    int slice_axis = choose_axis(info, p.back);
+    SNOW_TRY(place(context, info, view, &camera, slice_axis, &p));
     *out = p;
     return SNOW_OK;
 }
@@ -206,8 +179,9 @@ snow_status snow_placement_make_along(snow_context *context,
                                       const snow_view *view, int slice_axis,
                                       snow_placement *out) {
     snow_placement p;
-    SNOW_TRY(place_camera(context, view, &p));
-    SNOW_TRY(place(context, info, view, slice_axis, &p));
+    snow_camera camera;
+    SNOW_TRY(place_camera(context, info, view, &camera, &p));
+    SNOW_TRY(place(context, info, view, &camera, slice_axis, &p));
     *out = p;
     return SNOW_OK;
 }

@@ -16,6 +16,16 @@
 
 #include <snowglass/view.h>
 
+/* Where a camera stands, told from its target, which falls on the middle of the
+ * picture. */
+typedef struct snow_camera {
+    /* A right-handed frame of unit vectors in the world. */
+    double right[3], up[3], back[3];
+    double middle[3]; /* of the voxel boxes: steps along right, up and back */
+    double distance;  /* of the eye; 0: a parallel projection */
+    double pitch;     /* world length of a pixel's side, at the target */
+} snow_camera;
+
 /* An eye that sees the volume in perspective.  Vectors are in steps of (u, v,
  * slice). */
 typedef struct snow_eye {
@@ -50,6 +60,13 @@ typedef struct snow_placement {
     bool perspective;
     snow_eye eye;
 } snow_placement;
+
+/* The camera of a view before a volume.  Errors: SNOW_BAD_USAGE: a number out
+ * of range; a position that is the target; an up along the line of sight; in
+ * perspective a voxel that is not in front of the camera. */
+snow_status snow_camera_make(snow_context *context,
+                             const snow_volume_info *info,
+                             const snow_view *view, snow_camera *out);
 
 /* Places a volume before a camera (model, points 2, 5 and 6).  The slice axis
  * is the one whose slice normal is most parallel to the line of sight; within

@@ -10,6 +10,7 @@
  * exactly; complex numbers, objects and records are refused. */
 #include "base/npy.h"
 #include "volume/array.h"
+#include "volume/write.h"
 
 #include <string.h>
 
@@ -141,4 +142,5 @@ const snow_format snow_format_npy = {
     .crops = true,
     .channels = true,
     .read = read_npy,
+    .write = snow_npy_write,
 };

@@ -2,6 +2,7 @@
  *
  * What the user leaves out is looked for in the file's name, where archives of
  * volumes put it: engine_256x256x110_uint8.raw, head_64x64x93_u16le.raw.gz. */
+#include "volume/strangers.h"
 #include "volume/write.h"
 
 #include <ctype.h>
@@ -106,8 +107,16 @@ static void read_name(snow_context *context, const char *path,
 
 /* Sizes or the type are missing: the user's omission where the file is meant
  * as raw data; else a file that no reader knows. */
-static snow_status refuse_untold(snow_context *context, const char *name,
+static snow_status refuse_untold(snow_source *source,
                                  const snow_volume_options *options) {
+    const char *name = snow_source_name(source);
+    snow_context *context = snow_source_context(source);
+    unsigned char bytes[SNOW_PEEK_BYTES];
+    size_t size;
+    SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
+    const char *stranger = snow_stranger(bytes, size);
+    if (stranger)
+        return snow_fail(context, SNOW_BAD_INPUT, "%s", stranger);
     bool meant = options->dims[0] || options->type || options->endian ||
                  options->offset || snow_has_suffix(name, ".raw") ||
                  snow_has_suffix(name, ".raw.gz");
@@ -126,7 +135,7 @@ static snow_status read_raw(snow_source *source,
     if (!all.dims[0] || !all.type || !all.endian)
         read_name(context, snow_source_name(source), &all);
     if (!all.dims[0] || !all.dims[1] || !all.dims[2] || !all.type)
-        return refuse_untold(context, snow_source_name(source), &all);
+        return refuse_untold(source, &all);
     /* Whatever was gzip is unpacked by now, and of unknown length.  A packed
      * file whose first bytes are damaged would be shown as noise. */
     if (snow_has_suffix(snow_source_name(source), ".gz") &&

@@ -19,6 +19,7 @@ static const struct {
     {".nii", &snow_format_nifti, false},
     {".nii.gz", &snow_format_nifti, true},
     {".mha", &snow_format_metaimage, false},
+    {".npy", &snow_format_npy, false},
     {".raw", &snow_format_raw, false},
     {".raw.gz", &snow_format_raw, true},
 };
@@ -102,7 +103,7 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
     if (i == ENDING_COUNT)
         return snow_fail(volume->context, SNOW_BAD_USAGE,
                          "%s: volumes are written as .nrrd, .nii, .nii.gz, "
-                         ".mha, .raw and .raw.gz; choose one of these endings",
+                         ".mha, .npy, .raw and .raw.gz; choose one of these endings",
                          path);
     snow_writer *writer;
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));

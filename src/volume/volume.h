@@ -75,6 +75,7 @@ extern const snow_format snow_format_tiff;
 extern const snow_format snow_format_png;
 extern const snow_format snow_format_hdf5;
 extern const snow_format snow_format_netcdf;
+extern const snow_format snow_format_den;
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */

@@ -25,5 +25,7 @@ snow_status snow_nifti_write(const snow_volume *volume, const char *path,
                              snow_writer *writer);
 snow_status snow_metaimage_write(const snow_volume *volume, const char *path,
                                  snow_writer *writer);
+snow_status snow_npy_write(const snow_volume *volume, const char *path,
+                           snow_writer *writer);
 
 #endif

@@ -1,0 +1,208 @@
+/* image/font.c - the letters of labels and legends.
+ *
+ * The font was drawn for this project and is in the public domain.  A glyph is
+ * a text of strokes on a grid of 12 units from the base line to the top of
+ * capitals, y upwards:
+ *
+ *   -xyxyxy   straight lines from point to point
+ *   ~xyxyxy   a curve from the first to the last point, whose control points
+ *             are all others: the quadratic B-spline, which runs from the
+ * middle of each side of the control polygon to that of the next oxyxyxy   the
+ * same closed: four corners of a box make a round letter .xy       a dot
+ *
+ * x is a digit, y a digit, a, b, c (10, 11, 12) or z, y, x, w (-1 to -4).  A
+ * glyph is as wide as its farthest point; SPACE lies between two.  Strokes have
+ * round ends and one width, so that the letters stay letters from 9 pixels to a
+ * hundred. */
+#include "image/font.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define CAPITAL 12.0 /* units */
+#define SPACE 3.8
+#define BLANK 2.5 /* width of the blank, beside the space around it */
+#define PIECES 6  /* straight pieces of a curve between two middles */
+
+/* From ' ' on. */
+static const char *const glyphs[] = {
+    "", "-0c04.00", "-0c09-3c39", "-2c10-6c50-0878-0474",
+    "~7a7c0c0676700002-4e3y", "-7c00o0c3c3909o43737040", "~70171c5c5805005075",
+    "-0c09", "~3c09013y", "~0c39310y", "-3a32-0864-0468", "-3933-0666", "-110y",
+    "-0555", ".00", "-005c",
+    /* 0 to 9 */
+    "o0c7c7000", "-093c30", "~090c7c7700-0070", "~0a0c6c6626~2676700002",
+    "-505c0474", "-6c0c06~0628787000~0002", "~6c0c03o07777000", "-0c7c20",
+    "o1c6c6616o06767000", "~107079o75050c7c",
+    /* : to @ */
+    ".07.01", ".17-110y", "-5a0652", "-0868-0464", "-0a5602",
+    "~090c6c673633.30", "~60000c8c836368o28686323",
+    /* A to Z */
+    "-004c80-1474", "-000c~0c6c6606~06767000", "~797c0c007073",
+    "-000c~0c7c7000", "-7c0c0070-0666", "-7c0c00-0666", "~797c0c007075-7545",
+    "-000c-707c-0676", "-0c4c-0040-2c20", "~5c500003", "-000c-7c04-2670",
+    "-0c0070", "-000c458c80", "-000c707c", "o0c8c8000", "-000c~0c7c7505",
+    "o0c8c8000-538z", "-000c~0c7c7606-3670", "~7a7c0c0676700002", "-0c8c-4c40",
+    "~0c00707c", "-0c408c", "-0c2049608c", "-0c70-007c", "-0c468c-4640",
+    "-0c7c0070",
+    /* [ to ` */
+    "-2c0c0y2y", "-0c50", "-0c2c2y0y", "-093c69", "-0y7y", "-0c2a",
+    /* a to z */
+    "o08686000-6860", "-0c00o08686000", "~666808006062", "-6c60o08686000",
+    "-0464~646808006062", "~4c1c18-1810-0848", "-6860o08686000~606w0w0x",
+    "-0c00~05086860", "-0800.0b", "-2820~202w0w.2b", "-0c00-5803-2560", "-0c00",
+    "-0800~05084840~45488880", "-0800~05086860", "o08686000", "-080wo08686000",
+    "-686wo08686000", "-0800~050848",
+    "~57580804545000"
+    "01",
+    "-1c13~131040-0848", "~08006063-6860", "-083068", "-0820466088",
+    "-0860-0068", "-0830-682w", "-08680060",
+    /* { to ~ */
+    "-2c1b1706151z2y", "-0c0y", "-0c1b1726151z0y", "~05184467"};
+
+static_assert(sizeof glyphs / sizeof *glyphs == 127 - ' ',
+              "a glyph for each character");
+
+/* Of bytes that are no ASCII. */
+static const char box[] = "-000c7c7000";
+
+static const char *glyph_of(char letter) {
+    unsigned char code = (unsigned char)letter;
+    return code >= 32 && code < 127 ? glyphs[code - 32] : box;
+}
+
+static double column(char digit) {
+    return digit - '0';
+}
+
+static double row(char digit) {
+    if (digit <= '9')
+        return digit - '0';
+    return digit < 'p' ? digit - 'a' + 10 : digit - 'z' - 1;
+}
+
+static bool is_mode(char letter) {
+    return letter == '-' || letter == '~' || letter == 'o' || letter == '.';
+}
+
+static double glyph_width(const char *glyph) {
+    double widest = *glyph ? 0 : BLANK;
+    while (*glyph) {
+        if (is_mode(*glyph)) {
+            glyph++;
+            continue;
+        }
+        if (column(*glyph) > widest)
+            widest = column(*glyph);
+        glyph += 2;
+    }
+    return widest;
+}
+
+double snow_font_width(const char *text) {
+    double width = 0;
+    for (const char *at = text; *at; at++)
+        width += glyph_width(glyph_of(*at)) + (at > text ? SPACE : 0);
+    return width / CAPITAL;
+}
+
+/* Where a glyph is drawn. */
+typedef struct pen {
+    snow_overlay *overlay;
+    double x, y, unit; /* of its grid's origin, pixels; pixels a unit */
+    double at[2];      /* grid */
+} pen;
+
+static snow_status line_to(pen *p, double x, double y) {
+    snow_status status = snow_overlay_stroke(
+        p->overlay, p->x + p->at[0] * p->unit, p->y - p->at[1] * p->unit,
+        p->x + x * p->unit, p->y - y * p->unit);
+    p->at[0] = x;
+    p->at[1] = y;
+    return status;
+}
+
+/* A parabola from where the pen is. */
+static snow_status curve_to(pen *p, const double control[2], double x,
+                            double y) {
+    const double from[2] = {p->at[0], p->at[1]}, to[2] = {x, y};
+    for (int n = 1; n <= PIECES; n++) {
+        double t = (double)n / PIECES, s = 1 - t, at[2];
+        for (int i = 0; i < 2; i++)
+            at[i] = s * s * from[i] + 2 * s * t * control[i] + t * t * to[i];
+        SNOW_TRY(line_to(p, at[0], at[1]));
+    }
+    return SNOW_OK;
+}
+
+static void point_at(const char *points, size_t index, double point[2]) {
+    point[0] = column(points[2 * index]);
+    point[1] = row(points[2 * index + 1]);
+}
+
+/* The middle of the side of the control polygon that begins with a point. */
+static void middle_at(const char *points, size_t count, size_t index,
+                      double middle[2]) {
+    double a[2], b[2];
+    point_at(points, index % count, a);
+    point_at(points, (index + 1) % count, b);
+    middle[0] = (a[0] + b[0]) / 2;
+    middle[1] = (a[1] + b[1]) / 2;
+}
+
+static snow_status draw_lines(pen *p, const char *points, size_t count) {
+    double to[2];
+    for (size_t n = count > 1 ? 1 : 0; n < count; n++) {
+        point_at(points, n, to);
+        SNOW_TRY(line_to(p, to[0], to[1]));
+    }
+    return SNOW_OK;
+}
+
+/* Of an open curve the first and the last side are straight up to their
+ * middles, so that it ends in its end points. */
+static snow_status draw_curve(pen *p, const char *points, size_t count,
+                              bool closed) {
+    double control[2], to[2];
+    middle_at(points, count, closed ? count - 1 : 0, to);
+    if (closed)
+        memcpy(p->at, to, sizeof to);
+    else
+        SNOW_TRY(line_to(p, to[0], to[1]));
+    for (size_t n = closed ? 0 : 1; n < count - (closed ? 0 : 1); n++) {
+        point_at(points, n, control);
+        middle_at(points, count, n, to);
+        SNOW_TRY(curve_to(p, control, to[0], to[1]));
+    }
+    if (closed)
+        return SNOW_OK;
+    point_at(points, count - 1, to);
+    return line_to(p, to[0], to[1]);
+}
+
+static snow_status draw_glyph(pen *p, const char *glyph) {
+    while (*glyph) {
+        char mode = *glyph++;
+        size_t length = 0;
+        while (glyph[length] && !is_mode(glyph[length]))
+            length += 2;
+        point_at(glyph, 0, p->at);
+        if (mode == '-' || mode == '.')
+            SNOW_TRY(draw_lines(p, glyph, length / 2));
+        else
+            SNOW_TRY(draw_curve(p, glyph, length / 2, mode == 'o'));
+        glyph += length;
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_font_draw(snow_overlay *overlay, double x, double y,
+                           double height, const char *text) {
+    pen p = {.overlay = overlay, .x = x, .y = y, .unit = height / CAPITAL};
+    for (; *text; text++) {
+        const char *glyph = glyph_of(*text);
+        SNOW_TRY(draw_glyph(&p, glyph));
+        p.x += (glyph_width(glyph) + SPACE) * p.unit;
+    }
+    return SNOW_OK;
+}

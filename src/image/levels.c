@@ -1,0 +1,102 @@
+/* image/levels.c - rows of a picture in the levels of 8 and 16 bits, with what
+ * is drawn over it: what PNG and WebP files hold, and movies' frames. */
+#include "image/image.h"
+#include "image/overlay.h"
+#include "image/samples.h"
+
+#include <string.h>
+
+/* Pixels at a time: their samples stay in the first-level cache. */
+#define SOME 256
+
+/* A grey picture becomes one of colours where its background or its overlay has
+ * any, or the file knows no grey. */
+static void plan(const snow_image *image, const snow_image_options *options,
+                 bool colored, snow_levels *out) {
+    const double *b = options->flatten ? options->background : NULL;
+    const snow_overlay *overlay = options->overlay;
+    bool grey = image->channels == 2 && !colored && (!overlay || overlay->grey);
+    *out = (snow_levels){.image = image,
+                         .overlay = overlay,
+                         .background = b,
+                         .bits = options->bits == 16 ? 16 : 8,
+                         .channels = grey ? 2 : 4};
+    if (b && (b[0] != b[1] || b[1] != b[2]))
+        grey = false;
+    out->samples = (grey ? 1 : 3) + (b ? 0 : 1);
+}
+
+snow_status snow_levels_begin(const snow_image *image,
+                              const snow_image_options *options, bool colored,
+                              snow_levels *out) {
+    snow_context *context = image->context;
+    plan(image, options, colored, out);
+    uint64_t count = (uint64_t)image->width * (uint64_t)out->samples;
+    uint64_t drawn = (uint64_t)image->width * (uint64_t)out->channels;
+    out->row = snow_allocate_array(context, count, sizeof(double));
+    out->bytes = snow_allocate_array(context, count, 2);
+    out->drawn = snow_allocate_array(context, drawn, sizeof(float));
+    return out->row && out->bytes && out->drawn ? SNOW_OK : SNOW_NO_MEMORY;
+}
+
+void snow_levels_end(snow_levels *levels) {
+    snow_context *context = levels->image->context;
+    snow_release(context, levels->drawn);
+    snow_release(context, levels->bytes);
+    snow_release(context, levels->row);
+}
+
+/* Some pixels from (x, y) on, with the shapes over them. */
+static void draw_some(const snow_image *image, const snow_overlay *overlay,
+                      int y, int x, int count, int channels, float *out) {
+    size_t first = (size_t)y * (size_t)image->width + (size_t)x;
+    if (channels == image->channels)
+        memcpy(out, image->pixels + first * (size_t)channels,
+               (size_t)count * (size_t)channels * sizeof *out);
+    else
+        for (int i = 0; i < count; i++)
+            snow_image_rgba(image, first + (size_t)i, out + 4 * i);
+    if (overlay)
+        snow_overlay_draw(overlay, y, x, count, channels, out);
+}
+
+const unsigned char *snow_levels_row(snow_levels *l, int y) {
+    int width = l->image->width;
+    size_t count = (size_t)width * (size_t)l->samples;
+    draw_some(l->image, l->overlay, y, 0, width, l->channels, l->drawn);
+    if (l->background)
+        snow_flatten_row(l->drawn, width, l->channels, l->background,
+                         l->samples, l->row);
+    else
+        snow_straighten_row(l->drawn, width, l->channels, l->row);
+    if (l->bits == 8)
+        snow_quantise_8(l->row, count, l->bytes);
+    else
+        snow_quantise_16(l->row, count, l->bytes);
+    return l->bytes;
+}
+
+/* Takes no memory: a movie's frames are made while others are rendered. */
+void snow_image_bytes_drawn(const snow_image *image,
+                            const snow_image_options *options,
+                            unsigned char *rgb) {
+    static const double black[3] = {0, 0, 0};
+    const double *background = options->flatten ? options->background : black;
+    float drawn[4 * SOME];
+    double samples[3 * SOME];
+    for (int y = 0; y < image->height; y++)
+        for (int x = 0; x < image->width; x += SOME) {
+            int some = image->width - x < SOME ? image->width - x : SOME;
+            draw_some(image, options->overlay, y, x, some, 4, drawn);
+            snow_flatten_row(drawn, some, 4, background, 3, samples);
+            snow_quantise_8(samples, 3 * (size_t)some, rgb);
+            rgb += 3 * some;
+        }
+}
+
+void snow_image_bytes(const snow_image *image, const double background[3],
+                      unsigned char *rgb) {
+    snow_image_options options = {.flatten = true};
+    memcpy(options.background, background, sizeof options.background);
+    snow_image_bytes_drawn(image, &options, rgb);
+}

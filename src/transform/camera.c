@@ -1,0 +1,191 @@
+/* transform/camera.c - where the camera of a view stands (model, point 2): by
+ * its name and angles, or by points of the world.
+ *
+ * All is told from the target, which falls on the middle of the picture. */
+#include "base/vec3.h"
+#include "transform/transform.h"
+
+#include <math.h>
+#include <string.h>
+
+#define RADIAN 0.017453292519943295769 /* pi / 180 */
+
+/* Sine of the angle below which two directions count as one. */
+#define ALONG 1e-6
+
+static snow_status check_numbers(snow_context *context, const snow_view *view) {
+    if (view->width < 1 || view->width > 32768 || view->height < 1 ||
+        view->height > 32768)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "an image of %dx%d pixels is not possible; take 1 to "
+                         "32768 a side",
+                         view->width, view->height);
+    if (!(view->zoom > 0) || !isfinite(view->zoom))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "zoom is %g; take a number above 0", view->zoom);
+    if (view->fov != 0 &&
+        !(view->fov >= SNOW_FOV_LEAST && view->fov <= SNOW_FOV_MOST))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a field of view of %g degrees is not possible; take "
+                         "%g to %g, or 0 for a parallel projection",
+                         view->fov, SNOW_FOV_LEAST, (double)SNOW_FOV_MOST);
+    if (!isfinite(view->azimuth) || !isfinite(view->elevation) ||
+        !isfinite(view->roll))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "a camera angle is not a finite number");
+    return SNOW_OK;
+}
+
+static snow_status check_view(snow_context *context, const snow_view *view) {
+    SNOW_TRY(check_numbers(context, view));
+    if (!(fabs(snow_length(view->back) - 1) <= 1e-6) ||
+        !(fabs(snow_length(view->up) - 1) <= 1e-6) ||
+        !(fabs(snow_dot(view->back, view->up)) <= 1e-6))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "back and up must be unit vectors at right angles; "
+                         "begin with snow_view_named");
+    return SNOW_OK;
+}
+
+/* The middle of the voxel boxes as a step from the target. */
+static void middle_from_target(const snow_volume_info *info,
+                               const snow_view *view, double step[3]) {
+    for (int i = 0; i < 3; i++) {
+        step[i] = 0;
+        if (!view->has_target)
+            continue;
+        step[i] = info->matrix[i][3] - view->target[i];
+        for (int axis = 0; axis < 3; axis++)
+            step[i] +=
+                info->matrix[i][axis] * ((double)info->dims[axis] - 1) / 2;
+    }
+}
+
+/* From the target, or the middle, to the position: `back`, and its length. */
+static snow_status look_back(snow_context *context,
+                             const snow_volume_info *info,
+                             const snow_view *view, snow_camera *out) {
+    snow_view aimed = *view;
+    double step[3];
+    aimed.has_target = true; /* at the position */
+    memcpy(aimed.target, view->position, sizeof aimed.target);
+    middle_from_target(info, &aimed, step);
+    for (int i = 0; i < 3; i++)
+        out->back[i] =
+            view->has_target ? view->position[i] - view->target[i] : -step[i];
+    out->distance = snow_length(out->back);
+    if (!(out->distance > 1e-9 * snow_volume_radius(info)) ||
+        !isfinite(out->distance))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "the camera's position is %s; move one of them",
+                         view->has_target
+                             ? "its target"
+                             : "the middle of the volume, its target");
+    snow_normalize(out->back);
+    return SNOW_OK;
+}
+
+/* What of `upward` is at right angles to the line of sight. */
+static bool straighten(const double upward[3], const double back[3],
+                       double up[3]) {
+    double length = snow_length(upward), unit[3];
+    if (!(length > 0) || !isfinite(length))
+        return false;
+    for (int i = 0; i < 3; i++)
+        unit[i] = upward[i] / length;
+    double along = snow_dot(unit, back);
+    for (int i = 0; i < 3; i++)
+        up[i] = unit[i] - along * back[i];
+    if (!(snow_length(up) > ALONG))
+        return false;
+    snow_normalize(up);
+    return true;
+}
+
+static snow_status look_up(snow_context *context, const snow_view *view,
+                           snow_camera *out) {
+    static const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0};
+    if (view->has_up) {
+        if (straighten(view->upward, out->back, out->up))
+            return SNOW_OK;
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "up is %g,%g,%g, which is no direction or the line of "
+                         "sight; take another",
+                         view->upward[0], view->upward[1], view->upward[2]);
+    }
+    if (!view->has_position)
+        memcpy(out->up, view->up, sizeof out->up);
+    else if (!straighten(z, out->back, out->up))
+        straighten(y, out->back, out->up);
+    return SNOW_OK;
+}
+
+static bool are_finite(const snow_view *view) {
+    bool good = true;
+    for (int i = 0; i < 3; i++)
+        good = good && (!view->has_position || isfinite(view->position[i])) &&
+               (!view->has_target || isfinite(view->target[i]));
+    return good;
+}
+
+/* Distance and pitch.  The cone of the usual field of view touches the sphere
+ * of radius R, and is R / cos(fov / 2) wide where the target is. */
+static void measure(const snow_volume_info *info, const snow_view *view,
+                    snow_camera *out) {
+    double side = view->zoom * fmin(view->width, view->height);
+    double radius = snow_volume_radius(info), half = view->fov / 2 * RADIAN;
+    if (view->fov > 0 && view->has_position) {
+        out->pitch = 2 * out->distance * tan(half) / side;
+        return;
+    }
+    out->distance = view->fov > 0 ? radius / sin(half) : 0;
+    out->pitch = 2 * radius / side / cos(half);
+}
+
+/* A voxel beside or behind an eye would be seen at all places at once.  The
+ * usual eye is farther than R from the middle, and sees none. */
+static snow_status check_front(snow_context *context,
+                               const snow_volume_info *info,
+                               const snow_camera *camera) {
+    double nearest = camera->distance - camera->middle[2];
+    for (int axis = 0; axis < 3; axis++) {
+        double step[3];
+        for (int i = 0; i < 3; i++)
+            step[i] = info->matrix[i][axis];
+        nearest -=
+            fabs(snow_dot(step, camera->back)) * (double)info->dims[axis] / 2;
+    }
+    if (camera->distance == 0 || nearest > 1e-6 * camera->distance)
+        return SNOW_OK;
+    return snow_fail(context, SNOW_BAD_USAGE,
+                     "a part of the volume is beside or behind the camera, "
+                     "which is %g from its target; move it %g farther away, or "
+                     "leave perspective out",
+                     camera->distance, -nearest + 1e-3 * camera->distance);
+}
+
+snow_status snow_camera_make(snow_context *context,
+                             const snow_volume_info *info,
+                             const snow_view *view, snow_camera *out) {
+    snow_camera c = {.distance = 0};
+    double middle[3];
+    SNOW_TRY(check_view(context, view));
+    if (!are_finite(view))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "the camera's position or target is not finite");
+    memcpy(c.back, view->back, sizeof c.back);
+    if (view->has_position)
+        SNOW_TRY(look_back(context, info, view, &c));
+    SNOW_TRY(look_up(context, view, &c));
+    snow_cross(c.up, c.back, c.right);
+    snow_frame_turn(c.right, c.up, c.back, view->azimuth, view->elevation,
+                    view->roll);
+    measure(info, view, &c);
+    middle_from_target(info, view, middle);
+    c.middle[0] = snow_dot(middle, c.right);
+    c.middle[1] = snow_dot(middle, c.up);
+    c.middle[2] = snow_dot(middle, c.back);
+    SNOW_TRY(check_front(context, info, &c));
+    *out = c;
+    return SNOW_OK;
+}

@@ -1,0 +1,191 @@
+/* volume/convert.c - the same data values in another scalar type.
+ *
+ * A block at a time through doubles.  Nothing is lost without a word: a value
+ * that the type cannot hold ends the conversion, one that is rounded is
+ * counted. */
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+#define BLOCK 1024
+
+/* From its start the block of a volume and what became of it so far. */
+typedef struct conversion {
+    snow_type type;
+    bool integer;
+    double least, most;  /* that the type holds */
+    double slope, shift; /* applied to data values */
+    bool clamps;         /* to least and most */
+    int64_t lost;        /* values that do not fit */
+    int64_t rounded;
+    double first_lost;
+} conversion;
+
+/* Doubles that the integer types hold, ends included; those of 64 bits end at
+ * the last double before the power of two. */
+static void set_limits(conversion *c) {
+    static const double limits[][2] = {
+        [SNOW_INT8] = {INT8_MIN, INT8_MAX},
+        [SNOW_UINT8] = {0, UINT8_MAX},
+        [SNOW_INT16] = {INT16_MIN, INT16_MAX},
+        [SNOW_UINT16] = {0, UINT16_MAX},
+        [SNOW_INT32] = {INT32_MIN, INT32_MAX},
+        [SNOW_UINT32] = {0, UINT32_MAX},
+        [SNOW_INT64] = {-0x1p63, 0x1p63 - 1024},
+        [SNOW_UINT64] = {0, 0x1p64 - 2048},
+        [SNOW_FLOAT32] = {-0x1.fffffep127, 0x1.fffffep127},
+        [SNOW_FLOAT64] = {-INFINITY, INFINITY},
+    };
+    c->integer = c->type != SNOW_FLOAT32 && c->type != SNOW_FLOAT64;
+    c->least = limits[c->type][0];
+    c->most = limits[c->type][1];
+}
+
+/* What a data value becomes; floats keep what is not finite. */
+static double fit(conversion *c, double value) {
+    double wanted = c->slope * value + c->shift;
+    if (c->clamps)
+        wanted = fmin(fmax(wanted, c->least), c->most);
+    double kept = c->integer ? nearbyint(wanted) : wanted;
+    bool held = kept >= c->least && kept <= c->most;
+    if (c->integer ? !held || isnan(value) : isfinite(value) && !held) {
+        if (!c->lost++)
+            c->first_lost = value;
+        return 0;
+    }
+    if (c->type == SNOW_FLOAT32)
+        kept = (double)(float)wanted;
+    c->rounded += kept != wanted && !isnan(wanted);
+    return kept;
+}
+
+static void store(snow_type type, const double *values, int64_t first,
+                  size_t count, void *voxels) {
+    switch (type) {
+#define NARROW(name, c_type, text)             \
+    case SNOW_##name: {                        \
+        c_type *to = (c_type *)voxels + first; \
+        for (size_t i = 0; i < count; i++)     \
+            to[i] = (c_type)values[i];         \
+        break;                                 \
+    }
+        SNOW_TYPE_MAP(NARROW)
+#undef NARROW
+    case SNOW_TYPE_NONE:
+        break;
+    }
+}
+
+/* Every value fitted, and stored where `voxels` is not NULL. */
+static void run(const snow_volume *volume, conversion *c, void *voxels) {
+    const snow_volume_info *info = &volume->info;
+    int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
+    double values[BLOCK];
+    for (int64_t first = 0; first < all; first += BLOCK) {
+        size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
+        snow_volume_natives(volume, first, count, values);
+        for (size_t i = 0; i < count; i++)
+            values[i] = fit(c, info->slope * values[i] + info->intercept);
+        if (voxels)
+            store(c->type, values, first, count, voxels);
+    }
+}
+
+static void copy(const snow_volume *volume, void *voxels) {
+    int64_t count;
+    uint64_t bytes;
+    snow_volume_count(volume->info.dims, volume->info.type, &count, &bytes);
+    memcpy(voxels, volume->voxels, (size_t)bytes);
+}
+
+static bool is_plain(const snow_volume_info *info) {
+    return info->slope == 1 && info->intercept == 0;
+}
+
+/* The least type, not below the native one, that holds the data values. */
+static snow_type exact_type(const snow_volume *volume) {
+    static const snow_type order[] = {SNOW_INT8,   SNOW_UINT8, SNOW_INT16,
+                                      SNOW_UINT16, SNOW_INT32, SNOW_UINT32,
+                                      SNOW_FLOAT32};
+    snow_type native = volume->info.type;
+    if (is_plain(&volume->info))
+        return native;
+    for (size_t i = 0; i < sizeof order / sizeof *order; i++) {
+        conversion c = {.type = order[i], .slope = 1};
+        set_limits(&c);
+        if (snow_type_size(c.type) < snow_type_size(native))
+            continue;
+        run(volume, &c, NULL);
+        if (!c.lost && !c.rounded)
+            return c.type;
+    }
+    return SNOW_FLOAT64;
+}
+
+/* range[0] .. range[1] onto all that an integer type holds. */
+static snow_status set_range(const snow_volume *volume, const double range[2],
+                             conversion *c) {
+    if (!c->integer || snow_type_size(c->type) > 4)
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "values are spread over the integers of 8, 16 and 32 "
+                         "bits only; leave out the range to keep them in %s",
+                         snow_type_name(c->type));
+    if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "%g to %g is no range to be spread; give a lower and "
+                         "a higher value",
+                         range[0], range[1]);
+    c->slope = (c->most - c->least) / (range[1] - range[0]);
+    c->shift = c->least - c->slope * range[0];
+    c->clamps = true;
+    return SNOW_OK;
+}
+
+static snow_status refuse(const snow_volume *volume, const conversion *c) {
+    return snow_fail(volume->context, SNOW_BAD_USAGE,
+                     "%lld values such as %g do not fit %s; %s",
+                     (long long)c->lost, c->first_lost, snow_type_name(c->type),
+                     isnan(c->first_lost)
+                         ? "convert to float32, which has NaN"
+                         : "convert to float32, or give a range to be spread");
+}
+
+/* Told, since the file does not show it. */
+static void report(const snow_volume *volume, const conversion *c,
+                   const double range[2]) {
+    const char *name = snow_type_name(c->type);
+    if (range)
+        snow_notify(volume->context, "values %g to %g became %g to %g of %s",
+                    range[0], range[1], c->least, c->most, name);
+    else if (c->rounded)
+        snow_notify(volume->context, "%lld values were rounded to %s",
+                    (long long)c->rounded, name);
+}
+
+snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
+                                const double range[2], snow_volume **out) {
+    snow_volume_info info = volume->info;
+    conversion c = {.type = type, .slope = 1};
+    snow_volume *made;
+    if (!type)
+        c.type = exact_type(volume);
+    set_limits(&c);
+    if (range)
+        SNOW_TRY(set_range(volume, range, &c));
+    info.type = c.type;
+    info.slope = 1;
+    info.intercept = 0;
+    SNOW_TRY(snow_volume_new(volume->context, &info, &made));
+    if (is_plain(&volume->info) && c.type == volume->info.type && !range)
+        copy(volume, made->owned); /* 64 bits whole */
+    else
+        run(volume, &c, made->owned);
+    if (c.lost) {
+        snow_volume_close(made);
+        return refuse(volume, &c);
+    }
+    report(volume, &c, range);
+    *out = made;
+    return SNOW_OK;
+}
