@@ -12,6 +12,7 @@
 #include "report.h"
 #include "scene.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -26,11 +27,42 @@ int check_settings(const options *asked) {
         strcmp(asked->encoding, "auto") != 0)
         return fail_usage("--encoding: method original encodes nothing; leave "
                           "one of the two out");
+    bool iso = strcmp(asked->mode, "iso") == 0;
+    if (iso != !isnan(asked->iso))
+        return fail_usage("--%s: needs --%s beside it",
+                          iso ? "mode iso" : "iso",
+                          iso ? "iso VALUE" : "mode iso");
     if (asked->view && asked->position.given)
         return fail_usage("--position: --view says where the camera is as "
                           "well; leave one of the two out");
     int done = marks_check(asked);
     return done == GO_ON ? check_look(asked) : done;
+}
+
+static bool has_suffix(const char *path, const char *suffix) {
+    size_t length = strlen(path), end = strlen(suffix);
+    return length >= end && strcmp(path + length - end, suffix) == 0;
+}
+
+/* Depths are of one picture, numbers, and go to a place of their own. */
+static int check_depth(const options *asked) {
+    const char *path = asked->depth;
+    if (!path)
+        return GO_ON;
+    if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0)
+        return fail_usage("--depth: mode %s has none; take over or iso",
+                          asked->mode);
+    if (!has_suffix(path, ".npy") && !has_suffix(path, ".pfm"))
+        return fail_usage("--depth: %s: depths are numbers; let the name end "
+                          "with .npy or .pfm",
+                          path);
+    const char *others[] = {asked->output, asked->stats};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (others[i] &&
+            (strcmp(path, others[i]) == 0 || same_place(path, others[i])))
+            return fail_usage("--depth: goes where --%s goes; name two places",
+                              i ? "stats" : "output");
+    return GO_ON;
 }
 
 /* Needs no file, so it comes before everything else. */
@@ -49,6 +81,8 @@ static int check_combination(const options *asked) {
         return fail_usage("--output: '-' is a terminal; send it to a pipe or a "
                           "file");
     int done = scene_check(asked);
+    if (done == GO_ON)
+        done = check_depth(asked);
     return done == GO_ON ? check_settings(asked) : done;
 }
 
@@ -68,6 +102,8 @@ static int check_paths(snow_context *context, const options *asked) {
     snow_status status =
         snow_image_check(context, asked->output, (int)asked->size[0],
                          (int)asked->size[1], &form);
+    if (status == SNOW_OK && asked->depth)
+        status = snow_image_check_path(context, asked->depth, asked->overwrite);
     if (status != SNOW_OK)
         return fail_status(context, status);
     return asked->stats ? check_stats_path(asked->stats, asked->overwrite)
@@ -125,6 +161,8 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->threads = (int)asked->threads;
     out->deterministic = asked->deterministic;
     out->mode = (snow_mode)snow_mode_named(asked->mode);
+    out->iso = isnan(asked->iso) ? 0 : asked->iso;
+    out->depth = asked->depth != NULL;
 }
 
 int make_settings(const options *asked, const snow_volume_info *info,
@@ -188,11 +226,15 @@ static int write_picture(work *w, const options *asked) {
         interrupt_hold(); /* before the word, so that who reads it may rely */
     if (!launch_talks())
         return GO_ON;
+    const snow_image_options plain = {.overwrite = asked->overwrite};
     snow_status status = make_marks(w, &overlay);
     progress_begin(asked, "writing");
     form.overlay = overlay;
     if (status == SNOW_OK)
         status = snow_image_save(w->image, asked->output, &form);
+    if (status == SNOW_OK && asked->depth)
+        status = snow_image_save(snow_frame_depth(w->scene.frame), asked->depth,
+                                 &plain);
     snow_overlay_free(overlay);
     w->scene.times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->scene.context, status);

@@ -51,17 +51,21 @@ const option_row option_table[] = {
     {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
      read_flag,
      FIELD(overwrite), 0, 0, "",
-     "replace files that exist, of --output and --stats (they are kept)"},
-    LATER("depth", 0, "FILE", TOPIC_OUTPUT, "leave it out"),
+     "replace files that exist, of --output, --depth and --stats (they are "
+     "kept)"},
+    {"depth", 0, "FILE", TOPIC_OUTPUT, VERB_RENDER, read_text, FIELD(depth), 0,
+     0, "", "of modes over and iso: a .npy or .pfm of world distances from the "
+     "target's plane along the line of sight to where opacity passes 1/2, or to "
+     "the surface; NaN elsewhere"},
 
-    {"mode", 'm', "over|mip|minip|mean|sum", TOPIC_MODE, RENDER, read_choice,
-     FIELD(mode), 0, 0, "iso",
+    {"mode", 'm', "over|mip|minip|mean|sum|iso", TOPIC_MODE, RENDER, read_choice,
+     FIELD(mode), 0, 0, "",
      "how the voxels that a ray meets make a pixel: laid over one another, the "
-     "largest or smallest value, its mean or its sum along the ray; all but over "
-     "take every voxel, and .npy and .pfm hold mean and sum in data units "
-     "(over)"},
-    LATER("iso", 0, "VALUE", TOPIC_MODE,
-          "a step of --opacity at the value looks alike"),
+     "largest or smallest value, its mean or its sum along the ray, or the "
+     "surface of --iso; all but over take every voxel, and .npy and .pfm hold "
+     "mean and sum in data units (over)"},
+    {"iso", 0, "VALUE", TOPIC_MODE, RENDER, read_real, FIELD(iso), 0, 0, "",
+     "data value of the surface of mode iso: where rays first meet it, shaded"},
 
     {"threshold", 0, "T", TOPIC_SPARSE, LOOKED, read_real, FIELD(threshold), 0,
      255, "", "a voxel with opacity greater than T of 255 is interesting; info "
@@ -293,7 +297,7 @@ const verb_row verb_table[] = {
 const topic_row topic_table[] = {
     {"output", "the picture file: size, background, bits", NULL},
     {"mode", "how samples make a pixel",
-     "over, as in the paper, and mip, minip, mean, sum; not iso"},
+     NULL},
     {"sparse", "interesting voxels, encodings, methods", NULL},
     {"kernel", "the reconstruction kernel and its footprint", NULL},
     {"look", "transfer function, colours, shading", NULL},

@@ -30,6 +30,7 @@ void options_init(options *out) {
         .method = snow_method_name(settings.method),
         .kernel = snow_kernel_name(settings.kernel),
         .mode = "over",
+        .iso = NAN,
         .window = NAN,
         .level = NAN,
         .opacity_unit = "voxel",

@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "classify/classify.h"
 #include "composite/over.h"
+#include "depth.h"
 #include "encode/encode.h"
 #include "splat/gather.h"
 #include "splat/splat.h"
@@ -437,6 +438,7 @@ static snow_status throw_band(const pass *work, int64_t band, worker *w) {
             throw_classified(work, w, slice, first, end);
         mark = snow_seconds();
         snow_job_clip_sheet(job, slice, &w->sheet);
+        snow_depth_note_sheet(job, slice, &w->sheet);
         snow_lay_sheet(job->pixels, &w->sheet, snow_job_lay(job));
         lap(&mark, &w->seconds[COMPOSITE]);
     }
@@ -507,6 +509,10 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
                                  slice + job->clip.stored[2], runs[i].first, y,
                                  runs[i].end - runs[i].first, job->channels,
                                  w->sheet.pixels + line * stride + at);
+            if (job->depths)
+                snow_depth_note(job, slice, runs[i].first, y,
+                                runs[i].end - runs[i].first,
+                                w->sheet.pixels + line * stride + at);
             exact->over(job->pixels + (size_t)y * stride + at,
                         w->sheet.pixels + line * stride + at,
                         (size_t)(runs[i].end - runs[i].first));

@@ -8,6 +8,7 @@
 #include "classify/transfer.h"
 #include "combine/combine.h"
 #include "composite/over.h"
+#include "depth.h"
 #include "footprint.h"
 #include "ghosts.h"
 #include "image/image.h"
@@ -394,6 +395,8 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
     frame->stats.seconds_frame = snow_seconds() - start;
     frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
     snow_status status = over ? snow_job_finish(frame, &job) : SNOW_OK;
+    if (status == SNOW_OK && over && frame->depth)
+        status = snow_depth_over(frame, &job);
     if (status == SNOW_OK)
         *out = image;
     else

@@ -54,6 +54,7 @@ typedef struct snow_job {
     int channels;
     snow_over_fn *lay; /* in the place of over; NULL: over */
     float *pixels;     /* the local image: transparent, to be filled */
+    float *depths;     /* of its pixels (depth.h); NULL: not asked for */
     snow_stats *stats;
 } snow_job;
 

@@ -18,6 +18,7 @@
 #include "base/vec3.h"
 #include "classify/probe.h"
 #include "composite/reduce.h"
+#include "depth.h"
 #include "frame.h"
 #include "image/image.h"
 #include "sheared_parts.h"
@@ -400,20 +401,6 @@ static snow_status map_voxels(snow_frame *frame, snow_job *job, snow_iso *iso,
                              job->settings.threads, &iso->reached);
 }
 
-/* What tells the distance of an index position from the target's plane. */
-static void place_depth(const snow_job *job, double depth[4]) {
-    const snow_placement *p = &job->placement;
-    const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
-    const int64_t sides[3] = {p->columns, p->rows, p->slices};
-    depth[3] = 0;
-    for (int n = 0; n < 3; n++) {
-        depth[n] = 0;
-        for (int r = 0; r < 3; r++)
-            depth[n] -= job->volume->info.matrix[r][axes[n]] * p->back[r];
-        depth[3] -= depth[n] * (double)(sides[n] - 1) / 2;
-    }
-}
-
 static snow_status find_surfaces(snow_frame *frame, snow_job *job,
                                  snow_image *image) {
     snow_iso *iso = frame->iso;
@@ -431,11 +418,12 @@ static snow_status find_surfaces(snow_frame *frame, snow_job *job,
         SNOW_TRY(map_voxels(frame, job, iso, taps));
         pass.reached = &iso->reached;
     }
-    pass.margin = MARGIN * (frame->ramp.high - frame->ramp.low);
+    pass.margin =
+        MARGIN * (frame->ramp.high - frame->ramp.low) + 1e-9 * fabs(pass.level);
     snow_transfer_color(job->transfer, pass.level, rgb);
     for (int n = 0; n < 3; n++)
         pass.rgb[n] = (float)rgb[n];
-    place_depth(job, pass.depth);
+    snow_depth_place(job, pass.depth);
     double mark = snow_seconds();
     snow_parallel(job->context, job->settings.threads, image->height, find_line,
                   &pass);

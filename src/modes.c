@@ -83,7 +83,8 @@ static snow_status prepare_ramp(const snow_job *job, const snow_ramp *wanted,
 
 /* A little below, as the pictures of iso (iso.c). */
 snow_status snow_ramp_above(snow_job *job, snow_ramp *ramp) {
-    double margin = 2e-6 * (ramp->high - ramp->low);
+    double margin =
+        2e-6 * (ramp->high - ramp->low) + 2e-9 * fabs(job->settings.iso);
     const snow_ramp wanted = {.steps = true,
                               .level = job->settings.iso - margin};
     return prepare_ramp(job, &wanted, ramp);
@@ -135,6 +136,8 @@ static void fill_colors(const snow_job *job, const snow_ramp *ramp,
         double part =
             (transfer->colors[n].value - colors->from) / colors->range;
         double cell = floor(part * SNOW_MODE_COLORS);
+        if (!(cell >= -1 && cell <= SNOW_MODE_COLORS)) /* or no range */
+            continue;
         for (double near = cell - 1; near <= cell + 1; near++)
             if (near >= 0 && near < SNOW_MODE_COLORS)
                 colors->bent[(int)near] = true;

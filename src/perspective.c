@@ -4,6 +4,7 @@
 #include "perspective.h"
 #include "classify/classify.h"
 #include "composite/over.h"
+#include "depth.h"
 #include "encode/encode.h"
 #include "splat/perspective.h"
 #include "volume/volume.h"
@@ -183,6 +184,7 @@ static snow_status splat_and_composite(pass *s) {
             splat_classified_slice(s, slice);
         double mark = snow_seconds();
         snow_job_clip_sheet(o, slice, &s->sheet);
+        snow_depth_note_sheet(o, slice, &s->sheet);
         snow_lay_sheet(s->pixels, &s->sheet, snow_job_lay(o));
         lap(&mark, &s->stats->seconds_composite);
     }

@@ -53,6 +53,10 @@ static snow_status begin_picture(snow_picture *p, const snow_volume *volume,
                          "mode %s is not built for many ranks yet; render on "
                          "one, or take mode over",
                          snow_mode_name(p->job.settings.mode));
+    if (p->job.settings.depth)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "depths are not built for many ranks yet; render on "
+                         "one, or leave them out");
     if (p->ranks->rank != 0 && !p->how.scattered)
         return SNOW_OK;
     SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,

@@ -71,6 +71,7 @@ typedef struct ring_row {
 typedef struct modes_scratch {
     uint64_t *bits; /* of the rows of a slice */
     uint32_t *rank;
+    uint64_t *any;
     snow_span *spans;
     float *dense; /* a row of voxels */
     float *split; /* the same, where strides are 2: every second one, and the
@@ -358,7 +359,8 @@ static void reduce_slice(modes_stroke *stroke, int64_t slice) {
     int64_t first =
         stroke->place->first_row + (int64_t)stroke->first_cell * v->stride;
     pass->windows->read(&pass->sheared->bands, slice, first,
-                        (stroke->cells - 1) * v->stride + reach,
+                        ~UINT64_C(0) >>
+                            (64 - ((stroke->cells - 1) * v->stride + reach)),
                         stroke->scratch.spans, &stroke->rows);
     if (!stroke->rows.held)
         return;
@@ -486,6 +488,7 @@ static size_t lay_out(const modes_pass *pass, char *base, modes_scratch *out) {
     } while (0)
     PART(bits, words * sizeof *out->bits);
     PART(rank, words * sizeof *out->rank);
+    PART(any, words / SNOW_WINDOW_ROWS * sizeof *out->any);
     PART(spans, ((size_t)columns / 2 + 1) * sizeof *out->spans);
     PART(dense, pass->dense * sizeof(float));
     PART(split, pass->dense * sizeof(float));
@@ -507,6 +510,7 @@ static void reduce_band(void *of, int64_t item, int worker) {
             &stroke.scratch);
     stroke.rows.bits = stroke.scratch.bits;
     stroke.rows.rank = stroke.scratch.rank;
+    stroke.rows.any = stroke.scratch.any;
     stroke.rows.words = words;
     stroke.first_cell = (int)item * pass->cells;
     int left = pass->pixels[1] - stroke.first_cell;

@@ -51,6 +51,37 @@ says "sums of 10\.\.500 in the look's colours"
 run 0 "a colour map" render -q -m mean -c viridis -o viridis.png
 run 6 "changes the colours" "$TOOL" compare told.png viridis.png
 
+run 0 "iso and its depth" render -m iso --iso 40 -o iso.npy --depth near.npy
+says "mode iso of all voxels"
+check "a depth is values" [ "$(shape near.npy)" = "'shape': (30, 40)" ]
+run 0 "another value" render -q -m iso --iso 120 -o iso2.npy --depth near2.pfm
+run 6 "is another surface" "$TOOL" compare iso.npy iso2.npy
+run 6 "elsewhere" "$TOOL" compare near.npy near2.pfm
+run 4 "a depth that exists is kept" render -q -m iso --iso 40 -o iso3.npy \
+    --depth near.npy
+says "near.npy: "
+run 0 "iso unshaded" render -q -m iso --iso 40 --shade none -o flat.npy
+run 6 "is flat" "$TOOL" compare iso.npy flat.npy
+for encoding in crs bitmap rle; do
+    run 0 "iso in $encoding" render -q -m iso --iso 40 --encoding $encoding \
+        -o iso.$encoding.npy
+    run 0 "encoding $encoding does not change iso" \
+        "$TOOL" compare iso.npy iso.$encoding.npy
+done
+run 0 "iso by the original method" render -q -m iso --iso 40 \
+    --method original -o iso.original.npy
+run 0 "is the same" "$TOOL" compare iso.npy iso.original.npy
+run 0 "iso in perspective" render -q -m iso --iso 40 --perspective -o eye.png
+run 0 "over and its depth" render -q -o solid.npy --depth solid.depth.npy \
+    --opacity 0.3:0,0.31:1
+run 0 "over is what it is without" render -q -o solid2.npy \
+    --opacity 0.3:0,0.31:1
+run 0 "the same picture" "$TOOL" compare solid.npy solid2.npy
+run 0 "a recipe keeps iso" render -q -m iso --iso 40 -y -o keep.npy \
+    --save-config iso.json
+run 0 "and gives it again" "$TOOL" render --config iso.json -q -y -o again.npy
+run 0 "the same surface" "$TOOL" compare iso.npy again.npy
+
 run 2 "a movie of sums has one range" "$TOOL" turntable phantom:head \
     --dims 12x12x12 -m sum -o "sum_%02d.png" --frames 2
 says "--mode sum: frames of a movie share one range"
@@ -58,7 +89,7 @@ run 0 "a movie of sums" "$TOOL" turntable phantom:head --dims 12x12x12 -m sum \
     --range 0,1000 -o "sum_%02d.png" --frames 2 -s 20x20
 run 0 "a movie of maxima" "$TOOL" turntable phantom:head --dims 12x12x12 \
     -m mip -o "mip_%02d.png" --frames 2 -s 20x20
-run 0 "a recipe keeps the mode" render -q -m minip -o keep.npy \
+run 0 "a recipe keeps the mode" render -q -y -m minip -o keep.npy \
     --save-config keep.json
 run 0 "and gives it again" "$TOOL" render --config keep.json -q -y -o again.npy
 run 0 "the same" "$TOOL" compare keep.npy again.npy

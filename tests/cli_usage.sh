@@ -56,7 +56,13 @@ info --perspective x|no option of info
 movie --frames 3 x -o y.mp4|--frames: no option of movie
 --resume x|--resume: no option of render; it belongs to turntable
 turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
---mode iso x|'iso' is not built yet; choose from: over, mip, minip, mean, sum
+--mode iso x -o y.png|--mode iso: needs --iso VALUE beside it
+--iso 3 x -o y.png|--iso: needs --mode iso beside it
+--iso high x -o y.png|--iso: 'high' is not a finite number
+--depth d.png x -o y.png|--depth: d.png: depths are numbers
+--depth d.npy -m mip x -o y.png|--depth: mode mip has none; take over or iso
+--depth y.npy x -o y.npy|--depth: goes where --output goes
+turntable --depth d.npy x -o y.mp4|--depth: no option of turntable
 --mode best x|'best' is unknown
 --method ray x|'ray' is unknown
 --method tested x|'tested' is unknown

@@ -360,6 +360,27 @@ static json_t *write_unit(const recipe_key *key, const void *field) {
     return *(const bool *)field ? json_string("mm") : NULL;
 }
 
+/* The value of mode iso follows the mode, and is told beside it alone. */
+typedef struct iso_fields {
+    snow_mode mode;
+    double iso;
+} iso_fields;
+
+static_assert(offsetof(snow_settings, iso) - offsetof(snow_settings, mode) ==
+                  offsetof(iso_fields, iso),
+              "the record's fields lie as they are read");
+
+static bool read_iso(const recipe_key *key, const json_t *value, void *field,
+                     char wrong[WRONG_BYTES]) {
+    iso_fields *fields = field;
+    return read_real(key, value, &fields->iso, wrong);
+}
+
+static json_t *write_iso(const recipe_key *key, const void *field) {
+    const iso_fields *fields = field;
+    return fields->mode == SNOW_MODE_ISO ? write_real(key, &fields->iso) : NULL;
+}
+
 /* --- ranges, points, colours ---------------------------------------------- */
 
 /* A percentile "p99"; false for any other text. */
@@ -543,6 +564,7 @@ const recipe_key recipe_keys[] = {
     MADE("background", color, image, 0, 1, 3),
     {"bits", read_bits, write_told_int, AT(image.bits), 8, 16, 0, NULL, NULL},
     NAME("mode", settings.mode, mode_name, snow_mode_named),
+    {"iso", read_iso, write_iso, AT(settings.mode), 0, 0, 0, NULL, NULL},
     REAL("threshold", settings.threshold, 0, 255),
     NAME("encoding", settings.encoding, encoding_name, snow_encoding_named),
     NAME("method", settings.method, method_name, snow_method_named),

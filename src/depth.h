@@ -1,0 +1,26 @@
+/* depth.h - how far away a picture is: world distances from the target's plane
+ * along the camera's line of sight. */
+#ifndef SNOW_DEPTH_H
+#define SNOW_DEPTH_H
+
+#include "frame.h"
+
+/* The depth of index position (u, v, k) of a placement is
+ * of[0] u + of[1] v + of[2] k + of[3]. */
+void snow_depth_place(const snow_job *job, double of[4]);
+
+/* Notes where opacity passes 1/2 before a row of a sheet is laid behind what
+ * the local image holds: of `count` pixels from (x, y) on; `sheet` is the first
+ * one's.  What a sheet adds grows evenly from half a slice before it to half a
+ * slice behind, so that an opaque one is where its slice is. */
+void snow_depth_note(const snow_job *job, int64_t slice, int x, int y,
+                     int count, const float *sheet);
+void snow_depth_note_sheet(const snow_job *job, int64_t slice,
+                           const snow_sheet *sheet);
+
+/* Fills frame->depth for a picture in mode over, by footprints whatever the
+ * picture's method is.  Errors: SNOW_BAD_USAGE (a part of a volume),
+ * SNOW_NO_MEMORY. */
+snow_status snow_depth_over(snow_frame *frame, const snow_job *job);
+
+#endif
