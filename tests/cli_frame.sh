@@ -85,6 +85,16 @@ assert math.isclose(modelled["efficiency"], modelled["t1_ms"] / 3 /
 assert "projected_ms" not in told["r3"]
 END
 
+# Pictures of a turning volume are the same with and without overlap.
+run 0 "a turning volume" frame --ranks 3 --turn 4 --json --network 0.05,1e9,0
+check "overlap hides splatting" python3 -c '
+import json, sys
+t = json.load(open(sys.argv[1]))
+assert t["turn_check"] == "ok" and t["hidden_ms"] > 0, t
+assert t["turn_ms"] > 50 and t["turn_overlap_ms"] > 50, t' "$OUT"
+run 0 "no turning volume" frame --ranks 2 --no-check
+check "nothing is told of one" [ -z "$(grep turn_ "$OUT")" ]
+
 # A slow network takes its time, modelled or not waited for.
 run 0 "a slow network" frame --ranks 3 --json --network 0.5,1e10,0
 check "messages of half a second are told" python3 -c '
@@ -124,6 +134,7 @@ a --rank 3|there is no option '--rank'
 a --ranks|a value is missing after '--ranks'
 a --ranks 0|this value is not possible: '0'
 a --ranks 2.5|this value is not possible: '2.5'
+a --turn 1|this value is not possible: '1'
 a --dims 4x4|this value is not possible: '4x4'
 a --dims 4x4x4x4|this value is not possible: '4x4x4x4'
 a --type byte7|this value is not possible: 'byte7'

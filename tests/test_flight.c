@@ -100,7 +100,8 @@ static snow_status compare_ways(snow_comm *comm, void *user) {
     seat s;
     SNOW_TRY(sit_down(comm, user, &s));
     snow_status status = fly(&s, 0, true);
-    s.f->hidden = 0;
+    if (snow_comm_rank(comm) == 0)
+        s.f->hidden = 0;
     if (status == SNOW_OK)
         status = fly(&s, 1, false);
     leave(&s);
