@@ -40,8 +40,6 @@ help serve|serve is not built yet
 --perspective x y -o y.png|one word too many
 --persp x -o y.png|did you mean --perspective
 info --perspective x|no option of info
---depth d.npy x|--depth is not built yet
---iso 3 x|--iso is not built yet
 --memory 1G x|--memory is not built yet
 --tf f x|--tf is not built yet
 --log x|--log is not built yet
