@@ -39,8 +39,6 @@ help serve|serve is not built yet
 --perspective x y -o y.png|one word too many
 --persp x -o y.png|did you mean --perspective
 info --perspective x|no option of info
---depth d.npy x|--depth is not built yet
---iso 3 x|--iso is not built yet
 --memory lots x -o y.png|--memory: 'lots' is no amount of memory
 --memory 0 x -o y.png|--memory: '0' is no amount
 --memory 1.5Q x -o y.png|is no amount of memory
