@@ -5,6 +5,7 @@
 #include "report.h"
 
 #include <string.h>
+#include <strings.h>
 
 /* The name decides the format; a pipe may block, so there an interruption does
  * not wait for the write to end. */
@@ -18,8 +19,8 @@ int save_volume(snow_context *context, const options *asked,
     if (status != SNOW_OK)
         return fail_status(context, status);
     describe_volume(snow_volume_describe(volume), text, sizeof text);
-    if (asked->verbosity >= 0)
-        say("%s: %s", asked->output, text);
+    if (asked->verbosity >= 0) /* without the format that it came from */
+        say("%s: %s", asked->output, strchr(text, ' ') + 1);
     return SNOW_OK;
 }
 
@@ -39,7 +40,7 @@ static bool keeps_scaling(const char *path) {
     static const char *const suffixes[] = {".nii", ".nii.gz", ".mha"};
     for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
         size_t length = strlen(path), end = strlen(suffixes[i]);
-        if (length >= end && strcmp(path + length - end, suffixes[i]) == 0)
+        if (length >= end && strcasecmp(path + length - end, suffixes[i]) == 0)
             return true;
     }
     return false;

@@ -206,12 +206,16 @@ typedef struct work {
     scene scene;
     snow_image *image; /* NULL on ranks that do not write */
     double begin;
-    char painted[PAINT_TOLD_BYTES]; /* what was made of values */
+    paint_told painted; /* what was made of values */
 } work;
 
 static snow_status make_marks(const work *w, snow_overlay **out) {
     const scene *s = &w->scene;
-    const picture_marks marks = {s->asked, s->whole, s->view, s->transfer};
+    const picture_marks marks = {s->asked,
+                                 s->whole,
+                                 s->view,
+                                 s->transfer,
+                                 {w->painted.range[0], w->painted.range[1]}};
     marks_tell(s->asked);
     return marks_make(&marks, s->asked->azimuth, -1, s->context, out);
 }
@@ -260,7 +264,7 @@ static void tell_choices(const work *w) {
     char text[1024];
     scene_choices(&w->scene, text, sizeof text);
     if (w->scene.asked->verbosity >= 0)
-        say("%s%s", text, w->painted);
+        say("%s%s", text, w->painted.words);
 }
 
 /* What can be refused before anything is read; outputs by the rank that
@@ -288,7 +292,7 @@ static int run(work *w, const options *asked) {
     done = scene_draw(&w->scene, asked->azimuth, &w->image);
     if (done == GO_ON)
         done = paint_values(asked, w->scene.context, w->scene.transfer, false,
-                            &w->image, w->painted);
+                            &w->image, &w->painted);
     progress_end(asked);
     if (done != GO_ON)
         return done;

@@ -41,6 +41,19 @@ static const char *unit_of_values(const options *asked) {
     return ct && !spread ? "HU" : NULL;
 }
 
+/* Pictures without opacity show values by colours alone: those of the look, or
+ * those that were painted. */
+static snow_status add_colors(const picture_marks *marks,
+                              snow_overlay *overlay) {
+    const options *asked = marks->asked;
+    double range[2] = {marks->range[0], marks->range[1]};
+    bool over = strcmp(asked->mode, "over") == 0;
+    if (range[0] == 0 && range[1] == 0)
+        snow_transfer_span(marks->transfer, &range[0], &range[1]);
+    return snow_overlay_color_bar(overlay, marks->transfer,
+                                  unit_of_values(asked), over ? NULL : range);
+}
+
 static snow_status add_marks(const picture_marks *marks, const snow_view *view,
                              int64_t step, snow_overlay *overlay) {
     const options *asked = marks->asked;
@@ -48,8 +61,7 @@ static snow_status add_marks(const picture_marks *marks, const snow_view *view,
     if (!asked->no_labels)
         status = snow_overlay_letters(overlay, &marks->info, view);
     if (status == SNOW_OK && asked->legend)
-        status = snow_overlay_color_bar(overlay, marks->transfer,
-                                        unit_of_values(asked));
+        status = add_colors(marks, overlay);
     if (status == SNOW_OK && asked->legend)
         status = snow_overlay_scale_bar(overlay, &marks->info, view);
     if (status == SNOW_OK && asked->time_label && step >= 0) {

@@ -13,6 +13,7 @@ typedef struct picture_marks {
     snow_volume_info info;
     snow_view view;
     const snow_transfer *transfer;
+    double range[2]; /* that mean and sum are painted over, both 0: none */
 } picture_marks;
 
 /* Refuses marks for files of floats, which show none.  Answers GO_ON or an exit

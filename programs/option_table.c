@@ -103,7 +103,7 @@ const option_row option_table[] = {
      FIELD(range), 0, 0, "",
      "data values, percentiles of the finite voxels, or all that the look "
      "spreads over (chosen from the histogram, or the preset's and file's "
-     "own)"},
+     "own); convert: two values or full, spread over all of --as"},
     {"opacity-unit", 0, "voxel|mm", TOPIC_LOOK, RENDER, read_choice,
      FIELD(opacity_unit), 0, 0, "",
      "the length that an opacity is for: the smallest voxel spacing or a "

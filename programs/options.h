@@ -66,8 +66,8 @@ typedef struct options {
     int64_t footprint; /* 0: the kernel's own */
 
     const char *mode;
-    double iso;        /* NaN: not told */
-    const char *depth; /* NULL: none */
+    double iso;                    /* NaN: not told */
+    const char *depth;             /* NULL: none */
     const char *colormap, *preset; /* NULL: automatic */
     const char *tf;                /* a file; NULL: none */
     snow_tf *loaded;               /* what it holds, from look_load on */

@@ -30,10 +30,10 @@ int paint_check(const options *asked, bool movie) {
 
 int paint_values(const options *asked, snow_context *context,
                  const snow_transfer *transfer, bool movie, snow_image **image,
-                 char told[PAINT_TOLD_BYTES]) {
+                 paint_told *told) {
     double low, high;
     snow_image *painted = NULL;
-    told[0] = '\0';
+    *told = (paint_told){.words = ""};
     if (!*image || snow_image_channels(*image) != 1 ||
         keeps_values(asked->output))
         return GO_ON;
@@ -47,7 +47,9 @@ int paint_values(const options *asked, snow_context *context,
         return fail_status(context, status);
     snow_image_free(*image);
     *image = painted;
-    snprintf(told, PAINT_TOLD_BYTES, "; %ss of %g..%g in the look's colours",
-             asked->mode, low, high);
+    told->range[0] = low;
+    told->range[1] = high;
+    snprintf(told->words, sizeof told->words,
+             "; %ss of %g..%g in the look's colours", asked->mode, low, high);
     return GO_ON;
 }

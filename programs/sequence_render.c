@@ -69,9 +69,9 @@ static void tell_choices(const shot_renderer *shots) {
     char text[1024];
     scene_choices(&shots->scene, text, sizeof text);
     if (asked->verbosity >= 0)
-        say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text, shots->painted,
-            shots->count, (long long)asked->size[0], (long long)asked->size[1],
-            asked->output);
+        say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
+            shots->painted.words, shots->count, (long long)asked->size[0],
+            (long long)asked->size[1], asked->output);
     marks_tell(asked);
 }
 
@@ -85,8 +85,9 @@ static int finish(void *self, snow_image **image) {
     shot_renderer *shots = self;
     int done = scene_finish(&shots->scene, image);
     if (done == GO_ON)
-        done = paint_values(shots->scene.asked, shots->scene.context,
-                            shots->scene.transfer, true, image, shots->painted);
+        done =
+            paint_values(shots->scene.asked, shots->scene.context,
+                         shots->scene.transfer, true, image, &shots->painted);
     if (done != GO_ON)
         return done;
     if (!shots->drawn)
@@ -101,8 +102,13 @@ static void report(void *self, render_report *out) {
 }
 
 static void marks(void *self, picture_marks *out) {
-    const scene *s = &((const shot_renderer *)self)->scene;
-    *out = (picture_marks){s->asked, s->drawn.whole, s->view, s->transfer};
+    const shot_renderer *shots = self;
+    const scene *s = &shots->scene;
+    *out = (picture_marks){s->asked,
+                           s->drawn.whole,
+                           s->view,
+                           s->transfer,
+                           {shots->painted.range[0], shots->painted.range[1]}};
 }
 
 static int share(void *self, int word) {

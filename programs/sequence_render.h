@@ -15,7 +15,7 @@ typedef struct shot_renderer {
     bool whole_files;      /* a file with several time steps is an error: it is
                               one of many, and nobody said which step */
     bool drawn;            /* a picture has been made, and choices told */
-    char painted[PAINT_TOLD_BYTES]; /* what was made of values */
+    paint_told painted;    /* what was made of values */
 } shot_renderer;
 
 /* Answers GO_ON or an exit code. */

@@ -263,7 +263,7 @@ static snow_status add_marks(snow_insitu *insitu, int64_t step,
     snow_view view = snow_insitu_view(insitu);
     char text[40];
     if (insitu->legend) {
-        SNOW_TRY(snow_overlay_color_bar(overlay, insitu->transfer, NULL));
+        SNOW_TRY(snow_overlay_color_bar(overlay, insitu->transfer, NULL, NULL));
         SNOW_TRY(snow_overlay_scale_bar(overlay, &insitu->whole, &view));
     }
     if (!insitu->step_label)

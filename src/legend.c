@@ -126,6 +126,7 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
 typedef struct color_bar {
     int x0, y0, x1, y1;
     double low, high; /* data values of the lower and the upper end */
+    double from, to;  /* whose colours they have */
     double opaque;    /* largest opacity of it */
     double height;    /* of letters */
 } color_bar;
@@ -144,8 +145,8 @@ static void span_values(const snow_transfer *t, color_bar *bar) {
 }
 
 static double value_at(const color_bar *bar, double y) {
-    return bar->high -
-           (y - bar->y0) / (bar->y1 - bar->y0) * (bar->high - bar->low);
+    return bar->to -
+           (y - bar->y0) / (bar->y1 - bar->y0) * (bar->to - bar->from);
 }
 
 static double place_of(const color_bar *bar, double value) {
@@ -206,11 +207,13 @@ static snow_status draw_opacity(snow_overlay *overlay, const snow_transfer *t,
     return SNOW_OK;
 }
 
-/* "-1000", "0.25", "1e+07"; rounding leaves no -0. */
+/* "-1000", "0.25", "1e+07", with as many digits as steps need; rounding leaves
+ * no -0. */
 static void write_tick(double value, double step, char *out, size_t size) {
     if (fabs(value) < step / 1000)
         value = 0;
-    snprintf(out, size, "%.6g", value);
+    double digits = value ? ceil(log10(fabs(value) / step) + 1.5) : 6;
+    snprintf(out, size, "%.*g", (int)fmin(fmax(digits, 6), 15), value);
 }
 
 /* The multiples of a step that lie within the bar. */
@@ -251,7 +254,7 @@ static snow_status draw_ticks(snow_overlay *overlay, const color_bar *bar) {
 
 snow_status snow_overlay_color_bar(snow_overlay *overlay,
                                    const snow_transfer *transfer,
-                                   const char *unit) {
+                                   const char *unit, const double range[2]) {
     double height = number_height(overlay);
     if (shorter_side(overlay) < BAR_SIDE_LEAST)
         return SNOW_OK;
@@ -261,8 +264,16 @@ snow_status snow_overlay_color_bar(snow_overlay *overlay,
     bar.y1 = overlay->height - (int)(1.2 * height);
     bar.y0 = overlay->height / 2 + (int)(2.8 * height);
     span_values(transfer, &bar);
+    bar.from = bar.low;
+    bar.to = bar.high;
+    if (range && range[0] < range[1]) {
+        snow_transfer_span(transfer, &bar.from, &bar.to);
+        bar.low = range[0];
+        bar.high = range[1];
+    }
     SNOW_TRY(draw_colors(overlay, transfer, &bar));
-    SNOW_TRY(draw_opacity(overlay, transfer, &bar));
+    if (!range)
+        SNOW_TRY(draw_opacity(overlay, transfer, &bar));
     SNOW_TRY(draw_ticks(overlay, &bar));
     return snow_overlay_text(overlay, bar.x1, bar.y0 - 0.8 * height, 1, 1,
                              height, unit ? unit : "");

@@ -69,6 +69,10 @@ static void integers_of_64_bits_stay_whole(void **state) {
     check(converted(place, shared(place, SNOW_INT64, 3, from, 1, 0), SNOW_INT64,
                     NULL),
           SNOW_INT64, from, sizeof from);
+    snow_volume_close(converted(place,
+                                shared(place, SNOW_INT64, 1, from + 2, 1, 0),
+                                SNOW_UINT64, NULL));
+    assert_non_null(strstr(place->notices, "1 values were rounded"));
     refused(place, shared(place, SNOW_INT64, 3, from, 1, 0), SNOW_INT32, NULL,
             "3 values such as 9.22337e+18 do not fit int32");
 }

@@ -188,7 +188,8 @@ typedef struct file {
 } file;
 
 static void put(file *f, const void *bytes, size_t size) {
-    memcpy(f->bytes + f->size, bytes, size);
+    if (size)
+        memcpy(f->bytes + f->size, bytes, size);
     f->size += size;
 }
 

@@ -304,7 +304,7 @@ static void the_color_bar_has_the_transfer_functions_colors(void **state) {
         snow_transfer_new(f->context, colors, 2, opacities, 2, &transfer),
         SNOW_OK);
     snow_overlay *overlay = overlay_of(f->context, 300, 400);
-    assert_int_equal(snow_overlay_color_bar(overlay, transfer, "HU"), SNOW_OK);
+    assert_int_equal(snow_overlay_color_bar(overlay, transfer, "HU", NULL), SNOW_OK);
     assert_false(overlay->grey);
     const snow_shape *bar = NULL;
     for (size_t n = 0; n < overlay->shape_count; n++)
@@ -338,7 +338,7 @@ static void any_range_has_ticks(void **state) {
                                                1, &transfer),
                              SNOW_OK);
             snow_overlay *overlay = overlay_of(f->context, side, side);
-            assert_int_equal(snow_overlay_color_bar(overlay, transfer, NULL),
+            assert_int_equal(snow_overlay_color_bar(overlay, transfer, NULL, NULL),
                              SNOW_OK);
             /* border, colours, opacity, tick lines, and a text for each */
             assert_true(overlay->shape_count >= 5);
@@ -440,7 +440,7 @@ static void it_fails_cleanly_without_memory(void **state) {
         if (status == SNOW_OK)
             status = snow_overlay_letters(overlay, &info, &view);
         if (status == SNOW_OK)
-            status = snow_overlay_color_bar(overlay, transfer, "HU");
+            status = snow_overlay_color_bar(overlay, transfer, "HU", NULL);
         if (status == SNOW_OK)
             status = snow_overlay_scale_bar(overlay, &info, &view);
         assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);

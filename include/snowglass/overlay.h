@@ -53,11 +53,14 @@ SNOW_API snow_status snow_overlay_letters(snow_overlay *overlay,
 /* Draws, in the lower right corner, the colours along the values of a transfer
  * function with ticks at round values, and over them its opacity as a line: 0
  * is at the left border, its largest value at the right one.  `unit` of the
- * values may be NULL.  Nothing on pictures with a side below 128 pixels.
+ * values may be NULL.  `range` of pictures without opacity: the values that the
+ * first and the last colour stand for, and no line; else NULL.  Nothing on
+ * pictures with a side below 128 pixels.
  * Errors: SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_overlay_color_bar(snow_overlay *overlay,
                                             const snow_transfer *transfer,
-                                            const char *unit);
+                                            const char *unit,
+                                            const double range[2]);
 
 /* Draws, in the lower left corner, a line of a round length.  In perspective,
  * where a length has no one size, and on pictures with a side below 128 pixels

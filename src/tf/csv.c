@@ -55,16 +55,24 @@ typedef struct table {
     bool take;
 } table;
 
+/* The names of columns begin with a letter, maybe quoted. */
+static bool is_title(const char *at) {
+    while (*at == ' ' || *at == '\t' || *at == '"')
+        at++;
+    return (*at >= 'A' && *at <= 'Z') || (*at >= 'a' && *at <= 'z');
+}
+
 static snow_status walk_lines(const tf_input *in, snow_tf *tf, table *t) {
     const char *at = in->bytes, *end = in->bytes + in->size;
     for (long number = 1; at < end; number++) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));
         stop = stop ? stop : end;
+        const char *start = at;
         row r = read_row(at, stop);
         at = stop + 1;
         if (r.count == 0)
             continue;
-        if (r.count < 0 && !t->columns && !t->headed) {
+        if (r.count < 0 && !t->columns && !t->headed && is_title(start)) {
             t->headed = true;
             continue;
         }

@@ -215,6 +215,10 @@ snow_status snow_tf_parse(snow_context *context, const char *name,
         memcpy(copy, bytes, size);
     copy[size] = 0;
     in.bytes = copy;
+    if (size >= 3 && !memcmp(copy, "\xEF\xBB\xBF", 3)) { /* Unicode's mark */
+        in.bytes += 3;
+        in.size -= 3;
+    }
     *tf = (snow_tf){.context = context,
                     .format = "",
                     .colors = {.size = sizeof(snow_color_point)},

@@ -1,8 +1,8 @@
 /* volume/convert.c - the same data values in another scalar type.
  *
  * A block at a time through doubles.  Nothing is lost without a word: a value
- * that the type cannot hold ends the conversion, one that is rounded is
- * counted. */
+ * that the type cannot hold ends the conversion, one that is rounded, or may be
+ * since it lies beyond the integers that doubles hold, is counted. */
 #include "volume/volume.h"
 
 #include <math.h>
@@ -17,6 +17,7 @@ typedef struct conversion {
     double least, most;  /* that the type holds */
     double slope, shift; /* applied to data values */
     bool clamps;         /* to least and most */
+    bool wide;           /* the values were integers of 64 bits */
     int64_t lost;        /* values that do not fit */
     int64_t rounded;
     double first_lost;
@@ -56,7 +57,8 @@ static double fit(conversion *c, double value) {
     }
     if (c->type == SNOW_FLOAT32)
         kept = (double)(float)wanted;
-    c->rounded += kept != wanted && !isnan(wanted);
+    c->rounded += (kept != wanted && !isnan(wanted)) ||
+                  (c->wide && fabs(value) >= 0x1p53);
     return kept;
 }
 
@@ -166,7 +168,10 @@ static void report(const snow_volume *volume, const conversion *c,
 snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
                                 const double range[2], snow_volume **out) {
     snow_volume_info info = volume->info;
-    conversion c = {.type = type, .slope = 1};
+    conversion c = {.type = type,
+                    .slope = 1,
+                    .wide =
+                        info.type == SNOW_INT64 || info.type == SNOW_UINT64};
     snow_volume *made;
     if (!type)
         c.type = exact_type(volume);

@@ -12,6 +12,10 @@
  * the header tell whether extensions follow. */
 #define NIFTI_EXTENDER_BYTES 4
 
+/* Begins the description of volumes that we write a matrix for though their
+ * axes are no patient's, which the format cannot say. */
+#define NIFTI_NO_PATIENT "no patient's axes"
+
 typedef struct nifti_header {
     int version; /* 1 or 2 */
     bool big_endian;
@@ -23,6 +27,7 @@ typedef struct nifti_header {
     double slope, intercept;
     int units; /* xyzt_units */
     int qform_code, sform_code;
+    bool no_patient;   /* its description begins so */
     double quatern[3]; /* b, c, d */
     double qoffset[3];
     double srow[3][4];

@@ -135,6 +135,7 @@ void nifti_geometry(snow_context *context, const nifti_header *header,
     for (int i = 0; i < 12; i++)
         info->matrix[i / 4][i % 4] =
             m[i / 4][i % 4] * millimetres(header->units) + 0.0; /* no -0 */
-    info->medical = placed;
-    snprintf(info->unit, sizeof info->unit, "mm");
+    info->medical = placed && !header->no_patient;
+    bool unknown = header->no_patient && header->units == 0;
+    snprintf(info->unit, sizeof info->unit, "%s", unknown ? "" : "mm");
 }

@@ -137,14 +137,14 @@ size_t nifti_header_size(const unsigned char *bytes, size_t size) {
 typedef struct nifti_layout {
     size_t float_bytes, dim_bytes, code_bytes;
     size_t datatype, bitpix, dim, pixdim, slope, intercept, units, units_bytes;
-    size_t qform_code, sform_code, quatern, qoffset, srow;
+    size_t descrip, qform_code, sform_code, quatern, qoffset, srow;
 } nifti_layout;
 
 /* In the order of the members above, from the comments of nifti1.h and
  * nifti2.h; version 2 widens most fields and moves all. */
 static const nifti_layout layouts[] = {
-    {4, 2, 2, 70, 72, 40, 76, 112, 116, 123, 1, 252, 254, 256, 268, 280},
-    {8, 8, 4, 12, 14, 16, 104, 176, 184, 500, 4, 344, 348, 352, 376, 400},
+    {4, 2, 2, 70, 72, 40, 76, 112, 116, 123, 1, 148, 252, 254, 256, 268, 280},
+    {8, 8, 4, 12, 14, 16, 104, 176, 184, 500, 4, 240, 344, 348, 352, 376, 400},
 };
 
 static void read_floats(const unsigned char *at, size_t count,
@@ -166,6 +166,8 @@ static void read_fields(const unsigned char *bytes, nifti_header *header) {
     header->units = (int)(number_at(bytes + l->units, l->units_bytes, big) & 7);
     header->qform_code = (int)int_at(bytes + l->qform_code, l->code_bytes, big);
     header->sform_code = (int)int_at(bytes + l->sform_code, l->code_bytes, big);
+    header->no_patient = !memcmp(bytes + l->descrip, NIFTI_NO_PATIENT,
+                                 sizeof NIFTI_NO_PATIENT - 1);
     read_floats(bytes + l->pixdim, 8, l, big, header->pixdim);
     read_floats(bytes + l->slope, 1, l, big, &header->slope);
     read_floats(bytes + l->intercept, 1, l, big, &header->intercept);

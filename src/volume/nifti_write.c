@@ -76,7 +76,7 @@ static unsigned unit_code(const char *unit) {
 
 /* Where the versions keep what is written here. */
 typedef struct places {
-    size_t dim, dim_bytes, pixdim, datatype, slope, units, sform_code;
+    size_t dim, dim_bytes, pixdim, datatype, slope, units, descrip, sform_code;
     size_t code_bytes, srow;
 } places;
 
@@ -97,7 +97,11 @@ static void put_fields(header *h, const places *p,
     put_float(h, p->slope, info->slope);
     put_float(h, p->slope + h->float_bytes, info->intercept);
     put_int(h, p->units, 1, unit_code(info->unit));
+    /* Axes have a patient's names as soon as there is a matrix. */
     uint64_t code = info->medical ? 1 : is_spacing_only(info) ? 0 : 2;
+    if (code == 2)
+        memcpy(h->bytes + p->descrip, NIFTI_NO_PATIENT,
+               sizeof NIFTI_NO_PATIENT);
     put_int(h, p->sform_code, p->code_bytes, code);
     for (size_t i = 0; i < 12 && code; i++)
         put_float(h, p->srow + i * h->float_bytes, info->matrix[i / 4][i % 4]);
@@ -105,7 +109,7 @@ static void put_fields(header *h, const places *p,
 
 /* Makes the header; returns its bytes, the extender included. */
 static size_t fill_version1(header *h, const snow_volume_info *info) {
-    static const places p = {40, 2, 76, 70, 112, 123, 254, 2, 280};
+    static const places p = {40, 2, 76, 70, 112, 123, 148, 254, 2, 280};
     h->float_bytes = sizeof(float);
     put_int(h, 0, 4, NIFTI1_BYTES);
     put_int(h, 38, 1, 'r'); /* "regular", for readers of Analyze's time */
@@ -116,7 +120,7 @@ static size_t fill_version1(header *h, const snow_volume_info *info) {
 }
 
 static size_t fill_version2(header *h, const snow_volume_info *info) {
-    static const places p = {16, 8, 104, 12, 176, 500, 348, 4, 400};
+    static const places p = {16, 8, 104, 12, 176, 500, 240, 348, 4, 400};
     h->float_bytes = sizeof(double);
     put_int(h, 0, 4, NIFTI2_BYTES);
     memcpy(h->bytes + 4, "n+2\0\r\n\032\n", 8);

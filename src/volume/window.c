@@ -18,10 +18,12 @@ static snow_status refuse_crop(snow_context *context,
                                const int64_t dims[3]) {
     char text[192];
     size_t used = 0;
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++) {
+        int64_t end = options->crop[i][1] ? options->crop[i][1] : dims[i];
         used += (size_t)snprintf(text + used, sizeof text - used, "%s%lld:%lld",
                                  i ? "," : "", (long long)options->crop[i][0],
-                                 (long long)options->crop[i][1]);
+                                 (long long)end);
+    }
     return snow_fail(context, SNOW_BAD_USAGE,
                      "--crop %s is no box in the volume, which has "
                      "%lldx%lldx%lld voxels; give the first voxel and one past "
