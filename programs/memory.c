@@ -69,10 +69,10 @@ static const char *print_bytes(uint64_t bytes, char text[32]) {
 }
 
 int memory_check(snow_context *context, const options *asked, const char *path,
-                 const snow_volume_options *data) {
+                 const snow_volume_options *data, bool tell) {
     snow_volume_info info;
     char least[32], most[32], limit[32];
-    if ((!asked->memory && asked->verbosity <= 0) || strcmp(path, "-") == 0)
+    if ((!asked->memory && !tell) || strcmp(path, "-") == 0)
         return GO_ON;
     snow_status status = snow_volume_inspect(context, path, data, &info);
     if (status != SNOW_OK)
@@ -80,7 +80,7 @@ int memory_check(snow_context *context, const options *asked, const char *path,
     memory_need need = memory_needed(asked, &info);
     print_bytes(need.least, least);
     print_bytes(need.most, most);
-    if (asked->verbosity > 0)
+    if (tell)
         say("memory: at least %s, about %s if all voxels are interesting",
             least, most);
     if (!asked->memory || need.least <= asked->memory)

@@ -12,12 +12,12 @@ typedef struct memory_need {
 
 memory_need memory_needed(const options *asked, const snow_volume_info *info);
 
-/* Tells what the picture of a volume needs where that is asked for, and refuses
+/* Tells what the picture of a volume needs where `tell`, and refuses
  * it where it is over the limit for certain: before anything large is
  * allocated.  What the interesting voxels take is known only when they are
  * encoded; the context keeps that within the limit.  Nothing is known of
  * standard input.  Answers GO_ON or an exit code. */
 int memory_check(snow_context *context, const options *asked, const char *path,
-                 const snow_volume_options *data);
+                 const snow_volume_options *data, bool tell);
 
 #endif

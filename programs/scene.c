@@ -68,7 +68,8 @@ static void choose_shade(scene *s) {
 /* Decompression and conversion are part of the reading. */
 static int open_alone(scene *s, const options *step) {
     snow_volume_options data = data_options(step);
-    int done = memory_check(s->context, step, s->path, &data);
+    int done = memory_check(s->context, step, s->path, &data,
+                            step->verbosity > 0 && !s->transfer);
     double begin = seconds_now();
     if (done == GO_ON)
         done = open_input(s->context, step, s->path, &s->volume);

@@ -3,6 +3,7 @@
 #include "sequence_steps.h"
 #include "commands.h"
 #include "launch.h"
+#include "memory.h"
 #include "report.h"
 #include "sequence_names.h"
 
@@ -333,7 +334,10 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
     snow_volume *volume = NULL;
     options step = *s->asked;
     step.time = shot->time;
-    int done = open_input(s->context, &step, shot->path, &volume);
+    snow_volume_options data = data_options(&step);
+    int done = memory_check(s->context, &step, shot->path, &data, false);
+    if (done == GO_ON)
+        done = open_input(s->context, &step, shot->path, &volume);
     if (done == GO_ON)
         done = shots_check(shots, shot->path, snow_volume_describe(volume));
     if (done == GO_ON)

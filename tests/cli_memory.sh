@@ -27,6 +27,8 @@ refused 5 "standard input" 'under a limit' bash -c \
     "'$TOOL' render - -o c.png --memory 3000K <a.nrrd"
 refused 5 "a turntable" 'need 4.0 MiB' "$TOOL" turntable a.nrrd \
     "${small[@]}" --frames 3 -o 'f_%d.png' --memory 3900K
+refused 5 "a movie" 'need 4.0 MiB' "$TOOL" movie a.nrrd a.nrrd \
+    "${small[@]}" --range p1,p99 -o 'f_%d.png' --memory 3900K
 check "nothing is left" test ! -e c.png -a ! -e f_0.png
 run 0 "a box of it fits" "$TOOL" render -q a.nrrd "${small[@]}" -o d.png \
     --memory 3900K --crop 40:70,40:70,40:70
