@@ -170,6 +170,8 @@ static void fill_data(const options *asked, snow_recipe *out) {
     data->channel = asked->channel;
     data->dataset = asked->dataset;
     data->series = asked->series;
+    data->mask = asked->mask;
+    data->labels = asked->labels;
     if (asked->endian)
         data->endian = strcmp(asked->endian, "big") == 0 ? SNOW_ENDIAN_BIG
                                                          : SNOW_ENDIAN_LITTLE;

@@ -15,7 +15,9 @@ snow_volume_options data_options(const options *asked) {
                                 .time = asked->time,
                                 .channel = asked->channel,
                                 .dataset = asked->dataset,
-                                .series = asked->series};
+                                .series = asked->series,
+                                .mask = asked->mask,
+                                .labels = asked->labels};
     for (int i = 0; i < 3; i++) {
         data.dims[i] = asked->dims[i];
         data.spacing[i] = asked->spacing[i];

@@ -66,8 +66,8 @@ typedef struct options {
     int64_t footprint; /* 0: the kernel's own */
 
     const char *mode;
-    double iso;        /* NaN: not told */
-    const char *depth; /* NULL: none */
+    double iso;                    /* NaN: not told */
+    const char *depth;             /* NULL: none */
     const char *colormap, *preset; /* NULL: automatic */
     const char *tf;                /* a file; NULL: none */
     snow_tf *loaded;               /* what it holds, from look_load on */
@@ -92,9 +92,10 @@ typedef struct options {
     uint64_t offset;
     int64_t time;
     int64_t channel;
-    const char *dataset; /* NULL: not told */
-    const char *series;  /* NULL: not told */
-    int64_t crop[3][2];  /* 0: the end */
+    const char *dataset;       /* NULL: not told */
+    const char *series;        /* NULL: not told */
+    int64_t crop[3][2];        /* 0: the end */
+    const char *mask, *labels; /* NULL: not told */
     uint64_t seed;
 
     int64_t frames; /* of a turn */

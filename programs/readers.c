@@ -190,6 +190,17 @@ bool read_crop(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* The library reads them again, for the mask. */
+bool read_labels(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    snow_label_range ranges[SNOW_LABELS_MOST];
+    size_t count;
+    if (!snow_labels_read(text, ranges, SNOW_LABELS_MOST, &count))
+        return refuse(wrong, "is no list of labels; give up to 256 whole "
+                             "numbers and ranges, such as 1,4-7");
+    return read_text(row, text, field, wrong);
+}
+
 /* NaN and inf do not pass value_reals, so above 0 is all that is left. */
 bool read_spacing(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {

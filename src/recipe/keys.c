@@ -234,6 +234,22 @@ static json_t *write_text(const recipe_key *key, const void *field) {
     return text ? json_string(text) : NULL;
 }
 
+/* Labels of a mask, which are kept as a text. */
+static bool read_labels(const recipe_key *key, const json_t *value, void *field,
+                        char wrong[WRONG_BYTES]) {
+    snow_label_range ranges[SNOW_LABELS_MOST];
+    size_t count;
+    const char *text = json_string_value(value);
+    if (!text || !snow_labels_read(text, ranges, SNOW_LABELS_MOST, &count))
+        return refuse(wrong, "a text of whole numbers and ranges such as "
+                             "\"1,4-7\"");
+    return read_text(key, value, field, wrong);
+}
+
+static json_t *write_labels(const recipe_key *key, const void *field) {
+    return write_text(key, field);
+}
+
 /* "a, b or c" behind "must be ". */
 static bool refuse_name(const recipe_key *key, char wrong[WRONG_BYTES]) {
     size_t at = (size_t)snprintf(wrong, WRONG_BYTES, "must be one of");
@@ -617,6 +633,8 @@ const recipe_key recipe_keys[] = {
      NULL},
     TEXT("dataset", data.dataset),
     TEXT("series", data.series),
+    TEXT("mask", data.mask),
+    MADE("labels", labels, data.labels, 0, 0, 0),
     {"time", read_long, write_told_long, AT(data.time), 0, 9e15, 0, NULL, NULL},
     {NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };
