@@ -11,6 +11,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -314,12 +315,25 @@ static snow_status compare(const opening *o, const snow_volume_info *volume) {
     return status;
 }
 
+/* Options that a file may need are those of the volume. */
+static snow_status look_at_mask(opening *o) {
+    char why[512];
+    snow_status status = look(o->context, o->mask_path, &o->mask, &o->grid);
+    if (status != SNOW_BAD_USAGE)
+        return status;
+    snprintf(why, sizeof why, "%s", o->context->message);
+    return snow_fail(o->context, status,
+                     "%s (not for a mask: snowglass convert makes a .nrrd of "
+                     "it)",
+                     why);
+}
+
 /* Boxes of two grids are the same box only if the grids are the same, so the
  * whole ones are compared.  A stream is compared when it was read. */
 static snow_status look_at_both(opening *o) {
     snow_volume_options whole = o->options;
     snow_volume_info info;
-    SNOW_TRY(look(o->context, o->mask_path, &o->mask, &o->grid));
+    SNOW_TRY(look_at_mask(o));
     if (o->grid.times > 1)
         o->mask.time = o->options.time;
     memcpy(o->mask.crop, o->options.crop, sizeof o->mask.crop);
