@@ -321,7 +321,7 @@ static snow_status look_at_mask(opening *o) {
     snow_status status = look(o->context, o->mask_path, &o->mask, &o->grid);
     if (status != SNOW_BAD_USAGE)
         return status;
-    snprintf(why, sizeof why, "%s", o->context->message);
+    snprintf(why, sizeof why, "%.500s", o->context->message);
     return snow_fail(o->context, status,
                      "%s (not for a mask: snowglass convert makes a .nrrd of "
                      "it)",
