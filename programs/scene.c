@@ -223,6 +223,13 @@ static int make_frame(scene *s) {
                                           : fail_status(s->context, status));
 }
 
+/* A rank that is lost makes both pictures under way fail: one message. */
+static int fail_picture(scene *s, snow_status status, const char *path) {
+    if (!s->fault)
+        s->fault = fail_volume(s->context, status, name_of_input(path));
+    return s->fault;
+}
+
 int scene_begin(scene *s, double azimuth) {
     snow_status status;
     int done = make_frame(s);
@@ -235,7 +242,7 @@ int scene_begin(scene *s, double azimuth) {
         status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
                                    &s->settings, &s->made);
     if (status != SNOW_OK)
-        return fail_volume(s->context, status, name_of_input(s->path));
+        return fail_picture(s, status, s->path);
     s->begun[s->under_way++] = (scene_shot){s->path, s->whole};
     return GO_ON;
 }
@@ -250,7 +257,7 @@ int scene_finish(scene *s, snow_image **image) {
     s->begun[0] = s->begun[1];
     s->under_way--;
     if (status != SNOW_OK)
-        return fail_volume(s->context, status, name_of_input(s->drawn.path));
+        return fail_picture(s, status, s->drawn.path);
     int done = take_figures(s);
     if (done == GO_ON)
         *image = made;

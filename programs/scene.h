@@ -29,6 +29,7 @@ typedef struct scene {
     render_times times;  /* read and look; sums over all that was opened */
     scene_shot begun[2]; /* pictures under way, the oldest first */
     int under_way;
+    int fault; /* that was told, 0: none: what follows from it is not */
     snow_image *made; /* by this process alone, and not finished */
     /* Of the last picture; of ranks sums, and seconds of the slowest. */
     scene_shot drawn;

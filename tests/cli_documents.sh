@@ -9,7 +9,8 @@ trap 'rm -rf "$place"' EXIT
 mkdir "$place/files"
 cd "$place/files" || exit 1
 
-for name in head.nii.gz ct.nii.gz ct.nrrd sim.nrrd volume.mha; do
+for name in head.nii.gz ct.nii.gz mra.nii.gz ct.nrrd sim.nrrd volume.mha \
+    scan.mha; do
     "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
 done
 "$tool" phantom engine -q -o engine.raw.gz || exit 1
@@ -33,6 +34,9 @@ head -c 4096 /dev/zero >slices/notes.txt
 for i in 0001 0002 0003; do
     "$tool" render phantom:shells --dims 16x16x16 -q -s 16x16 -o slices/ct_$i.png || exit 1
 done
+
+cp -r slices dicom_folder
+cp "$root"/fuzz/corpus/tf/$(cd "$root/fuzz/corpus/tf" && ls | grep -m1 '\.vp$') slicer.vp
 
 # Movies need a program of its own.
 without='^$'

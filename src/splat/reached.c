@@ -60,11 +60,11 @@ static void make_slice(void *of, int64_t slice, int worker) {
     char *at = job->scratch + (size_t)worker * job->scratch_bytes;
     rows.bits = (uint64_t *)(void *)at;
     uint64_t *spread = rows.bits + words;
-    rows.rank = (uint32_t *)(void *)(spread + job->reached->words);
+    rows.any = spread + job->reached->words;
+    rows.rank = (uint32_t *)(void *)(rows.any + rows.words);
     snow_span *spans = (snow_span *)(void *)(rows.rank + words);
     for (int64_t row = 0; row < job->bands->rows; row += SNOW_WINDOW_ROWS) {
-        job->windows->read(job->bands, slice, row, SNOW_WINDOW_ROWS, spans,
-                           &rows);
+        job->windows->read(job->bands, slice, row, ~UINT64_C(0), spans, &rows);
         for (uint64_t held = rows.held; held; held &= held - 1) {
             int n = __builtin_ctzll(held);
             spread_row(job, &rows, n, spread);
@@ -93,9 +93,10 @@ snow_status snow_reached_make(const snow_bands *bands, const int taps[2],
     SNOW_TRY(snow_reserve(context, &r->bits, &r->capacity, 0, (size_t)bytes));
     memset(r->bits, 0, (size_t)bytes);
     reached_job job = {bands, windows, r, NULL, 0};
-    job.scratch_bytes = words * (sizeof(uint64_t) + sizeof(uint32_t)) +
-                        r->words * sizeof(uint64_t) +
-                        ((size_t)bands->columns / 2 + 1) * sizeof(snow_span);
+    job.scratch_bytes =
+        words * (sizeof(uint64_t) + sizeof(uint32_t)) +
+        (r->words + words / SNOW_WINDOW_ROWS) * sizeof(uint64_t) +
+        ((size_t)bands->columns / 2 + 1) * sizeof(snow_span);
     job.scratch_bytes = (job.scratch_bytes + 63) / 64 * 64;
     job.scratch =
         snow_allocate_array(context, (uint64_t)threads, job.scratch_bytes);

@@ -8,6 +8,7 @@
 #include "base/folder.h"
 #include "volume/dicom.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* What all files have in common, by the first of them. */
@@ -24,6 +25,26 @@ typedef struct stack {
 static const snow_format *slice_format(const char *path) {
     const snow_format *format = snow_format_of_name(path);
     return format && format->slices ? format : NULL;
+}
+
+/* A folder of numbered chunks, known by the name of what describes them. */
+static bool is_zarr(const char *path) {
+    static const char *const marks[] = {".zarray", ".zgroup", ".zattrs",
+                                        "zarr.json"};
+    size_t length = strlen(path);
+    char mark[4096];
+    while (length > 1 && path[length - 1] == '/')
+        length--;
+    if (length > 5 && !strncmp(path + length - 5, ".zarr", 5))
+        return true;
+    for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
+        int size =
+            snprintf(mark, sizeof mark, "%.*s/%s", (int)length, path, marks[i]);
+        if (size > 0 && (size_t)size < sizeof mark &&
+            snow_is_there(mark, (size_t)size))
+            return true;
+    }
+    return false;
 }
 
 /* Keeps the files whose names say that they are slices: folders hold notes and
@@ -199,7 +220,11 @@ snow_status snow_stack_read(snow_context *context, const char *path,
     stack s = {.context = context};
     SNOW_TRY(snow_folder_list(context, path, &files));
     snow_status status;
-    if (snow_dicom_among(context, &files)) {
+    if (is_zarr(path)) {
+        status = snow_fail(context, SNOW_BAD_INPUT,
+                           "is a Zarr array, which is not read; save one of "
+                           "its scales as .npy or .h5");
+    } else if (snow_dicom_among(context, &files)) {
         status = snow_dicom_read_files(context, &files, options, info, out);
     } else {
         status = choose_files(&s, &files);
