@@ -18,6 +18,7 @@ snow_volume_options data_options(const options *asked) {
                                 .series = asked->series,
                                 .mask = asked->mask,
                                 .labels = asked->labels};
+    memcpy(data.clip, asked->clip, sizeof data.clip);
     for (int i = 0; i < 3; i++) {
         data.dims[i] = asked->dims[i];
         data.spacing[i] = asked->spacing[i];

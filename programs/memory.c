@@ -71,17 +71,20 @@ static uint64_t native_bytes(snow_context *context, const char *path,
            snow_type_size(info.type);
 }
 
-/* The mask, and the volume before it was masked, are there together with what
- * comes of both. */
+/* The mask, and the volume before it was masked or clipped, are there together
+ * with what comes of both. */
 static uint64_t masking_bytes(snow_context *context, const char *path,
                               const snow_volume_options *data) {
     snow_volume_options plain = *data, mask = {.type = SNOW_TYPE_NONE};
-    if (!data->mask)
+    const double *plane = data->clip[0];
+    bool clips = plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+    if (!data->mask && !clips)
         return 0;
     plain.mask = plain.labels = NULL;
+    memset(plain.clip, 0, sizeof plain.clip);
     memcpy(mask.crop, data->crop, sizeof mask.crop);
     return native_bytes(context, path, &plain) +
-           native_bytes(context, data->mask, &mask);
+           (data->mask ? native_bytes(context, data->mask, &mask) : 0);
 }
 
 /* "12.3 MiB". */

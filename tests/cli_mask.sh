@@ -1,5 +1,5 @@
 #!/bin/bash
-# --mask and --labels: what is left out is as if it had never had a value, in
+# --mask, --labels and --clip: what is left out is as if it had never had a value, in
 # pictures, figures, movies and conversions; what does not fit is refused.
 . "$(dirname "$0")/support_shell.sh"
 command -v python3 >/dev/null || {
@@ -88,7 +88,32 @@ run 0 "from standard input" bash -c \
     "'$TOOL' render - -q --no-labels -s 90x80 -o h.npy --mask m.npy <v.npy"
 check "is the same" cmp -s c.npy h.npy
 run 0 "a mask of no voxel" "$TOOL" render v.npy -o i.png --mask m.npy --labels 9
-says 'm.npy: no voxel is inside this mask, whose values are 0 to 3'
+says 'm.npy: no voxel is left inside this mask, whose values are 0 to 3'
+
+# --- planes: x up to 15 of 0 to 31, a sixth plane beyond all ------------------
+python3 - <<'END'
+import array
+data = open("two.npy", "rb").read()
+head, values = data[:-4 * 32 * 28 * 30], array.array("f", data[-4 * 32 * 28 * 30:])
+for i in range(len(values)):
+    if i % 32 > 15 or i // 896 < 4:
+        values[i] = float("nan")
+open("clip.npy", "wb").write(head + values.tobytes())
+END
+run 0 "a mask and planes" render v.npy -o n.npy --mask m.npy --labels 2-3 \
+    --clip 2,0,0,30,0,0,-1,-4,1,0,0,99,1,0,0,99,1,0,0,99,1,1,1,999 \
+    --save-config n.json
+run 0 "masked and clipped by hand" render clip.npy -o o.npy
+check "is the same picture" cmp -s n.npy o.npy
+run 0 "taken from a recipe" render --config n.json -o q.npy
+check "they are the same" cmp -s n.npy q.npy
+run 0 "planes alone" "$TOOL" info v.npy --clip 1,0,0,15
+prints '^finite  *13440 of 26880'
+run 0 "of a box lie where they were" "$TOOL" info v.npy --clip 1,0,0,15 \
+    --crop 10:,0:7,0:5
+prints '^finite  *210 of'
+run 0 "planes that leave nothing" "$TOOL" render v.npy -o p.png --clip 1,0,0,-1
+says 'clip: no voxel is left'
 
 # --- figures and movies -------------------------------------------------------
 check "info counts what is inside" test \

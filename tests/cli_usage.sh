@@ -49,6 +49,11 @@ info x --labels 1|--labels: these are of a mask
 --labels 7-4 x -o y.png|--labels: '7-4' is no list of labels
 --labels= x -o y.png|--labels
 --mask= x -o y.png|--mask
+--clip 1,0,0 x -o y.png|--clip: '1,0,0' are no planes; give A,B,C,D
+--clip 0,0,0,1 x -o y.png|--clip: '0,0,0,1' are no planes
+--clip 1,0,0,1,2 x -o y.png|--clip: '1,0,0,1,2' are no planes
+--clip 1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1 x|are no planes
+--clip 1,0,0,nan x -o y.png|are no planes
 phantom --mask m cube -o y.nrrd|--mask: no option of phantom
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint

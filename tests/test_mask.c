@@ -209,6 +209,38 @@ static void what_is_no_list_of_labels_changes_nothing(void **state) {
     }
 }
 
+/* Beyond a plane of the world, whatever the matrix; in it they stay. */
+static void voxels_beyond_planes_are_left_out(void **state) {
+    support_place *place = *state;
+    static const int16_t v[24] = {0};
+    static const double planes[][4] = {
+        {0.3, 0, 0.1, 4}, {0, 0, 0, -9}, {0, -2, 0, 2.6}};
+    snow_volume_info info = info_of(SNOW_INT16, 4, 3, 2);
+    static const double matrix[4][4] = {
+        {0, 2, 0.5, 7}, {1.3, 0, 0, -2.6}, {0, 0.25, 3, 1}, {0, 0, 0, 1}};
+    memcpy(info.matrix, matrix, sizeof matrix);
+    snow_volume *volume = shared(place, &info, v), *made = NULL;
+    assert_int_equal(snow_volume_clip(volume, planes[0], 3, &made), SNOW_OK);
+    assert_int_equal(made->info.type, SNOW_FLOAT32);
+    int left = 0, in_plane = 0;
+    for (int i = 0; i < 24; i++) {
+        int x = i % 4, y = i / 4 % 3, z = i / 12;
+        double at[3] = {2 * y + 0.5 * z + 7, 1.3 * x - 2.6,
+                        y / 4.0 + 3 * z + 1};
+        bool out =
+            0.3 * at[0] + 0.1 * at[2] > 4 + 1e-9 || -2 * at[1] > 2.6 + 1e-9;
+        in_plane += fabs(-2 * at[1] - 2.6) < 1e-9;
+        left += !out;
+        assert_int_equal(isnan(snow_volume_native(made, i)), out);
+    }
+    assert_true(left > 4 && left < 20 && in_plane > 0);
+    snow_volume_close(made);
+    assert_int_equal(
+        snow_volume_clip(volume, planes[0], SNOW_CLIPS_MOST + 1, &made),
+        SNOW_BAD_USAGE);
+    snow_volume_close(volume);
+}
+
 static void refused(support_place *place, const snow_volume_info *a,
                     const snow_volume_info *b, const char *part) {
     static const uint8_t voxels[64] = {0};
@@ -342,8 +374,8 @@ static void a_mask_without_voxels_is_told(void **state) {
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(place->context, a, &options, &volume),
                      SNOW_OK);
-    assert_non_null(strstr(place->notices, "no voxel is inside this mask, "
-                                           "whose values are 0 to 5"));
+    assert_non_null(strstr(place->notices, "no voxel is left inside this "
+                                           "mask, whose values are 0 to 5"));
     snow_volume_close(volume);
 }
 
@@ -380,6 +412,7 @@ int main(void) {
         TEST(large_volumes_are_masked_to_their_end),
         TEST(labels_are_read_as_written),
         TEST(what_is_no_list_of_labels_changes_nothing),
+        TEST(voxels_beyond_planes_are_left_out),
         TEST(another_grid_is_refused_with_both),
         TEST(what_tells_no_place_is_believed),
         TEST(a_box_is_masked_by_the_same_box),

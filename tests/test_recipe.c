@@ -25,7 +25,8 @@ static const char all_keys[] =
     " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
     " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
     " \"channel\": 1, \"dataset\": \"/a/b\", \"series\": \"1.2\","
-    " \"mask\": \"m.nrrd\", \"labels\": \"1,4-7\", \"crop\": "
+    " \"mask\": \"m.nrrd\", \"labels\": \"1,4-7\","
+    " \"clip\": [[1, 0, 0.5, -3], [0, -1, 0, 2]], \"crop\": "
     "[[1, 5], [0, 0], [3, "
     "0]]}";
 
@@ -96,6 +97,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_string_equal(r.data.series, "1.2");
     assert_string_equal(r.data.mask, "m.nrrd");
     assert_string_equal(r.data.labels, "1,4-7");
+    assert_true(r.data.clip[0][2] == 0.5 && r.data.clip[1][1] == -1);
     assert_true(r.data.crop[0][1] == 5 && r.data.crop[2][0] == 3);
     snow_recipe_clear(&r);
     snow_context_free(context);
@@ -182,6 +184,8 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"roll\": 1, \"roll\": 2}", "duplicate"},
         {"{\"labels\": \"1-\"}", "\"labels\" must be a text of whole numbers"},
         {"{\"labels\": 3}", "\"labels\" must be"},
+        {"{\"clip\": [[0, 0, 0, 1]]}", "\"clip\" must be [[a, b, c, d], ...]"},
+        {"{\"clip\": [1, 0, 0, 1]}", "\"clip\" must be"},
         {"{\"mask\": 3}", "\"mask\" must be"},
         {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},
         {"[1]", "one JSON object"},

@@ -77,6 +77,9 @@ typedef struct snow_label_range {
 /* Ranges that one list of labels may have. */
 #define SNOW_LABELS_MOST 256
 
+/* Planes that one volume may be clipped by. */
+#define SNOW_CLIPS_MOST 6
+
 /* How to open a volume.  Zero everywhere is right for every format but raw. */
 typedef struct snow_volume_options {
     int64_t dims[3];     /* raw only: voxels along x, y, z; 0: not told */
@@ -101,6 +104,9 @@ typedef struct snow_volume_options {
                             time step is that of all */
     const char *labels;  /* of the mask, those inside (snow_labels_read); NULL:
                             all but 0 */
+    /* Planes a, b, c, d of the world: voxels where a x + b y + c z > d have no
+     * value (snow_volume_clip); one whose a, b, c are 0 is none. */
+    double clip[SNOW_CLIPS_MOST][4];
 } snow_volume_options;
 
 /* Opens a volume file.  The format is found from the first bytes, then from
@@ -109,7 +115,7 @@ typedef struct snow_volume_options {
  * volume (options->dims then gives its size; 0 for the default).  `options`
  * may be NULL.  Of a volume that is cropped little more than the box is read
  * and kept; it is a volume of its own, whose matrix puts it where it was.  A
- * mask is applied to what was read.
+ * mask and planes are applied to what was read.
  * Errors: SNOW_BAD_INPUT (missing, damaged, contradictory, unsupported; nothing
  * is kept), SNOW_BAD_USAGE (options that do not fit the format),
  * SNOW_NO_MEMORY.  Close with snow_volume_close. */
@@ -259,6 +265,15 @@ SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
                                       const snow_volume *mask,
                                       const snow_label_range *labels,
                                       size_t count, snow_volume **out);
+
+/* The same volume on one side of `count` planes of the world, four numbers a,
+ * b, c, d each, and no values where a x + b y + c z > d of any of them; a voxel
+ * in a plane stays.  A plane whose a, b, c are 0 is none.  Type and all else as
+ * of a mask. Errors: SNOW_BAD_USAGE (more than SNOW_CLIPS_MOST planes),
+ * SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
+                                      const double *planes, size_t count,
+                                      snow_volume **out);
 
 /* Writes a volume with its geometry, in the format of the path's suffix:
  * .nrrd, .nii, .nii.gz, .mha, .npy, .raw, .raw.gz.  The file is written aside

@@ -415,7 +415,8 @@ snow_status snow_volume_open_memory(snow_context *context, const char *name,
     if (snow_mask_asked(options))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "%s: bytes in memory have no file of a mask beside "
-                         "them; open both and take snow_volume_mask",
+                         "them; open them and take snow_volume_mask or "
+                         "snow_volume_clip",
                          name);
     snow_status status =
         snow_source_open_memory(context, name, bytes, size, &source);

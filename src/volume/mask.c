@@ -1,4 +1,4 @@
-/* volume/mask.c - the voxels that a mask leaves out.
+/* volume/mask.c - the voxels that a mask and planes leave out.
  *
  * They become NaN, which is no value: histograms do not count it, no transfer
  * function shows it, and no encoding holds it.  So a mask costs nothing after
@@ -151,6 +151,71 @@ static snow_status check_grid(snow_context *context,
     return check_place(context, volume, mask);
 }
 
+/* --- planes --------------------------------------------------------------- */
+
+/* Of the least spacing: a voxel that lies in a plane stays, however the place
+ * is rounded, which parts of a volume do differently. */
+#define PLANE_TOLERANCE 1e-6
+
+/* Planes over voxel indices: outside where [0] x + [1] y + [2] z > [3]. */
+typedef struct index_planes {
+    double planes[SNOW_CLIPS_MOST][4];
+    int count;
+} index_planes;
+
+static bool is_plane(const double plane[4]) {
+    return plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+}
+
+static index_planes index_planes_of(const snow_volume_info *info,
+                                    const double *planes, size_t count) {
+    const double *s = info->spacing;
+    double least = fmin(fmin(s[0], s[1]), s[2]);
+    index_planes out = {.count = 0};
+    for (size_t n = 0; n < count; n++) {
+        const double *plane = planes + 4 * n;
+        if (!is_plane(plane))
+            continue;
+        double *index = out.planes[out.count++];
+        double length = hypot(hypot(plane[0], plane[1]), plane[2]);
+        index[3] = plane[3] + PLANE_TOLERANCE * least * length;
+        for (int row = 0; row < 3; row++) {
+            index[3] -= plane[row] * info->matrix[row][3];
+            for (int axis = 0; axis < 3; axis++)
+                index[axis] += plane[row] * info->matrix[row][axis];
+        }
+    }
+    return out;
+}
+
+static bool is_clipped(const index_planes *planes, const int64_t at[3]) {
+    for (int n = 0; n < planes->count; n++) {
+        const double *p = planes->planes[n];
+        if (p[0] * (double)at[0] + p[1] * (double)at[1] + p[2] * (double)at[2] >
+            p[3])
+            return true;
+    }
+    return false;
+}
+
+/* Takes values of voxels from linear index `first` on. */
+static void clip_values(const index_planes *planes, const int64_t dims[3],
+                        int64_t first, size_t count, double *values) {
+    int64_t at[3] = {first % dims[0], first / dims[0] % dims[1],
+                     first / dims[0] / dims[1]};
+    for (size_t i = 0; i < count && planes->count; i++) {
+        if (is_clipped(planes, at))
+            values[i] = NAN;
+        if (++at[0] < dims[0])
+            continue;
+        at[0] = 0;
+        if (++at[1] < dims[1])
+            continue;
+        at[1] = 0;
+        at[2]++;
+    }
+}
+
 /* --- voxels --------------------------------------------------------------- */
 
 /* The type that holds all values of another, and NaN. */
@@ -198,32 +263,54 @@ static void store(snow_volume *made, int64_t first, size_t count,
         to[i] = (float)values[i];
 }
 
-/* How many voxels are inside. */
-static int64_t leave_out(const snow_volume *volume, const snow_volume *mask,
-                         inside *in, snow_volume *made) {
-    const int64_t *dims = volume->info.dims;
+/* Values where the mask is, from linear index `first` on. */
+static void mask_values(const snow_volume *mask, inside *in, int64_t first,
+                        size_t count, double *values) {
     const double slope = mask->info.slope, intercept = mask->info.intercept;
-    int64_t all = dims[0] * dims[1] * dims[2], kept = 0;
-    double values[BLOCK], marks[BLOCK];
+    double marks[BLOCK];
+    snow_volume_natives(mask, first, count, marks);
+    for (size_t i = 0; i < count; i++)
+        if (!is_inside(in, slope * marks[i] + intercept))
+            values[i] = NAN;
+}
+
+/* Whether any voxel is left.  `mask` NULL: none. */
+static bool leave_out(const snow_volume *volume, const snow_volume *mask,
+                      inside *in, const index_planes *planes,
+                      snow_volume *made) {
+    const int64_t *dims = volume->info.dims;
+    int64_t all = dims[0] * dims[1] * dims[2];
+    bool any = false;
+    double values[BLOCK];
     for (int64_t first = 0; first < all; first += BLOCK) {
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
         snow_volume_natives(volume, first, count, values);
-        snow_volume_natives(mask, first, count, marks);
-        for (size_t i = 0; i < count; i++)
-            if (is_inside(in, slope * marks[i] + intercept))
-                kept++;
-            else
-                values[i] = NAN;
+        if (mask)
+            mask_values(mask, in, first, count, values);
+        clip_values(planes, dims, first, count, values);
+        for (size_t i = 0; i < count && !any; i++)
+            any = !isnan(values[i]);
         store(made, first, count, values);
     }
-    return kept;
+    return any;
 }
 
-/* The grids are the same.  *kept: the voxels inside. */
-static snow_status apply(const snow_volume *volume, const snow_volume *mask,
-                         const snow_label_range *labels, size_t count,
-                         int64_t *kept, snow_volume **out) {
-    inside in = {.labels = labels, .count = count, .last = NAN};
+/* What is left out of a volume: by a mask on its grid, NULL where there is
+ * none, and by planes. */
+typedef struct cuts {
+    const snow_volume *mask;
+    const snow_label_range *labels;
+    size_t label_count;
+    const double *planes;
+    size_t plane_count;
+} cuts;
+
+/* *any: whether a voxel is left. */
+static snow_status apply(const snow_volume *volume, const cuts *by, bool *any,
+                         snow_volume **out) {
+    inside in = {.labels = by->labels, .count = by->label_count, .last = NAN};
+    index_planes planes =
+        index_planes_of(&volume->info, by->planes, by->plane_count);
     snow_volume_info info = volume->info;
     snow_volume *made;
     info.type = masked_type(info.type);
@@ -233,7 +320,7 @@ static snow_status apply(const snow_volume *volume, const snow_volume *mask,
     made->knows_origin = volume->knows_origin;
     memcpy(made->origin, volume->origin, sizeof made->origin);
     memcpy(made->patient, volume->patient, sizeof made->patient);
-    *kept = leave_out(volume, mask, &in, made);
+    *any = leave_out(volume, by->mask, &in, &planes, made);
     *out = made;
     return SNOW_OK;
 }
@@ -241,9 +328,21 @@ static snow_status apply(const snow_volume *volume, const snow_volume *mask,
 snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
                              const snow_label_range *labels, size_t count,
                              snow_volume **out) {
-    int64_t kept;
+    const cuts by = {.mask = mask, .labels = labels, .label_count = count};
+    bool any;
     SNOW_TRY(check_grid(volume->context, &volume->info, &mask->info));
-    return apply(volume, mask, labels, count, &kept, out);
+    return apply(volume, &by, &any, out);
+}
+
+snow_status snow_volume_clip(const snow_volume *volume, const double *planes,
+                             size_t count, snow_volume **out) {
+    const cuts by = {.planes = planes, .plane_count = count};
+    bool any;
+    if (count > SNOW_CLIPS_MOST)
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "%zu planes are too many to clip by; give up to %d",
+                         count, SNOW_CLIPS_MOST);
+    return apply(volume, &by, &any, out);
 }
 
 /* --- files ---------------------------------------------------------------- */
@@ -251,17 +350,24 @@ snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
 /* A volume and its mask, on the way to be opened. */
 typedef struct opening {
     snow_context *context;
-    const char *path, *mask_path;
+    const char *path;
+    const char *mask_path;       /* NULL: planes alone */
     bool stream;                 /* the volume comes as one */
     snow_volume_options options; /* of the volume, without mask */
     snow_volume_options mask;    /* of the mask */
     snow_volume_info grid;       /* of the whole mask */
     snow_label_range labels[SNOW_LABELS_MOST];
     size_t count;
+    double clip[SNOW_CLIPS_MOST][4];
 } opening;
 
 bool snow_mask_asked(const snow_volume_options *options) {
-    return options && (options->mask || options->labels);
+    if (!options)
+        return false;
+    bool clips = false;
+    for (int n = 0; n < SNOW_CLIPS_MOST; n++)
+        clips |= is_plane(options->clip[n]);
+    return options->mask || options->labels || clips;
 }
 
 static bool is_cropped(const snow_volume_options *options) {
@@ -271,6 +377,12 @@ static bool is_cropped(const snow_volume_options *options) {
 
 /* What the options say by themselves. */
 static snow_status begin(opening *o, const snow_volume_options *options) {
+    o->options = *options;
+    o->options.mask = o->options.labels = NULL;
+    memset(o->options.clip, 0, sizeof o->options.clip);
+    memcpy(o->clip, options->clip, sizeof o->clip);
+    if (!options->mask && !options->labels)
+        return SNOW_OK;
     if (!options->mask)
         return snow_fail(o->context, SNOW_BAD_USAGE,
                          "--labels: these are of a mask; give --mask FILE "
@@ -282,8 +394,6 @@ static snow_status begin(opening *o, const snow_volume_options *options) {
                          "whole numbers and ranges, such as 1,4-7",
                          options->labels, SNOW_LABELS_MOST);
     o->mask_path = options->mask;
-    o->options = *options;
-    o->options.mask = o->options.labels = NULL;
     memcpy(o->mask.spacing, options->spacing, sizeof options->spacing);
     if (snow_source_is_stream(o->mask_path))
         return snow_fail(o->context, SNOW_BAD_USAGE,
@@ -348,24 +458,38 @@ static snow_status look_at_both(opening *o) {
  * empty, as that of a rank often is. */
 static void warn(const opening *o, const snow_volume *mask) {
     snow_volume_measures m;
+    if (is_cropped(&o->options))
+        return;
+    if (!mask) {
+        snow_notify(o->context, "--clip: no voxel is left; these are beyond "
+                                "A x + B y + C z = D of the world");
+        return;
+    }
     snow_volume_measure(mask, &m);
-    if (!is_cropped(&o->options))
-        snow_notify(o->context,
-                    "%s: no voxel is inside this mask, whose values are %g to "
-                    "%g; correct --labels, or the mask",
-                    o->mask_path, m.min, m.max);
+    snow_notify(o->context,
+                "%s: no voxel is left inside this mask, whose values are "
+                "%g to %g; correct --labels, or the mask",
+                o->mask_path, m.min, m.max);
+}
+
+static snow_status leave_out_of(const opening *o, const snow_volume *volume,
+                                const snow_volume *mask, snow_volume **out) {
+    const cuts by = {mask, o->labels, o->count, o->clip[0], SNOW_CLIPS_MOST};
+    bool any;
+    SNOW_TRY(apply(volume, &by, &any, out));
+    if (!any)
+        warn(o, mask);
+    return SNOW_OK;
 }
 
 static snow_status read_mask(const opening *o, const snow_volume *volume,
                              snow_volume **out) {
-    int64_t kept;
-    snow_volume *mask;
-    if (o->stream)
+    snow_volume *mask = NULL;
+    if (o->mask_path && o->stream)
         SNOW_TRY(compare(o, &volume->info));
-    SNOW_TRY(snow_volume_open(o->context, o->mask_path, &o->mask, &mask));
-    snow_status status = apply(volume, mask, o->labels, o->count, &kept, out);
-    if (status == SNOW_OK && !kept)
-        warn(o, mask);
+    if (o->mask_path)
+        SNOW_TRY(snow_volume_open(o->context, o->mask_path, &o->mask, &mask));
+    snow_status status = leave_out_of(o, volume, mask, out);
     snow_volume_close(mask);
     return status;
 }
@@ -373,7 +497,8 @@ static snow_status read_mask(const opening *o, const snow_volume *volume,
 static snow_status open_both(opening *o, snow_volume_info *info,
                              snow_volume **out) {
     snow_volume *volume;
-    SNOW_TRY(look_at_both(o));
+    if (o->mask_path)
+        SNOW_TRY(look_at_both(o));
     if (!out) {
         SNOW_TRY(snow_volume_inspect(o->context, o->path, &o->options, info));
         info->type = masked_type(info->type);
