@@ -97,7 +97,7 @@ done
 
 # Each rank reads its box of a mask.
 "$TOOL" phantom shells --dims 40x36x44 -q -o mask.nrrd
-mask="--mask mask.nrrd --labels 1-120 --azimuth 33"
+mask="--mask mask.nrrd --labels 1-120 --clip 1,0.5,0,30 --azimuth 33"
 for box in "" "--crop 4:,:30,9:40"; do
     # shellcheck disable=SC2086
     run 0 "a mask alone $box" "$TOOL" $head $mask $box -y -o one.npy
