@@ -32,9 +32,9 @@ static bool add_text(options *out, const char *text) {
 static bool add_value(options *out, const char *key, const json_t *value);
 
 /* "640x480", "0,1", "10:0,20:0.5": numbers of a list in a list have a colon
- * between them.  The end of an axis of a crop is nothing. */
+ * between them, but for planes.  The end of an axis of a crop is nothing. */
 static bool add_list(options *out, const char *key, const json_t *list) {
-    bool crop = strcmp(key, "crop") == 0;
+    bool crop = strcmp(key, "crop") == 0, inner = strcmp(key, "clip") != 0;
     const char *between =
         strcmp(key, ":") == 0                                     ? ":"
         : strcmp(key, "size") == 0                                ? "x"
@@ -48,7 +48,8 @@ static bool add_list(options *out, const char *key, const json_t *list) {
             if (!add_value(out, ":", json_array_get(item, 0)) ||
                 !add_text(out, ":"))
                 return false;
-        } else if (!add_value(out, json_is_array(item) ? ":" : key, item))
+        } else if (!add_value(out, inner && json_is_array(item) ? ":" : key,
+                              item))
             return false;
     }
     return true;
@@ -170,6 +171,9 @@ static void fill_data(const options *asked, snow_recipe *out) {
     data->channel = asked->channel;
     data->dataset = asked->dataset;
     data->series = asked->series;
+    data->mask = asked->mask;
+    memcpy(data->clip, asked->clip, sizeof data->clip);
+    data->labels = asked->labels;
     if (asked->endian)
         data->endian = strcmp(asked->endian, "big") == 0 ? SNOW_ENDIAN_BIG
                                                          : SNOW_ENDIAN_LITTLE;

@@ -15,7 +15,10 @@ snow_volume_options data_options(const options *asked) {
                                 .time = asked->time,
                                 .channel = asked->channel,
                                 .dataset = asked->dataset,
-                                .series = asked->series};
+                                .series = asked->series,
+                                .mask = asked->mask,
+                                .labels = asked->labels};
+    memcpy(data.clip, asked->clip, sizeof data.clip);
     for (int i = 0; i < 3; i++) {
         data.dims[i] = asked->dims[i];
         data.spacing[i] = asked->spacing[i];

@@ -46,15 +46,45 @@ static double image_bytes(const options *asked, const snow_volume_info *info) {
     return most * scale * scale * PIXEL_BYTES;
 }
 
+static uint64_t picture_bytes(const options *asked) {
+    return (uint64_t)(asked->size[0] * asked->size[1]) * PIXEL_BYTES;
+}
+
 memory_need memory_needed(const options *asked, const snow_volume_info *info) {
     double voxels =
         (double)info->dims[0] * (double)info->dims[1] * (double)info->dims[2];
-    double picture =
-        (double)asked->size[0] * (double)asked->size[1] * PIXEL_BYTES;
-    double least = voxels * (double)snow_type_size(info->type) + picture;
+    double least = voxels * (double)snow_type_size(info->type) +
+                   (double)picture_bytes(asked);
     double most =
         least + voxels * encoded_bytes(asked, info) + image_bytes(asked, info);
     return (memory_need){(uint64_t)least, (uint64_t)most};
+}
+
+/* Bytes of voxels as they are read; 0 of what cannot be looked at, which the
+ * reading tells. */
+static uint64_t native_bytes(snow_context *context, const char *path,
+                             const snow_volume_options *data) {
+    snow_volume_info info;
+    if (snow_volume_inspect(context, path, data, &info) != SNOW_OK)
+        return 0;
+    return (uint64_t)(info.dims[0] * info.dims[1] * info.dims[2]) *
+           snow_type_size(info.type);
+}
+
+/* The mask, and the volume before it was masked or clipped, are there together
+ * with what comes of both. */
+static uint64_t masking_bytes(snow_context *context, const char *path,
+                              const snow_volume_options *data) {
+    snow_volume_options plain = *data, mask = {.type = SNOW_TYPE_NONE};
+    const double *plane = data->clip[0];
+    bool clips = plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+    if (!data->mask && !clips)
+        return 0;
+    plain.mask = plain.labels = NULL;
+    memset(plain.clip, 0, sizeof plain.clip);
+    memcpy(mask.crop, data->crop, sizeof mask.crop);
+    return native_bytes(context, path, &plain) +
+           (data->mask ? native_bytes(context, data->mask, &mask) : 0);
 }
 
 /* "12.3 MiB". */
@@ -78,6 +108,12 @@ int memory_check(snow_context *context, const options *asked, const char *path,
     if (status != SNOW_OK)
         return fail_status(context, status);
     memory_need need = memory_needed(asked, &info);
+    uint64_t voxels = need.least - picture_bytes(asked);
+    uint64_t masking = voxels + masking_bytes(context, path, data);
+    if (masking > need.least)
+        need.least = masking;
+    if (need.least > need.most)
+        need.most = need.least;
     print_bytes(need.least, least);
     print_bytes(need.most, most);
     if (tell)

@@ -195,8 +195,15 @@ const option_row option_table[] = {
     {"series", 0, "UID|N", TOPIC_DATA, INPUT, read_text, FIELD(series), 0, 0,
      "", "of DICOM images of several series, by UID or number as listed (the "
      "largest)"},
-    LATER("mask", 0, "FILE", TOPIC_DATA, "give a masked file"),
-    LATER("labels", 0, "LIST", TOPIC_DATA, "give a masked file"),
+    {"mask", 0, "FILE", TOPIC_DATA, INPUT, read_text, FIELD(mask), 0, 0, "",
+     "a volume on the same grid: where it is 0 or NaN, the input has no value, "
+     "and so is neither seen nor counted (none)"},
+    {"labels", 0, "LIST", TOPIC_DATA, INPUT, read_labels, FIELD(labels), 0, 0,
+     "", "of the mask, the values that are inside: whole numbers and ranges "
+     "such as 1,4-7 (all but 0)"},
+    {"clip", 0, "A,B,C,D", TOPIC_DATA, INPUT, read_clip, FIELD(clip), 0, 0, "",
+     "leave out the voxels beyond a plane of the world, where A x + B y + C z "
+     "> D; up to six planes, one behind the other (none)"},
 
     {"threads", 'j', "N", TOPIC_RUN, RENDER, read_integer, FIELD(threads), 1,
      4096, "", "threads that render; the picture is the same for any number "

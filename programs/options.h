@@ -92,9 +92,11 @@ typedef struct options {
     uint64_t offset;
     int64_t time;
     int64_t channel;
-    const char *dataset; /* NULL: not told */
-    const char *series;  /* NULL: not told */
-    int64_t crop[3][2];  /* 0: the end */
+    const char *dataset;             /* NULL: not told */
+    const char *series;              /* NULL: not told */
+    int64_t crop[3][2];              /* 0: the end */
+    double clip[SNOW_CLIPS_MOST][4]; /* zeros: none */
+    const char *mask, *labels;       /* NULL: not told */
     uint64_t seed;
 
     int64_t frames; /* of a turn */

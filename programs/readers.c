@@ -190,6 +190,38 @@ bool read_crop(const option_row *row, const char *text, void *field,
     return true;
 }
 
+/* The library reads them again, for the mask. */
+bool read_labels(const option_row *row, const char *text, void *field,
+                 char wrong[WRONG_BYTES]) {
+    snow_label_range ranges[SNOW_LABELS_MOST];
+    size_t count;
+    if (!snow_labels_read(text, ranges, SNOW_LABELS_MOST, &count))
+        return refuse(wrong, "is no list of labels; give up to 256 whole "
+                             "numbers and ranges, such as 1,4-7");
+    return read_text(row, text, field, wrong);
+}
+
+/* Planes without a direction are none, and none are behind them. */
+bool read_clip(const option_row *row, const char *text, void *field,
+               char wrong[WRONG_BYTES]) {
+    (void)row;
+    double planes[SNOW_CLIPS_MOST][4] = {{0}};
+    int count = 1;
+    for (const char *at = text; (at = strchr(at, ',')); at++)
+        count++;
+    bool good = count % 4 == 0 && count <= 4 * SNOW_CLIPS_MOST &&
+                value_reals(text, ',', count, planes[0]);
+    for (int n = 0; n < count / 4 && good; n++)
+        good = planes[n][0] != 0 || planes[n][1] != 0 || planes[n][2] != 0;
+    if (!good)
+        return refuse(wrong,
+                      "are no planes; give A,B,C,D, four numbers for "
+                      "each of up to six, A, B and C not all 0: 0,0,1,50 "
+                      "leaves out what is above z = 50");
+    memcpy(field, planes, sizeof planes);
+    return true;
+}
+
 /* NaN and inf do not pass value_reals, so above 0 is all that is left. */
 bool read_spacing(const option_row *row, const char *text, void *field,
                   char wrong[WRONG_BYTES]) {

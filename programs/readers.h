@@ -17,6 +17,8 @@ option_read read_count;           /* uint64_t */
 option_read read_bytes;           /* uint64_t, also as 4G or 4GiB */
 option_read read_size;            /* int64_t[2] */
 option_read read_dims;            /* int64_t[3] */
+option_read read_labels;          /* const char * */
+option_read read_clip;            /* double[6][4] */
 option_read read_crop;            /* int64_t[3][2] */
 option_read read_spacing;         /* double[3] */
 option_read read_type;            /* snow_type */

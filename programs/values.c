@@ -109,10 +109,9 @@ bool value_quotient(const char *text, double *out) {
     return true;
 }
 
-/* Three is the most that an option takes: sizes, spacings, colours. */
 bool value_reals(const char *text, char separator, int count, double *out) {
     char part[NUMBER_BYTES];
-    double values[3];
+    double values[VALUES_MOST];
     bool more = true;
     for (int i = 0; i < count; i++) {
         if (!more || !(text = next_part(text, separator, part, &more)) ||

@@ -45,7 +45,11 @@ bool value_bytes(const char *text, uint64_t *out);
 /* A number, or a quotient of two such as 1/255. */
 bool value_quotient(const char *text, double *out);
 
-/* `count` numbers between single characters `separator`: "256x256x110". */
+/* The most numbers that an option takes: planes. */
+#define VALUES_MOST (4 * SNOW_CLIPS_MOST)
+
+/* `count` numbers between single characters `separator`: "256x256x110"; whole
+ * ones are up to three, others up to VALUES_MOST. */
 bool value_reals(const char *text, char separator, int count, double *out);
 bool value_integers(const char *text, char separator, int count, int64_t *out);
 

@@ -9,8 +9,8 @@ trap 'rm -rf "$place"' EXIT
 mkdir "$place/files"
 cd "$place/files" || exit 1
 
-for name in head.nii.gz ct.nii.gz mra.nii.gz ct.nrrd sim.nrrd volume.mha \
-    scan.mha; do
+for name in head.nii.gz ct.nii.gz mra.nii.gz brain.nii.gz organs.nii.gz ct.nrrd \
+    sim.nrrd volume.mha scan.mha; do
     "$tool" phantom head --dims 32x32x32 -q -o "$name" || exit 1
 done
 "$tool" phantom engine -q -o engine.raw.gz || exit 1

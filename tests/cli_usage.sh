@@ -42,8 +42,19 @@ info --perspective x|no option of info
 --memory lots x -o y.png|--memory: 'lots' is no amount of memory
 --memory 0 x -o y.png|--memory: '0' is no amount
 --memory 1.5Q x -o y.png|is no amount of memory
---labels 1 x|--labels is not built yet
---mask m x|--mask is not built yet
+--labels 1 x -o y.png|--labels: these are of a mask; give --mask FILE beside it
+convert x -o y.nrrd --labels 1|--labels: these are of a mask
+info x --labels 1|--labels: these are of a mask
+--labels 1,b x -o y.png|--labels: '1,b' is no list of labels
+--labels 7-4 x -o y.png|--labels: '7-4' is no list of labels
+--labels= x -o y.png|--labels
+--mask= x -o y.png|--mask
+--clip 1,0,0 x -o y.png|--clip: '1,0,0' are no planes; give A,B,C,D
+--clip 0,0,0,1 x -o y.png|--clip: '0,0,0,1' are no planes
+--clip 1,0,0,1,2 x -o y.png|--clip: '1,0,0,1,2' are no planes
+--clip 1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1 x|are no planes
+--clip 1,0,0,nan x -o y.png|are no planes
+phantom --mask m cube -o y.nrrd|--mask: no option of phantom
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint
 --crop 0:1,0:1 x|--crop: 

@@ -95,6 +95,21 @@ for frame in 0 1 2; do
         --tolerance 1/255
 done
 
+# Each rank reads its box of a mask.
+"$TOOL" phantom shells --dims 40x36x44 -q -o mask.nrrd
+mask="--mask mask.nrrd --labels 1-120 --clip 1,0.5,0,30 --azimuth 33"
+for box in "" "--crop 4:,:30,9:40"; do
+    # shellcheck disable=SC2086
+    run 0 "a mask alone $box" "$TOOL" $head $mask $box -y -o one.npy
+    for cut in equal counted bricks; do
+        # shellcheck disable=SC2086
+        TOLERANCE=1e-5 render "$MOST" "a mask, --cut $cut $box" $mask $box \
+            --cut $cut
+    done
+done
+refused 3 "a mask of another grid" 'the mask has 40x36x44 voxels' \
+    "$MPI_TOOL" phantom:head --dims 40x36x40 --mask mask.nrrd -o x.png
+
 # What is for one process, one rank does.
 run 0 "info" launch 2 "$MPI_TOOL" info v.nrrd --json
 check "info is told once" [ "$(wc -l <"$OUT")" -eq 1 ]

@@ -24,7 +24,9 @@ static const char all_keys[] =
     " \"threads\": 3, \"deterministic\": true, \"isa\": \"scalar\","
     " \"dims\": [5, 6, 7], \"type\": \"int16\", \"spacing\": [1, 2, 0.1],"
     " \"endian\": \"big\", \"offset\": 352, \"time\": 2,"
-    " \"channel\": 1, \"dataset\": \"/a/b\", \"series\": \"1.2\", \"crop\": "
+    " \"channel\": 1, \"dataset\": \"/a/b\", \"series\": \"1.2\","
+    " \"mask\": \"m.nrrd\", \"labels\": \"1,4-7\","
+    " \"clip\": [[1, 0, 0.5, -3], [0, -1, 0, 2]], \"crop\": "
     "[[1, 5], [0, 0], [3, "
     "0]]}";
 
@@ -93,6 +95,9 @@ static void every_key_reaches_its_field(void **state) {
     assert_true(r.data.channel == 1);
     assert_string_equal(r.data.dataset, "/a/b");
     assert_string_equal(r.data.series, "1.2");
+    assert_string_equal(r.data.mask, "m.nrrd");
+    assert_string_equal(r.data.labels, "1,4-7");
+    assert_true(r.data.clip[0][2] == 0.5 && r.data.clip[1][1] == -1);
     assert_true(r.data.crop[0][1] == 5 && r.data.crop[2][0] == 3);
     snow_recipe_clear(&r);
     snow_context_free(context);
@@ -122,6 +127,10 @@ static void what_is_written_reads_as_it_was(void **state) {
         assert_int_equal(a.data.series == NULL, b.data.series == NULL);
         a.data.dataset = b.data.dataset = NULL;
         a.data.series = b.data.series = NULL;
+        assert_int_equal(a.data.mask == NULL, b.data.mask == NULL);
+        assert_int_equal(a.data.labels == NULL, b.data.labels == NULL);
+        a.data.mask = b.data.mask = NULL;
+        a.data.labels = b.data.labels = NULL;
         assert_memory_equal(&a.data, &b.data, sizeof a.data);
         free(again);
         free(text);
@@ -173,6 +182,11 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"overwrite\": 1}", "true or false"},
         {"{\"mode\": \"most\"}", "\"mode\" must be one of"},
         {"{\"roll\": 1, \"roll\": 2}", "duplicate"},
+        {"{\"labels\": \"1-\"}", "\"labels\" must be a text of whole numbers"},
+        {"{\"labels\": 3}", "\"labels\" must be"},
+        {"{\"clip\": [[0, 0, 0, 1]]}", "\"clip\" must be [[a, b, c, d], ...]"},
+        {"{\"clip\": [1, 0, 0, 1]}", "\"clip\" must be"},
+        {"{\"mask\": 3}", "\"mask\" must be"},
         {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},
         {"[1]", "one JSON object"},
         {"{\n\"roll\": }", "line 2"},

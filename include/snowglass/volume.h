@@ -69,6 +69,17 @@ typedef enum snow_endian {
     SNOW_ENDIAN_BIG
 } snow_endian;
 
+/* Labels of a mask from `first` to `last`, both included. */
+typedef struct snow_label_range {
+    int64_t first, last;
+} snow_label_range;
+
+/* Ranges that one list of labels may have. */
+#define SNOW_LABELS_MOST 256
+
+/* Planes that one volume may be clipped by. */
+#define SNOW_CLIPS_MOST 6
+
 /* How to open a volume.  Zero everywhere is right for every format but raw. */
 typedef struct snow_volume_options {
     int64_t dims[3];     /* raw only: voxels along x, y, z; 0: not told */
@@ -87,6 +98,15 @@ typedef struct snow_volume_options {
     const char *series;  /* of DICOM images of several series, the one to read:
                             its UID, or its number in the remark that lists
                             them; NULL: the largest */
+    const char *mask;    /* a volume on the same grid: voxels outside it have no
+                            value (snow_volume_mask); NULL: none.  It is read
+                            with the same crop and spacing; one with a single
+                            time step is that of all */
+    const char *labels;  /* of the mask, those inside (snow_labels_read); NULL:
+                            all but 0 */
+    /* Planes a, b, c, d of the world: voxels where a x + b y + c z > d have no
+     * value (snow_volume_clip); one whose a, b, c are 0 is none. */
+    double clip[SNOW_CLIPS_MOST][4];
 } snow_volume_options;
 
 /* Opens a volume file.  The format is found from the first bytes, then from
@@ -94,7 +114,8 @@ typedef struct snow_volume_options {
  * knows is raw and needs `dims` and `type`.  "phantom:NAME" makes a built-in
  * volume (options->dims then gives its size; 0 for the default).  `options`
  * may be NULL.  Of a volume that is cropped little more than the box is read
- * and kept; it is a volume of its own, whose matrix puts it where it was.
+ * and kept; it is a volume of its own, whose matrix puts it where it was.  A
+ * mask and planes are applied to what was read.
  * Errors: SNOW_BAD_INPUT (missing, damaged, contradictory, unsupported; nothing
  * is kept), SNOW_BAD_USAGE (options that do not fit the format),
  * SNOW_NO_MEMORY.  Close with snow_volume_close. */
@@ -225,6 +246,34 @@ SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
 SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
                                          snow_type type, const double range[2],
                                          snow_volume **out);
+
+/* Reads "1,4-7,-3": whole numbers and ranges of them, below 2^53 both ways,
+ * into `ranges`, which has `room` entries.  False, and nothing changed, for any
+ * other text and for more ranges than there is room for. */
+SNOW_API bool snow_labels_read(const char *text, snow_label_range *ranges,
+                               size_t room, size_t *count);
+
+/* The same volume where the mask is, and no values (NaN) elsewhere, which no
+ * look, mode or encoding shows.  Inside is where the mask's data value is one
+ * of the labels; of no labels (`count` 0), where it is neither 0 nor NaN.  The
+ * type is float32, or float64 for native integers of 32 and 64 bits and for
+ * float64; slope, intercept and all else stay.  The mask must have the same
+ * sizes and, where both tell a place in the same world, lie there to a tenth of
+ * a voxel.  Both may be closed before the new one.
+ * Errors: SNOW_BAD_INPUT (another grid), SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
+                                      const snow_volume *mask,
+                                      const snow_label_range *labels,
+                                      size_t count, snow_volume **out);
+
+/* The same volume on one side of `count` planes of the world, four numbers a,
+ * b, c, d each, and no values where a x + b y + c z > d of any of them; a voxel
+ * in a plane stays.  A plane whose a, b, c are 0 is none.  Type and all else as
+ * of a mask. Errors: SNOW_BAD_USAGE (more than SNOW_CLIPS_MOST planes),
+ * SNOW_NO_MEMORY. */
+SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
+                                      const double *planes, size_t count,
+                                      snow_volume **out);
 
 /* Writes a volume with its geometry, in the format of the path's suffix:
  * .nrrd, .nii, .nii.gz, .mha, .npy, .raw, .raw.gz.  The file is written aside

@@ -199,6 +199,42 @@ static json_t *write_crop(const recipe_key *key, const void *field) {
                      (json_int_t)c[5]);
 }
 
+/* [[a, b, c, d], ...]; planes without a direction are none. */
+static bool read_clip(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    double planes[SNOW_CLIPS_MOST][4] = {{0}};
+    size_t count = json_array_size(value);
+    bool good = count > 0 && count <= SNOW_CLIPS_MOST;
+    for (size_t n = 0; n < count && good; n++) {
+        const json_t *plane = json_array_get(value, n);
+        good = json_array_size(plane) == 4;
+        for (size_t i = 0; i < 4 && good; i++)
+            good =
+                read_real(key, json_array_get(plane, i), &planes[n][i], wrong);
+        good = good &&
+               (planes[n][0] != 0 || planes[n][1] != 0 || planes[n][2] != 0);
+    }
+    if (!good)
+        return refuse(wrong, "[[a, b, c, d], ...], up to 6 planes whose a, b "
+                             "and c are not all 0");
+    memcpy(field, planes, sizeof planes);
+    return true;
+}
+
+static json_t *write_clip(const recipe_key *key, const void *field) {
+    (void)key;
+    const double *p = field;
+    json_t *list = json_array();
+    for (int n = 0; n < SNOW_CLIPS_MOST; n++, p += 4)
+        if (p[0] != 0 || p[1] != 0 || p[2] != 0)
+            json_array_append_new(
+                list, json_pack("[f,f,f,f]", p[0], p[1], p[2], p[3]));
+    if (json_array_size(list))
+        return list;
+    json_decref(list);
+    return NULL;
+}
+
 /* Width and height, which follow each other. */
 static bool read_size(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
@@ -232,6 +268,22 @@ static json_t *write_text(const recipe_key *key, const void *field) {
     (void)key;
     const char *text = *(const char *const *)field;
     return text ? json_string(text) : NULL;
+}
+
+/* Labels of a mask, which are kept as a text. */
+static bool read_labels(const recipe_key *key, const json_t *value, void *field,
+                        char wrong[WRONG_BYTES]) {
+    snow_label_range ranges[SNOW_LABELS_MOST];
+    size_t count;
+    const char *text = json_string_value(value);
+    if (!text || !snow_labels_read(text, ranges, SNOW_LABELS_MOST, &count))
+        return refuse(wrong, "a text of whole numbers and ranges such as "
+                             "\"1,4-7\"");
+    return read_text(key, value, field, wrong);
+}
+
+static json_t *write_labels(const recipe_key *key, const void *field) {
+    return write_text(key, field);
 }
 
 /* "a, b or c" behind "must be ". */
@@ -617,6 +669,9 @@ const recipe_key recipe_keys[] = {
      NULL},
     TEXT("dataset", data.dataset),
     TEXT("series", data.series),
+    TEXT("mask", data.mask),
+    MADE("labels", labels, data.labels, 0, 0, 0),
+    MADE("clip", clip, data.clip, 0, 0, 4),
     {"time", read_long, write_told_long, AT(data.time), 0, 9e15, 0, NULL, NULL},
     {NULL, NULL, NULL, 0, 0, 0, 0, NULL, NULL},
 };

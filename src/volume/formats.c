@@ -4,6 +4,7 @@
  * everything else raw data.  The name of the file is put before every message
  * here, so that no reader has to. */
 #include "base/folder.h"
+#include "volume/mask.h"
 #include "volume/phantom.h"
 #include "volume/stack.h"
 #include "volume/volume.h"
@@ -392,12 +393,16 @@ snow_status snow_volume_open(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_volume **out) {
     snow_volume_info info;
+    if (snow_mask_asked(options))
+        return snow_mask_open(context, path, options, &info, out);
     return open_path(context, path, options, &info, out);
 }
 
 snow_status snow_volume_inspect(snow_context *context, const char *path,
                                 const snow_volume_options *options,
                                 snow_volume_info *out) {
+    if (snow_mask_asked(options))
+        return snow_mask_open(context, path, options, out, NULL);
     return open_path(context, path, options, out, NULL);
 }
 
@@ -407,6 +412,12 @@ snow_status snow_volume_open_memory(snow_context *context, const char *name,
                                     snow_volume **out) {
     snow_source *source;
     snow_volume_info info;
+    if (snow_mask_asked(options))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: bytes in memory have no file of a mask beside "
+                         "them; open them and take snow_volume_mask or "
+                         "snow_volume_clip",
+                         name);
     snow_status status =
         snow_source_open_memory(context, name, bytes, size, &source);
     if (status != SNOW_OK)

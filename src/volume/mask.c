@@ -1,0 +1,526 @@
+/* volume/mask.c - the voxels that a mask and planes leave out.
+ *
+ * They become NaN, which is no value: histograms do not count it, no transfer
+ * function shows it, and no encoding holds it.  So a mask costs nothing after
+ * this, it only makes the set of interesting voxels smaller.
+ *
+ * Invariant: a voxel inside keeps its data value exactly.  The type follows
+ * from the native one alone, not from the values, so that all parts of a volume
+ * have the same. */
+#include "volume/mask.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK 1024
+
+/* Beyond it doubles, through which masks are looked at, hold not all. */
+#define LABEL_MOST ((INT64_C(1) << 53) - 1)
+
+/* Of the least spacing: files that keep matrices in single precision, or as
+ * quaternions, differ by less, and another convention for the middle of a voxel
+ * by half. */
+#define PLACE_TOLERANCE 0.1
+
+/* --- labels --------------------------------------------------------------- */
+
+/* One whole number; *text goes behind it. */
+static bool read_label(const char **text, int64_t *out) {
+    const char *digits = *text + (**text == '-');
+    char *end;
+    if (!isdigit((unsigned char)*digits))
+        return false;
+    long long value = strtoll(*text, &end, 10); /* at its ends if too large */
+    if (value > LABEL_MOST || value < -LABEL_MOST)
+        return false;
+    *text = end;
+    *out = value;
+    return true;
+}
+
+static bool read_range(const char **text, snow_label_range *out) {
+    snow_label_range range;
+    if (!read_label(text, &range.first))
+        return false;
+    range.last = range.first;
+    if (**text == '-') {
+        (*text)++;
+        if (!read_label(text, &range.last) || range.last < range.first)
+            return false;
+    }
+    *out = range;
+    return true;
+}
+
+bool snow_labels_read(const char *text, snow_label_range *ranges, size_t room,
+                      size_t *count) {
+    snow_label_range read[SNOW_LABELS_MOST];
+    size_t n = 0;
+    do {
+        if (n == room || n == SNOW_LABELS_MOST || !read_range(&text, &read[n]))
+            return false;
+        n++;
+    } while (*text++ == ',');
+    if (text[-1])
+        return false;
+    memcpy(ranges, read, n * sizeof *ranges);
+    *count = n;
+    return true;
+}
+
+/* --- the grid ------------------------------------------------------------- */
+
+/* Whether more than sizes of voxels is told.  A file that says nothing of its
+ * place is at 0 along the world's axes. */
+static bool tells_place(const snow_volume_info *info) {
+    bool told = info->medical;
+    for (int row = 0; row < 3; row++) {
+        told |= info->matrix[row][3] != 0;
+        for (int axis = 0; axis < 3; axis++)
+            told |= row == axis ? info->matrix[row][axis] < 0
+                                : info->matrix[row][axis] != 0;
+    }
+    return told;
+}
+
+static void place_of(const snow_volume_info *info, const int64_t at[3],
+                     double out[3]) {
+    for (int row = 0; row < 3; row++) {
+        out[row] = info->matrix[row][3];
+        for (int axis = 0; axis < 3; axis++)
+            out[row] += info->matrix[row][axis] * (double)at[axis];
+    }
+}
+
+/* The corner of the grid at which two matrices differ most, and by how much. */
+static double find_difference(const snow_volume_info *a,
+                              const snow_volume_info *b, int64_t corner[3]) {
+    double most = -1;
+    for (int n = 0; n < 8; n++) {
+        int64_t at[3];
+        double p[3], q[3], off = 0;
+        for (int axis = 0; axis < 3; axis++)
+            at[axis] = (n >> axis) & 1 ? a->dims[axis] - 1 : 0;
+        place_of(a, at, p);
+        place_of(b, at, q);
+        for (int row = 0; row < 3; row++)
+            off += (p[row] - q[row]) * (p[row] - q[row]);
+        if (off > most) {
+            most = off;
+            memcpy(corner, at, sizeof at);
+        }
+    }
+    return sqrt(most);
+}
+
+/* Worlds of patients and others cannot be compared. */
+static snow_status check_place(snow_context *context,
+                               const snow_volume_info *volume,
+                               const snow_volume_info *mask) {
+    int64_t at[3] = {0, 0, 0};
+    double p[3], q[3];
+    const double *spacing = volume->spacing;
+    double least = fmin(fmin(spacing[0], spacing[1]), spacing[2]);
+    if (!tells_place(volume) || !tells_place(mask) ||
+        volume->medical != mask->medical ||
+        find_difference(volume, mask, at) <= PLACE_TOLERANCE * least)
+        return SNOW_OK;
+    place_of(volume, at, p);
+    place_of(mask, at, q);
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "the mask lies elsewhere: its voxel %lld,%lld,%lld is at "
+                     "%g,%g,%g of the world, the volume's at %g,%g,%g; "
+                     "resample it onto the volume's grid",
+                     (long long)at[0], (long long)at[1], (long long)at[2], q[0],
+                     q[1], q[2], p[0], p[1], p[2]);
+}
+
+static snow_status check_grid(snow_context *context,
+                              const snow_volume_info *volume,
+                              const snow_volume_info *mask) {
+    const int64_t *v = volume->dims, *m = mask->dims;
+    if (memcmp(v, m, sizeof volume->dims) != 0)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "the mask has %lldx%lldx%lld voxels and the volume "
+                         "%lldx%lldx%lld; resample it onto the volume's grid",
+                         (long long)m[0], (long long)m[1], (long long)m[2],
+                         (long long)v[0], (long long)v[1], (long long)v[2]);
+    return check_place(context, volume, mask);
+}
+
+/* --- planes --------------------------------------------------------------- */
+
+/* Of the least spacing: a voxel that lies in a plane stays, however the place
+ * is rounded, which parts of a volume do differently. */
+#define PLANE_TOLERANCE 1e-6
+
+/* Planes over voxel indices: outside where [0] x + [1] y + [2] z > [3]. */
+typedef struct index_planes {
+    double planes[SNOW_CLIPS_MOST][4];
+    int count;
+} index_planes;
+
+static bool is_plane(const double plane[4]) {
+    return plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+}
+
+static index_planes index_planes_of(const snow_volume_info *info,
+                                    const double *planes, size_t count) {
+    const double *s = info->spacing;
+    double least = fmin(fmin(s[0], s[1]), s[2]);
+    index_planes out = {.count = 0};
+    for (size_t n = 0; n < count; n++) {
+        const double *plane = planes + 4 * n;
+        if (!is_plane(plane))
+            continue;
+        double *index = out.planes[out.count++];
+        double length = hypot(hypot(plane[0], plane[1]), plane[2]);
+        index[3] = plane[3] + PLANE_TOLERANCE * least * length;
+        for (int row = 0; row < 3; row++) {
+            index[3] -= plane[row] * info->matrix[row][3];
+            for (int axis = 0; axis < 3; axis++)
+                index[axis] += plane[row] * info->matrix[row][axis];
+        }
+    }
+    return out;
+}
+
+static bool is_clipped(const index_planes *planes, const int64_t at[3]) {
+    for (int n = 0; n < planes->count; n++) {
+        const double *p = planes->planes[n];
+        if (p[0] * (double)at[0] + p[1] * (double)at[1] + p[2] * (double)at[2] >
+            p[3])
+            return true;
+    }
+    return false;
+}
+
+/* Takes values of voxels from linear index `first` on. */
+static void clip_values(const index_planes *planes, const int64_t dims[3],
+                        int64_t first, size_t count, double *values) {
+    int64_t at[3] = {first % dims[0], first / dims[0] % dims[1],
+                     first / dims[0] / dims[1]};
+    for (size_t i = 0; i < count && planes->count; i++) {
+        if (is_clipped(planes, at))
+            values[i] = NAN;
+        if (++at[0] < dims[0])
+            continue;
+        at[0] = 0;
+        if (++at[1] < dims[1])
+            continue;
+        at[1] = 0;
+        at[2]++;
+    }
+}
+
+/* --- voxels --------------------------------------------------------------- */
+
+/* The type that holds all values of another, and NaN. */
+static snow_type masked_type(snow_type type) {
+    return snow_type_size(type) <= 2 || type == SNOW_FLOAT32 ? SNOW_FLOAT32
+                                                             : SNOW_FLOAT64;
+}
+
+/* Which of a mask's values are inside. */
+typedef struct inside {
+    const snow_label_range *labels;
+    size_t count;
+    double last; /* labels come in runs: what was asked last, */
+    bool answer; /*   and what was answered */
+} inside;
+
+static bool is_label(const inside *in, double value) {
+    for (size_t i = 0; i < in->count; i++)
+        if (value >= (double)in->labels[i].first &&
+            value <= (double)in->labels[i].last)
+            return value == floor(value);
+    return false;
+}
+
+/* NaN is never what was asked last, and is no label. */
+static bool is_inside(inside *in, double value) {
+    if (!in->count)
+        return value != 0 && !isnan(value);
+    if (value != in->last) {
+        in->last = value;
+        in->answer = is_label(in, value);
+    }
+    return in->answer;
+}
+
+/* Native values, or NaN, in the type of the masked volume. */
+static void store(snow_volume *made, int64_t first, size_t count,
+                  const double *values) {
+    if (made->info.type == SNOW_FLOAT64) {
+        memcpy((double *)made->owned + first, values, count * sizeof *values);
+        return;
+    }
+    float *to = (float *)made->owned + first;
+    for (size_t i = 0; i < count; i++)
+        to[i] = (float)values[i];
+}
+
+/* Values where the mask is, from linear index `first` on. */
+static void mask_values(const snow_volume *mask, inside *in, int64_t first,
+                        size_t count, double *values) {
+    const double slope = mask->info.slope, intercept = mask->info.intercept;
+    double marks[BLOCK];
+    snow_volume_natives(mask, first, count, marks);
+    for (size_t i = 0; i < count; i++)
+        if (!is_inside(in, slope * marks[i] + intercept))
+            values[i] = NAN;
+}
+
+/* Whether any voxel is left.  `mask` NULL: none. */
+static bool leave_out(const snow_volume *volume, const snow_volume *mask,
+                      inside *in, const index_planes *planes,
+                      snow_volume *made) {
+    const int64_t *dims = volume->info.dims;
+    int64_t all = dims[0] * dims[1] * dims[2];
+    bool any = false;
+    double values[BLOCK];
+    for (int64_t first = 0; first < all; first += BLOCK) {
+        size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
+        snow_volume_natives(volume, first, count, values);
+        if (mask)
+            mask_values(mask, in, first, count, values);
+        clip_values(planes, dims, first, count, values);
+        for (size_t i = 0; i < count && !any; i++)
+            any = !isnan(values[i]);
+        store(made, first, count, values);
+    }
+    return any;
+}
+
+/* What is left out of a volume: by a mask on its grid, NULL where there is
+ * none, and by planes. */
+typedef struct cuts {
+    const snow_volume *mask;
+    const snow_label_range *labels;
+    size_t label_count;
+    const double *planes;
+    size_t plane_count;
+} cuts;
+
+/* *any: whether a voxel is left. */
+static snow_status apply(const snow_volume *volume, const cuts *by, bool *any,
+                         snow_volume **out) {
+    inside in = {.labels = by->labels, .count = by->label_count, .last = NAN};
+    index_planes planes =
+        index_planes_of(&volume->info, by->planes, by->plane_count);
+    snow_volume_info info = volume->info;
+    snow_volume *made;
+    info.type = masked_type(info.type);
+    SNOW_TRY(snow_volume_new(volume->context, &info, &made));
+    made->is_part = volume->is_part;
+    made->part = volume->part;
+    made->knows_origin = volume->knows_origin;
+    memcpy(made->origin, volume->origin, sizeof made->origin);
+    memcpy(made->patient, volume->patient, sizeof made->patient);
+    *any = leave_out(volume, by->mask, &in, &planes, made);
+    *out = made;
+    return SNOW_OK;
+}
+
+snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
+                             const snow_label_range *labels, size_t count,
+                             snow_volume **out) {
+    const cuts by = {.mask = mask, .labels = labels, .label_count = count};
+    bool any;
+    SNOW_TRY(check_grid(volume->context, &volume->info, &mask->info));
+    return apply(volume, &by, &any, out);
+}
+
+snow_status snow_volume_clip(const snow_volume *volume, const double *planes,
+                             size_t count, snow_volume **out) {
+    const cuts by = {.planes = planes, .plane_count = count};
+    bool any;
+    if (count > SNOW_CLIPS_MOST)
+        return snow_fail(volume->context, SNOW_BAD_USAGE,
+                         "%zu planes are too many to clip by; give up to %d",
+                         count, SNOW_CLIPS_MOST);
+    return apply(volume, &by, &any, out);
+}
+
+/* --- files ---------------------------------------------------------------- */
+
+/* A volume and its mask, on the way to be opened. */
+typedef struct opening {
+    snow_context *context;
+    const char *path;
+    const char *mask_path;       /* NULL: planes alone */
+    bool stream;                 /* the volume comes as one */
+    snow_volume_options options; /* of the volume, without mask */
+    snow_volume_options mask;    /* of the mask */
+    snow_volume_info grid;       /* of the whole mask */
+    snow_label_range labels[SNOW_LABELS_MOST];
+    size_t count;
+    double clip[SNOW_CLIPS_MOST][4];
+} opening;
+
+bool snow_mask_asked(const snow_volume_options *options) {
+    if (!options)
+        return false;
+    bool clips = false;
+    for (int n = 0; n < SNOW_CLIPS_MOST; n++)
+        clips |= is_plane(options->clip[n]);
+    return options->mask || options->labels || clips;
+}
+
+static bool is_cropped(const snow_volume_options *options) {
+    static const int64_t none[3][2];
+    return memcmp(options->crop, none, sizeof none) != 0;
+}
+
+/* What the options say by themselves. */
+static snow_status begin(opening *o, const snow_volume_options *options) {
+    o->options = *options;
+    o->options.mask = o->options.labels = NULL;
+    memset(o->options.clip, 0, sizeof o->options.clip);
+    memcpy(o->clip, options->clip, sizeof o->clip);
+    if (!options->mask && !options->labels)
+        return SNOW_OK;
+    if (!options->mask)
+        return snow_fail(o->context, SNOW_BAD_USAGE,
+                         "--labels: these are of a mask; give --mask FILE "
+                         "beside it");
+    if (options->labels && !snow_labels_read(options->labels, o->labels,
+                                             SNOW_LABELS_MOST, &o->count))
+        return snow_fail(o->context, SNOW_BAD_USAGE,
+                         "--labels %.64s: is no list of labels; give up to %d "
+                         "whole numbers and ranges, such as 1,4-7",
+                         options->labels, SNOW_LABELS_MOST);
+    o->mask_path = options->mask;
+    memcpy(o->mask.spacing, options->spacing, sizeof options->spacing);
+    if (snow_source_is_stream(o->mask_path))
+        return snow_fail(o->context, SNOW_BAD_USAGE,
+                         "%s: a mask is read from a file; write it to one",
+                         o->mask_path);
+    o->stream = snow_source_is_stream(o->path);
+    if (o->stream && is_cropped(options))
+        return snow_fail(o->context, SNOW_BAD_USAGE,
+                         "--crop: with a mask both must be files; write the "
+                         "volume to one");
+    return SNOW_OK;
+}
+
+/* A header alone, without the remarks that its reading makes too. */
+static snow_status look(snow_context *context, const char *path,
+                        const snow_volume_options *options,
+                        snow_volume_info *out) {
+    snow_notice_fn *notice = context->notice;
+    context->notice = NULL;
+    snow_status status = snow_volume_inspect(context, path, options, out);
+    context->notice = notice;
+    return status;
+}
+
+static snow_status compare(const opening *o, const snow_volume_info *volume) {
+    snow_status status = check_grid(o->context, volume, &o->grid);
+    if (status != SNOW_OK)
+        snow_fail_within(o->context, status, "%s", o->mask_path);
+    return status;
+}
+
+/* Options that a file may need are those of the volume. */
+static snow_status look_at_mask(opening *o) {
+    char why[512];
+    snow_status status = look(o->context, o->mask_path, &o->mask, &o->grid);
+    if (status != SNOW_BAD_USAGE)
+        return status;
+    snprintf(why, sizeof why, "%.500s", o->context->message);
+    return snow_fail(o->context, status,
+                     "%s (not for a mask: snowglass convert makes a .nrrd of "
+                     "it)",
+                     why);
+}
+
+/* Boxes of two grids are the same box only if the grids are the same, so the
+ * whole ones are compared.  A stream is compared when it was read. */
+static snow_status look_at_both(opening *o) {
+    snow_volume_options whole = o->options;
+    snow_volume_info info;
+    SNOW_TRY(look_at_mask(o));
+    if (o->grid.times > 1)
+        o->mask.time = o->options.time;
+    memcpy(o->mask.crop, o->options.crop, sizeof o->mask.crop);
+    if (o->stream)
+        return SNOW_OK;
+    memset(whole.crop, 0, sizeof whole.crop);
+    SNOW_TRY(look(o->context, o->path, &whole, &info));
+    return compare(o, &info);
+}
+
+/* An empty picture must not pass for one of an empty volume.  A box may be
+ * empty, as that of a rank often is. */
+static void warn(const opening *o, const snow_volume *mask) {
+    snow_volume_measures m;
+    if (is_cropped(&o->options))
+        return;
+    if (!mask) {
+        snow_notify(o->context, "--clip: no voxel is left; these are beyond "
+                                "A x + B y + C z = D of the world");
+        return;
+    }
+    snow_volume_measure(mask, &m);
+    snow_notify(o->context,
+                "%s: no voxel is left inside this mask, whose values are "
+                "%g to %g; correct --labels, or the mask",
+                o->mask_path, m.min, m.max);
+}
+
+static snow_status leave_out_of(const opening *o, const snow_volume *volume,
+                                const snow_volume *mask, snow_volume **out) {
+    const cuts by = {mask, o->labels, o->count, o->clip[0], SNOW_CLIPS_MOST};
+    bool any;
+    SNOW_TRY(apply(volume, &by, &any, out));
+    if (!any)
+        warn(o, mask);
+    return SNOW_OK;
+}
+
+static snow_status read_mask(const opening *o, const snow_volume *volume,
+                             snow_volume **out) {
+    snow_volume *mask = NULL;
+    if (o->mask_path && o->stream)
+        SNOW_TRY(compare(o, &volume->info));
+    if (o->mask_path)
+        SNOW_TRY(snow_volume_open(o->context, o->mask_path, &o->mask, &mask));
+    snow_status status = leave_out_of(o, volume, mask, out);
+    snow_volume_close(mask);
+    return status;
+}
+
+static snow_status open_both(opening *o, snow_volume_info *info,
+                             snow_volume **out) {
+    snow_volume *volume;
+    if (o->mask_path)
+        SNOW_TRY(look_at_both(o));
+    if (!out) {
+        SNOW_TRY(snow_volume_inspect(o->context, o->path, &o->options, info));
+        info->type = masked_type(info->type);
+        return SNOW_OK;
+    }
+    SNOW_TRY(snow_volume_open(o->context, o->path, &o->options, &volume));
+    snow_status status = read_mask(o, volume, out);
+    snow_volume_close(volume);
+    return status;
+}
+
+snow_status snow_mask_open(snow_context *context, const char *path,
+                           const snow_volume_options *options,
+                           snow_volume_info *info, snow_volume **out) {
+    opening *o = snow_allocate_clear(context, sizeof *o);
+    if (!o)
+        return SNOW_NO_MEMORY;
+    o->context = context;
+    o->path = path;
+    snow_status status = begin(o, options);
+    if (status == SNOW_OK)
+        status = open_both(o, info, out);
+    snow_release(context, o);
+    return status;
+}
