@@ -21,7 +21,7 @@ same() {
 "$TOOL" phantom head --dims 33x21x17 -q -o a.nrrd
 for end in nii nii.gz mha nrrd; do
     run 0 "to $end" "$TOOL" convert a.nrrd -o "b.$end"
-    says "b.$end: .* 33x21x17"
+    says "b.$end: 33x21x17"
     check "voxels and matrix are the same in $end" same a.nrrd "b.$end"
 done
 run 0 "to npy" "$TOOL" convert b.nii.gz -o c.npy
