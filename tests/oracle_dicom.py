@@ -272,7 +272,7 @@ series("two", small[:5], rising[:5], series="1.2.30", SeriesNumber=2)
 add("two", small[5:], rising[5:8], series="1.2.4", SeriesNumber=1)
 # a scout of the first series, which lies across it
 add("two", small[8:], rising[:1], ["scout"], series="1.2.30", SeriesNumber=2,
-    orientation=(1, 0, 0, 0, 0, -1))
+    InstanceNumber=9, orientation=(1, 0, 0, 0, 0, -1))
 oracle.expect("two", small[:5], wanted, name="the largest series")
 says("two series", "two", "0: CT 5x6, 3 images; 1: CT 5x6, 5 images "
      "(taken); 2: CT 5x6, 1 image")

@@ -112,10 +112,8 @@ static snow_status add_path(collection *c, char *path, const char *series) {
     snow_status status = snow_random_open(source, &store);
     if (status == SNOW_OK)
         status = add_store(c, store, path, series);
-    size_t length = strlen(path);
-    if (status != SNOW_OK && (strncmp(c->context->message, path, length) != 0 ||
-                              c->context->message[length] != ':'))
-        snow_fail_within(c->context, status, "%s", path);
+    if (status != SNOW_OK)
+        snow_fail_in_file(c->context, status, path);
     snow_random_close(store);
     snow_source_close(source);
     return status;

@@ -231,17 +231,22 @@ static snow_status read_source(snow_source *source,
                      source, options, info, out);
 }
 
-/* Puts the file's name before a failure's message, unless a source has done
- * so, and makes it one line of printable text whatever a header quoted in it
- * contains. */
+snow_status snow_fail_in_file(snow_context *context, snow_status status,
+                              const char *path) {
+    const char *message = context->message;
+    size_t length = strlen(path);
+    if (length &&
+        (strncmp(message, path, length) != 0 || message[length] != ':'))
+        snow_fail_within(context, status, "%s", path);
+    return status;
+}
+
+/* A failure's message with the file's name, as one line of printable text
+ * whatever a header quoted in it contains. */
 static snow_status name_failure(snow_context *context, snow_status status,
                                 const char *name) {
-    char *message = context->message;
-    size_t length = strlen(name);
-    if (length &&
-        (strncmp(message, name, length) != 0 || message[length] != ':'))
-        snow_fail_within(context, status, "%s", name);
-    for (char *at = message; *at; at++)
+    snow_fail_in_file(context, status, name);
+    for (char *at = context->message; *at; at++)
         if ((unsigned char)*at < ' ' || *at == 127)
             *at = '?';
     return status;

@@ -102,13 +102,9 @@ static snow_status read_file(const stack *s, size_t index,
                              snow_volume_info *info, snow_volume **out) {
     snow_source *source;
     SNOW_TRY(snow_source_open(s->context, s->files->paths[index], &source));
-    const char *name = snow_source_name(source);
-    size_t length = strlen(name);
     snow_status status = s->format->read(source, &s->options, info, out);
-    const char *message = s->context->message;
-    if (status != SNOW_OK &&
-        (strncmp(message, name, length) != 0 || message[length] != ':'))
-        snow_fail_within(s->context, status, "%s", name);
+    if (status != SNOW_OK)
+        snow_fail_in_file(s->context, status, snow_source_name(source));
     snow_source_close(source);
     return status;
 }
