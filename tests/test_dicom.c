@@ -314,6 +314,54 @@ static void a_file_cut_anywhere_is_refused(void **state) {
     support_files_end(&files);
 }
 
+static const char run_lengths[] = "1.2.840.10008.1.2.5";
+static const char jpeg_lossless[] = "1.2.840.10008.1.2.4.70";
+
+/* Packed pixels of one fragment behind an empty table. */
+static void fragment(file *f, const void *bytes, size_t size) {
+    element(f, 0x7fe00010, "OB", NULL, 0xffffffff);
+    put_number(f, 0xe000fffe, 4);
+    put_number(f, 0, 4);
+    put_number(f, 0xe000fffe, 4);
+    put_number(f, (uint32_t)size, 4);
+    put(f, bytes, size);
+    put_number(f, 0xe0ddfffe, 4);
+    put_number(f, 0, 4);
+}
+
+/* Frames enough to fill the memory, of a file without them: plain,
+ * packed, and pixels whose bits are more than an int can count. */
+static void frames_that_lie(support_files *files) {
+    file f;
+    begin(&f, explicit_little, 0);
+    text(&f, 0x00280008, "IS", "100000000");
+    element(&f, 0x7fe00010, "OW", "ab", 2);
+    const char *path = support_write(files, "many.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    begin(&f, run_lengths, 0);
+    text(&f, 0x00280008, "IS", "99999");
+    fragment(&f, "ab", 2);
+    path = support_write(files, "packed.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    memset(&f, 0, sizeof f);
+    f.size = 128;
+    put(&f, "DICM", 4);
+    text(&f, 0x00020010, "UI", explicit_little);
+    number(&f, 0x00280002, 65535);
+    number(&f, 0x00280010, 1);
+    number(&f, 0x00280011, 1);
+    number(&f, 0x00280100, 65535);
+    element(&f, 0x7fe00010, "OW", "ab", 2);
+    path = support_write(files, "bits.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    /* a frame too many by one */
+    begin(&f, explicit_little, 0);
+    text(&f, 0x00280008, "IS", "2");
+    element(&f, 0x7fe00010, "OW", f.bytes, 31);
+    path = support_write(files, "short.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+}
+
 static void lengths_that_lie_cost_no_memory(void **state) {
     (void)state;
     support_files files;
@@ -331,6 +379,7 @@ static void lengths_that_lie_cost_no_memory(void **state) {
     element(&f, 0x7fe00010, "OW", "", 0);
     path = support_write(&files, "b.dcm", f.bytes, f.size);
     support_refused(&files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    frames_that_lie(&files);
     begin(&f, explicit_little, 0);
     for (int i = 0; i < 60; i++) {
         element(&f, 0x00400000, "SQ", NULL, 0xffffffff);
@@ -341,21 +390,6 @@ static void lengths_that_lie_cost_no_memory(void **state) {
     support_refused(&files, path, NULL, SNOW_BAD_INPUT, "nests sequences",
                     MOST);
     support_files_end(&files);
-}
-
-static const char run_lengths[] = "1.2.840.10008.1.2.5";
-static const char jpeg_lossless[] = "1.2.840.10008.1.2.4.70";
-
-/* Packed pixels of one fragment behind an empty table. */
-static void fragment(file *f, const void *bytes, size_t size) {
-    element(f, 0x7fe00010, "OB", NULL, 0xffffffff);
-    put_number(f, 0xe000fffe, 4);
-    put_number(f, 0, 4);
-    put_number(f, 0xe000fffe, 4);
-    put_number(f, (uint32_t)size, 4);
-    put(f, bytes, size);
-    put_number(f, 0xe0ddfffe, 4);
-    put_number(f, 0, 4);
 }
 
 /* Segments of the high bytes, all 1, and of the low ones, 0 to 7. */

@@ -92,8 +92,9 @@ typedef struct dicom_reader {
     size_t count, room;
     char syntax[65];
     bool big_endian;
-    bool packed;     /* the pixels are fragments */
-    bool has_pixels; /* where they were not asked for: they follow */
+    bool packed;          /* the pixels are fragments */
+    bool has_pixels;      /* where they were not asked for: they follow */
+    uint32_t pixel_bytes; /* then, of plain ones */
     const dicom_element *frames, *shared; /* functional groups, or NULL */
     size_t last_item; /* groups of the frame last asked for; 0: none */
     int64_t last_frame;

@@ -10,6 +10,9 @@
 /* Longest value of numbers as text: offsets of a few thousand frames. */
 #define TEXT_BYTES 65536
 
+/* Bytes in front of a packed frame. */
+#define FRAGMENT_HEAD 8
+
 /* How numbers are stored. */
 typedef enum storage { TEXT, SHORTS, LONGS, DOUBLES } storage;
 
@@ -182,21 +185,34 @@ static void read_padding(dicom_reader *reader, dicom_image *image) {
     }
 }
 
-/* Sizes that the file cannot hold, however it is packed. */
-static snow_status check_sizes(snow_context *context, dicom_reader *reader,
+/* Whether the file's pixels can be as many: plain ones are counted in their
+ * element, of packed ones each frame has at least the head of a fragment.  What
+ * packed ones unpack to is checked once more with their own heads. */
+static bool can_hold(const dicom_reader *reader, const dicom_image *image) {
+    uint64_t frames = (uint64_t)image->frames, bits, most;
+    uint64_t size = snow_random_size(reader->store);
+    /* colours at half the rate have fewer samples than they say */
+    bool halved = strstr(image->photometric, "_42") != NULL;
+    uint64_t samples = halved ? 1 : (uint64_t)image->samples;
+    if (!snow_mul_u64((uint64_t)image->rows * (uint64_t)image->columns, frames,
+                      &bits) ||
+        !snow_mul_u64(bits, samples * (uint64_t)image->allocated, &bits))
+        return false;
+    if (!reader->packed)
+        return bits / 8 <= reader->pixel_bytes;
+    return frames <= size / FRAGMENT_HEAD &&
+           snow_mul_u64(size, 8 * SNOW_DEFLATE_RATIO, &most) &&
+           bits / 8 <= most + ((uint64_t)1 << 31);
+}
+
+static snow_status check_sizes(snow_context *context,
+                               const dicom_reader *reader,
                                const dicom_image *image) {
-    uint64_t bytes, most;
     if (image->frames < 1)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "says that it has %lld frames; it is damaged",
                          (long long)image->frames);
-    if (!snow_mul_u64((uint64_t)image->rows * (uint64_t)image->columns,
-                      (uint64_t)image->frames, &bytes) ||
-        !snow_mul_u64(bytes, (uint64_t)(image->samples * image->allocated),
-                      &bytes) ||
-        !snow_mul_u64(snow_random_size(reader->store), 8 * SNOW_DEFLATE_RATIO,
-                      &most) ||
-        bytes > most + ((uint64_t)1 << 31))
+    if (!can_hold(reader, image))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "says that it has %lld frames of %lldx%lld pixels, "
                          "which its %llu bytes cannot hold; it is cut or "
