@@ -105,7 +105,7 @@ static void a_missing_slice_is_named(void **state) {
     const double one[] = {0, 1, 2, 4, 5, 6}, two[] = {0, 1, 2, 3, 6, 7};
     stack_up(frames, one, 6);
     refuse_stack(frames, 6,
-                 "1 of its slices are missing between slice and "
+                 "1 of its slices is missing between slice and "
                  "slice (frames 2 and 3)");
     stack_up(frames, two, 6);
     refuse_stack(frames, 6, "2 of its slices are missing");
@@ -284,6 +284,48 @@ static void a_folder_is_a_volume_whatever_its_names(void **state) {
     volume = support_opened(&files, support_path(&files, "9"), NULL);
     assert_int_equal(snow_volume_describe(volume)->dims[2], 4);
     assert_non_null(strstr(files.notice, "one of 4 slices"));
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+static void a_slice_tells_that_those_beside_it_are_damaged(void **state) {
+    (void)state;
+    static const char *const names[] = {"0", "1", "2", "3"};
+    support_files files;
+    support_files_begin(&files);
+    for (unsigned z = 0; z < 4; z++) {
+        file f;
+        slice(&f, z, 0);
+        support_write(&files, names[z], f.bytes, f.size - (z == 3));
+    }
+    snow_volume *volume =
+        support_opened(&files, support_path(&files, "1"), NULL);
+    assert_int_equal(snow_volume_describe(volume)->dims[2], 3);
+    assert_int_equal(files.notices, 2);
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+/* Without numbers of their own files are not copies, but the given one is. */
+static void a_slice_without_a_number_is_there_once(void **state) {
+    (void)state;
+    static const char *const names[] = {"0", "1", "2"};
+    support_files files;
+    support_files_begin(&files);
+    for (unsigned z = 0; z < 3; z++) {
+        file f;
+        slice(&f, z, 10 * z);
+        unsigned char *tag = f.bytes;
+        while (memcmp(tag, "\x08\0\x18\0UI", 6) != 0)
+            tag++;
+        tag[2] = 0x19; /* no one looks for this element */
+        support_write(&files, names[z], f.bytes, f.size);
+    }
+    snow_volume *volume =
+        support_opened(&files, support_path(&files, "1"), NULL);
+    assert_int_equal(snow_volume_describe(volume)->dims[2], 3);
+    assert_int_equal(files.notices, 1);
+    assert_non_null(strstr(files.notice, "one of 3 slices"));
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -478,6 +520,8 @@ int main(void) {
         cmocka_unit_test(several_at_each_place_are_times),
         cmocka_unit_test(frames_that_are_not_alike_are_groups),
         cmocka_unit_test(a_folder_is_a_volume_whatever_its_names),
+        cmocka_unit_test(a_slice_tells_that_those_beside_it_are_damaged),
+        cmocka_unit_test(a_slice_without_a_number_is_there_once),
         cmocka_unit_test(a_file_says_nothing_of_the_patient),
         cmocka_unit_test(a_file_cut_anywhere_is_refused),
         cmocka_unit_test(lengths_that_lie_cost_no_memory),

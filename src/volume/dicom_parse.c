@@ -427,6 +427,7 @@ void snow_dicom_close(dicom_reader *reader) {
     snow_random_close(reader->inner_store);
     if (reader->inner)
         snow_source_close(reader->inner);
+    snow_release(reader->context, reader->offsets);
     snow_release(reader->context, reader->inflated);
     snow_release(reader->context, reader->elements);
 }

@@ -170,20 +170,23 @@ static snow_status check_choice(snow_context *context,
                                 const snow_format *format,
                                 const snow_volume_options *options) {
     if (options->dataset && !format->sets)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "--dataset %.200s: a %s file has its data alone; "
-                         "leave the option out",
-                         options->dataset, format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "--dataset %.200s: files of the format %s have their data alone; "
+            "leave the option out",
+            options->dataset, format->name);
     if (options->channel && !format->channels)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "there is no channel %lld; a %s file has one value a "
-                         "voxel, so leave --channel out",
-                         (long long)options->channel, format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "there is no channel %lld; files of the format %s have one value a "
+            "voxel, so leave --channel out",
+            (long long)options->channel, format->name);
     if (options->series && !format->series)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "--series %.64s: a %s file has no series; leave the "
-                         "option out",
-                         options->series, format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "--series %.64s: files of the format %s have no series; leave the "
+            "option out",
+            options->series, format->name);
     return SNOW_OK;
 }
 
@@ -194,11 +197,12 @@ static snow_status read_with(const snow_format *format, snow_source *source,
                              snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     if (format != &snow_format_raw && tells_raw(options))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "this is a %s file, which tells its sizes and type "
-                         "itself; leave out --dims, --type, --endian and "
-                         "--offset",
-                         format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "this is a file of the format %s, which tells its sizes and type "
+            "itself; leave out --dims, --type, --endian and "
+            "--offset",
+            format->name);
     SNOW_TRY(check_choice(context, format, options));
     snow_volume *volume = NULL;
     SNOW_TRY(
