@@ -199,6 +199,14 @@ write("mixed/DICOMDIR", directory)
 os.mkdir("mixed/below")
 oracle.expect("mixed", small, wanted, name="other files beside it")
 oracle.refuse("mixed/DICOMDIR", "without an image")
+for name in ("s10", "s9", ".s1"):
+    os.makedirs(f"above/{name}")
+oracle.refuse("above", "has no slices itself, but folders such as s9; name one "
+              "of them")
+shutil.copytree("mixed", "above/s9", dirs_exist_ok=True)
+oracle.expect("above/s9", small, wanted, name="a folder in a folder")
+os.mkdir("empty")
+oracle.refuse("empty", "names no slices")
 first = f"mixed/{names[0]}"
 with open(first, "rb") as file, gzip.open(first + ".gz", "wb") as to:
     to.write(file.read())
