@@ -163,6 +163,14 @@ def says(name, path, part, *options):
         oracle.fail(name, f"exit {status}, {errors!r} lacks {part!r}")
 
 
+def silent(name, path):
+    """There are no remarks."""
+    oracle.checked += 1
+    status, _, errors = told(path)
+    if status or errors:
+        oracle.fail(name, f"exit {status}, {errors!r}")
+
+
 small = oracle.sample("i2", (9, 6, 5))
 rising = [(3, -4, 2.5 * i - 7) for i in range(9)]
 wanted = grid((0.5, 0.75, 2.5), rising[0])
@@ -191,6 +199,14 @@ write("mixed/DICOMDIR", directory)
 os.mkdir("mixed/below")
 oracle.expect("mixed", small, wanted, name="other files beside it")
 oracle.refuse("mixed/DICOMDIR", "without an image")
+for name in ("s10", "s9", ".s1"):
+    os.makedirs(f"above/{name}")
+oracle.refuse("above", "has no slices itself, but folders such as s9; name one "
+              "of them")
+shutil.copytree("mixed", "above/s9", dirs_exist_ok=True)
+oracle.expect("above/s9", small, wanted, name="a folder in a folder")
+os.mkdir("empty")
+oracle.refuse("empty", "names no slices")
 first = f"mixed/{names[0]}"
 with open(first, "rb") as file, gzip.open(first + ".gz", "wb") as to:
     to.write(file.read())
@@ -252,7 +268,7 @@ oracle.expect("nearly", small[:5], grid((0.5, 0.75, 2.5), (0, 0, 0)),
               name="nearly even")
 says("nearly", "nearly", "their mean distance, 2.5 mm")
 series("gap", small[:8], [r for i, r in enumerate(rising) if i != 4])
-oracle.refuse("gap", "1 of its slices are missing between s_3.dcm and s_4.dcm")
+oracle.refuse("gap", "1 of its slices is missing between s_3.dcm and s_4.dcm")
 says("a slice whose others are not all there", "gap/s_1.dcm", "taken alone")
 series("beside", small, [(30 * (i == 4), 0, i) for i in range(9)])
 oracle.refuse("beside", "do not lie behind one another")
@@ -272,7 +288,7 @@ series("two", small[:5], rising[:5], series="1.2.30", SeriesNumber=2)
 add("two", small[5:], rising[5:8], series="1.2.4", SeriesNumber=1)
 # a scout of the first series, which lies across it
 add("two", small[8:], rising[:1], ["scout"], series="1.2.30", SeriesNumber=2,
-    orientation=(1, 0, 0, 0, 0, -1))
+    InstanceNumber=9, orientation=(1, 0, 0, 0, 0, -1))
 oracle.expect("two", small[:5], wanted, name="the largest series")
 says("two series", "two", "0: CT 5x6, 3 images; 1: CT 5x6, 5 images "
      "(taken); 2: CT 5x6, 1 image")
@@ -341,6 +357,7 @@ dose = image(long, (1, 2, 3), SOPClassUID="1.2.840.10008.5.1.4.1.1.481.2",
 write("dose.dcm", dose)
 oracle.expect("dose.dcm", long * 0.25, grid((0.5, 0.75, 2), (1, 2, 3)),
               dtype="u4", name="a dose")
+silent("a dose", "dose.dcm")
 
 # What GDCM packs, each way that has a code for the type.
 gdcmconv = shutil.which("gdcmconv")
@@ -389,6 +406,11 @@ for syntax in (ExplicitVRLittleEndian, ExplicitVRBigEndian,
     oracle.expect("many.dcm", small * 2.0 - 5, wanted, dtype="i2", unit="mm",
                   name=f"frames with places {syntax}")
 NM = "1.2.840.10008.5.1.4.1.1.20"
+write("nm.dcm", image(small, (3, -4, -7), SOPClassUID=NM,
+                      SliceVector=list(range(9, 0, -1))))
+oracle.expect("nm.dcm", small[::-1], grid((0.5, 0.75, 1), (3, -4, -7)),
+              name="numbers of slices")
+says("numbers of slices", "nm.dcm", "distance of the slices is not told; 1 mm")
 for step in (2.5, -2.5):
     detector = Dataset()
     detector.ImagePositionPatient = [3.0, -4, -7]
@@ -432,7 +454,7 @@ write("odd.dcm", image(small[0], rising[0], PixelSpacing=[0, 0.5]))
 oracle.expect("odd.dcm", small[:1], grid((1, 1, 9), rising[0]),
               name="a spacing of 0")
 says("a spacing of 0", "odd.dcm", "1 mm is taken")
-oracle.refuse("odd.dcm", "a dicom file, which tells its sizes",
+oracle.refuse("odd.dcm", "a file of the format dicom, which tells its sizes",
               ["--dims", "5x6x1"], 2)
 oracle.refuse("odd.dcm", "--dataset x", ["--dataset", "x"], 2)
 with open("odd.dcm", "rb") as file:
@@ -452,9 +474,15 @@ for size in (len(whole) - 10, 300):
     with open("broken/s_4.dcm", "wb") as file:
         file.write(whole[:size])
     oracle.refuse("broken", "s_4.dcm: is cut or damaged")
+    says("a slice beside one that is cut", "broken/s_0.dcm",
+         "1 file beside it cannot be read; the volume may lack slices")
+with open("broken/s_3.dcm", "wb") as file:
+    file.write(whole[:300])
+says("a slice beside two that are cut", "broken/s_0.dcm",
+     "2 files beside it cannot be read")
 with open("plain.raw", "wb") as file:
     file.write(bytes(60))
-oracle.refuse("plain.raw", "has no series",
+oracle.refuse("plain.raw", "files of the format raw have no series",
               ["--series", "1", "--dims", "3x4x5", "--type", "uint8"], 2)
 
 # --- privacy ------------------------------------------------------------------

@@ -105,7 +105,7 @@ static void a_missing_slice_is_named(void **state) {
     const double one[] = {0, 1, 2, 4, 5, 6}, two[] = {0, 1, 2, 3, 6, 7};
     stack_up(frames, one, 6);
     refuse_stack(frames, 6,
-                 "1 of its slices are missing between slice and "
+                 "1 of its slices is missing between slice and "
                  "slice (frames 2 and 3)");
     stack_up(frames, two, 6);
     refuse_stack(frames, 6, "2 of its slices are missing");
@@ -289,6 +289,48 @@ static void a_folder_is_a_volume_whatever_its_names(void **state) {
     support_files_end(&files);
 }
 
+static void a_slice_tells_that_those_beside_it_are_damaged(void **state) {
+    (void)state;
+    static const char *const names[] = {"0", "1", "2", "3"};
+    support_files files;
+    support_files_begin(&files);
+    for (unsigned z = 0; z < 4; z++) {
+        file f;
+        slice(&f, z, 0);
+        support_write(&files, names[z], f.bytes, f.size - (z == 3));
+    }
+    snow_volume *volume =
+        support_opened(&files, support_path(&files, "1"), NULL);
+    assert_int_equal(snow_volume_describe(volume)->dims[2], 3);
+    assert_int_equal(files.notices, 2);
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+/* Without numbers of their own files are not copies, but the given one is. */
+static void a_slice_without_a_number_is_there_once(void **state) {
+    (void)state;
+    static const char *const names[] = {"0", "1", "2"};
+    support_files files;
+    support_files_begin(&files);
+    for (unsigned z = 0; z < 3; z++) {
+        file f;
+        slice(&f, z, 10 * z);
+        unsigned char *tag = f.bytes;
+        while (memcmp(tag, "\x08\0\x18\0UI", 6) != 0)
+            tag++;
+        tag[2] = 0x19; /* no one looks for this element */
+        support_write(&files, names[z], f.bytes, f.size);
+    }
+    snow_volume *volume =
+        support_opened(&files, support_path(&files, "1"), NULL);
+    assert_int_equal(snow_volume_describe(volume)->dims[2], 3);
+    assert_int_equal(files.notices, 1);
+    assert_non_null(strstr(files.notice, "one of 3 slices"));
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
 static void a_file_says_nothing_of_the_patient(void **state) {
     (void)state;
     support_files files;
@@ -315,6 +357,54 @@ static void a_file_cut_anywhere_is_refused(void **state) {
     support_files_end(&files);
 }
 
+static const char run_lengths[] = "1.2.840.10008.1.2.5";
+static const char jpeg_lossless[] = "1.2.840.10008.1.2.4.70";
+
+/* Packed pixels of one fragment behind an empty table. */
+static void fragment(file *f, const void *bytes, size_t size) {
+    element(f, 0x7fe00010, "OB", NULL, 0xffffffff);
+    put_number(f, 0xe000fffe, 4);
+    put_number(f, 0, 4);
+    put_number(f, 0xe000fffe, 4);
+    put_number(f, (uint32_t)size, 4);
+    put(f, bytes, size);
+    put_number(f, 0xe0ddfffe, 4);
+    put_number(f, 0, 4);
+}
+
+/* Frames enough to fill the memory, of a file without them: plain,
+ * packed, and pixels whose bits are more than an int can count. */
+static void frames_that_lie(support_files *files) {
+    file f;
+    begin(&f, explicit_little, 0);
+    text(&f, 0x00280008, "IS", "100000000");
+    element(&f, 0x7fe00010, "OW", "ab", 2);
+    const char *path = support_write(files, "many.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    begin(&f, run_lengths, 0);
+    text(&f, 0x00280008, "IS", "99999");
+    fragment(&f, "ab", 2);
+    path = support_write(files, "packed.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    memset(&f, 0, sizeof f);
+    f.size = 128;
+    put(&f, "DICM", 4);
+    text(&f, 0x00020010, "UI", explicit_little);
+    number(&f, 0x00280002, 65535);
+    number(&f, 0x00280010, 1);
+    number(&f, 0x00280011, 1);
+    number(&f, 0x00280100, 65535);
+    element(&f, 0x7fe00010, "OW", "ab", 2);
+    path = support_write(files, "bits.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    /* a frame too many by one */
+    begin(&f, explicit_little, 0);
+    text(&f, 0x00280008, "IS", "2");
+    element(&f, 0x7fe00010, "OW", f.bytes, 31);
+    path = support_write(files, "short.dcm", f.bytes, f.size);
+    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+}
+
 static void lengths_that_lie_cost_no_memory(void **state) {
     (void)state;
     support_files files;
@@ -332,6 +422,7 @@ static void lengths_that_lie_cost_no_memory(void **state) {
     element(&f, 0x7fe00010, "OW", "", 0);
     path = support_write(&files, "b.dcm", f.bytes, f.size);
     support_refused(&files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    frames_that_lie(&files);
     begin(&f, explicit_little, 0);
     for (int i = 0; i < 60; i++) {
         element(&f, 0x00400000, "SQ", NULL, 0xffffffff);
@@ -342,21 +433,6 @@ static void lengths_that_lie_cost_no_memory(void **state) {
     support_refused(&files, path, NULL, SNOW_BAD_INPUT, "nests sequences",
                     MOST);
     support_files_end(&files);
-}
-
-static const char run_lengths[] = "1.2.840.10008.1.2.5";
-static const char jpeg_lossless[] = "1.2.840.10008.1.2.4.70";
-
-/* Packed pixels of one fragment behind an empty table. */
-static void fragment(file *f, const void *bytes, size_t size) {
-    element(f, 0x7fe00010, "OB", NULL, 0xffffffff);
-    put_number(f, 0xe000fffe, 4);
-    put_number(f, 0, 4);
-    put_number(f, 0xe000fffe, 4);
-    put_number(f, (uint32_t)size, 4);
-    put(f, bytes, size);
-    put_number(f, 0xe0ddfffe, 4);
-    put_number(f, 0, 4);
 }
 
 /* Segments of the high bytes, all 1, and of the low ones, 0 to 7. */
@@ -445,6 +521,8 @@ int main(void) {
         cmocka_unit_test(several_at_each_place_are_times),
         cmocka_unit_test(frames_that_are_not_alike_are_groups),
         cmocka_unit_test(a_folder_is_a_volume_whatever_its_names),
+        cmocka_unit_test(a_slice_tells_that_those_beside_it_are_damaged),
+        cmocka_unit_test(a_slice_without_a_number_is_there_once),
         cmocka_unit_test(a_file_says_nothing_of_the_patient),
         cmocka_unit_test(a_file_cut_anywhere_is_refused),
         cmocka_unit_test(lengths_that_lie_cost_no_memory),

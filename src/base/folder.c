@@ -208,6 +208,26 @@ snow_status snow_folder_list(snow_context *context, const char *path,
     return status;
 }
 
+bool snow_folder_below(const char *path, char *name, size_t room) {
+    DIR *stream = opendir(path);
+    const struct dirent *entry;
+    bool found = false;
+    while (stream && (entry = readdir(stream))) {
+        struct stat about;
+        size_t size = strlen(entry->d_name) + 1;
+        if (*entry->d_name == '.' || size > room ||
+            (found && compare_names(entry->d_name, name) > 0) ||
+            fstatat(dirfd(stream), entry->d_name, &about, 0) ||
+            !S_ISDIR(about.st_mode))
+            continue;
+        memcpy(name, entry->d_name, size);
+        found = true;
+    }
+    if (stream)
+        closedir(stream);
+    return found;
+}
+
 void snow_folder_free(snow_folder *folder) {
     snow_release(folder->context, folder->paths);
 }

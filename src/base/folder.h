@@ -25,6 +25,10 @@ bool snow_is_pattern(const char *path);
 snow_status snow_folder_list(snow_context *context, const char *path,
                              snow_folder *out);
 
+/* The name of the first folder in a folder, in the same order; false where it
+ * has none, or none whose name has room. */
+bool snow_folder_below(const char *path, char *name, size_t room);
+
 void snow_folder_free(snow_folder *folder);
 
 /* The last number in a path's last part; -1 where there is none. */

@@ -92,11 +92,15 @@ typedef struct dicom_reader {
     size_t count, room;
     char syntax[65];
     bool big_endian;
-    bool packed;     /* the pixels are fragments */
-    bool has_pixels; /* where they were not asked for: they follow */
+    bool packed;          /* the pixels are fragments */
+    bool has_pixels;      /* where they were not asked for: they follow */
+    uint32_t pixel_bytes; /* then, of plain ones */
     const dicom_element *frames, *shared; /* functional groups, or NULL */
     size_t last_item; /* groups of the frame last asked for; 0: none */
     int64_t last_frame;
+    /* Where frames lie in slices or mm from the first, sought once. */
+    double *offsets;
+    enum { DICOM_UNSOUGHT, DICOM_NO_OFFSETS, DICOM_SLICES, DICOM_MM } offset_in;
     unsigned char *inflated; /* a deflated file's elements, and their store */
     snow_source *inner;
     snow_random *inner_store;
@@ -192,9 +196,8 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
                                   dicom_image *out);
 
 /* One of its frames. */
-void snow_dicom_read_frame(snow_context *context, dicom_reader *reader,
-                           const dicom_image *image, int64_t number,
-                           dicom_frame *out);
+void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
+                           int64_t number, dicom_frame *out);
 
 /* --- dicom_pixels.c -------------------------------------------------------
  */

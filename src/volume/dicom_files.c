@@ -67,8 +67,7 @@ static snow_status add_frames(collection *c, dicom_reader *reader,
         SNOW_TRY(snow_reserve(c->context, &c->frames, &c->frame_room,
                               c->frame_count * sizeof *c->frames,
                               (c->frame_count + 1) * sizeof *c->frames));
-        snow_dicom_read_frame(c->context, reader, image, n,
-                              &c->frames[c->frame_count++]);
+        snow_dicom_read_frame(reader, image, n, &c->frames[c->frame_count++]);
     }
     return SNOW_OK;
 }
@@ -112,10 +111,8 @@ static snow_status add_path(collection *c, char *path, const char *series) {
     snow_status status = snow_random_open(source, &store);
     if (status == SNOW_OK)
         status = add_store(c, store, path, series);
-    size_t length = strlen(path);
-    if (status != SNOW_OK && (strncmp(c->context->message, path, length) != 0 ||
-                              c->context->message[length] != ':'))
-        snow_fail_within(c->context, status, "%s", path);
+    if (status != SNOW_OK)
+        snow_fail_in_file(c->context, status, path);
     snow_random_close(store);
     snow_source_close(source);
     return status;
@@ -250,7 +247,7 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
 /* --- one file --------------------------------------------------------------
  */
 
-/* The other files of the folder that a path is in; an empty list where it
+/* The files of the folder that a path is in, itself too; an empty list where it
  * cannot be read. */
 static void list_siblings(snow_context *context, const char *path,
                           snow_folder *out) {
@@ -266,13 +263,27 @@ static void list_siblings(snow_context *context, const char *path,
     snow_release(context, folder);
 }
 
-/* Adds the images of the same series in the folder; a file that cannot be read
- * is none of them, as far as is known. */
-static void add_siblings(collection *c, snow_folder *files) {
+static const char *name_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Adds the images of the same series in the folder, but for the given file,
+ * which is there already.  One that cannot be read may be a slice or not: that
+ * is told. */
+static void add_siblings(collection *c, const char *path, snow_folder *files) {
     const char *series = c->images[0]->series;
+    size_t unread = 0;
     for (size_t i = 0; i < files->count; i++)
-        if (is_dicom(c->context, files->paths[i]))
-            (void)add_path(c, files->paths[i], series);
+        if (strcmp(name_of(files->paths[i]), name_of(path)) != 0 &&
+            is_dicom(c->context, files->paths[i]) &&
+            add_path(c, files->paths[i], series) != SNOW_OK)
+            unread++;
+    if (unread)
+        snow_notify(c->context,
+                    "%zu file%s beside it cannot be read; the volume may lack "
+                    "slices",
+                    unread, unread > 1 ? "s" : "");
 }
 
 /* Of a stack of several times the one that the given file is in; false where it
@@ -324,8 +335,9 @@ static snow_status read_with_siblings(collection *c, snow_source *source,
     snow_folder files;
     dicom_stack stack;
     snow_status status = SNOW_OK;
-    list_siblings(c->context, snow_source_name(source), &files);
-    add_siblings(c, &files);
+    const char *path = snow_source_name(source);
+    list_siblings(c->context, path, &files);
+    add_siblings(c, path, &files);
     *done = false;
     if (c->frame_count > 1 && gather_stack(c, &stack)) {
         *done = stack.places > 1;

@@ -10,6 +10,9 @@
 /* Longest value of numbers as text: offsets of a few thousand frames. */
 #define TEXT_BYTES 65536
 
+/* Bytes in front of a packed frame. */
+#define FRAGMENT_HEAD 8
+
 /* How numbers are stored. */
 typedef enum storage { TEXT, SHORTS, LONGS, DOUBLES } storage;
 
@@ -182,21 +185,34 @@ static void read_padding(dicom_reader *reader, dicom_image *image) {
     }
 }
 
-/* Sizes that the file cannot hold, however it is packed. */
-static snow_status check_sizes(snow_context *context, dicom_reader *reader,
+/* Whether the file's pixels can be as many: plain ones are counted in their
+ * element, of packed ones each frame has at least the head of a fragment.  What
+ * packed ones unpack to is checked once more with their own heads. */
+static bool can_hold(const dicom_reader *reader, const dicom_image *image) {
+    uint64_t frames = (uint64_t)image->frames, bits, most;
+    uint64_t size = snow_random_size(reader->store);
+    /* colours at half the rate have fewer samples than they say */
+    bool halved = strstr(image->photometric, "_42") != NULL;
+    uint64_t samples = halved ? 1 : (uint64_t)image->samples;
+    if (!snow_mul_u64((uint64_t)image->rows * (uint64_t)image->columns, frames,
+                      &bits) ||
+        !snow_mul_u64(bits, samples * (uint64_t)image->allocated, &bits))
+        return false;
+    if (!reader->packed)
+        return bits / 8 <= reader->pixel_bytes;
+    return frames <= size / FRAGMENT_HEAD &&
+           snow_mul_u64(size, 8 * SNOW_DEFLATE_RATIO, &most) &&
+           bits / 8 <= most + ((uint64_t)1 << 31);
+}
+
+static snow_status check_sizes(snow_context *context,
+                               const dicom_reader *reader,
                                const dicom_image *image) {
-    uint64_t bytes, most;
     if (image->frames < 1)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "says that it has %lld frames; it is damaged",
                          (long long)image->frames);
-    if (!snow_mul_u64((uint64_t)image->rows * (uint64_t)image->columns,
-                      (uint64_t)image->frames, &bytes) ||
-        !snow_mul_u64(bytes, (uint64_t)(image->samples * image->allocated),
-                      &bytes) ||
-        !snow_mul_u64(snow_random_size(reader->store), 8 * SNOW_DEFLATE_RATIO,
-                      &most) ||
-        bytes > most + ((uint64_t)1 << 31))
+    if (!can_hold(reader, image))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "says that it has %lld frames of %lldx%lld pixels, "
                          "which its %llu bytes cannot hold; it is cut or "
@@ -263,31 +279,49 @@ static bool set_orientation(const double six[6], dicom_frame *frame) {
     return fabs(across) <= 0.01;
 }
 
-/* Where frame `number` lies, counted in slices from the first. */
-static double offset_of(dicom_reader *reader, snow_context *context,
-                        const dicom_image *image, dicom_frame *frame) {
+/* The frames' offsets in mm, or their slices' numbers, into the reader. */
+static void seek_offsets(dicom_reader *reader, int64_t frames) {
+    const dicom_place mm = {0, 0, 0x3004000c}, slices = {0, 0, 0x00540080};
+    reader->offset_in = DICOM_NO_OFFSETS;
+    if (frames > TEXT_BYTES / 2)
+        return; /* text has no room for as many, nor have numbers */
     double *list =
-        snow_allocate_array(context, (uint64_t)image->frames, sizeof *list);
-    char *raw = snow_allocate(context, TEXT_BYTES);
-    double offset = (double)frame->number * frame->depth;
-    dicom_place offsets = {0, 0, 0x3004000c}, slices = {0, 0, 0x00540080};
+        snow_allocate_array(reader->context, (uint64_t)frames, sizeof *list);
+    char *raw = snow_allocate(reader->context, TEXT_BYTES);
     if (list && raw) {
-        size_t length = snow_dicom_value(reader, offsets, raw, TEXT_BYTES - 1);
+        size_t length = snow_dicom_value(reader, mm, raw, TEXT_BYTES - 1);
         raw[length] = 0;
-        if (length &&
-            parse_numbers(raw, list, (int)image->frames) == (int)image->frames)
-            offset = list[frame->number];
-        else if (snow_dicom_value(reader, slices, raw, TEXT_BYTES) ==
-                 2 * (size_t)image->frames) {
-            double slice =
-                binary((const unsigned char *)raw + 2 * frame->number, 2,
-                       reader->big_endian);
-            offset = (slice - 1) * frame->depth;
+        if (length && parse_numbers(raw, list, (int)frames) == (int)frames) {
+            reader->offset_in = DICOM_MM;
+        } else if (snow_dicom_value(reader, slices, raw, TEXT_BYTES) ==
+                   2 * (size_t)frames) {
+            reader->offset_in = DICOM_SLICES;
+            for (int64_t i = 0; i < frames; i++)
+                list[i] = binary((const unsigned char *)raw + 2 * i, 2,
+                                 reader->big_endian) -
+                          1;
         }
     }
-    snow_release(context, raw);
-    snow_release(context, list);
-    return offset;
+    snow_release(reader->context, raw);
+    if (reader->offset_in == DICOM_NO_OFFSETS)
+        snow_release(reader->context, list);
+    else
+        reader->offsets = list;
+}
+
+/* Where a frame lies from the first.  Only mm need no distance of slices. */
+static double offset_of(dicom_reader *reader, const dicom_image *image,
+                        dicom_frame *frame) {
+    if (reader->offset_in == DICOM_UNSOUGHT)
+        seek_offsets(reader, image->frames);
+    if (reader->offset_in == DICOM_MM)
+        return reader->offsets[frame->number];
+    if (frame->depth == 0) {
+        frame->depth = 1;
+        frame->guessed = true;
+    }
+    return frame->depth * (reader->offsets ? reader->offsets[frame->number]
+                                           : (double)frame->number);
 }
 
 /* Frames of older files follow the first one along the normal. */
@@ -300,8 +334,8 @@ static void move_along(dicom_frame *frame, double offset) {
         frame->position[i] += offset * normal[i];
 }
 
-static void read_place(dicom_reader *reader, snow_context *context,
-                       const dicom_image *image, dicom_frame *frame) {
+static void read_place(dicom_reader *reader, const dicom_image *image,
+                       dicom_frame *frame) {
     static const number_field own = {0x00209113, 0x00200032, TEXT, 0, TEXT};
     static const number_field whole = {0, 0, TEXT, 0x00200032, TEXT};
     static const number_field detector = {0x00540022, 0x00200032, TEXT, 0,
@@ -317,13 +351,8 @@ static void read_place(dicom_reader *reader, snow_context *context,
         !each && (numbers(reader, &whole, n, frame->position, 3) == 3 ||
                   numbers(reader, &detector, n, frame->position, 3) == 3);
     frame->placed = oriented && (each || first);
-    if (frame->placed && first && image->frames > 1) {
-        if (frame->depth == 0) {
-            frame->depth = 1;
-            frame->guessed = true;
-        }
-        move_along(frame, offset_of(reader, context, image, frame));
-    }
+    if (frame->placed && first && image->frames > 1)
+        move_along(frame, offset_of(reader, image, frame));
     if (frame->placed)
         return;
     /* no place: the frame lies at the origin, as an array would */
@@ -367,13 +396,12 @@ static void read_scale(dicom_reader *reader, const dicom_image *image,
     frame->intercept = intercept;
 }
 
-void snow_dicom_read_frame(snow_context *context, dicom_reader *reader,
-                           const dicom_image *image, int64_t frame_number,
-                           dicom_frame *out) {
+void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
+                           int64_t frame_number, dicom_frame *out) {
     dicom_frame frame = {.image = image, .number = frame_number};
     numbers(reader, &depth_field, frame_number, &frame.depth, 1);
     numbers(reader, &thickness_field, frame_number, &frame.thickness, 1);
-    read_place(reader, context, image, &frame);
+    read_place(reader, image, &frame);
     read_pixel(reader, &frame);
     read_scale(reader, image, &frame);
     for (int i = 0; i < DICOM_KEYS; i++)

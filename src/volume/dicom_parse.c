@@ -301,7 +301,9 @@ static snow_status walk_set(walk *w, coding how, uint64_t end, int depth) {
             return SNOW_OK;
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS && !w->pixels) {
             w->reader->has_pixels = true;
-            return h.length == UNDEFINED ? SNOW_OK : check_length(w, &h);
+            w->reader->packed = h.length == UNDEFINED;
+            w->reader->pixel_bytes = w->reader->packed ? 0 : h.length;
+            return w->reader->packed ? SNOW_OK : check_length(w, &h);
         }
         SNOW_TRY(walk_element(w, how, &h, depth));
         if (depth == 0 && h.tag == DICOM_TAG_PIXELS)
@@ -425,6 +427,7 @@ void snow_dicom_close(dicom_reader *reader) {
     snow_random_close(reader->inner_store);
     if (reader->inner)
         snow_source_close(reader->inner);
+    snow_release(reader->context, reader->offsets);
     snow_release(reader->context, reader->inflated);
     snow_release(reader->context, reader->elements);
 }

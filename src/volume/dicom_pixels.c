@@ -16,7 +16,7 @@
 
 uint64_t snow_dicom_frame_bytes(const dicom_image *image) {
     return (uint64_t)image->columns * (uint64_t)image->rows *
-           (uint64_t)(image->samples * image->allocated / 8);
+           ((uint64_t)image->samples * (uint64_t)image->allocated / 8);
 }
 
 /* --- plain ------------------------------------------------------------------

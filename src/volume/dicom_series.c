@@ -261,15 +261,16 @@ static snow_status refuse_missing(const dicom_stack *s,
     if (found == s->places || s->places < 4)
         return SNOW_OK;
     double gap = gap_at(s, normal, found);
+    double lost = multiple(gap, usual) - 1;
     const dicom_frame *low = &s->frames[found * s->times];
     const dicom_frame *high = &s->frames[(found + 1) * s->times];
     return snow_fail(s->context, SNOW_BAD_INPUT,
-                     "%.0f of its slices are missing between %s and %s (frames "
+                     "%.0f of its slices %s missing between %s and %s (frames "
                      "%lld and %lld), which lie %g mm apart where others lie "
-                     "%g; bring them",
-                     multiple(gap, usual) - 1, name_of(low), name_of(high),
+                     "%g; bring %s",
+                     lost, lost > 1 ? "are" : "is", name_of(low), name_of(high),
                      (long long)low->number, (long long)high->number, gap,
-                     usual);
+                     usual, lost > 1 ? "them" : "it");
 }
 
 /* The farthest that a place is from where it would be on the line from the

@@ -130,16 +130,13 @@ static void take_row(const decoder *d, const dicom_frame *frame,
 
 /* A failure is of the file that the frame is in. */
 static snow_status take_words(decoder *d, const dicom_frame *frame) {
-    snow_context *context = d->input->context;
     const char *path = frame->image->path;
     snow_status status = open_image(d, frame->image);
     if (status == SNOW_OK)
         status = snow_dicom_read_words(&d->reader, frame->image, frame->number,
                                        d->bytes, &d->words);
-    if (status != SNOW_OK && path &&
-        (strncmp(context->message, path, strlen(path)) != 0 ||
-         context->message[strlen(path)] != ':'))
-        snow_fail_within(context, status, "%s", path);
+    if (status != SNOW_OK && path)
+        snow_fail_in_file(d->input->context, status, path);
     return status;
 }
 

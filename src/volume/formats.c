@@ -171,20 +171,23 @@ static snow_status check_choice(snow_context *context,
                                 const snow_format *format,
                                 const snow_volume_options *options) {
     if (options->dataset && !format->sets)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "--dataset %.200s: a %s file has its data alone; "
-                         "leave the option out",
-                         options->dataset, format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "--dataset %.200s: files of the format %s have their data alone; "
+            "leave the option out",
+            options->dataset, format->name);
     if (options->channel && !format->channels)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "there is no channel %lld; a %s file has one value a "
-                         "voxel, so leave --channel out",
-                         (long long)options->channel, format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "there is no channel %lld; files of the format %s have one value a "
+            "voxel, so leave --channel out",
+            (long long)options->channel, format->name);
     if (options->series && !format->series)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "--series %.64s: a %s file has no series; leave the "
-                         "option out",
-                         options->series, format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "--series %.64s: files of the format %s have no series; leave the "
+            "option out",
+            options->series, format->name);
     return SNOW_OK;
 }
 
@@ -195,11 +198,12 @@ static snow_status read_with(const snow_format *format, snow_source *source,
                              snow_volume_info *info, snow_volume **out) {
     snow_context *context = snow_source_context(source);
     if (format != &snow_format_raw && tells_raw(options))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "this is a %s file, which tells its sizes and type "
-                         "itself; leave out --dims, --type, --endian and "
-                         "--offset",
-                         format->name);
+        return snow_fail(
+            context, SNOW_BAD_USAGE,
+            "this is a file of the format %s, which tells its sizes and type "
+            "itself; leave out --dims, --type, --endian and "
+            "--offset",
+            format->name);
     SNOW_TRY(check_choice(context, format, options));
     snow_volume *volume = NULL;
     SNOW_TRY(
@@ -232,17 +236,22 @@ static snow_status read_source(snow_source *source,
                      source, options, info, out);
 }
 
-/* Puts the file's name before a failure's message, unless a source has done
- * so, and makes it one line of printable text whatever a header quoted in it
- * contains. */
+snow_status snow_fail_in_file(snow_context *context, snow_status status,
+                              const char *path) {
+    const char *message = context->message;
+    size_t length = strlen(path);
+    if (length &&
+        (strncmp(message, path, length) != 0 || message[length] != ':'))
+        snow_fail_within(context, status, "%s", path);
+    return status;
+}
+
+/* A failure's message with the file's name, as one line of printable text
+ * whatever a header quoted in it contains. */
 static snow_status name_failure(snow_context *context, snow_status status,
                                 const char *name) {
-    char *message = context->message;
-    size_t length = strlen(name);
-    if (length &&
-        (strncmp(message, name, length) != 0 || message[length] != ':'))
-        snow_fail_within(context, status, "%s", name);
-    for (char *at = message; *at; at++)
+    snow_fail_in_file(context, status, name);
+    for (char *at = context->message; *at; at++)
         if ((unsigned char)*at < ' ' || *at == 127)
             *at = '?';
     return status;

@@ -47,9 +47,22 @@ static bool is_zarr(const char *path) {
     return false;
 }
 
+static snow_status refuse_empty(snow_context *context, const char *path) {
+    char name[256];
+    if (snow_is_folder(path) && snow_folder_below(path, name, sizeof name))
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "has no slices itself, but folders such as %s; name "
+                         "one of them",
+                         name);
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "names no slices; give a folder or a pattern of .tif, "
+                     ".png or DICOM files");
+}
+
 /* Keeps the files whose names say that they are slices: folders hold notes and
  * tables as well.  All must be of one format. */
-static snow_status choose_files(stack *s, snow_folder *files) {
+static snow_status choose_files(stack *s, const char *path,
+                                snow_folder *files) {
     size_t kept = 0, others = 0;
     for (size_t i = 0; i < files->count; i++) {
         const snow_format *format = slice_format(files->paths[i]);
@@ -68,9 +81,7 @@ static snow_status choose_files(stack *s, snow_folder *files) {
                          "that names one kind, such as \"folder/*.tif\"",
                          kept, s->format->name);
     if (!kept)
-        return snow_fail(s->context, SNOW_BAD_INPUT,
-                         "names no slices; give a folder or a pattern of .tif, "
-                         ".png or DICOM files");
+        return refuse_empty(s->context, path);
     files->count = kept;
     s->files = files;
     return SNOW_OK;
@@ -102,13 +113,9 @@ static snow_status read_file(const stack *s, size_t index,
                              snow_volume_info *info, snow_volume **out) {
     snow_source *source;
     SNOW_TRY(snow_source_open(s->context, s->files->paths[index], &source));
-    const char *name = snow_source_name(source);
-    size_t length = strlen(name);
     snow_status status = s->format->read(source, &s->options, info, out);
-    const char *message = s->context->message;
-    if (status != SNOW_OK &&
-        (strncmp(message, name, length) != 0 || message[length] != ':'))
-        snow_fail_within(s->context, status, "%s", name);
+    if (status != SNOW_OK)
+        snow_fail_in_file(s->context, status, snow_source_name(source));
     snow_source_close(source);
     return status;
 }
@@ -227,7 +234,7 @@ snow_status snow_stack_read(snow_context *context, const char *path,
     } else if (snow_dicom_among(context, &files)) {
         status = snow_dicom_read_files(context, &files, options, info, out);
     } else {
-        status = choose_files(&s, &files);
+        status = choose_files(&s, path, &files);
         if (status == SNOW_OK)
             status = read_stack(&s, options, info, out);
     }

@@ -131,6 +131,11 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
 const snow_format *snow_format_of_bytes(const void *bytes, size_t size);
 const snow_format *snow_format_of_name(const char *name);
 
+/* Puts "path: " before the message of a failure in a file, unless it begins
+ * with that already, and passes its status on. */
+snow_status snow_fail_in_file(snow_context *context, snow_status status,
+                              const char *path);
+
 /* True on machines that store the high byte first. */
 bool snow_machine_big_endian(void);
 
