@@ -304,7 +304,8 @@ static void the_color_bar_has_the_transfer_functions_colors(void **state) {
         snow_transfer_new(f->context, colors, 2, opacities, 2, &transfer),
         SNOW_OK);
     snow_overlay *overlay = overlay_of(f->context, 300, 400);
-    assert_int_equal(snow_overlay_color_bar(overlay, transfer, "HU", NULL), SNOW_OK);
+    assert_int_equal(snow_overlay_color_bar(overlay, transfer, "HU", NULL),
+                     SNOW_OK);
     assert_false(overlay->grey);
     const snow_shape *bar = NULL;
     for (size_t n = 0; n < overlay->shape_count; n++)
@@ -338,8 +339,8 @@ static void any_range_has_ticks(void **state) {
                                                1, &transfer),
                              SNOW_OK);
             snow_overlay *overlay = overlay_of(f->context, side, side);
-            assert_int_equal(snow_overlay_color_bar(overlay, transfer, NULL, NULL),
-                             SNOW_OK);
+            assert_int_equal(
+                snow_overlay_color_bar(overlay, transfer, NULL, NULL), SNOW_OK);
             /* border, colours, opacity, tick lines, and a text for each */
             assert_true(overlay->shape_count >= 5);
             assert_true(overlay->shape_count <= 4 + 12);

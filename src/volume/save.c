@@ -101,10 +101,11 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
     while (i < ENDING_COUNT && !snow_has_suffix(path, endings[i].suffix))
         i++;
     if (i == ENDING_COUNT)
-        return snow_fail(volume->context, SNOW_BAD_USAGE,
-                         "%s: volumes are written as .nrrd, .nii, .nii.gz, "
-                         ".mha, .npy, .raw and .raw.gz; choose one of these endings",
-                         path);
+        return snow_fail(
+            volume->context, SNOW_BAD_USAGE,
+            "%s: volumes are written as .nrrd, .nii, .nii.gz, "
+            ".mha, .npy, .raw and .raw.gz; choose one of these endings",
+            path);
     snow_writer *writer;
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
     snow_status status =

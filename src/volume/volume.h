@@ -23,7 +23,7 @@ struct snow_volume {
     bool is_part;
     snow_part part; /* where is_part */
     bool knows_origin;
-    double origin[3]; /* the last column of the whole's matrix, where known */
+    double origin[3];  /* the last column of the whole's matrix, where known */
     char patient[256]; /* "" when not told */
 };
 
