@@ -212,7 +212,7 @@ static snow_status draw_opacity(snow_overlay *overlay, const snow_transfer *t,
 static void write_tick(double value, double step, char *out, size_t size) {
     if (fabs(value) < step / 1000)
         value = 0;
-    double digits = value ? ceil(log10(fabs(value) / step) + 1.5) : 6;
+    double digits = value != 0 ? ceil(log10(fabs(value) / step) + 1.5) : 6;
     snprintf(out, size, "%.*g", (int)fmin(fmax(digits, 6), 15), value);
 }
 
