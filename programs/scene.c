@@ -16,7 +16,26 @@ typedef struct rank_figures {
     uint64_t peak;
 } rank_figures;
 
+/* Options that a mode makes no use of are named rather than passed over. */
+static void tell_unused(const options *asked) {
+    static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
+    static const char *const of_light[] = {"light",   "shade",    "ambient",
+                                           "diffuse", "specular", "shininess"};
+    bool lit = strcmp(asked->mode, "iso") == 0;
+    if (strcmp(asked->mode, "over") == 0 || asked->verbosity < 0 ||
+        !launch_talks())
+        return;
+    for (size_t i = 0; i < sizeof of_opacity / sizeof *of_opacity; i++)
+        if (options_told(asked, of_opacity[i]))
+            say("note: --%s has no part in mode %s", of_opacity[i],
+                asked->mode);
+    for (size_t i = 0; i < sizeof of_light / sizeof *of_light && !lit; i++)
+        if (options_told(asked, of_light[i]))
+            say("note: --%s has no part in mode %s", of_light[i], asked->mode);
+}
+
 int scene_check(const options *asked) {
+    tell_unused(asked);
     if (launch_ranks() > 1 && strcmp(asked->operands[0], "-") == 0)
         return fail_usage("-: many ranks read a file, each its part; name one");
     return GO_ON;

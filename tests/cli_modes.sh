@@ -93,4 +93,8 @@ run 0 "a recipe keeps the mode" render -q -y -m minip -o keep.npy \
     --save-config keep.json
 run 0 "and gives it again" "$TOOL" render --config keep.json -q -y -o again.npy
 run 0 "the same" "$TOOL" compare keep.npy again.npy
+run 0 "what mip makes no use of" render -m mip --opacity 0:0,200:1 \
+    --light 10,10 -y -o unused.png
+says '^snowglass: note: --opacity has no part in mode mip$'
+says '^snowglass: note: --light has no part in mode mip$'
 finish
