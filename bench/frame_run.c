@@ -195,7 +195,7 @@ static snow_status sum_up(frame_rank *s, frame_result *out) {
 static snow_status measure(frame_rank *s, frame_result *out) {
     snow_status status = draw(s, true);
     for (int i = 0; i < s->options->runs && status == SNOW_OK; i++) {
-        frame_result this;
+        frame_result this = {0};
         status = draw(s, false);
         if (status == SNOW_OK)
             status = sum_up(s, &this);

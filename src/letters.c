@@ -46,7 +46,8 @@ snow_status snow_view_letters(snow_context *context,
                               const snow_view *view, char letters[4][4]) {
     snow_camera camera;
     SNOW_TRY(snow_camera_make(context, info, view, &camera));
-    memset(letters, 0, 4 * sizeof *letters);
+    for (int edge = 0; edge < 4; edge++)
+        letters[edge][0] = '\0';
     if (!info->medical)
         return SNOW_OK;
     name_direction(camera.right, -1, letters[0]);

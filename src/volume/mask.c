@@ -98,7 +98,8 @@ static void place_of(const snow_volume_info *info, const int64_t at[3],
 /* The corner of the grid at which two matrices differ most, and by how much. */
 static double find_difference(const snow_volume_info *a,
                               const snow_volume_info *b, int64_t corner[3]) {
-    double most = -1;
+    double most = 0;
+    memset(corner, 0, 3 * sizeof *corner);
     for (int n = 0; n < 8; n++) {
         int64_t at[3];
         double p[3], q[3], off = 0;

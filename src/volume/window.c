@@ -164,7 +164,7 @@ static uint64_t stretch_end(const snow_window *w, int64_t run) {
 /* From stretch to stretch with a jump, within one by reading on. */
 snow_status snow_file_part_read(snow_source *source, const snow_file_part *part,
                                 void *voxels) {
-    uint64_t at = part->begin, planned = part->begin;
+    uint64_t at = part->begin, planned = at;
     int64_t run = snow_window_run_at(part->window, part->begin);
     piece p;
     for (; next_piece(part, run, &p); run++) {
