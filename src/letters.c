@@ -10,7 +10,6 @@
 #include <snowglass/overlay.h>
 
 #include <math.h>
-#include <string.h>
 
 /* Sine of 25 degrees: below it the second letter is left out. */
 #define OBLIQUE 0.42261826174069944
