@@ -110,7 +110,7 @@ static void blend_layers(bench_rates *rates) {
         snow_active_merge(
             snow_pixels_pick(SNOW_ISA_AUTO, rates->options->channels),
             rates->layers, LAYERS, rates->options->channels, 0, pixels,
-            rates->mask, rates->out, &laid);
+            rates->mask, rates->out, true, &laid);
         keep_least(&rates->blend, cpu_seconds() - start, laid);
     }
 }

@@ -9,7 +9,6 @@
 #include "support.h"
 
 #include "combine/exchange.h"
-#include "combine/pixels.h"
 #include "combine/rounds.h"
 
 #include <math.h>
@@ -513,60 +512,6 @@ static void a_rehearsal_sends_messages_of_the_same_length(void **state) {
     }
 }
 
-/* --- levels of vectors ---------------------------------------------------- */
-
-/* 64 pixels, and the slack that loops may touch. */
-typedef struct tile {
-    float pixels[64 * 4 + 16];
-} tile;
-
-/* Numbers in [0, 1), some of them 0 or -0. */
-static void fill_tile(tile *t, uint64_t *random) {
-    for (size_t i = 0; i < COUNT_OF(t->pixels); i++) {
-        uint64_t kind = support_random(random) % 8;
-        t->pixels[i] = kind < 3    ? 0.0f
-                       : kind == 3 ? -0.0f
-                                   : (float)support_uniform(random);
-    }
-}
-
-static void compare_levels(snow_isa isa, int channels, uint64_t *random) {
-    const snow_pixel_loops *plain = snow_pixels_pick(SNOW_ISA_SCALAR, channels);
-    const snow_pixel_loops *fast = snow_pixels_pick(isa, channels);
-    tile from, fronts[2], packed[2];
-    uint64_t bits = support_random(random) & support_random(random);
-    int count = 1 + (int)(support_random(random) % 64);
-    size_t pixel = (size_t)channels * sizeof(float);
-    if (count == 64)
-        bits = ~(uint64_t)0;
-    fill_tile(&from, random);
-    assert_true(plain->look(from.pixels, count) ==
-                fast->look(from.pixels, count));
-    size_t active = (size_t)__builtin_popcountll(bits);
-    float *end = plain->pack(packed[0].pixels, from.pixels, bits);
-    assert_int_equal(end - packed[0].pixels, (long)active * channels);
-    end = fast->pack(packed[1].pixels, from.pixels, bits);
-    assert_int_equal(end - packed[1].pixels, (long)active * channels);
-    assert_memory_equal(packed[0].pixels, packed[1].pixels, active * pixel);
-    fill_tile(&fronts[0], random);
-    fronts[1] = fronts[0];
-    const float *left = plain->lay(fronts[0].pixels, packed[0].pixels, bits);
-    assert_int_equal(left - packed[0].pixels, (long)active * channels);
-    left = fast->lay(fronts[1].pixels, packed[0].pixels, bits);
-    assert_int_equal(left - packed[0].pixels, (long)active * channels);
-    for (int i = 0; i < 64 * channels; i++)
-        assert_true(fronts[0].pixels[i] == fronts[1].pixels[i]);
-}
-
-static void all_levels_give_the_same_pixels(void **state) {
-    uint64_t random = 1;
-    (void)state;
-    for (int i = 0; i < 2000; i++) {
-        compare_levels(SNOW_ISA_AUTO, 2, &random);
-        compare_levels(SNOW_ISA_AUTO, 4, &random);
-    }
-}
-
 /* --- pieces --------------------------------------------------------------- */
 
 /* All that is active lies in some lines: how many pixels of layers the busiest
@@ -763,7 +708,6 @@ int main(void) {
             a_second_picture_takes_no_memory_though_the_view_changes),
         cmocka_unit_test(whole_pictures_cost_the_least_that_whole_pictures_can),
         cmocka_unit_test(a_rehearsal_sends_messages_of_the_same_length),
-        cmocka_unit_test(all_levels_give_the_same_pixels),
         cmocka_unit_test(counted_and_interlaced_pieces_are_balanced),
         cmocka_unit_test(what_is_sent_is_waited_for_with_any_number_of_ranks),
         cmocka_unit_test(what_is_no_order_is_refused),

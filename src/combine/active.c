@@ -5,6 +5,8 @@
  * same operations on each float; on nothing it is what lies behind, exactly. */
 #include "combine/active.h"
 
+#include "simd/vec_scalar.h"
+
 #include <string.h>
 
 static int lowest(uint64_t bits) {
@@ -12,7 +14,14 @@ static int lowest(uint64_t bits) {
 }
 
 static int population(uint64_t bits) {
-    return __builtin_popcountll(bits);
+    return snow_scalar_popcount(bits);
+}
+
+static int64_t population_of(const uint64_t *words, int64_t count) {
+    int64_t bits = 0;
+    for (int64_t i = 0; i < count; i++)
+        bits += population(words[i]);
+    return bits;
 }
 
 /* --- the local image ------------------------------------------------------ */
@@ -39,28 +48,20 @@ static void clip(const snow_exchange_order *order, int y, int *x0, int *x1) {
         *x1 = drawn->x1;
 }
 
-/* Columns x0 .. x1 - 1 of line y, all drawn; column 0 is pixel `zero` of the
- * picture. */
-static float *scan_line(const snow_pixel_loops *loops,
-                        const snow_exchange_order *order, int y, int64_t zero,
-                        int x0, int x1, uint64_t *words, int64_t first_word,
-                        float *out, int64_t *active) {
+/* Active ones among columns x0 .. x1 - 1 of line y, all drawn; column 0 is
+ * pixel `zero` of the picture. */
+static void rehearse_line(const snow_exchange_order *order, int y, int64_t zero,
+                          int x0, int x1, uint64_t *words, int64_t first_word) {
     for (int x = x0; x < x1;) {
         int64_t at = zero + x;
         int count = 64 - (int)(at % 64);
         if (count > x1 - x)
             count = x1 - x;
-        uint64_t bits = look(loops, order, y, x, count);
-        words[at / 64 - first_word] |= bits << (at % 64);
-        *active += population(bits);
-        if (!order->rehearsal)
-            out = loops->pack(out,
-                              order->pixels + (size_t)y * order->stride +
-                                  (size_t)x * (size_t)order->channels,
-                              bits);
+        words[at / 64 - first_word] |=
+            order->rehearsal->active(order->rehearsal->user, y, x, count)
+            << (at % 64);
         x += count;
     }
-    return out;
 }
 
 /* All of columns x0 .. x1 - 1 of line y, drawn or not. */
@@ -83,7 +84,7 @@ int64_t snow_active_scan(const snow_pixel_loops *loops,
                          int64_t first, int64_t last, uint64_t *words,
                          float *out, int64_t *scanned) {
     const int64_t width = order->width;
-    int64_t active = 0;
+    float *const begin = out;
     if (order->whole && order->rehearsal)
         return last - first;
     if (!order->whole)
@@ -103,10 +104,19 @@ int64_t snow_active_scan(const snow_pixel_loops *loops,
         if (x0 >= x1)
             continue;
         *scanned += x1 - x0;
-        out = scan_line(loops, order, y, zero, x0, x1, words, first / 64, out,
-                        &active);
+        if (order->rehearsal)
+            rehearse_line(order, y, zero, x0, x1, words, first / 64);
+        else
+            out = loops->scan(order->pixels + (size_t)y * order->stride +
+                                  (size_t)x0 * (size_t)order->channels,
+                              zero + x0, x1 - x0,
+                              words + ((zero + x0) / 64 - first / 64), out);
     }
-    return order->whole ? last - first : active;
+    if (order->whole)
+        return last - first;
+    return order->rehearsal
+               ? population_of(words, snow_active_words(first, last))
+               : (out - begin) / order->channels;
 }
 
 int64_t snow_active_in_line(const snow_pixel_loops *loops,
@@ -216,81 +226,30 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
 
 /* --- layers --------------------------------------------------------------- */
 
-/* A layer's bits among `range` of word `index`. */
-static uint64_t bits_of(const snow_active *layer, int64_t index,
-                        uint64_t range) {
-    if (index < layer->first / 64 || index > (layer->last - 1) / 64)
-        return 0;
-    uint64_t own = layer->words
-                       ? layer->words[index - layer->first / 64]
-                       : snow_active_range(index, layer->first, layer->last);
-    return own & range;
-}
-
-/* All layers of a word into `tile`, 64 pixels; the mask of the result. */
-static uint64_t lay_word(const snow_pixel_loops *loops, snow_active *layers,
-                         int count, int channels, int64_t index, uint64_t range,
-                         float *tile, int64_t *laid) {
-    uint64_t seen = 0;
-    for (int i = 0; i < count; i++) {
-        uint64_t bits = bits_of(&layers[i], index, range);
-        if (!bits)
-            continue;
-        if (!layers[i].own)
-            *laid += population(bits);
-        if (layers[i].pixels) {
-            if (!seen)
-                memset(tile, 0, 64 * (size_t)channels * sizeof *tile);
-            layers[i].next = loops->lay(tile, layers[i].next, bits);
+/* What is left of a merge in a rehearsal: masks, and how many pixels there
+ * were. */
+static void merge_masks(const snow_active *layers, int count, int64_t first,
+                        int64_t last, uint64_t *words, int64_t *laid) {
+    for (int64_t i = first / 64; i * 64 < last; i++) {
+        uint64_t range = snow_active_range(i, first, last), seen = 0;
+        for (int k = 0; k < count; k++) {
+            uint64_t bits = snow_active_bits(&layers[k], i, range);
+            *laid += layers[k].own ? 0 : population(bits);
+            seen |= bits;
         }
-        seen |= bits;
+        words[i - first / 64] = seen;
     }
-    return seen;
 }
 
 int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
                           int count, int channels, int64_t first, int64_t last,
-                          uint64_t *words, float *out, int64_t *laid) {
-    float tile[64 * 4];
-    int64_t active = 0;
-    for (int64_t i = first / 64; i * 64 < last; i++) {
-        uint64_t range = snow_active_range(i, first, last);
-        uint64_t seen =
-            lay_word(loops, layers, count, channels, i, range, tile, laid);
-        words[i - first / 64] = seen;
-        active += population(seen);
-        if (out && seen)
-            out = loops->pack(out, tile, seen);
+                          uint64_t *words, float *out, bool packed,
+                          int64_t *laid) {
+    if (!out) {
+        merge_masks(layers, count, first, last, words, laid);
+        return population_of(words, snow_active_words(first, last));
     }
-    return active;
-}
-
-/* The pixels of word `index` that lie in first .. last - 1, or nothing. */
-static void unpack_tile(const float *tile, int channels, int64_t index,
-                        int64_t first, int64_t last, float *out) {
-    int64_t from = index * 64 > first ? index * 64 : first;
-    int64_t to = index * 64 + 64 < last ? index * 64 + 64 : last;
-    size_t bytes = (size_t)((to - from) * channels) * sizeof *out;
-    out += (from - first) * channels;
-    if (tile)
-        memcpy(out, tile + (from - index * 64) * channels, bytes);
-    else
-        memset(out, 0, bytes);
-}
-
-int64_t snow_active_lay(const snow_pixel_loops *loops, snow_active *layers,
-                        int count, int channels, int64_t first, int64_t last,
-                        uint64_t *words, float *out, int64_t *laid) {
-    float tile[64 * 4];
-    int64_t active = 0;
-    for (int64_t i = first / 64; i * 64 < last; i++) {
-        uint64_t range = snow_active_range(i, first, last);
-        uint64_t seen =
-            lay_word(loops, layers, count, channels, i, range, tile, laid);
-        words[i - first / 64] = seen;
-        active += population(seen);
-        if (out)
-            unpack_tile(seen ? tile : NULL, channels, i, first, last, out);
-    }
-    return active;
+    float *end =
+        loops->merge(layers, count, first, last, words, out, packed, laid);
+    return (end - out) / channels;
 }

@@ -48,6 +48,17 @@ static inline uint64_t snow_active_range(int64_t index, int64_t first,
     return bits;
 }
 
+/* A layer's bits among `range` of word `index`. */
+static inline uint64_t snow_active_bits(const snow_active *layer, int64_t index,
+                                        uint64_t range) {
+    if (index < layer->first / 64 || index > (layer->last - 1) / 64)
+        return 0;
+    uint64_t own = layer->words
+                       ? layer->words[index - layer->first / 64]
+                       : snow_active_range(index, layer->first, layer->last);
+    return own & range;
+}
+
 /* Bytes that a message of `count` pixels may take, and what loops may touch
  * beyond them. */
 size_t snow_active_room(int64_t count, size_t pixel_bytes);
@@ -81,17 +92,14 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
 /* Lays layers over one another, ordered from front to back, in pixels first ..
  * last - 1.  Parts of the picture are asked for in rising order: layers
  * remember where they are.  Each layer lies inside what is asked for in all.
- *
- * snow_active_merge packs the result to `out` (NULL in a rehearsal) with its
- * mask in `words`, and returns how many active pixels it has; snow_active_lay
- * does the same but writes all pixels, number n at out[(n - first) * channels],
- * 0 where no layer is.  Both add to *laid how many pixels of layers that came
- * there were. */
+ * The result's mask goes to `words`.  With `packed`, its active pixels go to
+ * `out`; else all pixels do, number n to out[(n - first) * channels], 0 where
+ * no layer is.  In a rehearsal `out` is NULL.  Returns how many pixels
+ * there are in `out`, or would be; adds to *laid how many pixels of layers that
+ * came there were. */
 int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
                           int count, int channels, int64_t first, int64_t last,
-                          uint64_t *words, float *out, int64_t *laid);
-int64_t snow_active_lay(const snow_pixel_loops *loops, snow_active *layers,
-                        int count, int channels, int64_t first, int64_t last,
-                        uint64_t *words, float *out, int64_t *laid);
+                          uint64_t *words, float *out, bool packed,
+                          int64_t *laid);
 
 #endif

@@ -333,9 +333,10 @@ static size_t write_part(exchange *run, int level, stretch part,
                                  &scanned);
         figures->active += count;
     } else {
-        count = snow_active_merge(combiner->loops, combiner->layers,
-                                  run->layer_count, order->channels, part.first,
-                                  part.last, combiner->part, pixels, &laid);
+        count =
+            snow_active_merge(combiner->loops, combiner->layers,
+                              run->layer_count, order->channels, part.first,
+                              part.last, combiner->part, pixels, true, &laid);
     }
     figures->scanned += scanned;
     figures->laid += laid;
@@ -486,9 +487,9 @@ static void lay_piece(exchange *run, stretch piece) {
     const snow_exchange_order *order = run->order;
     float *out = order->rehearsal ? NULL : combiner->piece;
     int64_t laid = 0;
-    snow_active_lay(combiner->loops, combiner->layers, run->layer_count,
-                    order->channels, piece.first, piece.last, combiner->part,
-                    out, &laid);
+    snow_active_merge(combiner->loops, combiner->layers, run->layer_count,
+                      order->channels, piece.first, piece.last, combiner->part,
+                      out, false, &laid);
     combiner->figures.laid += laid;
     snow_comm_work(combiner->comm, (double)laid * order->blend_seconds);
 }

@@ -1,74 +1,36 @@
-/* combine/pixels.c - the loops of pixels.h without vectors but those of 4
- * floats, which compilers find; and the choice of a level.  AVX2 has nothing
- * that compresses pixels: there, too, they are moved one by one. */
-#include "combine/pixels.h"
-
-#if SNOW_HAS_AVX
-#include "combine/pixels_avx512.h"
-#endif
+/* combine/pixels.c - the loops of pixels.h on every level, and the choice of
+ * one. */
+#include "combine/active.h"
 
 #include <string.h>
 
-static inline uint64_t look_plain(const float *pixels, int count,
-                                  int channels) {
-    const uint64_t numbers = 0x7fffffff7fffffff; /* all but -0, twice */
-    uint64_t bits = 0;
-    for (int i = 0; i < count; i++) {
-        uint64_t halves[2] = {0, 0};
-        memcpy(halves, pixels + i * channels,
-               (size_t)channels * sizeof *pixels);
-        bits |= (uint64_t)(((halves[0] | halves[1]) & numbers) != 0) << i;
-    }
-    return bits;
-}
+/* The order matters, so a blank line keeps the two from being sorted. */
+#define SELECT_SCALAR
+#include "simd/select.h"
 
-static inline float *pack_plain(float *out, const float *pixels, uint64_t bits,
-                                int channels) {
-    const size_t bytes = (size_t)channels * sizeof *out;
-    if (bits == ~(uint64_t)0) {
-        memcpy(out, pixels, 64 * bytes);
-        return out + 64 * channels;
-    }
-    for (; bits; bits &= bits - 1, out += channels)
-        memcpy(out, pixels + __builtin_ctzll(bits) * channels, bytes);
-    return out;
-}
+#include "combine/pixels_levels.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
 
-static inline const float *lay_plain(float *tile, const float *packed,
-                                     uint64_t bits, int channels) {
-    for (; bits; bits &= bits - 1, packed += channels) {
-        float *front = tile + __builtin_ctzll(bits) * channels;
-        float left = 1 - front[channels - 1], back[4];
-        memcpy(back, packed, (size_t)channels * sizeof *back);
-        for (int c = 0; c < channels; c++)
-            front[c] += left * back[c];
-    }
-    return packed;
-}
+#include "combine/pixels_levels.h"
+#define SELECT_AVX512
+#include "simd/select.h"
 
-#define LOOPS(channels)                                                  \
-    static uint64_t look_##channels(const float *pixels, int count) {    \
-        return look_plain(pixels, count, channels);                      \
-    }                                                                    \
-    static float *pack_##channels(float *out, const float *pixels,       \
-                                  uint64_t bits) {                       \
-        return pack_plain(out, pixels, bits, channels);                  \
-    }                                                                    \
-    static const float *lay_##channels(float *tile, const float *packed, \
-                                       uint64_t bits) {                  \
-        return lay_plain(tile, packed, bits, channels);                  \
-    }                                                                    \
-    static const snow_pixel_loops loops_##channels = {                   \
-        look_##channels, pack_##channels, lay_##channels};
-
-LOOPS(2)
-LOOPS(4)
+#include "combine/pixels_levels.h"
+#endif
 
 const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels) {
 #if SNOW_HAS_AVX
-    if (snow_isa_resolve(isa) == SNOW_ISA_AVX512)
+    switch (snow_isa_resolve(isa)) {
+    case SNOW_ISA_AVX512:
         return channels == 2 ? &loops_2_avx512 : &loops_4_avx512;
+    case SNOW_ISA_AVX2:
+        return channels == 2 ? &loops_2_avx2 : &loops_4_avx2;
+    default:
+        break;
+    }
 #endif
     (void)isa;
-    return channels == 2 ? &loops_2 : &loops_4;
+    return channels == 2 ? &loops_2_scalar : &loops_4_scalar;
 }

@@ -1,10 +1,10 @@
-/* combine/pixels.h - what is done with 64 pixels and a bit for each: the inner
- * loops of the exchange, for every level of vectors.  All levels give the same
- * bits.
+/* combine/pixels.h - the inner loops of the exchange, over pixels and a bit for
+ * each, for every level of vectors.  All levels give the same bits.
  *
  * Pixels are 2 or 4 floats, alpha last.  Packed ones lie one after another
  * without those whose bit is 0; loops may touch SNOW_PIXELS_SLACK bytes beyond
- * the last packed one, which they change only while packing. */
+ * the last packed one, which they change only while packing.  Bit i % 64 of
+ * word i / 64 is pixel i's. */
 #ifndef SNOW_PIXELS_H
 #define SNOW_PIXELS_H
 
@@ -12,16 +12,25 @@
 
 #define SNOW_PIXELS_SLACK 64
 
+struct snow_active;
+
 typedef struct snow_pixel_loops {
     /* Which of `count` <= 64 pixels have anything in them (-0 is nothing); only
      * these are read. */
     uint64_t (*look)(const float *pixels, int count);
-    /* Packs those of 64 pixels whose bits are set, and reads no others; returns
-     * where the next one goes. */
-    float *(*pack)(float *out, const float *pixels, uint64_t bits);
-    /* Lays packed pixels behind those of `tile`; returns the first that is
-     * left.  tile += (1 - tile.alpha) * pixel, in this order of operations. */
-    const float *(*lay)(float *tile, const float *packed, uint64_t bits);
+    /* Looks at `count` pixels, of which the first is number `at`: sets the bits
+     * of those that have anything in words[0], which is word at / 64, and so
+     * on, and packs these pixels; returns where the next one goes. */
+    float *(*scan)(const float *pixels, int64_t at, int64_t count,
+                   uint64_t *words, float *out);
+    /* Lays layers over one another, from front to back, in pixels first .. last
+     * - 1 (as snow_active_merge, which see): the bits of the result to words[0]
+     * and so on, its pixels, packed or all, to `out`; returns where the next
+     * one goes; adds to *laid.  front += (1 - front.alpha) * back, in this
+     * order of operations. */
+    float *(*merge)(struct snow_active *layers, int count, int64_t first,
+                    int64_t last, uint64_t *words, float *out, bool packed,
+                    int64_t *laid);
 } snow_pixel_loops;
 
 /* The loops for 2 or 4 channels. */

@@ -58,6 +58,22 @@
  *   V(repeat2)(), V(repeat4)         0, 1 ..., each 2 or 4 times
  *   V(pick)(p, n)                    p[n0], p[n1] ...; all LANES floats at p
  *                                    may be read
+ *   V(scatter4)(p, n, v), V(scatter2)
+ *                                    stores the pixels of v, of 4 or 2 floats,
+ *                                    as entries n[0], n[1] ... of a table;
+ *                                    avx512 has no scatter2, but
+ *   V(next2)(p, bits)                pixels of 2 floats: the next of those at p
+ *                                    where a bit is set, else zeros; may read 16
+ *                                    floats beyond the last; only avx512
+ *   V(squeeze2)(p, bits, out)        the reverse: those of a vector's pixels at p
+ *                                    whose bits are set, and no others are read,
+ *                                    to out; returns how many; may write 16
+ *                                    floats in all; only avx512
+ *   V(some4)(p), V(some2)(p)         of 16 pixels of 4 or 2 floats at p, a bit
+ *                                    for each that has anything but 0 and -0
+ *   V(list)(bits, n)                 the numbers of the bits that are set in a
+ *                                    uint64_t, in rising order, to n; returns
+ *                                    how many.  Writes 64 + 8 numbers at most
  *
  * The template's own file includes the three vec_*.h headers and this one once
  * per level; no file needs special compiler flags. */

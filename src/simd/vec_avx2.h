@@ -297,4 +297,69 @@ SNOW_AVX2_INLINE snow_avx2_places snow_avx2_places4(const int32_t *first) {
                             _mm256_setr_epi32(0, 1, 2, 3, 0, 1, 2, 3));
 }
 
+SNOW_AVX2_INLINE void snow_avx2_scatter4(float *p, const uint32_t *n,
+                                         snow_avx2_vec v) {
+    _mm_storeu_ps(p + (size_t)n[0] * 4, _mm256_castps256_ps128(v));
+    _mm_storeu_ps(p + (size_t)n[1] * 4, _mm256_extractf128_ps(v, 1));
+}
+
+/* Four numbers of 64 bits, in each of which a float is or is not. */
+SNOW_AVX2_INLINE unsigned snow_avx2_any_of(__m256d v) {
+    const __m256i numbers = _mm256_set1_epi32(0x7fffffff);
+    __m256i none =
+        _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_castpd_si256(v), numbers),
+                           _mm256_setzero_si256());
+    return (unsigned)_mm256_movemask_pd(_mm256_castsi256_pd(none)) ^ 15;
+}
+
+SNOW_AVX2_INLINE unsigned snow_avx2_some4(const float *p) {
+    unsigned bits = 0;
+    for (int i = 0; i < 16; i += 4, p += 16) {
+        __m256d a = _mm256_castps_pd(_mm256_loadu_ps(p));
+        __m256d b = _mm256_castps_pd(_mm256_loadu_ps(p + 8));
+        /* Halves of pixels a0 b0 a1 b1, then a0 a1 b0 b1. */
+        __m256d both =
+            _mm256_or_pd(_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+        bits |= snow_avx2_any_of(_mm256_permute4x64_pd(both, 0xD8)) << i;
+    }
+    return bits;
+}
+
+SNOW_AVX2_INLINE unsigned snow_avx2_some2(const float *p) {
+    unsigned bits = 0;
+    for (int i = 0; i < 16; i += 4)
+        bits |= snow_avx2_any_of(_mm256_castps_pd(_mm256_loadu_ps(p + 2 * i)))
+                << i;
+    return bits;
+}
+
+/* Eight bits at a time: as bytes all of ones they pick bytes of 0 to 7. */
+SNOW_AVX2_INLINE int snow_avx2_list(uint64_t bits, uint32_t *n) {
+    uint32_t *const begin = n;
+    for (int at = 0; at < 64; at += 8, bits >>= 8) {
+        uint64_t bytes =
+            _pdep_u64(bits, UINT64_C(0x0101010101010101)) * UINT64_C(0xFF);
+        uint64_t picked = _pext_u64(UINT64_C(0x0706050403020100), bytes);
+        __m256i places =
+            _mm256_cvtepu8_epi32(_mm_cvtsi64_si128((long long)picked));
+        _mm256_storeu_si256((__m256i *)(void *)n,
+                            _mm256_add_epi32(places, _mm256_set1_epi32(at)));
+        n += __builtin_popcount((unsigned)bits & 0xFF);
+    }
+    return (int)(n - begin);
+}
+
+/* Two pixels of two floats. */
+SNOW_AVX2_INLINE void snow_avx2_scatter_pair(float *p, const uint32_t *n,
+                                             __m128 v) {
+    _mm_storel_pi((__m64 *)(void *)(p + (size_t)n[0] * 2), v);
+    _mm_storeh_pi((__m64 *)(void *)(p + (size_t)n[1] * 2), v);
+}
+
+SNOW_AVX2_INLINE void snow_avx2_scatter2(float *p, const uint32_t *n,
+                                         snow_avx2_vec v) {
+    snow_avx2_scatter_pair(p, n, _mm256_castps256_ps128(v));
+    snow_avx2_scatter_pair(p, n + 2, _mm256_extractf128_ps(v, 1));
+}
+
 #endif

@@ -254,4 +254,45 @@ static inline snow_scalar_places snow_scalar_repeat4(void) {
     return (snow_scalar_places){{0, 0, 0, 0}};
 }
 
+static inline void snow_scalar_scatter4(float *p, const uint32_t *n,
+                                        snow_scalar_vec v) {
+    snow_scalar_store(p + (size_t)n[0] * 4, v);
+}
+
+/* As two words each, without their signs. */
+static inline unsigned snow_scalar_some4(const float *p) {
+    const uint64_t numbers = 0x7fffffff7fffffff;
+    unsigned bits = 0;
+    for (int i = 0; i < 16; i++) {
+        uint64_t halves[2];
+        memcpy(halves, p + 4 * i, sizeof halves);
+        bits |= (unsigned)(((halves[0] | halves[1]) & numbers) != 0) << i;
+    }
+    return bits;
+}
+
+static inline unsigned snow_scalar_some2(const float *p) {
+    const uint64_t numbers = 0x7fffffff7fffffff;
+    unsigned bits = 0;
+    for (int i = 0; i < 16; i++) {
+        uint64_t both;
+        memcpy(&both, p + 2 * i, sizeof both);
+        bits |= (unsigned)((both & numbers) != 0) << i;
+    }
+    return bits;
+}
+
+static inline int snow_scalar_list(uint64_t bits, uint32_t *n) {
+    int count = 0;
+    for (; bits; bits &= bits - 1)
+        n[count++] = (uint32_t)__builtin_ctzll(bits);
+    return count;
+}
+
+static inline void snow_scalar_scatter2(float *p, const uint32_t *n,
+                                        snow_scalar_vec v) {
+    memcpy(p + (size_t)n[0] * 2, &v, 8);
+    memcpy(p + (size_t)n[1] * 2, (const char *)&v + 8, 8);
+}
+
 #endif
