@@ -173,6 +173,17 @@ static size_t most_runs(size_t pixels, size_t lines) {
     return pixels / (GAP_MOST + 1) + lines + 1;
 }
 
+/* Room for all runs on their way. */
+static snow_status reserve_way(snow_ranks *r, const snow_job *job,
+                               int pixel_bits) {
+    int64_t pixels = 0;
+    for (size_t n = 0; n < r->run_count; n++)
+        pixels += r->runs[n].count;
+    return snow_gather_reserve(
+        r->combiner, job->view->width, job->view->height, r->run_count, pixels,
+        (size_t)job->channels * (pixel_bits == 8 ? 1 : sizeof(float)));
+}
+
 /* --- pixels of the picture ------------------------------------------------
  */
 
@@ -268,6 +279,7 @@ snow_status snow_pixels_warp(snow_ranks *r, const snow_sheared_image *image,
                       (view->height + WARP_LINES - 1) / WARP_LINES, warp_lines,
                       &warp);
         pack_lines(&warp, pixel_bits);
+        status = reserve_way(r, job, pixel_bits);
     }
     snow_release(job->context, warp.places);
     return status;
@@ -290,7 +302,7 @@ snow_status snow_pixels_copy(snow_ranks *r, const snow_job *job,
                     job->channels, pixel_bits, &at);
         n += count;
     }
-    return SNOW_OK;
+    return reserve_way(r, job, pixel_bits);
 }
 
 snow_status snow_pixels_gather(snow_ranks *r, const snow_job *job,

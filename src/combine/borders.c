@@ -1,6 +1,10 @@
 /* combine/borders.c - cuts of the picture into pieces. */
 #include "combine/borders.h"
 
+/* Counted pieces are measured up to so many; that takes a microsecond.  More of
+ * them are small anyway. */
+#define PIECES_MEASURED 64
+
 static int64_t least(int64_t a, int64_t b) {
     return a < b ? a : b;
 }
@@ -68,12 +72,25 @@ int64_t snow_border(const snow_borders *borders, int piece, int pieces) {
     return weighed(borders, weight) / borders->grain * borders->grain;
 }
 
+/* The pixels of the largest piece. */
+static int64_t largest(const snow_borders *borders, int pieces) {
+    int64_t most = 0, first = 0;
+    for (int i = 1; i <= pieces; i++) {
+        int64_t end = snow_border(borders, i, pieces);
+        most = end - first > most ? end - first : most;
+        first = end;
+    }
+    return most;
+}
+
 int64_t snow_border_room(const snow_borders *borders, int pieces) {
     const int64_t pixels = (int64_t)borders->width * borders->height;
-    int64_t most = pixels / pieces + 1;
-    if (borders->counted)
-        most = SNOW_PIECE_MOST * most + 1;
-    return least(pixels, most + borders->grain);
+    int64_t even = pixels / pieces + 1;
+    if (!borders->counted)
+        return least(pixels, even + borders->grain);
+    if (pieces <= PIECES_MEASURED)
+        return largest(borders, pieces);
+    return least(pixels, SNOW_PIECE_MOST * even + 1 + borders->grain);
 }
 
 /* `number` of `bits` bits read backwards. */

@@ -11,8 +11,8 @@
 
 #define SNOW_BINS_MOST 256
 
-/* A counted piece has at most so many times the pixels of an even one: buffers
- * have room for that, whatever is seen in the picture. */
+/* A counted piece has at most so many times the pixels of an even one, whatever
+ * is seen in the picture: what bounds buffers. */
 #define SNOW_PIECE_MOST 4
 
 typedef struct snow_borders {
@@ -36,7 +36,7 @@ int snow_borders_line(const snow_borders *borders, int bin);
 /* Where piece t of n begins; piece n where the picture ends. */
 int64_t snow_border(const snow_borders *borders, int piece, int pieces);
 
-/* The most pixels that piece t of n can have. */
+/* The most pixels that any of so many pieces has, or a bound of it. */
 int64_t snow_border_room(const snow_borders *borders, int pieces);
 
 /* Fills order[place] with the lines 0 .. height - 1 so that any run of places

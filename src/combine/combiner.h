@@ -24,6 +24,17 @@ typedef struct snow_exchange_shape {
     bool whole;
 } snow_exchange_shape;
 
+/* Bytes that the busiest seat of all needs: views change seats, and seats alone
+ * shall change no buffer.  Rounds with even and with odd numbers have buffers
+ * of their own. */
+#define SNOW_NEEDS 6
+typedef union snow_exchange_needs {
+    size_t bytes[SNOW_NEEDS];
+    struct {
+        size_t in[2], out[2], words, piece;
+    };
+} snow_exchange_needs;
+
 /* The buffers of a gather (gather.c). */
 typedef struct snow_gather_state {
     int radix; /* as told; 0: chosen */
@@ -32,8 +43,11 @@ typedef struct snow_gather_state {
     size_t pixel_bytes;
     int *children;           /* ranks that send to this one */
     int child_count, parent; /* parent -1: the display processor */
-    unsigned char *bytes;    /* blocks, this rank's first */
+    unsigned char *bytes;    /* blocks, this rank's first; NULL where no child
+                                is */
     size_t room;
+    unsigned char *own; /* this rank's block there; at first NULL */
+    size_t own_room;
     unsigned char *slots;   /* the beginning of each child's message */
     snow_message *messages; /* of each child: its beginning, its rest */
     size_t *places;         /* where each child's blocks lie in bytes */
@@ -48,6 +62,7 @@ typedef struct snow_gather_state {
 struct snow_combiner {
     snow_comm *comm;
     snow_exchange_shape shape; /* width 0: there are no buffers */
+    snow_exchange_needs needs; /* what buffers have room for */
     const snow_pixel_loops *loops;
     snow_rounds rounds;
     bool filled; /* the lists of `rounds`, for its seat and display */

@@ -7,9 +7,11 @@
  * overlap.  Pixels are read and written once a round, packed; only the last
  * round unpacks them.
  *
- * Memory is taken when the order's shape changes and at no other time, and all
- * ranks agree on whether there was enough: a rank that fails alone would leave
- * the others waiting. */
+ * Memory is taken when the order's shape changes, or when counted pieces are
+ * larger than any before.  All ranks know that, and agree on whether there was
+ * enough: a rank that fails alone would leave the others waiting.  There is
+ * room for parts all of whose pixels are active; of that only what comes is
+ * touched, so a system gives pages for no more. */
 #include "combine/combiner.h"
 
 #include <string.h>
@@ -56,6 +58,7 @@ static void drop_buffers(snow_combiner *combiner) {
     combiner->layers = NULL;
     combiner->words = combiner->part = NULL;
     combiner->piece = NULL;
+    combiner->needs = (snow_exchange_needs){0};
     combiner->shape = (snow_exchange_shape){0};
 }
 
@@ -67,65 +70,78 @@ void snow_combiner_free(snow_combiner *combiner) {
     snow_release(combiner->comm->context, combiner);
 }
 
-/* What the busiest seat of all needs in its busiest round: views change seats,
- * and seats alone shall change no buffer. */
-typedef struct needs {
-    size_t in, out, words; /* bytes, bytes, words */
-    int peers;
-    int64_t piece; /* pixels of the last one */
-} needs;
-
 static int64_t most(int64_t a, int64_t b) {
     return a > b ? a : b;
 }
 
-/* The most pixels that a rank holds after `level` rounds.  Pieces are largest
- * in the smallest group. */
+static size_t more(size_t a, size_t b) {
+    return a > b ? a : b;
+}
+
+/* The most pixels that a rank holds after `level` rounds.  Groups have two
+ * sizes at most, and pieces are largest in one of them. */
 static int64_t held(const snow_combiner *combiner, int level) {
     const snow_rounds *rounds = &combiner->rounds;
     const snow_borders *borders = &combiner->borders;
     int group = rounds->seats;
     for (int i = rounds->count - 1; i >= level && group > 1; i--)
         group = group / rounds->radices[i] > 1 ? group / rounds->radices[i] : 1;
-    return snow_border_room(borders, rounds->tree || level == 0 ? 1 : group);
+    if (rounds->tree || level == 0)
+        return snow_border_room(borders, 1);
+    return most(snow_border_room(borders, group),
+                snow_border_room(borders, group + 1));
 }
 
-static void count_needs(const snow_combiner *combiner, needs *out) {
+/* How many messages a rank may have in a round (snow_rounds_room). */
+static size_t peers_in(const snow_rounds *rounds, int level) {
+    int radix = rounds->radices[level];
+    return 2 * (size_t)(radix < rounds->seats ? radix : rounds->seats) + 4;
+}
+
+static void count_round(const snow_combiner *combiner, int level,
+                        snow_exchange_needs *out) {
     const snow_rounds *rounds = &combiner->rounds;
     const size_t pixel_bytes = (size_t)combiner->shape.channels * sizeof(float);
-    *out = (needs){.peers = 8, .piece = held(combiner, rounds->count)};
-    out->out = align(snow_active_room(held(combiner, 0), pixel_bytes));
-    for (int i = 0; i < rounds->count; i++) {
-        int64_t before = held(combiner, i), after = held(combiner, i + 1);
-        int radix = rounds->radices[i] < rounds->seats ? rounds->radices[i]
-                                                       : rounds->seats;
-        size_t peers = 2 * (size_t)radix + 4; /* see snow_rounds_room */
-        size_t spare = peers * (ALIGNMENT + snow_active_room(0, pixel_bytes));
-        size_t sent = snow_active_room(before, pixel_bytes) + spare;
-        size_t came =
-            (size_t)(radix - 1) * snow_active_room(after, pixel_bytes) + spare;
-        size_t words = (size_t)radix * ((size_t)after / 64 + 2) + 2 * peers;
-        out->out = sent > out->out ? sent : out->out;
-        out->in = came > out->in ? came : out->in;
-        out->words = words > out->words ? words : out->words;
-        out->peers = (int)most(out->peers, (int64_t)peers);
-    }
-    out->words += (size_t)held(combiner, 0) / 64 + 2; /* where no round is */
-    if (rounds->tree && combiner->comm->rank != 0)
-        out->piece = 0;
+    const int64_t before = held(combiner, level),
+                  after = held(combiner, level + 1);
+    const size_t peers = peers_in(rounds, level), radix = (peers - 4) / 2;
+    const int parity = level & 1;
+    size_t spare = peers * (ALIGNMENT + snow_active_room(0, pixel_bytes));
+    size_t sent = snow_active_room(before, pixel_bytes) + spare;
+    size_t came = (radix - 1) * snow_active_room(after, pixel_bytes) + spare;
+    size_t words = radix * ((size_t)after / 64 + 2) + 2 * peers;
+    out->out[parity] = more(out->out[parity], sent);
+    out->in[parity] = more(out->in[parity], came);
+    out->words = more(out->words, words * sizeof(uint64_t));
 }
 
-static snow_status take_buffers(snow_combiner *combiner) {
+static void count_needs(const snow_combiner *combiner,
+                        snow_exchange_needs *out) {
+    const snow_rounds *rounds = &combiner->rounds;
+    const size_t channels = (size_t)combiner->shape.channels;
+    *out = (snow_exchange_needs){0};
+    if (!rounds->count) {
+        out->out[0] = align(
+            snow_active_room(held(combiner, 0), channels * sizeof(float)));
+        out->words = ((size_t)held(combiner, 0) / 64 + 2) * sizeof(uint64_t);
+    }
+    for (int i = 0; i < rounds->count; i++)
+        count_round(combiner, i, out);
+    out->piece =
+        (size_t)held(combiner, rounds->count) * channels * sizeof(float);
+}
+
+/* What does not depend on where pieces begin. */
+static snow_status take_lists(snow_combiner *combiner) {
     snow_context *context = combiner->comm->context;
     const size_t seats = (size_t)combiner->comm->ranks;
-    needs need;
-    count_needs(combiner, &need);
-    const size_t peers = (size_t)need.peers;
+    size_t peers = 8;
     bool fine = true;
+    for (int i = 0; i < combiner->rounds.count; i++)
+        peers = more(peers, peers_in(&combiner->rounds, i));
     for (int i = 0; i < 2; i++) {
         snow_traffic *in = &combiner->in[i], *out = &combiner->out[i];
-        fine = fine && (in->bytes = snow_allocate(context, need.in)) &&
-               (out->bytes = snow_allocate(context, need.out)) &&
+        fine = fine &&
                (in->messages = snow_allocate_array(context, peers,
                                                    sizeof *in->messages)) &&
                (out->messages =
@@ -140,18 +156,63 @@ static snow_status take_buffers(snow_combiner *combiner) {
         (combiner->table = snow_allocate_array(context, seats, sizeof(int))) &&
         (combiner->layers =
              snow_allocate_array(context, peers, sizeof(snow_active))) &&
-        (combiner->words =
-             snow_allocate_array(context, need.words, sizeof(uint64_t))) &&
-        (combiner->part =
-             snow_allocate_array(context, (uint64_t)held(combiner, 0) / 64 + 2,
-                                 sizeof(uint64_t))) &&
-        (combiner->piece = snow_allocate_array(
-             context, (uint64_t)need.piece,
-             (size_t)combiner->shape.channels * sizeof(float)));
+        (combiner->part = snow_allocate_array(
+             context, (uint64_t)held(combiner, 0) / 64 + 2, sizeof(uint64_t)));
     if (fine && combiner->shape.pieces == SNOW_PIECES_INTERLACED)
         fine = (combiner->lines = snow_allocate_array(
                     context, (uint64_t)combiner->shape.height, sizeof(int)));
     return fine ? SNOW_OK : SNOW_NO_MEMORY;
+}
+
+/* Replaces a block by one of another size; what is in it is not kept. */
+static bool take_block(snow_context *context, void *block_pointer,
+                       size_t bytes) {
+    void *block;
+    memcpy(&block, block_pointer, sizeof block);
+    snow_release(context, block);
+    block = bytes ? snow_allocate(context, bytes) : NULL;
+    memcpy(block_pointer, &block, sizeof block);
+    return block || !bytes;
+}
+
+static snow_status take_buffers(snow_combiner *combiner,
+                                const snow_exchange_needs *need) {
+    snow_context *context = combiner->comm->context;
+    const bool shown = !combiner->rounds.tree || combiner->comm->rank == 0;
+    bool fine = true;
+    for (int i = 0; i < 2; i++)
+        fine = fine &&
+               take_block(context, &combiner->in[i].bytes, need->in[i]) &&
+               take_block(context, &combiner->out[i].bytes, need->out[i]);
+    fine = fine && take_block(context, &combiner->words, need->words) &&
+           take_block(context, &combiner->piece, shown ? need->piece : 0);
+    return fine ? SNOW_OK : SNOW_NO_MEMORY;
+}
+
+/* Makes room for pieces as they are now cut.  Needs are the same on all ranks,
+ * which so come to `agree` together, or not at all. */
+static snow_status fit_buffers(snow_combiner *combiner) {
+    snow_exchange_needs *had = &combiner->needs, need;
+    size_t *now = need.bytes, *before = had->bytes;
+    bool fits = true;
+    count_needs(combiner, &need);
+    for (int i = 0; i < SNOW_NEEDS; i++)
+        fits = fits && now[i] <= before[i];
+    if (fits)
+        return SNOW_OK;
+    for (int i = 0; i < SNOW_NEEDS; i++) {
+        /* Counted pieces of the next view are a little larger. */
+        if (combiner->borders.counted)
+            now[i] += now[i] / 8;
+        now[i] = more(now[i], before[i]);
+    }
+    snow_status status =
+        snow_comm_agree(combiner->comm, take_buffers(combiner, &need));
+    if (status != SNOW_OK)
+        drop_buffers(combiner);
+    else
+        *had = need;
+    return status;
 }
 
 /* --- the plan ------------------------------------------------------------- */
@@ -195,7 +256,7 @@ static bool same_shape(const snow_exchange_shape *a,
            a->pieces == b->pieces && a->whole == b->whole;
 }
 
-/* Buffers for the order; all ranks come here together. */
+/* A plan for the order; all ranks come here together. */
 static snow_status take_shape(snow_combiner *combiner,
                               const snow_exchange_order *order) {
     snow_comm *comm = combiner->comm;
@@ -209,7 +270,7 @@ static snow_status take_shape(snow_combiner *combiner,
     snow_rounds_choose(&combiner->rounds, chosen_method(order), order->radix,
                        comm->ranks, (int64_t)order->width * order->height,
                        (size_t)order->channels * sizeof(float));
-    snow_status status = snow_comm_agree(comm, take_buffers(combiner));
+    snow_status status = snow_comm_agree(comm, take_lists(combiner));
     if (status != SNOW_OK)
         drop_buffers(combiner);
     else if (combiner->lines)
@@ -549,6 +610,7 @@ snow_status snow_exchange(snow_combiner *combiner,
     begin_figures(combiner, &order);
     if (combiner->borders.counted)
         SNOW_TRY(count_pieces(combiner, &order));
+    SNOW_TRY(fit_buffers(combiner));
     stretch mine = held_before(combiner, combiner->rounds.count);
     snow_status status =
         combiner->rounds.count ? run_rounds(&run) : run_alone(&run, mine);

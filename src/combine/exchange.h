@@ -99,7 +99,8 @@ void snow_combiner_free(snow_combiner *combiner);
 
 /* Collective.  Over is associative, so all methods give the picture of a chain
  * but for float rounding, and the same bits every time.  A second exchange of
- * the same sizes, method and pieces takes no memory.  Errors, on all ranks
+ * the same sizes, method and pieces takes no memory; where pieces are counted,
+ * unless they are larger than before.  Errors, on all ranks
  * alike: SNOW_NO_MEMORY, SNOW_BAD_USAGE (an order that is none), those of the
  * transport. */
 snow_status snow_exchange(snow_combiner *combiner,
@@ -124,13 +125,21 @@ typedef struct snow_pixel_run {
  * another, to rank 0, whose `picture` (width * height * pixel_bytes, cleared by
  * the caller) they are copied into; on the other ranks it may be NULL.  Runs
  * of all ranks are apart.  Runs that are transparent need not be sent; a run
- * costs SNOW_RUN_BYTES besides its pixels, so short gaps are better sent.  In a
+ * costs SNOW_RUN_BYTES besides its pixels, and gaps of fewer bytes between runs
+ * of a line, which follow one another from left to right, must be sent.  In a
  * rehearsal `pixels` and `picture` are NULL.  Sides are at most 65535.  Errors:
- * as those of snow_exchange. */
+ * as those of snow_exchange; on one rank alone SNOW_BAD_USAGE and
+ * SNOW_NO_MEMORY, of its own runs, which then do not reach the picture. */
 #define SNOW_RUN_BYTES 6
 snow_status snow_gather(snow_combiner *combiner, int width, int height,
                         const snow_pixel_run *runs, size_t run_count,
                         const void *pixels, size_t pixel_bytes, void *picture);
+
+/* Local work: makes room for this rank's runs, lest snow_gather take memory
+ * where the other ranks cannot know whether there is enough. */
+snow_status snow_gather_reserve(snow_combiner *combiner, int width, int height,
+                                size_t run_count, int64_t pixels,
+                                size_t pixel_bytes);
 
 /* Collective.  Brings the piece of the last exchange as it is: `bits` 8 rounds
  * channels to whole steps of 1/255, one byte each; 0: floats.  Errors: as those

@@ -12,8 +12,10 @@
  *
  * Nobody knows how long a message will be, so it begins with its length and has
  * at most SLOT bytes; where it is longer, a second message has the rest, which
- * the receiver then has the right room for.  Runs of all ranks are apart, which
- * bounds what can come: no memory is taken on the way. */
+ * the receiver then has the right room for.  Runs of all ranks are apart, and
+ * gaps between those of a rank are no shorter than what a run costs, which
+ * bounds what can come: no memory is taken on the way.  A rank to which none
+ * sends has room for its own pixels only. */
 #include "combine/combiner.h"
 
 #include <string.h>
@@ -24,6 +26,8 @@
 typedef struct block_head {
     uint64_t runs, bytes;
 } block_head;
+
+#define EMPTY (HEAD + sizeof(block_head)) /* bytes of a block without runs */
 
 void snow_gather_radix(snow_combiner *combiner, int radix) {
     combiner->gather.radix = radix;
@@ -56,6 +60,7 @@ static void drop_packed(snow_combiner *combiner) {
 }
 
 void snow_gather_free(snow_combiner *combiner) {
+    snow_release(combiner->comm->context, combiner->gather.own);
     drop_buffers(combiner);
     drop_packed(combiner);
 }
@@ -106,20 +111,30 @@ static int chosen_radix(const snow_combiner *combiner, int width, int height,
 
 /* --- memory --------------------------------------------------------------- */
 
+/* Bytes of all blocks: a run with the gap behind it costs no more than its
+ * pixels and those of the gap, unless it ends a rank's part of a line. */
+static size_t most_bytes(const snow_gather_state *state, int ranks) {
+    const uint64_t width = (uint64_t)state->width,
+                   height = (uint64_t)state->height;
+    const uint64_t parts = (uint64_t)ranks < width ? (uint64_t)ranks : width;
+    return (size_t)(height *
+                    (width * state->pixel_bytes + parts * SNOW_RUN_BYTES)) +
+           (size_t)(ranks + 2) * (HEAD + sizeof(block_head)) + SLOT;
+}
+
 static snow_status take_buffers(snow_combiner *combiner) {
     snow_gather_state *state = &combiner->gather;
     snow_context *context = combiner->comm->context;
     const int ranks = combiner->comm->ranks;
     int count = walk_tree(combiner->comm->rank, ranks, state->used_radix, NULL,
                           &state->parent);
-    uint64_t pixels = (uint64_t)state->width * (uint64_t)state->height;
-    /* Every pixel a run of its own, and every rank a block. */
-    state->room = (size_t)(pixels * (state->pixel_bytes + SNOW_RUN_BYTES)) +
-                  (size_t)(ranks + 2) * (HEAD + sizeof(block_head)) + SLOT;
-    size_t some = (size_t)count + 1;
+    const size_t some = (size_t)count + 1;
+    state->room = count ? most_bytes(state, ranks) : 0;
     bool fine =
         (state->children = snow_allocate_array(context, some, sizeof(int))) &&
-        (state->bytes = snow_allocate(context, state->room)) &&
+        (!count || (state->bytes = snow_allocate(context, state->room))) &&
+        snow_reserve(context, &state->own, &state->own_room, 0, EMPTY) ==
+            SNOW_OK &&
         (state->slots = snow_allocate_array(context, some, SLOT)) &&
         (state->messages =
              snow_allocate_array(context, 2 * some, sizeof(snow_message))) &&
@@ -168,23 +183,50 @@ static bool run_fits(const snow_gather_state *state,
            run->count <= state->width - run->x;
 }
 
-/* This rank's own runs may be wrong without the others' knowing: it goes on
- * with none then, and fails in the end. */
-static snow_status check_runs(const snow_combiner *combiner,
+snow_status snow_gather_reserve(snow_combiner *combiner, int width, int height,
+                                size_t run_count, int64_t pixels,
+                                size_t pixel_bytes) {
+    snow_gather_state *state = &combiner->gather;
+    const int radix = chosen_radix(combiner, width, height, pixel_bytes);
+    int parent;
+    if (walk_tree(combiner->comm->rank, combiner->comm->ranks, radix, NULL,
+                  &parent) > 0 ||
+        parent < 0)
+        return SNOW_OK;
+    size_t bytes =
+        EMPTY + run_count * SNOW_RUN_BYTES + (size_t)pixels * pixel_bytes;
+    return snow_reserve(combiner->comm->context, &state->own, &state->own_room,
+                        0, bytes);
+}
+
+/* Whether the gap before a run is short of what the run costs. */
+static bool crowds(const snow_gather_state *state, const snow_pixel_run *before,
+                   const snow_pixel_run *run) {
+    int64_t gap = (int64_t)run->x - before->x - before->count;
+    return run->y == before->y &&
+           gap * (int64_t)state->pixel_bytes < SNOW_RUN_BYTES;
+}
+
+/* This rank's own runs may be wrong, or its memory short, without the others'
+ * knowing: it goes on with no runs then, and fails in the end. */
+static snow_status check_runs(snow_combiner *combiner,
                               const snow_pixel_run *runs, size_t count) {
     const snow_gather_state *state = &combiner->gather;
-    int64_t left = (int64_t)state->width * state->height;
+    const int64_t all = (int64_t)state->width * state->height;
+    int64_t left = all;
     bool good = count <= (uint64_t)left;
     for (size_t i = 0; i < count && good; i++) {
-        good = run_fits(state, &runs[i]) && runs[i].count <= left;
+        good = run_fits(state, &runs[i]) && runs[i].count <= left &&
+               !(i && crowds(state, &runs[i - 1], &runs[i]));
         left -= runs[i].count;
     }
     if (good)
-        return SNOW_OK;
+        return snow_gather_reserve(combiner, state->width, state->height, count,
+                                   all - left, state->pixel_bytes);
     return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
-                     "runs lie outside the picture of %d x %d pixels, or have "
-                     "more pixels than it",
-                     state->width, state->height);
+                     "runs lie outside the picture of %d x %d pixels, have "
+                     "more pixels than it, or gaps below %d bytes",
+                     state->width, state->height, SNOW_RUN_BYTES);
 }
 
 /* Copies one run into the picture. */
@@ -317,16 +359,17 @@ static snow_status ask_rests(snow_combiner *combiner, intake *in) {
 }
 
 /* A message of `length` bytes, whose own length stands before them. */
-static snow_status send_up(snow_combiner *combiner, size_t length) {
+static snow_status send_up(snow_combiner *combiner, unsigned char *bytes,
+                           size_t length) {
     snow_gather_state *state = &combiner->gather;
     snow_message messages[2] = {{0}};
     const uint64_t told = length;
-    memcpy(state->bytes, &told, HEAD);
+    memcpy(bytes, &told, HEAD);
     size_t all = length + HEAD, beginning = all < SLOT ? all : SLOT;
-    SNOW_TRY(snow_comm_send(combiner->comm, state->bytes, beginning,
-                            state->parent, SNOW_TAG_GATHER, &messages[0]));
+    SNOW_TRY(snow_comm_send(combiner->comm, bytes, beginning, state->parent,
+                            SNOW_TAG_GATHER, &messages[0]));
     if (all > beginning)
-        SNOW_TRY(snow_comm_send(combiner->comm, state->bytes + beginning,
+        SNOW_TRY(snow_comm_send(combiner->comm, bytes + beginning,
                                 all - beginning, state->parent, SNOW_TAG_GATHER,
                                 &messages[1]));
     return snow_comm_wait_all(combiner->comm, messages, 2);
@@ -388,16 +431,16 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
     if (status != SNOW_OK)
         run_count = 0;
     SNOW_TRY(begin_receives(combiner));
+    unsigned char *block = state->child_count ? state->bytes : state->own;
     if (state->parent >= 0)
-        used +=
-            write_block(state, runs, run_count, pixels, state->bytes + used);
+        used += write_block(state, runs, run_count, pixels, block + used);
     for (size_t i = 0; i < run_count && picture && state->parent < 0; i++) {
         place_run(state, &runs[i], from, picture);
         from += (size_t)runs[i].count * pixel_bytes;
     }
     SNOW_TRY(take_children(combiner, &used, picture));
     if (state->parent >= 0)
-        SNOW_TRY(send_up(combiner, used - HEAD));
+        SNOW_TRY(send_up(combiner, block, used - HEAD));
     return status;
 }
 
