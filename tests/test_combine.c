@@ -195,8 +195,15 @@ static snow_status check_gather(snow_comm *comm, snow_combiner *combiner,
     float *packed = calloc((size_t)piece->count + 1, bytes);
     float *picture = comm->rank == 0 ? calloc(pixels, bytes) : NULL;
     size_t count = runs_of(combiner, j, piece, runs, packed);
-    snow_status status = snow_gather(combiner, j->width, j->height, runs, count,
-                                     packed, bytes, picture);
+    int64_t some = 0;
+    for (size_t i = 0; i < count; i++)
+        some += runs[i].count;
+    snow_status status =
+        snow_comm_agree(comm, snow_gather_reserve(combiner, j->width, j->height,
+                                                  count, some, bytes));
+    if (status == SNOW_OK)
+        status = snow_gather(combiner, j->width, j->height, runs, count, packed,
+                             bytes, picture);
     for (size_t i = 0; i < pixels && picture && status == SNOW_OK; i++) {
         double want[4];
         expect(j, (int)i % j->width, (int)i / j->width, want);
