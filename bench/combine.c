@@ -17,10 +17,16 @@ static const char help[] =
     "messages, and a bound.  Local images are slabs of a cube seen at an "
     "angle, "
     "with\n"
-    "random pixels.  Ranks are those of MPI, or threads of one process.\n"
+    "random pixels, or pictures in files.  Ranks are those of MPI, or threads "
+    "of\n"
+    "one process.\n"
     "\n"
     "  --ranks N        where they are threads (8)\n"
     "  --size N         side of the square picture in pixels (512)\n"
+    "  --pattern NAME   box: slabs of a cube; or pictures that are the local\n"
+    "                   images, from front to back, such as slab_%02d.png for\n"
+    "                   ranks 0, 1 ...; one without a number is every rank's "
+    "(box)\n"
     "  --method NAME    auto, tree (the paper's), swap, direct or radix "
     "(auto)\n"
     "  --radix K        of the method radix (chosen)\n"
@@ -56,10 +62,45 @@ static const char *const methods[] = {"auto",   "tree",  "swap",
 static const char *const piece_names[] = {"auto", "even", "counted",
                                           "interlaced", NULL};
 
+/* The first word that says something of the cube. */
+static const char *word_of_box(int argc, char **argv) {
+    static const char *const words[] = {"--size",  "--azimuth", "--elevation",
+                                        "--cube",  "--fill",    "--grain",
+                                        "--rates", NULL};
+    for (int i = 1; i < argc; i++)
+        for (int n = 0; words[n]; n++)
+            if (strcmp(argv[i], words[n]) == 0)
+                return argv[i];
+    return NULL;
+}
+
+/* What does not go together; an exit code, or -1 to go on. */
+static int check_words(const bench_words *table, int argc, char **argv,
+                       const combine_options *options, FILE *said) {
+    char path[COMBINE_NAME_BYTES];
+    const char *word = word_of_box(argc, argv);
+    if (options->check && options->sizes_only)
+        return bench_words_fail(table, said,
+                                "there are no pixels to look at; leave out",
+                                "--check");
+    if (!options->pattern)
+        return -1;
+    if (!combine_file_name(options->pattern, 0, path, sizeof path))
+        return bench_words_fail(table, said,
+                                "one picture, or a number's place as in "
+                                "slab_%02d.png, is not what this names:",
+                                options->pattern);
+    if (word)
+        return bench_words_fail(table, said, "pictures in files make no use of",
+                                word);
+    return -1;
+}
+
 int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
     int method = 0, pieces = 0;
     bool grey = false, floats = false, helps = false;
-    *out = (combine_options){.size = 512,
+    int size = 512;
+    *out = (combine_options){.pattern = "box",
                              .runs = 5,
                              .azimuth = 30,
                              .elevation = 20,
@@ -72,7 +113,8 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
                              .blend = 0.25e-9};
     const bench_word words[] = {
         {"--ranks", BENCH_WHOLE, &out->ranks, 1, 4096, NULL},
-        {"--size", BENCH_WHOLE, &out->size, 1, 32768, NULL},
+        {"--size", BENCH_WHOLE, &size, 1, 32768, NULL},
+        {"--pattern", BENCH_TEXT, &out->pattern, 0, 0, NULL},
         {"--method", BENCH_CHOICE, &method, 0, 0, methods},
         {"--radix", BENCH_WHOLE, &out->radix, 2, 4096, NULL},
         {"--gather", BENCH_WHOLE, &out->gather, 2, 4096, NULL},
@@ -105,15 +147,12 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said) {
     out->pieces = (snow_pieces)pieces;
     out->channels = grey ? 2 : 4;
     out->bits = floats ? 0 : 8;
+    out->width = out->height = size;
+    if (strcmp(out->pattern, "box") == 0)
+        out->pattern = NULL;
     if (helps && said)
         fputs(help, stdout);
-    if (helps)
-        return SNOW_OK;
-    if (out->check && out->sizes_only)
-        return bench_words_fail(&table, said,
-                                "there are no pixels to look at; leave out",
-                                "--check");
-    return -1;
+    return helps ? SNOW_OK : check_words(&table, argc, argv, out, said);
 }
 
 /* Ranks that are threads of this process. */

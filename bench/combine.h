@@ -2,6 +2,7 @@
  *
  *   combine.c          options; the plain tool, whose ranks are threads
  *   combine_pattern.c  local images of a benchmark: slabs of a cube
+ *   combine_file.c     local images that are pictures in files
  *   combine_run.c      one exchange and one gather, verified and counted
  *   combine_rates.c    what a processor takes for a pixel
  *   combine_print.c    a line of key=value, or JSON
@@ -16,13 +17,17 @@
 #include "combine/exchange.h"
 #include "hosts.h"
 
+#include <snowglass/image.h>
+
 #include <stdio.h>
 
 typedef struct combine_options {
-    int ranks;    /* of the plain tool */
-    int size;     /* of the square picture, in pixels */
-    int channels; /* 2 or 4 */
-    int bits;     /* of a gathered channel: 8, or 0 for floats */
+    int ranks;         /* of the plain tool */
+    int width, height; /* of the picture, in pixels; of --pattern FILE, told by
+                          the files */
+    const char *pattern; /* NULL: a cube's slabs; else the files' name */
+    int channels;        /* 2 or 4 */
+    int bits;            /* of a gathered channel: 8, or 0 for floats */
     snow_combining method;
     int radix, gather; /* 0: chosen */
     snow_pieces pieces;
@@ -47,15 +52,22 @@ int combine_parse(int argc, char **argv, combine_options *out, FILE *said);
  * ranks are threads.  Returns the tool's exit code. */
 int combine_main(int argc, char **argv, snow_comm *comm);
 
-/* One rank's part of a slab's picture. */
+/* One rank's local image. */
 typedef struct combine_pattern {
-    int size, channels, slab, slabs, grain;
+    int width, height, channels;
+    int slab, slabs, grain;
     uint32_t threshold; /* active below it, of 2^16 */
     snow_rectangle drawn;
     int *spans; /* of each line: its first column, and that after its last */
+    /* Of a file: its picture (NULL where sizes alone are asked for), and a bit
+     * for each pixel, so many words for each line. */
+    snow_image *image;
+    uint64_t *mask;
+    size_t line_words;
 } combine_pattern;
 
-/* Memory of the caller's: 2 * size numbers in `spans`. */
+/* A slab of the cube.  Memory of the caller's: 2 * height numbers in `spans`.
+ */
 void combine_pattern_make(const combine_options *options, int slab, int slabs,
                           int *spans, combine_pattern *out);
 
@@ -65,6 +77,22 @@ uint64_t combine_pattern_active(void *pattern, int y, int x, int count);
 /* A pixel's channels, all 0 where it is not active. */
 void combine_pattern_pixel(const combine_pattern *pattern, int x, int y,
                            float *out);
+
+/* A file's picture, of a name that is one.  Errors: SNOW_BAD_INPUT,
+ * SNOW_NO_MEMORY.  Nothing is to be closed of a cube's slab. */
+snow_status combine_file_open(snow_context *context,
+                              const combine_options *options, int slab,
+                              combine_pattern *out);
+void combine_file_close(snow_context *context, combine_pattern *pattern);
+
+/* The name of a rank's file; false where it is none. */
+#define COMBINE_NAME_BYTES 4096
+bool combine_file_name(const char *name, int slab, char *out, size_t room);
+
+uint64_t combine_file_active(const combine_pattern *pattern, int y, int x,
+                             int count);
+void combine_file_pixel(const combine_pattern *pattern, int x, int y,
+                        float *out);
 
 /* Times of one run in seconds on this rank; counters of it. */
 typedef struct combine_figures {
@@ -78,7 +106,7 @@ typedef struct combine_figures {
 
 /* Over all ranks. */
 typedef struct combine_result {
-    int ranks;
+    int ranks, width, height;
     bench_hosts hosts;
     snow_exchange_figures told;
     combine_figures most, sum;

@@ -28,15 +28,15 @@ static void project(const combine_options *options, int slab, int slabs,
                     corner corners[8]) {
     const double turn = options->azimuth * acos(-1) / 180;
     const double tilt = options->elevation * acos(-1) / 180;
-    const double side = options->cube * options->size;
+    const double side = options->cube * options->width;
     for (int i = 0; i < 8; i++) {
         double x = (i & 1) - 0.5, y = (i >> 1 & 1) - 0.5;
         double z = (double)(slab + (i >> 2)) / slabs - 0.5;
         double across = x * cos(turn) + z * sin(turn);
         double depth = z * cos(turn) - x * sin(turn);
         double up = y * cos(tilt) - depth * sin(tilt);
-        corners[i] = (corner){0.5 * options->size + side * across,
-                              0.5 * options->size - side * up};
+        corners[i] = (corner){0.5 * options->width + side * across,
+                              0.5 * options->width - side * up};
     }
 }
 
@@ -76,7 +76,8 @@ void combine_pattern_make(const combine_options *options, int slab, int slabs,
                           int *spans, combine_pattern *out) {
     corner corners[8];
     double active = 1 - pow(1 - options->fill, 32.0 / slabs);
-    *out = (combine_pattern){.size = options->size,
+    *out = (combine_pattern){.width = options->width,
+                             .height = options->height,
                              .channels = options->channels,
                              .slab = slab,
                              .slabs = slabs,
@@ -84,8 +85,8 @@ void combine_pattern_make(const combine_options *options, int slab, int slabs,
                              .threshold = (uint32_t)(65536 * active + 0.5),
                              .spans = spans};
     project(options, slab, slabs, corners);
-    for (int y = 0; y < options->size; y++) {
-        span_of(corners, y, options->size, spans + 2 * y);
+    for (int y = 0; y < options->height; y++) {
+        span_of(corners, y, options->width, spans + 2 * y);
         widen(&out->drawn, y, spans + 2 * y);
     }
 }
@@ -107,6 +108,8 @@ static uint64_t four_bits(uint64_t line, int four, uint32_t threshold) {
 
 uint64_t combine_pattern_active(void *user, int y, int x, int count) {
     const combine_pattern *pattern = user;
+    if (pattern->mask)
+        return combine_file_active(pattern, y, x, count);
     const int *span = pattern->spans + 2 * y, grain = pattern->grain;
     const int from = x > span[0] ? x : span[0];
     const int to = x + count < span[1] ? x + count : span[1];
@@ -124,6 +127,10 @@ uint64_t combine_pattern_active(void *user, int y, int x, int count) {
 void combine_pattern_pixel(const combine_pattern *pattern, int x, int y,
                            float *out) {
     const int last = pattern->channels - 1;
+    if (pattern->mask) {
+        combine_file_pixel(pattern, x, y, out);
+        return;
+    }
     for (int c = 0; c <= last; c++)
         out[c] = 0;
     /* The function has another's type, and changes nothing. */

@@ -31,7 +31,15 @@ static void put_setting(bench_line *out, const combine_options *options,
     bench_line_text(out, "method", method_name(result->told.method));
     bench_line_int(out, "rounds", result->told.rounds);
     bench_line_radices(out, result->told.radices, result->told.rounds);
-    bench_line_int(out, "image", options->size);
+    if (result->width == result->height) {
+        bench_line_int(out, "image", result->width);
+    } else {
+        char size[32];
+        snprintf(size, sizeof size, "%dx%d", result->width, result->height);
+        bench_line_text(out, "image", size);
+    }
+    bench_line_text(out, "pattern",
+                    options->pattern ? options->pattern : "box");
     bench_line_int(out, "pixel_bytes", options->channels * 4);
     bench_line_int(out, "gather_bytes", bytes);
     bench_line_text(out, "pixels", options->whole ? "whole" : "active");

@@ -31,8 +31,9 @@ typedef struct bench_rates {
 } bench_rates;
 
 static snow_status take_memory(snow_context *context, bench_rates *rates) {
-    const uint64_t size = (uint64_t)rates->options->size;
-    const uint64_t pixels = size * size + 64; /* and slack */
+    const uint64_t size = (uint64_t)rates->options->height;
+    const uint64_t pixels =
+        size * (uint64_t)rates->options->width + 64; /* and slack */
     const size_t bytes = (size_t)rates->options->channels * sizeof(float);
     bool fine =
         (rates->spans = snow_allocate_array(context, 2 * size, sizeof(int))) &&
@@ -68,7 +69,7 @@ static void keep_least(double *least, double seconds, int64_t pixels) {
 /* Draws a slab's picture, and looks at it. */
 static void scan_layer(bench_rates *rates, int layer) {
     const combine_options *options = rates->options;
-    const int64_t pixels = (int64_t)options->size * options->size;
+    const int64_t pixels = (int64_t)options->width * options->height;
     const size_t channels = (size_t)options->channels;
     combine_pattern pattern;
     combine_pattern_make(options, 12 + layer, 32, rates->spans, &pattern);
@@ -78,13 +79,14 @@ static void scan_layer(bench_rates *rates, int layer) {
             combine_pattern_pixel(
                 &pattern, x, y,
                 rates->picture +
-                    ((size_t)y * (size_t)options->size + (size_t)x) * channels);
-    const snow_exchange_order order = {.width = options->size,
-                                       .height = options->size,
+                    ((size_t)y * (size_t)options->width + (size_t)x) *
+                        channels);
+    const snow_exchange_order order = {.width = options->width,
+                                       .height = options->height,
                                        .channels = options->channels,
                                        .pixels = rates->picture,
                                        .stride =
-                                           (size_t)options->size * channels,
+                                           (size_t)options->width * channels,
                                        .drawn = drawn};
     for (int run = 0; run <= options->runs; run++) {
         int64_t scanned = 0;
@@ -101,7 +103,8 @@ static void scan_layer(bench_rates *rates, int layer) {
 }
 
 static void blend_layers(bench_rates *rates) {
-    const int64_t pixels = (int64_t)rates->options->size * rates->options->size;
+    const int64_t pixels =
+        (int64_t)rates->options->width * rates->options->height;
     for (int run = 0; run <= rates->options->runs; run++) {
         int64_t laid = 0;
         for (int i = 0; i < LAYERS; i++)
@@ -127,7 +130,7 @@ int combine_rates(const combine_options *options) {
         blend_layers(&rates);
         printf("image=%d pixel_bytes=%d grain=%d active=%.3f scan_ns=%.3f "
                "blend_ns=%.3f\n",
-               options->size, options->channels * 4, options->grain,
+               options->width, options->channels * 4, options->grain,
                (double)rates.active / (double)rates.scanned, rates.scan * 1e9,
                rates.blend * 1e9);
     } else {

@@ -13,7 +13,7 @@
 
 /* One rank's buffers. */
 typedef struct rank_state {
-    const combine_options *options;
+    combine_options options; /* with the size of files */
     snow_comm *comm;
     snow_combiner *combiner;
     combine_pattern pattern;
@@ -30,14 +30,14 @@ static double cpu_seconds(void) {
 }
 
 static size_t picture_bytes(const combine_options *options) {
-    return (size_t)options->size * (size_t)options->size *
+    return (size_t)options->width * (size_t)options->height *
            (size_t)options->channels * (options->bits == 8 ? 1 : sizeof(float));
 }
 
 /* --- the local image ------------------------------------------------------ */
 
 static void draw(rank_state *state) {
-    const combine_options *options = state->options;
+    const combine_options *options = &state->options;
     const size_t channels = (size_t)options->channels;
     const snow_rectangle *drawn = &state->pattern.drawn;
     for (int y = drawn->y0; y < drawn->y1; y++)
@@ -45,28 +45,62 @@ static void draw(rank_state *state) {
             combine_pattern_pixel(
                 &state->pattern, x, y,
                 state->pixels +
-                    ((size_t)y * (size_t)options->size + (size_t)x) * channels);
+                    ((size_t)y * (size_t)options->width + (size_t)x) *
+                        channels);
 }
 
-/* Memory and the local image.  In a simulation of sizes alone there are no
- * pictures. */
-static snow_status prepare(rank_state *state) {
-    const combine_options *options = state->options;
+/* The local image of a slab; spans of `lines` numbers are for a cube's. */
+static snow_status open_pattern(const rank_state *state, int slab, int *spans,
+                                combine_pattern *out) {
+    if (state->options.pattern)
+        return combine_file_open(state->comm->context, &state->options, slab,
+                                 out);
+    combine_pattern_make(&state->options, slab, state->comm->ranks, spans, out);
+    return SNOW_OK;
+}
+
+/* Collective.  The picture has the size of all files. */
+static snow_status agree_size(rank_state *state) {
+    const combine_pattern *own = &state->pattern;
+    int64_t sizes[4] = {own->width, -own->width, own->height, -own->height};
+    SNOW_TRY(snow_comm_reduce_ints(state->comm, sizes, 4, SNOW_MAX));
+    if (sizes[0] != -sizes[1] || sizes[2] != -sizes[3])
+        return snow_fail(state->comm->context, SNOW_BAD_INPUT,
+                         "%s: local images are of different sizes, %d to %d "
+                         "columns and %d to %d lines; give pictures of one "
+                         "view",
+                         state->options.pattern, (int)-sizes[1], (int)sizes[0],
+                         (int)-sizes[3], (int)sizes[2]);
+    state->options.width = own->width;
+    state->options.height = own->height;
+    return SNOW_OK;
+}
+
+/* Local work: lists, and the local image's pattern. */
+static snow_status begin_pattern(rank_state *state) {
     snow_context *context = state->comm->context;
-    const uint64_t size = (uint64_t)options->size,
+    const uint64_t lines = (uint64_t)state->options.height,
                    ranks = (uint64_t)state->comm->ranks;
-    state->spans = snow_allocate_array(context, 2 * size, sizeof(int));
+    state->spans = snow_allocate_array(context, 2 * lines, sizeof(int));
     state->order = snow_allocate_array(context, ranks, sizeof(int));
     if (!state->spans || !state->order)
         return SNOW_NO_MEMORY;
     for (int i = 0; i < state->comm->ranks; i++)
         state->order[i] = i;
-    combine_pattern_make(options, state->comm->rank, state->comm->ranks,
-                         state->spans, &state->pattern);
+    return open_pattern(state, state->comm->rank, state->spans,
+                        &state->pattern);
+}
+
+/* Local work: the local image.  In a simulation of sizes alone there are no
+ * pictures. */
+static snow_status prepare(rank_state *state) {
+    const combine_options *options = &state->options;
+    snow_context *context = state->comm->context;
     if (options->sizes_only)
         return SNOW_OK;
     state->pixels = snow_allocate_array(
-        context, size * size, (size_t)options->channels * sizeof(float));
+        context, (uint64_t)options->width * (uint64_t)options->height,
+        (size_t)options->channels * sizeof(float));
     if (!state->pixels)
         return SNOW_NO_MEMORY;
     if (state->comm->rank == 0 && !(state->picture = snow_allocate_clear(
@@ -79,6 +113,7 @@ static snow_status prepare(rank_state *state) {
 static void finish(rank_state *state) {
     snow_context *context = state->comm->context;
     snow_combiner_free(state->combiner);
+    combine_file_close(context, &state->pattern);
     snow_release(context, state->spans);
     snow_release(context, state->order);
     snow_release(context, state->pixels);
@@ -109,15 +144,15 @@ static int64_t count_shown(const snow_piece *piece) {
 /* Local images are as drawn, or, to take memory, empty. */
 static snow_status run_once(rank_state *state, bool drawn,
                             combine_figures *out) {
-    const combine_options *options = state->options;
+    const combine_options *options = &state->options;
     snow_comm *comm = state->comm;
     const snow_rehearsal rehearsal = {combine_pattern_active, &state->pattern};
     const snow_exchange_order order = {
-        .width = options->size,
-        .height = options->size,
+        .width = options->width,
+        .height = options->height,
         .channels = options->channels,
         .pixels = state->pixels,
-        .stride = (size_t)options->size * (size_t)options->channels,
+        .stride = (size_t)options->width * (size_t)options->channels,
         .drawn = drawn ? state->pattern.drawn : (snow_rectangle){0},
         .ranks = state->order,
         .method = options->method,
@@ -156,65 +191,60 @@ static snow_status run_once(rank_state *state, bool drawn,
 
 /* --- the check ------------------------------------------------------------ */
 
-typedef struct check {
-    const combine_options *options;
-    combine_pattern *layers; /* of all ranks, from front to back */
-    int count;
-} check;
-
-/* A pixel of the picture of a chain of floats. */
-static void expect(const check *c, int x, int y, float *out) {
-    const int last = c->options->channels - 1;
-    for (int k = 0; k <= last; k++)
-        out[k] = 0;
-    for (int i = 0; i < c->count; i++) {
-        float back[4];
-        combine_pattern_pixel(&c->layers[i], x, y, back);
-        float left = 1 - out[last];
-        for (int k = 0; k <= last; k++)
-            out[k] += left * back[k];
-    }
+/* Lays a local image behind a picture of floats, as a chain of ranks would. */
+static void lay_behind(const combine_pattern *layer, float *picture) {
+    const int last = layer->channels - 1;
+    const snow_rectangle *drawn = &layer->drawn;
+    for (int y = drawn->y0; y < drawn->y1; y++)
+        for (int x = drawn->x0; x < drawn->x1; x++) {
+            float *front =
+                picture + ((size_t)y * (size_t)layer->width + (size_t)x) *
+                              (size_t)layer->channels;
+            float back[4], left = 1 - front[last];
+            combine_pattern_pixel(layer, x, y, back);
+            for (int k = 0; k <= last; k++)
+                front[k] += left * back[k];
+        }
 }
 
 /* The largest difference of a channel of rank 0's picture. */
-static double compare(const check *c, const void *picture) {
-    const int channels = c->options->channels, size = c->options->size;
+static double compare(const combine_options *options, const float *expected,
+                      const void *picture) {
+    const size_t count = (size_t)options->width * (size_t)options->height *
+                         (size_t)options->channels;
     const unsigned char *bytes = picture;
     const float *floats = picture;
     double most = 0;
-    for (int y = 0; y < size; y++)
-        for (int x = 0; x < size; x++) {
-            float want[4];
-            size_t at =
-                ((size_t)y * (size_t)size + (size_t)x) * (size_t)channels;
-            expect(c, x, y, want);
-            for (int k = 0; k < channels; k++) {
-                double is = c->options->bits == 8
-                                ? bytes[at + (size_t)k] / 255.0
-                                : (double)floats[at + (size_t)k];
-                double off = fabs(is - (double)want[k]);
-                most = off > most || off != off ? off : most;
-            }
-        }
+    for (size_t i = 0; i < count; i++) {
+        double is = options->bits == 8 ? bytes[i] / 255.0 : (double)floats[i];
+        double off = fabs(is - (double)expected[i]);
+        most = off > most || off != off ? off : most;
+    }
     return most;
 }
 
 static snow_status compare_picture(rank_state *state, double *out) {
+    const combine_options *options = &state->options;
     snow_context *context = state->comm->context;
-    const size_t count = (size_t)state->comm->ranks;
-    const size_t lines = 2 * (size_t)state->options->size;
-    check c = {.options = state->options, .count = (int)count};
-    int *spans = snow_allocate_array(context, count * lines, sizeof *spans);
-    c.layers = snow_allocate_array(context, count, sizeof *c.layers);
-    if (spans && c.layers) {
-        for (int i = 0; i < c.count; i++)
-            combine_pattern_make(state->options, i, c.count,
-                                 spans + (size_t)i * lines, &c.layers[i]);
-        *out = compare(&c, state->picture);
+    snow_status status = SNOW_OK;
+    int *spans = snow_allocate_array(context, 2 * (uint64_t)options->height,
+                                     sizeof *spans);
+    float *expected = snow_allocate_clear(
+        context, (size_t)options->width * (size_t)options->height *
+                     (size_t)options->channels * sizeof *expected);
+    if (!spans || !expected)
+        status = SNOW_NO_MEMORY;
+    for (int i = 0; i < state->comm->ranks && status == SNOW_OK; i++) {
+        combine_pattern layer = {0};
+        status = open_pattern(state, i, spans, &layer);
+        if (status == SNOW_OK)
+            lay_behind(&layer, expected);
+        combine_file_close(context, &layer);
     }
-    snow_status status = spans && c.layers ? SNOW_OK : SNOW_NO_MEMORY;
+    if (status == SNOW_OK)
+        *out = compare(options, expected, state->picture);
     snow_release(context, spans);
-    snow_release(context, c.layers);
+    snow_release(context, expected);
     return status;
 }
 
@@ -265,28 +295,34 @@ static snow_status reduce_by(snow_comm *comm, const combine_figures *mine,
 /* The fastest run counts; rank 0's total is that of the picture. */
 static snow_status measure(rank_state *state, combine_result *out) {
     snow_comm *comm = state->comm;
+    const combine_options *options = &state->options;
     combine_result best = {.ranks = comm->ranks};
     best.most.total = -1;
-    for (int i = 0; i <= state->options->runs; i++) {
+    /* Memory is taken in runs before the first that counts. */
+    combine_figures spare;
+    SNOW_TRY(run_once(state, false, &spare));
+    if (snow_exchange_told(state->combiner)->counted)
+        SNOW_TRY(run_once(state, true, &spare));
+    for (int i = 0; i < options->runs; i++) {
         combine_figures mine = {.difference = -1};
-        combine_result this = {.ranks = comm->ranks};
-        SNOW_TRY(run_once(state, i > 0, &mine));
-        if (i == 0)
-            continue;
+        combine_result this = {.ranks = comm->ranks,
+                               .width = options->width,
+                               .height = options->height};
+        SNOW_TRY(run_once(state, true, &mine));
         this.told = *snow_exchange_told(state->combiner);
         SNOW_TRY(reduce_by(comm, &mine, SNOW_MAX, &this.most));
         SNOW_TRY(reduce_by(comm, &mine, SNOW_SUM, &this.sum));
-        if (i > 0 && (best.most.total < 0 || this.most.total < best.most.total))
+        if (best.most.total < 0 || this.most.total < best.most.total)
             best = this;
     }
     double difference = -1;
     snow_status status = SNOW_OK;
-    if (state->options->check && comm->rank == 0)
+    if (options->check && comm->rank == 0)
         status = compare_picture(state, &difference);
     best.most.difference = difference;
     SNOW_TRY(snow_comm_agree(comm, status));
     best.hosts = (bench_hosts){comm->ranks, 1}; /* as those simulated are */
-    if (!state->options->simulated)
+    if (!options->simulated)
         SNOW_TRY(bench_hosts_count(comm, &best.hosts));
     if (comm->rank == 0)
         *out = best;
@@ -295,11 +331,15 @@ static snow_status measure(rank_state *state, combine_result *out) {
 
 snow_status combine_body(snow_comm *comm, void *user) {
     combine_session *session = user;
-    rank_state state = {.options = session->options, .comm = comm};
+    rank_state state = {.options = *session->options, .comm = comm};
     snow_status status = snow_combiner_new(comm, &state.combiner);
     if (status == SNOW_OK)
-        status = prepare(&state);
+        status = begin_pattern(&state);
     status = snow_comm_agree(comm, status);
+    if (status == SNOW_OK && state.options.pattern)
+        status = agree_size(&state);
+    if (status == SNOW_OK)
+        status = snow_comm_agree(comm, prepare(&state));
     if (status == SNOW_OK)
         snow_gather_radix(state.combiner, session->options->gather);
     if (status == SNOW_OK)
