@@ -350,7 +350,7 @@ static snow_status with_memory(snow_comm *comm, stop *s,
     return status;
 }
 
-#define VIEWS 4
+#define VIEWS 3
 
 /* One of several views; views are seen twice.  Memory is for the first picture
  * of all, for counted pieces and for packed pixels of views not seen before. */
@@ -418,7 +418,7 @@ pictures_that_need_no_more_than_others_take_no_memory(void **state) {
     (void)state;
     run_body(1, combine_twice_with_memory_once, NULL);
     run_body(7, combine_twice_with_memory_once, NULL);
-    run_body(32, combine_twice_with_memory_once, NULL);
+    run_body(16, combine_twice_with_memory_once, NULL);
 }
 
 static snow_status send_whole(snow_comm *comm, void *user) {
