@@ -75,25 +75,26 @@ static bool find_self(char out[PATH_MAX]) {
     return name && *name == '/' && realpath(name, out);
 }
 
-/* The first folder that has the module; else *file names the first. */
-static bool find_in_folders(module_file *file) {
+/* One folder to look in; without symbolic links, where it is there. */
+static void name_folder(module_file *file, size_t index) {
+    char folder[PATH_MAX], real[PATH_MAX];
     int length = (int)(strrchr(file->self, '/') - file->self);
+    int size = snprintf(folder, sizeof folder, "%.*s/%s", length, file->self,
+                        folders[index]);
+    bool fits = size > 0 && (size_t)size < sizeof folder;
+    const char *name = fits ? folder : folders[index];
+    strcpy(file->folder, fits && realpath(folder, real) ? real : name);
+    snprintf(file->path, sizeof file->path, "%s/%s", file->folder, file->name);
+}
+
+/* Else *file names the folder where it should be, of a program or library. */
+static bool find_in_folders(module_file *file) {
     for (size_t i = 0; i < FOLDER_COUNT; i++) {
-        char folder[PATH_MAX];
-        int size = snprintf(folder, sizeof folder, "%.*s/%s", length,
-                            file->self, folders[i]);
-        if (size < 0 || (size_t)size >= sizeof folder)
-            continue;
-        if (!realpath(folder, file->folder)) {
-            if (!*file->folder)
-                strcpy(file->folder, folder);
-            continue;
-        }
-        snprintf(file->path, sizeof file->path, "%s/%s", file->folder,
-                 file->name);
-        if (stat(file->path, &file->found) == 0)
+        name_folder(file, i);
+        if (*file->folder == '/' && stat(file->path, &file->found) == 0)
             return true;
     }
+    name_folder(file, strstr(strrchr(file->self, '/'), ".so") ? 0 : 1);
     return false;
 }
 

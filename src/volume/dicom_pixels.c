@@ -204,8 +204,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                         .stored = image->stored,
                         .high = image->high,
                         .is_signed = image->is_signed};
-    if (!codec(&frame, bytes, size, out,
-               (size_t)snow_dicom_frame_bytes(image)))
+    if (!codec(&frame, bytes, size, out, (size_t)snow_dicom_frame_bytes(image)))
         return fail_unpack(reader);
     words->stored = frame.stored;
     words->high = frame.high;

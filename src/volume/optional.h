@@ -16,10 +16,10 @@ static inline snow_status snow_fail_unbuilt(snow_context *context,
 }
 
 /* A snow_format.read that the module of that name does. */
-static inline snow_status snow_read_by_module(
-    const char *module_name, snow_source *source,
-    const snow_volume_options *options, snow_volume_info *info,
-    snow_volume **out) {
+static inline snow_status
+snow_read_by_module(const char *module_name, snow_source *source,
+                    const snow_volume_options *options, snow_volume_info *info,
+                    snow_volume **out) {
     const snow_module *module;
     SNOW_TRY(
         snow_module_load(snow_source_context(source), module_name, &module));
