@@ -16,8 +16,8 @@
  *   FOLDER/libsnowglass.so    FOLDER/snowglass-0.1/libsnowglass-NAME.so
  *   PREFIX/bin/snowglass      PREFIX/lib/snowglass-0.1/libsnowglass-NAME.so
  *
- * The system's loader counts who has what and locks for itself, so that there
- * is no state here either: who asks twice gets the same. */
+ * The system's loader counts who has what, so that there is no state here
+ * either: who asks twice gets the same. */
 #if defined __linux__ && !defined _GNU_SOURCE
 #define _GNU_SOURCE /* dladdr1 */
 #endif
@@ -161,15 +161,26 @@ static bool is_whole(const module_file *file) {
 #endif
 }
 
-/* All its symbols are looked up now: later, a missing one would end the
- * process.  It is never closed, since the libraries in it leave handlers for
- * the end of the process. */
+/* The loader has a lock of its own, of which ThreadSanitizer does not know: it
+ * would take what one thread writes there and another reads for a race. */
+static pthread_mutex_t loading = PTHREAD_MUTEX_INITIALIZER;
+
+/* All symbols are looked up now: later, a missing one would end the process.
+ * A module is never closed, since the libraries in it leave handlers for the
+ * end of the process. */
+static void *load(const char *path, const char **why) {
+    pthread_mutex_lock(&loading);
+    void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
+    void *parts = handle ? dlsym(handle, NAME_OF(SNOW_MODULE_SYMBOL)) : NULL;
+    *why = parts ? NULL : dlerror(); /* of this thread, until it asks again */
+    pthread_mutex_unlock(&loading);
+    return parts;
+}
+
 static snow_status open_module(snow_context *context, const module_file *file,
                                const snow_module **out) {
-    void *handle = dlopen(file->path, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-    const snow_module *module =
-        handle ? dlsym(handle, NAME_OF(SNOW_MODULE_SYMBOL)) : NULL;
-    const char *why = module ? NULL : dlerror();
+    const char *why;
+    const snow_module *module = load(file->path, &why);
     if (!module)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "needs %s, which cannot be loaded (%s); install the "
