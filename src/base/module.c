@@ -108,9 +108,10 @@ static snow_status find_module(snow_context *context, const char *name,
     name_module(name, file);
     if (!find_self(file->self))
         return snow_fail(context, SNOW_BAD_INPUT,
-                         "needs %s, which lies beside Snowglass' library, but "
-                         "where that is cannot be told; load it by a path that "
-                         "begins with / (in LD_LIBRARY_PATH, say)",
+                         "needs %s, which lies beside Snowglass, but where "
+                         "that is cannot be told; mount /proc, and load the "
+                         "library by a path that begins with / (in "
+                         "LD_LIBRARY_PATH, say)",
                          file->name);
     if (!find_in_folders(file))
         return snow_fail(context, SNOW_BAD_INPUT,
@@ -189,7 +190,8 @@ static snow_status open_module(snow_context *context, const module_file *file,
     if (strcmp(module->stamp, snow_module_stamp) != 0)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "needs %s, which is of another build, %.64s where "
-                         "this one is %s; install both from one",
+                         "this one is %s; install both from one, and start "
+                         "the program again",
                          file->path, module->stamp, snow_module_stamp);
     *out = module;
     return SNOW_OK;
