@@ -18,8 +18,8 @@
  *
  * The system's loader counts who has what, so that there is no state here
  * either: who asks twice gets the same. */
-#if defined __linux__ && !defined _GNU_SOURCE
-#define _GNU_SOURCE /* dladdr1 */
+#ifndef _XOPEN_SOURCE
+#define _XOPEN_SOURCE 700 /* realpath */
 #endif
 #include "base/module.h"
 
@@ -53,26 +53,30 @@ typedef struct module_file {
 static const char *const folders[] = {SNOW_MODULE_FOLDER, SNOW_MODULE_WAY};
 #define FOLDER_COUNT (sizeof folders / sizeof *folders)
 
-/* The object that this constant is part of, as the loader names it.  It calls
- * the program "", and other systems by its first argument: anything. */
-static const char *object_name(void) {
-    static const char here = 0;
-    Dl_info info;
-#ifdef __GLIBC__
-    void *extra = NULL;
-    if (!dladdr1(&here, &info, &extra, RTLD_DL_LINKMAP) || !extra)
-        return NULL;
-    const char *name = ((struct link_map *)extra)->l_name;
-    return *name ? name : "/proc/self/exe";
-#else
-    return dladdr(&here, &info) ? info.dli_fname : NULL;
-#endif
-}
-
-/* A relative name would be looked up from wherever the process is by now. */
+/* The file that this constant was mapped from.  The loader knows it too, but by
+ * the name that it was given: relative to where the process was then. */
 static bool find_self(char out[PATH_MAX]) {
-    const char *name = object_name();
-    return name && *name == '/' && realpath(name, out);
+    static const char here = 0;
+#ifdef __linux__
+    char line[PATH_MAX + 128];
+    bool found = false;
+    FILE *maps = fopen("/proc/self/maps", "r");
+    while (maps && !found && fgets(line, sizeof line, maps)) {
+        unsigned long long first, end, place = (uintptr_t)&here;
+        int path = 0;
+        sscanf(line, "%llx-%llx %*s %*s %*s %*s %n", &first, &end, &path);
+        line[strcspn(line, "\n")] = '\0';
+        found = path && first <= place && place < end && line[path] == '/' &&
+                realpath(line + path, out);
+    }
+    if (maps)
+        fclose(maps);
+    return found;
+#else
+    Dl_info info;
+    return dladdr(&here, &info) && *info.dli_fname == '/' &&
+           realpath(info.dli_fname, out);
+#endif
 }
 
 /* One folder to look in; without symbolic links, where it is there. */
@@ -109,9 +113,7 @@ static snow_status find_module(snow_context *context, const char *name,
     if (!find_self(file->self))
         return snow_fail(context, SNOW_BAD_INPUT,
                          "needs %s, which lies beside Snowglass, but where "
-                         "that is cannot be told; mount /proc, and load the "
-                         "library by a path that begins with / (in "
-                         "LD_LIBRARY_PATH, say)",
+                         "that is cannot be told; mount /proc",
                          file->name);
     if (!find_in_folders(file))
         return snow_fail(context, SNOW_BAD_INPUT,
