@@ -145,7 +145,7 @@ def cases():
                    tier=tier)
     # What one processor of the machine where docs/combining.md was written takes:
     # `snowglass bench combine --rates --size 1024`.
-    rates = ["--scan", "1.3e-9", "--blend", "2.5e-9"]
+    rates = ["--scan", "0.93e-9", "--blend", "2.1e-9"]
     for ranks in (32, 128):
         yield Case(f"own-rates-{ranks}", "flat", ranks, 1024, OURS + rates,
                    tier="usual")
