@@ -164,6 +164,9 @@ typedef struct snow_stats {
      * local image. */
     int rounds, radices[16];
     int64_t active_pixels;
+    /* How often each axis of the volume was halved for a picture that has few
+     * pixels; the counts of voxels above are those of what came of it. */
+    int halvings[3];
 } snow_stats;
 
 /* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */
