@@ -521,30 +521,51 @@ static void others_are_made_of_the_volume_itself(void **state) {
 /* --- kept ------------------------------------------------------------------
  */
 
-/* Pictures of volumes and looks in turns are those of a fresh frame. */
+/* A picture of the volume itself, which a frame may know from before. */
+static snow_image *image_of(const model_stage *stage, snow_frame *frame,
+                            const snow_volume *volume,
+                            const reference_scene *scene) {
+    snow_transfer *transfer = model_transfer(stage->context, scene);
+    snow_image *image = NULL;
+    assert_int_equal(snow_frame_render(frame, volume, transfer, &scene->view,
+                                       &scene->settings, &image),
+                     SNOW_OK);
+    snow_transfer_free(transfer);
+    return image;
+}
+
+/* Pictures of volumes, looks and scales in turns are those of a fresh frame. */
 static void a_level_is_that_of_its_volume(void **state) {
     (void)state;
     static const int64_t dims[3] = {40, 38, 36};
     static const char *const names[] = {"shells", "head", "engine"};
     model_stage stage = model_open();
-    for (int n = 0; n < 36; n++) {
-        snow_volume *volume = NULL;
-        reference_scene scene =
-            phantom_scene(stage.context, names[n / 2 % 3], dims,
-                          8 + 5 * (n / 6 % 3), &volume);
+    snow_volume *volumes[COUNT(names)];
+    reference_scene scenes[COUNT(names)];
+    for (size_t n = 0; n < COUNT(names); n++)
+        scenes[n] =
+            phantom_scene(stage.context, names[n], dims, 8, &volumes[n]);
+    for (size_t n = 0; n < 54; n++) {
+        size_t which = n / 6 % COUNT(names);
+        reference_scene scene = scenes[which];
+        snow_frame *fresh = NULL;
+        scene.view.width = scene.view.height = 8 + 5 * (int)(n / 2 % 3);
         scene.opacities = looks[n % 3].points;
         scene.opacity_count = looks[n % 3].count;
-        model_stage fresh = model_open();
-        float *kept = model_picture(&stage, &scene);
-        float *new = model_picture(&fresh, &scene);
-        assert_memory_equal(kept, new,
-                            (size_t)(scene.view.width * scene.view.height) * 4 *
-                                sizeof *new);
-        free(kept);
-        free(new);
-        model_close(&fresh);
-        snow_volume_close(volume);
+        assert_int_equal(snow_frame_new(stage.context, &fresh), SNOW_OK);
+        snow_image *kept =
+            image_of(&stage, stage.frame, volumes[which], &scene);
+        snow_image *new = image_of(&stage, fresh, volumes[which], &scene);
+        assert_memory_equal(snow_image_pixels(kept), snow_image_pixels(new),
+                            (size_t)(scene.view.width * scene.view.height *
+                                     snow_image_channels(new)) *
+                                sizeof(float));
+        snow_image_free(kept);
+        snow_image_free(new);
+        snow_frame_free(fresh);
     }
+    for (size_t n = 0; n < COUNT(names); n++)
+        snow_volume_close(volumes[n]);
     model_close(&stage);
 }
 
