@@ -546,12 +546,12 @@ static void a_level_is_that_of_its_volume(void **state) {
         scenes[n] =
             phantom_scene(stage.context, names[n], dims, 8, &volumes[n]);
     for (size_t n = 0; n < 54; n++) {
-        size_t which = n / 6 % COUNT(names);
+        size_t which = n / 3 % COUNT(names), look = n / 2 % 3;
         reference_scene scene = scenes[which];
         snow_frame *fresh = NULL;
-        scene.view.width = scene.view.height = 8 + 5 * (int)(n / 2 % 3);
-        scene.opacities = looks[n % 3].points;
-        scene.opacity_count = looks[n % 3].count;
+        scene.view.width = scene.view.height = 8 + 5 * (int)(n / 9 % 3);
+        scene.opacities = looks[look].points;
+        scene.opacity_count = looks[look].count;
         assert_int_equal(snow_frame_new(stage.context, &fresh), SNOW_OK);
         snow_image *kept =
             image_of(&stage, stage.frame, volumes[which], &scene);
