@@ -126,7 +126,8 @@ static snow_status make_level(snow_levels *levels, int n, int lean, int threads,
     (*made)->info = info;
     for (int axis = 0; axis < 3; axis++) {
         double step = (double)info.dims[axis] / (double)from->info.dims[axis];
-        (*made)->fine[axis] = step * (from->fine[axis] ? from->fine[axis] : 1);
+        (*made)->fine[axis] =
+            step * (from->fine[axis] > 0 ? from->fine[axis] : 1);
     }
     SNOW_TRY(
         snow_volume_halve(from, axes, lean, threads, &levels->room, *made));
