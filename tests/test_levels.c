@@ -640,12 +640,13 @@ static void drafts_are_near_to_normal_pictures(void **state) {
     static const int64_t dims[3] = {96, 96, 96};
     static const char *const names[] = {"shells", "head", "engine"};
     model_stage stage = model_open();
-    for (size_t n = 0; n < 3 * COUNT(names); n++) {
-        static const int sides[] = {72, 56, 32};
-        int side = sides[n % 3];
+    for (size_t n = 0; n < 4 * COUNT(names); n++) {
+        static const int sides[] = {72, 56, 32, 48};
+        int side = sides[n % 4];
         snow_volume *volume = NULL;
         reference_scene scene =
-            phantom_scene(stage.context, names[n / 3], dims, side, &volume);
+            phantom_scene(stage.context, names[n / 4], dims, side, &volume);
+        scene.view.fov = n % 4 == 3 ? 30 : 0;
         model_turn(&scene, 25, 20, 5, 1);
         float *draft = model_picture(&stage, &scene);
         assert_true(snow_frame_stats(stage.frame)->halvings[2] >= 1);
@@ -656,8 +657,9 @@ static void drafts_are_near_to_normal_pictures(void **state) {
         for (int i = 0; i < count; i++)
             sum += pow((double)draft[i] - (double)normal[i], 2);
         double figure = 10 * log10(count / sum);
-        print_message("             %s, %d pixels a side: %.1f dB\n",
-                      names[n / 3], side, figure);
+        print_message("             %s, %d pixels a side%s: %.1f dB\n",
+                      names[n / 4], side, n % 4 == 3 ? ", in perspective" : "",
+                      figure);
         assert_true(figure >= 30);
         free(draft);
         free(normal);
