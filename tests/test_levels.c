@@ -571,11 +571,13 @@ static void a_level_is_that_of_its_volume(void **state) {
 
 typedef struct counting_allocator {
     long allocations;
+    long failing; /* number of the one that fails; 0: none */
 } counting_allocator;
 
 static void *allocate_counted(void *user, size_t bytes) {
-    ((counting_allocator *)user)->allocations++;
-    return malloc(bytes);
+    counting_allocator *counts = user;
+    counts->allocations++;
+    return counts->allocations == counts->failing ? NULL : malloc(bytes);
 }
 
 static void release_counted(void *user, void *block) {
@@ -631,6 +633,54 @@ static void a_second_picture_takes_no_memory(void **state) {
     }
 }
 
+/* Wherever memory runs out, the next picture is made as if nothing was. */
+static void pictures_survive_a_lack_of_memory(void **state) {
+    (void)state;
+    static const int64_t dims[3] = {40, 38, 36};
+    int failures = 0;
+    for (long number = 1;; number++) {
+        counting_allocator counts = {0};
+        const snow_allocator allocator = {allocate_counted, release_counted,
+                                          &counts};
+        model_stage stage = {NULL, NULL};
+        snow_volume *volume = NULL;
+        snow_image *image = NULL;
+        assert_int_equal(snow_context_new(&allocator, &stage.context), SNOW_OK);
+        assert_int_equal(snow_frame_new(stage.context, &stage.frame), SNOW_OK);
+        reference_scene scene =
+            phantom_scene(stage.context, "shells", dims, 9, &volume);
+        snow_transfer *transfer = model_transfer(stage.context, &scene);
+        counts.failing = counts.allocations + number;
+        snow_status status =
+            snow_frame_render(stage.frame, volume, transfer, &scene.view,
+                              &scene.settings, &image);
+        bool failed = status != SNOW_OK;
+        bool reached = counts.allocations >= counts.failing;
+        counts.failing = 0;
+        if (failed) {
+            assert_int_equal(status, SNOW_NO_MEMORY);
+            assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
+                                               &scene.view, &scene.settings,
+                                               &image),
+                             SNOW_OK);
+        }
+        snow_image *again = image_of(&stage, stage.frame, volume, &scene);
+        assert_int_equal(snow_image_checksum(image),
+                         snow_image_checksum(again));
+        snow_image_free(again);
+        snow_image_free(image);
+        snow_transfer_free(transfer);
+        snow_volume_close(volume);
+        snow_frame_free(stage.frame);
+        assert_int_equal(snow_context_bytes(stage.context), 0);
+        snow_context_free(stage.context);
+        failures += failed;
+        if (!reached)
+            break;
+    }
+    assert_true(failures > 5);
+}
+
 /* --- how near --------------------------------------------------------------
  */
 
@@ -680,6 +730,7 @@ int main(void) {
         cmocka_unit_test(others_are_made_of_the_volume_itself),
         cmocka_unit_test(a_level_is_that_of_its_volume),
         cmocka_unit_test(a_second_picture_takes_no_memory),
+        cmocka_unit_test(pictures_survive_a_lack_of_memory),
         cmocka_unit_test(drafts_are_near_to_normal_pictures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
