@@ -144,7 +144,10 @@ oracle.refuse("g.zarr", "no path within", ["--dataset", "b/../b"], 2)
 oracle.refuse("g.zarr", "--dims", ["--dims", "1x1x1"], 2)
 oracle.refuse("g.zarr", "--series", ["--series", "1"], 2)
 begin("h.zarr")
-oracle.refuse("h.zarr", "without an array")
+oracle.refuse("h.zarr", "has none in it")
+os.remove("g.zarr/.zgroup")
+oracle.expect("g.zarr", t[0, 0], options=["--dataset", "b"],
+              name="a group that nothing describes")
 
 
 # Images of OME-Zarr: axes, levels, transformations, units.

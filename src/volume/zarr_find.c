@@ -340,8 +340,9 @@ static snow_status take_from_group(const zarr_store *store, const char *group,
     }
     if (status == SNOW_OK && !found)
         status = snow_zarr_fail(store, group,
-                                "is a group of Zarr without an array in it; "
-                                "copy it again");
+                                "is no array of Zarr, and has none in it; name "
+                                "the folder that has a .zarray, .zgroup or "
+                                "zarr.json");
     else if (status == SNOW_OK && found > 1)
         status = snow_fail(store->context, SNOW_BAD_USAGE,
                            "holds %ld volumes; choose one with --dataset: %s",
@@ -355,18 +356,7 @@ static snow_status take_from_group(const zarr_store *store, const char *group,
 /* --- a path -----------------------------------------------------------------
  */
 
-static snow_status refuse_path(const zarr_store *store, const char *path) {
-    if (!*path)
-        return snow_zarr_fail(store, "",
-                              "has no .zarray, .zgroup or zarr.json: it is no "
-                              "Zarr array, or a part of one; name the folder "
-                              "that has them");
-    return snow_fail(store->context, SNOW_BAD_USAGE,
-                     "has no array or group \"%.200s\"; leave it out to see "
-                     "what there is",
-                     path);
-}
-
+/* The store itself may be a group that nothing describes. */
 static snow_status find_at(const zarr_store *store, const char *path,
                            zarr_found *out) {
     zarr_node node;
@@ -381,13 +371,17 @@ static snow_status find_at(const zarr_store *store, const char *path,
     snow_zarr_forget(&node);
     if (taken || status != SNOW_OK)
         return status;
-    if (kind == ZARR_GROUP)
+    if (kind == ZARR_GROUP || (kind == ZARR_NOTHING && !*path))
         return take_from_group(store, path, out);
     SNOW_TRY(take_from_above(store, path, kind == ZARR_ARRAY, out, &taken));
     if (taken)
         return SNOW_OK;
-    return kind == ZARR_ARRAY ? take_array(store, path, out)
-                              : refuse_path(store, path);
+    if (kind == ZARR_ARRAY)
+        return take_array(store, path, out);
+    return snow_fail(store->context, SNOW_BAD_USAGE,
+                     "has no array or group \"%.200s\"; leave it out to see "
+                     "what there is",
+                     path);
 }
 
 snow_status snow_zarr_find(const zarr_store *store, const char *path,

@@ -306,14 +306,22 @@ static snow_status describe_2(const zarr_store *store, const char *path,
 /* --- version 3 --------------------------------------------------------------
  */
 
+/* An extension is a name, or an object that has one. */
+static const char *name_of(const json_t *extension) {
+    const char *name = json_string_value(
+        json_is_object(extension) ? json_object_get(extension, "name")
+                                  : extension);
+    return name ? name : "(none)";
+}
+
 /* "uint16": the kind by the letters, the bytes by the bits behind them. */
 static snow_status take_data_type(const zarr_store *store, const char *path,
                                   const json_t *meta, zarr_array *array) {
     static const char *const kinds[] = {"int", "uint", "float"};
-    const char *told = json_string_value(json_object_get(meta, "data_type"));
-    if (told && !strcmp(told, "bool"))
+    const char *told = name_of(json_object_get(meta, "data_type"));
+    if (!strcmp(told, "bool"))
         return take_type(store, path, 'b', 1, told, array);
-    for (size_t i = 0; told && i < sizeof kinds / sizeof *kinds; i++) {
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         size_t letters = strlen(kinds[i]);
         int64_t bits;
         if (!strncmp(told, kinds[i], letters) &&
@@ -323,13 +331,6 @@ static snow_status take_data_type(const zarr_store *store, const char *path,
                              array);
     }
     return take_type(store, path, '?', 0, told, array);
-}
-
-static const char *name_of(const json_t *extension) {
-    const char *name = json_string_value(
-        json_is_object(extension) ? json_object_get(extension, "name")
-                                  : extension);
-    return name ? name : "(none)";
 }
 
 /* Where files are: "c/0/1/2", or as in version 2. */
