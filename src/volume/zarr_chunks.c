@@ -151,7 +151,7 @@ static void overlap(const filler *f, const int64_t *chunk, int axis,
 /* A part of a chunk and where it goes; values are as the machine has them.
  * Along x, y and z: how many, bytes between neighbours there and here. */
 typedef struct patch {
-    const unsigned char *from;
+    uint64_t from; /* byte of the chunk */
     unsigned char *to;
     int64_t count[3];
     uint64_t step[3], place[3];
@@ -160,7 +160,7 @@ typedef struct patch {
 /* Axes that the volume lacks are one entry: chosen, or of size 1. */
 static void find_patch(const filler *f, const int64_t *chunk, patch *out) {
     const zarr_array *array = f->box->array;
-    *out = (patch){f->values, f->voxels, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
+    *out = (patch){0, f->voxels, {1, 1, 1}, {0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < array->axes; i++) {
         int64_t low, high;
         overlap(f, chunk, i, &low, &high);
@@ -212,7 +212,8 @@ static void put_chunk(const filler *f, const int64_t *chunk) {
     for (int64_t z = 0; z < p.count[2]; z++)
         for (int64_t y = 0; y < p.count[1]; y++)
             put_row(f->box->array,
-                    p.from + (uint64_t)z * p.step[2] + (uint64_t)y * p.step[1],
+                    f->values + p.from + (uint64_t)z * p.step[2] +
+                        (uint64_t)y * p.step[1],
                     p.step[0],
                     p.to + (uint64_t)z * p.place[2] + (uint64_t)y * p.place[1],
                     p.count[0]);
