@@ -239,8 +239,9 @@ static void fill_chunk(const filler *f, const int64_t *chunk) {
 static snow_status read_chunk(filler *f, const zarr_file *file, uint64_t first,
                               uint64_t size, const int64_t *chunk) {
     const zarr_array *array = f->box->array;
-    SNOW_TRY(
-        snow_reserve(f->context, &f->packed, &f->packed_room, 0, (size_t)size));
+    /* One byte more: of an empty file there is memory too. */
+    SNOW_TRY(snow_reserve(f->context, &f->packed, &f->packed_room, 0,
+                          (size_t)size + 1));
     SNOW_TRY(snow_zarr_read(file, first, f->packed, (size_t)size));
     SNOW_TRY(snow_zarr_expect(f->context, file->name, &array->coding, f->packed,
                               (size_t)size, f->bytes));
