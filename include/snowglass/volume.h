@@ -197,7 +197,8 @@ SNOW_API const char *snow_format_text(size_t index);
 
 /* Name of optional library `index` (from 0) that formats of volumes and
  * pictures need; NULL past the end.  *version is that of the build, NULL where
- * it was built without; *formats names the formats that need it. */
+ * it was built without, or where the module that uses it is not beside the
+ * library; *formats names the formats that need it. */
 SNOW_API const char *snow_library_name(size_t index, const char **version,
                                        const char **formats);
 

@@ -10,6 +10,7 @@
  * shared. */
 #include "image/image.h"
 
+#include "base/module.h"
 #include "base/random.h"
 #include "image/store.h"
 
@@ -24,7 +25,7 @@ static bool probe_tiff(const unsigned char *bytes, size_t size) {
     return false;
 }
 
-#if SNOW_HAVE_TIFF
+#if SNOW_HAVE_TIFF && !SNOW_LOADS
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -338,6 +339,31 @@ static snow_status read_tiff(snow_source *source, snow_image **out) {
 const snow_image_format snow_image_tiff = {.name = "TIFF",
                                            .suffix = ".tif",
                                            .other = ".tiff",
+                                           .write = write_tiff,
+                                           .probe = probe_tiff,
+                                           .read = read_tiff,
+                                           .in_any_order = true};
+
+#elif SNOW_LOADS && SNOW_HAVE_TIFF
+
+static snow_status write_tiff(const snow_image *image,
+                              const snow_image_options *options,
+                              snow_writer *writer) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(image->context, "tiff", &module));
+    return module->picture->write(image, options, writer);
+}
+
+static snow_status read_tiff(snow_source *source, snow_image **out) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(snow_source_context(source), "tiff", &module));
+    return module->picture->read(source, out);
+}
+
+const snow_image_format snow_image_tiff = {.name = "TIFF",
+                                           .suffix = ".tif",
+                                           .other = ".tiff",
+                                           .module = "tiff",
                                            .write = write_tiff,
                                            .probe = probe_tiff,
                                            .read = read_tiff,

@@ -22,7 +22,7 @@ static bool probe_tiff(const unsigned char *bytes, size_t size) {
     return false;
 }
 
-#if SNOW_HAVE_TIFF
+#if SNOW_HAVE_TIFF && !SNOW_LOADS
 
 /* More of one slice are slices; see take_for_slices. */
 #define MOST_CHANNELS 7
@@ -266,6 +266,14 @@ static snow_status read_tiff(snow_source *source,
         status = read_open(&file, options, info, out);
     snow_tiff_close(&file);
     return status;
+}
+
+#elif SNOW_LOADS && SNOW_HAVE_TIFF
+
+static snow_status read_tiff(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    return snow_read_by_module("tiff", source, options, info, out);
 }
 
 #else

@@ -7,6 +7,7 @@
  *   zarr_find.c    a path -> the array that is read, a level of an image or not
  *   zarr_place.c   axes and transformations -> where voxels lie
  *   zarr_unpack.c  the bytes of a chunk -> its values
+ *   zarr_blosc.c   the same by a library that is loaded when needed
  *   zarr_chunks.c  the chunks that a box touches -> the volume
  *   zarr.c         all of that in turn
  *
@@ -215,6 +216,31 @@ snow_status snow_zarr_unpack(snow_context *context, const char *name,
                              const zarr_array *array,
                              const unsigned char *packed, size_t size,
                              unsigned char *out, uint64_t bytes);
+
+/* The same of Blosc, without what is around it. */
+snow_status snow_zarr_blosc_expect(snow_context *context, const char *name,
+                                   const unsigned char *packed, size_t size,
+                                   uint64_t bytes);
+snow_status snow_zarr_blosc_unpack(snow_context *context, const char *name,
+                                   const unsigned char *packed,
+                                   unsigned char *out, uint64_t bytes);
+
+/* "name: what; it is cut or damaged, copy it again". */
+static inline snow_status snow_zarr_fail_damaged(snow_context *context,
+                                                 const char *name,
+                                                 const char *what) {
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "%s: %s; it is cut or damaged, copy it again", name, what);
+}
+
+static inline snow_status snow_zarr_fail_size(snow_context *context,
+                                              const char *name, uint64_t told,
+                                              uint64_t bytes) {
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "%s: holds %llu bytes of values where a chunk has %llu; "
+                     "it is damaged, or belongs to another array",
+                     name, (unsigned long long)told, (unsigned long long)bytes);
+}
 
 /* CRC-32C (RFC 3720, section 12.1). */
 uint32_t snow_zarr_sum(const unsigned char *bytes, size_t count);

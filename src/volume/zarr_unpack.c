@@ -2,17 +2,13 @@
  *
  * Libraries are asked for exactly the bytes that a chunk has, after what the
  * packed bytes say of themselves has been held against that: a file that lies
- * of its size is refused before memory is taken.  Blosc 1 is read by the
- * library of Francesc Alted, which checks a buffer before it is unpacked. */
+ * of its size is refused before memory is taken. */
 #include "volume/optional.h"
 #include "volume/zarr.h"
 
 #include <limits.h>
 #include <string.h>
 
-#if SNOW_HAVE_BLOSC
-#include <blosc.h>
-#endif
 #if SNOW_HAVE_LZ4
 #include <lz4.h>
 #endif
@@ -40,33 +36,21 @@ uint32_t snow_zarr_sum(const unsigned char *bytes, size_t count) {
     return ~sum;
 }
 
-static snow_status fail_damaged(snow_context *context, const char *name,
-                                const char *what) {
-    return snow_fail(context, SNOW_BAD_INPUT,
-                     "%s: %s; it is cut or damaged, copy it again", name, what);
-}
-
-static snow_status fail_size(snow_context *context, const char *name,
-                             uint64_t told, uint64_t bytes) {
-    return snow_fail(context, SNOW_BAD_INPUT,
-                     "%s: holds %llu bytes of values where a chunk has %llu; "
-                     "it is damaged, or belongs to another array",
-                     name, (unsigned long long)told, (unsigned long long)bytes);
-}
-
 /* Checks sums at the end of *size bytes, which get shorter by them. */
 static snow_status check_sums(snow_context *context, const char *name,
                               const unsigned char *bytes, size_t *size,
                               int sums) {
     for (; sums; sums--) {
         if (*size < SUM_BYTES)
-            return fail_damaged(context, name, "is shorter than its check sum");
+            return snow_zarr_fail_damaged(context, name,
+                                          "is shorter than its check sum");
         *size -= SUM_BYTES;
         const unsigned char *at = bytes + *size;
         uint32_t told = (uint32_t)at[0] | (uint32_t)at[1] << 8 |
                         (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24;
         if (snow_zarr_sum(bytes, *size) != told)
-            return fail_damaged(context, name, "does not fit its check sum");
+            return snow_zarr_fail_damaged(context, name,
+                                          "does not fit its check sum");
     }
     return SNOW_OK;
 }
@@ -94,8 +78,9 @@ static snow_status inflate_chunk(snow_context *context, const char *name,
     if (status == SNOW_OK)
         status = snow_source_read(source, &more, 1, &got);
     snow_source_close(source);
-    return status == SNOW_OK && got ? fail_size(context, name, bytes + 1, bytes)
-                                    : status;
+    return status == SNOW_OK && got
+               ? snow_zarr_fail_size(context, name, bytes + 1, bytes)
+               : status;
 }
 
 /* --- Zstandard --------------------------------------------------------------
@@ -107,10 +92,10 @@ static snow_status expect_zstd(snow_context *context, const char *name,
 #if SNOW_HAVE_ZSTD
     unsigned long long told = ZSTD_getFrameContentSize(packed, size);
     if (told == ZSTD_CONTENTSIZE_ERROR)
-        return fail_damaged(context, name, "is not packed by zstd");
+        return snow_zarr_fail_damaged(context, name, "is not packed by zstd");
     return told == ZSTD_CONTENTSIZE_UNKNOWN || told == bytes
                ? SNOW_OK
-               : fail_size(context, name, told, bytes);
+               : snow_zarr_fail_size(context, name, told, bytes);
 #else
     (void)name, (void)packed, (void)size, (void)bytes;
     return snow_fail_unbuilt(context, "Zstandard", "libzstd-dev");
@@ -127,7 +112,7 @@ static snow_status unpack_zstd(snow_context *context, const char *name,
 #else
     (void)packed, (void)size, (void)out, (void)bytes;
 #endif
-    return fail_damaged(context, name, "cannot be unpacked by zstd");
+    return snow_zarr_fail_damaged(context, name, "cannot be unpacked by zstd");
 }
 
 /* --- LZ4 --------------------------------------------------------------------
@@ -139,12 +124,12 @@ static snow_status expect_lz4(snow_context *context, const char *name,
                               uint64_t bytes) {
 #if SNOW_HAVE_LZ4
     if (size < 4 || size > INT_MAX)
-        return fail_damaged(context, name, "is not packed by lz4");
+        return snow_zarr_fail_damaged(context, name, "is not packed by lz4");
     uint64_t told = (uint64_t)packed[0] | (uint64_t)packed[1] << 8 |
                     (uint64_t)packed[2] << 16 | (uint64_t)packed[3] << 24;
     return told == bytes && bytes <= INT_MAX
                ? SNOW_OK
-               : fail_size(context, name, told, bytes);
+               : snow_zarr_fail_size(context, name, told, bytes);
 #else
     (void)name, (void)packed, (void)size, (void)bytes;
     return snow_fail_unbuilt(context, "LZ4", "liblz4-dev");
@@ -162,57 +147,7 @@ static snow_status unpack_lz4(snow_context *context, const char *name,
 #else
     (void)packed, (void)size, (void)out, (void)bytes;
 #endif
-    return fail_damaged(context, name, "cannot be unpacked by lz4");
-}
-
-/* --- Blosc ------------------------------------------------------------------
- */
-
-/* A build of the library may lack a packer, of which it would print. */
-static snow_status expect_blosc(snow_context *context, const char *name,
-                                const unsigned char *packed, size_t size,
-                                uint64_t bytes) {
-#if SNOW_HAVE_BLOSC
-    size_t told;
-    if (size < BLOSC_MIN_HEADER_LENGTH ||
-        blosc_cbuffer_validate(packed, size, &told))
-        return fail_damaged(context, name,
-                            "has a head that is none of Blosc's, or of "
-                            "another file");
-    if (told != bytes)
-        return fail_size(context, name, told, bytes);
-    const char *library = blosc_cbuffer_complib(packed);
-    static const char *const names[][2] = {
-        {BLOSC_BLOSCLZ_LIBNAME, BLOSC_BLOSCLZ_COMPNAME},
-        {BLOSC_LZ4_LIBNAME, BLOSC_LZ4_COMPNAME},
-        {BLOSC_SNAPPY_LIBNAME, BLOSC_SNAPPY_COMPNAME},
-        {BLOSC_ZLIB_LIBNAME, BLOSC_ZLIB_COMPNAME},
-        {BLOSC_ZSTD_LIBNAME, BLOSC_ZSTD_COMPNAME}};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-        if (library && !strcmp(library, names[i][0]) &&
-            blosc_compname_to_compcode(names[i][1]) >= 0)
-            return SNOW_OK;
-    return snow_fail(context, SNOW_BAD_INPUT,
-                     "%s: is packed by %.20s within Blosc, which this libblosc "
-                     "lacks; copy the array with lz4 or zstd",
-                     name, library ? library : "something");
-#else
-    (void)name, (void)packed, (void)size, (void)bytes;
-    return snow_fail_unbuilt(context, "Blosc", "libblosc-dev");
-#endif
-}
-
-static snow_status unpack_blosc(snow_context *context, const char *name,
-                                const unsigned char *packed, unsigned char *out,
-                                uint64_t bytes) {
-#if SNOW_HAVE_BLOSC
-    int got = blosc_decompress_ctx(packed, out, (size_t)bytes, 1);
-    if (got >= 0 && (uint64_t)got == bytes)
-        return SNOW_OK;
-#else
-    (void)packed, (void)out, (void)bytes;
-#endif
-    return fail_damaged(context, name, "cannot be unpacked by Blosc");
+    return snow_zarr_fail_damaged(context, name, "cannot be unpacked by lz4");
 }
 
 /* --- any --------------------------------------------------------------------
@@ -231,7 +166,8 @@ snow_status snow_zarr_expect(snow_context *context, const char *name,
     uint64_t inner = snow_zarr_room(coding, bytes);
     size = packed_size(coding, size);
     if (coding->packer == ZARR_PLAIN)
-        return size == inner ? SNOW_OK : fail_size(context, name, size, inner);
+        return size == inner ? SNOW_OK
+                             : snow_zarr_fail_size(context, name, size, inner);
     if (inner / MOST_RATIO > size)
         return snow_fail(context, SNOW_BAD_INPUT,
                          "%s: has %zu bytes, which no packer makes of the %llu "
@@ -243,7 +179,7 @@ snow_status snow_zarr_expect(snow_context *context, const char *name,
     case ZARR_LZ4:
         return expect_lz4(context, name, packed, size, inner);
     case ZARR_BLOSC:
-        return expect_blosc(context, name, packed, size, inner);
+        return snow_zarr_blosc_expect(context, name, packed, size, inner);
     default:
         return SNOW_OK;
     }
@@ -261,7 +197,7 @@ static snow_status unpack(snow_context *context, const char *name,
     case ZARR_LZ4:
         return unpack_lz4(context, name, packed, size, out, bytes);
     case ZARR_BLOSC:
-        return unpack_blosc(context, name, packed, out, bytes);
+        return snow_zarr_blosc_unpack(context, name, packed, out, bytes);
     case ZARR_PLAIN:
         break;
     }
