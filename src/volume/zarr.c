@@ -255,7 +255,7 @@ static snow_status read_zarr(snow_source *source,
 
 const snow_format snow_format_zarr = {
     .name = "zarr",
-    .text = "Zarr and OME-Zarr (a folder with .zarray, .zgroup or zarr.json)",
+    .text = "Zarr and OME-Zarr (a folder with .zarray or zarr.json)",
     .suffixes = {".zarray", ".zgroup", ".zattrs", "zarr.json"},
     .crops = true,
     .sets = true,
