@@ -136,6 +136,13 @@ static void fill_colors(const snow_job *job, const snow_ramp *ramp,
         double part =
             (transfer->colors[n].value - colors->from) / colors->range;
         double cell = floor(part * SNOW_MODE_COLORS);
+        bool steps =
+            (n > 0 &&
+             transfer->colors[n - 1].value == transfer->colors[n].value) ||
+            (n + 1 < transfer->color_count &&
+             transfer->colors[n + 1].value == transfer->colors[n].value);
+        if (!steps && (part == 0 || part == 1)) /* just where numbers end */
+            continue;
         if (!(cell >= -1 && cell <= SNOW_MODE_COLORS)) /* or no range */
             continue;
         for (double near = cell - 1; near <= cell + 1; near++)
