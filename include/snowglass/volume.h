@@ -285,6 +285,9 @@ SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
 SNOW_API snow_status snow_volume_save(const snow_volume *volume,
                                       const char *path, bool overwrite);
 
+/* Suffix `index` (from 0) that snow_volume_save knows; NULL past the end. */
+SNOW_API const char *snow_volume_suffix(size_t index);
+
 #ifdef __cplusplus
 }
 #endif
