@@ -2,25 +2,27 @@
  * eye on opacity alone. */
 #include "depth.h"
 #include "image/image.h"
+#include "volume/volume.h"
 
 #include <math.h>
 #include <string.h>
 
 void snow_depth_place(const snow_job *job, double of[4]) {
     const snow_placement *p = &job->placement;
-    const snow_volume_info *info = &job->volume->info;
+    snow_volume_info info;
     const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
     const int64_t sides[3] = {p->columns, p->rows, p->slices};
+    snow_volume_whole(job->volume, &info);
     of[3] = 0;
     for (int n = 0; n < 3; n++) {
         of[n] = 0;
         for (int r = 0; r < 3; r++)
-            of[n] -= info->matrix[r][axes[n]] * p->back[r];
+            of[n] -= info.matrix[r][axes[n]] * p->back[r];
         if (!job->view->has_target)
             of[3] -= of[n] * (double)(sides[n] - 1) / 2;
     }
     for (int r = 0; job->view->has_target && r < 3; r++)
-        of[3] -= (info->matrix[r][3] - job->view->target[r]) * p->back[r];
+        of[3] -= (info.matrix[r][3] - job->view->target[r]) * p->back[r];
 }
 
 /* Where the ray of a pixel meets slice k, which need not be a whole number. */
@@ -85,10 +87,11 @@ snow_status snow_depth_over(snow_frame *frame, const snow_job *job) {
     size_t bytes = pixels * (size_t)job->channels * sizeof *frame->layer;
     snow_stats unused = {0};
     snow_job pass = *job;
-    if (job->volume->is_part || !job->all)
-        return snow_fail(job->context, SNOW_BAD_USAGE,
-                         "the depth of one part of many is not combined yet; "
-                         "render it on one rank");
+    if (!snow_job_whole(job))
+        return snow_fail(
+            job->context, SNOW_BAD_USAGE,
+            "the depth of one part of many is none; render it on one "
+            "rank");
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
                           0, bytes));
     memset(frame->layer, 0, bytes);

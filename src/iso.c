@@ -155,22 +155,26 @@ static snow_status make_kernels(snow_iso *iso, const snow_job *job,
 /* --- a point of a slice ----------------------------------------------------
  */
 
-/* The window around (u, v) on a slice; false where it is outside. */
+/* The window around (u, v) on a slice, as far as it is stored; false where it
+ * is outside. */
 static bool place_window(const iso_pass *pass, int64_t slice,
                          const double at[2], snow_probe *probe) {
-    const snow_placement *p = &pass->job->placement;
-    const int64_t sides[2] = {p->columns, p->rows};
-    probe->slice = slice;
+    const int64_t *stored = pass->job->clip.stored;
+    const int64_t *size = pass->job->clip.size;
+    probe->slice = slice - stored[2];
+    if (probe->slice < 0 || probe->slice >= size[2])
+        return false;
     for (int axis = 0; axis < 2; axis++) {
         const iso_kernel *kernel = kernel_of(pass, slice, axis);
         int taps = snow_comb_taps(&kernel->taper);
         double base = floor(at[axis]) - taps / 2 + 1;
-        if (!(base > -taps && base < (double)sides[axis]))
+        double low = (double)stored[axis], high = low + (double)size[axis];
+        if (!(base > low - taps && base < high))
             return false;
         int64_t first = (int64_t)base, end = first + taps;
-        first = first > 0 ? first : 0;
-        end = end < sides[axis] ? end : sides[axis];
-        probe->first[axis] = first;
+        first = first > stored[axis] ? first : stored[axis];
+        end = end < stored[axis] + size[axis] ? end : stored[axis] + size[axis];
+        probe->first[axis] = first - stored[axis];
         probe->count[axis] = (int)(end - first);
         for (int64_t n = first; n < end; n++)
             probe->weights[axis][n - first] =
@@ -194,19 +198,26 @@ static inline void cubic_weights(float part, float weights[4]) {
     weights[3] = cube * sixth;
 }
 
-/* The usual window, where it and what is around it is in the grid. */
+/* The usual window, where it and what is around it is in the grid; of a part
+ * it is stored, as are the ghosts that iso asks for. */
 static bool place_near(const iso_pass *pass, int64_t slice, const double at[2],
                        snow_near *near) {
     const snow_placement *p = &pass->job->placement;
     const int64_t sides[2] = {p->columns, p->rows};
-    near->at = slice * pass->grid.steps[2];
+    const int64_t *stored = pass->job->clip.stored;
+    const int64_t *size = pass->job->clip.size;
+    near->at = (slice - stored[2]) * pass->grid.steps[2];
+    if (slice < stored[2] || slice >= stored[2] + size[2])
+        return false;
     for (int axis = 0; axis < 2; axis++) {
         if (!(at[axis] >= 2 && at[axis] < (double)(sides[axis] - 3)) ||
             !kernel_of(pass, slice, axis)->cubic)
             return false;
         int64_t whole = (int64_t)at[axis];
+        if (whole - 1 < stored[axis] || whole + 3 > stored[axis] + size[axis])
+            return false;
         cubic_weights((float)(at[axis] - (double)whole), near->weights[axis]);
-        near->at += (whole - 1) * pass->grid.steps[axis];
+        near->at += (whole - 1 - stored[axis]) * pass->grid.steps[axis];
     }
     return true;
 }
@@ -252,19 +263,31 @@ static bool find_value(const iso_pass *pass, const iso_ray *ray, int64_t slice,
     return true;
 }
 
+/* Whether a sample is the part's (transform/clip.h). */
+static bool is_own(const iso_pass *pass, const double at[2]) {
+    const snow_clip *clip = &pass->job->clip;
+    return !clip->cuts || (at[0] >= clip->low[0] && at[0] < clip->high[0] &&
+                           at[1] >= clip->low[1] && at[1] < clip->high[1]);
+}
+
 /* Whether a window may hold what is looked for. */
 static bool worth_a_look(const iso_pass *pass, const iso_ray *ray,
                          int64_t slice) {
     const snow_reached *r = pass->reached;
     double at[2];
+    ray_at(ray, (double)slice, at);
+    if (!is_own(pass, at))
+        return false;
     if (!r)
         return true;
-    ray_at(ray, (double)slice, at);
-    double u = at[0] + r->taps[0] / 2 + 1, v = at[1] + r->taps[1] / 2 + 1;
+    const int64_t *stored = pass->job->clip.stored;
+    double u = at[0] - (double)stored[0] + r->taps[0] / 2 + 1;
+    double v = at[1] - (double)stored[1] + r->taps[1] / 2 + 1;
     if (!(u >= 0 && v >= 0 && u < (double)r->places[0] &&
           v < (double)r->places[1]))
         return false;
-    return snow_reached_at(r, slice, (int64_t)u, (int64_t)v);
+    return snow_reached_at(r, slice - pass->job->slab.first, (int64_t)u,
+                           (int64_t)v);
 }
 
 /* --- rays ------------------------------------------------------------------
@@ -288,16 +311,21 @@ static void cut_slices(double at, double slope, double low, double high,
 static void make_parallel(const iso_pass *pass, int x, int y, iso_ray *ray) {
     const snow_placement *p = &pass->job->placement;
     const snow_reached *r = pass->reached;
-    double x0 = x + 0.5 - p->origin[0], y0 = y + 0.5 - p->origin[1];
+    const snow_clip *clip = &pass->job->clip;
+    const snow_slab slab = pass->job->slab;
+    double x0 = x + 0.5 - p->origin[0], y0 = y + 0.5 - p->origin[1], at[2];
     for (int axis = 0; axis < 2; axis++) {
         ray->slope[axis] = pass->slope[axis];
         ray->at[axis] = p->inverse[axis][0] * x0 + p->inverse[axis][1] * y0;
     }
-    int32_t passed = snow_first_of(pass->first, ray->at[0] + r->taps[0] / 2 + 1,
-                                   ray->at[1] + r->taps[1] / 2 + 1);
+    ray_at(ray, (double)slab.first, at);
+    int32_t passed = snow_first_of(
+        pass->first, at[0] - (double)clip->stored[0] + r->taps[0] / 2 + 1,
+        at[1] - (double)clip->stored[1] + r->taps[1] / 2 + 1);
     ray->step = p->nearest_first ? 1 : -1;
-    ray->first = ray->step > 0 ? passed : p->slices - 1 - passed;
-    ray->last = ray->step > 0 ? p->slices - 1 : 0;
+    ray->first =
+        slab.first + (ray->step > 0 ? passed : slab.count - 1 - passed);
+    ray->last = slab.first + (ray->step > 0 ? slab.count - 1 : 0);
     ray->meets = passed >= 0;
 }
 
@@ -306,7 +334,9 @@ static void make_ray(const iso_pass *pass, int x, int y, iso_ray *ray) {
     const snow_placement *p = &pass->job->placement;
     ray->step = p->nearest_first ? 1 : -1;
     ray->meets = false;
-    double range[2] = {0, (double)(p->slices - 1)};
+    const snow_slab slab = pass->job->slab;
+    double range[2] = {(double)slab.first,
+                       (double)(slab.first + slab.count - 1)};
     const double sides[2] = {(double)p->columns, (double)p->rows};
     double direction[3] = {0, 0, 1}, x0 = x + 0.5 - p->origin[0],
            y0 = y + 0.5 - p->origin[1];
@@ -340,13 +370,19 @@ static void make_ray(const iso_pass *pass, int x, int y, iso_ray *ray) {
     ray->meets = low <= high;
 }
 
+/* Whether what is around a usual window is stored on all sides. */
+static bool has_neighbours(const iso_pass *pass, const iso_point *point) {
+    const snow_clip *clip = &pass->job->clip;
+    return point->slice > clip->stored[2] &&
+           point->slice + 1 < clip->stored[2] + clip->size[2];
+}
+
 /* The gradient there. */
 static void find_gradient(const iso_pass *pass, const iso_ray *ray,
                           const iso_point *point, snow_probe *probe,
                           double gradient[3]) {
     double at[2];
-    if (point->near && point->slice > 0 &&
-        point->slice + 1 < pass->job->placement.slices) {
+    if (point->near && has_neighbours(pass, point)) {
         snow_near_gradient(&pass->grid, &point->window, gradient);
         return;
     }
@@ -565,6 +601,10 @@ static snow_status find_surfaces(snow_frame *frame, snow_job *job,
 static snow_status fill_figures(snow_frame *frame, const snow_job *job) {
     snow_job sparse = *job;
     sparse.settings.method = SNOW_METHOD_SHEARED;
+    if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
+        sparse.transfer = frame->ramp.transfer;
+        sparse.settings.threshold = 0;
+    }
     SNOW_TRY(snow_job_finish(frame, &sparse));
     job->stats->method = job->settings.method;
     return SNOW_OK;
@@ -581,7 +621,6 @@ snow_status snow_iso_render(snow_frame *frame, snow_job *job,
             return SNOW_NO_MEMORY;
         frame->iso->context = job->context;
     }
-    SNOW_TRY(snow_ramp_measure(job, &frame->ramp));
     SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
                             job->channels, &image));
     snow_status status = find_surfaces(frame, job, image);

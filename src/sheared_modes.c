@@ -640,6 +640,25 @@ static void keep_warping(snow_modes_pass *pass) {
                             1};
 }
 
+/* One tile, all of which is drawn. */
+static void describe(const snow_modes_pass *pass, snow_sheared_image *out) {
+    const snow_canvas *canvas = pass->sheared->canvas;
+    int width = pass->shear.u.count, height = pass->shear.v.count;
+    *out = (snow_sheared_image){.width = width,
+                                .height = height,
+                                .channels = 2,
+                                .pixels = pass->plane,
+                                .stride = pass->stride,
+                                .drawn = canvas->drawn,
+                                .tile_width = width,
+                                .tile_height = height,
+                                .tiles = 1,
+                                .layers = 1,
+                                .layer_floats = (size_t)height * pass->stride,
+                                .layer_tiles = 1,
+                                .warping = &canvas->warping};
+}
+
 snow_status snow_sheared_reduce(snow_sheared *s,
                                 const snow_sheared_order *order, bool largest,
                                 const snow_value_scale *scale,
@@ -662,9 +681,11 @@ snow_status snow_sheared_reduce(snow_sheared *s,
     SNOW_TRY(place_lattice(&pass));
     SNOW_TRY(reserve_buffers(&pass));
     keep_warping(&pass);
-    *out = (snow_sheared_image){.warping = &s->canvas->warping};
-    if (pass.shear.u.count == 0 || pass.shear.v.count == 0)
+    if (pass.shear.u.count == 0 || pass.shear.v.count == 0) {
+        *out = (snow_sheared_image){.warping = &s->canvas->warping};
         return SNOW_OK;
+    }
+    describe(&pass, out);
     for (int phase = 0; phase < 2; phase++)
         pass.within[phase][1] = pass.pixels[1];
     for (int64_t k = 0; k < pass.slices; k++)

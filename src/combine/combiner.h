@@ -49,6 +49,7 @@ struct snow_combiner {
     snow_comm *comm;
     snow_exchange_shape shape; /* width 0: there are no buffers */
     const snow_pixel_loops *loops;
+    snow_pixel_loops order_loops; /* of the last order */
     snow_rounds rounds;
     bool filled; /* the lists of `rounds`, for its seat and display */
     snow_borders borders;

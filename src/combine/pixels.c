@@ -46,6 +46,34 @@ static inline const float *lay_plain(float *tile, const float *packed,
     return packed;
 }
 
+static const float *lay_most(float *tile, const float *packed, uint64_t bits) {
+    for (; bits; bits &= bits - 1, packed += 2) {
+        float *pixel = tile + __builtin_ctzll(bits) * 2;
+        for (int c = 0; c < 2; c++)
+            pixel[c] = packed[c] > pixel[c] ? packed[c] : pixel[c];
+    }
+    return packed;
+}
+
+static const float *lay_sum(float *tile, const float *packed, uint64_t bits) {
+    for (; bits; bits &= bits - 1, packed += 2) {
+        float *pixel = tile + __builtin_ctzll(bits) * 2;
+        for (int c = 0; c < 2; c++)
+            pixel[c] += packed[c];
+    }
+    return packed;
+}
+
+snow_pixel_loops snow_pixels_laying(const snow_pixel_loops *loops,
+                                    snow_laying laying) {
+    snow_pixel_loops other = *loops;
+    if (laying == SNOW_LAY_MOST)
+        other.lay = lay_most;
+    else if (laying == SNOW_LAY_SUM)
+        other.lay = lay_sum;
+    return other;
+}
+
 #define LOOPS(channels)                                                  \
     static uint64_t look_##channels(const float *pixels, int count) {    \
         return look_plain(pixels, count, channels);                      \

@@ -24,6 +24,18 @@ typedef struct snow_pixel_loops {
     const float *(*lay)(float *tile, const float *packed, uint64_t bits);
 } snow_pixel_loops;
 
+/* What is done with a pixel that comes behind another.  All but over make no
+ * difference of the two, and take pixels (value, weight) whose nothing is 0. */
+typedef enum snow_laying {
+    SNOW_LAY_OVER = 0,
+    SNOW_LAY_MOST, /* the larger of each float */
+    SNOW_LAY_SUM
+} snow_laying;
+
+/* `loops` of 2 channels with another way of laying pixels. */
+snow_pixel_loops snow_pixels_laying(const snow_pixel_loops *loops,
+                                    snow_laying laying);
+
 /* The loops for 2 or 4 channels. */
 const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels);
 
