@@ -5,12 +5,18 @@
  *   iso          opaque pixels: what is in front, which is over's business
  *   depth        pairs (depth, 1): the same
  *
+ * A depth of over is where opacity passes 1/2, which depends on all that is in
+ * front: for these processors take turns, the nearest first, and each goes on
+ * with the alphas that the one before it left.
+ *
  * Each processor makes the pairs of its part (modes.h) over the whole's range,
  * which all agree on first; they are exchanged as over's local images are, on
  * the slices' lattice where that is how they were made, warped or copied piece
  * by piece, and brought to rank 0, which makes colours or values of them. */
 #include "ranks_parts.h"
 
+#include "decompose/order.h"
+#include "depth.h"
 #include "image/image.h"
 #include "volume/volume.h"
 
@@ -19,10 +25,9 @@
 
 snow_status snow_picture_check_mode(const snow_picture *p) {
     const snow_settings *s = &p->job.settings;
-    if (s->depth && s->mode != SNOW_MODE_ISO)
+    if (s->depth && s->mode != SNOW_MODE_ISO && s->mode != SNOW_MODE_OVER)
         return snow_fail(p->job.context, SNOW_BAD_USAGE,
-                         "depths of mode %s are not built for many ranks; "
-                         "render on one, or take mode iso",
+                         "mode %s has no depth; take over or iso",
                          snow_mode_name(s->mode));
     if (s->deterministic &&
         (s->mode == SNOW_MODE_MEAN || s->mode == SNOW_MODE_SUM))
@@ -191,6 +196,8 @@ static snow_status combine_depths(snow_picture *p, const snow_image *depth) {
     snow_image *pairs = NULL;
     snow_local local;
     int channels = p->job.channels;
+    int deterministic = p->job.settings.deterministic;
+    p->job.settings.deterministic = 0; /* pixels of one rank each */
     snow_status status = make_local(p, 2, &local);
     if (status == SNOW_OK) {
         take_depths(depth, p->ranks->images);
@@ -207,23 +214,69 @@ static snow_status combine_depths(snow_picture *p, const snow_image *depth) {
     if (status == SNOW_OK)
         status = snow_picture_combine_exact(p, &local, 0, pairs);
     p->job.channels = channels;
+    p->job.settings.deterministic = deterministic;
     if (status == SNOW_OK && pairs)
         give_depths(pairs, p->depth);
     snow_image_free(pairs);
     return status;
 }
 
+/* Room for this rank's own depths. */
+static snow_status make_depth(snow_picture *p) {
+    snow_frame *frame = p->frame;
+    snow_image_free(frame->depth);
+    frame->depth = NULL;
+    if (!p->job.settings.depth)
+        return SNOW_OK;
+    return snow_image_new(p->job.context, p->view.width, p->view.height, 1,
+                          &frame->depth);
+}
+
+/* Collective.  Alphas from the rank in front, and on to the one behind. */
+static snow_status take_turn(snow_picture *p, int seat, float *alphas,
+                             snow_status *local) {
+    snow_ranks *r = p->ranks;
+    size_t bytes =
+        (size_t)p->view.width * (size_t)p->view.height * sizeof *alphas;
+    if (seat > 0) {
+        SNOW_TRY(snow_comm_receive(r->comm, alphas, bytes, r->order[seat - 1],
+                                   SNOW_TAG_LAYERS, &r->messages[0]));
+        SNOW_TRY(snow_comm_wait_all(r->comm, r->messages, 1));
+    }
+    *local = snow_depth_behind(p->frame, &p->job, alphas);
+    if (seat + 1 == r->ranks)
+        return SNOW_OK;
+    SNOW_TRY(snow_comm_send(r->comm, alphas, bytes, r->order[seat + 1],
+                            SNOW_TAG_LAYERS, &r->messages[0]));
+    return snow_comm_wait_all(r->comm, r->messages, 1);
+}
+
+snow_status snow_picture_render_depth(snow_picture *p) {
+    snow_ranks *r = p->ranks;
+    snow_sight sight;
+    snow_local local;
+    int seat = 0;
+    snow_status status = make_depth(p);
+    if (status == SNOW_OK)
+        status = make_local(p, 1, &local);
+    snow_clip_sight(&p->job.placement, &sight);
+    if (status == SNOW_OK)
+        status = snow_order_boxes(p->job.context, r->boxes, r->ranks, &sight,
+                                  r->order);
+    SNOW_TRY(snow_comm_agree(r->comm, status));
+    while (r->order[seat] != r->rank)
+        seat++;
+    SNOW_TRY(take_turn(p, seat, r->images, &status));
+    SNOW_TRY(snow_comm_agree(r->comm, status));
+    return combine_depths(p, p->frame->depth);
+}
+
 /* Local work: this rank's surfaces, with room for depths in frame->depth. */
 static snow_status find_surfaces(snow_picture *p, snow_image **image,
                                  snow_local *local) {
-    snow_frame *frame = p->frame;
     p->job.settings.deterministic = 0; /* bits do not depend on parts */
-    snow_image_free(frame->depth);
-    frame->depth = NULL;
-    if (p->job.settings.depth)
-        SNOW_TRY(snow_image_new(p->job.context, p->view.width, p->view.height,
-                                1, &frame->depth));
-    SNOW_TRY(snow_iso_render(frame, &p->job, image));
+    SNOW_TRY(make_depth(p));
+    SNOW_TRY(snow_iso_render(p->frame, &p->job, image));
     SNOW_TRY(make_local(p, p->job.channels, local));
     local->pixels = (*image)->pixels;
     return snow_picture_prepare_exact(p, local);

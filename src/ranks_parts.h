@@ -141,6 +141,9 @@ snow_status snow_picture_check_mode(const snow_picture *picture);
  * is made but for mode iso. */
 snow_status snow_picture_render_mode(snow_picture *picture);
 
+/* Collective.  The depth of a picture in mode over that is made. */
+snow_status snow_picture_render_depth(snow_picture *picture);
+
 /* Keeps the present failure of the context. */
 void snow_picture_fail(snow_picture *picture, snow_status status);
 

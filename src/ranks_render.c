@@ -70,7 +70,7 @@ static int axis_alone(const snow_picture *p) {
     int axis = p->job.placement.slice_axis;
     double shares[3];
     if (p->job.settings.method != SNOW_METHOD_SHEARED ||
-        p->job.settings.mode != SNOW_MODE_OVER ||
+        p->job.settings.mode != SNOW_MODE_OVER || p->job.settings.depth ||
         snow_job_shares(&p->job, shares) != SNOW_OK)
         return -1;
     return shares[axis] < 1 ? -1 : axis;
@@ -524,6 +524,8 @@ static snow_status render_wholly(snow_picture *p, snow_status status) {
         return snow_picture_render_mode(p);
     SNOW_TRY(p->job.settings.method == SNOW_METHOD_SHEARED ? render_blend(p)
                                                            : render_exact(p));
+    if (p->job.settings.depth)
+        SNOW_TRY(snow_picture_render_depth(p));
     return snow_comm_agree(p->ranks->comm, snow_job_finish(p->frame, &p->job));
 }
 

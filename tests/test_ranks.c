@@ -458,7 +458,7 @@ static void mode_pictures(snow_mode mode, double bound) {
         play p = play_of(n, 24, &scene);
         p.settings.mode = mode;
         p.settings.method = methods[n % 4];
-        p.settings.depth = p.settings.mode == SNOW_MODE_ISO;
+        p.settings.depth = mode == SNOW_MODE_ISO || mode == SNOW_MODE_OVER;
         p.settings.iso = 60;
         p.view.fov = n % 5 == 4 ? 35 : 0;
         snow_transfer *transfer = model_transfer(context, &scene);
@@ -484,6 +484,12 @@ static void sums_of_many_ranks_differ_by_rounding(void **state) {
     (void)state;
     mode_pictures(SNOW_MODE_MEAN, BOUND_SUMS);
     mode_pictures(SNOW_MODE_SUM, BOUND_SUMS);
+}
+
+/* Of the picture itself more is tested above. */
+static void depths_of_over_by_many_ranks(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_OVER, BOUND);
 }
 
 static void surfaces_of_many_ranks_have_the_serial_bits(void **state) {
@@ -825,6 +831,7 @@ int main(void) {
         cmocka_unit_test(so_it_does_by_the_exact_methods),
         cmocka_unit_test(largest_values_of_many_ranks_have_the_serial_bits),
         cmocka_unit_test(sums_of_many_ranks_differ_by_rounding),
+        cmocka_unit_test(depths_of_over_by_many_ranks),
         cmocka_unit_test(surfaces_of_many_ranks_have_the_serial_bits),
         cmocka_unit_test(phantoms_are_seen_alike_by_many_ranks),
         cmocka_unit_test(real_volumes_are_seen_alike_by_many_ranks),
