@@ -205,7 +205,8 @@ static void value_line(const finish_job *f, const float *pairs, int count,
     bool mean = f->job->settings.mode == SNOW_MODE_MEAN;
     for (int x = 0; x < count; x++, pairs += 2) {
         double weights = (double)pairs[1]; /* rounding may leave the range */
-        double values = fmin(fmax((double)pairs[0], 0), weights);
+        double values = (double)pairs[0] > 0 ? (double)pairs[0] : 0;
+        values = values < weights ? values : weights;
         if (!(weights >= f->least))
             pixels[x] = NAN;
         else if (mean)

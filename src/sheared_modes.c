@@ -510,7 +510,8 @@ static snow_status place_lattice(snow_modes_pass *pass) {
         ((size_t)pass->sheared->bands.columns / 64 + 1) * 64 + 2 * PAD;
     int rows = SNOW_WINDOW_ROWS - pass->taps[1] - 1;
     pass->cells = rows / pass->shear.v.stride + 1;
-    if (pass->cells > BAND_CELLS)
+    /* What bands share is done twice; but threads want some each. */
+    if (pass->cells > BAND_CELLS && (!pass->largest || settings->threads > 1))
         pass->cells = BAND_CELLS;
     pass->bands = (pass->pixels[1] + pass->cells - 1) / pass->cells;
     pass->tiles = (pass->pixels[0] + SNOW_MOST_COLUMNS - 1) / SNOW_MOST_COLUMNS;

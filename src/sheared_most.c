@@ -391,14 +391,14 @@ static const float *weights_of(most_stroke *stroke, int cell, int down) {
 /* Pixels that a slice reaches begin as the smallest value; returns whether
  * there is one. */
 static bool clear_pixels(const float *weights, int count, float *pixels) {
-    float most = 0;
+    int there = 0;
     for (int n = 0; n < count; n++) {
         pixels[n] = weights[n] > 0 ? 0 : NO_PIXEL;
-        most = weights[n] > most ? weights[n] : most;
+        there |= weights[n] > 0;
     }
     for (int n = count; n < TILE; n++)
         pixels[n] = NO_PIXEL;
-    return most > 0;
+    return there;
 }
 
 static void clear_line(most_stroke *stroke, int n) {

@@ -43,7 +43,7 @@ typedef void snow_rows_fn(const snow_rows_job *job);
 #define SNOW_MOST_COLUMNS 16
 #define SNOW_MOST_WINDOW 80 /* floats of a spread window */
 #define SNOW_MOST_LINE (2 * SNOW_MOST_COLUMNS)
-#define SNOW_MOST_CELLS 32
+#define SNOW_MOST_CELLS 64
 #define SNOW_MOST_ROWS 64
 
 /* The picture is rounded to steps in the end, so that what is above it by
