@@ -159,7 +159,7 @@ static void print_libraries(void) {
     const char *name, *version, *formats;
     for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
         printf("%-16s%s %s (%s)\n", i ? "" : "libraries", name,
-               version ? version : "is not in this build", formats);
+               version ? version : "is missing", formats);
 }
 
 static int tell_text(void) {

@@ -79,6 +79,7 @@ extern const snow_format snow_format_hdf5;
 extern const snow_format snow_format_netcdf;
 extern const snow_format snow_format_dicom;
 extern const snow_format snow_format_den;
+extern const snow_format snow_format_zarr;
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */
