@@ -514,7 +514,10 @@ static snow_status place_lattice(snow_modes_pass *pass) {
     if (pass->cells > BAND_CELLS && (!pass->largest || settings->threads > 1))
         pass->cells = BAND_CELLS;
     pass->bands = (pass->pixels[1] + pass->cells - 1) / pass->cells;
-    pass->tiles = (pass->pixels[0] + SNOW_MOST_COLUMNS - 1) / SNOW_MOST_COLUMNS;
+    /* A window's columns are bits of a word. */
+    bool wide = pass->shear.u.phases == 1 && pass->shear.u.stride == 1;
+    pass->columns = wide ? SNOW_MOST_LINE : SNOW_MOST_LINE / 2;
+    pass->tiles = (pass->pixels[0] + pass->columns - 1) / pass->columns;
     for (pass->ring = 1; pass->ring < (size_t)pass->taps[1] + 1;)
         pass->ring *= 2;
     return SNOW_OK;

@@ -19,7 +19,6 @@
 #include <string.h>
 
 #define SLICES_AT_ONCE 8
-#define TILE SNOW_MOST_COLUMNS
 #define LINES_MOST (2 * SNOW_MOST_CELLS)
 
 /* What is above all values: of pixels that no slice reaches. */
@@ -188,9 +187,9 @@ static void fill_factors(const most_stroke *stroke, const most_slice *slice,
         int range[2] = {place->range[phase][0], place->range[phase][1]};
         if (found < 1)
             snow_modes_range(place, phase, found, range);
-        for (int n = 0; n < TILE; n++) {
-            int at = (int)tile * TILE + n;
-            factors[phase * TILE + n] =
+        for (int n = 0; n < stroke->pass->columns; n++) {
+            int at = (int)tile * stroke->pass->columns + n;
+            factors[phase * stroke->pass->columns + n] =
                 at >= range[0] && at < range[1]
                     ? 1 / (found * snow_cover_at(&place->across[phase], at))
                     : 0;
@@ -204,7 +203,8 @@ static bool is_inner(const most_stroke *stroke, const snow_slice_place *place,
     for (int phase = 0; phase < stroke->pass->shear.u.phases; phase++) {
         const snow_cover *cover = &place->across[phase];
         const int *own = place->own[0][phase];
-        int first = (int)tile * TILE, end = first + TILE;
+        int first = (int)tile * stroke->pass->columns,
+            end = first + stroke->pass->columns;
         int last = stroke->pass->pixels[0];
         end = end < last ? end : last;
         if (first < cover->in || end > cover->out || first < own[0] ||
@@ -260,9 +260,10 @@ static void draw_tile(const most_stroke *stroke, const most_slice *slice,
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
     float *least = stroke->scratch.least + tile * SNOW_MOST_CELLS;
-    int64_t column =
-        place->across[0].start - pass->stored[0] + tile * TILE * u->stride;
-    int window = (TILE - 1) * u->stride + pass->taps[0] + place->u->lead[1];
+    int64_t column = place->across[0].start - pass->stored[0] +
+                     tile * pass->columns * u->stride;
+    int window =
+        (pass->columns - 1) * u->stride + pass->taps[0] + place->u->lead[1];
     int reach = place->v->lead[1] + pass->taps[1];
     if (column <= -window || column >= pass->sheared->bands.columns)
         return;
@@ -275,6 +276,7 @@ static void draw_tile(const most_stroke *stroke, const most_slice *slice,
     if (!held)
         return;
     snow_most_tile t = {
+        .columns = pass->columns,
         .phases = {u->phases, v->phases},
         .stride = {u->stride, v->stride},
         .taps = {pass->taps[0], pass->taps[1]},
@@ -390,13 +392,14 @@ static const float *weights_of(most_stroke *stroke, int cell, int down) {
 
 /* Pixels that a slice reaches begin as the smallest value; returns whether
  * there is one. */
-static bool clear_pixels(const float *weights, int count, float *pixels) {
+static bool clear_pixels(const float *weights, int count, int columns,
+                         float *pixels) {
     int there = 0;
     for (int n = 0; n < count; n++) {
         pixels[n] = weights[n] > 0 ? 0 : NO_PIXEL;
         there |= weights[n] > 0;
     }
-    for (int n = count; n < TILE; n++)
+    for (int n = count; n < columns; n++)
         pixels[n] = NO_PIXEL;
     return there;
 }
@@ -409,11 +412,12 @@ static void clear_line(most_stroke *stroke, int n) {
     for (int64_t tile = 0; tile < pass->tiles; tile++) {
         float *line =
             stroke->scratch.lines + (tile * LINES_MOST + n) * SNOW_MOST_LINE;
-        int left = pass->pixels[0] - (int)tile * TILE;
+        int left = pass->pixels[0] - (int)tile * pass->columns;
         for (int phase = 0; phase < pass->shear.u.phases; phase++)
             if (clear_pixels(weights + (size_t)phase * pass->row +
-                                 (size_t)tile * TILE,
-                             left < TILE ? left : TILE, line + phase * TILE))
+                                 (size_t)(tile * pass->columns),
+                             left < pass->columns ? left : pass->columns,
+                             pass->columns, line + phase * pass->columns))
                 stroke->scratch.least[tile * SNOW_MOST_CELLS + cell] = 0;
     }
 }
@@ -430,15 +434,16 @@ static void finish_line(const most_stroke *stroke, int n) {
         float *line =
             stroke->scratch.lines + (tile * LINES_MOST + n) * SNOW_MOST_LINE;
         float there[SNOW_MOST_LINE];
-        int left = pass->pixels[0] - (int)tile * TILE;
-        for (int i = 0; i < phases * TILE; i++) {
+        int left = pass->pixels[0] - (int)tile * pass->columns;
+        for (int i = 0; i < phases * pass->columns; i++) {
             there[i] = line[i] < NO_PIXEL ? 1 : 0;
             line[i] = there[i] * snow_most_step(line[i]) / SNOW_MOST_STEPS;
         }
-        const float *values[2] = {line, line + TILE};
-        const float *found[2] = {there, there + TILE};
-        pass->fns->weave(values, found, phases, left < TILE ? left : TILE, out);
-        out += 2 * phases * TILE;
+        const float *values[2] = {line, line + pass->columns};
+        const float *found[2] = {there, there + pass->columns};
+        pass->fns->weave(values, found, phases,
+                         left < pass->columns ? left : pass->columns, out);
+        out += 2 * phases * pass->columns;
     }
 }
 

@@ -41,7 +41,8 @@ typedef struct snow_modes_pass {
     int pixels[2];    /* cells along u and v: pixels of a phase */
     int cells;        /* of a band */
     int64_t bands;
-    int64_t tiles; /* of a band of largest values */
+    int columns;   /* of a tile of largest values */
+    int64_t tiles; /* of a band of those */
     size_t row;    /* floats of a row of a phase */
     size_t dense;  /* of a row of voxels, pads included */
     size_t ring;   /* rows that are kept; a power of 2 */

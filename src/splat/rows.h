@@ -33,16 +33,15 @@ typedef struct snow_rows_job {
 
 typedef void snow_rows_fn(const snow_rows_job *job);
 
-/* A tile of one slice for largest values: 16 columns of the lattice of up to 64
- * rows of voxels, of which no more is looked at than may matter.
+/* A tile of one slice for largest values: 16 or 32 columns of the lattice of up
+ * to 64 rows of voxels, of which no more is looked at than may matter.
  *
  *   windows of voxels     spread, combed along u       combed along v
  *   row i   . a b . .  --> phase 0 | phase 1 of row i  --> lines of a cell
  *
- * A line holds 16 pixels of each phase along u, one phase after the other. */
-#define SNOW_MOST_COLUMNS 16
+ * A line holds the pixels of each phase along u, one phase after the other. */
 #define SNOW_MOST_WINDOW 80 /* floats of a spread window */
-#define SNOW_MOST_LINE (2 * SNOW_MOST_COLUMNS)
+#define SNOW_MOST_LINE 32   /* pixels at most */
 #define SNOW_MOST_CELLS 64
 #define SNOW_MOST_ROWS 64
 
@@ -57,6 +56,7 @@ static inline float snow_most_step(float value) {
 #define SNOW_BLOCK_COLUMNS 16
 
 typedef struct snow_most_tile {
+    int columns; /* 16, or 32 of one phase */
     /* Along u and v. */
     int phases[2], stride[2], taps[2], lead[2];
     const float *weights[2][2]; /* [axis][phase] */

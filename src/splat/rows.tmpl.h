@@ -168,7 +168,8 @@ WINDOWS(16, uint16_t)
 #undef WINDOWS
 
 static inline __attribute__((always_inline)) TARGET void
-NAME(comb_rows)(const snow_most_tile *t, int taps, int lead, int phases) {
+NAME(comb_rows)(const snow_most_tile *t, int taps, int lead, int phases,
+                int columns) {
     V(vec) weights[2][SNOW_TAPS_MOST];
     for (int phase = 0; phase < phases; phase++)
         for (int m = 0; m < taps; m++)
@@ -177,13 +178,13 @@ NAME(comb_rows)(const snow_most_tile *t, int taps, int lead, int phases) {
         int row = __builtin_ctzll(held);
         const float *samples = t->samples + row * SNOW_MOST_WINDOW;
         float *pixels = t->ring + row * SNOW_MOST_LINE;
-        for (int at = 0; at < SNOW_MOST_COLUMNS; at += LANES)
+        for (int at = 0; at < columns; at += LANES)
             for (int phase = 0; phase < phases; phase++) {
                 const float *first = samples + at + phase * lead;
                 V(vec) sum = V(mul)(weights[phase][0], V(load)(first));
                 for (int m = 1; m < taps; m++)
                     sum = V(fma)(weights[phase][m], V(load)(first + m), sum);
-                V(store)(pixels + phase * SNOW_MOST_COLUMNS + at, sum);
+                V(store)(pixels + phase * columns + at, sum);
             }
     }
 }
@@ -194,7 +195,7 @@ TARGET static void NAME(comb_strided)(const snow_most_tile *t) {
         int row = __builtin_ctzll(held);
         const float *sample = t->samples + row * SNOW_MOST_WINDOW;
         float *pixels = t->ring + row * SNOW_MOST_LINE;
-        for (int n = 0; n < SNOW_MOST_COLUMNS; n++, sample += t->stride[0]) {
+        for (int n = 0; n < t->columns; n++, sample += t->stride[0]) {
             float sum = t->weights[0][0][0] * sample[0];
             for (int m = 1; m < t->taps[0]; m++)
                 sum += t->weights[0][0][m] * sample[m];
@@ -208,12 +209,16 @@ TARGET static void NAME(comb)(const snow_most_tile *t) {
     (t->code_bytes == 1 ? NAME(windows8) : NAME(windows16))(t);
     if (t->stride[0] > 1)
         NAME(comb_strided)(t);
+    else if (t->columns == 32 && t->taps[0] == 6)
+        NAME(comb_rows)(t, 6, 0, 1, 32);
+    else if (t->columns == 32 && t->taps[0] == 5)
+        NAME(comb_rows)(t, 5, 0, 1, 32);
     else if (t->phases[0] == 1)
-        NAME(comb_rows)(t, t->taps[0], 0, 1);
+        NAME(comb_rows)(t, t->taps[0], 0, 1, t->columns);
     else if (t->taps[0] == 4)
-        NAME(comb_rows)(t, 4, lead, 2);
+        NAME(comb_rows)(t, 4, lead, 2, 16);
     else
-        NAME(comb_rows)(t, t->taps[0], lead, 2);
+        NAME(comb_rows)(t, t->taps[0], lead, 2, 16);
 }
 
 /* Both lines of a cell share their rows, but for the lead. */
@@ -272,9 +277,13 @@ TARGET static void NAME(most)(const snow_most_tile *t) {
         NAME(most_cells)(t, 4, 1, 2, SNOW_MOST_LINE);
     else if (t->phases[0] == 2 && phases == 2 && taps == 4)
         NAME(most_cells)(t, 4, 0, 2, SNOW_MOST_LINE);
+    else if (t->columns == 32 && phases == 1 && taps == 6)
+        NAME(most_cells)(t, 6, 0, 1, 32);
+    else if (t->columns == 32 && phases == 1 && taps == 5)
+        NAME(most_cells)(t, 5, 0, 1, 32);
     else
         NAME(most_cells)
-    (t, taps, lead, phases, t->phases[0] * SNOW_MOST_COLUMNS);
+    (t, taps, lead, phases, t->phases[0] * t->columns);
 }
 
 /* --- weaving ---------------------------------------------------------------
