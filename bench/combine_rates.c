@@ -92,8 +92,9 @@ static void scan_layer(bench_rates *rates, int layer) {
         int64_t scanned = 0;
         double start = cpu_seconds();
         rates->active = snow_active_scan(
-            snow_pixels_pick(SNOW_ISA_AUTO, options->channels), &order, NULL, 0,
-            pixels, rates->words[layer], rates->packed[layer], &scanned);
+            snow_pixels_pick(SNOW_ISA_AUTO, options->channels, SNOW_LAY_OVER),
+            &order, NULL, 0, pixels, rates->words[layer], rates->packed[layer],
+            &scanned);
         keep_least(&rates->scan, cpu_seconds() - start, scanned);
         rates->scanned = scanned;
     }
@@ -110,10 +111,11 @@ static void blend_layers(bench_rates *rates) {
         for (int i = 0; i < LAYERS; i++)
             rates->layers[i].next = rates->layers[i].pixels;
         double start = cpu_seconds();
-        snow_active_merge(
-            snow_pixels_pick(SNOW_ISA_AUTO, rates->options->channels),
-            rates->layers, LAYERS, rates->options->channels, 0, pixels,
-            rates->mask, rates->out, true, &laid);
+        snow_active_merge(snow_pixels_pick(SNOW_ISA_AUTO,
+                                           rates->options->channels,
+                                           SNOW_LAY_OVER),
+                          rates->layers, LAYERS, rates->options->channels, 0,
+                          pixels, rates->mask, rates->out, true, &laid);
         keep_least(&rates->blend, cpu_seconds() - start, laid);
     }
 }

@@ -2,25 +2,27 @@
  * eye on opacity alone. */
 #include "depth.h"
 #include "image/image.h"
+#include "volume/volume.h"
 
 #include <math.h>
 #include <string.h>
 
 void snow_depth_place(const snow_job *job, double of[4]) {
     const snow_placement *p = &job->placement;
-    const snow_volume_info *info = &job->volume->info;
+    snow_volume_info info;
     const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
     const int64_t sides[3] = {p->columns, p->rows, p->slices};
+    snow_volume_whole(job->volume, &info);
     of[3] = 0;
     for (int n = 0; n < 3; n++) {
         of[n] = 0;
         for (int r = 0; r < 3; r++)
-            of[n] -= info->matrix[r][axes[n]] * p->back[r];
+            of[n] -= info.matrix[r][axes[n]] * p->back[r];
         if (!job->view->has_target)
             of[3] -= of[n] * (double)(sides[n] - 1) / 2;
     }
     for (int r = 0; job->view->has_target && r < 3; r++)
-        of[3] -= (info->matrix[r][3] - job->view->target[r]) * p->back[r];
+        of[3] -= (info.matrix[r][3] - job->view->target[r]) * p->back[r];
 }
 
 /* Where the ray of a pixel meets slice k, which need not be a whole number. */
@@ -60,7 +62,8 @@ void snow_depth_note(const snow_job *job, int64_t slice, int x, int y,
         if (before >= 0.5 || !(after >= 0.5))
             continue;
         double share = (0.5 - before) / (after - before) - 0.5;
-        double k = (double)slice + (rises(p, x + n, y) ? share : -share);
+        double k = (double)(slice + job->clip.stored[2]) +
+                   (rises(p, x + n, y) ? share : -share);
         snow_depth_place(job, of);
         meet_slice(p, x + n, y, k, at);
         job->depths[first + (size_t)n] =
@@ -80,18 +83,31 @@ void snow_depth_note_sheet(const snow_job *job, int64_t slice,
                                 (size_t)job->channels);
 }
 
-snow_status snow_depth_over(snow_frame *frame, const snow_job *job) {
+/* The pictures' alphas from and to numbers of their own. */
+static void take_alphas(float *pixels, const float *alphas, size_t count,
+                        size_t channels) {
+    for (size_t n = 0; n < count; n++)
+        pixels[n * channels + channels - 1] = alphas[n];
+}
+
+static void give_alphas(const float *pixels, float *alphas, size_t count,
+                        size_t channels) {
+    for (size_t n = 0; n < count; n++)
+        alphas[n] = pixels[n * channels + channels - 1];
+}
+
+snow_status snow_depth_behind(snow_frame *frame, const snow_job *job,
+                              float *alphas) {
     size_t pixels = (size_t)job->view->width * (size_t)job->view->height;
-    size_t bytes = pixels * (size_t)job->channels * sizeof *frame->layer;
+    size_t channels = (size_t)job->channels;
+    size_t bytes = pixels * channels * sizeof *frame->layer;
     snow_stats unused = {0};
     snow_job pass = *job;
-    if (job->volume->is_part || !job->all)
-        return snow_fail(job->context, SNOW_BAD_USAGE,
-                         "the depth of one part of many is not combined yet; "
-                         "render it on one rank");
     SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
                           0, bytes));
     memset(frame->layer, 0, bytes);
+    if (alphas)
+        take_alphas(frame->layer, alphas, pixels, channels);
     for (size_t n = 0; n < pixels; n++)
         frame->depth->pixels[n] = NAN;
     pass.settings.method = SNOW_METHOD_FOOTPRINT;
@@ -99,5 +115,16 @@ snow_status snow_depth_over(snow_frame *frame, const snow_job *job) {
     pass.pixels = frame->layer;
     pass.depths = frame->depth->pixels;
     pass.stats = &unused;
-    return snow_job_render_exact(frame, &pass);
+    SNOW_TRY(snow_job_render_exact(frame, &pass));
+    if (alphas)
+        give_alphas(frame->layer, alphas, pixels, channels);
+    return SNOW_OK;
+}
+
+snow_status snow_depth_over(snow_frame *frame, const snow_job *job) {
+    if (!snow_job_whole(job))
+        return snow_fail(job->context, SNOW_BAD_USAGE,
+                         "the depth of one part of many is none; render all "
+                         "parts with snow_ranks_render");
+    return snow_depth_behind(frame, job, NULL);
 }

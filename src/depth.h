@@ -23,4 +23,9 @@ void snow_depth_note_sheet(const snow_job *job, int64_t slice,
  * SNOW_NO_MEMORY. */
 snow_status snow_depth_over(snow_frame *frame, const snow_job *job);
 
+/* The same of a part, behind others that have left `alphas` of the picture's
+ * pixels, to which this one's is added. */
+snow_status snow_depth_behind(snow_frame *frame, const snow_job *job,
+                              float *alphas);
+
 #endif

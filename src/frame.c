@@ -123,6 +123,13 @@ snow_status snow_job_begin(snow_frame *frame, const snow_volume *volume,
     return place(job, parts, part);
 }
 
+bool snow_job_whole(const snow_job *job) {
+    const snow_placement *p = &job->placement;
+    const int64_t *count = job->clip.count;
+    return job->all && count[0] == p->columns && count[1] == p->rows &&
+           count[2] == p->slices;
+}
+
 void snow_job_clip_sheet(const snow_job *job, int64_t slice,
                          snow_sheet *sheet) {
     if (!job->clip.cuts || sheet->x0 >= sheet->x1)

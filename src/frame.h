@@ -67,6 +67,9 @@ snow_status snow_job_begin(snow_frame *frame, const snow_volume *volume,
                            const snow_settings *settings, int parts, int part,
                            snow_job *job);
 
+/* Whether the job draws all voxels that there are: one part of one is that. */
+bool snow_job_whole(const snow_job *job);
+
 /* What snow_sheared_splat wants, with slices along an axis: those of the job's
  * slab, or all that the volume answers for.  `placement` is filled and must
  * last as long as the order. */

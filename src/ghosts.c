@@ -10,8 +10,9 @@
  *         grad   <------ h --->                   and a - 3 with shading
  *
  * Along the slice axis kernels do not reach; a slice half-way to the next one
- * (quality high) does.  A pixel wider than a voxel widens the kernel, and how
- * wide it is depends on the view. */
+ * (quality high) does, and mode iso looks at the slice that the ray met before,
+ * where it was as many voxels aside as it is slanted.  A pixel wider than a
+ * voxel widens the kernel, and how wide it is depends on the view. */
 #include "ghosts.h"
 
 #include "base/vec3.h"
@@ -48,10 +49,15 @@ static double layers_of(const question *q, double width) {
     return floor(snow_taper_reach(&taper) + 0.5) + q->gradients;
 }
 
+static bool finds_surfaces(const question *q) {
+    return q->settings->mode == SNOW_MODE_ISO;
+}
+
 /* Those across slices. */
 static double layers_across(const question *q) {
-    return q->gradients + (q->settings->quality == SNOW_QUALITY_HIGH &&
-                           q->settings->method == SNOW_METHOD_SHEARED);
+    return q->gradients + finds_surfaces(q) +
+           (q->settings->quality == SNOW_QUALITY_HIGH &&
+            q->settings->method == SNOW_METHOD_SHEARED);
 }
 
 /* The widest pixel on any slice of a placement, voxels along u and v. */
@@ -69,15 +75,38 @@ static void widest_pixel(const snow_placement *p, double width[2]) {
     }
 }
 
+/* How many voxels rays go aside along u and v from slice to slice, at most. */
+static void widest_slope(const snow_placement *p, double slope[2]) {
+    for (int axis = 0; axis < 2; axis++)
+        slope[axis] = fabs(p->inverse[axis][0] * p->step_slice[0] +
+                           p->inverse[axis][1] * p->step_slice[1]);
+    if (!p->perspective)
+        return;
+    slope[0] = slope[1] = 0;
+    for (int corner = 0; corner < 4; corner++) {
+        double first[3], ray[3];
+        snow_eye_ray(&p->eye, 0, 0, first);
+        snow_eye_ray(&p->eye, corner % 2 ? p->width : 0,
+                     corner / 2 ? p->height : 0, ray);
+        for (int axis = 0; axis < 2; axis++)
+            slope[axis] = ray[2] * first[2] > 0
+                              ? fmax(slope[axis], fabs(ray[axis] / ray[2]))
+                              : INFINITY;
+    }
+}
+
 /* The view's own needs, with slices along one axis. */
 static void ask_placement(const question *q, const snow_placement *p,
                           int64_t layers[3]) {
     const int64_t *dims = q->whole->dims;
     const int axes[2] = {p->u_axis, p->v_axis};
-    double width[2];
+    double width[2], slope[2] = {0, 0};
     widest_pixel(p, width);
+    if (finds_surfaces(q))
+        widest_slope(p, slope);
     for (int n = 0; n < 2; n++)
-        at_least(&layers[axes[n]], layers_of(q, width[n]), dims[axes[n]] - 1);
+        at_least(&layers[axes[n]], layers_of(q, width[n]) + ceil(slope[n]),
+                 dims[axes[n]] - 1);
     at_least(&layers[p->slice_axis], layers_across(q), dims[p->slice_axis] - 1);
 }
 
@@ -165,6 +194,17 @@ static double steepest(double gradients[3][3], int axis) {
     return most;
 }
 
+/* How many voxels along an axis rays go aside from slice to slice at most: of
+ * |g . d| / |h . d|, where h is the gradient of the slices' index. */
+static double steepest_slope(double gradients[3][3], int axis, double slant) {
+    double most = 0;
+    for (int other = 1; other < 3; other++)
+        most = fmax(most,
+                    snow_length(gradients[axis]) /
+                        (snow_length(gradients[(axis + other) % 3]) * slant));
+    return most;
+}
+
 static snow_status ask_all(const question *q, int64_t layers[3]) {
     double gradients[3][3];
     snow_placement checked;
@@ -183,6 +223,8 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
         double width =
             slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;
         double wanted = width < 1e9 ? layers_of(q, width) : 1e9;
+        if (finds_surfaces(q))
+            wanted += ceil(steepest_slope(gradients, axis, slant));
         int64_t most = q->whole->dims[axis] - 1;
         at_least(&layers[axis], fmax(wanted, layers_across(q)), most);
     }

@@ -35,6 +35,7 @@
 /* The kernel on a slice, along u or v. */
 typedef struct iso_kernel {
     snow_taper taper;
+    bool cubic;             /* the cubic B-spline itself, not widened */
     snow_taper_table table; /* but for the box */
 } iso_kernel;
 
@@ -44,14 +45,20 @@ struct snow_iso {
     size_t kernels_capacity;
     int64_t kernel_count; /* that were ever made */
     snow_reached reached;
+    uint64_t reached_of; /* the encoding that it maps; 0: none */
+    snow_first first;
 };
 
 typedef struct iso_pass {
     const snow_job *job;
     const snow_iso *iso;
     const snow_reached *reached; /* NULL: every window is looked at */
+    const snow_first *first;     /* NULL: in perspective, or the same */
+    bool near;                   /* the volume has no holes */
+    snow_near_grid grid;
     snow_shader shader;
     double level, margin; /* data units */
+    double slope[2];      /* of all rays, where there is `first` */
     float rgb[3];
     double depth[4]; /* of index position (u, v, k): [0..2], and a constant */
     snow_image *image, *depths;
@@ -78,6 +85,8 @@ void snow_iso_free(snow_iso *iso) {
         snow_release(iso->context, iso->kernels[n].table.cells);
     snow_release(iso->context, iso->kernels);
     snow_release(iso->context, iso->reached.bits);
+    snow_release(iso->context, iso->first.slices);
+    snow_release(iso->context, iso->first.found);
     snow_release(iso->context, iso);
 }
 
@@ -106,6 +115,8 @@ static snow_status make_kernel(snow_iso *iso, const snow_settings *settings,
         return snow_fail(iso->context, SNOW_BAD_USAGE,
                          "pixels are too many voxels wide for mode iso; take "
                          "a larger picture or zoom");
+    kernel->cubic = settings->kernel == SNOW_KERNEL_BSPLINE &&
+                    settings->footprint == 4 && kernel->taper.wide == 1;
     if (settings->kernel == SNOW_KERNEL_BOX)
         return SNOW_OK;
     return snow_taper_table_make(iso->context, &kernel->taper, &kernel->table);
@@ -144,22 +155,26 @@ static snow_status make_kernels(snow_iso *iso, const snow_job *job,
 /* --- a point of a slice ----------------------------------------------------
  */
 
-/* The window around (u, v) on a slice; false where it is outside. */
+/* The window around (u, v) on a slice, as far as it is stored; false where it
+ * is outside. */
 static bool place_window(const iso_pass *pass, int64_t slice,
                          const double at[2], snow_probe *probe) {
-    const snow_placement *p = &pass->job->placement;
-    const int64_t sides[2] = {p->columns, p->rows};
-    probe->slice = slice;
+    const int64_t *stored = pass->job->clip.stored;
+    const int64_t *size = pass->job->clip.size;
+    probe->slice = slice - stored[2];
+    if (probe->slice < 0 || probe->slice >= size[2])
+        return false;
     for (int axis = 0; axis < 2; axis++) {
         const iso_kernel *kernel = kernel_of(pass, slice, axis);
         int taps = snow_comb_taps(&kernel->taper);
         double base = floor(at[axis]) - taps / 2 + 1;
-        if (!(base > -taps && base < (double)sides[axis]))
+        double low = (double)stored[axis], high = low + (double)size[axis];
+        if (!(base > low - taps && base < high))
             return false;
         int64_t first = (int64_t)base, end = first + taps;
-        first = first > 0 ? first : 0;
-        end = end < sides[axis] ? end : sides[axis];
-        probe->first[axis] = first;
+        first = first > stored[axis] ? first : stored[axis];
+        end = end < stored[axis] + size[axis] ? end : stored[axis] + size[axis];
+        probe->first[axis] = first - stored[axis];
         probe->count[axis] = (int)(end - first);
         for (int64_t n = first; n < end; n++)
             probe->weights[axis][n - first] =
@@ -173,22 +188,86 @@ static void ray_at(const iso_ray *ray, double slice, double at[2]) {
     at[1] = ray->at[1] + slice * ray->slope[1];
 }
 
+/* Weights of four voxels around a point, `part` behind the second. */
+static inline void cubic_weights(float part, float weights[4]) {
+    float rest = 1 - part, square = part * part, cube = square * part;
+    const float third = 1.0f / 3, sixth = 1.0f / 6;
+    weights[0] = rest * rest * rest * sixth;
+    weights[1] = cube / 2 - square + 2 * third;
+    weights[2] = (part + square - cube) / 2 + sixth;
+    weights[3] = cube * sixth;
+}
+
+/* The usual window, where it and what is around it is in the grid; of a part
+ * it is stored, as are the ghosts that iso asks for. */
+static bool place_near(const iso_pass *pass, int64_t slice, const double at[2],
+                       snow_near *near) {
+    const snow_placement *p = &pass->job->placement;
+    const int64_t sides[2] = {p->columns, p->rows};
+    const int64_t *stored = pass->job->clip.stored;
+    const int64_t *size = pass->job->clip.size;
+    near->at = (slice - stored[2]) * pass->grid.steps[2];
+    if (slice < stored[2] || slice >= stored[2] + size[2])
+        return false;
+    for (int axis = 0; axis < 2; axis++) {
+        if (!(at[axis] >= 2 && at[axis] < (double)(sides[axis] - 3)) ||
+            !kernel_of(pass, slice, axis)->cubic)
+            return false;
+        int64_t whole = (int64_t)at[axis];
+        if (whole - 1 < stored[axis] || whole + 3 > stored[axis] + size[axis])
+            return false;
+        cubic_weights((float)(at[axis] - (double)whole), near->weights[axis]);
+        near->at += (whole - 1 - stored[axis]) * pass->grid.steps[axis];
+    }
+    return true;
+}
+
+/* What a ray meets on a slice. */
+typedef struct iso_point {
+    int64_t slice;
+    bool near; /* the window is the usual one */
+    snow_near window;
+    double value; /* data units */
+} iso_point;
+
+/* A thread's own. */
+typedef struct iso_eye {
+    snow_probe probe;
+    iso_point here, before;
+} iso_eye;
+
 /* The value where a ray meets a slice; false where less than half a voxel's
  * weight is there. */
 static bool find_value(const iso_pass *pass, const iso_ray *ray, int64_t slice,
-                       snow_probe *probe, double *value) {
+                       snow_probe *probe, iso_point *point) {
     const snow_volume_info *info = &pass->job->volume->info;
     double at[2], sums[2];
     if (slice < 0 || slice >= pass->job->placement.slices)
         return false;
     ray_at(ray, (double)slice, at);
+    point->slice = slice;
+    point->near = pass->near && place_near(pass, slice, at, &point->window);
+    if (point->near) {
+        double native =
+            (double)snow_near_value(&pass->grid, &point->window, 0) +
+            pass->grid.base;
+        point->value = info->slope * native + info->intercept;
+        return true;
+    }
     if (!place_window(pass, slice, at, probe))
         return false;
     snow_probe_value(probe, sums);
     if (!(sums[1] >= (double)SNOW_WEIGHT_ENOUGH))
         return false;
-    *value = info->slope * (sums[0] / sums[1]) + info->intercept;
+    point->value = info->slope * (sums[0] / sums[1]) + info->intercept;
     return true;
+}
+
+/* Whether a sample is the part's (transform/clip.h). */
+static bool is_own(const iso_pass *pass, const double at[2]) {
+    const snow_clip *clip = &pass->job->clip;
+    return !clip->cuts || (at[0] >= clip->low[0] && at[0] < clip->high[0] &&
+                           at[1] >= clip->low[1] && at[1] < clip->high[1]);
 }
 
 /* Whether a window may hold what is looked for. */
@@ -196,14 +275,19 @@ static bool worth_a_look(const iso_pass *pass, const iso_ray *ray,
                          int64_t slice) {
     const snow_reached *r = pass->reached;
     double at[2];
+    ray_at(ray, (double)slice, at);
+    if (!is_own(pass, at))
+        return false;
     if (!r)
         return true;
-    ray_at(ray, (double)slice, at);
-    double u = at[0] + r->taps[0] / 2 + 1, v = at[1] + r->taps[1] / 2 + 1;
+    const int64_t *stored = pass->job->clip.stored;
+    double u = at[0] - (double)stored[0] + r->taps[0] / 2 + 1;
+    double v = at[1] - (double)stored[1] + r->taps[1] / 2 + 1;
     if (!(u >= 0 && v >= 0 && u < (double)r->places[0] &&
           v < (double)r->places[1]))
         return false;
-    return snow_reached_at(r, slice, (int64_t)u, (int64_t)v);
+    return snow_reached_at(r, slice - pass->job->slab.first, (int64_t)u,
+                           (int64_t)v);
 }
 
 /* --- rays ------------------------------------------------------------------
@@ -222,86 +306,124 @@ static void cut_slices(double at, double slope, double low, double high,
     range[1] = fmin(range[1], fmax(a, b));
 }
 
-/* The ray through the middle of pixel (x, y). */
-static iso_ray make_ray(const iso_pass *pass, int x, int y) {
+/* The same of a parallel view, but for where it leaves the volume: windows
+ * beyond hold nothing. */
+static void make_parallel(const iso_pass *pass, int x, int y, iso_ray *ray) {
     const snow_placement *p = &pass->job->placement;
-    iso_ray ray = {.step = p->nearest_first ? 1 : -1};
-    double range[2] = {0, (double)(p->slices - 1)};
+    const snow_reached *r = pass->reached;
+    const snow_clip *clip = &pass->job->clip;
+    const snow_slab slab = pass->job->slab;
+    double x0 = x + 0.5 - p->origin[0], y0 = y + 0.5 - p->origin[1], at[2];
+    for (int axis = 0; axis < 2; axis++) {
+        ray->slope[axis] = pass->slope[axis];
+        ray->at[axis] = p->inverse[axis][0] * x0 + p->inverse[axis][1] * y0;
+    }
+    ray_at(ray, (double)slab.first, at);
+    int32_t passed = snow_first_of(
+        pass->first, at[0] - (double)clip->stored[0] + r->taps[0] / 2 + 1,
+        at[1] - (double)clip->stored[1] + r->taps[1] / 2 + 1);
+    ray->step = p->nearest_first ? 1 : -1;
+    ray->first =
+        slab.first + (ray->step > 0 ? passed : slab.count - 1 - passed);
+    ray->last = slab.first + (ray->step > 0 ? slab.count - 1 : 0);
+    ray->meets = passed >= 0;
+}
+
+/* The ray through the middle of pixel (x, y). */
+static void make_ray(const iso_pass *pass, int x, int y, iso_ray *ray) {
+    const snow_placement *p = &pass->job->placement;
+    ray->step = p->nearest_first ? 1 : -1;
+    ray->meets = false;
+    const snow_slab slab = pass->job->slab;
+    double range[2] = {(double)slab.first,
+                       (double)(slab.first + slab.count - 1)};
     const double sides[2] = {(double)p->columns, (double)p->rows};
-    double direction[3], x0 = x + 0.5 - p->origin[0],
-                         y0 = y + 0.5 - p->origin[1];
+    double direction[3] = {0, 0, 1}, x0 = x + 0.5 - p->origin[0],
+           y0 = y + 0.5 - p->origin[1];
     if (p->perspective) {
         snow_eye_ray(&p->eye, x + 0.5, y + 0.5, direction);
-        ray.step = direction[2] > 0 ? 1 : -1;
-        cut_slices(-p->eye.at[2], 1, ray.step > 0 ? SNOW_EDGE_ON : -INFINITY,
-                   ray.step > 0 ? INFINITY : -SNOW_EDGE_ON, range);
+        ray->step = direction[2] > 0 ? 1 : -1;
+        cut_slices(-p->eye.at[2], 1, ray->step > 0 ? SNOW_EDGE_ON : -INFINITY,
+                   ray->step > 0 ? INFINITY : -SNOW_EDGE_ON, range);
     }
     for (int axis = 0; axis < 2; axis++) {
         const double *row = p->inverse[axis];
         if (p->perspective) {
-            ray.slope[axis] = direction[axis] / direction[2];
-            ray.at[axis] = p->eye.at[axis] - p->eye.at[2] * ray.slope[axis];
+            ray->slope[axis] = direction[axis] / direction[2];
+            ray->at[axis] = p->eye.at[axis] - p->eye.at[2] * ray->slope[axis];
         } else {
-            ray.slope[axis] =
+            ray->slope[axis] =
                 -row[0] * p->step_slice[0] - row[1] * p->step_slice[1];
-            ray.at[axis] = row[0] * x0 + row[1] * y0;
+            ray->at[axis] = row[0] * x0 + row[1] * y0;
         }
-        if (!isfinite(ray.slope[axis]) || !isfinite(ray.at[axis]))
-            return ray;
+        if (!isfinite(ray->slope[axis]) || !isfinite(ray->at[axis]))
+            return;
         /* Where a window finds half of its weights. */
-        cut_slices(ray.at[axis], ray.slope[axis], -1, sides[axis], range);
+        cut_slices(ray->at[axis], ray->slope[axis], -1, sides[axis], range);
     }
     if (!(range[0] <= range[1]))
-        return ray;
+        return;
     int64_t low = (int64_t)ceil(range[0] - 1e-9);
     int64_t high = (int64_t)floor(range[1] + 1e-9);
-    ray.first = ray.step > 0 ? low : high;
-    ray.last = ray.step > 0 ? high : low;
-    ray.meets = low <= high;
-    return ray;
+    ray->first = ray->step > 0 ? low : high;
+    ray->last = ray->step > 0 ? high : low;
+    ray->meets = low <= high;
 }
 
-/* The gradient where a ray meets a slice. */
+/* Whether what is around a usual window is stored on all sides. */
+static bool has_neighbours(const iso_pass *pass, const iso_point *point) {
+    const snow_clip *clip = &pass->job->clip;
+    return point->slice > clip->stored[2] &&
+           point->slice + 1 < clip->stored[2] + clip->size[2];
+}
+
+/* The gradient there. */
 static void find_gradient(const iso_pass *pass, const iso_ray *ray,
-                          int64_t slice, snow_probe *probe,
+                          const iso_point *point, snow_probe *probe,
                           double gradient[3]) {
     double at[2];
-    ray_at(ray, (double)slice, at);
-    place_window(pass, slice, at, probe);
+    if (point->near && has_neighbours(pass, point)) {
+        snow_near_gradient(&pass->grid, &point->window, gradient);
+        return;
+    }
+    ray_at(ray, (double)point->slice, at);
+    place_window(pass, point->slice, at, probe);
     snow_probe_gradient(probe, gradient);
 }
 
 /* The surface between a slice that is not below the value, and the one before
  * it, if that is. */
-static void find_surface(const iso_pass *pass, const iso_ray *ray,
-                         int64_t slice, double value, snow_probe *probe,
+static void find_surface(const iso_pass *pass, const iso_ray *ray, iso_eye *eye,
                          iso_hit *hit) {
-    double before, share = 0, near[3];
+    const iso_point *here = &eye->here, *before = &eye->before;
+    double share = 0, near[3];
     bool shaded = pass->job->settings.shade == SNOW_SHADE_PHONG;
-    if (find_value(pass, ray, slice - ray->step, probe, &before) &&
-        before < pass->level && value > before)
-        share = fmin(fmax((value - pass->level) / (value - before), 0), 1);
-    hit->slice = (double)slice - share * (double)ray->step;
+    if (find_value(pass, ray, here->slice - ray->step, &eye->probe,
+                   &eye->before) &&
+        before->value < pass->level && here->value > before->value)
+        share = fmin(
+            (here->value - pass->level) / (here->value - before->value), 1);
+    share = share > 0 ? share : 0;
+    hit->slice = (double)here->slice - share * (double)ray->step;
     if (!shaded)
         return;
-    find_gradient(pass, ray, slice, probe, hit->gradient);
+    find_gradient(pass, ray, here, &eye->probe, hit->gradient);
     if (share == 0)
         return;
-    find_gradient(pass, ray, slice - ray->step, probe, near);
+    find_gradient(pass, ray, before, &eye->probe, near);
     for (int n = 0; n < 3; n++)
         hit->gradient[n] += share * (near[n] - hit->gradient[n]);
 }
 
-static bool follow_ray(const iso_pass *pass, const iso_ray *ray,
-                       snow_probe *probe, iso_hit *hit) {
+static bool follow_ray(const iso_pass *pass, const iso_ray *ray, iso_eye *eye,
+                       iso_hit *hit) {
     if (!ray->meets)
         return false;
     for (int64_t k = ray->first;; k += ray->step) {
-        double value;
         if (worth_a_look(pass, ray, k) &&
-            find_value(pass, ray, k, probe, &value) &&
-            value >= pass->level - pass->margin) {
-            find_surface(pass, ray, k, value, probe, hit);
+            find_value(pass, ray, k, &eye->probe, &eye->here) &&
+            eye->here.value >= pass->level - pass->margin) {
+            find_surface(pass, ray, eye, hit);
             return true;
         }
         if (k == ray->last)
@@ -309,17 +431,21 @@ static bool follow_ray(const iso_pass *pass, const iso_ray *ray,
     }
 }
 
-/* --- lines -----------------------------------------------------------------
+/* --- blocks of pixels ------------------------------------------------------
+ *
+ * Rays side by side look at the same voxels, and so do those of the next line.
  */
+
+#define BLOCK 16
 
 /* Pixels whose surface is found, to be shaded together. */
 typedef struct iso_batch {
     double gradients[3][SNOW_SHADE_BLOCK];
-    int x[SNOW_SHADE_BLOCK];
+    size_t pixel[SNOW_SHADE_BLOCK];
     int count;
 } iso_batch;
 
-static void shade_batch(const iso_pass *pass, iso_batch *batch, float *line) {
+static void shade_batch(const iso_pass *pass, iso_batch *batch) {
     float samples[4 * SNOW_SHADE_BLOCK];
     int channels = pass->image->channels;
     for (int n = 0; n < batch->count; n++) {
@@ -332,43 +458,49 @@ static void shade_batch(const iso_pass *pass, iso_batch *batch, float *line) {
             &pass->shader, (const double(*)[SNOW_SHADE_BLOCK])batch->gradients,
             batch->count, channels, samples);
     for (int n = 0; n < batch->count; n++)
-        memcpy(line + (size_t)batch->x[n] * (size_t)channels,
+        memcpy(pass->image->pixels + batch->pixel[n] * (size_t)channels,
                samples + n * channels, (size_t)channels * sizeof *samples);
     batch->count = 0;
 }
 
-static void find_line(void *of, int64_t y, int worker) {
+static void find_pixel(const iso_pass *pass, int x, int y, iso_eye *eye,
+                       iso_batch *batch) {
+    size_t pixel = (size_t)y * (size_t)pass->image->width + (size_t)x;
+    float *depth = pass->depths ? pass->depths->pixels + pixel : NULL;
+    iso_hit hit;
+    iso_ray ray;
+    double at[2];
+    (pass->first ? make_parallel : make_ray)(pass, x, y, &ray);
+    if (depth)
+        *depth = NAN;
+    if (!follow_ray(pass, &ray, eye, &hit))
+        return;
+    ray_at(&ray, hit.slice, at);
+    if (depth)
+        *depth = (float)(pass->depth[0] * at[0] + pass->depth[1] * at[1] +
+                         pass->depth[2] * hit.slice + pass->depth[3]);
+    for (int n = 0; n < 3; n++)
+        batch->gradients[n][batch->count] = hit.gradient[n];
+    batch->pixel[batch->count++] = pixel;
+    if (batch->count == SNOW_SHADE_BLOCK)
+        shade_batch(pass, batch);
+}
+
+static void find_lines(void *of, int64_t item, int worker) {
     const iso_pass *pass = of;
     const snow_placement *p = &pass->job->placement;
-    int width = pass->image->width;
-    float *line = pass->image->pixels +
-                  (size_t)y * (size_t)width * (size_t)pass->image->channels;
-    float *depths =
-        pass->depths ? pass->depths->pixels + (size_t)y * (size_t)width : NULL;
+    int width = pass->image->width, top = (int)item * BLOCK;
+    int end =
+        top + BLOCK < pass->image->height ? top + BLOCK : pass->image->height;
     iso_batch batch = {.count = 0};
-    snow_probe probe = {.volume = pass->job->volume,
-                        .axes = {p->u_axis, p->v_axis, p->slice_axis}};
+    iso_eye eye = {.probe = {.volume = pass->job->volume,
+                             .axes = {p->u_axis, p->v_axis, p->slice_axis}}};
     (void)worker;
-    for (int x = 0; x < width; x++) {
-        iso_hit hit;
-        double at[2];
-        iso_ray ray = make_ray(pass, x, (int)y);
-        if (depths)
-            depths[x] = NAN;
-        if (!follow_ray(pass, &ray, &probe, &hit))
-            continue;
-        ray_at(&ray, hit.slice, at);
-        if (depths)
-            depths[x] =
-                (float)(pass->depth[0] * at[0] + pass->depth[1] * at[1] +
-                        pass->depth[2] * hit.slice + pass->depth[3]);
-        for (int n = 0; n < 3; n++)
-            batch.gradients[n][batch.count] = hit.gradient[n];
-        batch.x[batch.count++] = x;
-        if (batch.count == SNOW_SHADE_BLOCK)
-            shade_batch(pass, &batch, line);
-    }
-    shade_batch(pass, &batch, line);
+    for (int left = 0; left < width; left += BLOCK)
+        for (int y = top; y < end; y++)
+            for (int x = left; x < left + BLOCK && x < width; x++)
+                find_pixel(pass, x, y, &eye, &batch);
+    shade_batch(pass, &batch);
 }
 
 /* --- a picture -------------------------------------------------------------
@@ -396,9 +528,34 @@ static snow_status map_voxels(snow_frame *frame, snow_job *job, snow_iso *iso,
     SNOW_TRY(snow_sheared_encode(frame->sheared[0], &order, stats));
     stats->seconds_encode += snow_seconds() - mark;
     snow_sheared_fill_figures(frame->sheared[0], stats);
-    return snow_reached_make(&frame->sheared[0]->bands, taps,
-                             snow_window_fns_of(job->settings.isa),
-                             job->settings.threads, &iso->reached);
+    const snow_sheared *sheared = frame->sheared[0];
+    if (iso->reached_of == sheared->encodings &&
+        iso->reached.taps[0] == taps[0] && iso->reached.taps[1] == taps[1])
+        return SNOW_OK;
+    iso->reached_of = 0;
+    SNOW_TRY(snow_reached_make(&sheared->bands, taps,
+                               snow_window_fns_of(job->settings.isa),
+                               job->settings.threads, &iso->reached));
+    iso->reached_of = sheared->encodings;
+    return SNOW_OK;
+}
+
+/* Where rays of a parallel view begin. */
+static snow_status map_starts(const snow_job *job, snow_iso *iso,
+                              iso_pass *pass) {
+    const snow_placement *p = &job->placement;
+    for (int axis = 0; axis < 2; axis++) {
+        const double *row = p->inverse[axis];
+        pass->slope[axis] =
+            -row[0] * p->step_slice[0] - row[1] * p->step_slice[1];
+        if (!isfinite(pass->slope[axis]))
+            return SNOW_OK; /* to be found out ray by ray */
+    }
+    SNOW_TRY(snow_first_make(job->context, &iso->reached, pass->slope,
+                             p->nearest_first, job->settings.threads,
+                             &iso->first));
+    pass->first = &iso->first;
+    return SNOW_OK;
 }
 
 static snow_status find_surfaces(snow_frame *frame, snow_job *job,
@@ -417,7 +574,16 @@ static snow_status find_surfaces(snow_frame *frame, snow_job *job,
     if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
         SNOW_TRY(map_voxels(frame, job, iso, taps));
         pass.reached = &iso->reached;
+        if (!job->placement.perspective)
+            SNOW_TRY(map_starts(job, iso, &pass));
     }
+    const int axes[3] = {job->placement.u_axis, job->placement.v_axis,
+                         job->placement.slice_axis};
+    const snow_volume_info *info = &job->volume->info;
+    pass.near = frame->ramp.whole && info->slope != 0;
+    pass.grid = snow_near_grid_of(
+        job->volume, axes,
+        pass.near ? (pass.level - info->intercept) / info->slope : 0);
     pass.margin =
         MARGIN * (frame->ramp.high - frame->ramp.low) + 1e-9 * fabs(pass.level);
     snow_transfer_color(job->transfer, pass.level, rgb);
@@ -425,8 +591,8 @@ static snow_status find_surfaces(snow_frame *frame, snow_job *job,
         pass.rgb[n] = (float)rgb[n];
     snow_depth_place(job, pass.depth);
     double mark = snow_seconds();
-    snow_parallel(job->context, job->settings.threads, image->height, find_line,
-                  &pass);
+    snow_parallel(job->context, job->settings.threads,
+                  (image->height + BLOCK - 1) / BLOCK, find_lines, &pass);
     job->stats->seconds_splat += snow_seconds() - mark;
     return SNOW_OK;
 }
@@ -435,6 +601,10 @@ static snow_status find_surfaces(snow_frame *frame, snow_job *job,
 static snow_status fill_figures(snow_frame *frame, const snow_job *job) {
     snow_job sparse = *job;
     sparse.settings.method = SNOW_METHOD_SHEARED;
+    if (job->settings.method == SNOW_METHOD_FOOTPRINT) {
+        sparse.transfer = frame->ramp.transfer;
+        sparse.settings.threshold = 0;
+    }
     SNOW_TRY(snow_job_finish(frame, &sparse));
     job->stats->method = job->settings.method;
     return SNOW_OK;
@@ -451,7 +621,6 @@ snow_status snow_iso_render(snow_frame *frame, snow_job *job,
             return SNOW_NO_MEMORY;
         frame->iso->context = job->context;
     }
-    SNOW_TRY(snow_ramp_measure(job, &frame->ramp));
     SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
                             job->channels, &image));
     snow_status status = find_surfaces(frame, job, image);

@@ -12,7 +12,9 @@ typedef struct snow_iso snow_iso; /* what is kept from picture to picture */
 
 void snow_iso_free(snow_iso *iso);
 
-/* As snow_modes_render; with settings.depth, frame->depth is filled too. */
+/* As snow_modes_render, when the frame's ramp is measured, and of a part too: a
+ * local image, whose pixels are opaque.  With settings.depth, frame->depth is
+ * filled too. */
 snow_status snow_iso_render(snow_frame *frame, struct snow_job *job,
                             snow_image **out);
 

@@ -27,6 +27,7 @@ static snow_status measure(snow_context *context, const snow_volume *volume,
     snow_volume_measures figures;
     snow_volume_measure(volume, &figures);
     ramp->whole = figures.finite == figures.voxels;
+    ramp->empty = !figures.finite;
     ramp->low = figures.finite ? figures.min : 0;
     ramp->high = figures.finite ? figures.max : 0;
     if (isfinite(ramp->high - ramp->low))
@@ -62,6 +63,17 @@ snow_status snow_ramp_measure(snow_job *job, snow_ramp *ramp) {
     return SNOW_OK;
 }
 
+void snow_ramp_widen(snow_ramp *ramp, double low, double high, bool whole) {
+    if (ramp->low != low || ramp->high != high) {
+        snow_transfer_free(ramp->transfer);
+        ramp->transfer = NULL;
+    }
+    ramp->low = low;
+    ramp->high = high;
+    ramp->whole = whole;
+    ramp->empty = false;
+}
+
 /* Makes the transfer function of a ramp that is measured, unless it is there
  * already. */
 static snow_status prepare_ramp(const snow_job *job, const snow_ramp *wanted,
@@ -93,7 +105,6 @@ snow_status snow_ramp_above(snow_job *job, snow_ramp *ramp) {
 /* The ramp of a picture of pairs; what the sheared method cannot do is left to
  * footprints. */
 static snow_status choose_ramp(snow_job *job, snow_ramp *ramp) {
-    SNOW_TRY(snow_ramp_measure(job, ramp));
     if (job->settings.method == SNOW_METHOD_SHEARED &&
         !(ramp->whole && snow_sheared_modes_fits(&job->placement)))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
@@ -136,6 +147,13 @@ static void fill_colors(const snow_job *job, const snow_ramp *ramp,
         double part =
             (transfer->colors[n].value - colors->from) / colors->range;
         double cell = floor(part * SNOW_MODE_COLORS);
+        bool steps =
+            (n > 0 &&
+             transfer->colors[n - 1].value == transfer->colors[n].value) ||
+            (n + 1 < transfer->color_count &&
+             transfer->colors[n + 1].value == transfer->colors[n].value);
+        if (!steps && (part == 0 || part == 1)) /* just where numbers end */
+            continue;
         if (!(cell >= -1 && cell <= SNOW_MODE_COLORS)) /* or no range */
             continue;
         for (double near = cell - 1; near <= cell + 1; near++)
@@ -187,7 +205,8 @@ static void value_line(const finish_job *f, const float *pairs, int count,
     bool mean = f->job->settings.mode == SNOW_MODE_MEAN;
     for (int x = 0; x < count; x++, pairs += 2) {
         double weights = (double)pairs[1]; /* rounding may leave the range */
-        double values = fmin(fmax((double)pairs[0], 0), weights);
+        double values = (double)pairs[0] > 0 ? (double)pairs[0] : 0;
+        values = values < weights ? values : weights;
         if (!(weights >= f->least))
             pixels[x] = NAN;
         else if (mean)
@@ -217,58 +236,70 @@ static void finish_line(void *of, int64_t y, int worker) {
  * one.  In perspective a sum's pairs hold lengths already, and half a sheet is
  * that of the ray to the target. */
 static void finish(snow_frame *frame, const snow_job *job,
-                   const snow_sheared_image *drawn, snow_image *image) {
+                   const snow_sheared_image *drawn, float *pairs,
+                   snow_image *image) {
     double path = job->placement.path / job->settings.opacity_length;
     bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
     bool weighed =
         job->settings.mode == SNOW_MODE_SUM && job->placement.perspective;
     double slices = sheared ? (double)job->placement.slices : 1;
-    double mark = snow_seconds();
     if (image->channels > 1)
         fill_colors(job, &frame->ramp, &frame->mode_colors);
     finish_job f = {.job = job,
                     .ramp = &frame->ramp,
                     .colors = &frame->mode_colors,
-                    .sheared = sheared ? drawn : NULL,
-                    .pairs = frame->layer,
+                    .sheared = drawn,
+                    .pairs = pairs,
                     .image = image,
                     .share = weighed ? 1 : path * slices,
                     .least =
                         SNOW_WEIGHT_ENOUGH * (weighed ? path : 1 / slices)};
     snow_parallel(job->context, job->settings.threads, image->height,
                   finish_line, &f);
-    if (sheared)
-        job->stats->seconds_warp += snow_seconds() - mark;
+}
+
+snow_status snow_modes_paint(snow_frame *frame, const snow_job *job,
+                             const snow_sheared_image *drawn, float *pairs,
+                             snow_image **out) {
+    snow_mode mode = job->settings.mode;
+    bool values = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
+    snow_image *image = NULL;
+    SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
+                            values ? 1 : job->channels, &image));
+    finish(frame, job, drawn, pairs, image);
+    *out = image;
+    return SNOW_OK;
 }
 
 /* --- a picture -------------------------------------------------------------
  */
 
-static snow_status render_exact(snow_frame *frame, snow_job *pairs) {
-    size_t bytes = 2 * (size_t)pairs->view->width *
-                   (size_t)pairs->view->height * sizeof *frame->layer;
-    SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
-                          0, bytes));
-    memset(frame->layer, 0, bytes);
-    pairs->pixels = frame->layer;
-    return snow_job_render_exact(frame, pairs);
+snow_status snow_modes_pairs(snow_frame *frame, snow_job *job,
+                             snow_job *pairs) {
+    SNOW_TRY(choose_ramp(job, &frame->ramp));
+    *pairs = *job;
+    pairs->transfer = frame->ramp.transfer;
+    pairs->channels = 2;
+    pairs->settings.shade = SNOW_SHADE_NONE;
+    pairs->settings.threshold = 0;
+    pairs->settings.deterministic = 0; /* of one part, by the scalar loops */
+    if (pairs->settings.quality == SNOW_QUALITY_HIGH)
+        pairs->settings.quality = SNOW_QUALITY_NORMAL;
+    pairs->lay = snow_reduce_of(job->settings.mode);
+    return SNOW_OK;
 }
 
-static snow_status render_sheared(snow_frame *frame, const snow_job *pairs,
-                                  snow_sheared_image *drawn) {
+snow_status snow_modes_reduce(snow_frame *frame, const snow_job *pairs,
+                              snow_placement *placement,
+                              snow_sheared_image *drawn) {
     const snow_ramp *ramp = &frame->ramp;
     snow_mode mode = pairs->settings.mode;
     double range = ramp->high > ramp->low ? ramp->high - ramp->low : 1;
     snow_value_scale scale = {ramp->falls ? ramp->high : ramp->low,
                               ramp->falls ? -range : range};
-    snow_placement placement;
     snow_sheared_order order;
-    SNOW_TRY(snow_reserve(
-        frame->context, &frame->layer, &frame->layer_capacity, 0,
-        2 * (size_t)pairs->view->width * (size_t)pairs->settings.threads *
-            sizeof *frame->layer));
     SNOW_TRY(
-        snow_job_order(pairs, pairs->placement.slice_axis, &placement, &order));
+        snow_job_order(pairs, pairs->placement.slice_axis, placement, &order));
     if (!frame->sheared[0])
         SNOW_TRY(snow_sheared_new(frame->context, &frame->sheared[0]));
     return snow_sheared_reduce(frame->sheared[0], &order,
@@ -276,48 +307,56 @@ static snow_status render_sheared(snow_frame *frame, const snow_job *pairs,
                                &scale, pairs->stats, drawn);
 }
 
-/* The same job with the ramp for a look.  There is nothing between slices. */
-static snow_status render_pairs(snow_frame *frame, const snow_job *job,
+/* Room for pairs: of all pixels, or of a line for each thread. */
+static snow_status reserve_pairs(snow_frame *frame, const snow_job *pairs,
+                                 bool all) {
+    int lines = all ? pairs->view->height : pairs->settings.threads;
+    size_t bytes =
+        2 * (size_t)pairs->view->width * (size_t)lines * sizeof *frame->layer;
+    SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
+                          0, bytes));
+    if (all)
+        memset(frame->layer, 0, bytes);
+    return SNOW_OK;
+}
+
+/* There is nothing between slices. */
+static snow_status render_pairs(snow_frame *frame, snow_job *pairs,
                                 snow_sheared_image *drawn) {
-    snow_job pairs = *job;
-    pairs.transfer = frame->ramp.transfer;
-    pairs.channels = 2;
-    pairs.settings.shade = SNOW_SHADE_NONE;
-    pairs.settings.threshold = 0;
-    pairs.settings.deterministic = 0; /* of one part, by the scalar loops */
-    if (pairs.settings.quality == SNOW_QUALITY_HIGH)
-        pairs.settings.quality = SNOW_QUALITY_NORMAL;
-    pairs.lay = snow_reduce_of(job->settings.mode);
-    SNOW_TRY(job->settings.method == SNOW_METHOD_SHEARED
-                 ? render_sheared(frame, &pairs, drawn)
-                 : render_exact(frame, &pairs));
-    return snow_job_finish(frame, &pairs);
+    bool sheared = pairs->settings.method == SNOW_METHOD_SHEARED;
+    snow_placement placement;
+    SNOW_TRY(reserve_pairs(frame, pairs, !sheared));
+    pairs->pixels = frame->layer;
+    SNOW_TRY(sheared ? snow_modes_reduce(frame, pairs, &placement, drawn)
+                     : snow_job_render_exact(frame, pairs));
+    return snow_job_finish(frame, pairs);
 }
 
 static snow_status check(const snow_job *job) {
-    if (job->volume->is_part || !job->all)
+    if (!snow_job_whole(job))
         return snow_fail(job->context, SNOW_BAD_USAGE,
-                         "mode %s of one part of many is not combined yet; "
-                         "render it on one rank",
+                         "mode %s of one part of many is no picture; render "
+                         "all parts with snow_ranks_render",
                          snow_mode_name(job->settings.mode));
     return SNOW_OK;
 }
 
 snow_status snow_modes_render(snow_frame *frame, snow_job *job,
                               snow_image **out) {
-    snow_mode mode = job->settings.mode;
-    bool values = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
     snow_sheared_image drawn;
-    snow_image *image = NULL;
+    snow_job pairs;
     SNOW_TRY(check(job));
-    if (mode == SNOW_MODE_ISO)
+    SNOW_TRY(snow_ramp_measure(job, &frame->ramp));
+    if (job->settings.mode == SNOW_MODE_ISO)
         return snow_iso_render(frame, job, out);
-    SNOW_TRY(choose_ramp(job, &frame->ramp));
-    SNOW_TRY(render_pairs(frame, job, &drawn));
-    SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
-                            values ? 1 : job->channels, &image));
-    finish(frame, job, &drawn, image);
-    *out = image;
+    SNOW_TRY(snow_modes_pairs(frame, job, &pairs));
+    SNOW_TRY(render_pairs(frame, &pairs, &drawn));
+    bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
+    double mark = snow_seconds();
+    SNOW_TRY(snow_modes_paint(frame, job, sheared ? &drawn : NULL, frame->layer,
+                              out));
+    if (sheared)
+        job->stats->seconds_warp += snow_seconds() - mark;
     return SNOW_OK;
 }
 

@@ -29,6 +29,7 @@ typedef struct snow_ramp {
     bool steps;      /* and those below `level`: of iso */
     double level;
     bool whole; /* every voxel is finite */
+    bool empty; /* none is */
     double low, high;
     snow_transfer *transfer;
 } snow_ramp;
@@ -48,12 +49,36 @@ struct snow_job;
 /* Finds the range of a job's volume, unless the ramp has it already. */
 snow_status snow_ramp_measure(struct snow_job *job, snow_ramp *ramp);
 
-/* The same for mode iso: the voxels that are not below its value. */
+/* Makes it that of a whole that the job's volume is a part of. */
+void snow_ramp_widen(snow_ramp *ramp, double low, double high, bool whole);
+
+/* For mode iso, when it is measured: the voxels that are not below its value.
+ */
 snow_status snow_ramp_above(struct snow_job *job, snow_ramp *ramp);
 
 /* A picture in a mode other than over; of lines 03 to 20 what differs.  As
  * snow_frame_render_slab, for a job that is begun. */
 snow_status snow_modes_render(snow_frame *frame, struct snow_job *job,
                               snow_image **out);
+
+/* The same in steps, for processors that combine their parts' pairs, when the
+ * ramp is measured.  First the job whose local image they are; where the
+ * sheared method cannot make it, `job` is changed to footprints too.  It lasts
+ * as long as the frame's ramp. */
+struct snow_sheared_image;
+struct snow_placement;
+snow_status snow_modes_pairs(snow_frame *frame, struct snow_job *job,
+                             struct snow_job *pairs);
+
+/* Its intermediate image by the sheared method; `placement` is filled. */
+snow_status snow_modes_reduce(snow_frame *frame, const struct snow_job *pairs,
+                              struct snow_placement *placement,
+                              struct snow_sheared_image *drawn);
+
+/* A picture of the pairs of all pixels; where they are to be warped from
+ * `drawn` (else NULL), `pairs` is room for a line of each thread. */
+snow_status snow_modes_paint(snow_frame *frame, const struct snow_job *job,
+                             const struct snow_sheared_image *drawn,
+                             float *pairs, snow_image **out);
 
 #endif

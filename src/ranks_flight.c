@@ -38,6 +38,7 @@ static void end_pictures(snow_ranks *r) {
         snow_picture *p = &r->pictures[r->first];
         end_picture(p);
         snow_image_free(p->image);
+        snow_image_free(p->depth);
         r->first = (r->first + 1) % SNOW_PICTURES_MOST;
     }
     if (r->drawn)
@@ -173,6 +174,8 @@ static void render_alone(snow_picture *p, const snow_volume *volume,
                                            settings, &p->image);
     if (status == SNOW_OK && p->how.pixel_bits == 8 && p->image->channels > 1)
         round_pixels(p->image);
+    p->depth = p->frame->depth;
+    p->frame->depth = NULL;
     p->stats = p->frame->stats;
     p->stats.cpu_splat = p->stats.threads == 1 ? snow_thread_seconds() - cpu
                                                : p->stats.cpu_frame;
@@ -283,6 +286,8 @@ snow_status snow_ranks_finish(snow_frame *frame, snow_image **image) {
     r->first = (r->first + 1) % SNOW_PICTURES_MOST;
     r->under_way--;
     end_picture(p);
+    snow_image_free(frame->depth);
+    frame->depth = p->depth;
     if (p->status == SNOW_OK) {
         *image = p->image;
         return SNOW_OK;

@@ -3,6 +3,7 @@
  *   ranks_flight.c   which pictures are under way
  *   ranks_render.c   the steps of one, and what ranks agree on
  *   ranks_layers.c   the exchange of deterministic pictures
+ *   ranks_modes.c    pictures in modes other than over, and depths
  *   ranks_piece.c    a rank's piece of the combined image to pixels of the
  *                    picture, and these to rank 0 */
 #ifndef SNOW_RANKS_PARTS_H
@@ -16,6 +17,7 @@ typedef struct snow_local {
     int width, height, channels;
     size_t stride; /* floats from line to line */
     const float *pixels;
+    snow_laying laying; /* of other modes than over */
     /* Deterministic pictures have a layer for each node. */
     int layers;
     snow_group_node nodes[SNOW_NODES_MOST];
@@ -43,6 +45,7 @@ typedef struct snow_picture {
     snow_part part;
     uint64_t serial;
     snow_image *image; /* on rank 0 */
+    snow_image *depth; /* of it, for the frame; on rank 0 or NULL */
     unsigned char *bytes;
     snow_axis_work work; /* of a picture along one axis */
     snow_stats stats;
@@ -114,6 +117,32 @@ void snow_picture_settle(snow_picture *picture);
 
 /* Collective.  All the rest.  What failed, on all ranks alike. */
 snow_status snow_picture_combine(snow_picture *picture);
+
+/* The steps of it: local work, whether there is an exchange of an intermediate
+ * image, what it needs; collective, that and the warp, with all pixels of
+ * `job.channels` to `image` of rank 0. */
+snow_status snow_picture_prepare(snow_picture *picture, snow_axis_work *work);
+snow_status snow_picture_combine_axis(snow_picture *picture,
+                                      const snow_axis_work *work,
+                                      int pixel_bits, snow_image *image);
+
+/* The same of an exact local image. */
+snow_status snow_picture_prepare_exact(snow_picture *picture,
+                                       const snow_local *local);
+snow_status snow_picture_combine_exact(snow_picture *picture,
+                                       const snow_local *local, int pixel_bits,
+                                       snow_image *image);
+
+/* Not collective: whether a picture in the job's mode can be one of many
+ * ranks. */
+snow_status snow_picture_check_mode(const snow_picture *picture);
+
+/* Collective.  A picture in a mode other than over, `picture->image` of which
+ * is made but for mode iso. */
+snow_status snow_picture_render_mode(snow_picture *picture);
+
+/* Collective.  The depth of a picture in mode over that is made. */
+snow_status snow_picture_render_depth(snow_picture *picture);
 
 /* Keeps the present failure of the context. */
 void snow_picture_fail(snow_picture *picture, snow_status status);

@@ -48,15 +48,10 @@ static snow_status begin_picture(snow_picture *p, const snow_volume *volume,
                          "floats",
                          p->how.pixel_bits);
     SNOW_TRY(begin_job(p, volume, transfer, settings));
-    if (p->job.settings.mode != SNOW_MODE_OVER)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "mode %s is not built for many ranks yet; render on "
-                         "one, or take mode over",
-                         snow_mode_name(p->job.settings.mode));
-    if (p->job.settings.depth)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "depths are not built for many ranks yet; render on "
-                         "one, or leave them out");
+    SNOW_TRY(snow_picture_check_mode(p));
+    if (p->job.settings.mode != SNOW_MODE_OVER &&
+        p->job.settings.mode != SNOW_MODE_ISO)
+        return SNOW_OK; /* made of what has been gathered */
     if (p->ranks->rank != 0 && !p->how.scattered)
         return SNOW_OK;
     SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,
@@ -75,6 +70,7 @@ static int axis_alone(const snow_picture *p) {
     int axis = p->job.placement.slice_axis;
     double shares[3];
     if (p->job.settings.method != SNOW_METHOD_SHEARED ||
+        p->job.settings.mode != SNOW_MODE_OVER || p->job.settings.depth ||
         snow_job_shares(&p->job, shares) != SNOW_OK)
         return -1;
     return shares[axis] < 1 ? -1 : axis;
@@ -151,17 +147,17 @@ static int64_t terms_of(const snow_picture *p) {
     const snow_settings *s = &job->settings;
     const snow_placement *place = &job->placement;
     const int numbers[] = {
-        job->channels,         (int)s->method,     (int)s->quality,
-        (int)s->kernel,        s->footprint,       (int)s->shade,
-        s->deterministic,      place->width,       place->height,
-        (int)p->how.combining, p->how.radix,       p->how.pixel_bits,
-        place->slice_axis,     place->perspective, p->how.scattered};
+        job->channels,      (int)s->method,    (int)s->quality,
+        (int)s->kernel,     s->footprint,      (int)s->shade,
+        s->deterministic,   place->width,      place->height,
+        (int)s->mode,       s->depth,          (int)p->how.combining,
+        p->how.radix,       p->how.pixel_bits, place->slice_axis,
+        place->perspective, p->how.scattered};
     const double reals[] = {
-        place->back[0],   place->back[1],   place->back[2],
-        place->up[0],     place->up[1],     place->up[2],
-        place->path,      s->threshold,     s->opacity_length,
-        job->view->zoom,  job->view->fov,   place->origin[0],
-        place->origin[1], place->eye.at[0], place->eye.at[1],
+        place->back[0],    place->back[1],   place->back[2],   place->up[0],
+        place->up[1],      place->up[2],     place->path,      s->threshold,
+        s->opacity_length, s->iso,           job->view->zoom,  job->view->fov,
+        place->origin[0],  place->origin[1], place->eye.at[0], place->eye.at[1],
         place->eye.at[2]};
     uint64_t hash = UINT64_C(14695981039346656037);
     mix(&hash, numbers, sizeof numbers);
@@ -274,6 +270,7 @@ static snow_status exchange(snow_picture *p, const snow_local *local,
                                        .ranks = r->order,
                                        .method = p->how.combining,
                                        .radix = p->how.radix,
+                                       .laying = local->laying,
                                        .grain = grain};
     SNOW_TRY(snow_exchange(r->combiner, &order, piece));
     tell_rounds(p, snow_exchange_told(r->combiner));
@@ -356,18 +353,19 @@ static snow_local local_of(const snow_sheared_image *image) {
     return local;
 }
 
-/* Local work: all that the exchange of a drawn image needs. */
-static snow_status prepare_axis(snow_picture *p, snow_axis_work *work) {
+snow_status snow_picture_prepare(snow_picture *p, snow_axis_work *work) {
+    snow_laying laying = work->local.laying;
     if (!work->image.width)
         return SNOW_OK;
     work->local = local_of(&work->image);
+    work->local.laying = laying;
     SNOW_TRY(snow_lines_prepare(p->ranks, &work->local));
     return prepare_exchange(p, &work->local, &work->placement);
 }
 
-/* Collective.  Local images to the picture, in `image` of rank 0. */
-static snow_status combine_axis(snow_picture *p, const snow_axis_work *work,
-                                int pixel_bits, snow_image *image) {
+snow_status snow_picture_combine_axis(snow_picture *p,
+                                      const snow_axis_work *work,
+                                      int pixel_bits, snow_image *image) {
     snow_ranks *r = p->ranks;
     snow_piece piece;
     if (!work->image.width) /* the same on all ranks */
@@ -391,11 +389,12 @@ static snow_status combine_axis(snow_picture *p, const snow_axis_work *work,
 static snow_status render_ahead(snow_picture *p, snow_status status) {
     bool known = knows_parts(p), new_parts;
     if (status == SNOW_OK && known)
-        status = prepare_axis(p, &p->work);
+        status = snow_picture_prepare(p, &p->work);
     SNOW_TRY(meet(p, status, &new_parts));
     if (new_parts)
-        SNOW_TRY(snow_comm_agree(p->ranks->comm, prepare_axis(p, &p->work)));
-    return combine_axis(p, &p->work, p->how.pixel_bits, p->image);
+        SNOW_TRY(
+            snow_comm_agree(p->ranks->comm, snow_picture_prepare(p, &p->work)));
+    return snow_picture_combine_axis(p, &p->work, p->how.pixel_bits, p->image);
 }
 
 /* Collective.  The picture with slices along one axis of several. */
@@ -407,10 +406,10 @@ static snow_status render_axis(snow_picture *p, int axis, snow_image *image) {
         snow_sheared_end(p->work.sheared);
         p->stats.seconds_splat += snow_ranks_clock(p->ranks) - mark;
         p->stats.cpu_splat += snow_picture_cpu(p) - cpu;
-        status = prepare_axis(p, &p->work);
+        status = snow_picture_prepare(p, &p->work);
     }
     SNOW_TRY(snow_comm_agree(p->ranks->comm, status));
-    return combine_axis(p, &p->work, 0, image);
+    return snow_picture_combine_axis(p, &p->work, 0, image);
 }
 
 /* As bytes would have travelled. */
@@ -484,25 +483,34 @@ static snow_status render_exact_local(snow_picture *p, snow_local *local) {
                      ? snow_job_render_node(p->frame, job, local->nodes[n])
                      : snow_job_render_exact(p->frame, job));
     }
-    return prepare_exchange(p, local, &job->placement);
+    return snow_picture_prepare_exact(p, local);
+}
+
+snow_status snow_picture_prepare_exact(snow_picture *p,
+                                       const snow_local *local) {
+    return prepare_exchange(p, local, &p->job.placement);
+}
+
+snow_status snow_picture_combine_exact(snow_picture *p, const snow_local *local,
+                                       int pixel_bits, snow_image *image) {
+    snow_ranks *r = p->ranks;
+    snow_piece piece;
+    double mark = snow_ranks_clock(r), cpu = snow_picture_cpu(p);
+    SNOW_TRY(exchange(p, local, &p->job.placement, 1, &piece));
+    p->stats.seconds_combine += snow_ranks_clock(r) - mark;
+    p->stats.cpu_combine += snow_picture_cpu(p) - cpu;
+    SNOW_TRY(snow_comm_agree(r->comm,
+                             snow_pixels_copy(r, &p->job, &piece, pixel_bits)));
+    return deliver(p, pixel_bits, image);
 }
 
 static snow_status render_exact(snow_picture *p) {
-    snow_ranks *r = p->ranks;
     snow_local local;
-    snow_piece piece;
     double cpu = snow_picture_cpu(p);
     snow_status status = render_exact_local(p, &local);
     p->stats.cpu_splat += snow_picture_cpu(p) - cpu;
-    SNOW_TRY(snow_comm_agree(r->comm, status));
-    double mark = snow_ranks_clock(r);
-    cpu = snow_picture_cpu(p);
-    SNOW_TRY(exchange(p, &local, &p->job.placement, 1, &piece));
-    p->stats.seconds_combine += snow_ranks_clock(r) - mark;
-    p->stats.cpu_combine += snow_picture_cpu(p) - cpu;
-    SNOW_TRY(snow_comm_agree(
-        r->comm, snow_pixels_copy(r, &p->job, &piece, p->how.pixel_bits)));
-    return deliver(p, p->how.pixel_bits, p->image);
+    SNOW_TRY(snow_comm_agree(p->ranks->comm, status));
+    return snow_picture_combine_exact(p, &local, p->how.pixel_bits, p->image);
 }
 
 /* --- a picture ------------------------------------------------------------
@@ -512,8 +520,12 @@ static snow_status render_exact(snow_picture *p) {
 static snow_status render_wholly(snow_picture *p, snow_status status) {
     bool new_parts;
     SNOW_TRY(meet(p, status, &new_parts));
+    if (p->job.settings.mode != SNOW_MODE_OVER)
+        return snow_picture_render_mode(p);
     SNOW_TRY(p->job.settings.method == SNOW_METHOD_SHEARED ? render_blend(p)
                                                            : render_exact(p));
+    if (p->job.settings.depth)
+        SNOW_TRY(snow_picture_render_depth(p));
     return snow_comm_agree(p->ranks->comm, snow_job_finish(p->frame, &p->job));
 }
 

@@ -114,6 +114,7 @@ void snow_sheared_free(snow_sheared *s) {
     snow_coder_fini(s->context, &s->coder);
     snow_coder_fini(s->context, &s->next);
     snow_palette_fini(s->context, &s->palette);
+    snow_release(s->context, s->blocks);
     snow_release(s->context, s->fade_key);
     snow_release(s->context, s->next_fade_key);
     snow_release(s->context, s->gloss);
@@ -279,6 +280,7 @@ snow_status snow_sheared_encode(snow_sheared *s,
     s->key.serial = 0; /* should the encoding fail half-way */
     SNOW_TRY(encode_bands(s, order, &key));
     s->key = key;
+    s->encodings++;
     stats->encoded = 1;
     return SNOW_OK;
 }

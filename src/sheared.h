@@ -16,6 +16,11 @@ typedef struct snow_sheared snow_sheared;
 snow_status snow_sheared_new(snow_context *context, snow_sheared **out);
 void snow_sheared_free(snow_sheared *sheared);
 
+/* Data values as numbers of 0 to 1: (value - from) / step. */
+typedef struct snow_value_scale {
+    double from, step; /* step may be negative, not 0 */
+} snow_value_scale;
+
 /* What a picture is made of; settings are resolved. */
 typedef struct snow_sheared_order {
     const snow_volume *volume;

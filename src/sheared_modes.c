@@ -1,23 +1,19 @@
 /* sheared_modes.c - the sheared method without order and opacity: mip, minip,
  * mean and sum on the slices' own lattice (transform/shear.h).
  *
- * Nearly every voxel counts here, and none hides another, so that rows are
+ * Nearly every voxel counts in a sum, and none hides another, so that rows are
  * worked on as a whole instead of tiles, one number a pixel:
  *
  *   slice k, row j of voxels        ring of rows            line of the image
- *   EA, IA --spread--> floats --along u--> a row a phase --along v--> largest,
- *                                                                     or sum
+ *   EA, IA --spread--> floats --along u--> a row a phase --along v--> sum
  *
  * The weights that a pixel finds in a slice are known without voxels: those of
  * a whole grid (splat/cover.h).  Rows without a voxel above 0 cost nothing.  A
- * thread takes a band of lines through all slices; bands share nothing. */
-#include "sheared_modes.h"
+ * thread takes a band of lines through all slices; bands share nothing.
+ * Largest values, of which most voxels can be none, are in sheared_most.c. */
+#include "sheared_reduce.h"
 
 #include "base/parallel.h"
-#include "composite/reduce.h"
-#include "sheared_parts.h"
-#include "splat/cover.h"
-#include "splat/rows.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,42 +21,6 @@
 #define RING 64 /* rows at most that a line needs; a power of 2 */
 #define PAD 64  /* zeros on either side of a row of voxels */
 #define BAND_CELLS 32
-
-/* How one slice lies on the lattice. */
-typedef struct slice_place {
-    const snow_comb *u, *v;
-    int64_t first_row;             /* of cell 0, but for leads */
-    snow_cover across[2], down[2]; /* per phase */
-    /* Per phase and end along u: one over the weights that its pixels find. */
-    float ends[2][2][SNOW_TAPS_MOST];
-    int range[2][2]; /* per phase along u: pixels that find enough */
-} slice_place;
-
-/* One picture in the making. */
-typedef struct modes_pass {
-    const snow_sheared_order *order;
-    snow_sheared *sheared;
-    bool largest;
-    snow_shear shear;
-    snow_taper taper[2]; /* along u and v */
-    int taps[2];
-    int64_t slices;
-    slice_place *places;
-    const snow_window_fns *windows;
-    const snow_row_fns *fns;
-    float scale, start; /* of codes */
-    int code_bytes;
-    int within[2][2]; /* per phase along v: cells within all slices */
-    int pixels[2];    /* cells along u and v: pixels of a phase */
-    int cells;        /* of a band */
-    int64_t bands;
-    size_t row;    /* floats of a row of a phase */
-    size_t dense;  /* of a row of voxels, pads included */
-    size_t ring;   /* rows that are kept; a power of 2 */
-    size_t stride; /* floats of a line of the plane */
-    size_t scratch_bytes;
-    float *plane;
-} modes_pass;
 
 /* A filtered row: pixels that may differ from 0, in any phase. */
 typedef struct ring_row {
@@ -85,7 +45,7 @@ typedef struct modes_scratch {
 
 /* A band on its way through the slices. */
 typedef struct modes_stroke {
-    const modes_pass *pass;
+    const snow_modes_pass *pass;
     modes_scratch scratch;
     snow_mask_rows rows;
     ring_row extents[RING];
@@ -94,7 +54,7 @@ typedef struct modes_stroke {
     size_t spread[2];    /* columns of the row of voxels that are not 0 */
     ring_row used[RING]; /* pixels of the ring that are not 0 */
     int filtered;        /* rows of the slice that went through the ring */
-    const slice_place *place;
+    const snow_slice_place *place;
 } modes_stroke;
 
 bool snow_sheared_modes_fits(const snow_placement *placement) {
@@ -118,7 +78,7 @@ static void find_extent(const modes_stroke *stroke, int j, size_t extent[2]) {
 
 /* Row j as floats, with zeros around it. */
 static void spread_row(modes_stroke *stroke, int j, const size_t extent[2]) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     float *row = stroke->scratch.dense + PAD;
     size_t *old = stroke->spread;
     const uint64_t *bits =
@@ -147,28 +107,6 @@ static int pixel_behind(const snow_cover *cover, int64_t voxel, int pixels) {
     return n < pixels ? (int)n : pixels;
 }
 
-/* Pixels at one end of a slice that find a part of their weights; where it is
- * thin, all are at the first end. */
-static void end_pixels(const snow_cover *cover, int side, int range[2]) {
-    int in = cover->in < cover->to ? cover->in : cover->to;
-    range[0] = side == 0 ? cover->from : cover->out > in ? cover->out : in;
-    range[1] = side == 0 ? in : cover->to;
-}
-
-/* Makes up for the weights that pixels at the ends do not find. */
-static void fill_ends(const slice_place *place, int phase, ring_row row,
-                      float *pixels) {
-    for (int side = 0; side < 2; side++) {
-        int range[2];
-        end_pixels(&place->across[phase], side, range);
-        const float *factors = place->ends[phase][side] - range[0];
-        int from = range[0] > row.first ? range[0] : row.first;
-        int to = range[1] < row.end ? range[1] : row.end;
-        for (int n = from; n < to; n++)
-            pixels[n] *= factors[n];
-    }
-}
-
 /* Sets the weights of a job: those of one or two phases. */
 static void aim(snow_rows_job *job, const snow_cover *covers, int lead) {
     job->taps = covers[0].taps;
@@ -179,9 +117,10 @@ static void aim(snow_rows_job *job, const snow_cover *covers, int lead) {
 
 /* Where the voxels of the taps lie for pixel `n`: one more, for the lead. */
 static void find_taps(const modes_stroke *stroke, int n, snow_rows_job *job) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     const snow_cover *cover = stroke->place->across;
-    int64_t at = PAD + cover->start + (int64_t)n * cover->stride;
+    int64_t at =
+        PAD + cover->start - pass->stored[0] + (int64_t)n * cover->stride;
     for (int m = 0; m <= cover->taps; m++, at++)
         job->rows[m] = cover->stride == 1 ? stroke->scratch.dense + at
                                           : stroke->scratch.split + at / 2 +
@@ -190,22 +129,32 @@ static void find_taps(const modes_stroke *stroke, int n, snow_rows_job *job) {
 
 /* The pixels that voxels of an extent reach. */
 static ring_row reached(const modes_stroke *stroke, const size_t extent[2]) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     ring_row reached = {pass->pixels[0], 0};
     for (int phase = 0; phase < pass->shear.u.phases; phase++) {
         const snow_cover *cover = &stroke->place->across[phase];
-        int first = pixel_behind(cover, (int64_t)extent[0] - cover->taps + 1,
-                                 pass->pixels[0]);
-        int end = pixel_behind(cover, (int64_t)extent[1], pass->pixels[0]);
+        int first = pixel_behind(
+            cover, pass->stored[0] + (int64_t)extent[0] - cover->taps + 1,
+            pass->pixels[0]);
+        int end = pixel_behind(cover, pass->stored[0] + (int64_t)extent[1],
+                               pass->pixels[0]);
         reached.first = first < reached.first ? first : reached.first;
         reached.end = end > reached.end ? end : reached.end;
     }
     return reached;
 }
 
+/* Leaves nothing of a row beyond the part's own pixels. */
+static void cut_row(const int own[2], ring_row row, float *pixels) {
+    int end = row.end + SNOW_ROWS_BEYOND; /* the last vector's */
+    for (int n = row.first; n < end; n++)
+        if (n < own[0] || n >= own[1])
+            pixels[n] = 0;
+}
+
 /* Row j of the slice, combed along u, into its slot of the ring. */
 static void filter_row(modes_stroke *stroke, int j) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     const snow_cover *covers = stroke->place->across;
     const int phases = pass->shear.u.phases;
     size_t slot = (size_t)j & (pass->ring - 1), extent[2];
@@ -233,10 +182,10 @@ static void filter_row(modes_stroke *stroke, int j) {
     *used = to;
     find_taps(stroke, to.first, &job);
     pass->fns->set(&job);
-    if (pass->largest)
+    if (pass->order->clip.cuts)
         for (int phase = 0; phase < phases; phase++)
-            fill_ends(stroke->place, phase, to,
-                      row + (size_t)phase * pass->row);
+            cut_row(stroke->place->own[0][phase], to,
+                    row + (size_t)phase * pass->row);
     *told = to;
 }
 
@@ -247,7 +196,7 @@ static void filter_row(modes_stroke *stroke, int j) {
  * all of them are empty. */
 static bool find_rows(const modes_stroke *stroke, int first, int count,
                       snow_rows_job *job) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     size_t step = (size_t)pass->shear.u.phases * pass->row;
     job->first = pass->pixels[0];
     job->end = 0;
@@ -265,99 +214,75 @@ static bool find_rows(const modes_stroke *stroke, int first, int count,
     return job->first < job->end;
 }
 
-/* Lines 08 to 13 for the lines of a job, in all phases along u.  `found` is
- * what they find of weights along v, alike if they are two. */
-static void reduce_lines(const modes_stroke *stroke, const snow_rows_job *lines,
-                         float found) {
-    const modes_pass *pass = stroke->pass;
-    snow_rows_job job;
-    memcpy(job.rows, lines->rows,
-           (size_t)(lines->taps + lines->lead) * sizeof *job.rows);
-    memcpy(job.weights, lines->weights, sizeof job.weights);
-    memcpy(job.lines, lines->lines, sizeof job.lines);
-    job.taps = lines->taps;
-    job.lead = lines->lead;
+/* Lines 08 to 13 for the lines of a job, in all phases along u. */
+static void reduce_lines(const modes_stroke *stroke, snow_rows_job *job) {
+    const snow_modes_pass *pass = stroke->pass;
     for (int phase = 0; phase < pass->shear.u.phases; phase++) {
-        int range[2] = {stroke->place->range[phase][0],
-                        stroke->place->range[phase][1]};
-        if (pass->largest && found < 1)
-            snow_cover_range(&stroke->place->across[phase],
-                             SNOW_WEIGHT_ENOUGH / found, range);
-        job.first = lines->first;
-        job.end = lines->end;
-        if (pass->largest) {
-            job.first = range[0] > job.first ? range[0] : job.first;
-            job.end = range[1] < job.end ? range[1] : job.end;
-        }
-        if (job.first < job.end)
-            (pass->largest ? pass->fns->most : pass->fns->add)(&job);
-        for (int m = 0; m < job.taps + job.lead; m++)
-            if (job.rows[m] != stroke->scratch.zero)
-                job.rows[m] += pass->row;
-        job.lines[0] += pass->row;
-        if (job.lines[1])
-            job.lines[1] += pass->row;
+        pass->fns->add(job);
+        for (int m = 0; m < job->taps + job->lead; m++)
+            if (job->rows[m] != stroke->scratch.zero)
+                job->rows[m] += pass->row;
+        job->lines[0] += pass->row;
+        if (job->lines[1])
+            job->lines[1] += pass->row;
     }
 }
 
-/* One line of a cell, near an end of the slice: weights that it does not find
- * are made up for. */
+static bool is_own(const snow_slice_place *place, int phase, int cell) {
+    return cell >= place->own[1][phase][0] && cell < place->own[1][phase][1];
+}
+
+/* One line of a cell, near an end of the slice. */
 static void reduce_line(const modes_stroke *stroke, int cell, int phase,
                         float *line) {
-    const modes_pass *pass = stroke->pass;
-    const snow_cover *cover = &stroke->place->down[phase];
-    float weights[SNOW_TAPS_MOST], found;
+    const snow_slice_place *place = stroke->place;
+    const snow_cover *cover = &place->down[phase];
+    int at = stroke->first_cell + cell;
     snow_rows_job job;
     job.taps = cover->taps;
     job.lead = 0;
-    job.weights[0] = weights;
+    job.weights[0] = cover->weights;
     job.weights[1] = NULL;
     job.lines[0] = line;
     job.lines[1] = NULL;
-    found = snow_cover_at(cover, stroke->first_cell + cell);
-    if (!(found > 0) || (pass->largest && found < SNOW_WEIGHT_ENOUGH))
-        return;
-    if (!find_rows(stroke, cell * cover->stride + stroke->place->v->lead[phase],
-                   cover->taps, &job))
-        return;
-    for (int m = 0; m < cover->taps; m++)
-        weights[m] = cover->weights[m] / (pass->largest ? found : 1);
-    reduce_lines(stroke, &job, found);
+    if (is_own(place, phase, at) && at >= cover->from && at < cover->to &&
+        find_rows(stroke, cell * cover->stride + place->v->lead[phase],
+                  cover->taps, &job))
+        reduce_lines(stroke, &job);
 }
 
 /* The lines of one cell. */
 static void reduce_cell(modes_stroke *stroke, int cell) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     const snow_lattice *v = &pass->shear.v;
-    const snow_cover *covers = stroke->place->down;
-    int lead = stroke->place->v->lead[1], at = stroke->first_cell + cell;
+    const snow_slice_place *place = stroke->place;
+    int lead = place->v->lead[1], at = stroke->first_cell + cell;
     int row = cell * v->stride, count = pass->taps[1] + lead;
     size_t floats = (size_t)pass->shear.u.phases * pass->row;
     float *line = stroke->scratch.lines + (size_t)(cell * v->phases) * floats;
     for (; stroke->filtered < row + count; stroke->filtered++)
         filter_row(stroke, stroke->filtered);
-    if (v->phases == 1 || snow_cover_at(&covers[0], at) < 1 ||
-        snow_cover_at(&covers[1], at) < 1) {
+    if (v->phases == 1 || !is_own(place, 0, at) || !is_own(place, 1, at)) {
         for (int phase = 0; phase < v->phases; phase++)
             reduce_line(stroke, cell, phase, line + (size_t)phase * floats);
         return;
     }
     snow_rows_job job;
-    aim(&job, covers, lead);
+    aim(&job, place->down, lead);
     job.lines[0] = line;
     job.lines[1] = line + floats;
     if (find_rows(stroke, row, count, &job))
-        reduce_lines(stroke, &job, 1);
+        reduce_lines(stroke, &job);
 }
 
 /* Rows of the slice's first `row` rows that no line needs are passed over. */
 static void reduce_slice(modes_stroke *stroke, int64_t slice) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     const snow_lattice *v = &pass->shear.v;
     stroke->place = &pass->places[slice];
     int reach = stroke->place->v->lead[1] + pass->taps[1];
-    int64_t first =
-        stroke->place->first_row + (int64_t)stroke->first_cell * v->stride;
+    int64_t first = stroke->place->first_row - pass->stored[1] +
+                    (int64_t)stroke->first_cell * v->stride;
     pass->windows->read(&pass->sheared->bands, slice, first,
                         ~UINT64_C(0) >>
                             (64 - ((stroke->cells - 1) * v->stride + reach)),
@@ -376,11 +301,25 @@ static void reduce_slice(modes_stroke *stroke, int64_t slice) {
 /* --- weights ---------------------------------------------------------------
  */
 
+void snow_modes_range(const snow_slice_place *place, int phase, float found,
+                      int range[2]) {
+    const int *own = place->own[0][phase];
+    snow_cover_range(&place->across[phase], SNOW_WEIGHT_ENOUGH / found, range);
+    range[0] = own[0] > range[0] ? own[0] : range[0];
+    range[1] = own[1] < range[1] ? own[1] : range[1];
+}
+
 /* Adds a slice's weights, times those along v, to the rises along a line. */
-static void add_weights(const snow_cover *cover, double found, double *rise) {
-    int in = cover->in < cover->to ? cover->in : cover->to;
-    int out = cover->out > in ? cover->out : in;
-    for (int n = cover->from; n < cover->to; n = n + 1 == in ? out : n + 1) {
+static void add_weights(const snow_cover *cover, const int own[2], double found,
+                        double *rise) {
+    int from = cover->from > own[0] ? cover->from : own[0];
+    int to = cover->to < own[1] ? cover->to : own[1];
+    int in = cover->in > from ? cover->in : from;
+    in = in < to ? in : to;
+    int out = cover->out < to ? cover->out : to;
+    out = out > in ? out : in;
+    for (int n = from == in ? out : from; n < to;
+         n = n + 1 == in ? out : n + 1) {
         double weight = found * (double)snow_cover_at(cover, n);
         rise[n] += weight;
         rise[n + 1] -= weight;
@@ -389,28 +328,28 @@ static void add_weights(const snow_cover *cover, double found, double *rise) {
     rise[out] -= found;
 }
 
-/* How the weights of all slices rise along a line of the band: their sum, or
+/* How the weights of all slices rise along a line of the picture: their sum, or
  * how many slices find enough. */
-static void weigh_line(const modes_stroke *stroke, int cell, int down) {
-    const modes_pass *pass = stroke->pass;
+static void weigh_slices(const snow_modes_pass *pass, int cell, int down,
+                         double *rise) {
     size_t row = (size_t)pass->pixels[0] + 1;
-    double *rise = stroke->scratch.rise;
     memset(rise, 0, (size_t)pass->shear.u.phases * row * sizeof *rise);
     for (int64_t k = 0; k < pass->slices; k++) {
-        const slice_place *place = &pass->places[k];
+        const snow_slice_place *place = &pass->places[k];
         float found = snow_cover_at(&place->down[down], cell);
-        if (!(found > 0) || (pass->largest && found < SNOW_WEIGHT_ENOUGH))
+        if (!(found > 0) || (pass->largest && found < SNOW_WEIGHT_ENOUGH) ||
+            cell < place->own[1][down][0] || cell >= place->own[1][down][1])
             continue;
         for (int phase = 0; phase < pass->shear.u.phases; phase++) {
             double *rises = rise + (size_t)phase * row;
             int range[2] = {place->range[phase][0], place->range[phase][1]};
             if (!pass->largest) {
-                add_weights(&place->across[phase], (double)found, rises);
+                add_weights(&place->across[phase], place->own[0][phase],
+                            (double)found, rises);
                 continue;
             }
             if (found < 1)
-                snow_cover_range(&place->across[phase],
-                                 SNOW_WEIGHT_ENOUGH / found, range);
+                snow_modes_range(place, phase, found, range);
             if (range[0] >= range[1])
                 continue;
             rises[range[0]] += 1;
@@ -419,10 +358,11 @@ static void weigh_line(const modes_stroke *stroke, int cell, int down) {
     }
 }
 
-/* The weights of a line's pixels, out of their rises. */
-static void sum_rises(const modes_pass *pass, const double *rise,
-                      float *weights) {
-    double share = 1 / (double)pass->slices;
+/* Out of the rises. */
+void snow_modes_weigh(const snow_modes_pass *pass, int cell, int down,
+                      double *rise, float *weights) {
+    double share = 1 / (double)pass->order->placement->slices;
+    weigh_slices(pass, cell, down, rise);
     for (int phase = 0; phase < pass->shear.u.phases; phase++) {
         double sum = 0;
         for (int n = 0; n < pass->pixels[0]; n++) {
@@ -437,12 +377,12 @@ static void sum_rises(const modes_pass *pass, const double *rise,
 /* The weights of a line; most lines lie within all slices, and have the same.
  */
 static const float *weights_of(modes_stroke *stroke, int cell, int down) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     bool within = cell >= pass->within[down][0] && cell < pass->within[down][1];
     if (!within || !stroke->weighed) {
-        weigh_line(stroke, cell, down);
-        sum_rises(pass, stroke->scratch.rise,
-                  within ? stroke->scratch.usual : stroke->scratch.weights);
+        snow_modes_weigh(pass, cell, down, stroke->scratch.rise,
+                         within ? stroke->scratch.usual
+                                : stroke->scratch.weights);
         stroke->weighed |= within;
     }
     return within ? stroke->scratch.usual : stroke->scratch.weights;
@@ -450,11 +390,11 @@ static const float *weights_of(modes_stroke *stroke, int cell, int down) {
 
 /* Lines of the plane, out of their phases and weights. */
 static void finish_band(modes_stroke *stroke) {
-    const modes_pass *pass = stroke->pass;
+    const snow_modes_pass *pass = stroke->pass;
     const snow_lattice *v = &pass->shear.v;
     const int phases = pass->shear.u.phases;
     size_t floats = (size_t)phases * pass->row;
-    float share = 1 / (float)pass->slices;
+    float share = 1 / (float)pass->order->placement->slices;
     for (int n = 0; n < stroke->cells * v->phases; n++) {
         int at = stroke->first_cell * v->phases + n;
         float *line = stroke->scratch.lines + (size_t)n * floats;
@@ -463,7 +403,7 @@ static void finish_band(modes_stroke *stroke) {
         const float *weights = weights_of(
             stroke, stroke->first_cell + n / v->phases, n % v->phases);
         for (size_t i = 0; i < floats; i++)
-            line[i] *= pass->largest ? weights[i] : share;
+            line[i] *= share;
         const float *values[2] = {line, line + pass->row};
         const float *found[2] = {weights, weights + pass->row};
         pass->fns->weave(values, found, phases, pass->pixels[0],
@@ -476,7 +416,8 @@ static void finish_band(modes_stroke *stroke) {
 
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
-static size_t lay_out(const modes_pass *pass, char *base, modes_scratch *out) {
+static size_t lay_out(const snow_modes_pass *pass, char *base,
+                      modes_scratch *out) {
     size_t at = 0, phases = (size_t)pass->shear.u.phases;
     int64_t columns = pass->sheared->bands.columns;
     size_t words = snow_window_words(columns) * SNOW_WINDOW_ROWS;
@@ -503,7 +444,7 @@ static size_t lay_out(const modes_pass *pass, char *base, modes_scratch *out) {
 }
 
 static void reduce_band(void *of, int64_t item, int worker) {
-    const modes_pass *pass = of;
+    const snow_modes_pass *pass = of;
     modes_stroke stroke = {.pass = pass};
     size_t words = snow_window_words(pass->sheared->bands.columns);
     lay_out(pass, pass->sheared->scratch + (size_t)worker * pass->scratch_bytes,
@@ -539,7 +480,7 @@ static void choose_pitch(const snow_taper *taper, bool largest, bool draft,
     *stride = taper->wide >= (draft ? 2 : 2.5) ? 2 : 1;
 }
 
-static snow_status place_lattice(modes_pass *pass) {
+static snow_status place_lattice(snow_modes_pass *pass) {
     const snow_placement *p = pass->order->placement;
     const snow_settings *settings = pass->order->settings;
     bool draft = settings->quality == SNOW_QUALITY_DRAFT;
@@ -569,26 +510,58 @@ static snow_status place_lattice(modes_pass *pass) {
         ((size_t)pass->sheared->bands.columns / 64 + 1) * 64 + 2 * PAD;
     int rows = SNOW_WINDOW_ROWS - pass->taps[1] - 1;
     pass->cells = rows / pass->shear.v.stride + 1;
-    if (pass->cells > BAND_CELLS)
+    /* What bands share is done twice; but threads want some each. */
+    if (pass->cells > BAND_CELLS && (!pass->largest || settings->threads > 1))
         pass->cells = BAND_CELLS;
     pass->bands = (pass->pixels[1] + pass->cells - 1) / pass->cells;
+    /* A window's columns are bits of a word. */
+    bool wide = pass->shear.u.phases == 1 && pass->shear.u.stride == 1;
+    pass->columns = wide ? SNOW_MOST_LINE : SNOW_MOST_LINE / 2;
+    pass->tiles = (pass->pixels[0] + pass->columns - 1) / pass->columns;
     for (pass->ring = 1; pass->ring < (size_t)pass->taps[1] + 1;)
         pass->ring *= 2;
     return SNOW_OK;
 }
 
+/* Pixels of a phase out of those of the lattice. */
+static void pixels_of(const int range[2], int phase, int phases, int pixels,
+                      int out[2]) {
+    for (int end = 0; end < 2; end++) {
+        int n = (range[end] - phase + phases - 1) / phases;
+        out[end] = n < 0 ? 0 : n < pixels ? n : pixels;
+    }
+}
+
+/* Which pixels of a slice are the part's own. */
+static void find_own(const snow_modes_pass *pass, double slice,
+                     snow_slice_place *place) {
+    const snow_clip *clip = &pass->order->clip;
+    for (int axis = 0; axis < 2; axis++) {
+        const snow_lattice *lattice = axis ? &pass->shear.v : &pass->shear.u;
+        int range[2] = {0, lattice->count};
+        if (clip->cuts)
+            snow_clip_lattice(clip, axis, lattice, slice, range);
+        if (range[1] == lattice->count) /* phases may have one beyond */
+            range[1] += lattice->phases;
+        for (int phase = 0; phase < lattice->phases; phase++)
+            pixels_of(range, phase, lattice->phases, pass->pixels[axis],
+                      place->own[axis][phase]);
+    }
+}
+
 /* The kernels of all slices and what they cover. */
-static void place_slice(modes_pass *pass, int64_t k) {
-    snow_comb *combs = pass->sheared->combs + 2 * k;
-    slice_place *place = &pass->places[k];
+static void place_slice(snow_modes_pass *pass, int64_t n) {
+    const snow_placement *p = pass->order->placement;
+    snow_comb *combs = pass->sheared->combs + 2 * n;
+    snow_slice_place *place = &pass->places[n];
     const snow_lattice *lattices[2] = {&pass->shear.u, &pass->shear.v};
-    const int64_t voxels[2] = {pass->sheared->bands.columns,
-                               pass->sheared->bands.rows};
+    const int64_t voxels[2] = {p->columns, p->rows};
+    double slice = (double)(pass->order->slab.first + n);
     place->u = &combs[0];
     place->v = &combs[1];
     for (int axis = 0; axis < 2; axis++) {
         const snow_lattice *lattice = lattices[axis];
-        snow_comb_make(&pass->taper[axis], lattice, (double)k, &combs[axis]);
+        snow_comb_make(&pass->taper[axis], lattice, slice, &combs[axis]);
         int64_t first = lattice->first / lattice->phases * lattice->stride +
                         combs[axis].offset;
         if (axis == 1)
@@ -598,42 +571,36 @@ static void place_slice(modes_pass *pass, int64_t k) {
                 &combs[axis], phase, pass->taps[axis], first, lattice->stride,
                 voxels[axis], pass->pixels[axis]);
     }
-    for (int phase = 0; phase < pass->shear.u.phases; phase++) {
-        snow_cover_range(&place->across[phase], SNOW_WEIGHT_ENOUGH,
-                         place->range[phase]);
-        for (int side = 0; side < 2; side++) {
-            int range[2];
-            end_pixels(&place->across[phase], side, range);
-            for (int n = range[0]; n < range[1]; n++) {
-                float found = snow_cover_at(&place->across[phase], n);
-                place->ends[phase][side][n - range[0]] =
-                    found > 0 ? 1 / found : 0;
-            }
-        }
-    }
+    find_own(pass, slice, place);
+    for (int phase = 0; phase < pass->shear.u.phases; phase++)
+        snow_modes_range(place, phase, 1, place->range[phase]);
     for (int phase = 0; phase < pass->shear.v.phases; phase++) {
         int *within = pass->within[phase];
         const snow_cover *down = &place->down[phase];
+        const int *own = place->own[1][phase];
         within[0] = down->in > within[0] ? down->in : within[0];
+        within[0] = own[0] > within[0] ? own[0] : within[0];
         within[1] = down->out < within[1] ? down->out : within[1];
+        within[1] = own[1] < within[1] ? own[1] : within[1];
     }
 }
 
-static snow_status reserve_buffers(modes_pass *pass) {
+static snow_status reserve_buffers(snow_modes_pass *pass) {
     snow_sheared *s = pass->sheared;
     const snow_settings *settings = pass->order->settings;
     modes_scratch unused;
     size_t slices = (size_t)pass->slices;
     int threads =
         settings->threads < pass->bands ? settings->threads : (int)pass->bands;
-    pass->scratch_bytes = lay_out(pass, NULL, &unused);
+    pass->scratch_bytes =
+        pass->largest ? snow_most_scratch(pass) : lay_out(pass, NULL, &unused);
     SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
                           pass->scratch_bytes * (size_t)threads));
     SNOW_TRY(snow_reserve(s->context, &s->combs, &s->combs_capacity, 0,
-                          2 * slices * sizeof *s->combs));
+                          2 * slices * sizeof *s->combs + 1));
     SNOW_TRY(snow_reserve(s->context, &s->teeth, &s->teeth_capacity, 0,
-                          slices * sizeof *pass->places));
-    pass->places = (slice_place *)(void *)s->teeth;
+                          slices * sizeof *pass->places + 1));
+    pass->places = (snow_slice_place *)(void *)s->teeth;
     snow_canvas *canvas = s->canvas;
     SNOW_TRY(snow_reserve(s->context, &canvas->plane, &canvas->plane_capacity,
                           0,
@@ -645,7 +612,7 @@ static snow_status reserve_buffers(modes_pass *pass) {
 }
 
 /* Numbers of codes are on a straight line: any two tell of all. */
-static void scale_codes(modes_pass *pass, const snow_value_scale *scale) {
+static void scale_codes(snow_modes_pass *pass, const snow_value_scale *scale) {
     const snow_coder *coder = &pass->sheared->coder;
     double one = snow_coder_value(coder, 1), far = snow_coder_value(coder, 129);
     double slope = (far - one) / 128 / scale->step;
@@ -654,7 +621,7 @@ static void scale_codes(modes_pass *pass, const snow_value_scale *scale) {
     pass->code_bytes = coder->bytes;
 }
 
-static void keep_warping(modes_pass *pass) {
+static void keep_warping(snow_modes_pass *pass) {
     const snow_settings *settings = pass->order->settings;
     snow_canvas *canvas = pass->sheared->canvas;
     snow_sheared_warping *w = &canvas->warping;
@@ -677,17 +644,38 @@ static void keep_warping(modes_pass *pass) {
                             1};
 }
 
+/* One tile, all of which is drawn. */
+static void describe(const snow_modes_pass *pass, snow_sheared_image *out) {
+    const snow_canvas *canvas = pass->sheared->canvas;
+    int width = pass->shear.u.count, height = pass->shear.v.count;
+    *out = (snow_sheared_image){.width = width,
+                                .height = height,
+                                .channels = 2,
+                                .pixels = pass->plane,
+                                .stride = pass->stride,
+                                .drawn = canvas->drawn,
+                                .tile_width = width,
+                                .tile_height = height,
+                                .tiles = 1,
+                                .layers = 1,
+                                .layer_floats = (size_t)height * pass->stride,
+                                .layer_tiles = 1,
+                                .warping = &canvas->warping};
+}
+
 snow_status snow_sheared_reduce(snow_sheared *s,
                                 const snow_sheared_order *order, bool largest,
                                 const snow_value_scale *scale,
                                 snow_stats *stats, snow_sheared_image *out) {
     const snow_settings *settings = order->settings;
-    modes_pass pass = {.order = order,
-                       .sheared = s,
-                       .largest = largest,
-                       .slices = order->placement->slices,
-                       .windows = snow_window_fns_of(settings->isa),
-                       .fns = snow_row_fns_of(settings->isa)};
+    snow_modes_pass pass = {
+        .order = order,
+        .sheared = s,
+        .largest = largest,
+        .slices = order->slab.count,
+        .stored = {order->clip.stored[0], order->clip.stored[1]},
+        .windows = snow_window_fns_of(settings->isa),
+        .fns = snow_row_fns_of(settings->isa)};
     double mark = snow_seconds();
     SNOW_TRY(snow_sheared_encode(s, order, stats));
     double encoded = snow_seconds();
@@ -697,15 +685,19 @@ snow_status snow_sheared_reduce(snow_sheared *s,
     SNOW_TRY(place_lattice(&pass));
     SNOW_TRY(reserve_buffers(&pass));
     keep_warping(&pass);
-    *out = (snow_sheared_image){.warping = &s->canvas->warping};
-    if (pass.shear.u.count == 0 || pass.shear.v.count == 0)
+    if (pass.shear.u.count == 0 || pass.shear.v.count == 0) {
+        *out = (snow_sheared_image){.warping = &s->canvas->warping};
         return SNOW_OK;
+    }
+    describe(&pass, out);
     for (int phase = 0; phase < 2; phase++)
         pass.within[phase][1] = pass.pixels[1];
     for (int64_t k = 0; k < pass.slices; k++)
         place_slice(&pass, k);
-    snow_parallel(s->context, settings->threads, pass.bands, reduce_band,
-                  &pass);
+    if (largest)
+        SNOW_TRY(snow_most_prepare(&pass, scale));
+    snow_parallel(s->context, settings->threads, pass.bands,
+                  largest ? snow_most_band : reduce_band, &pass);
     stats->seconds_splat += snow_seconds() - encoded;
     return SNOW_OK;
 }

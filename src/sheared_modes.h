@@ -5,11 +5,6 @@
 
 #include "sheared.h"
 
-/* Data values as numbers of 0 to 1: (value - from) / step. */
-typedef struct snow_value_scale {
-    double from, step; /* step may be negative, not 0 */
-} snow_value_scale;
-
 /* Whether the method makes such pictures of this view: parallel ones. */
 bool snow_sheared_modes_fits(const snow_placement *placement);
 

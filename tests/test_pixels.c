@@ -152,8 +152,9 @@ static void every_level_sees_and_packs_the_same_pixels(void **state) {
         for (int channels = 2; channels <= 4; channels += 2)
             for (pattern kind = NONE;
                  kind < PATTERNS && snow_isa_runs(levels[l]); kind++)
-                check_scans(snow_pixels_pick(levels[l], channels), channels,
-                            kind);
+                check_scans(
+                    snow_pixels_pick(levels[l], channels, SNOW_LAY_OVER),
+                    channels, kind);
 }
 
 /* --- merge ---------------------------------------------------------------- */
@@ -162,6 +163,7 @@ static void every_level_sees_and_packs_the_same_pixels(void **state) {
 
 /* Layers in the middle of a picture. */
 typedef struct stack {
+    snow_laying laying;
     int channels, count;
     int64_t first, last;
     snow_active layers[LAYERS];
@@ -237,7 +239,10 @@ static bool expect(const stack *s, int64_t at, float *out) {
             continue;
         float left = 1 - out[last];
         for (int c = 0; c <= last; c++)
-            out[c] += left * back[c];
+            if (s->laying == SNOW_LAY_MOST)
+                out[c] = back[c] > out[c] ? back[c] : out[c];
+            else
+                out[c] += s->laying == SNOW_LAY_SUM ? back[c] : left * back[c];
         any = true;
     }
     return any;
@@ -275,9 +280,10 @@ static void check_merge(const snow_pixel_loops *loops, stack *s, int64_t from,
     free(out);
 }
 
-static void check_stack(const snow_pixel_loops *loops, int channels,
+static void check_stack(snow_isa isa, int channels, snow_laying laying,
                         uint64_t *random) {
-    stack s = {.channels = channels};
+    const snow_pixel_loops *loops = snow_pixels_pick(isa, channels, laying);
+    stack s = {.channels = channels, .laying = laying};
     int64_t laid = 0;
     s.first = (int64_t)(support_random(random) % 300);
     s.last = s.first + 1 + (int64_t)(support_random(random) % 400);
@@ -299,11 +305,12 @@ static void check_stack(const snow_pixel_loops *loops, int channels,
 static void every_level_lays_the_same_pixels(void **state) {
     (void)state;
     for (size_t l = 0; l < COUNT_OF(levels); l++)
-        for (int channels = 2; channels <= 4; channels += 2) {
+        for (int kind = SNOW_LAY_OVER; kind <= SNOW_LAY_SUM + 1; kind++) {
+            int channels = kind > SNOW_LAY_SUM ? 4 : 2;
+            snow_laying laying = channels == 4 ? SNOW_LAY_OVER : kind;
             uint64_t random = 5;
             for (int i = 0; i < 1500 && snow_isa_runs(levels[l]); i++)
-                check_stack(snow_pixels_pick(levels[l], channels), channels,
-                            &random);
+                check_stack(levels[l], channels, laying, &random);
         }
 }
 
@@ -358,8 +365,8 @@ static void each_level_is_timed(void **state) {
                 double scan, lay;
                 if (!snow_isa_runs(levels[l]))
                     continue;
-                time_level(snow_pixels_pick(levels[l], channels), pixels, &scan,
-                           &lay);
+                time_level(snow_pixels_pick(levels[l], channels, SNOW_LAY_OVER),
+                           pixels, &scan, &lay);
                 print_message("             %d floats, %-9s %-7s %.2f ns to "
                               "look at a pixel, %.2f to lay one\n",
                               channels, names[k], snow_isa_name(levels[l]),

@@ -47,6 +47,7 @@ typedef struct play {
     int pictures; /* one after another, with one frame */
     float *picture;
     int channels;
+    float *depths;               /* NULL: not asked for */
     snow_stats stats;            /* of rank 0 */
     snow_stats each[MOST_RANKS]; /* of every rank */
     int64_t interesting;         /* in the serial picture */
@@ -175,6 +176,9 @@ static snow_status perform(snow_comm *comm, void *user) {
             memcpy(p->picture, snow_image_pixels(image),
                    floats_of(p) * sizeof(float));
             p->stats = *snow_frame_stats(frame);
+            if (p->depths)
+                memcpy(p->depths, snow_frame_depth(frame)->pixels,
+                       floats_of(p) / (size_t)p->channels * sizeof(float));
         }
         snow_image_free(image);
     }
@@ -214,6 +218,9 @@ static float *serial_picture(snow_context *context, play *p,
     float *pixels = malloc(floats_of(p) * sizeof(float));
     assert_non_null(pixels);
     memcpy(pixels, snow_image_pixels(image), floats_of(p) * sizeof(float));
+    if (p->depths)
+        memcpy(p->depths, snow_frame_depth(frame)->pixels,
+               floats_of(p) / (size_t)p->channels * sizeof(float));
     size_t channels = (size_t)p->channels;
     *strongest = 0;
     for (size_t n = channels - 1; n < floats_of(p); n += channels)
@@ -383,6 +390,116 @@ static void so_it_does_by_the_exact_methods(void **state) {
         SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED, SNOW_METHOD_FOOTPRINT};
     sweep("exact", 12, 0, exact, 3);
     sweep("exact, perspective", 6, 50, exact, 3);
+}
+
+/* --- other modes ----------------------------------------------------------
+ */
+
+/* Rounding of sums, and where it decides whether a ray misses. */
+#define BOUND_SUMS 2e-6
+
+/* The largest difference as a part of the largest value; infinite where a pixel
+ * is in one of them only. */
+static double gap_of(const float *a, const float *b, size_t count) {
+    double most = 0, gap = 0;
+    for (size_t n = 0; n < count; n++) {
+        if (isnan(a[n]) != isnan(b[n]))
+            return INFINITY;
+        if (isnan(a[n]))
+            continue;
+        gap = fmax(gap, fabs((double)a[n] - (double)b[n]));
+        most = fmax(most, fabs((double)b[n]));
+    }
+    return most > 0 ? gap / most : gap;
+}
+
+static bool shows_something(const play *p, const float *serial) {
+    int steps = 0;
+    for (size_t n = 1; n < floats_of(p); n++)
+        steps += serial[n] != serial[n - 1] && !isnan(serial[n]);
+    return steps > 20;
+}
+
+/* Serially, and by every number of ranks. */
+static int compare_modes(snow_context *context, play *p, double bound,
+                         double *most) {
+    size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
+    float *depths = calloc(pixels, sizeof(float));
+    double unused;
+    p->depths = p->settings.depth ? depths : NULL;
+    float *serial = serial_picture(context, p, &unused);
+    bool shows = shows_something(p, serial);
+    float *others = calloc(pixels, sizeof(float));
+    p->depths = p->settings.depth ? others : NULL;
+    for (int i = 0; i < COUNTS; i++) {
+        p->cut = (cutting)(i % CUTTINGS);
+        enact(context, p, rank_counts[i]);
+        double gap = gap_of(p->picture, serial, floats_of(p));
+        if (p->depths)
+            gap = fmax(gap, gap_of(others, depths, pixels));
+        if (!(gap <= bound))
+            fail_msg("%s by %d ranks differs by %g; cut %d, method %d, fov %g",
+                     snow_mode_name(p->settings.mode), rank_counts[i], gap,
+                     (int)p->cut, (int)p->settings.method, p->view.fov);
+        *most = fmax(*most, gap);
+        check_counts(p, rank_counts[i]);
+        free(p->picture);
+    }
+    free(serial);
+    free(depths);
+    free(others);
+    return shows;
+}
+
+static void mode_pictures(snow_mode mode, double bound) {
+    static const snow_method methods[] = {
+        SNOW_METHOD_SHEARED, SNOW_METHOD_SHEARED, SNOW_METHOD_FOOTPRINT,
+        SNOW_METHOD_ORIGINAL};
+    snow_context *context = support_context();
+    double most = 0;
+    int shown = 0, all = 0;
+    for (int n = 0; n < 2 * TURNS; n++, all++) {
+        reference_scene scene;
+        play p = play_of(n, 24, &scene);
+        p.settings.mode = mode;
+        p.settings.method = methods[n % 4];
+        p.settings.depth = mode == SNOW_MODE_ISO || mode == SNOW_MODE_OVER;
+        p.settings.iso = 60;
+        p.view.fov = n % 5 == 4 ? 35 : 0;
+        snow_transfer *transfer = model_transfer(context, &scene);
+        p.transfer = transfer;
+        shown += compare_modes(context, &p, bound, &most);
+        snow_transfer_free(transfer);
+        model_free(&scene);
+    }
+    print_message("             %s: %d of %d pictures show something, differ "
+                  "by up to %.2g\n",
+                  snow_mode_name(mode), shown, all, most);
+    assert_true(shown * 2 > all);
+    snow_context_free(context);
+}
+
+static void largest_values_of_many_ranks_have_the_serial_bits(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_MIP, 0);
+    mode_pictures(SNOW_MODE_MINIP, 0);
+}
+
+static void sums_of_many_ranks_differ_by_rounding(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_MEAN, BOUND_SUMS);
+    mode_pictures(SNOW_MODE_SUM, BOUND_SUMS);
+}
+
+/* Of the picture itself more is tested above. */
+static void depths_of_over_by_many_ranks(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_OVER, BOUND);
+}
+
+static void surfaces_of_many_ranks_have_the_serial_bits(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_ISO, 0);
 }
 
 /* --- phantoms and real volumes --------------------------------------------
@@ -717,6 +834,10 @@ int main(void) {
         cmocka_unit_test(any_number_of_ranks_makes_the_serial_picture),
         cmocka_unit_test(so_it_does_in_perspective),
         cmocka_unit_test(so_it_does_by_the_exact_methods),
+        cmocka_unit_test(largest_values_of_many_ranks_have_the_serial_bits),
+        cmocka_unit_test(sums_of_many_ranks_differ_by_rounding),
+        cmocka_unit_test(depths_of_over_by_many_ranks),
+        cmocka_unit_test(surfaces_of_many_ranks_have_the_serial_bits),
         cmocka_unit_test(phantoms_are_seen_alike_by_many_ranks),
         cmocka_unit_test(real_volumes_are_seen_alike_by_many_ranks),
         cmocka_unit_test(deterministic_pictures_are_the_same_bit_for_bit),

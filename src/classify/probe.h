@@ -25,4 +25,36 @@ void snow_probe_value(const snow_probe *probe, double sums[2]);
  * is nothing. */
 void snow_probe_gradient(const snow_probe *probe, double gradient[3]);
 
+/* --- cubics ----------------------------------------------------------------
+ *
+ * The usual window: 4 x 4 voxels of a volume without holes, all of them and
+ * their neighbours within the grid, under a kernel that needs no wider one.
+ * Values are counted from a base near those that are looked for, so that floats
+ * are as good as doubles. */
+typedef struct snow_near {
+    int64_t at;          /* the window's first voxel */
+    float weights[2][4]; /* along u and v; each adds up to 1 */
+} snow_near;
+
+/* The volume as such windows see it. */
+typedef struct snow_near_grid {
+    const void *voxels;
+    snow_type type;
+    int axes[3];      /* u, v, slices */
+    int64_t steps[3]; /* voxels from one to the next along u, v and slices */
+    double base;      /* native */
+} snow_near_grid;
+
+/* A whole number for volumes of them. */
+snow_near_grid snow_near_grid_of(const snow_volume *volume, const int axes[3],
+                                 double base);
+
+/* The value less the base; `slices` slices farther, which may be below 0. */
+float snow_near_value(const snow_near_grid *grid, const snow_near *near,
+                      int64_t slices);
+
+/* As snow_probe_gradient. */
+void snow_near_gradient(const snow_near_grid *grid, const snow_near *near,
+                        double gradient[3]);
+
 #endif

@@ -1,20 +1,18 @@
-/* classify/rays.tmpl.h - codes to samples, each with its own exponent.  Define
- * before including, with simd/select.h's words in force:
+/* classify/rays.tmpl.h - codes to samples, each with its own exponent, of one
+ * kind.  Define before including, besides what classify/rays_kinds.tmpl.h asks
+ * for:
  *
- *   RAY_CODE      C type of a code: uint8_t or uint16_t
- *   RAY_EXPAND    V(expand8) or V(expand16), as the code
- *   RAY_CHANNELS  floats of a sample: 2 or 4
  *   RAY_SHADED    whether normals and gloss are used: 0 or 1
  *   RAY_FADED     whether factors are used: 0 or 1
- *   RAY_GATHER, RAY_REPEAT, RAY_ALPHA, RAY_WITH_ALPHA
- *                 as in classify/sample.tmpl.h
- *   RAY_NAME      name of the function
+ *   RAY_KIND      the kind's name
  *
- * All are undefined at the end. */
-TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
-                            const uint16_t *fades, uint64_t bits, int count,
-                            const float *palette, const snow_gloss *gloss,
-                            const float square[3], float *samples) {
+ * These three are undefined at the end. */
+TARGET static void RAY_NAME(RAY_KIND)(const void *codes,
+                                      const uint16_t *normals,
+                                      const uint16_t *fades, uint64_t bits,
+                                      int count, const float *palette,
+                                      const snow_gloss *gloss,
+                                      const float square[3], float *samples) {
     const float *entries = palette - RAY_CHANNELS;
     uint32_t entry[SNOW_WINDOW_MOST + 17];
     float exponents[SNOW_WINDOW_MOST + 33];
@@ -99,13 +97,6 @@ TARGET static void RAY_NAME(const void *codes, const uint16_t *normals,
     }
 }
 
-#undef RAY_CODE
-#undef RAY_EXPAND
-#undef RAY_CHANNELS
 #undef RAY_SHADED
 #undef RAY_FADED
-#undef RAY_NAME
-#undef RAY_GATHER
-#undef RAY_REPEAT
-#undef RAY_ALPHA
-#undef RAY_WITH_ALPHA
+#undef RAY_KIND

@@ -2,182 +2,46 @@
  * simd/select.h's words are in force. */
 #include "classify/faded.tmpl.h"
 
+/* The kind is a macro, to be expanded first. */
+#define RAY_JOINED(name, kind) NAME(ray_##name##_##kind)
+#define RAY_KIND_OF(name, kind) RAY_JOINED(name, kind)
+
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
 #define RAY_CHANNELS 2
-#define RAY_SHADED 0
-#define RAY_FADED 0
 #define RAY_GATHER V(gather2)
 #define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
 #define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_byte2_plain)
-#include "classify/rays.tmpl.h"
+#define RAY_NAME(kind) RAY_KIND_OF(byte2, kind)
+#include "classify/rays_kinds.tmpl.h"
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
+#define RAY_CHANNELS 4
+#define RAY_GATHER V(gather4)
+#define RAY_REPEAT V(repeat4)
+#define RAY_ALPHA V(alpha4)
+#define RAY_WITH_ALPHA V(with_alpha4)
+#define RAY_NAME(kind) RAY_KIND_OF(byte4, kind)
+#include "classify/rays_kinds.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 2
-#define RAY_SHADED 0
-#define RAY_FADED 1
 #define RAY_GATHER V(gather2)
 #define RAY_REPEAT V(repeat2)
 #define RAY_ALPHA V(alpha2)
 #define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_byte2_plain_faded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint8_t
-#define RAY_EXPAND V(expand8)
-#define RAY_CHANNELS 2
-#define RAY_SHADED 1
-#define RAY_FADED 0
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_byte2_shaded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint8_t
-#define RAY_EXPAND V(expand8)
-#define RAY_CHANNELS 2
-#define RAY_SHADED 1
-#define RAY_FADED 1
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_byte2_shaded_faded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint8_t
-#define RAY_EXPAND V(expand8)
+#define RAY_NAME(kind) RAY_KIND_OF(word2, kind)
+#include "classify/rays_kinds.tmpl.h"
+#define RAY_CODE uint16_t
+#define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 4
-#define RAY_SHADED 0
-#define RAY_FADED 0
 #define RAY_GATHER V(gather4)
 #define RAY_REPEAT V(repeat4)
 #define RAY_ALPHA V(alpha4)
 #define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_byte4_plain)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint8_t
-#define RAY_EXPAND V(expand8)
-#define RAY_CHANNELS 4
-#define RAY_SHADED 0
-#define RAY_FADED 1
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_byte4_plain_faded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint8_t
-#define RAY_EXPAND V(expand8)
-#define RAY_CHANNELS 4
-#define RAY_SHADED 1
-#define RAY_FADED 0
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_byte4_shaded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint8_t
-#define RAY_EXPAND V(expand8)
-#define RAY_CHANNELS 4
-#define RAY_SHADED 1
-#define RAY_FADED 1
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_byte4_shaded_faded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 2
-#define RAY_SHADED 0
-#define RAY_FADED 0
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_word2_plain)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 2
-#define RAY_SHADED 0
-#define RAY_FADED 1
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_word2_plain_faded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 2
-#define RAY_SHADED 1
-#define RAY_FADED 0
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_word2_shaded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 2
-#define RAY_SHADED 1
-#define RAY_FADED 1
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
-#define RAY_NAME NAME(ray_word2_shaded_faded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 4
-#define RAY_SHADED 0
-#define RAY_FADED 0
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_word4_plain)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 4
-#define RAY_SHADED 0
-#define RAY_FADED 1
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_word4_plain_faded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 4
-#define RAY_SHADED 1
-#define RAY_FADED 0
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_word4_shaded)
-#include "classify/rays.tmpl.h"
-#define RAY_CODE uint16_t
-#define RAY_EXPAND V(expand16)
-#define RAY_CHANNELS 4
-#define RAY_SHADED 1
-#define RAY_FADED 1
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
-#define RAY_NAME NAME(ray_word4_shaded_faded)
-#include "classify/rays.tmpl.h"
+#define RAY_NAME(kind) RAY_KIND_OF(word4, kind)
+#include "classify/rays_kinds.tmpl.h"
 
 #define RAY_PAIR(name) \
     { NAME(ray_##name), NAME(ray_##name##_faded) }
@@ -188,3 +52,5 @@ static const ray_table NAME(ray_samples) = {
      {RAY_PAIR(word4_plain), RAY_PAIR(word4_shaded)}},
 };
 #undef RAY_PAIR
+#undef RAY_KIND_OF
+#undef RAY_JOINED

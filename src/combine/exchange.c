@@ -263,7 +263,6 @@ static snow_status take_shape(snow_combiner *combiner,
     drop_buffers(combiner);
     combiner->filled = false;
     combiner->shape = shape_of(order);
-    combiner->loops = snow_pixels_pick(SNOW_ISA_AUTO, order->channels);
     snow_borders_even(&combiner->borders, order->width, order->height,
                       order->grain);
     combiner->borders.counted = counts_pieces(order, comm->ranks);
@@ -282,7 +281,8 @@ static snow_status check_order(const snow_combiner *combiner,
                                const snow_exchange_order *order) {
     snow_context *context = combiner->comm->context;
     if (order->width < 1 || order->height < 1 ||
-        (order->channels != 2 && order->channels != 4))
+        (order->channels != 2 &&
+         (order->channels != 4 || order->laying != SNOW_LAY_OVER)))
         return snow_fail(context, SNOW_BAD_USAGE,
                          "a picture of %d x %d pixels and %d channels cannot "
                          "be combined; it has 2 or 4 channels",
@@ -606,6 +606,8 @@ snow_status snow_exchange(snow_combiner *combiner,
     clip_drawn(&order);
     if (!same_shape(&shape, &combiner->shape))
         SNOW_TRY(take_shape(combiner, &order));
+    combiner->loops =
+        snow_pixels_pick(SNOW_ISA_AUTO, order.channels, order.laying);
     SNOW_TRY(take_seats(combiner, &order));
     begin_figures(combiner, &order);
     if (combiner->borders.counted)

@@ -19,6 +19,7 @@
 #ifndef SNOW_EXCHANGE_H
 #define SNOW_EXCHANGE_H
 
+#include "combine/pixels.h"
 #include "comm/comm.h"
 
 #include <snowglass/ranks.h>
@@ -63,6 +64,7 @@ typedef struct snow_exchange_order {
     int grain;          /* pieces are whole runs of so many pixels: 1, or
                            width */
     snow_pieces pieces; /* of all methods but the tree, which has one */
+    snow_laying laying; /* of 2 channels where it is not over */
     bool whole;         /* all pixels travel, as in the paper: no masks */
     const snow_rehearsal *rehearsal; /* NULL: a real exchange */
     /* Seconds that a simulated processor takes (snow_comm_work) to look at a

@@ -20,17 +20,27 @@
 #include "combine/pixels_levels.h"
 #endif
 
-const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels) {
-#if SNOW_HAS_AVX
-    switch (snow_isa_resolve(isa)) {
-    case SNOW_ISA_AVX512:
-        return channels == 2 ? &loops_2_avx512 : &loops_4_avx512;
-    case SNOW_ISA_AVX2:
-        return channels == 2 ? &loops_2_avx2 : &loops_4_avx2;
-    default:
-        break;
+/* The loops of a level: of 2 channels for each snow_laying, and of 4. */
+#define LOOPS(level)                                                     \
+    {                                                                    \
+        &loops_over2_##level, &loops_most2_##level, &loops_sum2_##level, \
+            &loops_over4_##level                                         \
     }
+
+const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels,
+                                         snow_laying laying) {
+    static const snow_pixel_loops *const levels[][4] = {
+        LOOPS(scalar),
+#if SNOW_HAS_AVX
+        LOOPS(avx2),
+        LOOPS(avx512),
+#endif
+    };
+    int level = 0;
+#if SNOW_HAS_AVX
+    isa = snow_isa_resolve(isa);
+    level = isa == SNOW_ISA_AVX512 ? 2 : isa == SNOW_ISA_AVX2;
 #endif
     (void)isa;
-    return channels == 2 ? &loops_2_scalar : &loops_4_scalar;
+    return levels[level][channels == 2 ? (int)laying : 3];
 }

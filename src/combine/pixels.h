@@ -26,14 +26,23 @@ typedef struct snow_pixel_loops {
     /* Lays layers over one another, from front to back, in pixels first .. last
      * - 1 (as snow_active_merge, which see): the bits of the result to words[0]
      * and so on, its pixels, packed or all, to `out`; returns where the next
-     * one goes; adds to *laid.  front += (1 - front.alpha) * back, in this
-     * order of operations. */
+     * one goes; adds to *laid.  Over is front += (1 - front.alpha) * back, in
+     * this order of operations. */
     float *(*merge)(struct snow_active *layers, int count, int64_t first,
                     int64_t last, uint64_t *words, float *out, bool packed,
                     int64_t *laid);
 } snow_pixel_loops;
 
-/* The loops for 2 or 4 channels. */
-const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels);
+/* What is done with a pixel that comes behind another.  All but over make no
+ * difference of the two, and take pixels (value, weight) whose nothing is 0. */
+typedef enum snow_laying {
+    SNOW_LAY_OVER = 0,
+    SNOW_LAY_MOST, /* the larger of each float */
+    SNOW_LAY_SUM
+} snow_laying;
+
+/* The loops for 2 or 4 channels; `laying` other than over is of 2. */
+const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels,
+                                         snow_laying laying);
 
 #endif

@@ -2,9 +2,9 @@
  * channels.  Define before including, with simd/select.h's words in force:
  *
  *   PIXELS_CHANNELS  floats of a pixel: 2 or 4
- *   PIXELS_SOME, PIXELS_ALPHA, PIXELS_GATHER, PIXELS_SCATTER
- *                    V(some2), V(alpha2), V(gather2), V(scatter2), or those of
- *                    4, as the channels
+ *   PIXELS_LAYING(front, back)
+ *                    what becomes of a vector of pixels that lies before
+ *                    another; nothing behind it must change nothing
  *   PIXELS_NAME      name of the functions: PIXELS_NAME(look), (scan), (merge)
  *
  * All are undefined at the end.  Of 64 pixels most often all or none are
@@ -17,6 +17,15 @@
  * Memory is asked for some lines ahead, since there are as many streams as
  * layers and each begins a new page every few hundred pixels. */
 
+#if PIXELS_CHANNELS == 2
+#define PIXELS_SOME V(some2)
+#define PIXELS_GATHER V(gather2)
+#define PIXELS_SCATTER V(scatter2)
+#else
+#define PIXELS_SOME V(some4)
+#define PIXELS_GATHER V(gather4)
+#define PIXELS_SCATTER V(scatter4)
+#endif
 #define PIXELS_LISTED (LANES / PIXELS_CHANNELS < 8)
 #define PIXELS_EACH (LANES / PIXELS_CHANNELS) /* pixels of a vector */
 #define PIXELS_FEW(bits) ((unsigned)(bits) & ((1u << PIXELS_EACH) - 1))
@@ -92,12 +101,6 @@ TARGET static float *PIXELS_NAME(scan)(const float *pixels, int64_t at,
     return out;
 }
 
-/* `back` behind `front`. */
-TARGET static inline V(vec) PIXELS_NAME(over)(V(vec) front, V(vec) back) {
-    V(vec) left = V(sub)(V(set1)(1), PIXELS_ALPHA(front));
-    return V(add)(front, V(mul)(left, back));
-}
-
 /* Lays packed pixels behind those of a tile of 64, and one that may be spoilt;
  * returns the first that is left. */
 TARGET static inline const float *
@@ -105,7 +108,7 @@ PIXELS_NAME(lay)(float *tile, const float *packed, uint64_t bits) {
     if (bits == ~(uint64_t)0) {
         for (int i = 0; i < 64 * PIXELS_CHANNELS; i += LANES) {
             V(vec) front = V(load)(tile + i);
-            front = PIXELS_NAME(over)(front, V(load)(packed + i));
+            front = PIXELS_LAYING(front, V(load)(packed + i));
             V(store)(tile + i, front);
         }
         return packed + 64 * PIXELS_CHANNELS;
@@ -117,7 +120,7 @@ PIXELS_NAME(lay)(float *tile, const float *packed, uint64_t bits) {
         const float *from = packed + i * PIXELS_CHANNELS;
         V(vec) front = PIXELS_GATHER(tile, places + i);
         __builtin_prefetch(from + PIXELS_AHEAD);
-        front = PIXELS_NAME(over)(front, V(load)(from));
+        front = PIXELS_LAYING(front, V(load)(from));
         PIXELS_SCATTER(tile, places + i, front);
     }
     return packed + count * PIXELS_CHANNELS;
@@ -125,7 +128,7 @@ PIXELS_NAME(lay)(float *tile, const float *packed, uint64_t bits) {
     __builtin_prefetch(packed + PIXELS_AHEAD);
     for (int i = 0; i < 64 * 2; i += LANES, bits >>= PIXELS_EACH) {
         V(vec) back = V(next2)(packed, PIXELS_FEW(bits));
-        V(store)(tile + i, PIXELS_NAME(over)(V(load)(tile + i), back));
+        V(store)(tile + i, PIXELS_LAYING(V(load)(tile + i), back));
         packed += 2 * V(popcount)(PIXELS_FEW(bits));
     }
     return packed;
@@ -181,7 +184,7 @@ static const snow_pixel_loops PIXELS_NAME(loops) = {
 #undef PIXELS_AHEAD
 #undef PIXELS_CHANNELS
 #undef PIXELS_SOME
-#undef PIXELS_ALPHA
+#undef PIXELS_LAYING
 #undef PIXELS_GATHER
 #undef PIXELS_SCATTER
 #undef PIXELS_NAME

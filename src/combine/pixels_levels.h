@@ -1,16 +1,20 @@
 /* combine/pixels_levels.h - the loops of one level; simd/select.h's words are
  * in force. */
 #define PIXELS_CHANNELS 2
-#define PIXELS_SOME V(some2)
-#define PIXELS_ALPHA V(alpha2)
-#define PIXELS_GATHER V(gather2)
-#define PIXELS_SCATTER V(scatter2)
-#define PIXELS_NAME(word) NAME(word##_2)
+#define PIXELS_LAYING(front, back) \
+    V(add)(front, V(mul)(V(sub)(V(set1)(1), V(alpha2)(front)), back))
+#define PIXELS_NAME(word) NAME(word##_over2)
+#include "combine/pixels.tmpl.h"
+#define PIXELS_CHANNELS 2
+#define PIXELS_LAYING(front, back) V(max)(back, front)
+#define PIXELS_NAME(word) NAME(word##_most2)
+#include "combine/pixels.tmpl.h"
+#define PIXELS_CHANNELS 2
+#define PIXELS_LAYING(front, back) V(add)(front, back)
+#define PIXELS_NAME(word) NAME(word##_sum2)
 #include "combine/pixels.tmpl.h"
 #define PIXELS_CHANNELS 4
-#define PIXELS_SOME V(some4)
-#define PIXELS_ALPHA V(alpha4)
-#define PIXELS_GATHER V(gather4)
-#define PIXELS_SCATTER V(scatter4)
-#define PIXELS_NAME(word) NAME(word##_4)
+#define PIXELS_LAYING(front, back) \
+    V(add)(front, V(mul)(V(sub)(V(set1)(1), V(alpha4)(front)), back))
+#define PIXELS_NAME(word) NAME(word##_over4)
 #include "combine/pixels.tmpl.h"

@@ -18,6 +18,8 @@
  *   V(alpha2)(v), V(alpha4)(v)       the last channel of each pixel of 2 or 4
  *                                    floats, in all of its lanes
  *   V(any_less)(a, b)                whether a < b in any lane
+ *   V(less)(a, b)                    a bit for each lane where a < b
+ *   V(least)(v)                      the smallest lane
  *   V(gather4)(p, n), V(gather2)     entries n[0], n[1] ... of a table of 4 or 2
  *                                    floats each, as many as a vector holds
  *   V(pairs16)(p, n, low, high)      the lower and the upper halves of 16 entries
@@ -27,6 +29,9 @@
  *                                    16 places: the next of the numbers at p,
  *                                    and 1 more, where a bit is set, else 0;
  *                                    may read 16 numbers beyond the last
+ *   V(numbers8)(p, bits, scale, start, out), V(numbers16)
+ *                                    the same as floats: start + scale * number,
+ *                                    or 0
  *   V(widen8)(p, out), V(widen16)    16 numbers at p
  *   V(spread2)(p, bits, count, out), V(spread4)
  *                                    `count` places of 2 or 4 floats: the next

@@ -142,6 +142,21 @@ SNOW_AVX2_INLINE void snow_avx2_expand16(const uint16_t *p, uint32_t bits,
     }
 }
 
+/* As told in simd/select.h. */
+#define SNOW_AVX2_NUMBERS(bits_of_number, type)                               \
+    SNOW_AVX2_INLINE void snow_avx2_numbers##bits_of_number(                  \
+        const type *p, uint32_t bits, float scale, float start, float *out) { \
+        uint32_t numbers[16];                                                 \
+        snow_avx2_expand##bits_of_number(p, bits, numbers);                   \
+        for (int i = 0; i < 16; i++) {                                        \
+            float number = start + scale * (float)(int32_t)(numbers[i] - 1);  \
+            out[i] = numbers[i] ? number : 0;                                 \
+        }                                                                     \
+    }
+SNOW_AVX2_NUMBERS(8, uint8_t)
+SNOW_AVX2_NUMBERS(16, uint16_t)
+#undef SNOW_AVX2_NUMBERS
+
 SNOW_AVX2_INLINE unsigned snow_avx2_windows(const uint64_t *low,
                                             const uint64_t *high,
                                             unsigned shift, uint64_t within,
@@ -251,6 +266,17 @@ SNOW_AVX2_INLINE int snow_avx2_popcount(uint64_t x) {
 
 SNOW_AVX2_INLINE int snow_avx2_any_less(snow_avx2_vec a, snow_avx2_vec b) {
     return _mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)) != 0;
+}
+
+SNOW_AVX2_INLINE unsigned snow_avx2_less(snow_avx2_vec a, snow_avx2_vec b) {
+    return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
+}
+
+SNOW_AVX2_INLINE float snow_avx2_least(snow_avx2_vec v) {
+    __m128 half =
+        _mm_min_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+    half = _mm_min_ps(half, _mm_movehl_ps(half, half));
+    return _mm_cvtss_f32(_mm_min_ss(half, _mm_movehdup_ps(half)));
 }
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sqrt(snow_avx2_vec v) {

@@ -156,6 +156,33 @@ SNOW_AVX512_INLINE void snow_avx512_expand16(const uint16_t *p, uint32_t bits,
                                     _mm512_set1_epi32(1)));
 }
 
+SNOW_AVX512_INLINE void snow_avx512_scaled(__mmask16 here, __m512i numbers,
+                                           float scale, float start,
+                                           float *out) {
+    __m512 scaled =
+        _mm512_mul_ps(_mm512_set1_ps(scale), _mm512_cvtepi32_ps(numbers));
+    _mm512_storeu_ps(out,
+                     _mm512_maskz_add_ps(here, _mm512_set1_ps(start), scaled));
+}
+
+SNOW_AVX512_INLINE void snow_avx512_numbers8(const uint8_t *p, uint32_t bits,
+                                             float scale, float start,
+                                             float *out) {
+    __mmask16 here = (__mmask16)bits;
+    __m128i numbers = _mm_maskz_expand_epi8(
+        here, _mm_loadu_si128((const __m128i *)(const void *)p));
+    snow_avx512_scaled(here, _mm512_cvtepu8_epi32(numbers), scale, start, out);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_numbers16(const uint16_t *p, uint32_t bits,
+                                              float scale, float start,
+                                              float *out) {
+    __mmask16 here = (__mmask16)bits;
+    __m256i numbers = _mm256_maskz_expand_epi16(
+        here, _mm256_loadu_si256((const __m256i *)(const void *)p));
+    snow_avx512_scaled(here, _mm512_cvtepu16_epi32(numbers), scale, start, out);
+}
+
 SNOW_AVX512_INLINE unsigned snow_avx512_windows(const uint64_t *low,
                                                 const uint64_t *high,
                                                 unsigned shift, uint64_t within,
@@ -241,6 +268,15 @@ SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {
 SNOW_AVX512_INLINE int snow_avx512_any_less(snow_avx512_vec a,
                                             snow_avx512_vec b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) != 0;
+}
+
+SNOW_AVX512_INLINE unsigned snow_avx512_less(snow_avx512_vec a,
+                                             snow_avx512_vec b) {
+    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+}
+
+SNOW_AVX512_INLINE float snow_avx512_least(snow_avx512_vec v) {
+    return _mm512_reduce_min_ps(v);
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sqrt(snow_avx512_vec v) {

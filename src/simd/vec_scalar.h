@@ -137,6 +137,21 @@ static inline void snow_scalar_expand16(const uint16_t *p, uint32_t bits,
     }
 }
 
+/* As told in simd/select.h. */
+#define SNOW_SCALAR_NUMBERS(bits_of_number, type)                             \
+    static inline void snow_scalar_numbers##bits_of_number(                   \
+        const type *p, uint32_t bits, float scale, float start, float *out) { \
+        uint32_t numbers[16];                                                 \
+        snow_scalar_expand##bits_of_number(p, bits, numbers);                 \
+        for (int i = 0; i < 16; i++) {                                        \
+            float number = start + scale * (float)(int32_t)(numbers[i] - 1);  \
+            out[i] = numbers[i] ? number : 0;                                 \
+        }                                                                     \
+    }
+SNOW_SCALAR_NUMBERS(8, uint8_t)
+SNOW_SCALAR_NUMBERS(16, uint16_t)
+#undef SNOW_SCALAR_NUMBERS
+
 /* As told in simd/select.h; in two steps, since a shift by 64 is none. */
 static inline unsigned snow_scalar_windows(const uint64_t *low,
                                            const uint64_t *high, unsigned shift,
@@ -213,6 +228,17 @@ static inline int snow_scalar_popcount(uint64_t x) {
 static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {
     snow_scalar_mask less = (snow_scalar_mask)(a < b);
     return (less[0] | less[1] | less[2] | less[3]) != 0;
+}
+
+static inline unsigned snow_scalar_less(snow_scalar_vec a, snow_scalar_vec b) {
+    snow_scalar_mask less = (snow_scalar_mask)(a < b);
+    return (unsigned)((less[0] & 1) | (less[1] & 2) | (less[2] & 4) |
+                      (less[3] & 8));
+}
+
+static inline float snow_scalar_least(snow_scalar_vec v) {
+    float a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
+    return a < b ? a : b;
 }
 
 static inline snow_scalar_vec snow_scalar_sqrt(snow_scalar_vec v) {

@@ -30,4 +30,38 @@ static inline bool snow_reached_at(const snow_reached *r, int64_t slice,
     return r->bits[row * r->words + (size_t)u / 64] >> (u % 64) & 1;
 }
 
+/* The first slice that rays can meet something in, for rays that all run alike:
+ * one that has place (a, b) on slice 0 has (a + k slope[0], b + k slope[1]) on
+ * slice k.  Cells are those of whole places on slice 0:
+ *
+ *   slice k      . . # # .        moved by -floor(k slope)
+ *   slice 1    . # # . .     --->   cell   0  1  2  3
+ *   slice 0  . . . . .              first  .  1  1  k                       */
+typedef struct snow_first {
+    int64_t low[2]; /* the place of cell 0; may be below 0 */
+    int64_t cells[2];
+    int32_t
+        *slices; /* how many slices a ray passes before; -1: it meets none */
+    uint64_t *found;                 /* room for a row of bits of each thread */
+    size_t capacity, found_capacity; /* bytes */
+} snow_first;
+
+/* Fills `first`, which begins as zeros, for rays that come from slice 0
+ * (`rising`) or from the last one.  Errors: SNOW_NO_MEMORY.  Free with
+ * snow_release of `slices` and `found`. */
+snow_status snow_first_make(snow_context *context, const snow_reached *reached,
+                            const double slope[2], bool rising, int threads,
+                            snow_first *first);
+
+/* How many slices the ray of place (a, b) on slice 0 passes before one that it
+ * may meet something in; -1: there is none. */
+static inline int32_t snow_first_of(const snow_first *first, double a,
+                                    double b) {
+    double u = a - (double)first->low[0], v = b - (double)first->low[1];
+    if (!(u >= 0 && v >= 0 && u < (double)first->cells[0] &&
+          v < (double)first->cells[1]))
+        return -1;
+    return first->slices[(int64_t)v * first->cells[0] + (int64_t)u];
+}
+
 #endif

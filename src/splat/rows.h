@@ -5,7 +5,10 @@
  *   bits, codes   0 1 1 0 1   a b c
  *   spread        0 a b 0 c             values, as floats
  *   set           w0 row[n] + w1 row[n + 1] + ...        along u
- *   add, most     w0 row0[n] + w1 row1[n] + ... into a line, along v
+ *   add           w0 row0[n] + w1 row1[n] + ... to a line, along v
+ *
+ * For largest values the same is done by tiles (snow_most_tile), most of which
+ * have nothing to add once the brightest voxels are in.
  *
  * avx2 and avx512 make the same bits. */
 #ifndef SNOW_ROWS_H
@@ -14,7 +17,7 @@
 #include "simd/isa.h"
 #include "splat/comb.h"
 
-/* Floats that may be read, and but for `most` written, beyond the last. */
+/* Floats that may be read and written beyond the last. */
 #define SNOW_ROWS_BEYOND 16
 
 /* Sums of rows over n = first .. end - 1 for one or two phases: sum i, of
@@ -30,6 +33,62 @@ typedef struct snow_rows_job {
 
 typedef void snow_rows_fn(const snow_rows_job *job);
 
+/* A tile of one slice for largest values: 16 or 32 columns of the lattice of up
+ * to 64 rows of voxels, of which no more is looked at than may matter.
+ *
+ *   windows of voxels     spread, combed along u       combed along v
+ *   row i   . a b . .  --> phase 0 | phase 1 of row i  --> lines of a cell
+ *
+ * A line holds the pixels of each phase along u, one phase after the other. */
+#define SNOW_MOST_WINDOW 80 /* floats of a spread window */
+#define SNOW_MOST_LINE 32   /* pixels at most */
+#define SNOW_MOST_CELLS 64
+#define SNOW_MOST_ROWS 64
+
+/* The picture is rounded to steps in the end, so that what is above it by
+ * rounding alone need not be looked at: pixels of one value are many. */
+#define SNOW_MOST_STEPS 65535
+static inline float snow_most_step(float value) {
+    return (float)(int32_t)(value * SNOW_MOST_STEPS + 0.5f);
+}
+
+/* For each 16 voxels of a row: the step that no sheet made of them is above. */
+#define SNOW_BLOCK_COLUMNS 16
+
+typedef struct snow_most_tile {
+    int columns; /* 16, or 32 of one phase */
+    /* Along u and v. */
+    int phases[2], stride[2], taps[2], lead[2];
+    const float *weights[2][2]; /* [axis][phase] */
+    /* Windows (encode/windows.h) of `window` columns; numbers as for spread8.
+     */
+    uint64_t held;
+    const uint64_t *bits;
+    const uint32_t *before;
+    const unsigned char *const *codes;
+    int code_bytes, window;
+    float scale, start;
+    float *samples;    /* SNOW_MOST_ROWS windows */
+    float *ring;       /* as many filtered rows, not shared */
+    const float *zero; /* a filtered row of zeros */
+    /* Cells to be drawn, whose rows are combed. */
+    uint64_t cells;
+    /* What a cell's pixels are multiplied with, line by line, NULL: nothing. */
+    const float *factors;
+    float *lines; /* of cell 0 */
+    float *least; /* the step of each cell's smallest pixel, kept up */
+} snow_most_tile;
+
+/* Which cells a slice may change. */
+typedef struct snow_most_look {
+    const uint16_t *const *blocks; /* columns of blocks, by row */
+    int block_count;
+    int first, end;  /* rows of the window that exist */
+    int rows, cells; /* up to cells; rows that they need */
+    int stride, reach;
+    const float *least;
+} snow_most_look;
+
 typedef struct snow_row_fns {
     /* Voxels of `words` words of bits, `step` apart, lowest bit first, into
      * as many times 64 floats: start + scale * code, and 0 where there is none.
@@ -40,9 +99,15 @@ typedef struct snow_row_fns {
     void (*spread16)(const uint64_t *bits, size_t step, size_t words,
                      const unsigned char *codes, float scale, float start,
                      float *row);
-    snow_rows_fn *set;  /* the sum */
-    snow_rows_fn *add;  /* the line and the sum */
-    snow_rows_fn *most; /* the larger of the two */
+    snow_rows_fn *set; /* the sum */
+    snow_rows_fn *add; /* the line and the sum */
+    uint64_t (*look)(const snow_most_look *look);
+    void (*comb)(const snow_most_tile *tile); /* the held rows, along u */
+    void (*most)(const snow_most_tile *tile); /* the cells: the larger of what
+                                                 they hold and the sums */
+    /* The numbers of `count` voxels as blocks, which lie `step` apart. */
+    void (*block)(const float *row, int64_t count, size_t step,
+                  uint16_t *blocks);
     /* Pairs (value, weight) of `count` pixels of one or two phases, in turns.
      */
     void (*weave)(const float *const *values, const float *const *weights,

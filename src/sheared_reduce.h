@@ -1,0 +1,80 @@
+/* sheared_reduce.h - what the loops of sums (sheared_modes.c) and of largest
+ * values (sheared_most.c) know of a picture on the slices' lattice.
+ *
+ * Voxels are those of the whole volume here: what a pixel finds of weights does
+ * not depend on which part of it a processor has. */
+#ifndef SNOW_SHEARED_REDUCE_H
+#define SNOW_SHEARED_REDUCE_H
+
+#include "composite/reduce.h"
+#include "sheared_modes.h"
+#include "sheared_parts.h"
+#include "splat/cover.h"
+#include "splat/rows.h"
+
+/* How one slice lies on the lattice. */
+typedef struct snow_slice_place {
+    const snow_comb *u, *v;
+    int64_t first_row;             /* of cell 0, but for leads */
+    snow_cover across[2], down[2]; /* per phase */
+    /* Per phase, along u and v: pixels that are the part's own; and along u
+     * those of them that find enough for a value. */
+    int own[2][2][2], range[2][2];
+} snow_slice_place;
+
+/* One picture in the making. */
+typedef struct snow_modes_pass {
+    const snow_sheared_order *order;
+    snow_sheared *sheared;
+    bool largest;
+    snow_shear shear;
+    snow_taper taper[2]; /* along u and v */
+    int taps[2];
+    int64_t slices;    /* that are drawn */
+    int64_t stored[2]; /* the first voxel that is encoded, along u and v */
+    snow_slice_place *places;
+    const snow_window_fns *windows;
+    const snow_row_fns *fns;
+    float scale, start; /* of codes */
+    int code_bytes;
+    int within[2][2]; /* per phase along v: cells within all slices */
+    int pixels[2];    /* cells along u and v: pixels of a phase */
+    int cells;        /* of a band */
+    int64_t bands;
+    int columns;   /* of a tile of largest values */
+    int64_t tiles; /* of a band of those */
+    size_t row;    /* floats of a row of a phase */
+    size_t dense;  /* of a row of voxels, pads included */
+    size_t ring;   /* rows that are kept; a power of 2 */
+    size_t stride; /* floats of a line of the plane */
+    size_t scratch_bytes;
+    float *plane;
+} snow_modes_pass;
+
+/* The next part of a worker's memory, aligned to 64 bytes; without a base
+ * nothing but its end counts. */
+static inline void *snow_modes_part(char *base, size_t *at, size_t bytes) {
+    void *part = base ? base + *at : NULL;
+    *at += (bytes + 63) / 64 * 64;
+    return part;
+}
+
+/* The part's own pixels of a phase along u that find enough for a value on a
+ * line that finds `found` of its weights along v; place->range is that of 1. */
+void snow_modes_range(const snow_slice_place *place, int phase, float found,
+                      int range[2]);
+
+/* The weights of a line's pixels, [phase][pixel]: of largest values 1 where a
+ * slice finds enough, else 0.  `rise` has room for (pixels + 1) of each phase.
+ */
+void snow_modes_weigh(const snow_modes_pass *pass, int cell, int down,
+                      double *rise, float *weights);
+
+/* Largest values: the bytes of a worker's memory; one band; and what is kept of
+ * the encoded voxels to tell which slices may change a tile. */
+size_t snow_most_scratch(const snow_modes_pass *pass);
+void snow_most_band(void *pass, int64_t band, int worker);
+snow_status snow_most_prepare(snow_modes_pass *pass,
+                              const snow_value_scale *scale);
+
+#endif
