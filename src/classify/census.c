@@ -9,8 +9,11 @@
  *
  * Everything that is said of a volume is a count, a minimum or a maximum.  Many
  * ranks find them each of the voxels that it answers for, add them up, and know
- * the same of the whole to the bit as one rank would, however it is cut. */
+ * the same of the whole to the bit as one rank would, however it is cut.  So it
+ * is of slabs of a volume that stays in its file (volume/stream.h), which each
+ * pass reads anew. */
 #include "classify/look.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -91,6 +94,14 @@ static size_t next_block(walk *w, double values[BLOCK]) {
     }
 }
 
+/* One pass over all slabs of a volume, each of which is walked by itself.  Many
+ * ranks have their voxels in memory, where it cannot fail. */
+static snow_status each_slab(const snow_census *census, snow_slab_fn *visit,
+                             void *user) {
+    static const snow_slab_cut cut = {.step = 1};
+    return snow_slabs_visit(census->volume, &cut, visit, user);
+}
+
 /* Adds up what all ranks have counted. */
 static snow_status sum_up(const snow_census *census, uint64_t *counts,
                           size_t count) {
@@ -132,7 +143,9 @@ static bool counted_type(snow_type type, int *smallest) {
            type == SNOW_UINT16;
 }
 
-static void count_natives(const snow_volume *volume, uint64_t *counts) {
+/* `user` are the counts. */
+static snow_status count_natives(const snow_volume *volume, void *user) {
+    uint64_t *counts = user;
     walk w = walk_begin(volume, false, SNOW_EXACT);
 #define COUNT_TYPE(name, c_type, smallest)                          \
     case name: {                                                    \
@@ -153,6 +166,7 @@ static void count_natives(const snow_volume *volume, uint64_t *counts) {
         break;
     }
 #undef COUNT_TYPE
+    return SNOW_OK;
 }
 
 /* The n-th counted value in the order of data values (a negative slope turns
@@ -196,10 +210,12 @@ static double counted_quantile(const snow_census *census, uint64_t rank) {
 /* --- all types -------------------------------------------------------------
  */
 
-static void measure_values(snow_census *census) {
+/* `user` is the census. */
+static snow_status measure_values(const snow_volume *slab, void *user) {
+    snow_census *census = user;
     double values[BLOCK];
     size_t count;
-    walk w = walk_begin(census->volume, census->log, SNOW_EXACT);
+    walk w = walk_begin(slab, census->log, SNOW_EXACT);
     while ((count = next_block(&w, values))) {
         for (size_t i = 0; i < count; i++) {
             double value = values[i];
@@ -216,6 +232,7 @@ static void measure_values(snow_census *census) {
                 census->max = value;
         }
     }
+    return SNOW_OK;
 }
 
 /* What all ranks have measured; one without a finite voxel has no say. */
@@ -246,7 +263,7 @@ static snow_status count_all(snow_census *census) {
     census->counts = snow_allocate_clear(census->volume->context,
                                          DIGITS * sizeof *census->counts);
     SNOW_TRY(agree(census, census->counts ? SNOW_OK : SNOW_NO_MEMORY));
-    count_natives(census->volume, census->counts);
+    SNOW_TRY(each_slab(census, count_natives, census->counts));
     SNOW_TRY(sum_up_table(census, census->counts));
     measure_counts(census);
     return SNOW_OK;
@@ -261,8 +278,9 @@ snow_status snow_census_new(const snow_volume *volume, snow_comm *comm,
     if (counted_type(volume->info.type, &smallest))
         status = count_all(&census);
     else {
-        measure_values(&census);
-        status = join_measures(&census);
+        status = each_slab(&census, measure_values, &census);
+        if (status == SNOW_OK)
+            status = join_measures(&census);
     }
     if (status != SNOW_OK) {
         snow_census_free(&census);
@@ -287,26 +305,37 @@ static int bin_of(bool log, double value, double low, double high, int bins) {
     return bin < bins ? bin : bins - 1;
 }
 
-static void count_sampled(const snow_census *census, double low, double high,
-                          int bins, uint64_t *counts, uint64_t *all) {
+/* A histogram in the making. */
+typedef struct bin_count {
+    bool log;
+    double low, high;
+    int bins;
+    uint64_t *counts, all;
+} bin_count;
+
+/* `user` is a bin_count. */
+static snow_status count_sampled(const snow_volume *slab, void *user) {
+    bin_count *b = user;
     double values[BLOCK];
     size_t got;
-    walk w = walk_begin(census->volume, census->log, SNOW_SAMPLED);
+    walk w = walk_begin(slab, b->log, SNOW_SAMPLED);
     while ((got = next_block(&w, values)))
         for (size_t i = 0; i < got; i++) {
-            int bin = bin_of(census->log, values[i], low, high, bins);
-            *all += isfinite(values[i]) != 0;
+            int bin = bin_of(b->log, values[i], b->low, b->high, b->bins);
+            b->all += isfinite(values[i]) != 0;
             if (bin >= 0)
-                counts[bin]++;
+                b->counts[bin]++;
         }
+    return SNOW_OK;
 }
 
 snow_status snow_count_bins(const snow_census *census, double low, double high,
                             int bins, uint64_t *counts, uint64_t *all) {
     memset(counts, 0, (size_t)bins * sizeof *counts);
     if (!census->counts) {
-        *all = 0;
-        count_sampled(census, low, high, bins, counts, all);
+        bin_count b = {census->log, low, high, bins, counts, 0};
+        SNOW_TRY(each_slab(census, count_sampled, &b));
+        *all = b.all;
         SNOW_TRY(sum_up(census, counts, (size_t)bins));
         return sum_up(census, all, 1);
     }
@@ -345,28 +374,38 @@ typedef struct search {
     uint64_t *counts;
 } search;
 
+/* One digit of several searches. */
+typedef struct digit_count {
+    bool log;
+    snow_effort effort;
+    search *searches;
+    size_t count;
+    int shift;    /* of the digit */
+    uint64_t all; /* values that were looked at */
+} digit_count;
+
 /* Counts the next digit of all values that begin as a search's prefix does;
- * returns how many values there are. */
-static uint64_t count_digits(const snow_census *census, snow_effort effort,
-                             search *searches, size_t count, int shift) {
+ * `user` is a digit_count. */
+static snow_status count_digits(const snow_volume *slab, void *user) {
+    digit_count *d = user;
     double values[BLOCK];
-    uint64_t all = 0;
+    int shift = d->shift;
     uint64_t above =
         shift + DIGIT_BITS < 64 ? ~UINT64_C(0) << (shift + DIGIT_BITS) : 0;
     size_t got;
-    walk w = walk_begin(census->volume, census->log, effort);
+    walk w = walk_begin(slab, d->log, d->effort);
     while ((got = next_block(&w, values))) {
         for (size_t i = 0; i < got; i++) {
             if (!isfinite(values[i]))
                 continue;
             uint64_t key = key_of(values[i]);
-            all++;
-            for (size_t n = 0; n < count; n++)
-                if ((key & above) == searches[n].prefix)
-                    searches[n].counts[key >> shift & (DIGITS - 1)]++;
+            d->all++;
+            for (size_t n = 0; n < d->count; n++)
+                if ((key & above) == d->searches[n].prefix)
+                    d->searches[n].counts[key >> shift & (DIGITS - 1)]++;
         }
     }
-    return all;
+    return SNOW_OK;
 }
 
 static void take_digit(search *s, int shift) {
@@ -390,12 +429,13 @@ static snow_status select_digits(const snow_census *census, snow_effort effort,
                                  search *searches, uint64_t *counts) {
     for (int shift = 64 - DIGIT_BITS; shift >= 0; shift -= DIGIT_BITS) {
         memset(counts, 0, count * DIGITS * sizeof *counts);
-        uint64_t all = count_digits(census, effort, searches, count, shift);
-        SNOW_TRY(sum_up(census, &all, 1));
-        for (size_t n = 0; n < count && all; n++) {
+        digit_count d = {census->log, effort, searches, count, shift, 0};
+        SNOW_TRY(each_slab(census, count_digits, &d));
+        SNOW_TRY(sum_up(census, &d.all, 1));
+        for (size_t n = 0; n < count && d.all; n++) {
             SNOW_TRY(sum_up_table(census, searches[n].counts));
             if (shift == 64 - DIGIT_BITS)
-                searches[n].rank = rank_of(fractions[n], all);
+                searches[n].rank = rank_of(fractions[n], d.all);
             take_digit(&searches[n], shift);
         }
     }

@@ -3,6 +3,7 @@
  * What a header says is checked here, in one place, before any voxel gets its
  * memory: every reader goes through snow_volume_new. */
 #include "volume/volume.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -156,6 +157,7 @@ static snow_status check_part(const snow_volume *volume,
 }
 
 snow_status snow_volume_set_part(snow_volume *volume, const snow_part *part) {
+    SNOW_TRY(snow_volume_need_voxels(volume));
     SNOW_TRY(check_part(volume, part));
     volume->part = *part;
     volume->is_part = true;
@@ -293,6 +295,7 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
 /* Shared voxels are not owned and stay. */
 void snow_volume_close(snow_volume *volume) {
     if (volume) {
+        snow_stream_free(volume->context, volume->stream);
         snow_release(volume->context, volume->owned);
         snow_release(volume->context, volume);
     }
