@@ -3,7 +3,6 @@
 #include "scene.h"
 #include "commands.h"
 #include "launch.h"
-#include "memory.h"
 #include "report.h"
 
 #include <stdio.h>
@@ -84,14 +83,40 @@ static void choose_shade(scene *s) {
         s->settings.shade = SNOW_SHADE_NONE;
 }
 
-/* Decompression and conversion are part of the reading. */
-static int open_alone(scene *s, const options *step) {
+/* In memory, or in its file. */
+static int open_as_planned(scene *s, const options *step) {
+    if (!s->plan.streams)
+        return open_input(s->context, step, s->path, &s->volume);
     snow_volume_options data = data_options(step);
-    int done = memory_check(s->context, step, s->path, &data,
-                            step->verbosity > 0 && !s->transfer);
+    snow_status status = snow_volume_stream(s->context, s->path, &data,
+                                            s->plan.slab_bytes, &s->volume);
+    if (status != SNOW_OK)
+        return fail_status(s->context, status);
+    if (step->verbosity > 0)
+        say("%s: stays in its file, of which slabs of up to %.1f MiB are read "
+            "at a time",
+            s->path, (double)s->plan.slab_bytes / 0x1p20);
+    return GO_ON;
+}
+
+static int plan_memory(scene *s, const options *step) {
+    snow_volume_options data = data_options(step);
+    bool tell = step->verbosity > 0 && !s->transfer;
+    int done = memory_plan_for(step, s->path, &data, tell, &s->plan);
+    if (done != GO_ON)
+        return done;
+    s->plan.streams = s->plan.streams || (s->in_slabs && s->plan.may_stream);
+    snow_context_set_limit(s->context, s->plan.limit);
+    return GO_ON;
+}
+
+/* Decompression and conversion are part of the reading, also where slabs are
+ * read for the look. */
+static int open_alone(scene *s, const options *step) {
+    int done = plan_memory(s, step);
     double begin = seconds_now();
     if (done == GO_ON)
-        done = open_input(s->context, step, s->path, &s->volume);
+        done = open_as_planned(s, step);
     s->times.read += seconds_now() - begin;
     if (done != GO_ON)
         return done;
@@ -99,7 +124,9 @@ static int open_alone(scene *s, const options *step) {
     begin = seconds_now();
     if (!s->transfer)
         done = open_look(s->context, step, s->volume, &s->transfer);
-    s->times.look += seconds_now() - begin;
+    double reading = snow_volume_read_seconds(s->volume);
+    s->times.look += seconds_now() - begin - reading;
+    s->times.read += reading;
     if (done == GO_ON)
         done = place_camera(s);
     choose_shade(s);
@@ -243,6 +270,30 @@ static int make_frame(scene *s) {
                                           : fail_status(s->context, status));
 }
 
+/* The volume was in memory, and its interesting voxels did not fit beside it:
+ * it goes back to its file, and all is tried once more. */
+static int draw_in_slabs(scene *s) {
+    options step = *s->asked;
+    step.time = s->whole.time;
+    snow_frame_free(s->frame);
+    s->frame = NULL;
+    snow_volume_close(s->volume);
+    s->volume = NULL;
+    s->in_slabs = s->plan.streams = true;
+    if (step.verbosity > 0)
+        say("%s: its interesting voxels do not fit beside all of it", s->path);
+    int done = open_as_planned(s, &step);
+    return done == GO_ON ? make_frame(s) : done;
+}
+
+static snow_status draw_alone(scene *s) {
+    double before = snow_volume_read_seconds(s->volume);
+    snow_status status = snow_frame_render(s->frame, s->volume, s->transfer,
+                                           &s->view, &s->settings, &s->made);
+    s->times.read += snow_volume_read_seconds(s->volume) - before;
+    return status;
+}
+
 /* A rank that is lost makes both pictures under way fail: one message. */
 static int fail_picture(scene *s, snow_status status, const char *path) {
     if (!s->fault)
@@ -256,11 +307,13 @@ int scene_begin(scene *s, double azimuth) {
     if (done != GO_ON)
         return done;
     s->view.azimuth = azimuth;
-    if (launch_ranks() > 1)
-        status = begin_part(s);
-    else
-        status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
-                                   &s->settings, &s->made);
+    status = launch_ranks() > 1 ? begin_part(s) : draw_alone(s);
+    if (status == SNOW_NO_MEMORY && s->plan.may_stream && !s->plan.streams) {
+        done = draw_in_slabs(s);
+        if (done != GO_ON)
+            return done;
+        status = draw_alone(s);
+    }
     if (status != SNOW_OK)
         return fail_picture(s, status, s->path);
     s->begun[s->under_way++] = (scene_shot){s->path, s->whole};

@@ -892,8 +892,10 @@ snow_status snow_sheared_begin(snow_sheared *s, const snow_sheared_order *order,
     double mark = snow_seconds();
     if (aside)
         s->canvas = &s->canvases[s->canvas == s->canvases];
+    double reading = snow_volume_read_seconds(order->volume);
     SNOW_TRY(snow_sheared_encode(s, order, stats));
-    stats->seconds_encode += snow_seconds() - mark;
+    reading = snow_volume_read_seconds(order->volume) - reading;
+    stats->seconds_encode += snow_seconds() - mark - reading;
     SNOW_TRY(order->placement->perspective
                  ? snow_sheared_seen_begin(s, order, stats, &image)
                  : begin_sheared(s, order, stats, &image));

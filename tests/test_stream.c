@@ -353,6 +353,7 @@ static void what_does_not_fit_is_counted(void **state) {
     snow_settings settings;
     snow_image *image;
     snow_settings_init(&settings);
+    settings.quality = SNOW_QUALITY_HIGH;
     same_pictures(&p, &view, &settings);
     snprintf(count, sizeof count, "%lld of %lld voxels are interesting",
              (long long)snow_frame_stats(p.of_stream)->interesting,
@@ -362,7 +363,7 @@ static void what_does_not_fit_is_counted(void **state) {
     snow_volume_close(p.whole);
     p.whole = NULL;
     uint64_t held = snow_context_bytes(place->context);
-    snow_context_set_limit(place->context, held + slices_of(SNOW_UINT8, 78));
+    snow_context_set_limit(place->context, held + slices_of(SNOW_UINT8, 150));
     assert_int_equal(snow_frame_render(p.of_stream, p.stream, p.transfer, &view,
                                        &settings, &image),
                      SNOW_NO_MEMORY);

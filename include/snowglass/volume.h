@@ -147,6 +147,10 @@ SNOW_API snow_status snow_volume_stream(snow_context *context, const char *path,
                                         const snow_volume_options *options,
                                         uint64_t slab_bytes, snow_volume **out);
 
+/* Seconds that reading its slabs has taken so far; 0 of other volumes, and not
+ * part of the figures of looks and pictures. */
+SNOW_API double snow_volume_read_seconds(const snow_volume *volume);
+
 /* What snow_volume_open would make, without its voxels: of the file's little
  * more than the header is read, and what is behind it is not verified.
  * Standard input is used up.  Errors: as snow_volume_open. */

@@ -12,6 +12,7 @@
 struct snow_stream {
     snow_volume_options options; /* with texts of its own */
     uint64_t slab_bytes;         /* of voxels of a slab, ghosts included */
+    double seconds;              /* of reading */
     char *path;
 };
 
@@ -90,6 +91,10 @@ snow_status snow_volume_stream(snow_context *context, const char *path,
     return SNOW_OK;
 }
 
+double snow_volume_read_seconds(const snow_volume *volume) {
+    return volume->stream ? volume->stream->seconds : 0;
+}
+
 snow_status snow_volume_need_voxels(const snow_volume *volume) {
     if (!volume->stream)
         return SNOW_OK;
@@ -148,11 +153,13 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     options.crop[2][1] = options.crop[2][0] + end;
     options.crop[2][0] += from;
     snow_volume *slab;
+    double begin = snow_seconds();
     snow_notice_fn *notice = context->notice;
     context->notice = NULL;
     snow_status status =
         snow_volume_open(context, volume->stream->path, &options, &slab);
     context->notice = notice;
+    volume->stream->seconds += snow_seconds() - begin;
     SNOW_TRY(status);
     status = compare(volume, slab, &part, end - from);
     if (status == SNOW_OK)
