@@ -159,12 +159,11 @@ static const char *why_whole(const options *asked, const char *path) {
 /* Slices of the smallest slab: one, and those beside it. */
 #define SLICES_LEAST 3
 
-/* Slices that pictures with slices along x and y take: a band, and those beside
- * it. */
-#define SLICES_USUAL 34
+/* Slices that a thread encodes where slices lie along x and y: a band. */
+#define BAND_SLICES 32
 
 /* Longer slabs are not read faster. */
-#define SLAB_MOST ((uint64_t)256 << 20)
+#define SLAB_USUAL ((uint64_t)24 << 20)
 
 /* Bytes of a slab while it is read. */
 static uint64_t slab_bytes(const sizes *s, int64_t slices) {
@@ -174,14 +173,17 @@ static uint64_t slab_bytes(const sizes *s, int64_t slices) {
     return (s->voxels + s->masking) / (uint64_t)all * (uint64_t)slices;
 }
 
-/* An eighth of the limit, for most of it is the interesting voxels'; half of it
- * where that makes room for a band.  In bytes of voxels alone. */
-static uint64_t choose_slab(const sizes *s, uint64_t limit) {
-    uint64_t most = limit / 8, band = slab_bytes(s, SLICES_USUAL);
-    if (most < band)
-        most = band < limit / 2 ? band : limit / 2;
-    if (most > SLAB_MOST)
-        most = SLAB_MOST > band ? SLAB_MOST : band;
+/* Small, for most of the limit is the interesting voxels'; but a band for each
+ * thread where an eighth of it makes room for them.  In bytes of voxels alone.
+ */
+static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
+    uint64_t eighth = limit / 8;
+    uint64_t most = eighth < SLAB_USUAL ? eighth : SLAB_USUAL;
+    for (int n = threads; n > 0; n--) {
+        uint64_t bands = slab_bytes(s, n * BAND_SLICES + 2);
+        if (bands > most && bands <= eighth)
+            most = bands;
+    }
     double share = (double)s->voxels / (double)(s->voxels + s->masking);
     return (uint64_t)((double)most * share) + 1;
 }
@@ -218,6 +220,11 @@ static bool is_small_folder(const char *path) {
     }
     closedir(folder);
     return bytes < free_memory() / 8;
+}
+
+static int threads_of(const options *asked) {
+    int threads = asked->threads ? (int)asked->threads : launch_threads();
+    return threads ? threads : snow_processors();
 }
 
 static void tell_need(const sizes *s) {
@@ -262,7 +269,7 @@ int memory_plan_for(const options *asked, const char *path,
         tell_need(&s);
     limit = limit_of(asked, &own);
     if (limit)
-        out->slab_bytes = choose_slab(&s, limit);
+        out->slab_bytes = choose_slab(&s, limit, threads_of(asked));
     if (!limit || s.need.least <= limit)
         return GO_ON;
     if (why && (!asked->memory || s.need.least <= asked->memory))

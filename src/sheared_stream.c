@@ -117,29 +117,40 @@ static double encoded_bytes(const reading *r) {
     return bytes * (double)r->interesting * (key->between ? 2 : 1);
 }
 
+#define MIB 0x1p20
+
+/* " under the limit of 300.0 MiB", where there is one. */
+static void print_limit(const snow_context *context, char text[64]) {
+    *text = 0;
+    if (context->limit)
+        snprintf(text, 64, " under the limit of %.1f MiB",
+                 (double)context->limit / MIB);
+}
+
 /* A failure's message made one of numbers; it stays as it is where even
  * counting fails. */
 static snow_status tell_count(reading *r) {
     snow_context *context = r->sheared->context;
-    const int64_t *dims = r->order->volume->info.dims;
-    const snow_slab_cut cut = {
-        .step = 1, .ghosts = r->key->faded, .least = true};
-    char before[SNOW_MESSAGE_BYTES], limit[64] = "than there is memory for";
+    const snow_volume *volume = r->order->volume;
+    const int64_t *dims = volume->info.dims;
+    const snow_slab_cut read = cut_of(r), counted = {.step = 1,
+                                                     .ghosts = r->key->faded,
+                                                     .least = true};
+    double all = (double)dims[0] * (double)dims[1] * (double)dims[2];
+    char before[SNOW_MESSAGE_BYTES], limit[64];
     memcpy(before, context->message, sizeof before);
     snow_bands_fini(&r->sheared->bands);
-    if (snow_slabs_visit(r->order->volume, &cut, count_slab, r) != SNOW_OK)
+    if (snow_slabs_visit(volume, &counted, count_slab, r) != SNOW_OK)
         return snow_fail(context, SNOW_NO_MEMORY, "%s", before);
-    double all = (double)dims[0] * (double)dims[1] * (double)dims[2];
-    if (context->limit)
-        snprintf(limit, sizeof limit, "than the limit of %.1f MiB leaves",
-                 (double)context->limit / 0x1p20);
-    return snow_fail(context, SNOW_NO_MEMORY,
-                     "%lld of %.0f voxels are interesting (%.3g %%) and take "
-                     "about %.1f MiB when encoded, more %s; raise --threshold, "
-                     "make more values transparent, give --crop or more memory",
-                     (long long)r->interesting, all,
-                     100 * (double)r->interesting / all,
-                     encoded_bytes(r) / 0x1p20, limit);
+    print_limit(context, limit);
+    return snow_fail(
+        context, SNOW_NO_MEMORY,
+        "%lld of %.0f voxels are interesting (%.3g %%) and take about %.1f MiB "
+        "when encoded, which do not fit beside slabs of %.1f MiB%s; raise "
+        "--threshold, make more values transparent, give --crop or more memory",
+        (long long)r->interesting, all, 100 * (double)r->interesting / all,
+        encoded_bytes(r) / MIB, (double)snow_slab_bytes(volume, &read) / MIB,
+        limit);
 }
 
 snow_status snow_sheared_encode_stream(snow_sheared *s,

@@ -293,6 +293,35 @@ static void looks_are_those_of_the_volume_in_memory(void **state) {
     }
 }
 
+/* Bytes of the file that a look of floats reads, under a limit. */
+static uint64_t read_for_look(support_place *place, const char *path,
+                              uint64_t limit, char text[1024]) {
+    snow_volume *stream =
+        stream_of(place, path, NULL, slices_of(SNOW_FLOAT32, 7));
+    uint64_t before = snow_context_bytes_read(place->context);
+    snow_transfer *transfer;
+    snow_context_set_limit(place->context, limit);
+    assert_int_equal(snow_transfer_make(stream, NULL, &transfer), SNOW_OK);
+    snow_context_set_limit(place->context, 0);
+    snprintf(text, 1024, "%s", snow_transfer_text(transfer));
+    snow_transfer_free(transfer);
+    snow_volume_close(stream);
+    return snow_context_bytes_read(place->context) - before;
+}
+
+static void a_sample_that_has_room_spares_readings(void **state) {
+    support_place *place = *state;
+    const char *path = write_head(place, SNOW_FLOAT32, "head.nrrd");
+    uint64_t all = slices_of(SNOW_FLOAT32, (int)dims[2]);
+    char one[1024], many[1024];
+    uint64_t once = read_for_look(place, path, 0, one);
+    uint64_t often = read_for_look(place, path, 2 * all, many);
+    /* The header is read with each slab. */
+    assert_true(once >= all && once < 2 * all);
+    assert_true(often > 5 * all);
+    assert_string_equal(one, many);
+}
+
 /* --- memory and reading ---------------------------------------------------
  */
 
@@ -370,7 +399,7 @@ static void what_does_not_fit_is_counted(void **state) {
     const char *message = snow_context_message(place->context);
     assert_non_null(strstr(message, count));
     assert_non_null(
-        strstr(message, "MiB when encoded, more than the limit of"));
+        strstr(message, "MiB when encoded, which do not fit beside slabs of"));
     assert_non_null(strstr(message, "--threshold"));
     snow_context_set_limit(place->context, 0); /* and then it works */
     assert_int_equal(snow_frame_render(p.of_stream, p.stream, p.transfer, &view,
@@ -511,6 +540,7 @@ int main(void) {
         TEST(deterministic_pictures_are_the_same_too),
         TEST(packed_files_are_served_as_well),
         TEST(looks_are_those_of_the_volume_in_memory),
+        TEST(a_sample_that_has_room_spares_readings),
         TEST(no_more_than_a_slab_is_held),
         TEST(the_file_is_read_for_another_slice_axis_only),
         TEST(what_does_not_fit_is_counted),

@@ -121,6 +121,17 @@ static int64_t slab_slices(const snow_volume *volume,
     return slices < (uint64_t)dims[2] ? (int64_t)slices : dims[2];
 }
 
+uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut) {
+    const int64_t *dims = volume->info.dims;
+    int64_t slices = dims[2];
+    if (volume->stream)
+        slices = slab_slices(volume, cut) + 2 * cut->ghosts;
+    if (slices > dims[2])
+        slices = dims[2];
+    return (uint64_t)(dims[0] * dims[1] * slices) *
+           (uint64_t)snow_type_size(volume->info.type);
+}
+
 /* What must be alike for one picture to be made of all slabs. */
 static snow_status compare(const snow_volume *volume, const snow_volume *slab,
                            const snow_part *part, int64_t slices) {
@@ -173,19 +184,42 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     return SNOW_OK;
 }
 
-snow_status snow_slabs_visit(const snow_volume *volume,
-                             const snow_slab_cut *cut, snow_slab_fn *visit,
-                             void *user) {
-    if (!volume->stream)
-        return visit(volume, user);
+/* Its voxels' room is left to the next one. */
+static void drop_slab(snow_volume *slab) {
+    snow_context *context = slab->context;
+    int64_t voxels;
+    uint64_t bytes;
+    snow_volume_count(slab->info.dims, slab->info.type, &voxels, &bytes);
+    snow_release(context, context->spare);
+    context->spare = slab->owned;
+    context->spare_bytes = (size_t)bytes;
+    slab->owned = NULL;
+    snow_volume_close(slab);
+}
+
+static snow_status visit_slabs(const snow_volume *volume,
+                               const snow_slab_cut *cut, snow_slab_fn *visit,
+                               void *user) {
     int64_t all = volume->info.dims[2], count = slab_slices(volume, cut);
     for (int64_t first = 0; first < all; first += count) {
         snow_volume *slab;
         int64_t some = all - first < count ? all - first : count;
         SNOW_TRY(read_slab(volume, first, some, cut->ghosts, &slab));
         snow_status status = visit(slab, user);
-        snow_volume_close(slab);
+        drop_slab(slab);
         SNOW_TRY(status);
     }
     return SNOW_OK;
+}
+
+snow_status snow_slabs_visit(const snow_volume *volume,
+                             const snow_slab_cut *cut, snow_slab_fn *visit,
+                             void *user) {
+    if (!volume->stream)
+        return visit(volume, user);
+    snow_status status = visit_slabs(volume, cut, visit, user);
+    snow_context *context = volume->context;
+    snow_release(context, context->spare);
+    context->spare = NULL;
+    return status;
 }

@@ -32,6 +32,9 @@ snow_status snow_slabs_visit(const snow_volume *volume,
                              const snow_slab_cut *cut, snow_slab_fn *visit,
                              void *user);
 
+/* The most bytes that one of them has, ghosts included. */
+uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut);
+
 /* For what needs all voxels at once.  Errors: SNOW_BAD_USAGE (these stay in
  * their file). */
 snow_status snow_volume_need_voxels(const snow_volume *volume);

@@ -101,6 +101,18 @@ static snow_status wrap(snow_context *context, const snow_volume_info *info,
     return SNOW_OK;
 }
 
+/* Room for voxels: the last slab's where that is large enough, for new pages
+ * cost more than reading into them. */
+static void *take_voxels(snow_context *context, uint64_t bytes) {
+    void *spare = context->spare;
+    bool enough = spare && context->spare_bytes >= bytes;
+    context->spare = NULL;
+    if (enough)
+        return spare;
+    snow_release(context, spare);
+    return snow_allocate_array(context, bytes, 1);
+}
+
 /* The voxels come first and the record second, because the voxels are what is
  * likely to fail. */
 snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
@@ -109,7 +121,7 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
     uint64_t bytes;
     SNOW_TRY(snow_volume_info_check(context, info));
     snow_volume_count(info->dims, info->type, &count, &bytes);
-    void *voxels = snow_allocate_array(context, bytes, 1);
+    void *voxels = take_voxels(context, bytes);
     if (!voxels)
         return SNOW_NO_MEMORY;
     snow_volume *volume;
