@@ -110,8 +110,33 @@ static int plan_memory(scene *s, const options *step) {
     return GO_ON;
 }
 
-/* Decompression and conversion are part of the reading, also where slabs are
- * read for the look. */
+/* The volume is in memory, and what is made of it does not fit beside it: it
+ * goes back to its file, for all to be tried once more. */
+static int leave_in_file(scene *s, const options *step) {
+    snow_frame_free(s->frame);
+    s->frame = NULL;
+    snow_volume_close(s->volume);
+    s->volume = NULL;
+    s->in_slabs = s->plan.streams = true;
+    return open_as_planned(s, step);
+}
+
+static bool may_leave(const scene *s, snow_status status) {
+    return status == SNOW_NO_MEMORY && s->plan.may_stream && !s->plan.streams;
+}
+
+/* Reading slabs is not part of it. */
+static snow_status make_look(scene *s, const options *step) {
+    snow_look look = look_options(step);
+    double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
+    snow_status status = snow_transfer_make(s->volume, &look, &s->transfer);
+    double reading = snow_volume_read_seconds(s->volume) - before;
+    s->times.look += seconds_now() - begin - reading;
+    s->times.read += reading;
+    return status;
+}
+
+/* Decompression and conversion are part of the reading. */
 static int open_alone(scene *s, const options *step) {
     int done = plan_memory(s, step);
     double begin = seconds_now();
@@ -121,12 +146,13 @@ static int open_alone(scene *s, const options *step) {
     if (done != GO_ON)
         return done;
     s->whole = *snow_volume_describe(s->volume);
-    begin = seconds_now();
-    if (!s->transfer)
-        done = open_look(s->context, step, s->volume, &s->transfer);
-    double reading = snow_volume_read_seconds(s->volume);
-    s->times.look += seconds_now() - begin - reading;
-    s->times.read += reading;
+    snow_status status = s->transfer ? SNOW_OK : make_look(s, step);
+    if (may_leave(s, status)) {
+        done = leave_in_file(s, step);
+        status = done == GO_ON ? make_look(s, step) : SNOW_OK;
+    }
+    if (status != SNOW_OK)
+        return fail_status(s->context, status);
     if (done == GO_ON)
         done = place_camera(s);
     choose_shade(s);
@@ -270,22 +296,6 @@ static int make_frame(scene *s) {
                                           : fail_status(s->context, status));
 }
 
-/* The volume was in memory, and its interesting voxels did not fit beside it:
- * it goes back to its file, and all is tried once more. */
-static int draw_in_slabs(scene *s) {
-    options step = *s->asked;
-    step.time = s->whole.time;
-    snow_frame_free(s->frame);
-    s->frame = NULL;
-    snow_volume_close(s->volume);
-    s->volume = NULL;
-    s->in_slabs = s->plan.streams = true;
-    if (step.verbosity > 0)
-        say("%s: its interesting voxels do not fit beside all of it", s->path);
-    int done = open_as_planned(s, &step);
-    return done == GO_ON ? make_frame(s) : done;
-}
-
 static snow_status draw_alone(scene *s) {
     double before = snow_volume_read_seconds(s->volume);
     snow_status status = snow_frame_render(s->frame, s->volume, s->transfer,
@@ -308,8 +318,12 @@ int scene_begin(scene *s, double azimuth) {
         return done;
     s->view.azimuth = azimuth;
     status = launch_ranks() > 1 ? begin_part(s) : draw_alone(s);
-    if (status == SNOW_NO_MEMORY && s->plan.may_stream && !s->plan.streams) {
-        done = draw_in_slabs(s);
+    if (may_leave(s, status)) {
+        options step = *s->asked;
+        step.time = s->whole.time;
+        done = leave_in_file(s, &step);
+        if (done == GO_ON)
+            done = make_frame(s);
         if (done != GO_ON)
             return done;
         status = draw_alone(s);

@@ -145,12 +145,13 @@ static snow_status tell_count(reading *r) {
     print_limit(context, limit);
     return snow_fail(
         context, SNOW_NO_MEMORY,
-        "%lld of %.0f voxels are interesting (%.3g %%) and take about %.1f MiB "
+        "%s: %lld of %.0f voxels are interesting (%.3g %%) and take about %.1f "
+        "MiB "
         "when encoded, which do not fit beside slabs of %.1f MiB%s; raise "
         "--threshold, make more values transparent, give --crop or more memory",
-        (long long)r->interesting, all, 100 * (double)r->interesting / all,
-        encoded_bytes(r) / MIB, (double)snow_slab_bytes(volume, &read) / MIB,
-        limit);
+        snow_stream_path(volume), (long long)r->interesting, all,
+        100 * (double)r->interesting / all, encoded_bytes(r) / MIB,
+        (double)snow_slab_bytes(volume, &read) / MIB, limit);
 }
 
 snow_status snow_sheared_encode_stream(snow_sheared *s,

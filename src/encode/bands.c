@@ -57,24 +57,81 @@ static row_buffers buffers_of(const encode_job *job, int worker) {
                          columns + column_bytes(job->bands)};
 }
 
+/* --- room -----------------------------------------------------------------
+ */
+
+/* A buffer of `bytes` bytes in the place of another, of which `keep` stay. */
+static snow_status exchange(snow_context *context, void *block_pointer,
+                            size_t *capacity, size_t keep, size_t bytes) {
+    void *old, *copy = snow_allocate(context, bytes);
+    if (!copy)
+        return SNOW_NO_MEMORY;
+    memcpy(&old, block_pointer, sizeof old);
+    if (keep)
+        memcpy(copy, old, keep);
+    snow_release(context, old);
+    memcpy(block_pointer, &copy, sizeof copy);
+    *capacity = bytes;
+    return SNOW_OK;
+}
+
+/* As snow_reserve.  Bands that are encoded piece by piece grow side by side, by
+ * an eighth, so that together they have little to spare. */
+static snow_status reserve(snow_context *context, bool piecewise,
+                           void *block_pointer, size_t *capacity, size_t keep,
+                           size_t bytes) {
+    if (!piecewise)
+        return snow_reserve(context, block_pointer, capacity, keep, bytes);
+    if (bytes <= *capacity)
+        return SNOW_OK;
+    size_t wanted = *capacity + *capacity / 8;
+    return exchange(context, block_pointer, capacity, keep,
+                    wanted > bytes ? wanted : bytes);
+}
+
 /* Room in IA for a slice of a band in which every voxel is interesting. */
-static snow_status reserve_ia(snow_sparse *band, bool with_normals,
-                              bool with_fades) {
+static snow_status reserve_ia(snow_sparse *band, bool piecewise,
+                              bool with_normals, bool with_fades) {
+    snow_context *context = band->context;
     size_t voxels = (size_t)band->columns * (size_t)band->rows;
     size_t size = (size_t)band->code_bytes, word = sizeof(uint16_t);
     size_t begin = band->ia_voxels, end = band->ia_voxels + voxels;
-    SNOW_TRY(snow_reserve(band->context, &band->codes, &band->codes_capacity,
-                          begin * size, end * size + SNOW_ROW_MARGIN));
+    SNOW_TRY(reserve(context, piecewise, &band->codes, &band->codes_capacity,
+                     begin * size, end * size + SNOW_ROW_MARGIN));
     if (with_normals)
-        SNOW_TRY(snow_reserve(band->context, &band->normals,
-                              &band->normals_capacity, begin * word,
-                              end * word + SNOW_ROW_MARGIN));
+        SNOW_TRY(reserve(context, piecewise, &band->normals,
+                         &band->normals_capacity, begin * word,
+                         end * word + SNOW_ROW_MARGIN));
     if (with_fades)
-        SNOW_TRY(snow_reserve(band->context, &band->fades,
-                              &band->fades_capacity, begin * word,
-                              end * word + SNOW_ROW_MARGIN));
+        SNOW_TRY(reserve(context, piecewise, &band->fades,
+                         &band->fades_capacity, begin * word,
+                         end * word + SNOW_ROW_MARGIN));
     return SNOW_OK;
 }
+
+/* Makes a buffer as short as the `bytes` that it holds, where it is longer by
+ * more than an eighth; where there is no memory for a copy it stays. */
+static void trim(snow_context *context, void *block_pointer, size_t *capacity,
+                 size_t bytes) {
+    if (bytes<*capacity && * capacity - bytes> * capacity / 8)
+        (void)exchange(context, block_pointer, capacity, bytes, bytes);
+}
+
+/* A band that is full gives back what its buffers have to spare. */
+static void trim_band(snow_sparse *band) {
+    snow_context *context = band->context;
+    size_t voxels = band->ia_voxels, words = voxels * sizeof(uint16_t);
+    trim(context, &band->ea, &band->ea_capacity,
+         band->ea_bytes + SNOW_EA_MARGIN);
+    trim(context, &band->codes, &band->codes_capacity,
+         voxels * (size_t)band->code_bytes + SNOW_ROW_MARGIN);
+    trim(context, &band->normals, &band->normals_capacity,
+         words + SNOW_ROW_MARGIN);
+    trim(context, &band->fades, &band->fades_capacity, words + SNOW_ROW_MARGIN);
+}
+
+/* --- a slice of a band ----------------------------------------------------
+ */
 
 /* Rows that lie end to end, and fill their masks, are one long row. */
 static void join_rows(snow_rows *rows, size_t size) {
@@ -154,7 +211,8 @@ static snow_status encode_slice(const encode_job *job,
     const snow_bands_order *order = job->order;
     size_t begin = band->ia_voxels;
     snow_rows rows, apart;
-    SNOW_TRY(reserve_ia(band, order->maker != NULL, order->fader != NULL));
+    SNOW_TRY(reserve_ia(band, !job->anew, order->maker != NULL,
+                        order->fader != NULL));
     snow_fetch_slice(fetch, slice, &apart);
     rows = apart;
     join_rows(&rows, fetch->size);
@@ -188,36 +246,6 @@ static snow_fetch_order fetch_order(const snow_bands_order *order,
                               .rows = rows,
                               .between = order->between,
                               .isa = order->isa};
-}
-
-/* Makes a buffer as short as the `bytes` that it holds, where it is longer by
- * more than an eighth; where there is no memory for a copy it stays. */
-static void trim(snow_context *context, void *block_pointer, size_t *capacity,
-                 size_t bytes) {
-    void *old, *copy;
-    if (bytes >= *capacity || *capacity - bytes <= *capacity / 8)
-        return;
-    copy = snow_allocate(context, bytes);
-    if (!copy)
-        return;
-    memcpy(&old, block_pointer, sizeof old);
-    memcpy(copy, old, bytes);
-    snow_release(context, old);
-    memcpy(block_pointer, &copy, sizeof copy);
-    *capacity = bytes;
-}
-
-/* A band that is full gives back what its buffers have to spare. */
-static void trim_band(snow_sparse *band) {
-    snow_context *context = band->context;
-    size_t voxels = band->ia_voxels, words = voxels * sizeof(uint16_t);
-    trim(context, &band->ea, &band->ea_capacity,
-         band->ea_bytes + SNOW_EA_MARGIN);
-    trim(context, &band->codes, &band->codes_capacity,
-         voxels * (size_t)band->code_bytes + SNOW_ROW_MARGIN);
-    trim(context, &band->normals, &band->normals_capacity,
-         words + SNOW_ROW_MARGIN);
-    trim(context, &band->fades, &band->fades_capacity, words + SNOW_ROW_MARGIN);
 }
 
 static int64_t band_rows(const snow_bands *bands, int64_t number) {
@@ -307,7 +335,7 @@ static snow_status choose(encode_job *job) {
     SNOW_TRY(snow_sparse_begin_band(codes, &snow_scheme_bitmap, bands->columns,
                                     1, bands->slices, bands->code_bytes,
                                     order->isa));
-    SNOW_TRY(reserve_ia(codes, false, order->fader != NULL));
+    SNOW_TRY(reserve_ia(codes, false, false, order->fader != NULL));
     for (int64_t n = 0; n < rows; n += step) {
         snow_fetch_order from = fetch_order(
             order, order->first_slice + n / bands->rows, 1, n % bands->rows, 1);

@@ -91,6 +91,10 @@ snow_status snow_volume_stream(snow_context *context, const char *path,
     return SNOW_OK;
 }
 
+const char *snow_stream_path(const snow_volume *volume) {
+    return volume->stream->path;
+}
+
 double snow_volume_read_seconds(const snow_volume *volume) {
     return volume->stream ? volume->stream->seconds : 0;
 }

@@ -39,6 +39,9 @@ uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut);
  * their file). */
 snow_status snow_volume_need_voxels(const snow_volume *volume);
 
+/* Of a volume that stays in its file. */
+const char *snow_stream_path(const snow_volume *volume);
+
 /* NULL is accepted. */
 void snow_stream_free(snow_context *context, snow_stream *stream);
 
