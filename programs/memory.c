@@ -73,6 +73,7 @@ typedef struct sizes {
     snow_volume_info info;
     uint64_t voxels, picture; /* bytes */
     uint64_t masking;         /* bytes beside the voxels while they are read */
+    bool packed;              /* perhaps: the file is shorter than they */
     memory_need need;
 } sizes;
 
@@ -103,6 +104,15 @@ static uint64_t masking_bytes(snow_context *context, const char *path,
            (data->mask ? native_bytes(context, data->mask, &mask) : 0);
 }
 
+/* A file of a few kilobytes is a header. */
+static bool is_packed(const char *path, uint64_t voxels) {
+    struct stat about;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode))
+        return false;
+    uint64_t bytes = (uint64_t)about.st_size;
+    return bytes > 65536 && bytes < voxels / 10 * 9;
+}
+
 /* Looks at the headers in a context of its own, whose remarks nobody hears: the
  * opening makes them too, and tells what is wrong with the file.  False where
  * something is. */
@@ -121,6 +131,7 @@ static bool measure(const options *asked, const char *path,
             s.need.least = s.voxels + s.masking;
         if (s.need.least > s.need.most)
             s.need.most = s.need.least;
+        s.packed = is_packed(path, s.voxels);
         *out = s;
     }
     snow_context_free(context);
@@ -173,17 +184,20 @@ static uint64_t slab_bytes(const sizes *s, int64_t slices) {
     return (s->voxels + s->masking) / (uint64_t)all * (uint64_t)slices;
 }
 
-/* Small, for most of the limit is the interesting voxels'; but a band for each
- * thread where an eighth of it makes room for them.  In bytes of voxels alone.
- */
+/* Small, for most of the room is the interesting voxels'; but a band for each
+ * thread where an eighth of it makes room for them, and of a packed file, all
+ * of which is unpacked for each slab, a third.  In bytes of voxels alone. */
 static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
-    uint64_t eighth = limit / 8;
+    uint64_t room = limit > s->picture ? limit - s->picture : 0;
+    uint64_t eighth = room / 8;
     uint64_t most = eighth < SLAB_USUAL ? eighth : SLAB_USUAL;
     for (int n = threads; n > 0; n--) {
         uint64_t bands = slab_bytes(s, n * BAND_SLICES + 2);
         if (bands > most && bands <= eighth)
             most = bands;
     }
+    if (s->packed)
+        most = room / 3;
     double share = (double)s->voxels / (double)(s->voxels + s->masking);
     return (uint64_t)((double)most * share) + 1;
 }
@@ -270,6 +284,7 @@ int memory_plan_for(const options *asked, const char *path,
     limit = limit_of(asked, &own);
     if (limit)
         out->slab_bytes = choose_slab(&s, limit, threads_of(asked));
+    out->packed = s.packed;
     if (!limit || s.need.least <= limit)
         return GO_ON;
     if (why && (!asked->memory || s.need.least <= asked->memory))

@@ -20,6 +20,7 @@ typedef struct memory_plan {
     bool may_stream;     /* pictures like those that are asked for can be made
                             of it in that way */
     uint64_t slab_bytes; /* then */
+    bool packed;         /* and all of the file is read for each slab */
     uint64_t limit;      /* of the context; 0: none */
 } memory_plan;
 

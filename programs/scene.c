@@ -8,6 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 /* What every rank tells the others of a picture. */
 typedef struct rank_figures {
@@ -83,10 +86,19 @@ static void choose_shade(scene *s) {
         s->settings.shade = SNOW_SHADE_NONE;
 }
 
+/* Blocks of the encoding that grow leave gaps in the heap, which count as
+ * memory of the process; blocks of pages of their own go back to the system. */
+static void return_memory(void) {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 256 << 10);
+#endif
+}
+
 /* In memory, or in its file. */
 static int open_as_planned(scene *s, const options *step) {
     if (!s->plan.streams)
         return open_input(s->context, step, s->path, &s->volume);
+    return_memory();
     snow_volume_options data = data_options(step);
     snow_status status = snow_volume_stream(s->context, s->path, &data,
                                             s->plan.slab_bytes, &s->volume);
@@ -96,6 +108,10 @@ static int open_as_planned(scene *s, const options *step) {
         say("%s: stays in its file, of which slabs of up to %.1f MiB are read "
             "at a time",
             s->path, (double)s->plan.slab_bytes / 0x1p20);
+    if (step->verbosity >= 0 && s->plan.packed)
+        say("note: %s is packed, and is unpacked anew for each slab; unpack it "
+            "to be faster",
+            s->path);
     return GO_ON;
 }
 

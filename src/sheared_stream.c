@@ -133,9 +133,8 @@ static snow_status tell_count(reading *r) {
     snow_context *context = r->sheared->context;
     const snow_volume *volume = r->order->volume;
     const int64_t *dims = volume->info.dims;
-    const snow_slab_cut read = cut_of(r), counted = {.step = 1,
-                                                     .ghosts = r->key->faded,
-                                                     .least = true};
+    const snow_slab_cut read = cut_of(r);
+    const snow_slab_cut counted = {.step = 1, .ghosts = r->key->faded};
     double all = (double)dims[0] * (double)dims[1] * (double)dims[2];
     char before[SNOW_MESSAGE_BYTES], limit[64];
     memcpy(before, context->message, sizeof before);

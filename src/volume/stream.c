@@ -119,7 +119,7 @@ static int64_t slab_slices(const snow_volume *volume,
                      (uint64_t)snow_type_size(volume->info.type);
     uint64_t room = volume->stream->slab_bytes / slice;
     uint64_t around = 2 * (uint64_t)cut->ghosts, step = (uint64_t)cut->step;
-    if (cut->least || room < around + step)
+    if (room < around + step)
         return cut->step;
     uint64_t slices = (room - around) / step * step;
     return slices < (uint64_t)dims[2] ? (int64_t)slices : dims[2];

@@ -19,7 +19,6 @@ typedef struct snow_slab_cut {
     int64_t step;   /* slices of a slab are a multiple of it, but for the last
                        ones; at least 1 */
     int64_t ghosts; /* layers on either side, but beyond the grid */
-    bool least;     /* slabs of one step, rather than as large as may be */
 } snow_slab_cut;
 
 /* Is handed a slab, which is a part of the volume (or the volume itself), and
