@@ -10,11 +10,6 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Formats of volumes that are written: the library names them by suffix only.
- */
-static const char *const volume_suffixes =
-    ".nrrd .nii .nii.gz .mha .raw .raw.gz";
-
 static const char *encoding_at(size_t i) {
     return i < 3 ? snow_encoding_name((snow_encoding)(i + SNOW_ENCODING_CRS))
                  : NULL;
@@ -27,9 +22,13 @@ static const char *kernel_at(size_t i) {
 
 /* The methods that --method takes; "tested" serves the paper's tables. */
 static const char *method_at(size_t i) {
-    static const snow_method methods[] = {SNOW_METHOD_ORIGINAL,
-                                          SNOW_METHOD_FOOTPRINT};
-    return i < 2 ? snow_method_name(methods[i]) : NULL;
+    static const snow_method methods[] = {
+        SNOW_METHOD_ORIGINAL, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_SHEARED};
+    return i < 3 ? snow_method_name(methods[i]) : NULL;
+}
+
+static const char *mode_at(size_t i) {
+    return snow_mode_name((snow_mode)i);
 }
 
 /* Of pictures, those that this build writes. */
@@ -55,10 +54,17 @@ static const struct {
     const char *key;
     const char *(*at)(size_t index);
 } lists[] = {
-    {"formats", snow_format_name}, {"phantoms", snow_phantom_name},
-    {"presets", snow_preset_name}, {"colormaps", snow_colormap_name},
-    {"views", snow_view_name},     {"kernels", kernel_at},
-    {"encodings", encoding_at},    {"methods", method_at},
+    {"formats", snow_format_name},
+    {"phantoms", snow_phantom_name},
+    {"presets", snow_preset_name},
+    {"colormaps", snow_colormap_name},
+    {"views", snow_view_name},
+    {"kernels", kernel_at},
+    {"encodings", encoding_at},
+    {"methods", method_at},
+    {"modes", mode_at},
+    {"volume_outputs", snow_volume_suffix},
+    {"picture_outputs", picture_suffix_at},
 };
 
 #define LISTS (sizeof lists / sizeof *lists)
@@ -119,8 +125,6 @@ static int tell_json(void) {
     json_object_set_new(o, "version", json_string(snow_version()));
     for (size_t i = 0; i < LISTS; i++)
         json_object_set_new(o, lists[i].key, list_json(lists[i].at));
-    json_object_set_new(o, "volume_outputs", words_json(volume_suffixes));
-    json_object_set_new(o, "picture_outputs", list_json(picture_suffix_at));
     json_object_set_new(o, "ffmpeg", json_boolean(encoder_is_there()));
     json_object_set_new(o, "libraries", libraries_json());
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
@@ -140,26 +144,28 @@ static void print_row(const char *key, const char *text) {
     printf("%-16s%s\n", key, text);
 }
 
+/* A key of JSON is made of words here. */
+static void print_list(const char *key, const char *(*at)(size_t)) {
+    char words[17] = "";
+    for (size_t i = 0; i < sizeof words - 1 && key[i]; i++)
+        words[i] = key[i] == '_' ? ' ' : key[i];
+    printf("%-16s", words);
+    for (size_t i = 0; at(i); i++)
+        printf("%s%s", i ? " " : "", at(i));
+    printf("\n");
+}
+
 static void print_libraries(void) {
     const char *name, *version, *formats;
     for (size_t i = 0; (name = snow_library_name(i, &version, &formats)); i++)
         printf("%-16s%s %s (%s)\n", i ? "" : "libraries", name,
-               version ? version : "is not in this build", formats);
+               version ? version : "is missing", formats);
 }
 
 static int tell_text(void) {
     print_row("version", snow_version());
-    for (size_t i = 0; i < LISTS; i++) {
-        printf("%-16s", lists[i].key);
-        for (size_t k = 0; lists[i].at(k); k++)
-            printf("%s%s", k ? " " : "", lists[i].at(k));
-        printf("\n");
-    }
-    print_row("volume outputs", volume_suffixes);
-    printf("%-16s", "picture outputs");
-    for (size_t k = 0; picture_suffix_at(k); k++)
-        printf("%s%s", k ? " " : "", picture_suffix_at(k));
-    printf("\n");
+    for (size_t i = 0; i < LISTS; i++)
+        print_list(lists[i].key, lists[i].at);
     printf("%-16s%s%s%s\n", "movie outputs", writes_webp() ? ".webp" : "",
            encoder_is_there() && writes_webp() ? ", " : "",
            encoder_is_there() ? ".mp4 .webm .gif by ffmpeg"

@@ -39,11 +39,6 @@ int check_settings(const options *asked) {
     return done == GO_ON ? check_look(asked) : done;
 }
 
-static bool has_suffix(const char *path, const char *suffix) {
-    size_t length = strlen(path), end = strlen(suffix);
-    return length >= end && strcmp(path + length - end, suffix) == 0;
-}
-
 /* Depths are of one picture, numbers, and go to a place of their own. */
 static int check_depth(const options *asked) {
     const char *path = asked->depth;
@@ -52,9 +47,9 @@ static int check_depth(const options *asked) {
     if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0)
         return fail_usage("--depth: mode %s has none; take over or iso",
                           asked->mode);
-    if (!has_suffix(path, ".npy") && !has_suffix(path, ".pfm"))
+    if (snow_image_bits(path) != 0)
         return fail_usage("--depth: %s: depths are numbers; let the name end "
-                          "with .npy or .pfm",
+                          "with .npy, .pfm, .exr or .tif",
                           path);
     const char *others[] = {asked->output, asked->stats};
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)

@@ -54,16 +54,16 @@ const option_row option_table[] = {
      "replace files that exist, of --output, --depth and --stats (they are "
      "kept)"},
     {"depth", 0, "FILE", TOPIC_OUTPUT, VERB_RENDER, read_text, FIELD(depth), 0,
-     0, "", "of modes over and iso: a .npy or .pfm of world distances from the "
-     "target's plane along the line of sight to where opacity passes 1/2, or to "
+     0, "", "of modes over and iso: a file of numbers (.npy, .pfm, .exr, .tif), world "
+     "distances from the target's plane along the line of sight to where opacity passes 1/2, or to "
      "the surface; NaN elsewhere"},
 
     {"mode", 'm', "over|mip|minip|mean|sum|iso", TOPIC_MODE, RENDER, read_choice,
      FIELD(mode), 0, 0, "",
      "how the voxels that a ray meets make a pixel: laid over one another, the "
      "largest or smallest value, its mean or its sum along the ray, or the "
-     "surface of --iso; all but over take every voxel, and .npy and .pfm hold "
-     "mean and sum in data units (over)"},
+     "surface of --iso; all but over take every voxel, and files of numbers "
+     "(.npy, .pfm, .exr, .tif) hold mean and sum in data units (over)"},
     {"iso", 0, "VALUE", TOPIC_MODE, RENDER, read_real, FIELD(iso), 0, 0, "",
      "data value of the surface of mode iso: where rays first meet it, shaded"},
 

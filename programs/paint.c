@@ -1,6 +1,7 @@
 /* paint.c - the rules of paint.h. */
 #include "paint.h"
 #include "report.h"
+#include "sequence_encoder.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,12 +9,7 @@
 
 /* Whether a file of this name holds numbers instead of colours. */
 static bool keeps_values(const char *path) {
-    static const char *const suffixes[] = {".npy", ".NPY", ".pfm", ".PFM"};
-    size_t length = strlen(path);
-    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++)
-        if (length >= 4 && strcmp(path + length - 4, suffixes[i]) == 0)
-            return true;
-    return false;
+    return !movie_format_of(path) && snow_image_bits(path) == 0;
 }
 
 static bool range_is_told(const options *asked) {

@@ -45,9 +45,12 @@ prints '^snowglass [0-9]+\.[0-9]+\.[0-9]+$'
 
 run 0 "doctor" "$TOOL" doctor
 for key in version formats phantoms presets colormaps kernels encodings \
-    methods isa threads mpi memory; do
+    methods modes isa threads mpi memory; do
     prints "^$key +[^ ]"
 done
+prints '^methods .* sheared'
+prints '^volume outputs .*\.npy'
+prints '^picture outputs +\.png'
 # Processors that the process may not use are not counted.
 if command -v taskset >/dev/null; then
     first=$(taskset -cp $$ | sed 's/.*: *\([0-9]*\).*/\1/')
@@ -57,4 +60,5 @@ fi
 run 0 "doctor --json" "$TOOL" doctor --json
 prints '"encodings": \["crs", "bitmap", "rle"\]'
 prints '"formats": \[.*"nrrd".*\]'
+prints '"volume_outputs": \["\.nrrd"'
 finish

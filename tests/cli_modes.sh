@@ -44,6 +44,19 @@ check "a mean's PFM is grey" [ "$(head -c 2 mean.pfm)" = "Pf" ]
 check "a mip's PFM is colour" [ "$(head -c 2 mip.pfm)" = "PF" ]
 run 0 "a mean is the same in both formats" "$TOOL" compare mean.npy mean.pfm
 
+for suffix in exr tif; do
+    "$TOOL" doctor | grep -q "^picture outputs.* \.$suffix" || continue
+    run 0 "a sum as .$suffix" render -q -m sum -o sum.$suffix
+    run 0 "holds values too" "$TOOL" compare sum.npy sum.$suffix
+    run 0 "depths as .$suffix" render -q -m iso --iso 40 -o any.$suffix.png \
+        --depth depth.$suffix
+    run 0 "and .npy" render -q -m iso --iso 40 -y -o any.$suffix.png \
+        --depth depth.$suffix.npy
+    run 0 "are the same" "$TOOL" compare depth.$suffix depth.$suffix.npy
+done
+run 2 "depths are no picture" render -q -m iso --iso 40 -o no.png --depth no.webp
+says "--depth: no.webp: depths are numbers"
+
 run 0 "a PNG of means tells its range" render -m mean -o told.png
 says "means of [-0-9.e]+\.\.[-0-9.e]+ in the look's colours"
 run 0 "a range that is asked for" render -m sum --range 10,500 -o range.png

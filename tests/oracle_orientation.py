@@ -21,6 +21,10 @@ place = oracle.folder()
 LOOK = ["-q", "-s", "48x48", "--method", "footprint", "--azimuth", "25", "--elevation", "20", "--view",
         "+y", "--range", "0,3000", "--preset", "linear", "--no-labels"]
 TOLERANCE = "1/255"
+# Under sanitizers one in five: all are read by the same code.
+TURNS = list(itertools.product(itertools.permutations(range(3)),
+                               itertools.product((1, -1), repeat=3)))
+TURNS = TURNS[::5 if "SNOW_SANITIZED" in os.environ else 1]
 
 
 def base():
@@ -224,13 +228,12 @@ def sweep(kind, matrix):
     open(name, "wb").write(data)
     tool("render", name, "-y", "-o", "a.png", *LOOK)
     for format_name, write, drawn in FORMATS:
-        for order in itertools.permutations(range(3)):
-            for signs in itertools.product((1, -1), repeat=3):
-                name, data = write(*turned(voxels, matrix, order, signs))
-                open(name, "wb").write(data)
-                oracle.checked += 1
-                check(f"{format_name} {kind} {order} {signs}", name, values,
-                      places, drawn)
+        for order, signs in TURNS:
+            name, data = write(*turned(voxels, matrix, order, signs))
+            open(name, "wb").write(data)
+            oracle.checked += 1
+            check(f"{format_name} {kind} {order} {signs}", name, values, places,
+                  drawn)
 
 
 sweep("straight", straight())

@@ -100,6 +100,14 @@ static void a_host_with_a_comma_reads_the_same_numbers(void **state) {
     assert_true(value == 0.25);
 }
 
+static void a_message_is_one_line_whatever_it_quotes(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_fail(context, SNOW_BAD_INPUT, "%s: no", "a\nb\x1b[2J\x7f");
+    assert_string_equal(snow_context_message(context), "a?b?[2J?: no");
+    snow_context_free(context);
+}
+
 static void layers_add_what_they_know_to_a_message(void **state) {
     (void)state;
     snow_context *context = support_context();
@@ -121,6 +129,7 @@ int main(void) {
         cmocka_unit_test(numbers_are_whole_or_refused),
         cmocka_unit_test(a_number_gets_the_sign_of_the_locale),
         cmocka_unit_test(a_host_with_a_comma_reads_the_same_numbers),
+        cmocka_unit_test(a_message_is_one_line_whatever_it_quotes),
         cmocka_unit_test(layers_add_what_they_know_to_a_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

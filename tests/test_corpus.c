@@ -1,40 +1,17 @@
 /* tests/test_corpus.c - every file of the fuzzers' corpora of volumes is opened
  * with each allocation made to fail, once and from there on: an error with a
  * message, nothing held, no crash. */
-#include "support.h"
+#include "support_failing.h"
 
 #include <dirent.h>
-
-typedef struct failing_allocator {
-    long allocations, failing, held;
-    bool for_good;
-} failing_allocator;
-
-static void *allocate_or_fail(void *user, size_t bytes) {
-    failing_allocator *allocator = user;
-    long number = allocator->allocations++;
-    if (allocator->failing >= 0 &&
-        (allocator->for_good ? number >= allocator->failing
-                             : number == allocator->failing))
-        return NULL;
-    if (bytes > (size_t)64 << 20)
-        return NULL;
-    allocator->held++;
-    return malloc(bytes);
-}
-
-static void release_counted(void *user, void *block) {
-    ((failing_allocator *)user)->held--;
-    free(block);
-}
 
 /* Opens the file; returns the allocations made. */
 static long open_failing(const char *path, const char *name, const void *bytes,
                          size_t size, long failing, bool for_good,
                          bool *failed) {
-    failing_allocator allocator = {.failing = failing, .for_good = for_good};
-    const snow_allocator functions = {allocate_or_fail, release_counted,
-                                      &allocator};
+    support_failing allocator = {
+        .failing = failing, .for_good = for_good, .largest = (size_t)64 << 20};
+    const snow_allocator functions = support_failing_allocator(&allocator);
     snow_context *context;
     snow_volume *volume = NULL;
     if (snow_context_new(&functions, &context) != SNOW_OK) {

@@ -1,25 +1,7 @@
 /* tests/test_looks.c - looks of points as data, and on a logarithmic scale. */
-#include "support.h"
-
-#include "classify/look.h"
+#include "support_looks.h"
 
 #include <math.h>
-
-static snow_volume *share(snow_context *context, snow_type type,
-                          const void *values, int64_t n) {
-    snow_volume_info info = {.dims = {n, 1, 1}, .type = type};
-    snow_volume *volume = NULL;
-    if (snow_volume_share(context, &info, values, &volume) != SNOW_OK)
-        fail_msg("%s", snow_context_message(context));
-    return volume;
-}
-
-static snow_transfer *look_at(const snow_volume *volume, snow_look look) {
-    snow_transfer *transfer = NULL;
-    if (snow_transfer_make(volume, &look, &transfer) != SNOW_OK)
-        fail_msg("%s", snow_context_message(volume->context));
-    return transfer;
-}
 
 static double opacity_at(const snow_transfer *transfer, double value) {
     double rgba[4];
@@ -45,9 +27,9 @@ static const float decades[] = {0.001F, 0.01F, 0.1F, 1,    10,
 static void linear_over_decades_is_linear_in_decades(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, decades, DECADES);
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, decades, DECADES);
     snow_look look = {.preset = "linear", .log = true};
-    snow_transfer *transfer = look_at(volume, look);
+    snow_transfer *transfer = support_look(volume, look);
     assert_true(snow_transfer_is_log(transfer));
     for (int i = 0; i < 7; i++) {
         assert_true(fabs(opacity_at(transfer, (double)decades[i]) - i / 6.0) <
@@ -68,13 +50,13 @@ static void linear_over_decades_is_linear_in_decades(void **state) {
 static void a_range_is_spread_by_decades(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, decades, DECADES);
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, decades, DECADES);
     snow_look look = {.preset = "ct-bone",
                       .range = SNOW_RANGE_VALUES,
                       .low = 0.1,
                       .high = 1000,
                       .log = true};
-    snow_transfer *transfer = look_at(volume, look);
+    snow_transfer *transfer = support_look(volume, look);
     /* ct-bone goes from 150 to 1500; 350 is 200 / 1350 of the way. */
     double value = 0.1 * pow(1e4, 200.0 / 1350);
     assert_true(near(opacity_at(transfer, value), 0.40));
@@ -85,7 +67,7 @@ static void a_range_is_spread_by_decades(void **state) {
     look.low = 0;
     look.high = 100; /* of the values above 0 */
     look.colormap = "grey";
-    transfer = look_at(volume, look);
+    transfer = support_look(volume, look);
     assert_true(fabs(red_at(transfer, 1) - 0.5) < 1e-7);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
@@ -96,7 +78,7 @@ static void what_has_no_logarithm_is_refused(void **state) {
     (void)state;
     static const snow_opacity_point from_0[] = {{0, 0}, {10, 1}};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, decades, DECADES);
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, decades, DECADES);
     const snow_look looks[] = {
         {.preset = "ct-soft", .log = true},
         {.opacities = from_0, .opacity_count = 2, .log = true},
@@ -122,10 +104,11 @@ static void counted_types_give_the_same_look_by_decades(void **state) {
         wide[i] = narrow[i] =
             (int16_t)(pow(10, 4.4 * support_uniform(&seed)) - 5);
     snow_context *context = support_context();
-    snow_volume *a = share(context, SNOW_INT16, narrow, 400);
-    snow_volume *b = share(context, SNOW_FLOAT64, wide, 400);
+    snow_volume *a = support_row(context, SNOW_INT16, narrow, 400);
+    snow_volume *b = support_row(context, SNOW_FLOAT64, wide, 400);
     snow_look look = {.log = true};
-    snow_transfer *first = look_at(a, look), *second = look_at(b, look);
+    snow_transfer *first = support_look(a, look),
+                  *second = support_look(b, look);
     assert_string_equal(snow_transfer_text(first), snow_transfer_text(second));
     for (int i = 0; i < 400; i++)
         assert_true(opacity_at(first, wide[i]) == opacity_at(second, wide[i]));
@@ -143,14 +126,14 @@ static void odd_volumes_have_a_logarithmic_look_too(void **state) {
                             {0, 0, 1e-40F}, {1e-40F, 1, 3e38F}};
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
-        snow_volume *volume = share(context, SNOW_FLOAT32, odd[i], 3);
+        snow_volume *volume = support_row(context, SNOW_FLOAT32, odd[i], 3);
         for (size_t p = 0; p < 4; p++) {
             snow_look look = {.log = true,
                               .preset = p == 1   ? "linear"
                                         : p == 2 ? "mr-angio"
                                                  : NULL,
                               .colormap = p == 3 ? "turbo" : NULL};
-            snow_transfer_free(look_at(volume, look));
+            snow_transfer_free(support_look(volume, look));
         }
         snow_volume_close(volume);
     }
@@ -176,18 +159,19 @@ static void points_in_data_units_stay_where_they_are(void **state) {
                                 .gradients = gradients,
                                 .gradient_count = 2};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 2);
-    snow_transfer *transfer = look_at(volume, (snow_look){.points = &points});
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.points = &points});
     assert_true(near(opacity_at(transfer, 30), 0.25));
     assert_true(near(red_at(transfer, 30), 0.5));
     assert_true(near(snow_transfer_gradient_opacity(transfer, 2), 0.5));
     assert_non_null(strstr(snow_transfer_text(transfer), "mine 10..50"));
     snow_transfer_free(transfer);
     /* Over twice the range gradients are half as steep. */
-    transfer = look_at(volume, (snow_look){.points = &points,
-                                           .range = SNOW_RANGE_VALUES,
-                                           .low = 100,
-                                           .high = 180});
+    transfer = support_look(volume, (snow_look){.points = &points,
+                                                .range = SNOW_RANGE_VALUES,
+                                                .low = 100,
+                                                .high = 180});
     assert_true(near(opacity_at(transfer, 140), 0.25));
     assert_true(near(red_at(transfer, 120), 1));
     assert_true(near(snow_transfer_gradient_opacity(transfer, 2), 0.25));
@@ -208,13 +192,15 @@ static void points_without_values_are_spread(void **state) {
     snow_points colors_only = points;
     colors_only.opacity_count = 0;
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 2);
-    snow_transfer *transfer = look_at(volume, (snow_look){.points = &points});
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.points = &points});
     assert_true(near(opacity_at(transfer, 100), 0.25));
     assert_true(near(red_at(transfer, 75), 0.75));
     snow_transfer_free(transfer);
-    transfer = look_at(volume, (snow_look){.points = &colors_only});
-    snow_transfer *automatic = look_at(volume, (snow_look){.preset = NULL});
+    transfer = support_look(volume, (snow_look){.points = &colors_only});
+    snow_transfer *automatic =
+        support_look(volume, (snow_look){.preset = NULL});
     assert_true(near(opacity_at(transfer, 150), opacity_at(automatic, 150)));
     assert_true(red_at(transfer, 150) == 0);
     snow_transfer_free(automatic);
@@ -239,8 +225,9 @@ static void hundreds_of_points_are_taken(void **state) {
                                 .opacities = opacities,
                                 .opacity_count = 900};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, values, 2);
-    snow_transfer *transfer = look_at(volume, (snow_look){.points = &points});
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 2);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.points = &points});
     assert_true(near(opacity_at(transfer, 655.25), 0.75));
     assert_true(near(red_at(transfer, 350), 0.5));
     snow_transfer_free(transfer);
@@ -273,9 +260,9 @@ static void categories_are_not_mixed(void **state) {
                                      0xbcbd22, 0x17becf};
     const float values[] = {0, 10};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, values, 2);
-    snow_transfer *transfer =
-        look_at(volume, (snow_look){.preset = "linear", .colormap = "tab10"});
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 2);
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.preset = "linear", .colormap = "tab10"});
     for (int i = 0; i < 100; i++) {
         double found[4];
         snow_transfer_at(transfer, i / 10.0 + 0.05, found);
@@ -297,7 +284,7 @@ static snow_transfer *look_at_block(snow_context *context, const float *values,
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_share(context, &info, values, &volume),
                      SNOW_OK);
-    snow_transfer *transfer = look_at(volume, (snow_look){.preset = NULL});
+    snow_transfer *transfer = support_look(volume, (snow_look){.preset = NULL});
     snow_volume_close(volume);
     return transfer;
 }

@@ -1,30 +1,8 @@
 /* tests/test_out_of_memory.c - each allocation of load, render and write is
  * made to fail once, and from there on: an error, no leak, no half file. */
-#include "support.h"
+#include "support_failing.h"
 
 #include <unistd.h>
-
-/* Fails allocation number `failing` (from 0), or all from it on. */
-typedef struct failing_allocator {
-    long allocations, failing, held;
-    bool for_good;
-} failing_allocator;
-
-static void *allocate_or_fail(void *user, size_t bytes) {
-    failing_allocator *allocator = user;
-    long number = allocator->allocations++;
-    if (allocator->failing >= 0 &&
-        (allocator->for_good ? number >= allocator->failing
-                             : number == allocator->failing))
-        return NULL;
-    allocator->held++;
-    return malloc(bytes);
-}
-
-static void release_counted(void *user, void *block) {
-    ((failing_allocator *)user)->held--;
-    free(block);
-}
 
 typedef struct test_paths {
     char input[64], output[64];
@@ -66,9 +44,9 @@ static snow_status make_picture(snow_context *context, const test_paths *paths,
 }
 
 /* Runs make_picture under an allocator; nothing may stay behind. */
-static snow_status run(failing_allocator *allocator, const test_paths *paths,
+static snow_status run(support_failing *allocator, const test_paths *paths,
                        const snow_settings *settings, double fov) {
-    snow_allocator functions = {allocate_or_fail, release_counted, allocator};
+    snow_allocator functions = support_failing_allocator(allocator);
     snow_context *context;
     if (snow_context_new(&functions, &context) != SNOW_OK)
         return SNOW_NO_MEMORY;
@@ -106,12 +84,12 @@ static void fail_each_seen(const char *suffix, snow_method method,
     settings.method = method;
     settings.encoding = encoding;
     settings.threads = threads;
-    failing_allocator whole = {.failing = -1};
+    support_failing whole = {.failing = -1};
     assert_int_equal(run(&whole, &paths, &settings, fov), SNOW_OK);
     assert_int_equal(unlink(paths.output), 0);
     assert_true(whole.allocations > 20);
     for (long n = 0; n < whole.allocations; n++) {
-        failing_allocator allocator = {.failing = n, .for_good = for_good};
+        support_failing allocator = {.failing = n, .for_good = for_good};
         snow_status status = run(&allocator, &paths, &settings, fov);
         /* Without memory for threads the calling one does it all. */
         if (status == SNOW_OK && threads > 1)

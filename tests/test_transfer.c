@@ -1,8 +1,6 @@
 /* tests/test_transfer.c - control points, ranges, presets, colour maps, and the
  * look that the histogram suggests. */
-#include "support.h"
-
-#include "classify/look.h"
+#include "support_looks.h"
 
 #include <float.h>
 #include <math.h>
@@ -23,23 +21,6 @@ static snow_transfer *opacities_only(snow_context *context,
     if (snow_transfer_new(context, black, 1, points, count, &transfer) !=
         SNOW_OK)
         fail_msg("%s", snow_context_message(context));
-    return transfer;
-}
-
-/* A volume over values in memory, n along x. */
-static snow_volume *share(snow_context *context, snow_type type,
-                          const void *values, int64_t n) {
-    snow_volume_info info = {.dims = {n, 1, 1}, .type = type};
-    snow_volume *volume = NULL;
-    if (snow_volume_share(context, &info, values, &volume) != SNOW_OK)
-        fail_msg("%s", snow_context_message(context));
-    return volume;
-}
-
-static snow_transfer *look_at(const snow_volume *volume, snow_look look) {
-    snow_transfer *transfer = NULL;
-    if (snow_transfer_make(volume, &look, &transfer) != SNOW_OK)
-        fail_msg("%s", snow_context_message(volume->context));
     return transfer;
 }
 
@@ -232,18 +213,18 @@ static void a_look_has_a_gradient_opacity(void **state) {
     for (int i = 0; i < 256; i++)
         many[i] = (snow_opacity_point){-1.23456e-100 / (i + 1), 0.12345};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 3);
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 3);
     snow_look look = {.preset = "linear",
                       .gradient_opacities = curve,
                       .gradient_opacity_count = 2};
-    snow_transfer *transfer = look_at(volume, look), *none = NULL;
+    snow_transfer *transfer = support_look(volume, look), *none = NULL;
     assert_true(near(snow_transfer_gradient_opacity(transfer, 3), 0.5));
     assert_non_null(strstr(snow_transfer_text(transfer),
                            "); gradient opacity 0 at 2, 1 at 4"));
     snow_transfer_free(transfer);
     look.gradient_opacities = look.opacities = many;
     look.gradient_opacity_count = look.opacity_count = 256;
-    transfer = look_at(volume, look); /* more than there is room to tell */
+    transfer = support_look(volume, look); /* more than there is room to tell */
     assert_non_null(strstr(snow_transfer_text(transfer), ", ... ("));
     assert_non_null(strstr(snow_transfer_text(transfer), "; gradient opacity"));
     snow_transfer_free(transfer);
@@ -263,8 +244,9 @@ static void linear_on_8_bits_is_the_value_itself(void **state) {
     for (int i = 0; i < 256; i++)
         bytes[i] = (uint8_t)i;
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 256);
-    snow_transfer *transfer = look_at(volume, (snow_look){.preset = "linear"});
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 256);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.preset = "linear"});
     for (int i = 0; i < 256; i++) {
         double rgba[4];
         snow_transfer_at(transfer, i, rgba);
@@ -290,7 +272,8 @@ static void table_1_of_the_real_engine_comes_out(void **state) {
     snow_volume *volume;
     assert_int_equal(snow_volume_open(context, path, &options, &volume),
                      SNOW_OK);
-    snow_transfer *transfer = look_at(volume, (snow_look){.preset = "linear"});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.preset = "linear"});
     for (int i = 0; i < 3; i++) {
         double found = -1;
         assert_int_equal(
@@ -307,18 +290,18 @@ static void a_range_of_values_spreads_any_look(void **state) {
     (void)state;
     const int16_t values[] = {-1000, 0, 100, 3000};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_INT16, values, 4);
+    snow_volume *volume = support_row(context, SNOW_INT16, values, 4);
     snow_look look = {
         .preset = "linear", .range = SNOW_RANGE_VALUES, .low = 20, .high = 60};
-    snow_transfer *linear = look_at(volume, look);
+    snow_transfer *linear = support_look(volume, look);
     assert_true(opacity_at(linear, 20) == 0 && opacity_at(linear, 60) == 1);
     assert_true(near(opacity_at(linear, 30), 0.25));
     look.preset = "ct-bone"; /* its own span is 150 to 1500 */
-    snow_transfer *bone = look_at(volume, look);
+    snow_transfer *bone = support_look(volume, look);
     assert_true(opacity_at(bone, 20) == 0);
     assert_true(near(opacity_at(bone, 60), 0.85));
     look.preset = NULL;
-    snow_transfer *automatic = look_at(volume, look);
+    snow_transfer *automatic = support_look(volume, look);
     assert_true(opacity_at(automatic, 20) == 0);
     assert_true(near(opacity_at(automatic, 60), 0.8));
     snow_transfer_free(linear);
@@ -336,12 +319,12 @@ static void percentiles_are_of_finite_values(void **state) {
     values[200] = NAN, values[201] = INFINITY, values[202] = -INFINITY;
     values[203] = NAN;
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, values, 204);
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 204);
     snow_transfer *transfer =
-        look_at(volume, (snow_look){.preset = "linear",
-                                    .range = SNOW_RANGE_PERCENTILES,
-                                    .low = 10,
-                                    .high = 90});
+        support_look(volume, (snow_look){.preset = "linear",
+                                         .range = SNOW_RANGE_PERCENTILES,
+                                         .low = 10,
+                                         .high = 90});
     /* 10 % of 200 values are at most 20. */
     assert_true(opacity_at(transfer, 20) == 0);
     assert_true(opacity_at(transfer, 21) > 0);
@@ -369,7 +352,7 @@ static void quantiles_are_those_of_sorted_values(void **state) {
     memcpy(sorted, values, sizeof values);
     qsort(sorted, N, sizeof *sorted, ascending);
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT64, values, N);
+    snow_volume *volume = support_row(context, SNOW_FLOAT64, values, N);
     const double shares[4] = {0, 0.01, 0.5, 1};
     double found[4];
     snow_census census;
@@ -410,7 +393,7 @@ static void all_types_give_one_look(void **state) {
         info.type = SNOW_FLOAT32;
         assert_int_equal(snow_volume_share(context, &info, floats, &b),
                          SNOW_OK);
-        snow_transfer *p = look_at(a, look), *q = look_at(b, look);
+        snow_transfer *p = support_look(a, look), *q = support_look(b, look);
         assert_string_equal(snow_transfer_text(p), snow_transfer_text(q));
         snow_transfer_free(p);
         snow_transfer_free(q);
@@ -424,8 +407,8 @@ static void the_full_range_is_from_smallest_to_largest(void **state) {
     (void)state;
     const float values[] = {NAN, -3, 5, 1, INFINITY};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, values, 5);
-    snow_transfer *transfer = look_at(
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 5);
+    snow_transfer *transfer = support_look(
         volume, (snow_look){.preset = "linear", .range = SNOW_RANGE_FULL});
     assert_true(opacity_at(transfer, -3) == 0);
     assert_true(near(opacity_at(transfer, 1), 0.5));
@@ -444,7 +427,8 @@ static void slope_and_intercept_count(void **state) {
     snow_volume *volume;
     assert_int_equal(snow_volume_share(context, &info, bytes, &volume),
                      SNOW_OK);
-    snow_transfer *transfer = look_at(volume, (snow_look){.preset = "linear"});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.preset = "linear"});
     assert_true(opacity_at(transfer, 60) == 0);
     assert_true(opacity_at(transfer, 100) == 1);
     snow_transfer_free(transfer);
@@ -462,7 +446,7 @@ static void presets_and_maps_are_listed_and_all_work(void **state) {
     static const char *const maps[] = {"grey", "viridis", "inferno",
                                        "cool-warm", "turbo"};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_INT16, values, 8);
+    snow_volume *volume = support_row(context, SNOW_INT16, values, 8);
     for (size_t i = 0; i < 4; i++)
         assert_string_equal(snow_preset_name(i), presets[i]);
     for (size_t i = 0; i < 5; i++)
@@ -470,13 +454,13 @@ static void presets_and_maps_are_listed_and_all_work(void **state) {
     size_t count = 0;
     for (; snow_preset_name(count); count++) {
         assert_non_null(snow_preset_text(count));
-        snow_transfer_free(
-            look_at(volume, (snow_look){.preset = snow_preset_name(count)}));
+        snow_transfer_free(support_look(
+            volume, (snow_look){.preset = snow_preset_name(count)}));
     }
     assert_null(snow_preset_text(count));
     for (size_t i = 0; snow_colormap_name(i); i++)
-        snow_transfer_free(
-            look_at(volume, (snow_look){.colormap = snow_colormap_name(i)}));
+        snow_transfer_free(support_look(
+            volume, (snow_look){.colormap = snow_colormap_name(i)}));
     snow_volume_close(volume);
     snow_context_free(context);
 }
@@ -485,11 +469,13 @@ static void ct_presets_keep_their_hounsfield_values(void **state) {
     (void)state;
     const int16_t values[] = {-1000, 40, 900};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_INT16, values, 3);
-    snow_transfer *bone = look_at(volume, (snow_look){.preset = "ct-bone"});
+    snow_volume *volume = support_row(context, SNOW_INT16, values, 3);
+    snow_transfer *bone =
+        support_look(volume, (snow_look){.preset = "ct-bone"});
     assert_true(opacity_at(bone, 60) == 0); /* muscle */
     assert_true(opacity_at(bone, 700) > 0.4);
-    snow_transfer *soft = look_at(volume, (snow_look){.preset = "ct-soft"});
+    snow_transfer *soft =
+        support_look(volume, (snow_look){.preset = "ct-soft"});
     assert_true(opacity_at(soft, -900) == 0); /* lung and air */
     assert_true(opacity_at(soft, 40) > 0.1);
     assert_false(snow_transfer_is_grey(bone));
@@ -510,13 +496,14 @@ static void ct_presets_warn_of_values_with_an_offset(void **state) {
     snow_context *context = support_context();
     int notices = 0;
     snow_context_set_notice(context, count_notice, &notices);
-    snow_volume *volume = share(context, SNOW_UINT16, values, 3);
-    snow_transfer_free(look_at(volume, (snow_look){.preset = "ct-soft"}));
+    snow_volume *volume = support_row(context, SNOW_UINT16, values, 3);
+    snow_transfer_free(support_look(volume, (snow_look){.preset = "ct-soft"}));
     assert_int_equal(notices, 1);
-    snow_transfer_free(look_at(volume, (snow_look){.preset = "ct-soft",
-                                                   .range = SNOW_RANGE_VALUES,
-                                                   .low = 674,
-                                                   .high = 1524}));
+    snow_transfer_free(
+        support_look(volume, (snow_look){.preset = "ct-soft",
+                                         .range = SNOW_RANGE_VALUES,
+                                         .low = 674,
+                                         .high = 1524}));
     assert_int_equal(notices, 1);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -526,7 +513,7 @@ static void unknown_names_are_refused_with_a_list(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
     snow_transfer *transfer = NULL;
     const snow_look preset = {.preset = "ct-foot"};
     const snow_look map = {.colormap = "jet"};
@@ -557,7 +544,7 @@ static void empty_ranges_are_refused(void **state) {
     };
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
     snow_transfer *transfer = NULL;
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
         assert_int_equal(snow_transfer_make(volume, &looks[i], &transfer),
@@ -571,9 +558,9 @@ static void a_colour_map_replaces_the_colours_only(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 2);
-    snow_transfer *transfer =
-        look_at(volume, (snow_look){.preset = "linear", .colormap = "inferno"});
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.preset = "linear", .colormap = "inferno"});
     double rgba[4];
     snow_transfer_at(transfer, 255, rgba);
     assert_true(fabs(rgba[0] - 0.988362) < 1 / 255.0);
@@ -590,10 +577,10 @@ static void given_opacities_replace_the_presets(void **state) {
     const snow_opacity_point points[] = {{100, 0}, {100, 0.5}};
     const snow_opacity_point falling[] = {{100, 0}, {50, 0.5}};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
     snow_look look = {
         .preset = "linear", .opacities = points, .opacity_count = 2};
-    snow_transfer *transfer = look_at(volume, look);
+    snow_transfer *transfer = support_look(volume, look);
     assert_true(opacity_at(transfer, 99) == 0);
     assert_true(opacity_at(transfer, 100) == 0.5);
     snow_transfer_free(transfer);
@@ -660,11 +647,11 @@ static void colour_maps_are_the_published_ones(void **state) {
     static const int entries[5] = {0, 64, 128, 192, 255};
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
     for (size_t n = 0; n < sizeof tables / sizeof *tables; n++) {
         snow_transfer *transfer =
-            look_at(volume, (snow_look){.preset = "linear",
-                                        .colormap = tables[n].name});
+            support_look(volume, (snow_look){.preset = "linear",
+                                             .colormap = tables[n].name});
         for (int i = 0; i < 5; i++) {
             double rgba[4];
             snow_transfer_at(transfer, entries[i], rgba);
@@ -764,8 +751,8 @@ static void background_is_transparent_and_the_object_is_not(void **state) {
     scatter(values + AIR + TISSUE, BONE, 2000, 200, &random);
     snow_context *context = support_context();
     snow_volume *volume =
-        share(context, SNOW_FLOAT32, values, AIR + TISSUE + BONE);
-    snow_transfer *transfer = look_at(volume, (snow_look){0});
+        support_row(context, SNOW_FLOAT32, values, AIR + TISSUE + BONE);
+    snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 50) == 0);
     assert_true(opacity_at(transfer, 950) >= 0.2);
     assert_true(opacity_at(transfer, 2000) > opacity_at(transfer, 1000));
@@ -785,8 +772,8 @@ static void sparse_vessels_are_found_in_an_empty_volume(void **state) {
     memset(values, 0, sizeof values);
     scatter(values, VESSEL, 150, 100, &random);
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, values, ALL);
-    snow_transfer *transfer = look_at(volume, (snow_look){0});
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, ALL);
+    snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 0) == 0);
     assert_true(opacity_at(transfer, 180) > 0.3);
     /* Their brightest half is not cut off. */
@@ -807,8 +794,8 @@ static void a_few_wild_values_do_not_blank_the_picture(void **state) {
     for (int i = 0; i < 20; i++)
         values[i * 400] = i % 2 ? 3e38F : NAN;
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_FLOAT32, values, ALL);
-    snow_transfer *transfer = look_at(volume, (snow_look){0});
+    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, ALL);
+    snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 12) == 0);
     assert_true(opacity_at(transfer, 110) > 0.2);
     snow_transfer_free(transfer);
@@ -820,8 +807,8 @@ static void a_mask_of_0_and_1_shows_its_ones(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 0, 0, 1, 1, 0, 0, 0};
     snow_context *context = support_context();
-    snow_volume *volume = share(context, SNOW_UINT8, bytes, 8);
-    snow_transfer *transfer = look_at(volume, (snow_look){0});
+    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 8);
+    snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 0) == 0);
     assert_true(opacity_at(transfer, 1) > 0.3);
     snow_transfer_free(transfer);
@@ -832,7 +819,7 @@ static void a_mask_of_0_and_1_shows_its_ones(void **state) {
 /* Every preset, map and range on values that leave nothing to part. */
 static void check_all_looks(snow_type type, const void *values, int64_t n) {
     snow_context *context = support_context();
-    snow_volume *volume = share(context, type, values, n);
+    snow_volume *volume = support_row(context, type, values, n);
     for (int range = SNOW_RANGE_AUTO; range <= SNOW_RANGE_PERCENTILES; range++)
         for (size_t p = 0; p == 0 || snow_preset_name(p - 1); p++) {
             snow_look look = {.preset = p ? snow_preset_name(p - 1) : NULL,
@@ -840,7 +827,7 @@ static void check_all_looks(snow_type type, const void *values, int64_t n) {
                               .low = 1,
                               .high = 99,
                               .colormap = "turbo"};
-            snow_transfer *transfer = look_at(volume, look);
+            snow_transfer *transfer = support_look(volume, look);
             for (int64_t i = 0; i < n; i++) {
                 double rgba[4];
                 snow_transfer_at(transfer, snow_volume_native(volume, i), rgba);
@@ -883,11 +870,13 @@ a_volume_of_zeros_shows_nothing_and_one_of_sevens_does(void **state) {
     const uint8_t zeros[] = {0, 0}, sevens[] = {7, 7};
     static const char *const presets[] = {NULL, "linear", "mr-default"};
     snow_context *context = support_context();
-    snow_volume *empty = share(context, SNOW_UINT8, zeros, 2);
-    snow_volume *full = share(context, SNOW_UINT8, sevens, 2);
+    snow_volume *empty = support_row(context, SNOW_UINT8, zeros, 2);
+    snow_volume *full = support_row(context, SNOW_UINT8, sevens, 2);
     for (int i = 0; i < 3; i++) {
-        snow_transfer *a = look_at(empty, (snow_look){.preset = presets[i]});
-        snow_transfer *b = look_at(full, (snow_look){.preset = presets[i]});
+        snow_transfer *a =
+            support_look(empty, (snow_look){.preset = presets[i]});
+        snow_transfer *b =
+            support_look(full, (snow_look){.preset = presets[i]});
         assert_true(opacity_at(a, 0) == 0);
         assert_true(opacity_at(b, 7) > 0.5);
         snow_transfer_free(a);

@@ -78,7 +78,8 @@ SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
 SNOW_API int snow_image_bits(const char *path);
 
 /* The suffix of picture format `index` (from 0), and whether this build writes
- * and reads it; NULL past the end. */
+ * and reads it, and has beside it what it must load for that; NULL past the
+ * end. */
 SNOW_API const char *snow_image_suffix(size_t index, bool *built);
 
 /* The picture on a background (red, green, blue, 0 to 1) as rows of bytes, red,

@@ -221,7 +221,8 @@ SNOW_API const char *snow_format_text(size_t index);
 
 /* Name of optional library `index` (from 0) that formats of volumes and
  * pictures need; NULL past the end.  *version is that of the build, NULL where
- * it was built without; *formats names the formats that need it. */
+ * it was built without, or where the module that uses it is not beside the
+ * library; *formats names the formats that need it. */
 SNOW_API const char *snow_library_name(size_t index, const char **version,
                                        const char **formats);
 
@@ -312,6 +313,9 @@ SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
  * intercept, which .nrrd, .npy and .raw cannot say), SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_volume_save(const snow_volume *volume,
                                       const char *path, bool overwrite);
+
+/* Suffix `index` (from 0) that snow_volume_save knows; NULL past the end. */
+SNOW_API const char *snow_volume_suffix(size_t index);
 
 #ifdef __cplusplus
 }

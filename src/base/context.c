@@ -98,10 +98,18 @@ const char *snow_status_text(snow_status status) {
     return "unknown status";
 }
 
+/* Names and libraries' texts may hold anything; a terminal must not obey it. */
+static void keep_to_one_line(char *text) {
+    for (; *text; text++)
+        if ((unsigned char)*text < 0x20 || *text == 0x7f)
+            *text = '?';
+}
+
 static void set_message(snow_context *context, const char *format,
                         va_list arguments) {
     pthread_mutex_lock(&context->lock);
     vsnprintf(context->message, sizeof context->message, format, arguments);
+    keep_to_one_line(context->message);
     pthread_mutex_unlock(&context->lock);
 }
 
@@ -129,10 +137,9 @@ snow_status snow_fail_within(snow_context *context, snow_status status,
     memcpy(below, context->message, sizeof below);
     va_list arguments;
     va_start(arguments, format);
-    int used =
-        vsnprintf(context->message, sizeof context->message, format, arguments);
+    set_message(context, format, arguments);
     va_end(arguments);
-    size_t at = used < 0 ? 0 : (size_t)used;
+    size_t at = strlen(context->message);
     /* What does not fit any more is cut off at the end. */
     if (at + 3 < sizeof context->message)
         snprintf(context->message + at, sizeof context->message - at, ": %.*s",
@@ -143,6 +150,7 @@ snow_status snow_fail_within(snow_context *context, snow_status status,
 static void tell(snow_context *context, const char *format, va_list arguments) {
     char text[SNOW_MESSAGE_BYTES];
     vsnprintf(text, sizeof text, format, arguments);
+    keep_to_one_line(text);
     context->notice(context->notice_user, text);
 }
 

@@ -11,7 +11,7 @@
 #include "image/image.h"
 
 #include "base/random.h"
-#include "image/store.h"
+#include "base/store.h"
 
 static bool probe_exr(const unsigned char *bytes, size_t size) {
     return size >= 4 && bytes[0] == 0x76 && bytes[1] == 0x2f &&

@@ -3,6 +3,8 @@
  * A file is written in the format that its name asks for, and read in the one
  * that its first bytes show.  Nothing here knows what is inside a format. */
 #include "image/image.h"
+
+#include "base/module.h"
 #include "image/overlay.h"
 
 #include <string.h>
@@ -33,13 +35,25 @@ static const snow_image_format *format_of(const char *path) {
 const char *snow_image_suffix(size_t index, bool *built) {
     if (index >= FORMAT_COUNT)
         return NULL;
-    *built = !formats[index]->package;
+    const snow_image_format *format = formats[index];
+    *built = !format->package &&
+             (!format->module || snow_module_is_there(format->module));
     return formats[index]->suffix;
 }
 
 int snow_image_bits(const char *path) {
     const snow_image_format *format = format_of(path);
     return format ? format->bits : -1;
+}
+
+/* A module that is missing is told of before there is anything to write. */
+static snow_status load_module(snow_context *context, const char *path,
+                               const snow_image_format *format) {
+    const snow_module *module;
+    if (!format->module ||
+        snow_module_load(context, format->module, &module) == SNOW_OK)
+        return SNOW_OK;
+    return snow_fail_within(context, SNOW_BAD_USAGE, "%s", path);
 }
 
 static snow_status choose_format(snow_context *context, const char *path,
@@ -51,6 +65,7 @@ static snow_status choose_format(snow_context *context, const char *path,
                          "again, or write a %s",
                          path, format->name, format->package,
                          format->bits ? ".png" : ".npy");
+    SNOW_TRY(format ? load_module(context, path, format) : SNOW_OK);
     if (format) {
         *out = format;
         return SNOW_OK;
@@ -171,18 +186,6 @@ snow_status snow_image_check(snow_context *context, const char *path, int width,
     SNOW_TRY(choose_format(context, path, &format));
     SNOW_TRY(check_options(context, path, width, height, format, options));
     return snow_image_check_path(context, path, options->overwrite);
-}
-
-snow_status snow_image_check_sides(const snow_source *source, int64_t width,
-                                   int64_t height) {
-    if (width >= 1 && height >= 1 && width <= SNOW_IMAGE_SIDE &&
-        height <= SNOW_IMAGE_SIDE)
-        return SNOW_OK;
-    return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
-                     "%s: a picture of %lld x %lld pixels is not read; it may "
-                     "have 1 to %d a side",
-                     snow_source_name(source), (long long)width,
-                     (long long)height, SNOW_IMAGE_SIDE);
 }
 
 /* The format that an open source shows itself to be of. */

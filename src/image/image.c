@@ -108,3 +108,15 @@ uint64_t snow_image_checksum(const snow_image *image) {
         hash = hash_number(hash, canonical_bits(image->pixels[i]));
     return hash;
 }
+
+snow_status snow_image_check_sides(const snow_source *source, int64_t width,
+                                   int64_t height) {
+    if (width >= 1 && height >= 1 && width <= SNOW_IMAGE_SIDE &&
+        height <= SNOW_IMAGE_SIDE)
+        return SNOW_OK;
+    return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
+                     "%s: a picture of %lld x %lld pixels is not read; it may "
+                     "have 1 to %d a side",
+                     snow_source_name(source), (long long)width,
+                     (long long)height, SNOW_IMAGE_SIDE);
+}

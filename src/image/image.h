@@ -44,6 +44,8 @@ typedef struct snow_image_format {
     const char *other;   /* another one, or NULL */
     const char *package; /* Debian's, of the library that this build lacks: then
                             there is neither write nor read; NULL: none */
+    const char *module;  /* base/module.h: it is loaded to read and write, and
+                            may be missing; NULL: none */
     bool in_any_order;   /* reads the source by base/random.h */
     int most_side;       /* pixels; 0: SNOW_IMAGE_SIDE */
     int bits;            /* the most a channel, of levels; 0: floats, without

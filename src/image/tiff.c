@@ -3,123 +3,16 @@
  * Written: 32-bit floats, red, green, blue and associated (premultiplied)
  * alpha, in strips packed by Deflate.  Read: 8 and 16 bits or floats, 1 to 4
  * samples a pixel that lie beside each other, in strips; straight alpha is
- * multiplied in.
- *
- * libtiff takes its own memory, limited to what the file can be worth; it tells
- * its complaints to the file's own handler: nothing is printed, no state is
- * shared. */
+ * multiplied in. */
 #include "image/image.h"
 
-#include "base/random.h"
-#include "image/store.h"
+#include "base/module.h"
+#include "base/tiff.h"
 
-static bool probe_tiff(const unsigned char *bytes, size_t size) {
-    static const unsigned char magic[4][4] = {{'I', 'I', 42, 0},
-                                              {'M', 'M', 0, 42},
-                                              {'I', 'I', 43, 0},
-                                              {'M', 'M', 0, 43}};
-    for (int i = 0; i < 4 && size >= 4; i++)
-        if (!memcmp(bytes, magic[i], 4))
-            return true;
-    return false;
-}
-
-#if SNOW_HAVE_TIFF
-
-#include <stdarg.h>
-#include <stdio.h>
-#include <tiffio.h>
+#if SNOW_HAVE_TIFF && !SNOW_LOADS
 
 /* Bytes of a strip before it is packed, about. */
 #define STRIP_BYTES 65536
-
-/* The most that libtiff may take at once beside the size of the file. */
-#define LIBRARY_BYTES ((uint64_t)64 << 20)
-
-typedef struct tiff_file {
-    snow_context *context;
-    snow_store store;   /* when writing */
-    snow_random *bytes; /* when reading */
-    uint64_t at;        /* where libtiff reads or writes next */
-    snow_status status; /* of ours, beneath libtiff */
-    TIFF *tiff;
-    char complaint[200]; /* the first */
-} tiff_file;
-
-static tmsize_t read_bytes(thandle_t handle, void *bytes, tmsize_t size) {
-    tiff_file *file = (tiff_file *)handle;
-    size_t got = 0;
-    if (file->bytes)
-        got = snow_random_read(file->bytes, file->at, bytes, (size_t)size);
-    file->at += got;
-    return (tmsize_t)got;
-}
-
-static tmsize_t write_bytes(thandle_t handle, void *bytes, tmsize_t size) {
-    tiff_file *file = (tiff_file *)handle;
-    if (file->bytes)
-        return 0;
-    file->status = snow_store_put(&file->store, file->at, bytes, (size_t)size);
-    if (file->status != SNOW_OK)
-        return 0;
-    file->at += (uint64_t)size;
-    return size;
-}
-
-static toff_t tell_size(thandle_t handle) {
-    const tiff_file *file = (const tiff_file *)handle;
-    return file->bytes ? snow_random_size(file->bytes) : file->store.size;
-}
-
-static toff_t seek_byte(thandle_t handle, toff_t offset, int whence) {
-    tiff_file *file = (tiff_file *)handle;
-    if (whence == SEEK_CUR)
-        offset += file->at;
-    else if (whence == SEEK_END)
-        offset += tell_size(handle);
-    file->at = offset;
-    return offset;
-}
-
-static int close_nothing(thandle_t handle) {
-    (void)handle;
-    return 0;
-}
-
-static int hear_error(TIFF *tiff, void *user, const char *module,
-                      const char *format, va_list arguments) {
-    tiff_file *file = user;
-    (void)tiff;
-    (void)module;
-    if (!*file->complaint)
-        vsnprintf(file->complaint, sizeof file->complaint, format, arguments);
-    return 1;
-}
-
-static int hear_warning(TIFF *tiff, void *user, const char *module,
-                        const char *format, va_list arguments) {
-    (void)tiff;
-    (void)user;
-    (void)module;
-    (void)format;
-    (void)arguments;
-    return 1;
-}
-
-/* NULL with a complaint, or without memory. */
-static void open_tiff(tiff_file *file, const char *name, const char *mode) {
-    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-    if (!options)
-        return;
-    uint64_t most = tell_size((thandle_t)file) + LIBRARY_BYTES;
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)most);
-    TIFFOpenOptionsSetErrorHandlerExtR(options, hear_error, file);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, hear_warning, file);
-    file->tiff = TIFFClientOpenExt(name, mode, (thandle_t)file, read_bytes,
-                                   write_bytes, seek_byte, close_nothing,
-                                   tell_size, NULL, NULL, options);
-    TIFFOpenOptionsFree(options);
-}
 
 /* --- writing ---------------------------------------------------------------
  */
@@ -146,7 +39,7 @@ static bool set_tags(TIFF *tiff, const snow_image *image, int strip) {
     return good;
 }
 
-static snow_status fail_writing(const tiff_file *file) {
+static snow_status fail_writing(const snow_tiff *file) {
     if (file->status != SNOW_OK)
         return file->status;
     return snow_fail(file->context, SNOW_FAILED,
@@ -155,12 +48,11 @@ static snow_status fail_writing(const tiff_file *file) {
                      *file->complaint ? file->complaint : "no memory");
 }
 
-static snow_status make_file(tiff_file *file, const snow_image *image) {
+static snow_status fill_file(snow_tiff *file, const snow_image *image) {
     int samples = image->channels == 1 ? 1 : 4,
         row = 4 * samples * image->width;
     int strip = STRIP_BYTES / row < 1 ? 1 : STRIP_BYTES / row;
-    open_tiff(file, "picture.tif", "w");
-    if (!file->tiff || !set_tags(file->tiff, image, strip))
+    if (!set_tags(file->tiff, image, strip))
         return fail_writing(file);
     float *line =
         snow_allocate_array(file->context, (uint64_t)image->width, 16);
@@ -185,15 +77,15 @@ static snow_status make_file(tiff_file *file, const snow_image *image) {
 static snow_status write_tiff(const snow_image *image,
                               const snow_image_options *options,
                               snow_writer *writer) {
-    tiff_file file = {.context = image->context,
-                      .store = {.context = image->context}};
+    snow_tiff file;
     (void)options;
-    snow_status status = make_file(&file, image);
-    if (file.tiff)
-        TIFFClose(file.tiff);
+    snow_status status = snow_tiff_create(image->context, &file);
+    if (status == SNOW_OK)
+        status = fill_file(&file, image);
+    snow_tiff_end(&file);
     if (status == SNOW_OK)
         status = snow_writer_write(writer, file.store.bytes, file.store.size);
-    snow_store_free(&file.store);
+    snow_tiff_close(&file);
     return status;
 }
 
@@ -206,12 +98,9 @@ typedef struct tiff_plan {
     bool straight; /* alpha is to be multiplied in */
 } tiff_plan;
 
-static snow_status refuse(const tiff_file *file, const snow_source *source) {
-    return snow_fail(file->context, SNOW_BAD_INPUT,
-                     "%s: is a damaged or cut TIFF file (libtiff: %s); get it "
-                     "anew",
-                     snow_source_name(source),
-                     *file->complaint ? file->complaint : "no more bytes");
+static snow_status refuse(const snow_tiff *file, const snow_source *source) {
+    return snow_fail_within(file->context, snow_tiff_fail(file), "%s",
+                            snow_source_name(source));
 }
 
 static bool is_known(TIFF *tiff, const tiff_plan *plan) {
@@ -228,7 +117,7 @@ static bool is_known(TIFF *tiff, const tiff_plan *plan) {
            planes == PLANARCONFIG_CONTIG && !TIFFIsTiled(tiff);
 }
 
-static snow_status read_header(const tiff_file *file, const snow_source *source,
+static snow_status read_header(const snow_tiff *file, const snow_source *source,
                                tiff_plan *plan) {
     TIFF *tiff = file->tiff;
     uint16_t count = 0;
@@ -291,7 +180,7 @@ static void widen_line(const tiff_plan *plan, const unsigned char *line,
     }
 }
 
-static snow_status read_lines(const tiff_file *file, const snow_source *source,
+static snow_status read_lines(const snow_tiff *file, const snow_source *source,
                               const tiff_plan *plan, snow_image *image) {
     uint64_t bytes = (uint64_t)TIFFScanlineSize64(file->tiff);
     unsigned char *line = snow_allocate_array(file->context, bytes, 1);
@@ -307,13 +196,10 @@ static snow_status read_lines(const tiff_file *file, const snow_source *source,
     return good ? SNOW_OK : refuse(file, source);
 }
 
-static snow_status read_file(tiff_file *file, const snow_source *source,
+static snow_status read_page(const snow_tiff *file, const snow_source *source,
                              snow_image **out) {
     tiff_plan plan;
     snow_image *image = NULL;
-    open_tiff(file, snow_source_name(source), "rm");
-    if (!file->tiff)
-        return refuse(file, source);
     SNOW_TRY(read_header(file, source, &plan));
     SNOW_TRY(snow_image_make(file->context, (int)plan.width, (int)plan.height,
                              4, &image));
@@ -326,12 +212,13 @@ static snow_status read_file(tiff_file *file, const snow_source *source,
 }
 
 static snow_status read_tiff(snow_source *source, snow_image **out) {
-    tiff_file file = {.context = snow_source_context(source)};
-    SNOW_TRY(snow_random_open(source, &file.bytes));
-    snow_status status = read_file(&file, source, out);
-    if (file.tiff)
-        TIFFClose(file.tiff);
-    snow_random_close(file.bytes);
+    snow_tiff file;
+    snow_status status = snow_tiff_open(source, &file);
+    if (status == SNOW_OK)
+        status = read_page(&file, source, out);
+    else
+        snow_fail_within(file.context, status, "%s", snow_source_name(source));
+    snow_tiff_close(&file);
     return status;
 }
 
@@ -339,7 +226,32 @@ const snow_image_format snow_image_tiff = {.name = "TIFF",
                                            .suffix = ".tif",
                                            .other = ".tiff",
                                            .write = write_tiff,
-                                           .probe = probe_tiff,
+                                           .probe = snow_tiff_probe,
+                                           .read = read_tiff,
+                                           .in_any_order = true};
+
+#elif SNOW_LOADS && SNOW_HAVE_TIFF
+
+static snow_status write_tiff(const snow_image *image,
+                              const snow_image_options *options,
+                              snow_writer *writer) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(image->context, "tiff", &module));
+    return module->picture->write(image, options, writer);
+}
+
+static snow_status read_tiff(snow_source *source, snow_image **out) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(snow_source_context(source), "tiff", &module));
+    return module->picture->read(source, out);
+}
+
+const snow_image_format snow_image_tiff = {.name = "TIFF",
+                                           .suffix = ".tif",
+                                           .other = ".tiff",
+                                           .module = "tiff",
+                                           .write = write_tiff,
+                                           .probe = snow_tiff_probe,
                                            .read = read_tiff,
                                            .in_any_order = true};
 
@@ -349,6 +261,6 @@ const snow_image_format snow_image_tiff = {.name = "TIFF",
                                            .suffix = ".tif",
                                            .other = ".tiff",
                                            .package = "libtiff-dev",
-                                           .probe = probe_tiff};
+                                           .probe = snow_tiff_probe};
 
 #endif

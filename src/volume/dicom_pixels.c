@@ -6,9 +6,8 @@
  * begins as a code stream does. */
 #include "volume/dicom.h"
 
-#if SNOW_HAVE_GDCM
+#include "base/module.h"
 #include "volume/gdcm_bridge.h"
-#endif
 
 #include <string.h>
 
@@ -167,9 +166,25 @@ static bool is_known(const char *syntax) {
     return false;
 }
 
+#if SNOW_LOADS
+static snow_status find_codec(snow_context *context, gdcm_codec **out) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(context, "gdcm", &module));
+    *out = module->unpack;
+    return SNOW_OK;
+}
+#else
+static snow_status find_codec(snow_context *context, gdcm_codec **out) {
+    (void)context;
+    *out = snow_gdcm_unpack;
+    return SNOW_OK;
+}
+#endif
+
 static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                           const unsigned char *bytes, size_t size, void *out,
                           dicom_words *words) {
+    gdcm_codec *codec;
     if (!is_known(reader->syntax))
         return snow_fail(reader->context, SNOW_BAD_INPUT,
                          "its pixels are packed in a way that is not read "
@@ -178,6 +193,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                          reader->syntax);
     SNOW_TRY(snow_dicom_check_packed(reader->context, reader->syntax, image,
                                      bytes, size));
+    SNOW_TRY(find_codec(reader->context, &codec));
     gdcm_frame frame = {.syntax = reader->syntax,
                         .photometric = image->photometric,
                         .columns = (unsigned)image->columns,
@@ -188,8 +204,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                         .stored = image->stored,
                         .high = image->high,
                         .is_signed = image->is_signed};
-    if (!snow_gdcm_unpack(&frame, bytes, size, out,
-                          (size_t)snow_dicom_frame_bytes(image)))
+    if (!codec(&frame, bytes, size, out, (size_t)snow_dicom_frame_bytes(image)))
         return fail_unpack(reader);
     words->stored = frame.stored;
     words->high = frame.high;

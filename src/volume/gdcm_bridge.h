@@ -32,6 +32,10 @@ typedef struct gdcm_frame {
 bool snow_gdcm_unpack(gdcm_frame *frame, const void *packed, size_t size,
                       void *out, size_t room);
 
+/* The same function, which may lie in a module. */
+typedef bool gdcm_codec(gdcm_frame *frame, const void *packed, size_t size,
+                        void *out, size_t room);
+
 #ifdef __cplusplus
 }
 #endif

@@ -18,7 +18,7 @@ static bool probe_hdf5(const unsigned char *bytes, size_t size) {
     return false;
 }
 
-#if SNOW_HAVE_HDF5
+#if SNOW_HAVE_HDF5 && !SNOW_LOADS
 
 /* Voxels that a file of some size may have beyond those that deflate can pack
  * into it: chunks that were never written are not in the file. */
@@ -201,6 +201,14 @@ static snow_status read_hdf5(snow_source *source,
     }
     snow_hdf5_close(file);
     return status;
+}
+
+#elif SNOW_LOADS && SNOW_HAVE_HDF5
+
+static snow_status read_hdf5(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    return snow_read_by_module("hdf5", source, options, info, out);
 }
 
 #else

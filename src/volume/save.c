@@ -94,6 +94,22 @@ static snow_status fill(const snow_volume *volume, const char *path,
     return format->write(volume, path, writer);
 }
 
+const char *snow_volume_suffix(size_t index) {
+    return index < ENDING_COUNT ? endings[index].suffix : NULL;
+}
+
+static snow_status refuse_name(snow_context *context, const char *path) {
+    char names[128] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < ENDING_COUNT && used < sizeof names; i++)
+        used += (size_t)snprintf(names + used, sizeof names - used, " %s",
+                                 endings[i].suffix);
+    return snow_fail(context, SNOW_BAD_USAGE,
+                     "%s: volumes are written as%s; choose one of these "
+                     "endings",
+                     path, names);
+}
+
 /* The name is checked first, so that a wrong one never creates a file; a file
  * that fails half-way is given up, never committed. */
 snow_status snow_volume_save(const snow_volume *volume, const char *path,
@@ -103,11 +119,7 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
     while (i < ENDING_COUNT && !snow_has_suffix(path, endings[i].suffix))
         i++;
     if (i == ENDING_COUNT)
-        return snow_fail(
-            volume->context, SNOW_BAD_USAGE,
-            "%s: volumes are written as .nrrd, .nii, .nii.gz, "
-            ".mha, .npy, .raw and .raw.gz; choose one of these endings",
-            path);
+        return refuse_name(volume->context, path);
     snow_writer *writer;
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
     snow_status status =

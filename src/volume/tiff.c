@@ -11,18 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-static bool probe_tiff(const unsigned char *bytes, size_t size) {
-    static const unsigned char magic[4][4] = {{'I', 'I', 42, 0},
-                                              {'M', 'M', 0, 42},
-                                              {'I', 'I', 43, 0},
-                                              {'M', 'M', 0, 43}};
-    for (int i = 0; i < 4 && size >= 4; i++)
-        if (!memcmp(bytes, magic[i], 4))
-            return true;
-    return false;
-}
-
-#if SNOW_HAVE_TIFF
+#if SNOW_HAVE_TIFF && !SNOW_LOADS
 
 /* More of one slice are slices; see take_for_slices. */
 #define MOST_CHANNELS 7
@@ -53,7 +42,7 @@ static bool same_page(const tiff_page *a, const tiff_page *b) {
 
 /* Goes to the next page that counts; *got is false behind the last.  Its answer
  * does not tell an end from a damaged page, libtiff's complaint does. */
-static snow_status next_page(tiff_file *file, bool *got) {
+static snow_status next_page(snow_tiff *file, bool *got) {
     do {
         *file->complaint = 0;
         *got = TIFFReadDirectory(file->tiff) != 0;
@@ -64,7 +53,7 @@ static snow_status next_page(tiff_file *file, bool *got) {
 }
 
 /* All pages must be alike: the first that is not is named. */
-static snow_status count_pages(tiff_file *file, tiff_plan *plan) {
+static snow_status count_pages(snow_tiff *file, tiff_plan *plan) {
     bool got;
     for (plan->images = 1;; plan->images++) {
         tiff_page page;
@@ -149,7 +138,7 @@ static void share_images(snow_context *context, tiff_plan *plan) {
 
 /* ImageJ has the pixels to the unit of length where others have those to the
  * inch on paper, which mean nothing here. */
-static void place(tiff_file *file, tiff_plan *plan, snow_volume_info *info) {
+static void place(snow_tiff *file, tiff_plan *plan, snow_volume_info *info) {
     tiff_shape *shape = &plan->shape;
     float x = 0, y = 0;
     if (shape->imagej && TIFFGetField(file->tiff, TIFFTAG_XRESOLUTION, &x) &&
@@ -163,7 +152,7 @@ static void place(tiff_file *file, tiff_plan *plan, snow_volume_info *info) {
     memcpy(info->unit, shape->unit, sizeof info->unit);
 }
 
-static snow_status make_plan(tiff_file *file, tiff_plan *plan,
+static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
                              snow_volume_info *info) {
     char *text = NULL;
     SNOW_TRY(snow_tiff_describe(file, &plan->page));
@@ -182,7 +171,7 @@ static snow_status make_plan(tiff_file *file, tiff_plan *plan,
 }
 
 /* All pixels of all images must be in the file, packed or not. */
-static snow_status check_size(const tiff_file *file, const tiff_plan *plan) {
+static snow_status check_size(const snow_tiff *file, const tiff_plan *plan) {
     const tiff_page *page = &plan->page;
     uint64_t bits;
     bool counts =
@@ -202,7 +191,7 @@ static snow_status check_size(const tiff_file *file, const tiff_plan *plan) {
 
 /* Pages are gone through from the first on, since each tells where the next
  * one is; those wanted are put in their slice. */
-static snow_status read_pages(tiff_file *file, const tiff_plan *plan,
+static snow_status read_pages(snow_tiff *file, const tiff_plan *plan,
                               int64_t first, int64_t sample,
                               const snow_window *window, snow_volume *volume) {
     size_t slice_bytes = (size_t)(window->count[0] * window->count[1]) *
@@ -228,7 +217,7 @@ static snow_status read_pages(tiff_file *file, const tiff_plan *plan,
 }
 
 /* Channels lie in the pixels or in pages of their own. */
-static snow_status read_open(tiff_file *file,
+static snow_status read_open(snow_tiff *file,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
     tiff_plan plan = {0};
@@ -259,13 +248,21 @@ static snow_status read_open(tiff_file *file,
 static snow_status read_tiff(snow_source *source,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
-    tiff_file file;
+    snow_tiff file;
     *info = snow_volume_info_default("tiff");
     snow_status status = snow_tiff_open(source, &file);
     if (status == SNOW_OK)
         status = read_open(&file, options, info, out);
     snow_tiff_close(&file);
     return status;
+}
+
+#elif SNOW_LOADS && SNOW_HAVE_TIFF
+
+static snow_status read_tiff(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    return snow_read_by_module("tiff", source, options, info, out);
 }
 
 #else
@@ -286,7 +283,7 @@ const snow_format snow_format_tiff = {
     .name = "tiff",
     .text = "TIFF, BigTIFF: pages, a folder or a pattern of files (.tif)",
     .suffixes = {".tif", ".tiff", ".btf", ".tif.gz", ".tiff.gz"},
-    .probe = probe_tiff,
+    .probe = snow_tiff_probe,
     .crops = true,
     .channels = true,
     .slices = true,

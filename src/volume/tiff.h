@@ -6,7 +6,7 @@
 #ifndef SNOW_TIFF_H
 #define SNOW_TIFF_H
 
-#include "base/random.h"
+#include "base/tiff.h"
 #include "volume/volume.h"
 
 /* What a description says of all pages together; 0 and "" where it says
@@ -25,8 +25,6 @@ void snow_tiff_read_text(const char *text, tiff_shape *out);
 
 #if SNOW_HAVE_TIFF
 
-#include <tiffio.h>
-
 /* How a value is stored; what is no type of ours becomes a larger one. */
 typedef enum tiff_coding {
     TIFF_PLAIN,
@@ -44,25 +42,8 @@ typedef struct tiff_page {
     bool separate; /* samples lie in planes, not beside one another */
 } tiff_page;
 
-/* An open file. */
-typedef struct tiff_file {
-    snow_context *context;
-    snow_random *bytes;
-    uint64_t at; /* where libtiff reads next */
-    TIFF *tiff;
-    char complaint[200]; /* of libtiff, the first */
-} tiff_file;
-
-/* Opens the file at its first page; to be closed whatever the status.
- * Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
-snow_status snow_tiff_open(snow_source *source, tiff_file *file);
-void snow_tiff_close(tiff_file *file);
-
-/* "is a damaged TIFF file" with libtiff's complaint. */
-snow_status snow_tiff_fail(const tiff_file *file);
-
 /* What the current page is.  Errors: SNOW_BAD_INPUT for what is not read. */
-snow_status snow_tiff_describe(tiff_file *file, tiff_page *out);
+snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out);
 
 /* The least bytes of a file that holds so many bytes of pixels, as far as the
  * compression tells. */
@@ -70,13 +51,13 @@ uint64_t snow_tiff_least(const tiff_page *page, uint64_t bytes);
 
 /* Reads the window's columns and rows of one sample of the current page into
  * the voxels of a slice. */
-snow_status snow_tiff_read_page(tiff_file *file, const tiff_page *page,
+snow_status snow_tiff_read_page(snow_tiff *file, const tiff_page *page,
                                 int64_t sample, const snow_window *window,
                                 unsigned char *slice);
 
 /* The same for image `index` of those that lie one behind the other where the
  * first page's are, which is how ImageJ writes more than 4 GB. */
-snow_status snow_tiff_read_raw(tiff_file *file, const tiff_page *page,
+snow_status snow_tiff_read_raw(snow_tiff *file, const tiff_page *page,
                                int64_t index, int64_t sample,
                                const snow_window *window, unsigned char *slice);
 

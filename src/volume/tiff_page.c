@@ -1,111 +1,13 @@
-/* volume/tiff_page.c - a page of a TIFF file, by libtiff.
- *
- * libtiff sees the source's bytes through functions and tells its complaints to
- * the file's own handler: nothing is printed and no state is shared.  What it
- * allocates by itself is limited; the voxels' buffers are ours, and are checked
- * against what the file can hold before they are taken. */
+/* volume/tiff_page.c - a page of a TIFF file, by libtiff.  The voxels' buffers
+ * are ours, and are checked against what the file can hold before they are
+ * taken. */
 #include "volume/tiff.h"
 
 #if SNOW_HAVE_TIFF
 
 #include "volume/array.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
-
-/* The most that libtiff may take at once, for tables of strips and the like,
- * beside the size of the file. */
-#define LIBRARY_BYTES ((uint64_t)64 << 20)
-
-/* --- between libtiff and the source --------------------------------------- */
-
-static tmsize_t read_bytes(thandle_t handle, void *bytes, tmsize_t size) {
-    tiff_file *file = (tiff_file *)handle;
-    size_t got = snow_random_read(file->bytes, file->at, bytes, (size_t)size);
-    file->at += got;
-    return (tmsize_t)got;
-}
-
-static tmsize_t write_bytes(thandle_t handle, void *bytes, tmsize_t size) {
-    (void)handle;
-    (void)bytes;
-    (void)size;
-    return 0;
-}
-
-static toff_t seek_byte(thandle_t handle, toff_t offset, int whence) {
-    tiff_file *file = (tiff_file *)handle;
-    if (whence == SEEK_CUR)
-        offset += file->at;
-    else if (whence == SEEK_END)
-        offset += snow_random_size(file->bytes);
-    file->at = offset;
-    return offset;
-}
-
-static int close_nothing(thandle_t handle) {
-    (void)handle;
-    return 0;
-}
-
-static toff_t tell_size(thandle_t handle) {
-    return snow_random_size(((tiff_file *)handle)->bytes);
-}
-
-/* The first complaint says most: later ones follow from it. */
-static int hear_error(TIFF *tiff, void *user, const char *module,
-                      const char *format, va_list arguments) {
-    tiff_file *file = user;
-    (void)tiff;
-    (void)module;
-    if (!*file->complaint)
-        vsnprintf(file->complaint, sizeof file->complaint, format, arguments);
-    return 1;
-}
-
-/* Of unknown tags, mostly. */
-static int hear_warning(TIFF *tiff, void *user, const char *module,
-                        const char *format, va_list arguments) {
-    (void)tiff;
-    (void)user;
-    (void)module;
-    (void)format;
-    (void)arguments;
-    return 1;
-}
-
-snow_status snow_tiff_fail(const tiff_file *file) {
-    return snow_fail(file->context, SNOW_BAD_INPUT,
-                     "is a damaged or cut TIFF file (libtiff: %s); fetch or "
-                     "write it again",
-                     *file->complaint ? file->complaint : "no more bytes");
-}
-
-snow_status snow_tiff_open(snow_source *source, tiff_file *file) {
-    *file = (tiff_file){.context = snow_source_context(source)};
-    SNOW_TRY(snow_random_open(source, &file->bytes));
-    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
-    if (!options)
-        return snow_fail(file->context, SNOW_NO_MEMORY,
-                         "there is no memory to read TIFF");
-    uint64_t most = snow_random_size(file->bytes) + LIBRARY_BYTES;
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options, (tmsize_t)most);
-    TIFFOpenOptionsSetErrorHandlerExtR(options, hear_error, file);
-    TIFFOpenOptionsSetWarningHandlerExtR(options, hear_warning, file);
-    /* m: not mapped. */
-    file->tiff = TIFFClientOpenExt(
-        snow_source_name(source), "rm", (thandle_t)file, read_bytes,
-        write_bytes, seek_byte, close_nothing, tell_size, NULL, NULL, options);
-    TIFFOpenOptionsFree(options);
-    return file->tiff ? SNOW_OK : snow_tiff_fail(file);
-}
-
-void snow_tiff_close(tiff_file *file) {
-    if (file->tiff)
-        TIFFClose(file->tiff);
-    snow_random_close(file->bytes);
-}
 
 /* --- what a page is --------------------------------------------------------
  */
@@ -161,7 +63,7 @@ static uint16_t short_field(TIFF *tiff, uint32_t tag) {
     return TIFFGetFieldDefaulted(tiff, tag, &value) ? value : 0;
 }
 
-snow_status snow_tiff_describe(tiff_file *file, tiff_page *out) {
+snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out) {
     TIFF *tiff = file->tiff;
     uint32_t width = 0, height = 0, depth = 1;
     tiff_page page = {0};
@@ -304,7 +206,7 @@ static void put_block(const tiff_page *page, const tiff_block *block,
 }
 
 /* Room for a strip or tile, if the file can hold one. */
-static snow_status make_buffer(const tiff_file *file, const tiff_page *page,
+static snow_status make_buffer(const snow_tiff *file, const tiff_page *page,
                                uint64_t size, unsigned char **out) {
     if (!size || snow_tiff_least(page, size) > snow_random_size(file->bytes))
         return snow_fail(file->context, SNOW_BAD_INPUT,
@@ -316,7 +218,7 @@ static snow_status make_buffer(const tiff_file *file, const tiff_page *page,
 }
 
 /* Strips are rows of the whole width. */
-static snow_status read_strips(tiff_file *file, const tiff_page *page,
+static snow_status read_strips(snow_tiff *file, const tiff_page *page,
                                int64_t sample, const snow_window *w,
                                unsigned char *buffer, unsigned char *slice) {
     TIFF *tiff = file->tiff;
@@ -342,7 +244,7 @@ static snow_status read_strips(tiff_file *file, const tiff_page *page,
     return SNOW_OK;
 }
 
-static snow_status read_tiles(tiff_file *file, const tiff_page *page,
+static snow_status read_tiles(snow_tiff *file, const tiff_page *page,
                               int64_t sample, const snow_window *w,
                               unsigned char *buffer, unsigned char *slice) {
     TIFF *tiff = file->tiff;
@@ -373,7 +275,7 @@ static snow_status read_tiles(tiff_file *file, const tiff_page *page,
     return SNOW_OK;
 }
 
-snow_status snow_tiff_read_page(tiff_file *file, const tiff_page *page,
+snow_status snow_tiff_read_page(snow_tiff *file, const tiff_page *page,
                                 int64_t sample, const snow_window *window,
                                 unsigned char *slice) {
     bool tiled = TIFFIsTiled(file->tiff);
@@ -391,7 +293,7 @@ snow_status snow_tiff_read_page(tiff_file *file, const tiff_page *page,
 }
 
 /* Row by row from the bytes themselves, which have the file's byte order. */
-snow_status snow_tiff_read_raw(tiff_file *file, const tiff_page *page,
+snow_status snow_tiff_read_raw(snow_tiff *file, const tiff_page *page,
                                int64_t index, int64_t sample,
                                const snow_window *window,
                                unsigned char *slice) {

@@ -1,4 +1,4 @@
-/* image/store.h - a file in memory, for libraries that write here and there. */
+/* base/store.h - a file in memory, for libraries that write here and there. */
 #ifndef SNOW_STORE_H
 #define SNOW_STORE_H
 

@@ -1,9 +1,0 @@
-/* fuzz/fuzz_npy.c - an input is an NPY file. */
-#include "picture.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
-
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
-    look_at_picture(bytes, size);
-    return 0;
-}

@@ -1,0 +1,8 @@
+/* modules/hdf5.c - libsnowglass-hdf5.so: HDF5 and NetCDF-4 by libhdf5. */
+#include "base/module.h"
+#include "volume/volume.h"
+
+extern SNOW_API const snow_module SNOW_MODULE_SYMBOL;
+
+const snow_module SNOW_MODULE_SYMBOL = {.stamp = snow_module_stamp,
+                                        .volume = &snow_format_hdf5};

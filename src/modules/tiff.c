@@ -1,0 +1,11 @@
+/* modules/tiff.c - libsnowglass-tiff.so: TIFF volumes and pictures by libtiff.
+ */
+#include "base/module.h"
+#include "image/image.h"
+#include "volume/volume.h"
+
+extern SNOW_API const snow_module SNOW_MODULE_SYMBOL;
+
+const snow_module SNOW_MODULE_SYMBOL = {.stamp = snow_module_stamp,
+                                        .volume = &snow_format_tiff,
+                                        .picture = &snow_image_tiff};
