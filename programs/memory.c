@@ -170,6 +170,10 @@ static const char *why_whole(const options *asked, const char *path) {
 /* Slices of the smallest slab: one, and those beside it. */
 #define SLICES_LEAST 3
 
+/* Tables of colours and counts, for 256 codes and for 65,536. */
+#define TABLES_SMALL ((uint64_t)1 << 20)
+#define TABLES_LARGE ((uint64_t)4 << 20)
+
 /* Slices that a thread encodes where slices lie along x and y: a band. */
 #define BAND_SLICES 32
 
@@ -247,21 +251,32 @@ static void tell_need(const sizes *s) {
         print_bytes(s->need.least, least), print_bytes(s->need.most, most));
 }
 
+/* The smallest slab, the tables of a look and the picture. */
+static uint64_t slabs_least(const sizes *s) {
+    bool small = snow_type_size(s->info.type) == 1;
+    return slab_bytes(s, SLICES_LEAST) + s->picture +
+           (small ? TABLES_SMALL : TABLES_LARGE);
+}
+
+/* `why` the voxels have to be there at once: NULL where they need not, and
+ * nothing would fit even so. */
 static int refuse(const sizes *s, const char *path, uint64_t limit, bool own,
                   const char *why) {
     char need[32], room[32];
-    print_bytes(why ? s->need.least : slab_bytes(s, SLICES_LEAST) + s->picture,
-                need);
+    const char *of = own ? "--memory" : "free memory";
+    bool slabs = !why && slabs_least(s) < s->need.least;
+    print_bytes(slabs ? slabs_least(s) : s->need.least, need);
     print_bytes(limit, room);
-    if (!why)
-        say("%s: a slab of slices and the picture alone need %s, over the "
-            "%s of %s; raise it, give --crop or a smaller --size",
-            path, need, own ? "--memory" : "free memory", room);
+    if (slabs)
+        say("%s: a slab of slices, tables and the picture alone need %s, over "
+            "the %s of %s; raise it, give --crop or a smaller --size",
+            path, need, of, room);
     else
-        say("%s: voxels and picture need %s, over the %s of %s, and %s needs "
-            "all of them at once; raise it, give --crop, or let several "
-            "machines share the volume (snowglass-mpi)",
-            path, need, own ? "--memory" : "free memory", room, why);
+        say("%s: voxels and picture need %s, over the %s of %s%s%s%s; raise "
+            "it, give --crop, or let several machines share the volume "
+            "(snowglass-mpi)",
+            path, need, of, room, why ? ", and " : "", why ? why : "",
+            why ? " needs all of them at once" : "");
     return SNOW_NO_MEMORY;
 }
 
@@ -290,7 +305,7 @@ int memory_plan_for(const options *asked, const char *path,
     if (why && (!asked->memory || s.need.least <= asked->memory))
         return GO_ON; /* the system may know better what it has */
     out->limit = limit;
-    if (why || slab_bytes(&s, SLICES_LEAST) + s.picture > limit)
+    if (why || slabs_least(&s) > limit || slabs_least(&s) >= s.need.least)
         return refuse(&s, path, limit, own, why);
     out->streams = true;
     return GO_ON;

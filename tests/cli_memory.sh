@@ -20,7 +20,7 @@ check "is the same" cmp a30M.png b.png
 refused 5 "voxels over the limit" \
     'a.nrrd: voxels and picture need 4.0 MiB, over the --memory of 3.8 MiB' \
     "$TOOL" render a.nrrd "${small[@]}" -m mip -o c.png --memory 3900K
-refused 5 "a picture over the limit" 'need 16.1 MiB' \
+refused 5 "a picture over the limit" 'need 17.1 MiB' \
     "$TOOL" render a.nrrd -s 1024x1024 -o c.png --memory 6M
 refused 5 "encodings over the limit" 'voxels are interesting .100 %' \
     "$TOOL" render a.nrrd "${small[@]}" -q -o c.png --memory 4200K
