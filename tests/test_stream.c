@@ -409,6 +409,50 @@ static void what_does_not_fit_is_counted(void **state) {
     close_pair(&p);
 }
 
+/* The first call that fails; nothing may be left of it. */
+static snow_status draw_once(support_place *place, const char *path,
+                             const snow_view *view) {
+    snow_volume *stream = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_image *image = NULL;
+    snow_settings settings;
+    snow_settings_init(&settings);
+    settings.threads = 1;
+    snow_status status = snow_volume_stream(place->context, path, NULL,
+                                            slices_of(SNOW_UINT8, 40), &stream);
+    if (status == SNOW_OK)
+        status = snow_transfer_make(stream, NULL, &transfer);
+    if (status == SNOW_OK)
+        status = snow_frame_new(place->context, &frame);
+    if (status == SNOW_OK)
+        status =
+            snow_frame_render(frame, stream, transfer, view, &settings, &image);
+    snow_image_free(image);
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(stream);
+    return status;
+}
+
+static void any_allocation_may_fail(void **state) {
+    support_place *place = *state;
+    char path[128];
+    strcpy(path, write_head(place, SNOW_UINT8, "head.nrrd"));
+    const snow_view view = stand_at(place, 2);
+    snow_status status = SNOW_NO_MEMORY;
+    int failures = 0;
+    uint64_t held = snow_context_bytes(place->context);
+    for (int64_t n = 1; status != SNOW_OK; n++, failures++) {
+        place->fail_at = place->allocations + n;
+        status = draw_once(place, path, &view);
+        assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
+        assert_int_equal(snow_context_bytes(place->context), held);
+    }
+    place->fail_at = 0;
+    assert_true(failures > 50);
+}
+
 /* --- what is refused ------------------------------------------------------
  */
 
@@ -544,6 +588,7 @@ int main(void) {
         TEST(no_more_than_a_slab_is_held),
         TEST(the_file_is_read_for_another_slice_axis_only),
         TEST(what_does_not_fit_is_counted),
+        TEST(any_allocation_may_fail),
         TEST(pictures_that_look_at_voxels_are_refused),
         TEST(all_else_that_looks_at_voxels_is_refused),
         TEST(a_file_that_goes_away_or_changes_is_an_error),
