@@ -111,6 +111,8 @@ static void print_geometry(const facts *f) {
         info->intercept > 0)
         printf("%-14svalue = %g * stored + %g\n", "scale", info->slope,
                info->intercept);
+    if (*info->storage)
+        printf("%-14s%s\n", "storage", info->storage);
     if (f->patient)
         printf("%-14s%s\n", "patient", f->patient);
 }
@@ -183,6 +185,8 @@ static void set_geometry(json_t *object, const snow_volume_info *info) {
     json_object_set_new(object, "intercept", json_number(info->intercept));
     json_object_set_new(object, "times", json_integer(info->times));
     json_object_set_new(object, "time", json_integer(info->time));
+    if (*info->storage)
+        json_object_set_new(object, "storage", json_string(info->storage));
 }
 
 /* min and max are null when no voxel is finite. */

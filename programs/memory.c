@@ -36,7 +36,13 @@ static double encoded_bytes(const options *asked,
         return 0;
     if (strcmp(asked->method, "footprint") == 0)
         return PIXEL_BYTES + 1.0 / PLACE_SHARE;
-    return sheared_bytes(asked, (double)snow_type_size(info->type));
+    double value = (double)snow_type_size(info->type);
+    double bytes = sheared_bytes(asked, value);
+    /* A draft of few pixels: a level of half the voxels or fewer, which are
+     * encoded in place of the volume's. */
+    double level = (value + bytes) / 2;
+    bool draft = strcmp(asked->quality, "draft") == 0;
+    return draft && level > bytes ? level : bytes;
 }
 
 /* Of the largest intermediate image: two slice sides, each longer by what the

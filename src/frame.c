@@ -44,6 +44,7 @@ void snow_frame_free(snow_frame *frame) {
     snow_release(frame->context, frame->layer);
     snow_ramp_fini(&frame->ramp);
     snow_iso_free(frame->iso);
+    snow_levels_free(frame->levels);
     snow_image_free(frame->depth);
     snow_release(frame->context, frame);
 }
@@ -104,6 +105,14 @@ static snow_status check_stream(const snow_job *job, int parts) {
                      what ? what : "slabs");
 }
 
+/* What the kernel has to know of a level. */
+static void tell_level(const snow_volume *volume, snow_placement *p) {
+    if (volume->fine[0] == 0)
+        return;
+    p->fine[0] = volume->fine[p->u_axis];
+    p->fine[1] = volume->fine[p->v_axis];
+}
+
 static snow_status place(snow_job *job, int parts, int part) {
     snow_volume_info whole;
     snow_volume_whole(job->volume, &whole);
@@ -111,6 +120,7 @@ static snow_status place(snow_job *job, int parts, int part) {
                                    &job->settings));
     SNOW_TRY(
         snow_placement_make(job->context, &whole, job->view, &job->placement));
+    tell_level(job->volume, &job->placement);
     if (job->settings.method == SNOW_METHOD_SHEARED &&
         !snow_sheared_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
@@ -159,6 +169,7 @@ snow_status snow_job_order(const snow_job *job, int axis,
     snow_volume_whole(job->volume, &whole);
     SNOW_TRY(snow_placement_make_along(job->context, &whole, job->view, axis,
                                        placement));
+    tell_level(job->volume, placement);
     *order = (snow_sheared_order){.volume = job->volume,
                                   .transfer = job->transfer,
                                   .view = job->view,
@@ -205,6 +216,7 @@ snow_status snow_job_shares(const snow_job *job, double shares[3]) {
             continue;
         SNOW_TRY(snow_placement_make_along(job->context, &info, job->view, axis,
                                            &placement));
+        tell_level(job->volume, &placement);
         if (!snow_sheared_fits(&placement, &job->settings)) {
             left -= shares[axis];
             shares[axis] = 0;
@@ -409,8 +421,17 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
     double start = snow_seconds(), cpu = snow_cpu_seconds();
     snow_job job;
     snow_image *image = NULL;
+    snow_settings resolved = snow_settings_known(settings);
+    int halvings[3] = {0, 0, 0};
+    if (parts == 1) {
+        SNOW_TRY(
+            snow_settings_resolve(frame->context, &volume->info, &resolved));
+        SNOW_TRY(snow_levels_take(&frame->levels, volume, transfer, view,
+                                  &resolved, &volume, halvings));
+    }
     /* 01 - 02 */ SNOW_TRY(snow_job_begin(frame, volume, transfer, view,
-                                          settings, parts, part, &job));
+                                          &resolved, parts, part, &job));
+    memcpy(frame->stats.halvings, halvings, sizeof halvings);
     bool over = job.settings.mode == SNOW_MODE_OVER;
     SNOW_TRY(make_depth(frame, &job));
     SNOW_TRY(over ? render_over(frame, &job, &image)

@@ -7,6 +7,7 @@
 #include "composite/over.h"
 #include "decompose/slab.h"
 #include "iso.h"
+#include "levels.h"
 #include "modes.h"
 #include "sheared.h"
 #include "splat/splat.h"
@@ -33,8 +34,9 @@ struct snow_frame {
     int64_t own_interesting; /* of the part that was encoded last */
     snow_ramp ramp;          /* of modes other than over */
     snow_mode_colors mode_colors;
-    snow_iso *iso;     /* of mode iso; NULL until needed */
-    snow_image *depth; /* of the last picture; NULL: not asked for */
+    snow_iso *iso;       /* of mode iso; NULL until needed */
+    snow_image *depth;   /* of the last picture; NULL: not asked for */
+    snow_levels *levels; /* of the volume; NULL until needed */
 };
 
 /* What one picture is made from; lives as long as the call that makes it. */

@@ -135,12 +135,17 @@ static double pixel_width(const snow_placement *p, int axis) {
     return hypot(p->inverse[axis][0], p->inverse[axis][1]);
 }
 
+static snow_taper taper_along(const snow_placement *p,
+                              const snow_settings *settings, int axis) {
+    return snow_taper_make_level(settings->kernel, settings->footprint,
+                                 pixel_width(p, axis), p->fine[axis]);
+}
+
 bool snow_sheared_fits(const snow_placement *p, const snow_settings *settings) {
     if (p->perspective)
         return snow_sheared_seen_fits(p, settings);
     for (int axis = 0; axis < 2; axis++) {
-        snow_taper taper = snow_taper_make(
-            settings->kernel, settings->footprint, pixel_width(p, axis));
+        snow_taper taper = taper_along(p, settings, axis);
         if (snow_comb_taps(&taper) > SNOW_TAPS_MOST)
             return false;
     }
@@ -657,8 +662,7 @@ static snow_status place_lattice(snow_pass *pass) {
     snow_shear_options options;
     for (int axis = 0; axis < 2; axis++) {
         snow_taper *taper = &pass->taper[axis];
-        *taper = snow_taper_make(settings->kernel, settings->footprint,
-                                 pixel_width(p, axis));
+        *taper = taper_along(p, settings, axis);
         pass->taps[axis] = snow_comb_taps(taper);
         choose_pitch(taper, draft, &options.phases[axis],
                      &options.stride[axis]);

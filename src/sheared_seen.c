@@ -106,8 +106,8 @@ static void tapers_at(const snow_placement *p, const snow_settings *settings,
     double width[2];
     snow_eye_pixel_width(p, slice, width);
     for (int axis = 0; axis < 2; axis++)
-        taper[axis] =
-            snow_taper_make(settings->kernel, settings->footprint, width[axis]);
+        taper[axis] = snow_taper_make_level(
+            settings->kernel, settings->footprint, width[axis], p->fine[axis]);
 }
 
 bool snow_sheared_seen_fits(const snow_placement *p,

@@ -36,6 +36,18 @@ for i in 0001 0002 0003; do
 done
 
 cp -r slices dicom_folder
+
+# Five times of two channels, at three levels.
+for level in 0 1 2; do
+    mkdir -p cells.ome.zarr/$level
+    printf '{"zarr_format": 2, "shape": [5, 2, 4, 64, 64], "order": "C",
+        "chunks": [5, 2, 4, 64, 64], "dtype": "|u1", "filters": null,
+        "compressor": null, "fill_value": 0}' >cells.ome.zarr/$level/.zarray
+    gzip -dc engine.raw.gz | tail -c +2000000 | head -c $((10 * 4 * 64 * 64)) \
+        >cells.ome.zarr/$level/0.0.0.0.0
+done
+printf '{"multiscales": [{"datasets": [{"path": "0"}, {"path": "1"},
+    {"path": "2"}]}]}' >cells.ome.zarr/.zattrs
 cp "$root"/fuzz/corpus/tf/$(cd "$root/fuzz/corpus/tf" && ls | grep -m1 '\.vp$') slicer.vp
 
 # Movies need a program of its own.

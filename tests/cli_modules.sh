@@ -18,7 +18,7 @@ loaded() {
     rm -f ld.*
     LD_DEBUG=files LD_DEBUG_OUTPUT=ld "$@" >"$OUT" 2>"$ERR"
     LOADED=$(cat ld.* | grep 'calling init' | tr -c 'a-zA-Z0-9\n-' '\n' |
-        grep -E '^lib(snowglass-.*|hdf5.*|tiff|gdcm.*|curl)$' |
+        grep -E '^lib(snowglass-.*|hdf5.*|tiff|gdcm.*|curl|blosc|snappy)$' |
         sort -u | tr '\n' ' ')
 }
 loads_none() {
@@ -51,6 +51,13 @@ check "nor does DICOM that is not packed" \
     loads_none "$TOOL" info -q "$CORPUS/dicom/little"
 check "nor what tells of the build" loads_none "$TOOL" doctor
 check "nor help on data" loads_none "$TOOL" help data
+ZARR=$DATA/formats/zarr/mni152.ome.zarr
+if [ -d "$ZARR" ] && [ -e "$BUILD/$FOLDER/libsnowglass-blosc.so" ]; then
+    # What libblosc brings with it is no business of ours.
+    loaded "$TOOL" info -q "$ZARR"
+    check "Zarr packed by Blosc loads libblosc alone" [ "${LOADED/libsnappy /}" \
+        = "libblosc libsnowglass-blosc " ]
+fi
 check "a TIFF loads libtiff alone" loads libtiff "$TOOL" info -q a.tif
 check "and so does writing one" loads libtiff render "$TOOL" a.tif
 

@@ -69,12 +69,15 @@ static void place_axis(sheared_job *job, int axis, lattice_axis *out) {
     out->axis = axis;
     out->voxels = job->scene->info.dims[axis];
     out->width = reference_widening(job->kernel, job->support, rho);
+    double fine = job->options ? job->options->fine[axis] : 0;
+    if (fine > 0) /* rho is 1 or more here */
+        out->width = sqrt(fmax(1, fine * fine + out->width * out->width - 1));
     out->drift = ray.step[axis] / ray.step[job->axis];
     /* Two pixels a voxel for kernels that are hardly widened, one in two for
      * those that are far wider. */
-    bool fine = !job->draft && out->width < 1.2;
+    bool twice = !job->draft && out->width < 1.2;
     bool coarse = out->width >= (job->draft ? 2 : 2.5);
-    out->pitch = fine ? 0.5 : coarse ? 2 : 1;
+    out->pitch = twice ? 0.5 : coarse ? 2 : 1;
 }
 
 static void begin_job(sheared_job *job) {
@@ -96,8 +99,9 @@ static bool axis_fits(const sheared_job *job, const lattice_axis *a) {
     return 2 * ceil(half) <= TAPS_MOST;
 }
 
-static bool fits_along(const reference_scene *scene, int axis) {
-    sheared_job job = {.scene = scene, .axis = axis};
+static bool fits_along(const reference_scene *scene,
+                       const sheared_options *options, int axis) {
+    sheared_job job = {.scene = scene, .options = options, .axis = axis};
     begin_job(&job);
     return axis_fits(&job, &job.u) && axis_fits(&job, &job.v);
 }
@@ -125,7 +129,7 @@ static int share_axes(const reference_scene *scene, int parts,
     for (int n = 0; n < 3; n++) {
         double away = (cosine[best] - cosine[n]) / sqrt(2);
         double share = 1 - away / sin(acos(-1.0) / 36);
-        bool counts = blended && share > 0 && fits_along(scene, n);
+        bool counts = blended && share > 0 && fits_along(scene, NULL, n);
         shares[n] = n == best ? 1 : counts ? share : 0;
         sum += shares[n];
     }
@@ -134,8 +138,9 @@ static int share_axes(const reference_scene *scene, int parts,
     return best;
 }
 
-bool sheared_fits(const reference_scene *scene) {
-    return fits_along(scene, -1);
+bool sheared_fits(const reference_scene *scene,
+                  const sheared_options *options) {
+    return fits_along(scene, options, -1);
 }
 
 /* The pixels that the picture looks up, but for those without a voxel in

@@ -17,6 +17,7 @@ typedef struct sheared_options {
     int parts, part;    /* a slab; parts 0: the whole */
     bool exact_normals; /* of double precision, not as codes */
     bool exact_values;  /* wider types' values, not as codes */
+    double fine[3];     /* of a level: steps of its volume in its own; else 0 */
 } sheared_options;
 
 /* What a rendering came to beside its pixels. */
@@ -28,9 +29,21 @@ typedef struct sheared_facts {
     double strongest; /* greatest opacity on a lattice */
 } sheared_facts;
 
+/* The scene at the resolution of a level (levels.h): the library's voxels,
+ * which tests/test_levels.c holds against float64, and what the kernel has to
+ * know of them.  Close the volumes made, NULL where there is none. */
+#define SHEARED_LEVELS_MOST 8
+reference_scene sheared_level(snow_context *context,
+                              const reference_scene *scene,
+                              const int halvings[3], sheared_options *options,
+                              snow_volume *made[SHEARED_LEVELS_MOST]);
+
+/* To which side values of a level lean: where opacities rise, all in all. */
+int sheared_lean(const reference_scene *scene);
+
 /* Whether the method can make the picture: a lattice pixel has no more than 30
- * voxels in reach along u or v. */
-bool sheared_fits(const reference_scene *scene);
+ * voxels in reach along u or v.  Options may be NULL. */
+bool sheared_fits(const reference_scene *scene, const sheared_options *options);
 
 /* The picture: width * height * 4 doubles, premultiplied.  Free with free(). */
 double *sheared_render(const reference_scene *scene,

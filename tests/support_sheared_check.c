@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "frame.h"
+#include "volume/halve.h"
 
 /* The most that footprint splatting may differ from the exact picture. */
 #define FOOTPRINT_BOUND 1e-3
@@ -42,6 +43,59 @@ float *sheared_picture(const model_stage *stage, const reference_scene *scene,
     return picture;
 }
 
+/* --- levels -----------------------------------------------------------------
+ */
+
+int sheared_lean(const reference_scene *scene) {
+    double up = 0, down = 0;
+    for (size_t n = 1; n < scene->opacity_count; n++) {
+        double rise =
+            scene->opacities[n].opacity - scene->opacities[n - 1].opacity;
+        up += rise > 0 ? rise : 0;
+        down -= rise < 0 ? rise : 0;
+    }
+    int lean = up > 2 * down ? 1 : down > 2 * up ? -1 : 0;
+    return scene->info.slope < 0 ? -lean : lean;
+}
+
+reference_scene sheared_level(snow_context *context,
+                              const reference_scene *scene,
+                              const int halvings[3], sheared_options *options,
+                              snow_volume *made[SHEARED_LEVELS_MOST]) {
+    reference_scene level = *scene;
+    snow_halve_room room = {0};
+    int most = 0;
+    for (int axis = 0; axis < 3; axis++)
+        most = halvings[axis] > most ? halvings[axis] : most;
+    assert_in_range(most, 1, SHEARED_LEVELS_MOST);
+    level.settings.opacity_length = reference_opacity_length(scene);
+    for (int n = 0; n < most; n++) {
+        bool axes[3];
+        snow_volume *from = NULL;
+        for (int axis = 0; axis < 3; axis++)
+            axes[axis] = halvings[axis] >= most - n;
+        assert_int_equal(
+            snow_volume_share(context, &level.info, level.voxels, &from),
+            SNOW_OK);
+        level.info = snow_halved_info(snow_volume_describe(from), axes);
+        assert_int_equal(snow_volume_new(context, &level.info, &made[n]),
+                         SNOW_OK);
+        assert_int_equal(snow_volume_halve(from, axes, sheared_lean(scene), 1,
+                                           &room, made[n]),
+                         SNOW_OK);
+        level.voxels = snow_volume_voxels(made[n]);
+        snow_volume_close(from);
+    }
+    snow_release(context, room.block);
+    for (int axis = 0; axis < 3; axis++)
+        options->fine[axis] =
+            (double)level.info.dims[axis] / (double)scene->info.dims[axis];
+    return level;
+}
+
+/* --- the check --------------------------------------------------------------
+ */
+
 static double worst_pixel(const reference_scene *scene, const float *picture,
                           const double *reference, int at[2]) {
     double worst = 0;
@@ -73,16 +127,22 @@ static void check_fallback(const model_stage *stage,
     free(exact);
 }
 
-void sheared_check(const model_stage *stage, const reference_scene *scene,
-                   const sheared_options *options, double bound,
-                   sheared_tally *tally) {
-    const sheared_options whole = {0};
-    options = options ? options : &whole;
-    float *picture =
-        sheared_picture(stage, scene, options->parts, options->part);
-    if (!sheared_fits(scene)) {
+/* The scene that the picture is of: the level that the library took, if any. */
+static reference_scene scene_taken(const model_stage *stage,
+                                   const reference_scene *scene,
+                                   sheared_options *options,
+                                   snow_volume *made[SHEARED_LEVELS_MOST]) {
+    const int *halvings = snow_frame_stats(stage->frame)->halvings;
+    if (!halvings[0] && !halvings[1] && !halvings[2])
+        return *scene;
+    return sheared_level(stage->context, scene, halvings, options, made);
+}
+
+static void check_taken(const model_stage *stage, const reference_scene *scene,
+                        const sheared_options *options, const float *picture,
+                        double bound, sheared_tally *tally) {
+    if (!sheared_fits(scene, options)) {
         check_fallback(stage, scene, picture, tally);
-        free(picture);
         return;
     }
     const snow_stats *stats = snow_frame_stats(stage->frame);
@@ -108,6 +168,19 @@ void sheared_check(const model_stage *stage, const reference_scene *scene,
     *most = fmax(*most, distance);
     tally->strongest += facts.strongest;
     free(reference);
+}
+
+void sheared_check(const model_stage *stage, const reference_scene *scene,
+                   const sheared_options *options, double bound,
+                   sheared_tally *tally) {
+    const sheared_options whole = {0};
+    sheared_options own = options ? *options : whole;
+    snow_volume *made[SHEARED_LEVELS_MOST] = {NULL};
+    float *picture = sheared_picture(stage, scene, own.parts, own.part);
+    reference_scene taken = scene_taken(stage, scene, &own, made);
+    check_taken(stage, &taken, &own, picture, bound, tally);
+    for (int n = 0; n < SHEARED_LEVELS_MOST; n++)
+        snow_volume_close(made[n]);
     free(picture);
 }
 

@@ -199,6 +199,11 @@ static float *serial_picture(snow_context *context, play *p,
     snow_image *image = NULL;
     assert_int_equal(snow_volume_share(context, &p->info, p->voxels, &volume),
                      SNOW_OK);
+    /* A part that is all of the whole: levels of drafts are made of volumes
+     * that are no parts. */
+    snow_part part;
+    snow_volume_get_part(volume, &part);
+    assert_int_equal(snow_volume_set_part(volume, &part), SNOW_OK);
     assert_int_equal(copy_transfer(context, p->transfer, &transfer), SNOW_OK);
     assert_int_equal(snow_frame_new(context, &frame), SNOW_OK);
     if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,

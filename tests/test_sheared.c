@@ -119,7 +119,7 @@ static void every_zoom_in_normal_and_draft_quality(void **state) {
                 scene.settings.kernel = SNOW_KERNEL_TENT;
             }
             sheared_check(&stage, &scene, NULL, SHEARED_BOUND, &tally);
-            if (sheared_fits(&scene) && n < COUNT(stands)) {
+            if (sheared_fits(&scene, NULL) && n < COUNT(stands)) {
                 sheared_facts facts;
                 free(sheared_render(&scene, &(sheared_options){0}, &facts));
                 combinations[facts.phases[0] == 2][facts.stride[0] == 2]++;
@@ -387,7 +387,7 @@ static void high_quality_has_slices_between(void **state) {
         if (n % 4 == 3)
             scene.view.azimuth += 6 * support_uniform(&random) - 3;
         sheared_check(&stage, &scene, NULL, SHEARED_BOUND, &tally);
-        if (sheared_fits(&scene) && n % 4 == 0) {
+        if (sheared_fits(&scene, NULL) && n % 4 == 0) {
             sheared_facts facts;
             free(sheared_render(&scene, &(sheared_options){0}, &facts));
             axes[facts.axes]++;

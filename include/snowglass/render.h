@@ -51,7 +51,11 @@ typedef enum snow_quality {
                                 pixels are wide */
     SNOW_QUALITY_DRAFT,      /* one, and the tent kernel of 2 voxels in place of
                                 the default one, also where a picture is left
-                                to footprints: while a view is turned */
+                                to footprints: while a view is turned.  Where a
+                                pixel is two voxels wide and more a volume of
+                                half the resolution is drawn, unless the volume
+                                is a part, the picture deterministic, its mode
+                                not over, or its colours have steps */
     SNOW_QUALITY_HIGH        /* as normal, with a slice between each two, and
                                 both axes where the slice axis switches */
 } snow_quality;
@@ -164,6 +168,9 @@ typedef struct snow_stats {
      * local image. */
     int rounds, radices[16];
     int64_t active_pixels;
+    /* How often each axis of the volume was halved for a picture that has few
+     * pixels; the counts of voxels above are those of what came of it. */
+    int halvings[3];
 } snow_stats;
 
 /* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */

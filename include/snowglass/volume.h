@@ -56,10 +56,13 @@ typedef struct snow_volume_info {
     char unit[16];       /* of spacing and matrix: "mm", "um", ... or "" */
     const char *format;  /* constant: "raw", "nrrd", "nifti", "metaimage",
                             "npy", "mrc", "vtk", "vti", "tiff", "png",
-                            "hdf5", "netcdf", "dicom", "den", "phantom",
-                            "memory" */
+                            "hdf5", "netcdf", "dicom", "den", "zarr",
+                            "phantom", "memory" */
     int64_t times;       /* time steps in the file, at least 1 */
     int64_t time;        /* the one that was read, from 0 */
+    char storage[160];   /* how the file keeps the voxels, for people: level,
+                            axes, chunks, packing; "" when the reader tells
+                            nothing of it */
 } snow_volume_info;
 
 /* Byte order of raw data. */
@@ -93,8 +96,9 @@ typedef struct snow_volume_options {
                             one, 0 for the end; all 0: the whole volume */
     int64_t channel;     /* of voxels with several values, from 0 */
     const char *dataset; /* of a file with several data sets, the one to read:
-                            a path in HDF5, a name in VTK, VTI and NetCDF; NULL:
-                            the only one, or the file's own choice */
+                            a path in HDF5 and Zarr, a name in VTK, VTI and
+                            NetCDF; NULL: the only one, or the file's own choice
+                          */
     const char *series;  /* of DICOM images of several series, the one to read:
                             its UID, or its number in the remark that lists
                             them; NULL: the largest */
@@ -128,7 +132,8 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
  * to `slab_bytes` bytes (0: 64 MiB; a slab of more where fewer slices do not
  * serve: pictures with slices along x and y take 32 of z, and neighbours), and
  * drops them.  The volume goes where others go, and pictures and looks are the
- * same bit for bit as of snow_volume_open:
+ * same bit for bit as of snow_volume_open (but drafts of few pixels, which are
+ * made of all voxels here, and not of a level of fewer):
  *
  *   snow_transfer_make   reads it once, and types of more than 16 bits a few
  *                        times

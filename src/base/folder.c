@@ -79,7 +79,7 @@ static bool fits(const char *pattern, const char *name) {
 
 /* Digits by their value, other letters by theirs; equal numbers of different
  * length by length, so that the order is one. */
-static int compare_names(const char *a, const char *b) {
+int snow_name_compare(const char *a, const char *b) {
     while (*a && *b) {
         if (isdigit((unsigned char)*a) && isdigit((unsigned char)*b)) {
             size_t zeros_a = strspn(a, "0"), zeros_b = strspn(b, "0");
@@ -104,7 +104,7 @@ static int compare_names(const char *a, const char *b) {
 }
 
 static int compare_paths(const void *a, const void *b) {
-    return compare_names(*(char *const *)a, *(char *const *)b);
+    return snow_name_compare(*(char *const *)a, *(char *const *)b);
 }
 
 /* What is gathered: names one behind the other, each with its end. */
@@ -216,7 +216,7 @@ bool snow_folder_below(const char *path, char *name, size_t room) {
         struct stat about;
         size_t size = strlen(entry->d_name) + 1;
         if (*entry->d_name == '.' || size > room ||
-            (found && compare_names(entry->d_name, name) > 0) ||
+            (found && snow_name_compare(entry->d_name, name) > 0) ||
             fstatat(dirfd(stream), entry->d_name, &about, 0) ||
             !S_ISDIR(about.st_mode))
             continue;

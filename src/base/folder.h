@@ -31,6 +31,9 @@ bool snow_folder_below(const char *path, char *name, size_t room);
 
 void snow_folder_free(snow_folder *folder);
 
+/* The order of people, "s2" before "s10": below, equal or above 0. */
+int snow_name_compare(const char *a, const char *b);
+
 /* The last number in a path's last part; -1 where there is none. */
 int64_t snow_last_number(const char *path);
 

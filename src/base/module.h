@@ -24,6 +24,12 @@ typedef struct snow_module {
     const struct snow_image_format *picture;
     bool (*unpack)(struct gdcm_frame *frame, const void *packed, size_t size,
                    void *out, size_t room); /* as volume/gdcm_bridge.h */
+    snow_status (*expect_blosc)(snow_context *context, const char *name,
+                                const unsigned char *packed, size_t size,
+                                uint64_t bytes); /* as volume/zarr.h */
+    snow_status (*unpack_blosc)(snow_context *context, const char *name,
+                                const unsigned char *packed, unsigned char *out,
+                                uint64_t bytes);
 } snow_module;
 
 /* The one name that a module shows: `SNOW_API const snow_module

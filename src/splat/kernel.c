@@ -108,8 +108,13 @@ static double variance_of(snow_kernel kernel, double support) {
 }
 
 snow_taper snow_taper_make(snow_kernel kernel, int support, double rho) {
-    double variance = variance_of(kernel, support);
-    double wide = sqrt(1 + fmax(0, rho * rho - 1) / (12 * variance));
+    return snow_taper_make_level(kernel, support, rho, 1);
+}
+
+snow_taper snow_taper_make_level(snow_kernel kernel, int support, double rho,
+                                 double fine) {
+    double pixel = (rho * rho - 1) / (12 * variance_of(kernel, support));
+    double wide = sqrt(fmax(1, fine * fine + pixel));
     return (snow_taper){kernel, support, wide * support / 2, wide};
 }
 

@@ -43,6 +43,15 @@ int snow_kernel_default_support(snow_kernel kernel);
 /* A kernel for pixels that are `rho` voxels wide along the axis. */
 snow_taper snow_taper_make(snow_kernel kernel, int support, double rho);
 
+/* The same for voxels that are means of others (levels.h), whose step is `fine`
+ * of theirs, 1 or less.  The variance of a mean and of its kernel together is
+ * that of the kernel on the others, if it can be:
+ *
+ *   w = sqrt(max(1, fine^2 + (rho^2 - 1) / (12 V)))
+ */
+snow_taper snow_taper_make_level(snow_kernel kernel, int support, double rho,
+                                 double fine);
+
 /* Whether distance t (voxels) lies in the half-open support, and a distance
  * beyond which none does. */
 bool snow_taper_covers(const snow_taper *taper, double t);

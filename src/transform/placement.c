@@ -136,7 +136,8 @@ static snow_status place_camera(snow_context *context,
                                 const snow_view *view, snow_camera *camera,
                                 snow_placement *p) {
     SNOW_TRY(snow_camera_make(context, info, view, camera));
-    *p = (snow_placement){.width = view->width, .height = view->height};
+    *p = (snow_placement){
+        .width = view->width, .height = view->height, .fine = {1, 1}};
     memcpy(p->right, camera->right, sizeof p->right);
     memcpy(p->up, camera->up, sizeof p->up);
     memcpy(p->back, camera->back, sizeof p->back);

@@ -51,6 +51,8 @@ typedef struct snow_placement {
 
     double origin[2], step_u[2], step_v[2], step_slice[2]; /* pixels */
     double inverse[2][2]; /* pixels to (u, v): the inverse of step_u, step_v */
+    double fine[2]; /* along u and v: 1, or of voxels that are means of others
+                       (levels.h) the others' step in theirs */
 
     double path; /* world length of a ray between two slice planes */
 

@@ -8,6 +8,7 @@
 #include "volume/phantom.h"
 #include "volume/stack.h"
 #include "volume/volume.h"
+#include "volume/zarr.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,7 +23,7 @@ static const snow_format *const formats[] = {
     &snow_format_metaimage, &snow_format_npy,  &snow_format_vtk,
     &snow_format_vti,       &snow_format_mrc,  &snow_format_tiff,
     &snow_format_png,       &snow_format_hdf5, &snow_format_netcdf,
-    &snow_format_den,       &snow_format_raw,
+    &snow_format_den,       &snow_format_zarr, &snow_format_raw,
 };
 #define FORMAT_COUNT (sizeof formats / sizeof *formats)
 
@@ -309,7 +310,17 @@ static snow_status open_phantom(snow_context *context, const char *name,
     return SNOW_OK;
 }
 
-/* Slices in files of their own; what holds for all formats holds for them. */
+/* A folder or a pattern: an array of Zarr, or slices in files of their own. */
+static snow_status read_folder(snow_context *context, const char *path,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    if (!snow_zarr_is(path))
+        return snow_stack_read(context, path, options, info, out);
+    SNOW_TRY(check_choice(context, &snow_format_zarr, options));
+    return snow_zarr_read_folder(context, path, options, info, out);
+}
+
+/* What holds for all formats holds for files in a folder. */
 static snow_status open_stack(snow_context *context, const char *path,
                               const snow_volume_options *options,
                               snow_volume_info *info, snow_volume **out) {
@@ -318,11 +329,12 @@ static snow_status open_stack(snow_context *context, const char *path,
     snow_status status = check_options(context, options);
     if (status == SNOW_OK && tells_raw(options))
         status = snow_fail(context, SNOW_BAD_USAGE,
-                           "slices tell their sizes and type themselves; leave "
-                           "out --dims, --type, --endian and --offset");
+                           "a folder's files tell their sizes and type "
+                           "themselves; leave out --dims, --type, --endian and "
+                           "--offset");
     if (status == SNOW_OK)
-        status = snow_stack_read(context, path, options, &told,
-                                 out ? &volume : NULL);
+        status =
+            read_folder(context, path, options, &told, out ? &volume : NULL);
     if (status == SNOW_OK)
         status = finish_info(context, options, &told);
     if (status != SNOW_OK) {

@@ -15,6 +15,10 @@ static const struct {
     {"OpenEXR", SNOW_VERSION_EXR, "exr pictures", SNOW_HAVE_EXR, NULL},
     {"libwebp", SNOW_VERSION_WEBP, "webp pictures and movies", SNOW_HAVE_WEBP,
      NULL},
+    {"blosc", SNOW_VERSION_BLOSC, "zarr packed by it", SNOW_HAVE_BLOSC,
+     "blosc"},
+    {"zstd", SNOW_VERSION_ZSTD, "zarr packed by it", SNOW_HAVE_ZSTD, NULL},
+    {"lz4", SNOW_VERSION_LZ4, "zarr packed by it", SNOW_HAVE_LZ4, NULL},
 };
 
 /* A module is not loaded for that, which would take as long as all else. */

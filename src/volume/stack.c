@@ -27,26 +27,6 @@ static const snow_format *slice_format(const char *path) {
     return format && format->slices ? format : NULL;
 }
 
-/* A folder of numbered chunks, known by the name of what describes them. */
-static bool is_zarr(const char *path) {
-    static const char *const marks[] = {".zarray", ".zgroup", ".zattrs",
-                                        "zarr.json"};
-    size_t length = strlen(path);
-    char mark[4096];
-    while (length > 1 && path[length - 1] == '/')
-        length--;
-    if (length > 5 && !strncmp(path + length - 5, ".zarr", 5))
-        return true;
-    for (size_t i = 0; i < sizeof marks / sizeof *marks; i++) {
-        int size =
-            snprintf(mark, sizeof mark, "%.*s/%s", (int)length, path, marks[i]);
-        if (size > 0 && (size_t)size < sizeof mark &&
-            snow_is_there(mark, (size_t)size))
-            return true;
-    }
-    return false;
-}
-
 static snow_status refuse_empty(snow_context *context, const char *path) {
     char name[256];
     if (snow_is_folder(path) && snow_folder_below(path, name, sizeof name))
@@ -227,11 +207,7 @@ snow_status snow_stack_read(snow_context *context, const char *path,
     stack s = {.context = context};
     SNOW_TRY(snow_folder_list(context, path, &files));
     snow_status status;
-    if (is_zarr(path)) {
-        status = snow_fail(context, SNOW_BAD_INPUT,
-                           "is a Zarr array, which is not read; save one of "
-                           "its scales as .npy or .h5");
-    } else if (snow_dicom_among(context, &files)) {
+    if (snow_dicom_among(context, &files)) {
         status = snow_dicom_read_files(context, &files, options, info, out);
     } else {
         status = choose_files(&s, path, &files);

@@ -28,6 +28,9 @@ struct snow_volume {
     bool knows_origin;
     double origin[3];  /* the last column of the whole's matrix, where known */
     char patient[256]; /* "" when not told */
+    /* Of a level (levels.h): a step of the volume's that it was made of, in its
+     * own; else 0. */
+    double fine[3];
 };
 
 /* What is known of the whole that a volume is a part of: its dims and its
@@ -82,6 +85,7 @@ extern const snow_format snow_format_hdf5;
 extern const snow_format snow_format_netcdf;
 extern const snow_format snow_format_dicom;
 extern const snow_format snow_format_den;
+extern const snow_format snow_format_zarr;
 
 /* An info with one voxel's defaults: identity matrix, slope 1, one time step,
  * unit "", and the given format name. */

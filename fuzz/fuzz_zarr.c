@@ -1,0 +1,42 @@
+/* fuzz/fuzz_zarr.c - an input is a folder of files as records (zarr.h): the
+ * first array or image in it, a level by its number, and a box. */
+#include "capped.h"
+#include "volume/zarr.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+static void look_inside(const uint8_t *bytes, size_t size, const char *path,
+                        const snow_volume_options *options) {
+    size_t held;
+    snow_context *context = capped_context(&held);
+    const zarr_store store = {
+        .context = context, .records = bytes, .size = size};
+    snow_volume *volume = NULL;
+    snow_volume_info info;
+    snow_status status =
+        snow_zarr_read_store(&store, path, options, &info, &volume);
+    if (status == SNOW_OK) {
+        snow_volume_measures measures;
+        snow_volume_measure(volume, &measures);
+        if (measures.finite > measures.voxels)
+            abort();
+        snow_volume_close(volume);
+    } else if (volume || !*snow_context_message(context)) {
+        abort();
+    }
+    if (strchr(snow_context_message(context), '\n'))
+        abort();
+    capped_end(context, &held);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
+    const snow_volume_options whole = {.time = 0};
+    const snow_volume_options box = {
+        .time = 1, .channel = 1, .crop = {{1, 3}, {0, 2}, {1, 0}}};
+    look_inside(bytes, size, "", &whole);
+    look_inside(bytes, size, "1", &box);
+    return 0;
+}

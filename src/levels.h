@@ -1,0 +1,46 @@
+/* levels.h - a volume at lower resolution for small pictures.
+ *
+ * A level of a volume is the same box in fewer voxels (volume/halve.h).  It is
+ * a volume like any other, with longer steps; so path lengths, gradients and
+ * the camera are right by themselves.  Levels are made when they are first
+ * needed, each of the one before it, and kept as long as their volume is drawn.
+ *
+ * The rule: an axis is halved where a pixel of the picture is at least two of
+ * its voxels wide and it has SNOW_HALVE_LEAST of them.  It is halved again as
+ * long as a pixel is at least four of the level's and the level has more than
+ * SNOW_LEVEL_MANY in all: each level is farther from the exact picture, and
+ * small ones cost little.  In perspective that is a pixel where the volume
+ * could come nearest to the eye.  How the camera is turned does not matter, so
+ * that nothing jumps while it turns. */
+#ifndef SNOW_LEVELS_H
+#define SNOW_LEVELS_H
+
+#include "volume/volume.h"
+
+#include <snowglass/render.h>
+
+#define SNOW_LEVEL_MANY (1 << 21)
+
+/* The levels of one frame. */
+typedef struct snow_levels snow_levels;
+
+/* NULL is accepted. */
+void snow_levels_free(snow_levels *levels);
+
+/* How often each axis of the volume would be halved for a view.  Errors: those
+ * of snow_camera_make. */
+snow_status snow_levels_wanted(snow_context *context,
+                               const snow_volume_info *info,
+                               const snow_view *view, int halvings[3]);
+
+/* The level for a picture: *level is the volume itself where there is none to
+ * be taken, and `halvings` are told; then it belongs to *levels, which is made
+ * when it is NULL, until the next call.  `settings` are resolved.  Errors:
+ * those of snow_camera_make, SNOW_NO_MEMORY. */
+snow_status snow_levels_take(snow_levels **levels, const snow_volume *volume,
+                             const snow_transfer *transfer,
+                             const snow_view *view,
+                             const snow_settings *settings,
+                             const snow_volume **level, int halvings[3]);
+
+#endif

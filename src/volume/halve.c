@@ -1,0 +1,346 @@
+/* volume/halve.c - means of voxels, a row at a time, at the speed of memory.
+ *
+ * Rows of a voxel's height and depth are added up to a line first, and the line
+ * is halved; beside it goes a line of extremes.  Where all weights are one, as
+ * with even counts, sums of the small types are whole numbers and exact.
+ * Values that are not numbers are rare and spoil the sum that they are in, by
+ * which they are found: such a voxel is made again, of the values that are
+ * there. */
+#include "volume/halve.h"
+#include "base/parallel.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rows of an output slice that are made at once. */
+#define ROWS_AT_ONCE 16
+
+/* How `from` voxels become `to`: as many, or (from + 1) / 2. */
+typedef struct axis_taps {
+    int64_t from, to;
+    int taps; /* the most voxels that one is made of */
+} axis_taps;
+
+/* The voxels of a row that one is made of; weights add up to 1. */
+typedef struct column_taps {
+    int64_t first;
+    int count;
+    double weights[3];
+} column_taps;
+
+/* A worker's own lines, of the rows' length. */
+typedef struct scratch_lines {
+    void *work, *extremes;
+} scratch_lines;
+
+typedef struct halving halving;
+typedef struct row_taps row_taps;
+
+typedef void row_fn(const halving *h, const row_taps *rows,
+                    const scratch_lines *lines, void *out);
+
+/* A volume being halved. */
+struct halving {
+    const snow_volume *volume;
+    snow_volume *out;
+    axis_taps axes[3];
+    int lean;
+    bool even;      /* all weights are one */
+    int shift;      /* then: a mean is of 2^shift voxels */
+    int64_t blocks; /* of rows, of a slice */
+    size_t size;    /* bytes of a voxel */
+    column_taps *columns;
+    char *lines;
+    size_t line_bytes;
+    row_fn *row; /* makes one of rows */
+};
+
+/* The rows that a row is made of; weights add up to 1. */
+struct row_taps {
+    int count;
+    int64_t first[9]; /* linear index of the row's first voxel */
+    double weights[9];
+};
+
+/* The voxels that voxel `at` is made of: returns how many, from *first on, and
+ * their weights, which add up to 1.  It covers [at, at + 1) from / to. */
+static int taps_at(const axis_taps *axis, int64_t at, int64_t *first,
+                   double weights[3]) {
+    int64_t n = axis->from, m = axis->to;
+    if (n == m) {
+        *first = at;
+        weights[0] = 1;
+        return 1;
+    }
+    /* In units of a voxel / m, where all borders are whole. */
+    int64_t low = at * n, high = low + n;
+    int count = 0;
+    *first = low / m;
+    for (int64_t voxel = *first; voxel * m < high; voxel++) {
+        int64_t from = voxel * m > low ? voxel * m : low;
+        int64_t end = (voxel + 1) * m < high ? (voxel + 1) * m : high;
+        weights[count++] = (double)(end - from) / (double)n;
+    }
+    return count;
+}
+
+static void rows_at(const halving *h, int64_t j, int64_t k, row_taps *out) {
+    const int64_t *dims = h->volume->info.dims;
+    int64_t row, slice;
+    double across[3], deep[3];
+    int rows = taps_at(&h->axes[1], j, &row, across);
+    int slices = taps_at(&h->axes[2], k, &slice, deep);
+    out->count = 0;
+    for (int z = 0; z < slices; z++)
+        for (int y = 0; y < rows; y++) {
+            out->first[out->count] =
+                ((slice + z) * dims[1] + row + y) * dims[0];
+            out->weights[out->count++] = deep[z] * across[y];
+        }
+}
+
+static const void *row_of(const halving *h, const row_taps *rows, int n) {
+    return (const char *)h->volume->voxels + (size_t)rows->first[n] * h->size;
+}
+
+/* --- types ------------------------------------------------------------------
+ */
+
+/* Shifts round down, and so sums of a half more to the nearest. */
+#define WHOLE(s, shift) \
+    (TYPE)((SUM)((s) + (SUM)((1 << (shift)) >> 1)) >> (shift))
+/* Above the lowest value truncation rounds down. */
+#define ROUNDED(x) (TYPE)((int32_t)((double)(x) + 32768.5) - 32768)
+/* Doubles that were integers may have been rounded up beyond their type. */
+#define WITHIN(x, low, high) (TYPE) fmin(fmax(floor((x) + 0.5), low), high)
+
+#define TYPE uint8_t
+#define SUM uint16_t
+#define SHARE(s, shift) WHOLE(s, shift)
+#define WORK float
+#define REAL(x) ROUNDED(x)
+#define NAME(word) word##_u8
+#include "volume/halve.tmpl.h"
+
+#define TYPE int8_t
+#define SUM int16_t
+#define SHARE(s, shift) WHOLE(s, shift)
+#define WORK float
+#define REAL(x) ROUNDED(x)
+#define NAME(word) word##_i8
+#include "volume/halve.tmpl.h"
+
+#define TYPE uint16_t
+#define SUM uint32_t
+#define SHARE(s, shift) WHOLE(s, shift)
+#define WORK float
+#define REAL(x) ROUNDED(x)
+#define NAME(word) word##_u16
+#include "volume/halve.tmpl.h"
+
+#define TYPE int16_t
+#define SUM int32_t
+#define SHARE(s, shift) WHOLE(s, shift)
+#define WORK float
+#define REAL(x) ROUNDED(x)
+#define NAME(word) word##_i16
+#include "volume/halve.tmpl.h"
+
+#define TYPE float
+#define SUM float
+#define SHARE(s, shift) ((s) * (1 / (float)(1 << (shift))))
+#define WORK float
+#define REAL(x) (x)
+#define NAME(word) word##_f32
+#include "volume/halve.tmpl.h"
+
+#define TYPE double
+#define WORK double
+#define REAL(x) (x)
+#define NAME(word) word##_f64
+#include "volume/halve.tmpl.h"
+
+#define TYPE uint32_t
+#define WORK double
+#define REAL(x) WITHIN(x, 0, UINT32_MAX)
+#define NAME(word) word##_u32
+#include "volume/halve.tmpl.h"
+
+#define TYPE int32_t
+#define WORK double
+#define REAL(x) WITHIN(x, INT32_MIN, INT32_MAX)
+#define NAME(word) word##_i32
+#include "volume/halve.tmpl.h"
+
+#define TYPE uint64_t
+#define WORK double
+#define REAL(x) WITHIN(x, 0, 0x1p64 - 2048)
+#define NAME(word) word##_u64
+#include "volume/halve.tmpl.h"
+
+#define TYPE int64_t
+#define WORK double
+#define REAL(x) WITHIN(x, -0x1p63, 0x1p63 - 1024)
+#define NAME(word) word##_i64
+#include "volume/halve.tmpl.h"
+
+/* --- values that are none ---------------------------------------------------
+ */
+
+/* Of what is there. */
+static double value_of(const halving *h, const row_taps *rows, int64_t i) {
+    const column_taps *x = &h->columns[i];
+    double sum = 0, total = 0, extreme = NAN;
+    for (int row = 0; row < rows->count; row++)
+        for (int n = 0; n < x->count; n++) {
+            double value =
+                snow_volume_native(h->volume, rows->first[row] + x->first + n);
+            double weight = rows->weights[row] * x->weights[n];
+            if (isnan(value))
+                continue;
+            sum += weight * value;
+            total += weight;
+            extreme = h->lean > 0 ? fmax(extreme, value) : fmin(extreme, value);
+        }
+    double mean = total > 0 ? sum / total : NAN;
+    return h->lean && isfinite(mean) ? mean + SNOW_HALVE_LEAN * (extreme - mean)
+                                     : mean;
+}
+
+/* Makes again what came to no finite number. */
+static void mend_row(const halving *h, const row_taps *rows, void *out) {
+    int64_t n = h->out->info.dims[0];
+    bool single = h->size == sizeof(float);
+    float *floats = out;
+    double *doubles = out, any = 0;
+    for (int64_t i = 0; i < n; i++)
+        any += single ? (double)(0 * floats[i]) : 0 * doubles[i];
+    for (int64_t i = 0; any != 0 && i < n; i++) {
+        if (isfinite(single ? (double)floats[i] : doubles[i]))
+            continue;
+        double value = value_of(h, rows, i);
+        if (single)
+            floats[i] = (float)value;
+        else
+            doubles[i] = value;
+    }
+}
+
+/* --- a volume ---------------------------------------------------------------
+ */
+
+/* How even and other rows of a type are made. */
+static row_fn *row_fn_of(snow_type type, bool even) {
+    switch (type) {
+    case SNOW_INT8:
+        return even ? even_row_i8 : odd_row_i8;
+    case SNOW_UINT8:
+        return even ? even_row_u8 : odd_row_u8;
+    case SNOW_INT16:
+        return even ? even_row_i16 : odd_row_i16;
+    case SNOW_UINT16:
+        return even ? even_row_u16 : odd_row_u16;
+    case SNOW_INT32:
+        return odd_row_i32;
+    case SNOW_UINT32:
+        return odd_row_u32;
+    case SNOW_INT64:
+        return odd_row_i64;
+    case SNOW_UINT64:
+        return odd_row_u64;
+    case SNOW_FLOAT32:
+        return even ? even_row_f32 : odd_row_f32;
+    default:
+        return odd_row_f64;
+    }
+}
+
+static void halve_block(void *job, int64_t item, int worker) {
+    const halving *h = job;
+    const int64_t *dims = h->out->info.dims;
+    snow_type type = h->volume->info.type;
+    char *own = h->lines + 2 * (size_t)worker * h->line_bytes;
+    const scratch_lines lines = {own, own + h->line_bytes};
+    int64_t first = item % h->blocks * ROWS_AT_ONCE, k = item / h->blocks;
+    int64_t end =
+        first + ROWS_AT_ONCE < dims[1] ? first + ROWS_AT_ONCE : dims[1];
+    for (int64_t j = first; j < end; j++) {
+        char *out = (char *)h->out->owned +
+                    (size_t)((k * dims[1] + j) * dims[0]) * h->size;
+        row_taps rows;
+        rows_at(h, j, k, &rows);
+        h->row(h, &rows, &lines, out);
+        if (type == SNOW_FLOAT32 || type == SNOW_FLOAT64)
+            mend_row(h, &rows, out);
+    }
+}
+
+static axis_taps taps_of(int64_t from, int64_t to) {
+    return (axis_taps){from, to, from == to ? 1 : 2 + (int)(from % 2)};
+}
+
+snow_volume_info snow_halved_info(const snow_volume_info *info, bool axes[3]) {
+    snow_volume_info out = *info;
+    for (int axis = 0; axis < 3; axis++) {
+        if (info->dims[axis] < SNOW_HALVE_LEAST)
+            axes[axis] = false;
+        if (!axes[axis])
+            continue;
+        out.dims[axis] = (info->dims[axis] + 1) / 2;
+        double longer = (double)info->dims[axis] / (double)out.dims[axis];
+        for (int row = 0; row < 3; row++) {
+            double step = info->matrix[row][axis];
+            out.matrix[row][axis] = step * longer;
+            out.matrix[row][3] += step * (longer - 1) / 2;
+        }
+    }
+    snow_volume_info_measure(&out);
+    return out;
+}
+
+static void fill_columns(halving *h) {
+    const axis_taps *x = &h->axes[0];
+    for (int64_t i = 0; i < x->to; i++) {
+        column_taps *column = &h->columns[i];
+        column->count = taps_at(x, i, &column->first, column->weights);
+    }
+}
+
+static size_t aligned(size_t bytes) {
+    return (bytes + 63) / 64 * 64;
+}
+
+static snow_status make_room(halving *h, int threads, snow_halve_room *room) {
+    size_t columns = aligned((size_t)h->axes[0].to * sizeof *h->columns);
+    h->line_bytes = aligned((size_t)h->axes[0].from * sizeof(double));
+    SNOW_TRY(snow_reserve(h->volume->context, &room->block, &room->capacity, 0,
+                          columns + 2 * (size_t)threads * h->line_bytes));
+    h->columns = room->block;
+    h->lines = (char *)room->block + columns;
+    return SNOW_OK;
+}
+
+snow_status snow_volume_halve(const snow_volume *volume, const bool axes[3],
+                              int lean, int threads, snow_halve_room *room,
+                              snow_volume *out) {
+    const int64_t *dims = out->info.dims;
+    halving h = {.volume = volume,
+                 .out = out,
+                 .lean = lean,
+                 .even = true,
+                 .blocks = (dims[1] + ROWS_AT_ONCE - 1) / ROWS_AT_ONCE,
+                 .size = snow_type_size(volume->info.type)};
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t from = volume->info.dims[axis];
+        h.axes[axis] = taps_of(from, dims[axis]);
+        h.even = h.even && (!axes[axis] || from % 2 == 0);
+        h.shift += axes[axis];
+    }
+    h.row = row_fn_of(volume->info.type, h.even);
+    SNOW_TRY(make_room(&h, threads, room));
+    fill_columns(&h);
+    snow_parallel(volume->context, threads, dims[2] * h.blocks, halve_block,
+                  &h);
+    snow_volume_freeze(out);
+    return SNOW_OK;
+}

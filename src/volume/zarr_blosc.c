@@ -1,0 +1,90 @@
+/* volume/zarr_blosc.c - chunks that are packed by Blosc 1.
+ *
+ * libblosc checks a buffer before it is unpacked, and brings other libraries
+ * with it, a C++ one among them: a module has it (base/module.h). */
+#include "volume/optional.h"
+#include "volume/zarr.h"
+
+#if SNOW_HAVE_BLOSC && !SNOW_LOADS
+
+#include <blosc.h>
+#include <string.h>
+
+/* A build of the library may lack a packer, of which it would print. */
+static bool has_packer(const char *library) {
+    static const char *const names[][2] = {
+        {BLOSC_BLOSCLZ_LIBNAME, BLOSC_BLOSCLZ_COMPNAME},
+        {BLOSC_LZ4_LIBNAME, BLOSC_LZ4_COMPNAME},
+        {BLOSC_SNAPPY_LIBNAME, BLOSC_SNAPPY_COMPNAME},
+        {BLOSC_ZLIB_LIBNAME, BLOSC_ZLIB_COMPNAME},
+        {BLOSC_ZSTD_LIBNAME, BLOSC_ZSTD_COMPNAME}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (!strcmp(library, names[i][0]))
+            return blosc_compname_to_compcode(names[i][1]) >= 0;
+    return false;
+}
+
+snow_status snow_zarr_blosc_expect(snow_context *context, const char *name,
+                                   const unsigned char *packed, size_t size,
+                                   uint64_t bytes) {
+    size_t told;
+    if (size < BLOSC_MIN_HEADER_LENGTH ||
+        blosc_cbuffer_validate(packed, size, &told))
+        return snow_zarr_fail_damaged(context, name,
+                                      "has a head that is none of Blosc's, or "
+                                      "of another file");
+    if (told != bytes)
+        return snow_zarr_fail_size(context, name, told, bytes);
+    const char *library = blosc_cbuffer_complib(packed);
+    if (library && has_packer(library))
+        return SNOW_OK;
+    return snow_fail(context, SNOW_BAD_INPUT,
+                     "%s: is packed by %.20s within Blosc, which this libblosc "
+                     "lacks; copy the array with lz4 or zstd",
+                     name, library ? library : "something");
+}
+
+snow_status snow_zarr_blosc_unpack(snow_context *context, const char *name,
+                                   const unsigned char *packed,
+                                   unsigned char *out, uint64_t bytes) {
+    int got = blosc_decompress_ctx(packed, out, (size_t)bytes, 1);
+    if (got >= 0 && (uint64_t)got == bytes)
+        return SNOW_OK;
+    return snow_zarr_fail_damaged(context, name, "cannot be unpacked by Blosc");
+}
+
+#elif SNOW_LOADS && SNOW_HAVE_BLOSC
+
+snow_status snow_zarr_blosc_expect(snow_context *context, const char *name,
+                                   const unsigned char *packed, size_t size,
+                                   uint64_t bytes) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(context, "blosc", &module));
+    return module->expect_blosc(context, name, packed, size, bytes);
+}
+
+snow_status snow_zarr_blosc_unpack(snow_context *context, const char *name,
+                                   const unsigned char *packed,
+                                   unsigned char *out, uint64_t bytes) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(context, "blosc", &module));
+    return module->unpack_blosc(context, name, packed, out, bytes);
+}
+
+#else
+
+snow_status snow_zarr_blosc_expect(snow_context *context, const char *name,
+                                   const unsigned char *packed, size_t size,
+                                   uint64_t bytes) {
+    (void)name, (void)packed, (void)size, (void)bytes;
+    return snow_fail_unbuilt(context, "Blosc", "libblosc-dev");
+}
+
+snow_status snow_zarr_blosc_unpack(snow_context *context, const char *name,
+                                   const unsigned char *packed,
+                                   unsigned char *out, uint64_t bytes) {
+    (void)packed, (void)out;
+    return snow_zarr_blosc_expect(context, name, packed, 0, bytes);
+}
+
+#endif
