@@ -229,8 +229,9 @@ const option_row option_table[] = {
      0, "", "tell nothing but errors"},
     {"memory", 0, "SIZE", TOPIC_RUN, RENDER, read_bytes, FIELD(memory), 0, 0,
      "", "the most that a process may take for voxels, encodings and pictures, "
-     "such as 800M or 4G; what needs more ends with exit code 5 (no limit; -v "
-     "tells the need)"},
+     "such as 800M or 4G; a volume that needs more stays in its file, of which "
+     "slabs are read at a time, and what does not fit even so ends with exit "
+     "code 5 (what is free; -v tells the need)"},
     {"config", 0, "FILE", TOPIC_RUN, LOOKED, read_text, FIELD(config), 0, 0, "",
      "take options from a JSON object: long names for keys, and input; what "
      "stands on the command line counts more"},

@@ -90,9 +90,10 @@ int fail_status(const snow_context *context, snow_status status) {
 
 int fail_volume(const snow_context *context, snow_status status,
                 const char *input) {
-    if (status != SNOW_BAD_INPUT)
+    const char *message = snow_context_message(context);
+    if (status != SNOW_BAD_INPUT || strncmp(message, input, strlen(input)) == 0)
         return fail_status(context, status);
-    say("%s: %s", input, snow_context_message(context));
+    say("%s: %s", input, message);
     return (int)status;
 }
 

@@ -3,12 +3,14 @@
 #include "scene.h"
 #include "commands.h"
 #include "launch.h"
-#include "memory.h"
 #include "report.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 /* What every rank tells the others of a picture. */
 typedef struct rank_figures {
@@ -84,22 +86,89 @@ static void choose_shade(scene *s) {
         s->settings.shade = SNOW_SHADE_NONE;
 }
 
+/* Blocks of the encoding that grow leave gaps in the heap, which count as
+ * memory of the process; blocks of pages of their own go back to the system. */
+static void return_memory(void) {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 256 << 10);
+#endif
+}
+
+/* In memory, or in its file. */
+static int open_as_planned(scene *s, const options *step) {
+    if (!s->plan.streams)
+        return open_input(s->context, step, s->path, &s->volume);
+    return_memory();
+    snow_volume_options data = data_options(step);
+    snow_status status = snow_volume_stream(s->context, s->path, &data,
+                                            s->plan.slab_bytes, &s->volume);
+    if (status != SNOW_OK)
+        return fail_status(s->context, status);
+    if (step->verbosity > 0)
+        say("%s: stays in its file, of which slabs of %.1f MiB, or of 34 "
+            "slices where less will not do, are read at a time",
+            s->path, (double)s->plan.slab_bytes / 0x1p20);
+    if (step->verbosity >= 0 && s->plan.packed)
+        say("note: %s is packed, and is unpacked anew for each slab; unpack it "
+            "to be faster",
+            s->path);
+    return GO_ON;
+}
+
+static int plan_memory(scene *s, const options *step) {
+    snow_volume_options data = data_options(step);
+    bool tell = step->verbosity > 0 && !s->transfer;
+    int done = memory_plan_for(step, s->path, &data, tell, &s->plan);
+    if (done != GO_ON)
+        return done;
+    s->plan.streams = s->plan.streams || (s->in_slabs && s->plan.may_stream);
+    snow_context_set_limit(s->context, s->plan.limit);
+    return GO_ON;
+}
+
+/* The volume is in memory, and what is made of it does not fit beside it: it
+ * goes back to its file, for all to be tried once more. */
+static int leave_in_file(scene *s, const options *step) {
+    snow_frame_free(s->frame);
+    s->frame = NULL;
+    snow_volume_close(s->volume);
+    s->volume = NULL;
+    s->in_slabs = s->plan.streams = true;
+    return open_as_planned(s, step);
+}
+
+static bool may_leave(const scene *s, snow_status status) {
+    return status == SNOW_NO_MEMORY && s->plan.may_stream && !s->plan.streams;
+}
+
+/* Reading slabs is not part of it. */
+static snow_status make_look(scene *s, const options *step) {
+    snow_look look = look_options(step);
+    double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
+    snow_status status = snow_transfer_make(s->volume, &look, &s->transfer);
+    double reading = snow_volume_read_seconds(s->volume) - before;
+    s->times.look += seconds_now() - begin - reading;
+    s->times.read += reading;
+    return status;
+}
+
 /* Decompression and conversion are part of the reading. */
 static int open_alone(scene *s, const options *step) {
-    snow_volume_options data = data_options(step);
-    int done = memory_check(s->context, step, s->path, &data,
-                            step->verbosity > 0 && !s->transfer);
+    int done = plan_memory(s, step);
     double begin = seconds_now();
     if (done == GO_ON)
-        done = open_input(s->context, step, s->path, &s->volume);
+        done = open_as_planned(s, step);
     s->times.read += seconds_now() - begin;
     if (done != GO_ON)
         return done;
     s->whole = *snow_volume_describe(s->volume);
-    begin = seconds_now();
-    if (!s->transfer)
-        done = open_look(s->context, step, s->volume, &s->transfer);
-    s->times.look += seconds_now() - begin;
+    snow_status status = s->transfer ? SNOW_OK : make_look(s, step);
+    if (may_leave(s, status)) {
+        done = leave_in_file(s, step);
+        status = done == GO_ON ? make_look(s, step) : SNOW_OK;
+    }
+    if (status != SNOW_OK)
+        return fail_status(s->context, status);
     if (done == GO_ON)
         done = place_camera(s);
     choose_shade(s);
@@ -243,6 +312,14 @@ static int make_frame(scene *s) {
                                           : fail_status(s->context, status));
 }
 
+static snow_status draw_alone(scene *s) {
+    double before = snow_volume_read_seconds(s->volume);
+    snow_status status = snow_frame_render(s->frame, s->volume, s->transfer,
+                                           &s->view, &s->settings, &s->made);
+    s->times.read += snow_volume_read_seconds(s->volume) - before;
+    return status;
+}
+
 /* A rank that is lost makes both pictures under way fail: one message. */
 static int fail_picture(scene *s, snow_status status, const char *path) {
     if (!s->fault)
@@ -256,11 +333,17 @@ int scene_begin(scene *s, double azimuth) {
     if (done != GO_ON)
         return done;
     s->view.azimuth = azimuth;
-    if (launch_ranks() > 1)
-        status = begin_part(s);
-    else
-        status = snow_frame_render(s->frame, s->volume, s->transfer, &s->view,
-                                   &s->settings, &s->made);
+    status = launch_ranks() > 1 ? begin_part(s) : draw_alone(s);
+    if (may_leave(s, status)) {
+        options step = *s->asked;
+        step.time = s->whole.time;
+        done = leave_in_file(s, &step);
+        if (done == GO_ON)
+            done = make_frame(s);
+        if (done != GO_ON)
+            return done;
+        status = draw_alone(s);
+    }
     if (status != SNOW_OK)
         return fail_picture(s, status, s->path);
     s->begun[s->under_way++] = (scene_shot){s->path, s->whole};

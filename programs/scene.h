@@ -4,6 +4,7 @@
 #ifndef SCENE_H
 #define SCENE_H
 
+#include "memory.h"
 #include "options.h"
 #include "render_stats.h"
 
@@ -19,6 +20,9 @@ typedef struct scene {
     const options *asked;
     const char *path; /* of the volume */
     bool turns;       /* pictures from several sides are asked for */
+    memory_plan plan; /* for it, where this process is alone */
+    bool in_slabs;    /* it did not fit beside its interesting voxels: this one
+                         and all after it stay in their files */
     snow_context *context;
     snow_volume_info whole; /* of the volume, of which ranks have parts */
     snow_volume *volume;

@@ -335,7 +335,7 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
     options step = *s->asked;
     step.time = shot->time;
     snow_volume_options data = data_options(&step);
-    int done = memory_check(s->context, &step, shot->path, &data, false);
+    int done = memory_check(&step, shot->path, &data);
     if (done == GO_ON)
         done = open_input(s->context, &step, shot->path, &volume);
     if (done == GO_ON)

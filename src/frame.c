@@ -15,7 +15,7 @@
 #include "perspective.h"
 #include "ranks_parts.h"
 #include "sheared.h"
-#include "volume/volume.h"
+#include "volume/stream.h"
 
 #include <string.h>
 
@@ -83,6 +83,28 @@ static snow_status check_part(const snow_job *job) {
                              snow_transfer_fades(job->transfer));
 }
 
+/* Of a volume whose voxels stay in their file, bands are made, and nothing else
+ * sees voxels. */
+static snow_status check_stream(const snow_job *job, int parts) {
+    const snow_settings *settings = &job->settings;
+    if (!job->volume->stream)
+        return SNOW_OK;
+    const char *what = settings->mode != SNOW_MODE_OVER
+                           ? snow_mode_name(settings->mode)
+                       : settings->depth ? "depths"
+                       : settings->method != SNOW_METHOD_SHEARED
+                           ? snow_method_name(settings->method)
+                           : NULL;
+    if (!what && parts == 1)
+        return SNOW_OK;
+    return snow_fail(job->context, SNOW_BAD_USAGE,
+                     "%s: a volume whose voxels stay in their file is rendered "
+                     "in mode over, by the method sheared, to pixels no more "
+                     "than about 15 voxels wide, without depths; open it with "
+                     "snow_volume_open",
+                     what ? what : "slabs");
+}
+
 /* What the kernel has to know of a level. */
 static void tell_level(const snow_volume *volume, snow_placement *p) {
     if (volume->fine[0] == 0)
@@ -102,6 +124,7 @@ static snow_status place(snow_job *job, int parts, int part) {
     if (job->settings.method == SNOW_METHOD_SHEARED &&
         !snow_sheared_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
+    SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
     return check_part(job);
 }

@@ -153,11 +153,13 @@ static snow_status make_levels(snow_levels *levels, int lean, int threads,
     return SNOW_OK;
 }
 
+/* Voxels that stay in their file are not read for a level. */
 static bool are_for(const snow_volume *volume, const snow_transfer *transfer,
                     const snow_settings *s) {
     return s->method == SNOW_METHOD_SHEARED &&
            s->quality == SNOW_QUALITY_DRAFT && s->mode == SNOW_MODE_OVER &&
-           !s->deterministic && !volume->is_part && !has_categories(transfer);
+           !s->deterministic && !volume->is_part && !volume->stream &&
+           !has_categories(transfer);
 }
 
 snow_status snow_levels_take(snow_levels **levels, const snow_volume *volume,

@@ -184,25 +184,24 @@ static snow_slab encoded_slab(const snow_sheared_order *order, bool between) {
     return slab;
 }
 
-static snow_status encode_bands(snow_sheared *s,
-                                const snow_sheared_order *order,
-                                const snow_encoded_key *key) {
-    snow_normal_maker maker;
-    snow_fader fader;
-    snow_placement stored;
-    snow_clip_placement(&order->clip, order->placement, &stored);
-    bool shaded = order->settings->shade == SNOW_SHADE_PHONG;
-    if (shaded)
-        SNOW_TRY(snow_normal_maker_init(s->context, order->volume, &maker));
+snow_status
+snow_sheared_bands_order(snow_sheared *s, const snow_sheared_order *order,
+                         const snow_encoded_key *key, const snow_volume *volume,
+                         const snow_clip *clip, snow_band_tools *tools,
+                         snow_bands_order *out) {
+    snow_clip_placement(clip, order->placement, &tools->stored);
+    if (key->shaded)
+        SNOW_TRY(snow_normal_maker_init(s->context, volume, &tools->maker));
     if (key->faded)
-        SNOW_TRY(snow_fader_init(s->context, order->volume, order->transfer,
-                                 key->threshold, order->settings->isa, &fader));
-    snow_bands_order bands = {
-        .volume = order->volume,
-        .placement = &stored,
+        SNOW_TRY(snow_fader_init(s->context, volume, order->transfer,
+                                 key->threshold, order->settings->isa,
+                                 &tools->fader));
+    *out = (snow_bands_order){
+        .volume = volume,
+        .placement = &tools->stored,
         .coder = &s->coder,
-        .maker = shaded ? &maker : NULL,
-        .fader = key->faded ? &fader : NULL,
+        .maker = key->shaded ? &tools->maker : NULL,
+        .fader = key->faded ? &tools->fader : NULL,
         .encoding = order->settings->encoding,
         .first_slice = key->slab.first,
         .slice_count = key->slab.count,
@@ -210,6 +209,18 @@ static snow_status encode_bands(snow_sheared *s,
         .isa = order->settings->isa,
         .threads = order->settings->threads,
     };
+    return SNOW_OK;
+}
+
+static snow_status encode_bands(snow_sheared *s,
+                                const snow_sheared_order *order,
+                                const snow_encoded_key *key) {
+    snow_band_tools tools;
+    snow_bands_order bands;
+    if (order->volume->stream)
+        return snow_sheared_encode_stream(s, order, key);
+    SNOW_TRY(snow_sheared_bands_order(s, order, key, order->volume,
+                                      &order->clip, &tools, &bands));
     return snow_bands_encode(&s->bands, &bands);
 }
 
@@ -887,8 +898,10 @@ snow_status snow_sheared_begin(snow_sheared *s, const snow_sheared_order *order,
     double mark = snow_seconds();
     if (aside)
         s->canvas = &s->canvases[s->canvas == s->canvases];
+    double reading = snow_volume_read_seconds(order->volume);
     SNOW_TRY(snow_sheared_encode(s, order, stats));
-    stats->seconds_encode += snow_seconds() - mark;
+    reading = snow_volume_read_seconds(order->volume) - reading;
+    stats->seconds_encode += snow_seconds() - mark - reading;
     SNOW_TRY(order->placement->perspective
                  ? snow_sheared_seen_begin(s, order, stats, &image)
                  : begin_sheared(s, order, stats, &image));

@@ -94,6 +94,28 @@ snow_status snow_sheared_encode(snow_sheared *sheared,
                                 const snow_sheared_order *order,
                                 snow_stats *stats);
 
+/* What encoding works with of one volume, for as long as it works. */
+typedef struct snow_band_tools {
+    snow_placement stored; /* of the voxels that it has */
+    snow_normal_maker maker;
+    snow_fader fader;
+} snow_band_tools;
+
+/* How a volume, which is the order's or has a slab of it, is encoded: with all
+ * of the slices that the key names.  Points into the tools. */
+snow_status
+snow_sheared_bands_order(snow_sheared *sheared, const snow_sheared_order *order,
+                         const snow_encoded_key *key, const snow_volume *volume,
+                         const snow_clip *clip, snow_band_tools *tools,
+                         snow_bands_order *out);
+
+/* The bands of a volume whose voxels stay in their file (sheared_stream.c).
+ * Errors: SNOW_NO_MEMORY, with how many voxels are interesting; those of
+ * snow_slabs_visit. */
+snow_status snow_sheared_encode_stream(snow_sheared *sheared,
+                                       const snow_sheared_order *order,
+                                       const snow_encoded_key *key);
+
 /* The palette of a picture whose rays all run `exponent` reference lengths; in
  * perspective, where they differ, -1.  Errors: SNOW_NO_MEMORY. */
 snow_status snow_sheared_classify(snow_sheared *sheared,

@@ -127,6 +127,35 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
                                       const snow_volume_options *options,
                                       snow_volume **out);
 
+/* Opens a volume that is larger than the memory there is for it: its voxels
+ * stay in the file.  What needs them reads them again, in slabs along z of up
+ * to `slab_bytes` bytes (0: 64 MiB; a slab of more where fewer slices do not
+ * serve: pictures with slices along x and y take 32 of z, and neighbours), and
+ * drops them.  The volume goes where others go, and pictures and looks are the
+ * same bit for bit as of snow_volume_open (but drafts of few pixels, which are
+ * made of all voxels here, and not of a level of fewer):
+ *
+ *   snow_transfer_make   reads it once, and types of more than 16 bits a few
+ *                        times
+ *   snow_frame_render    reads it where a volume in memory is encoded, and
+ *                        keeps the interesting voxels: for the first picture,
+ *                        another opacity function or threshold, and another
+ *                        slice axis.  In mode over by the sheared method alone;
+ *                        encoding AUTO is the bit-map
+ *
+ * All else that looks at voxels refuses it (SNOW_BAD_USAGE),
+ * snow_volume_voxels is NULL, and snow_volume_measure finds no finite value.
+ * Path and options are copied; the file must stay as it is and where it is.
+ * Errors: as snow_volume_inspect; SNOW_BAD_USAGE (standard input, a pipe); of
+ * later readings those of snow_volume_open. */
+SNOW_API snow_status snow_volume_stream(snow_context *context, const char *path,
+                                        const snow_volume_options *options,
+                                        uint64_t slab_bytes, snow_volume **out);
+
+/* Seconds that reading its slabs has taken so far; 0 of other volumes, and not
+ * part of the figures of looks and pictures. */
+SNOW_API double snow_volume_read_seconds(const snow_volume *volume);
+
 /* What snow_volume_open would make, without its voxels: of the file's little
  * more than the header is read, and what is behind it is not verified.
  * Standard input is used up.  Errors: as snow_volume_open. */
@@ -214,7 +243,7 @@ SNOW_API const snow_volume_info *snow_volume_describe(const snow_volume *);
 SNOW_API const char *snow_volume_patient(const snow_volume *volume);
 
 /* Its voxels: dims[0]*dims[1]*dims[2] values of the native type, x fastest;
- * owned by the volume. */
+ * owned by the volume.  NULL where they stay in the file. */
 SNOW_API const void *snow_volume_voxels(const snow_volume *volume);
 
 /* Figures over the finite data values, after slope and intercept, summed in

@@ -30,6 +30,9 @@ struct snow_context {
     struct snow_pool *pool; /* threads (base/parallel.h), NULL until needed */
     uint64_t serials;       /* given out so far, to tell objects apart */
     uint64_t bytes_read;    /* from files */
+    void *spare;            /* a block that the next volume may take for its
+                               voxels (volume/stream.c); NULL: none */
+    size_t spare_bytes;
     char message[SNOW_MESSAGE_BYTES];
 };
 

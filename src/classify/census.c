@@ -9,8 +9,12 @@
  *
  * Everything that is said of a volume is a count, a minimum or a maximum.  Many
  * ranks find them each of the voxels that it answers for, add them up, and know
- * the same of the whole to the bit as one rank would, however it is cut. */
+ * the same of the whole to the bit as one rank would, however it is cut.  So it
+ * is of slabs of a volume that stays in its file (volume/stream.h), which each
+ * pass reads anew; but what sampled passes read is kept of the first one, where
+ * there is memory for it. */
 #include "classify/look.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,9 +70,9 @@ static bool next_run(walk *w) {
     return true;
 }
 
-/* The data values of up to BLOCK voxels that a sampled block of the whole has
- * of a run; 0 at the end. */
-static size_t next_block(walk *w, double values[BLOCK]) {
+/* Up to BLOCK voxels that a sampled block of the whole has of a run: how many,
+ * 0 at the end, and the place in memory of the first one. */
+static size_t next_voxels(walk *w, int64_t *first) {
     for (;;) {
         if (w->at >= w->end && !next_run(w))
             return 0;
@@ -77,18 +81,36 @@ static size_t next_block(walk *w, double values[BLOCK]) {
             uint64_t count = BLOCK - offset;
             if (count > w->end - w->at)
                 count = w->end - w->at;
-            const snow_volume_info *info = &w->volume->info;
-            snow_volume_natives(w->volume, (int64_t)w->at + w->ahead,
-                                (size_t)count, values);
-            for (size_t i = 0; i < count; i++)
-                values[i] = info->slope * values[i] + info->intercept;
-            for (size_t i = 0; i < count && w->log; i++)
-                values[i] = values[i] > 0 ? values[i] : (double)NAN;
+            *first = (int64_t)w->at + w->ahead;
             w->at += count;
             return (size_t)count;
         }
         w->at += w->stride - offset;
     }
+}
+
+/* Their data values. */
+static size_t next_block(walk *w, double values[BLOCK]) {
+    const snow_volume_info *info = &w->volume->info;
+    int64_t first = 0;
+    size_t count = next_voxels(w, &first);
+    snow_volume_natives(w->volume, first, count, values);
+    for (size_t i = 0; i < count; i++)
+        values[i] = info->slope * values[i] + info->intercept;
+    for (size_t i = 0; i < count && w->log; i++)
+        values[i] = values[i] > 0 ? values[i] : (double)NAN;
+    return count;
+}
+
+/* One pass over all slabs of a volume, each of which is walked by itself, or
+ * over the sample.  Many ranks have their voxels in memory, where it cannot
+ * fail. */
+static snow_status each_slab(const snow_census *census, snow_effort effort,
+                             snow_slab_fn *visit, void *user) {
+    static const snow_slab_cut cut = {.step = 1};
+    if (effort == SNOW_SAMPLED && census->sample)
+        return visit(census->sample, user);
+    return snow_slabs_visit(census->volume, &cut, visit, user);
 }
 
 /* Adds up what all ranks have counted. */
@@ -132,17 +154,45 @@ static bool counted_type(snow_type type, int *smallest) {
            type == SNOW_UINT16;
 }
 
-static void count_natives(const snow_volume *volume, uint64_t *counts) {
+/* Bytes that are looked at together. */
+#define EVEN 32
+
+/* Whether so many bytes are copies of one value of `size` bytes, 1 or 2: what
+ * is empty mostly is, and one count that is raised again and again is slow. */
+static bool is_even(const void *bytes, size_t size) {
+    uint64_t words[EVEN / sizeof(uint64_t)];
+    memcpy(words, bytes, sizeof words);
+    uint64_t turned = words[0] << 8 * size | words[0] >> (64 - 8 * size);
+    uint64_t differ = words[0] ^ turned;
+    for (size_t n = 1; n < sizeof words / sizeof *words; n++)
+        differ |= words[0] ^ words[n];
+    return !differ;
+}
+
+/* `user` are the counts. */
+static snow_status count_natives(const snow_volume *volume, void *user) {
+    uint64_t *counts = user;
     walk w = walk_begin(volume, false, SNOW_EXACT);
-#define COUNT_TYPE(name, c_type, smallest)                          \
-    case name: {                                                    \
-        const c_type *voxels = volume->voxels;                      \
-        while (next_run(&w)) {                                      \
-            const c_type *first = voxels + (int64_t)w.at + w.ahead; \
-            for (uint64_t i = 0; i < w.end - w.at; i++)             \
-                counts[first[i] - (smallest)]++;                    \
-        }                                                           \
-        break;                                                      \
+#define COUNT_TYPE(name, c_type, smallest)                             \
+    case name: {                                                       \
+        const c_type *voxels = volume->voxels;                         \
+        const uint64_t some = EVEN / sizeof *voxels;                   \
+        while (next_run(&w)) {                                         \
+            const c_type *at = voxels + (int64_t)w.at + w.ahead;       \
+            const c_type *end = at + (w.end - w.at);                   \
+            while (at < end)                                           \
+                if ((uint64_t)(end - at) >= some &&                    \
+                    is_even(at, sizeof *voxels)) {                     \
+                    counts[*at - (smallest)] += some;                  \
+                    at += some;                                        \
+                } else {                                               \
+                    const c_type *last =                               \
+                        (uint64_t)(end - at) < some ? end : at + some; \
+                    while (at < last)                                  \
+                        counts[*at++ - (smallest)]++;                  \
+                }                                                      \
+        }                                                              \
+        break;                                                         \
     }
     switch (volume->info.type) {
         COUNT_TYPE(SNOW_INT8, int8_t, INT8_MIN)
@@ -153,6 +203,7 @@ static void count_natives(const snow_volume *volume, uint64_t *counts) {
         break;
     }
 #undef COUNT_TYPE
+    return SNOW_OK;
 }
 
 /* The n-th counted value in the order of data values (a negative slope turns
@@ -196,10 +247,60 @@ static double counted_quantile(const snow_census *census, uint64_t rank) {
 /* --- all types -------------------------------------------------------------
  */
 
-static void measure_values(snow_census *census) {
+/* Room for the sample of a volume that stays in its file, and no more than a
+ * quarter of what a limit leaves; where there is none passes read the file.  A
+ * row that is no longer than two samples is walked wholly by any pass. */
+static void make_sample(snow_census *census) {
+    const snow_volume *volume = census->volume;
+    snow_context *context = volume->context;
+    const int64_t *dims = volume->info.dims;
+    if (!volume->stream)
+        return;
+    walk w = walk_begin(volume, false, SNOW_SAMPLED);
+    uint64_t all = (uint64_t)(dims[0] * dims[1] * dims[2]);
+    uint64_t rest = all % w.stride < BLOCK ? all % w.stride : BLOCK;
+    uint64_t count = all / w.stride * BLOCK + rest;
+    uint64_t bytes = count * snow_type_size(volume->info.type);
+    if (context->limit && (context->bytes > context->limit ||
+                           bytes > (context->limit - context->bytes) / 4))
+        return;
+    snow_volume_info info = volume->info;
+    info.dims[0] = (int64_t)count;
+    info.dims[1] = info.dims[2] = 1;
+    if (snow_volume_new(context, &info, &census->sample) != SNOW_OK)
+        census->sample = NULL;
+}
+
+/* What a sampled pass sees of a slab goes to the sample, `at` voxels of which
+ * are there.  */
+static void keep_sample(const snow_volume *slab, const snow_volume *sample,
+                        uint64_t *at) {
+    size_t count, size = snow_type_size(slab->info.type);
+    int64_t first = 0;
+    walk w = walk_begin(slab, false, SNOW_SAMPLED);
+    while ((count = next_voxels(&w, &first))) {
+        memcpy((char *)sample->owned + *at * size,
+               (const char *)slab->voxels + (uint64_t)first * size,
+               count * size);
+        *at += count;
+    }
+}
+
+/* A census in the making. */
+typedef struct measuring {
+    snow_census *census;
+    uint64_t sampled; /* voxels */
+} measuring;
+
+/* `user` is a measuring. */
+static snow_status measure_values(const snow_volume *slab, void *user) {
+    measuring *m = user;
+    snow_census *census = m->census;
     double values[BLOCK];
     size_t count;
-    walk w = walk_begin(census->volume, census->log, SNOW_EXACT);
+    walk w = walk_begin(slab, census->log, SNOW_EXACT);
+    if (census->sample)
+        keep_sample(slab, census->sample, &m->sampled);
     while ((count = next_block(&w, values))) {
         for (size_t i = 0; i < count; i++) {
             double value = values[i];
@@ -216,6 +317,7 @@ static void measure_values(snow_census *census) {
                 census->max = value;
         }
     }
+    return SNOW_OK;
 }
 
 /* What all ranks have measured; one without a finite voxel has no say. */
@@ -246,7 +348,7 @@ static snow_status count_all(snow_census *census) {
     census->counts = snow_allocate_clear(census->volume->context,
                                          DIGITS * sizeof *census->counts);
     SNOW_TRY(agree(census, census->counts ? SNOW_OK : SNOW_NO_MEMORY));
-    count_natives(census->volume, census->counts);
+    SNOW_TRY(each_slab(census, SNOW_EXACT, count_natives, census->counts));
     SNOW_TRY(sum_up_table(census, census->counts));
     measure_counts(census);
     return SNOW_OK;
@@ -261,8 +363,11 @@ snow_status snow_census_new(const snow_volume *volume, snow_comm *comm,
     if (counted_type(volume->info.type, &smallest))
         status = count_all(&census);
     else {
-        measure_values(&census);
-        status = join_measures(&census);
+        measuring m = {&census, 0};
+        make_sample(&census);
+        status = each_slab(&census, SNOW_EXACT, measure_values, &m);
+        if (status == SNOW_OK)
+            status = join_measures(&census);
     }
     if (status != SNOW_OK) {
         snow_census_free(&census);
@@ -276,6 +381,7 @@ snow_status snow_census_new(const snow_volume *volume, snow_comm *comm,
 }
 
 void snow_census_free(snow_census *census) {
+    snow_volume_close(census->sample);
     snow_release(census->volume->context, census->counts);
 }
 
@@ -287,26 +393,37 @@ static int bin_of(bool log, double value, double low, double high, int bins) {
     return bin < bins ? bin : bins - 1;
 }
 
-static void count_sampled(const snow_census *census, double low, double high,
-                          int bins, uint64_t *counts, uint64_t *all) {
+/* A histogram in the making. */
+typedef struct bin_count {
+    bool log;
+    double low, high;
+    int bins;
+    uint64_t *counts, all;
+} bin_count;
+
+/* `user` is a bin_count. */
+static snow_status count_sampled(const snow_volume *slab, void *user) {
+    bin_count *b = user;
     double values[BLOCK];
     size_t got;
-    walk w = walk_begin(census->volume, census->log, SNOW_SAMPLED);
+    walk w = walk_begin(slab, b->log, SNOW_SAMPLED);
     while ((got = next_block(&w, values)))
         for (size_t i = 0; i < got; i++) {
-            int bin = bin_of(census->log, values[i], low, high, bins);
-            *all += isfinite(values[i]) != 0;
+            int bin = bin_of(b->log, values[i], b->low, b->high, b->bins);
+            b->all += isfinite(values[i]) != 0;
             if (bin >= 0)
-                counts[bin]++;
+                b->counts[bin]++;
         }
+    return SNOW_OK;
 }
 
 snow_status snow_count_bins(const snow_census *census, double low, double high,
                             int bins, uint64_t *counts, uint64_t *all) {
     memset(counts, 0, (size_t)bins * sizeof *counts);
     if (!census->counts) {
-        *all = 0;
-        count_sampled(census, low, high, bins, counts, all);
+        bin_count b = {census->log, low, high, bins, counts, 0};
+        SNOW_TRY(each_slab(census, SNOW_SAMPLED, count_sampled, &b));
+        *all = b.all;
         SNOW_TRY(sum_up(census, counts, (size_t)bins));
         return sum_up(census, all, 1);
     }
@@ -345,28 +462,38 @@ typedef struct search {
     uint64_t *counts;
 } search;
 
+/* One digit of several searches. */
+typedef struct digit_count {
+    bool log;
+    snow_effort effort;
+    search *searches;
+    size_t count;
+    int shift;    /* of the digit */
+    uint64_t all; /* values that were looked at */
+} digit_count;
+
 /* Counts the next digit of all values that begin as a search's prefix does;
- * returns how many values there are. */
-static uint64_t count_digits(const snow_census *census, snow_effort effort,
-                             search *searches, size_t count, int shift) {
+ * `user` is a digit_count. */
+static snow_status count_digits(const snow_volume *slab, void *user) {
+    digit_count *d = user;
     double values[BLOCK];
-    uint64_t all = 0;
+    int shift = d->shift;
     uint64_t above =
         shift + DIGIT_BITS < 64 ? ~UINT64_C(0) << (shift + DIGIT_BITS) : 0;
     size_t got;
-    walk w = walk_begin(census->volume, census->log, effort);
+    walk w = walk_begin(slab, d->log, d->effort);
     while ((got = next_block(&w, values))) {
         for (size_t i = 0; i < got; i++) {
             if (!isfinite(values[i]))
                 continue;
             uint64_t key = key_of(values[i]);
-            all++;
-            for (size_t n = 0; n < count; n++)
-                if ((key & above) == searches[n].prefix)
-                    searches[n].counts[key >> shift & (DIGITS - 1)]++;
+            d->all++;
+            for (size_t n = 0; n < d->count; n++)
+                if ((key & above) == d->searches[n].prefix)
+                    d->searches[n].counts[key >> shift & (DIGITS - 1)]++;
         }
     }
-    return all;
+    return SNOW_OK;
 }
 
 static void take_digit(search *s, int shift) {
@@ -390,12 +517,13 @@ static snow_status select_digits(const snow_census *census, snow_effort effort,
                                  search *searches, uint64_t *counts) {
     for (int shift = 64 - DIGIT_BITS; shift >= 0; shift -= DIGIT_BITS) {
         memset(counts, 0, count * DIGITS * sizeof *counts);
-        uint64_t all = count_digits(census, effort, searches, count, shift);
-        SNOW_TRY(sum_up(census, &all, 1));
-        for (size_t n = 0; n < count && all; n++) {
+        digit_count d = {census->log, effort, searches, count, shift, 0};
+        SNOW_TRY(each_slab(census, effort, count_digits, &d));
+        SNOW_TRY(sum_up(census, &d.all, 1));
+        for (size_t n = 0; n < count && d.all; n++) {
             SNOW_TRY(sum_up_table(census, searches[n].counts));
             if (shift == 64 - DIGIT_BITS)
-                searches[n].rank = rank_of(fractions[n], all);
+                searches[n].rank = rank_of(fractions[n], d.all);
             take_digit(&searches[n], shift);
         }
     }

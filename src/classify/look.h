@@ -35,10 +35,12 @@ typedef struct snow_census {
     uint64_t *counts; /* of each native value of 8 and 16 bit types, from the
                          type's smallest on; NULL for other types */
     uint64_t finite;
-    double min, max; /* of finite data values; NaN when there is none */
-    uint64_t at_min; /* how many have the smallest value */
-    bool log;        /* values that are not above 0 are left out, and histograms
-                        have bins that are equal in the logarithm */
+    double min, max;     /* of finite data values; NaN when there is none */
+    uint64_t at_min;     /* how many have the smallest value */
+    snow_volume *sample; /* of a volume that stays in its file: what a sampled
+                            pass reads, as one row; NULL: it reads the file */
+    bool log; /* values that are not above 0 are left out, and histograms
+             have bins that are equal in the logarithm */
 } snow_census;
 
 /* Counts the voxels that a volume answers for; with a communicator, which is

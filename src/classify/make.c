@@ -5,6 +5,7 @@
  * replaces the colours, and opacities replace the opacities.  The gradient
  * opacity is what was asked for, or none. */
 #include "classify/look.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -283,6 +284,8 @@ snow_status snow_transfer_make_among(snow_comm *comm, const snow_volume *volume,
         look = &automatic;
     SNOW_TRY(check_look(volume->context, look));
     snow_status status = begin_draft(volume->context, look, &draft);
+    if (comm && status == SNOW_OK)
+        status = snow_volume_need_voxels(volume);
     if (comm)
         status = snow_comm_agree(comm, status);
     if (status == SNOW_OK)

@@ -1,6 +1,7 @@
 /* classify/tally.c - see tally.h.  The classifier that encodes voxels counts
  * them as well, so that both agree on which are interesting. */
 #include "classify/tally.h"
+#include "volume/stream.h"
 
 #include <string.h>
 
@@ -78,6 +79,7 @@ snow_status snow_tally_count(const snow_volume *volume,
     snow_classifier classifier = {0};
     snow_strip strip = {0};
     pass p = {.volume = volume, .tally = tally};
+    SNOW_TRY(snow_volume_need_voxels(volume));
     snow_volume_get_part(volume, &p.part);
     if (!p.part.count[0] || !p.part.count[1] || !p.part.count[2])
         return SNOW_OK;

@@ -14,11 +14,14 @@
 #include "encode/rows.h"
 
 #include <stdatomic.h>
+#include <string.h>
 
 /* Where a band's slices come from and go to, for all threads. */
 typedef struct encode_job {
     snow_bands *bands;
     const snow_bands_order *order;
+    snow_bands_piece piece; /* of the bands that the order is for */
+    bool anew;              /* they begin with it */
     const snow_scheme *scheme;
     snow_row_encoder rows;
     unsigned char *scratch;
@@ -54,24 +57,81 @@ static row_buffers buffers_of(const encode_job *job, int worker) {
                          columns + column_bytes(job->bands)};
 }
 
+/* --- room -----------------------------------------------------------------
+ */
+
+/* A buffer of `bytes` bytes in the place of another, of which `keep` stay. */
+static snow_status exchange(snow_context *context, void *block_pointer,
+                            size_t *capacity, size_t keep, size_t bytes) {
+    void *old, *copy = snow_allocate(context, bytes);
+    if (!copy)
+        return SNOW_NO_MEMORY;
+    memcpy(&old, block_pointer, sizeof old);
+    if (keep)
+        memcpy(copy, old, keep);
+    snow_release(context, old);
+    memcpy(block_pointer, &copy, sizeof copy);
+    *capacity = bytes;
+    return SNOW_OK;
+}
+
+/* As snow_reserve.  Bands that are encoded piece by piece grow side by side, by
+ * an eighth, so that together they have little to spare. */
+static snow_status reserve(snow_context *context, bool piecewise,
+                           void *block_pointer, size_t *capacity, size_t keep,
+                           size_t bytes) {
+    if (!piecewise)
+        return snow_reserve(context, block_pointer, capacity, keep, bytes);
+    if (bytes <= *capacity)
+        return SNOW_OK;
+    size_t wanted = *capacity + *capacity / 8;
+    return exchange(context, block_pointer, capacity, keep,
+                    wanted > bytes ? wanted : bytes);
+}
+
 /* Room in IA for a slice of a band in which every voxel is interesting. */
-static snow_status reserve_ia(snow_sparse *band, bool with_normals,
-                              bool with_fades) {
+static snow_status reserve_ia(snow_sparse *band, bool piecewise,
+                              bool with_normals, bool with_fades) {
+    snow_context *context = band->context;
     size_t voxels = (size_t)band->columns * (size_t)band->rows;
     size_t size = (size_t)band->code_bytes, word = sizeof(uint16_t);
     size_t begin = band->ia_voxels, end = band->ia_voxels + voxels;
-    SNOW_TRY(snow_reserve(band->context, &band->codes, &band->codes_capacity,
-                          begin * size, end * size + SNOW_ROW_MARGIN));
+    SNOW_TRY(reserve(context, piecewise, &band->codes, &band->codes_capacity,
+                     begin * size, end * size + SNOW_ROW_MARGIN));
     if (with_normals)
-        SNOW_TRY(snow_reserve(band->context, &band->normals,
-                              &band->normals_capacity, begin * word,
-                              end * word + SNOW_ROW_MARGIN));
+        SNOW_TRY(reserve(context, piecewise, &band->normals,
+                         &band->normals_capacity, begin * word,
+                         end * word + SNOW_ROW_MARGIN));
     if (with_fades)
-        SNOW_TRY(snow_reserve(band->context, &band->fades,
-                              &band->fades_capacity, begin * word,
-                              end * word + SNOW_ROW_MARGIN));
+        SNOW_TRY(reserve(context, piecewise, &band->fades,
+                         &band->fades_capacity, begin * word,
+                         end * word + SNOW_ROW_MARGIN));
     return SNOW_OK;
 }
+
+/* Makes a buffer as short as the `bytes` that it holds, where it is longer by
+ * more than an eighth; where there is no memory for a copy it stays. */
+static void trim(snow_context *context, void *block_pointer, size_t *capacity,
+                 size_t bytes) {
+    if (bytes<*capacity && * capacity - bytes> * capacity / 8)
+        (void)exchange(context, block_pointer, capacity, bytes, bytes);
+}
+
+/* A band that is full gives back what its buffers have to spare. */
+static void trim_band(snow_sparse *band) {
+    snow_context *context = band->context;
+    size_t voxels = band->ia_voxels, words = voxels * sizeof(uint16_t);
+    trim(context, &band->ea, &band->ea_capacity,
+         band->ea_bytes + SNOW_EA_MARGIN);
+    trim(context, &band->codes, &band->codes_capacity,
+         voxels * (size_t)band->code_bytes + SNOW_ROW_MARGIN);
+    trim(context, &band->normals, &band->normals_capacity,
+         words + SNOW_ROW_MARGIN);
+    trim(context, &band->fades, &band->fades_capacity, words + SNOW_ROW_MARGIN);
+}
+
+/* --- a slice of a band ----------------------------------------------------
+ */
 
 /* Rows that lie end to end, and fill their masks, are one long row. */
 static void join_rows(snow_rows *rows, size_t size) {
@@ -151,7 +211,8 @@ static snow_status encode_slice(const encode_job *job,
     const snow_bands_order *order = job->order;
     size_t begin = band->ia_voxels;
     snow_rows rows, apart;
-    SNOW_TRY(reserve_ia(band, order->maker != NULL, order->fader != NULL));
+    SNOW_TRY(reserve_ia(band, !job->anew, order->maker != NULL,
+                        order->fader != NULL));
     snow_fetch_slice(fetch, slice, &apart);
     rows = apart;
     join_rows(&rows, fetch->size);
@@ -187,23 +248,37 @@ static snow_fetch_order fetch_order(const snow_bands_order *order,
                               .isa = order->isa};
 }
 
+static int64_t band_rows(const snow_bands *bands, int64_t number) {
+    int64_t left = bands->rows - number * SNOW_BAND_ROWS;
+    return left < SNOW_BAND_ROWS ? left : SNOW_BAND_ROWS;
+}
+
+static snow_status begin_band(const snow_bands *bands, int64_t number,
+                              const snow_scheme *scheme, snow_isa isa) {
+    return snow_sparse_begin_band(&bands->bands[number], scheme, bands->columns,
+                                  band_rows(bands, number), bands->slices,
+                                  bands->code_bytes, isa);
+}
+
 static snow_status encode_band(const encode_job *job, int64_t number,
                                int worker) {
     const snow_bands *bands = job->bands;
     const snow_bands_order *order = job->order;
-    snow_sparse *band = &bands->bands[number];
-    int64_t first = number * SNOW_BAND_ROWS, left = bands->rows - first;
-    int64_t rows = left < SNOW_BAND_ROWS ? left : SNOW_BAND_ROWS;
+    snow_sparse *band = &bands->bands[job->piece.first_band + number];
+    int64_t first = job->piece.first_row + number * SNOW_BAND_ROWS;
+    int64_t rows = band_rows(bands, job->piece.first_band + number);
     row_buffers buffers = buffers_of(job, worker);
     snow_fetch_order from =
         fetch_order(order, order->first_slice, order->slice_count, first, rows);
     snow_fetch fetch;
     snow_fetch_begin(&fetch, &from, buffers.fetch);
-    SNOW_TRY(snow_sparse_begin_band(band, job->scheme, bands->columns, rows,
-                                    bands->slices, bands->code_bytes,
-                                    order->isa));
-    for (int64_t slice = 0; slice < bands->slices; slice++)
+    if (job->anew)
+        SNOW_TRY(begin_band(bands, job->piece.first_band + number, job->scheme,
+                            order->isa));
+    for (int64_t slice = 0; slice < job->piece.slices; slice++)
         SNOW_TRY(encode_slice(job, &buffers, &fetch, band, first, slice));
+    if (!job->anew && band->filled == bands->slices)
+        trim_band(band);
     return SNOW_OK;
 }
 
@@ -260,7 +335,7 @@ static snow_status choose(encode_job *job) {
     SNOW_TRY(snow_sparse_begin_band(codes, &snow_scheme_bitmap, bands->columns,
                                     1, bands->slices, bands->code_bytes,
                                     order->isa));
-    SNOW_TRY(reserve_ia(codes, false, order->fader != NULL));
+    SNOW_TRY(reserve_ia(codes, false, false, order->fader != NULL));
     for (int64_t n = 0; n < rows; n += step) {
         snow_fetch_order from = fetch_order(
             order, order->first_slice + n / bands->rows, 1, n % bands->rows, 1);
@@ -319,12 +394,15 @@ static snow_status measure(snow_bands *bands, const snow_bands_order *order) {
     return SNOW_OK;
 }
 
+static int64_t count_bands(const snow_bands *bands) {
+    return (bands->rows + SNOW_BAND_ROWS - 1) / SNOW_BAND_ROWS;
+}
+
+/* What the threads need. */
 static snow_status prepare(encode_job *job, int threads) {
     snow_bands *bands = job->bands;
     const snow_bands_order *order = job->order;
     int64_t rows = bands->rows < SNOW_BAND_ROWS ? bands->rows : SNOW_BAND_ROWS;
-    SNOW_TRY(reserve_bands(bands, (bands->rows + SNOW_BAND_ROWS - 1) /
-                                      SNOW_BAND_ROWS));
     snow_fetch_order from = fetch_order(order, 0, order->slice_count, 0, rows);
     job->scratch_bytes = mask_bytes(bands) + column_bytes(bands) +
                          aligned(snow_fetch_bytes(&from));
@@ -357,18 +435,53 @@ static void add_up(snow_bands *bands) {
         (uint64_t)bands->band_count * slices * sizeof(snow_slice_pointer);
 }
 
-snow_status snow_bands_encode(snow_bands *bands,
-                              const snow_bands_order *order) {
-    SNOW_TRY(measure(bands, order));
-    int64_t count = (bands->rows + SNOW_BAND_ROWS - 1) / SNOW_BAND_ROWS;
+static snow_status encode_piece(snow_bands *bands,
+                                const snow_bands_order *order,
+                                const snow_bands_piece *piece, bool anew) {
+    int64_t count = piece->band_count;
     int threads = order->threads < count ? order->threads : (int)count;
-    encode_job job = {.bands = bands, .order = order};
+    encode_job job = {
+        .bands = bands, .order = order, .piece = *piece, .anew = anew};
     atomic_init(&job.failed, SNOW_OK);
     SNOW_TRY(prepare(&job, threads));
     snow_parallel(bands->context, threads, count, work, &job);
-    SNOW_TRY((snow_status)atomic_load(&job.failed));
+    return (snow_status)atomic_load(&job.failed);
+}
+
+snow_status snow_bands_encode(snow_bands *bands,
+                              const snow_bands_order *order) {
+    SNOW_TRY(measure(bands, order));
+    SNOW_TRY(reserve_bands(bands, count_bands(bands)));
+    const snow_bands_piece all = {.band_count = bands->band_count,
+                                  .slices = bands->slices};
+    SNOW_TRY(encode_piece(bands, order, &all, true));
     add_up(bands);
     return SNOW_OK;
+}
+
+/* --- piece by piece ------------------------------------------------------- */
+
+snow_status snow_bands_begin(snow_bands *bands, const snow_bands_order *order) {
+    SNOW_TRY(measure(bands, order));
+    if (bands->encoding == SNOW_ENCODING_AUTO)
+        bands->encoding = SNOW_ENCODING_BITMAP;
+    SNOW_TRY(reserve_bands(bands, count_bands(bands)));
+    for (int64_t n = 0; n < bands->band_count; n++)
+        SNOW_TRY(
+            begin_band(bands, n, snow_scheme_of(bands->encoding), order->isa));
+    return SNOW_OK;
+}
+
+snow_status snow_bands_append(snow_bands *bands, const snow_bands_order *order,
+                              const snow_bands_piece *piece) {
+    return encode_piece(bands, order, piece, false);
+}
+
+void snow_bands_end(snow_bands *bands) {
+    snow_release(bands->context, bands->scratch);
+    bands->scratch = NULL;
+    bands->scratch_capacity = 0;
+    add_up(bands);
 }
 
 void snow_bands_fini(snow_bands *bands) {

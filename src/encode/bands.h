@@ -62,6 +62,35 @@ typedef struct snow_bands_order {
  * read, but may be encoded again. */
 snow_status snow_bands_encode(snow_bands *bands, const snow_bands_order *order);
 
+/* The same of a volume that is never there as a whole.  A piece of it holds all
+ * rows of some bands of some slices:
+ *
+ *   v        whole slices of some bands      some slices of all bands
+ *   |  band 2 +-----------+                  +--+--+-----+
+ *   |  band 1 |===========|  append here     |  |==|     |  append here
+ *   |  band 0 +-----------+                  +--+--+-----+
+ *             +---------------> slices
+ *
+ * The order of a piece is that of a part of the volume, with more voxels around
+ * it where gradients want them; its slice_count has the slice behind the last
+ * one too where `between` wants that. */
+typedef struct snow_bands_piece {
+    int64_t first_band, band_count;
+    int64_t first_row; /* of the first of these bands, in the placement of the
+                          piece's order */
+    int64_t slices;    /* of the bands that are appended to each of them */
+} snow_bands_piece;
+
+/* Begins with the order of the whole, of whose volume and placement only the
+ * sizes count; AUTO is the bit-map.  Pieces of a band come in the order of
+ * slices; a band that is full gives back what its buffers have to spare.  The
+ * end adds up the figures.  Bands are the same as by snow_bands_encode. Errors:
+ * as there. */
+snow_status snow_bands_begin(snow_bands *bands, const snow_bands_order *order);
+snow_status snow_bands_append(snow_bands *bands, const snow_bands_order *order,
+                              const snow_bands_piece *piece);
+void snow_bands_end(snow_bands *bands);
+
 /* Frees the buffers; the record may be all zeros but for its context. */
 void snow_bands_fini(snow_bands *bands);
 

@@ -3,7 +3,7 @@
  * A block at a time through doubles.  Nothing is lost without a word: a value
  * that the type cannot hold ends the conversion, one that is rounded, or may be
  * since it lies beyond the integers that doubles hold, is counted. */
-#include "volume/volume.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -173,6 +173,7 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
                     .wide =
                         info.type == SNOW_INT64 || info.type == SNOW_UINT64};
     snow_volume *made;
+    SNOW_TRY(snow_volume_need_voxels(volume));
     if (!type)
         c.type = exact_type(volume);
     set_limits(&c);

@@ -8,6 +8,7 @@
  * from the native one alone, not from the values, so that all parts of a volume
  * have the same. */
 #include "volume/mask.h"
+#include "volume/stream.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -331,6 +332,8 @@ snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
                              snow_volume **out) {
     const cuts by = {.mask = mask, .labels = labels, .label_count = count};
     bool any;
+    SNOW_TRY(snow_volume_need_voxels(volume));
+    SNOW_TRY(snow_volume_need_voxels(mask));
     SNOW_TRY(check_grid(volume->context, &volume->info, &mask->info));
     return apply(volume, &by, &any, out);
 }
@@ -339,6 +342,7 @@ snow_status snow_volume_clip(const snow_volume *volume, const double *planes,
                              size_t count, snow_volume **out) {
     const cuts by = {.planes = planes, .plane_count = count};
     bool any;
+    SNOW_TRY(snow_volume_need_voxels(volume));
     if (count > SNOW_CLIPS_MOST)
         return snow_fail(volume->context, SNOW_BAD_USAGE,
                          "%zu planes are too many to clip by; give up to %d",

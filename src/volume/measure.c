@@ -4,7 +4,7 @@
  * per scalar type.  What follows sees data values (after slope and intercept)
  * in storage order, so that sums have one order of additions on all machines.
  */
-#include "volume/volume.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -80,7 +80,8 @@ void snow_volume_measure(const snow_volume *volume, snow_volume_measures *out) {
         .voxels = voxel_count(volume), .min = NAN, .max = NAN};
     double values[BLOCK];
     size_t count;
-    for (int64_t first = 0; first < m.voxels; first += (int64_t)count) {
+    for (int64_t first = 0; volume->voxels && first < m.voxels;
+         first += (int64_t)count) {
         count = next_block(volume, first, values);
         for (size_t i = 0; i < count; i++)
             measure_value(&m, values[i], first + (int64_t)i);
@@ -92,6 +93,7 @@ void snow_volume_measure(const snow_volume *volume, snow_volume_measures *out) {
  * the scaled distance, with the upper end in the last bin. */
 snow_status snow_volume_histogram(const snow_volume *volume, double lo,
                                   double hi, size_t bins, uint64_t *counts) {
+    SNOW_TRY(snow_volume_need_voxels(volume));
     if (!isfinite(lo) || !isfinite(hi) || !(lo < hi) || !bins)
         return snow_fail(volume->context, SNOW_BAD_USAGE,
                          "a histogram from %g to %g in %zu bins is empty; give "

@@ -2,6 +2,7 @@
  *
  * The format's `write` makes the bytes, the writer packs them where the name
  * ends in .gz and sees to it that the file is whole or absent. */
+#include "volume/stream.h"
 #include "volume/write.h"
 
 #include <stdio.h>
@@ -114,6 +115,7 @@ static snow_status refuse_name(snow_context *context, const char *path) {
 snow_status snow_volume_save(const snow_volume *volume, const char *path,
                              bool overwrite) {
     size_t i = 0;
+    SNOW_TRY(snow_volume_need_voxels(volume));
     while (i < ENDING_COUNT && !snow_has_suffix(path, endings[i].suffix))
         i++;
     if (i == ENDING_COUNT)

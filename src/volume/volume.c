@@ -3,6 +3,7 @@
  * What a header says is checked here, in one place, before any voxel gets its
  * memory: every reader goes through snow_volume_new. */
 #include "volume/volume.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -100,6 +101,18 @@ static snow_status wrap(snow_context *context, const snow_volume_info *info,
     return SNOW_OK;
 }
 
+/* Room for voxels: the last slab's where that is large enough, for new pages
+ * cost more than reading into them. */
+static void *take_voxels(snow_context *context, uint64_t bytes) {
+    void *spare = context->spare;
+    bool enough = spare && context->spare_bytes >= bytes;
+    context->spare = NULL;
+    if (enough)
+        return spare;
+    snow_release(context, spare);
+    return snow_allocate_array(context, bytes, 1);
+}
+
 /* The voxels come first and the record second, because the voxels are what is
  * likely to fail. */
 snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
@@ -108,7 +121,7 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
     uint64_t bytes;
     SNOW_TRY(snow_volume_info_check(context, info));
     snow_volume_count(info->dims, info->type, &count, &bytes);
-    void *voxels = snow_allocate_array(context, bytes, 1);
+    void *voxels = take_voxels(context, bytes);
     if (!voxels)
         return SNOW_NO_MEMORY;
     snow_volume *volume;
@@ -156,6 +169,7 @@ static snow_status check_part(const snow_volume *volume,
 }
 
 snow_status snow_volume_set_part(snow_volume *volume, const snow_part *part) {
+    SNOW_TRY(snow_volume_need_voxels(volume));
     SNOW_TRY(check_part(volume, part));
     volume->part = *part;
     volume->is_part = true;
@@ -293,6 +307,7 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
 /* Shared voxels are not owned and stay. */
 void snow_volume_close(snow_volume *volume) {
     if (volume) {
+        snow_stream_free(volume->context, volume->stream);
         snow_release(volume->context, volume->owned);
         snow_release(volume->context, volume);
     }

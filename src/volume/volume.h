@@ -12,10 +12,13 @@
 
 #include <snowglass/volume.h>
 
+typedef struct snow_stream snow_stream; /* volume/stream.h */
+
 struct snow_volume {
     snow_context *context;
     snow_volume_info info;
-    const void *voxels;
+    const void *voxels;  /* NULL where they stay in the file: */
+    snow_stream *stream; /* how they are read; else NULL */
     void *owned; /* the block to free, NULL when the voxels are shared */
     /* A number that no other volume of the context ever had, by which a frame
      * knows that it has encoded this one; 0 while the voxels may change. */

@@ -1,0 +1,229 @@
+/* volume/stream.c - see stream.h.
+ *
+ * A slab is a box of what the user's options ask for, opened as any other: so
+ * all formats, masks and planes are served.  The invariant is that every slab
+ * has the type and the scale of values that the volume was inspected with; a
+ * file that was replaced in between is noticed by its sizes at the latest. */
+#include "volume/stream.h"
+
+#include <string.h>
+
+/* What is needed to open a slab; the texts of the options follow behind. */
+struct snow_stream {
+    snow_volume_options options; /* with texts of its own */
+    uint64_t slab_bytes;         /* of voxels of a slab, ghosts included */
+    double seconds;              /* of reading */
+    char *path;
+};
+
+/* Without a wish: small beside any memory, and long enough to be read fast. */
+#define SLAB_BYTES ((uint64_t)64 << 20)
+
+/* --- opening --------------------------------------------------------------
+ */
+
+/* Moves a text behind the record. */
+static const char *keep(const char *text, char **at) {
+    if (!text)
+        return NULL;
+    char *own = *at;
+    size_t bytes = strlen(text) + 1;
+    memcpy(own, text, bytes);
+    *at += bytes;
+    return own;
+}
+
+static size_t text_bytes(const char *text) {
+    return text ? strlen(text) + 1 : 0;
+}
+
+static snow_status new_stream(snow_context *context, const char *path,
+                              const snow_volume_options *options,
+                              uint64_t slab_bytes, snow_stream **out) {
+    size_t bytes = sizeof **out + text_bytes(path) +
+                   text_bytes(options->dataset) + text_bytes(options->series) +
+                   text_bytes(options->mask) + text_bytes(options->labels);
+    snow_stream *stream = snow_allocate_clear(context, bytes);
+    if (!stream)
+        return SNOW_NO_MEMORY;
+    char *at = (char *)(stream + 1);
+    stream->options = *options;
+    stream->options.dataset = keep(options->dataset, &at);
+    stream->options.series = keep(options->series, &at);
+    stream->options.mask = keep(options->mask, &at);
+    stream->options.labels = keep(options->labels, &at);
+    stream->path = at;
+    keep(path, &at);
+    stream->slab_bytes = slab_bytes ? slab_bytes : SLAB_BYTES;
+    *out = stream;
+    return SNOW_OK;
+}
+
+void snow_stream_free(snow_context *context, snow_stream *stream) {
+    snow_release(context, stream);
+}
+
+snow_status snow_volume_stream(snow_context *context, const char *path,
+                               const snow_volume_options *options,
+                               uint64_t slab_bytes, snow_volume **out) {
+    static const snow_volume_options none;
+    snow_volume_info info;
+    snow_stream *stream;
+    if (snow_source_is_stream(path))
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: can be read once only, and a volume that stays "
+                         "in its file is read several times; write it to a "
+                         "file",
+                         strcmp(path, "-") ? path : "standard input");
+    SNOW_TRY(snow_volume_inspect(context, path, options, &info));
+    SNOW_TRY(new_stream(context, path, options ? options : &none, slab_bytes,
+                        &stream));
+    snow_volume *volume = snow_allocate_clear(context, sizeof *volume);
+    if (!volume) {
+        snow_stream_free(context, stream);
+        return SNOW_NO_MEMORY;
+    }
+    volume->context = context;
+    volume->info = info;
+    volume->stream = stream;
+    snow_volume_freeze(volume);
+    *out = volume;
+    return SNOW_OK;
+}
+
+const char *snow_stream_path(const snow_volume *volume) {
+    return volume->stream->path;
+}
+
+double snow_volume_read_seconds(const snow_volume *volume) {
+    return volume->stream ? volume->stream->seconds : 0;
+}
+
+snow_status snow_volume_need_voxels(const snow_volume *volume) {
+    if (!volume->stream)
+        return SNOW_OK;
+    return snow_fail(volume->context, SNOW_BAD_USAGE,
+                     "%s: its voxels stay in the file, and this needs them all "
+                     "at once; open it with snow_volume_open",
+                     volume->stream->path);
+}
+
+/* --- slabs ----------------------------------------------------------------
+ */
+
+/* Slices of a slab, without its ghosts. */
+static int64_t slab_slices(const snow_volume *volume,
+                           const snow_slab_cut *cut) {
+    const int64_t *dims = volume->info.dims;
+    uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
+                     (uint64_t)snow_type_size(volume->info.type);
+    uint64_t room = volume->stream->slab_bytes / slice;
+    uint64_t around = 2 * (uint64_t)cut->ghosts, step = (uint64_t)cut->step;
+    if (room < around + step)
+        return cut->step;
+    uint64_t slices = (room - around) / step * step;
+    return slices < (uint64_t)dims[2] ? (int64_t)slices : dims[2];
+}
+
+uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut) {
+    const int64_t *dims = volume->info.dims;
+    int64_t slices = dims[2];
+    if (volume->stream)
+        slices = slab_slices(volume, cut) + 2 * cut->ghosts;
+    if (slices > dims[2])
+        slices = dims[2];
+    return (uint64_t)(dims[0] * dims[1] * slices) *
+           (uint64_t)snow_type_size(volume->info.type);
+}
+
+/* What must be alike for one picture to be made of all slabs. */
+static snow_status compare(const snow_volume *volume, const snow_volume *slab,
+                           const snow_part *part, int64_t slices) {
+    const snow_volume_info *a = &volume->info, *b = &slab->info;
+    if (a->type == b->type && a->slope == b->slope &&
+        a->intercept == b->intercept && a->dims[0] == b->dims[0] &&
+        a->dims[1] == b->dims[1] && b->dims[2] == slices)
+        return SNOW_OK;
+    return snow_fail(volume->context, SNOW_BAD_INPUT,
+                     "%s: slices from %lld on have another type, scale or size "
+                     "than the volume; was the file replaced while it was "
+                     "read?",
+                     volume->stream->path, (long long)part->stored[2]);
+}
+
+/* Slices first .. first + count - 1 with ghosts, as a part of the volume.
+ * Remarks were made when the volume was opened. */
+static snow_status read_slab(const snow_volume *volume, int64_t first,
+                             int64_t count, int64_t ghosts, snow_volume **out) {
+    snow_context *context = volume->context;
+    const int64_t *dims = volume->info.dims;
+    int64_t from = first > ghosts ? first - ghosts : 0;
+    int64_t end = first + count + ghosts;
+    end = end < dims[2] ? end : dims[2];
+    snow_part part = {.dims = {dims[0], dims[1], dims[2]},
+                      .stored = {0, 0, from},
+                      .first = {0, 0, first},
+                      .count = {dims[0], dims[1], count}};
+    snow_volume_options options = volume->stream->options;
+    options.crop[2][1] = options.crop[2][0] + end;
+    options.crop[2][0] += from;
+    snow_volume *slab;
+    double begin = snow_seconds();
+    snow_notice_fn *notice = context->notice;
+    context->notice = NULL;
+    snow_status status =
+        snow_volume_open(context, volume->stream->path, &options, &slab);
+    context->notice = notice;
+    volume->stream->seconds += snow_seconds() - begin;
+    SNOW_TRY(status);
+    status = compare(volume, slab, &part, end - from);
+    if (status == SNOW_OK)
+        status = snow_volume_set_part(slab, &part);
+    if (status != SNOW_OK) {
+        snow_volume_close(slab);
+        return status;
+    }
+    snow_volume_set_whole(slab, &volume->info);
+    *out = slab;
+    return SNOW_OK;
+}
+
+/* Its voxels' room is left to the next one. */
+static void drop_slab(snow_volume *slab) {
+    snow_context *context = slab->context;
+    int64_t voxels;
+    uint64_t bytes;
+    snow_volume_count(slab->info.dims, slab->info.type, &voxels, &bytes);
+    snow_release(context, context->spare);
+    context->spare = slab->owned;
+    context->spare_bytes = (size_t)bytes;
+    slab->owned = NULL;
+    snow_volume_close(slab);
+}
+
+static snow_status visit_slabs(const snow_volume *volume,
+                               const snow_slab_cut *cut, snow_slab_fn *visit,
+                               void *user) {
+    int64_t all = volume->info.dims[2], count = slab_slices(volume, cut);
+    for (int64_t first = 0; first < all; first += count) {
+        snow_volume *slab;
+        int64_t some = all - first < count ? all - first : count;
+        SNOW_TRY(read_slab(volume, first, some, cut->ghosts, &slab));
+        snow_status status = visit(slab, user);
+        drop_slab(slab);
+        SNOW_TRY(status);
+    }
+    return SNOW_OK;
+}
+
+snow_status snow_slabs_visit(const snow_volume *volume,
+                             const snow_slab_cut *cut, snow_slab_fn *visit,
+                             void *user) {
+    if (!volume->stream)
+        return visit(volume, user);
+    snow_status status = visit_slabs(volume, cut, visit, user);
+    snow_context *context = volume->context;
+    snow_release(context, context->spare);
+    context->spare = NULL;
+    return status;
+}

@@ -1,0 +1,184 @@
+#!/bin/bash
+# Volumes larger than memory: a sparse file of 3 GB is rendered within 300 MB,
+# as raw and as NRRD, and pictures are those of the volume in memory, bit for
+# bit; packed files, slices in files of their own, turntables, movies; and what
+# cannot be done so, or does not fit even then, ends with one line.
+. "$(dirname "$0")/support_shell.sh"
+
+# peak COMMAND...: runs it, and leaves its most kilobytes in $PEAK.
+cat >peak.py <<'EOF2'
+import resource, subprocess, sys
+code = subprocess.call(sys.argv[2:])
+with open(sys.argv[1], "w") as file:
+    file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
+sys.exit(code)
+EOF2
+peak() { python3 peak.py kilobytes "$@"; }
+
+same() { # NAME A B
+    check "$1: bit for bit" cmp "$2" "$3"
+}
+
+# --- small ones --------------------------------------------------------------
+
+"$TOOL" phantom head --dims 256x256x200 -q -o a.nrrd
+"$TOOL" convert a.nrrd -q -o a.nii.gz
+"$TOOL" convert a.nrrd -q --type float32 -o a_f32.nrrd
+look=(-s 96x96 --preset linear --opacity 120:0,250:1 --colormap viridis --shade phong)
+for view in "-z" "+y --elevation 20" "left --azimuth 30 --perspective"; do
+    # shellcheck disable=SC2086
+    run 0 "$view, whole" "$TOOL" render a.nrrd "${look[@]}" --view $view -q \
+        -o whole.png -y --threads 2
+    # shellcheck disable=SC2086
+    run 0 "$view, in slabs" "$TOOL" render a.nrrd "${look[@]}" --view $view -v \
+        -o slabs.png -y --memory 11M --stats slabs.json
+    says 'a.nrrd: stays in its file, of which slabs of [12].[0-9] MiB, or of 34 slices'
+    says 'memory: at least 12.6 MiB'
+    same "$view" whole.png slabs.png
+    check "holds to its limit" python3 -c '
+import json
+told = json.load(open("slabs.json"))
+assert told["bytes"]["peak"] <= 11 << 20, told
+assert told["bytes"]["volume"] == 256 * 256 * 200, told
+assert told["seconds"]["read"] > 0 and told["encoding"] == "bitmap", told'
+    rm slabs.json
+done
+
+run 0 "floats, whole" "$TOOL" render a_f32.nrrd "${look[@]}" --view -z \
+    --range 0,255 -q -o whole.png -y
+run 0 "floats in slabs" "$TOOL" render a_f32.nrrd "${look[@]}" --view -z \
+    --range 0,255 -q -o slabs.png -y --memory 46M
+same "floats" whole.png slabs.png
+
+run 0 "a packed file, whole" "$TOOL" render a.nii.gz "${look[@]}" -q \
+    -o whole.png -y
+run 0 "a packed file in slabs" "$TOOL" render a.nii.gz "${look[@]}" \
+    -o slabs.png -y --memory 11M
+says 'note: a.nii.gz is packed, and is unpacked anew for each slab'
+same "a packed file" whole.png slabs.png
+
+run 0 "a turntable, whole" "$TOOL" turntable a.nrrd "${look[@]}" -q \
+    --frames 6 -o 'w_%d.png'
+run 0 "a turntable in slabs" "$TOOL" turntable a.nrrd "${look[@]}" -q \
+    --frames 6 -o 's_%d.png' --memory 11M
+for i in 0 1 2 3 4 5; do
+    same "frame $i" "w_$i.png" "s_$i.png"
+done
+run 0 "a movie in slabs" "$TOOL" movie a.nrrd a.nrrd "${look[@]}" -q \
+    --range 0,255 -o 'm_%d.png' --memory 11M
+run 0 "its first step alone" "$TOOL" render a.nrrd "${look[@]}" -q \
+    --range 0,255 -o whole.png -y
+same "a movie" m_0.png whole.png
+same "its second step" m_1.png whole.png
+
+# --- what is refused ---------------------------------------------------------
+
+small=(-s 64x64 -o none.png)
+refused 5 "too many interesting voxels" \
+    'a.nrrd: 131[0-9]* of 13107200 voxels are interesting \(100 %\) and take about 39.[0-9] MiB when encoded, which do not fit beside slabs of [0-9.]* MiB under the limit of 11.0 MiB; raise --threshold' \
+    "$TOOL" render a.nrrd "${small[@]}" --preset linear --memory 11M -q
+refused 5 "the same beside the volume in memory" \
+    'a.nrrd: 131[0-9]* of 13107200 voxels are' \
+    "$TOOL" render a.nrrd "${small[@]}" --preset linear --memory 16M -q
+refused 5 "the smallest slab" \
+    'a.nrrd: a slab of slices, tables and the picture alone need 17.2 MiB, over the --memory of 3.0 MiB; raise it' \
+    "$TOOL" render a.nrrd -s 1024x1024 -o none.png --memory 3M
+for mode in mip mean iso; do
+    value=()
+    [ "$mode" = iso ] && value=(--iso 100)
+    refused 5 "mode $mode" \
+        "a.nrrd: voxels and picture need 12.6 MiB, over the --memory of 11.0 MiB, and its mode needs all of them at once" \
+        "$TOOL" render a.nrrd "${small[@]}" -m "$mode" "${value[@]}" \
+        --memory 11M
+done
+refused 5 "an exact method" 'and its method needs all of them' \
+    "$TOOL" render a.nrrd "${small[@]}" --method footprint --memory 11M
+refused 5 "depths" 'and --depth needs all of them' \
+    "$TOOL" render a.nrrd "${small[@]}" --depth d.npy --memory 11M
+refused 5 "the range of all steps" 'and the range of all steps needs all' \
+    "$TOOL" movie a.nrrd a.nrrd -s 64x64 -o 'n_%d.png' --memory 11M
+check "nothing is left" test ! -e none.png -a ! -e d.npy -a ! -e n_0.png
+
+# --- slices in files of their own --------------------------------------------
+
+if [ -f "$DATA/dicom/ct_abdomen_20of275.tar.gz" ]; then
+    tar xzf "$DATA/dicom/ct_abdomen_20of275.tar.gz"
+    bone=(-s 2048x2048 --preset linear --range -1000,2000
+        --opacity 150:0,400:1 --view superior)
+    run 0 "DICOM, whole" "$TOOL" render ct_abdomen "${bone[@]}" -q \
+        -o whole.png -y
+    run 0 "DICOM in slabs" "$TOOL" render ct_abdomen "${bone[@]}" -v \
+        -o slabs.png -y --memory 73M
+    says 'ct_abdomen: stays in its file'
+    same "DICOM" whole.png slabs.png
+fi
+if [ -f "$DATA/classic/cthead-8bit_99tif.tar.gz" ]; then
+    mkdir tiff
+    tar xzf "$DATA/classic/cthead-8bit_99tif.tar.gz" -C tiff
+    stack=$(dirname "$(find tiff -name '*.tif' | head -n 1)")
+    run 0 "TIFF files, whole" "$TOOL" render "$stack" -s 96x96 \
+        --opacity 150:0,250:1 -q -o whole.png -y
+    run 0 "TIFF files in slabs" "$TOOL" render "$stack" -s 96x96 \
+        --opacity 150:0,250:1 -v -o slabs.png -y --memory 6M
+    says 'stays in its file'
+    same "TIFF files" whole.png slabs.png
+fi
+
+# --- a large one -------------------------------------------------------------
+
+done_here() {
+    echo "$1 - the large file is skipped"
+    finish
+    exit
+}
+grep -aq __asan_init "$TOOL" && done_here "the sanitizer needs more memory"
+x=1024 y=1024 z=1500
+truncate -s $((2 * x * y * z)) big.raw || done_here "no sparse files"
+python3 - <<EOF
+import array
+side = 80
+rows = [[array.array("H", [max(0, min(4000, int((40 - ((i - 40)**2 +
+         (j - 40)**2 + (k - 40)**2)**0.5) * 120))) for i in range(side)])
+         .tobytes() for j in range(side)] for k in range(side)]
+with open("big.raw", "r+b") as file:
+    for a, b, c in ((100, 100, 100), (700, 150, 600), (400, 700, 1250)):
+        for k in range(side):
+            for j in range(side):
+                file.seek(2 * (((c + k) * $y + b + j) * $x + a))
+                file.write(rows[k][j])
+EOF
+[ "$(du -m big.raw | cut -f1)" -lt 100 ] || done_here "no sparse files"
+printf 'NRRD0004\ntype: uint16\ndimension: 3\nsizes: %d %d %d\n' \
+    $x $y $z >big.nhdr
+printf 'encoding: raw\nendian: little\ndata file: big.raw\n' >>big.nhdr
+raw=(--dims ${x}x${y}x${z} --type uint16)
+
+run 0 "3 GB of raw data" peak "$TOOL" render big.raw "${raw[@]}" --view iso \
+    -s 256x256 -q -o raw.png --memory 300M --stats raw.json
+check "within the limit, $(cat kilobytes) KB of the process" \
+    test "$(cat kilobytes)" -lt $((300 * 1024))
+run 0 "3 GB of NRRD" peak "$TOOL" render big.nhdr --view +y -s 256x256 -q \
+    -o nrrd.png --memory 300M --stats nrrd.json
+check "within the limit, $(cat kilobytes) KB of the process" \
+    test "$(cat kilobytes)" -lt $((300 * 1024))
+check "every voxel is counted once" python3 - <<EOF
+import json
+raw, nrrd = (json.load(open(name)) for name in ("raw.json", "nrrd.json"))
+assert raw["sparse_ratio"] == nrrd["sparse_ratio"], raw
+kept = (1 - raw["sparse_ratio"]) * $x * $y * $z / 3
+assert 0.7 * 268083 < kept < 268083, kept # a ball of radius 40
+EOF
+
+# By itself, where addresses are limited.
+run 0 "by itself" bash -c "ulimit -v 1000000 &&
+    exec '$TOOL' render big.nhdr --view iso -s 256x256 -v -o itself.png"
+says 'big.nhdr: stays in its file'
+same "by itself" raw.png itself.png
+
+if [ "$(awk '/MemAvailable/ { print int($2 / 1048576) }' /proc/meminfo)" -ge 5 ]
+then
+    run 0 "the same in memory" "$TOOL" render big.nhdr --view iso -s 256x256 \
+        -q -o memory.png
+    same "3 GB" raw.png memory.png
+fi
+finish
