@@ -54,9 +54,11 @@ snow_status speed_measure(snow_context *context, const bench_options *options,
     const int64_t *dims = snow_volume_describe(job->volume->volume)->dims;
     out->interesting = llround((double)(dims[0] * dims[1] * dims[2]) *
                                (1 - out->sparse_ratio));
+    session.volume = job->volume->volume;
     if (status == SNOW_OK)
-        status = speed_other_threshold(job, out->sparse_ratio,
-                                       &session.other_threshold);
+        status = snow_volume_share(
+            context, snow_volume_describe(session.volume),
+            snow_volume_voxels(session.volume), &session.changing);
     if (status == SNOW_OK)
         status = speed_verify(&session, out);
     machine_mark mark = machine_mark_now();
@@ -65,6 +67,7 @@ snow_status speed_measure(snow_context *context, const bench_options *options,
     out->others = machine_others(&mark);
     for (int way = 0; way < SPEED_WAYS_MOST; way++)
         snow_frame_free(session.frames[way]);
+    snow_volume_close(session.changing);
     return status;
 }
 

@@ -108,7 +108,10 @@ typedef struct speed_session {
     const speed_case *job;
     const bench_options *options;
     snow_view view;
-    double other_threshold;              /* makes other voxels interesting */
+    /* That is drawn, and the same as voxels that may change, so that each
+     * picture encodes them. */
+    const snow_volume *volume;
+    snow_volume *changing;
     snow_frame *frames[SPEED_WAYS_MOST]; /* each way keeps its encoding */
 } speed_session;
 
@@ -125,11 +128,6 @@ snow_status speed_render(speed_session *session, int way, snow_isa isa,
  * out the rows that this library draws by another method.  Errors: of the
  * library; SNOW_DIFFERENT when a picture is wrong, told on stderr. */
 snow_status speed_verify(speed_session *session, speed_result *result);
-
-/* The next threshold above the case's that fewer voxels pass; an encoding may
- * be kept where the same ones do.  Errors: SNOW_NO_MEMORY. */
-snow_status speed_other_threshold(const speed_case *job, double sparse_ratio,
-                                  double *out);
 
 /* Times the rows.  Errors: those of the library. */
 snow_status speed_time(speed_session *session, speed_result *result);

@@ -59,10 +59,9 @@ snow_status speed_render(speed_session *session, int index, snow_isa isa,
         if (status != SNOW_OK)
             return status;
     }
-    snow_status status =
-        snow_frame_render(session->frames[index], session->job->volume->volume,
-                          session->job->volume->transfer,
-                          speed_view(session, step), &settings, &made);
+    snow_status status = snow_frame_render(
+        session->frames[index], session->volume, session->job->volume->transfer,
+        speed_view(session, step), &settings, &made);
     if (status != SNOW_OK)
         return status;
     if (image)
@@ -87,19 +86,6 @@ static bool has_encoded(const snow_stats *stats) {
 static double encode_seconds(const snow_stats *stats) {
     bool sheared = stats->method == SNOW_METHOD_SHEARED;
     return stats->seconds_encode + (sheared ? 0 : stats->seconds_classify);
-}
-
-snow_status speed_other_threshold(const speed_case *job, double sparse_ratio,
-                                  double *out) {
-    double step = 255 * speed_slope(job->look), other = sparse_ratio;
-    snow_status status = SNOW_OK;
-    *out = job->threshold;
-    while (status == SNOW_OK && !(other > sparse_ratio) && *out + step < 255) {
-        *out += step;
-        status = snow_transfer_sparse_ratio(job->volume->transfer,
-                                            job->volume->volume, *out, &other);
-    }
-    return status;
 }
 
 /* One picture, whose figures are kept unless it warms up. */
@@ -147,25 +133,26 @@ static snow_status draw_burst(speed_session *session, speed_row *row,
     return status;
 }
 
-/* The threshold there and back, by one voxel value or a few: twice the volume
- * is encoded, to arrays of almost one size. */
+static snow_status draw_still(speed_session *session, const speed_row *row) {
+    return speed_render(session, way_of(row), SNOW_ISA_AUTO, row->threads,
+                        session->job->threshold, 0, NULL);
+}
+
+/* As if a lower threshold was asked for: all is encoded, to arrays that are
+ * there.  Then again what the next pictures are made of. */
 static snow_status draw_anew(speed_session *session, speed_row *row,
                              row_samples *samples) {
-    for (int i = 0; i < 2; i++) {
-        double threshold =
-            i ? session->job->threshold : session->other_threshold;
-        snow_status status = speed_render(session, way_of(row), SNOW_ISA_AUTO,
-                                          row->threads, threshold, 0, NULL);
-        if (status != SNOW_OK)
-            return status;
-        const snow_stats *stats =
-            snow_frame_stats(session->frames[way_of(row)]);
-        if (!has_encoded(stats) || samples->encodes == RUNS_MOST)
-            continue;
-        samples->encode[samples->encodes] = 1e3 * encode_seconds(stats);
-        samples->anew[samples->encodes++] = 1e3 * stats->seconds_frame;
-    }
-    return SNOW_OK;
+    session->volume = session->changing;
+    snow_status status = draw_still(session, row);
+    session->volume = session->job->volume->volume;
+    if (status != SNOW_OK)
+        return status;
+    const snow_stats *stats = snow_frame_stats(session->frames[way_of(row)]);
+    if (!has_encoded(stats) || samples->encodes == RUNS_MOST)
+        return SNOW_OK;
+    samples->encode[samples->encodes] = 1e3 * encode_seconds(stats);
+    samples->anew[samples->encodes++] = 1e3 * stats->seconds_frame;
+    return draw_still(session, row);
 }
 
 /* Medians and minima out of the samples, which are sorted. */

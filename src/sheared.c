@@ -111,6 +111,7 @@ void snow_sheared_free(snow_sheared *s) {
     if (!s)
         return;
     snow_bands_fini(&s->bands);
+    snow_reuse_fini(s->context, &s->reuse);
     snow_coder_fini(s->context, &s->coder);
     snow_coder_fini(s->context, &s->next);
     snow_palette_fini(s->context, &s->palette);
@@ -259,6 +260,23 @@ static snow_status take_fade_key(snow_sheared *s,
     return SNOW_OK;
 }
 
+/* What an encoding costs, in pictures, about: with normals, without, and of a
+ * file that is read for it. */
+#define SHADED_PRICE 3
+#define PLAIN_PRICE 0.5
+#define STREAM_PRICE 20
+
+/* Whether bands of the same key are good for the next coder. */
+static snow_status ask_bands(snow_sheared *s, const snow_encoded_key *key,
+                             bool streams, bool *serve) {
+    double price = key->shaded ? SHADED_PRICE : PLAIN_PRICE;
+    if (!key->faded && snow_reuse_knows(&s->next))
+        return snow_reuse_ask(s->context, &s->reuse, &s->bands, key->between,
+                              &s->next, streams ? STREAM_PRICE : price, serve);
+    *serve = snow_coder_same(&s->next, &s->coder);
+    return SNOW_OK;
+}
+
 snow_status snow_sheared_encode(snow_sheared *s,
                                 const snow_sheared_order *order,
                                 snow_stats *stats) {
@@ -278,8 +296,9 @@ snow_status snow_sheared_encode(snow_sheared *s,
     SNOW_TRY(snow_coder_make(s->context, order->volume, order->transfer,
                              settings->threshold, &s->next));
     SNOW_TRY(take_fade_key(s, order, &same_fade));
-    bool kept = same_key(&key, &s->key) && same_fade &&
-                snow_coder_same(&s->next, &s->coder);
+    bool kept = same_key(&key, &s->key) && same_fade;
+    if (kept)
+        SNOW_TRY(ask_bands(s, &key, order->volume->stream != NULL, &kept));
     snow_coder coder = s->coder;
     s->coder = s->next;
     s->next = coder;
@@ -290,6 +309,8 @@ snow_status snow_sheared_encode(snow_sheared *s,
         return SNOW_OK;
     s->key.serial = 0; /* should the encoding fail half-way */
     SNOW_TRY(encode_bands(s, order, &key));
+    SNOW_TRY(snow_reuse_begin(s->context, &s->reuse, &s->bands, key.between,
+                              &s->coder));
     s->key = key;
     s->encodings++;
     stats->encoded = 1;
@@ -806,23 +827,10 @@ static snow_status reserve_buffers(snow_pass *pass) {
                                     (size_t)v->count + 1, &pass->image);
 }
 
-/* The interesting voxels of the volume: without those of slices between. */
-static int64_t count_interesting(const snow_sheared *s) {
-    if (!s->key.between)
-        return (int64_t)s->bands.voxels;
-    int64_t count = 0;
-    for (int64_t band = 0; band < s->bands.band_count; band++) {
-        const snow_slice_pointer *pa = s->bands.bands[band].pa;
-        for (int64_t slice = 0; slice < s->bands.slices; slice += 2)
-            count += (int64_t)(pa[slice + 1].ia - pa[slice].ia);
-    }
-    return count;
-}
-
 /* The bytes of several axes, where a picture is blended, add up. */
 void snow_sheared_fill_figures(const snow_sheared *s, snow_stats *stats) {
     stats->encoding = s->bands.encoding;
-    stats->interesting = count_interesting(s);
+    stats->interesting = s->reuse.shown;
     stats->ea_bytes += s->bands.ea_bytes;
     stats->ia_bytes += s->bands.ia_bytes;
     stats->pa_bytes += s->bands.pa_bytes;

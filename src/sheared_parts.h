@@ -9,6 +9,7 @@
 #include "encode/windows.h"
 #include "sheared.h"
 #include "sheared_bands.h"
+#include "sheared_reuse.h"
 #include "warp/warp.h"
 
 /* Whether something shines through any of a band's tiles. */
@@ -52,8 +53,9 @@ typedef struct snow_encoded_key {
 
 struct snow_sheared {
     snow_context *context;
-    snow_coder coder, next; /* of the bands; room for the next picture's */
+    snow_coder coder, next; /* of the last picture; room for the next one's */
     snow_bands bands;
+    snow_reuse reuse; /* of the bands */
     snow_encoded_key key;
     uint64_t encodings; /* how often the bands were made */
     /* Largest values of the bands' rows (sheared_most.c), and of which. */
@@ -88,8 +90,9 @@ struct snow_sheared {
  * the volume's last. */
 int64_t snow_sheared_slices(const snow_sheared_order *order);
 
-/* Lines 04 to 06, unless the bands hold just that already: colours, light and
- * the camera may change as they like as long as the slice axis stays. */
+/* Lines 04 to 06, unless the bands hold that already: colours, light and the
+ * camera may change as they like as long as the slice axis stays, and what is
+ * shown may become less (sheared_reuse.h). */
 snow_status snow_sheared_encode(snow_sheared *sheared,
                                 const snow_sheared_order *order,
                                 snow_stats *stats);

@@ -403,6 +403,8 @@ static void check_palette(const scene *s, const snow_coder *coder,
         double rgba[4];
         const float *sample = palette->samples + code * (size_t)channels;
         snow_transfer_at(s->transfer, snow_coder_value(coder, code), rgba);
+        if (snow_type_size(coder->type) <= 2 && !coder->keep[code])
+            memset(rgba, 0, sizeof rgba); /* is not shown */
         double a = 1 - pow(1 - rgba[3], exponent);
         float found = sample[channels - 1];
         if (!(fabs((double)found - a) <= 1e-7))

@@ -188,6 +188,11 @@ static void vector_levels_differ_as_stated(void **state) {
         same_as_fresh(s, image);                                           \
     } while (0)
 
+/* Whether one look's encoding may serve another that shows less. */
+static bool keeps_codes(const studio *s) {
+    return snow_type_size(s->scene.info.type) <= 2 && !s->scene.gradient_count;
+}
+
 /* Of a kind of data, what makes codes of the wide types. */
 static void an_encoding_is_used_until_it_does_not_fit(void **state) {
     (void)state;
@@ -219,12 +224,14 @@ static void an_encoding_is_used_until_it_does_not_fit(void **state) {
         settings->kernel = SNOW_KERNEL_GAUSS;
         settings->threads = 3;
         expect_encoded(&s, 0);
+        /* Less of them: drawn from what is there. */
+        bool anew = !keeps_codes(&s);
         scene->opacities = shifted;
-        expect_encoded(&s, 1);
+        expect_encoded(&s, anew);
         settings->threshold = 30;
-        expect_encoded(&s, 1);
+        expect_encoded(&s, anew);
         settings->threshold = 0;
-        expect_encoded(&s, 1);
+        expect_encoded(&s, anew);
         model_look(scene, (double[]){1, 0, 0}, (double[]){0, 0, 1});
         expect_encoded(&s, 1); /* another slice axis */
         settings->shade = settings->shade == SNOW_SHADE_NONE ? SNOW_SHADE_PHONG
@@ -237,6 +244,39 @@ static void an_encoding_is_used_until_it_does_not_fit(void **state) {
         settings->encoding = SNOW_ENCODING_RLE;
         expect_encoded(&s, 1);
         expect_encoded(&s, 0);
+        close_studio(&s);
+    }
+}
+
+/* An encoding of more than is shown is used for so long that another one would
+ * have paid. */
+static void voxels_that_are_not_shown_are_not_drawn_for_ever(void **state) {
+    (void)state;
+    static const snow_opacity_point few[] = {{70, 0}, {75, 0.3}, {99, 0.4}};
+    static const snow_opacity_point more[] = {{20, 0.1}, {99, 0.4}};
+    for (size_t n = 0; n < STUDIOS; n++) {
+        studio s = numbered_studio(n);
+        if (!keeps_codes(&s)) {
+            close_studio(&s);
+            continue;
+        }
+        expect_encoded(&s, 1);
+        int64_t all = snow_frame_stats(s.frame)->interesting;
+        s.scene.opacities = few;
+        s.scene.opacity_count = COUNT(few);
+        int pictures = 0;
+        do {
+            snow_image *image = shoot(&s);
+            same_as_fresh(&s, image);
+            assert_true(snow_frame_stats(s.frame)->interesting < all);
+        } while (++pictures < 20 && !snow_frame_stats(s.frame)->encoded);
+        bool shaded = s.scene.settings.shade == SNOW_SHADE_PHONG;
+        assert_true(pictures > 1 || !shaded);
+        assert_true(pictures < 20);
+        expect_encoded(&s, 0);
+        s.scene.opacities = more; /* than there are */
+        s.scene.opacity_count = COUNT(more);
+        expect_encoded(&s, 1);
         close_studio(&s);
     }
 }
@@ -515,6 +555,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(all_encodings_give_the_same_bits),
         cmocka_unit_test(vector_levels_differ_as_stated),
         cmocka_unit_test(an_encoding_is_used_until_it_does_not_fit),
+        cmocka_unit_test(voxels_that_are_not_shown_are_not_drawn_for_ever),
         cmocka_unit_test(an_encoding_has_its_gradient_opacity),
         cmocka_unit_test(shared_voxels_may_change_until_they_are_frozen),
         cmocka_unit_test(another_volume_is_encoded_anew),

@@ -175,6 +175,17 @@ static void fill_color(const float *looks, const float *opacities, size_t count,
     }
 }
 
+/* Bands may hold voxels of codes that are not interesting any more. */
+static void clear_dull(const palette_job *job, size_t first, size_t count) {
+    const snow_coder *coder = job->coder;
+    size_t channels = (size_t)job->palette->channels;
+    float *samples = job->palette->samples + first * channels;
+    for (size_t i = 0; i < count; i++)
+        for (size_t c = 0; c < channels; c++)
+            samples[i * channels + c] =
+                coder->keep[first + i] ? samples[i * channels + c] : 0;
+}
+
 static void make_samples(void *user, int64_t item, int worker) {
     (void)worker;
     const palette_job *job = user;
@@ -190,6 +201,8 @@ static void make_samples(void *user, int64_t item, int worker) {
     else
         fill_color(palette->looks + place, opacities, count, job->premultiply,
                    palette->samples + place);
+    if (snow_type_size(job->coder->type) <= 2)
+        clear_dull(job, first, count);
 }
 
 static snow_status make_room(snow_context *context, size_t codes,
