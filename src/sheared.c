@@ -335,18 +335,6 @@ static uint64_t cells_of_rows(uint64_t rows, int cells, int stride, int reach) {
     return found;
 }
 
-static uint64_t rows_of_cells(uint64_t cells, int stride, int reach) {
-    uint64_t rows = 0, needed = ~UINT64_C(0) >> (64 - reach);
-    if (stride == 1) {
-        for (int m = 0; m < reach; m++)
-            rows |= cells << m;
-        return rows;
-    }
-    for (; cells; cells &= cells - 1)
-        rows |= needed << __builtin_ctzll(cells) * stride;
-    return rows;
-}
-
 static int between_ends(int64_t at, int end) {
     if (at < 0)
         return 0;
@@ -392,14 +380,14 @@ static void draw_tile(snow_stroke *stroke, const slice_rows *slice,
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
     uint64_t alive = scratch->alive[index] & slice->cells;
-    held = pass->windows->windows(&slice->rows,
-                                  rows_of_cells(alive, v->stride, slice->reach),
-                                  column, pass->window, bits, before);
+    held = pass->windows->windows(
+        &slice->rows, snow_rows_of_cells(alive, v->stride, slice->reach),
+        column, pass->window, bits, before);
     uint64_t cells =
         cells_of_rows(held, stroke->cells, v->stride, slice->reach) & alive;
     if (!cells)
         return;
-    held &= rows_of_cells(cells, v->stride, slice->reach);
+    held &= snow_rows_of_cells(cells, v->stride, slice->reach);
     size_t pixel = (size_t)pass->channels, floats = pass->window_floats;
     snow_sample_job job = {held,
                            pass->window,
@@ -491,9 +479,10 @@ static void read_slice(snow_stroke *stroke, int64_t number, slice_rows *slice) {
     int64_t first = (v->first / v->phases + stroke->first_cell) * v->stride +
                     slice->v->offset - clip->stored[1];
     slice->rows.fetch = stroke->fetch;
-    pass->windows->read(&pass->sheared->bands, number, first,
-                        rows_of_cells(stroke->alive, v->stride, slice->reach),
-                        stroke->scratch.spans, &slice->rows);
+    pass->windows->read(
+        &pass->sheared->bands, number, first,
+        snow_rows_of_cells(stroke->alive, v->stride, slice->reach),
+        stroke->scratch.spans, &slice->rows);
     int64_t step = SNOW_TILE_COLUMNS * u->stride;
     slice->column =
         u->first / u->phases * u->stride + slice->u->offset - clip->stored[0];

@@ -138,19 +138,6 @@ snow_status snow_most_prepare(snow_modes_pass *pass,
 /* --- a tile of a slice -----------------------------------------------------
  */
 
-/* Rows that cells need, of `reach` each. */
-static uint64_t rows_of(uint64_t cells, int stride, int reach) {
-    uint64_t rows = 0, needed = ~UINT64_C(0) >> (64 - reach);
-    if (stride == 1) {
-        for (int m = 0; m < reach; m++)
-            rows |= cells << m;
-        return rows;
-    }
-    for (; cells; cells &= cells - 1)
-        rows |= needed << __builtin_ctzll(cells) * stride;
-    return rows;
-}
-
 /* The cells of a tile that a slice may change; `column` is the first encoded
  * one of its window. */
 static uint64_t look(const most_stroke *stroke, const most_slice *slice,
@@ -270,9 +257,9 @@ static void draw_tile(const most_stroke *stroke, const most_slice *slice,
     uint64_t cells = look(stroke, slice, column, window, least) & slice->cells;
     if (!cells)
         return;
-    held =
-        pass->windows->windows(&slice->rows, rows_of(cells, v->stride, reach),
-                               column, window, bits, before);
+    held = pass->windows->windows(&slice->rows,
+                                  snow_rows_of_cells(cells, v->stride, reach),
+                                  column, window, bits, before);
     if (!held)
         return;
     snow_most_tile t = {
@@ -338,10 +325,11 @@ static void read_slice(const most_stroke *stroke, int64_t number,
     slice->rows.held = 0;
     find_cells(stroke, slice);
     if (slice->cells)
-        pass->windows->read(&pass->sheared->bands, number, slice->first,
-                            rows_of(slice->cells, stride,
-                                    slice->place->v->lead[1] + pass->taps[1]),
-                            stroke->scratch.spans, &slice->rows);
+        pass->windows->read(
+            &pass->sheared->bands, number, slice->first,
+            snow_rows_of_cells(slice->cells, stride,
+                               slice->place->v->lead[1] + pass->taps[1]),
+            stroke->scratch.spans, &slice->rows);
 }
 
 /* A number that has no factor in common with the count of slices, and is about

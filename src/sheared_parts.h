@@ -20,6 +20,21 @@ static inline bool snow_any_alive(const uint64_t *alive, int64_t tiles) {
     return false;
 }
 
+/* Rows that cells need: cell i needs rows i * stride to i * stride + reach - 1.
+ */
+static inline uint64_t snow_rows_of_cells(uint64_t cells, int stride,
+                                          int reach) {
+    uint64_t rows = 0, needed = ~UINT64_C(0) >> (64 - reach);
+    if (stride == 1) {
+        for (int m = 0; m < reach; m++)
+            rows |= cells << m;
+        return rows;
+    }
+    for (; cells; cells &= cells - 1)
+        rows |= needed << __builtin_ctzll(cells) * stride;
+    return rows;
+}
+
 /* How the image of a picture is warped. */
 typedef struct snow_sheared_warping {
     snow_plane plane;
