@@ -307,7 +307,8 @@ static void every_level_lays_the_same_pixels(void **state) {
     for (size_t l = 0; l < COUNT_OF(levels); l++)
         for (int kind = SNOW_LAY_OVER; kind <= SNOW_LAY_SUM + 1; kind++) {
             int channels = kind > SNOW_LAY_SUM ? 4 : 2;
-            snow_laying laying = channels == 4 ? SNOW_LAY_OVER : kind;
+            snow_laying laying =
+                channels == 4 ? SNOW_LAY_OVER : (snow_laying)kind;
             uint64_t random = 5;
             for (int i = 0; i < 1500 && snow_isa_runs(levels[l]); i++)
                 check_stack(levels[l], channels, laying, &random);
