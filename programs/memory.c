@@ -119,6 +119,14 @@ static bool is_packed(const char *path, uint64_t voxels) {
     return bytes > 65536 && bytes < voxels / 10 * 9;
 }
 
+/* A pipe, which only the reading may read. */
+static bool is_read_once(const char *path) {
+    struct stat about;
+    return strcmp(path, "-") == 0 ||
+           (stat(path, &about) == 0 && !S_ISREG(about.st_mode) &&
+            !S_ISDIR(about.st_mode));
+}
+
 /* Looks at the headers in a context of its own, whose remarks nobody hears: the
  * opening makes them too, and tells what is wrong with the file.  False where
  * something is. */
@@ -126,7 +134,7 @@ static bool measure(const options *asked, const char *path,
                     const snow_volume_options *data, sizes *out) {
     sizes s = {.picture = picture_bytes(asked)};
     snow_context *context;
-    if (strcmp(path, "-") == 0 || snow_context_new(NULL, &context) != SNOW_OK)
+    if (is_read_once(path) || snow_context_new(NULL, &context) != SNOW_OK)
         return false;
     bool fine = snow_volume_inspect(context, path, data, &s.info) == SNOW_OK;
     if (fine) {

@@ -161,8 +161,9 @@ static bool same_key(const snow_encoded_key *a, const snow_encoded_key *b) {
     return a->serial && a->serial == b->serial &&
            a->slice_axis == b->slice_axis && a->shaded == b->shaded &&
            a->between == b->between && a->faded == b->faded &&
-           a->encoding == b->encoding && a->threshold == b->threshold &&
-           a->slab.first == b->slab.first && a->slab.count == b->slab.count;
+           a->numbers == b->numbers && a->encoding == b->encoding &&
+           a->threshold == b->threshold && a->slab.first == b->slab.first &&
+           a->slab.count == b->slab.count;
 }
 
 int64_t snow_sheared_slices(const snow_sheared_order *order) {
@@ -287,6 +288,8 @@ snow_status snow_sheared_encode(snow_sheared *s,
         .shaded = settings->shade == SNOW_SHADE_PHONG,
         .between = settings->quality == SNOW_QUALITY_HIGH,
         .faded = snow_transfer_fades(order->transfer),
+        .numbers =
+            settings->mode != SNOW_MODE_OVER && settings->mode != SNOW_MODE_ISO,
         .threshold =
             snow_transfer_fades(order->transfer) ? settings->threshold : 0,
         .encoding = settings->encoding,

@@ -60,6 +60,7 @@ typedef struct snow_encoded_key {
     uint64_t serial; /* of the volume; 0: nothing is encoded */
     int slice_axis;
     bool shaded, between, faded;
+    bool numbers; /* of sums and largest values: no voxel more may be there */
     snow_encoding encoding; /* as asked for */
     double threshold;       /* where opacity depends on gradients, else 0: the
                                coder tells */

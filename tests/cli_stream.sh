@@ -181,4 +181,18 @@ then
         -q -o memory.png
     same "3 GB" raw.png memory.png
 fi
+# Pipes can be read once only: they are not looked at beforehand.
+run 0 "a volume of a file" "$TOOL" phantom head --dims 48x48x48 -o pipe.nrrd
+run 0 "its picture" "$TOOL" render -q pipe.nrrd -o file.npy
+run 0 "the same through a pipe" \
+    "$TOOL" render -q <(cat pipe.nrrd) -o pipe.npy
+run 0 "is the same" "$TOOL" compare file.npy pipe.npy
+
+# What needs all voxels at once, and they do not fit beside what is made of them.
+run 0 "a larger volume" "$TOOL" phantom head --dims 256x256x256 -o wide.nrrd
+run 5 "few pixels under a limit" "$TOOL" render wide.nrrd -s 16x16 \
+    --opacity 150:0,250:1 --memory 18M -o wide.png
+says "wide.nrrd: does not fit into memory"
+check "there is no picture" [ ! -e wide.png ]
+
 finish

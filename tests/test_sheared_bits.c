@@ -281,6 +281,27 @@ static void voxels_that_are_not_shown_are_not_drawn_for_ever(void **state) {
     }
 }
 
+/* Modes take codes as numbers: voxels that are not shown would count, since the
+ * lowest value, which most have, is 0 but for rounding. */
+static void sums_are_of_no_other_voxels(void **state) {
+    (void)state;
+    static const snow_opacity_point all[] = {{-1e6, 0.1}, {1e6, 0.2}};
+    for (size_t n = 0; n < 4; n++) {
+        studio s = open_studio(SNOW_INT16, n % 2, n);
+        int16_t *voxels = (void *)(uintptr_t)s.scene.voxels;
+        for (size_t i = 0; i < 70 * 45 * 38; i++)
+            voxels[i] = (int16_t)(20011 + (i % 8 ? 0 : voxels[i] & 127));
+        s.scene.opacities = all;
+        s.scene.opacity_count = COUNT(all);
+        s.scene.settings.shade = SNOW_SHADE_NONE;
+        expect_encoded(&s, 1);
+        s.scene.settings.mode = n / 2 ? SNOW_MODE_MEAN : SNOW_MODE_SUM;
+        expect_encoded(&s, 1);
+        expect_encoded(&s, 0);
+        close_studio(&s);
+    }
+}
+
 /* A curve belongs to the encoding, and where a threshold has to be passed so
  * does the opacity; colours do not. */
 static void an_encoding_has_its_gradient_opacity(void **state) {
@@ -556,6 +577,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(vector_levels_differ_as_stated),
         cmocka_unit_test(an_encoding_is_used_until_it_does_not_fit),
         cmocka_unit_test(voxels_that_are_not_shown_are_not_drawn_for_ever),
+        cmocka_unit_test(sums_are_of_no_other_voxels),
         cmocka_unit_test(an_encoding_has_its_gradient_opacity),
         cmocka_unit_test(shared_voxels_may_change_until_they_are_frozen),
         cmocka_unit_test(another_volume_is_encoded_anew),

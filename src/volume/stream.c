@@ -8,12 +8,19 @@
 
 #include <string.h>
 
+#define REMARKS_MOST 64
+
 /* What is needed to open a slab; the texts of the options follow behind. */
 struct snow_stream {
     snow_volume_options options; /* with texts of its own */
     uint64_t slab_bytes;         /* of voxels of a slab, ghosts included */
     double seconds;              /* of reading */
     char *path;
+    /* Remarks of reading, each of which is told once: a sum for each. */
+    snow_notice_fn *notice;
+    void *notice_user;
+    uint64_t told[REMARKS_MOST];
+    int told_count;
 };
 
 /* Without a wish: small beside any memory, and long enough to be read fast. */
@@ -21,6 +28,32 @@ struct snow_stream {
 
 /* --- opening --------------------------------------------------------------
  */
+
+static void tell_once(void *user, const char *text) {
+    snow_stream *stream = user;
+    uint64_t sum = 1469598103934665603U; /* FNV-1a */
+    for (const char *at = text; *at; at++)
+        sum = (sum ^ (unsigned char)*at) * 1099511628211U;
+    for (int n = 0; n < stream->told_count; n++)
+        if (stream->told[n] == sum)
+            return;
+    if (stream->told_count == REMARKS_MOST)
+        return;
+    stream->told[stream->told_count++] = sum;
+    if (stream->notice)
+        stream->notice(stream->notice_user, text);
+}
+
+/* Begins and ends telling through tell_once. */
+static void listen_once(snow_context *context, snow_stream *stream) {
+    stream->notice = context->notice;
+    stream->notice_user = context->notice_user;
+    snow_context_set_notice(context, tell_once, stream);
+}
+
+static void listen_again(snow_context *context, const snow_stream *stream) {
+    snow_context_set_notice(context, stream->notice, stream->notice_user);
+}
 
 /* Moves a text behind the record. */
 static const char *keep(const char *text, char **at) {
@@ -75,13 +108,19 @@ snow_status snow_volume_stream(snow_context *context, const char *path,
                          "in its file is read several times; write it to a "
                          "file",
                          strcmp(path, "-") ? path : "standard input");
-    SNOW_TRY(snow_volume_inspect(context, path, options, &info));
     SNOW_TRY(new_stream(context, path, options ? options : &none, slab_bytes,
                         &stream));
-    snow_volume *volume = snow_allocate_clear(context, sizeof *volume);
-    if (!volume) {
+    listen_once(context, stream);
+    snow_status status = snow_volume_inspect(context, path, options, &info);
+    listen_again(context, stream);
+    snow_volume *volume = NULL;
+    if (status == SNOW_OK) {
+        volume = snow_allocate_clear(context, sizeof *volume);
+        status = volume ? SNOW_OK : SNOW_NO_MEMORY;
+    }
+    if (status != SNOW_OK) {
         snow_stream_free(context, stream);
-        return SNOW_NO_MEMORY;
+        return status;
     }
     volume->context = context;
     volume->info = info;
@@ -151,8 +190,27 @@ static snow_status compare(const snow_volume *volume, const snow_volume *slab,
                      volume->stream->path, (long long)part->stored[2]);
 }
 
-/* Slices first .. first + count - 1 with ghosts, as a part of the volume.
- * Remarks were made when the volume was opened. */
+/* Whether a remark on a slab holds for the volume: one on what a mask or plane
+ * leaves does not. */
+static bool may_remark(const snow_volume_options *options) {
+    const double *plane = options->clip[0];
+    return !options->mask && plane[0] == 0 && plane[1] == 0 && plane[2] == 0;
+}
+
+static snow_status open_slab(snow_context *context, snow_stream *stream,
+                             const snow_volume_options *options,
+                             snow_volume **out) {
+    double begin = snow_seconds();
+    listen_once(context, stream);
+    if (!may_remark(options))
+        snow_context_set_notice(context, NULL, NULL);
+    snow_status status = snow_volume_open(context, stream->path, options, out);
+    listen_again(context, stream);
+    stream->seconds += snow_seconds() - begin;
+    return status;
+}
+
+/* Slices first .. first + count - 1 with ghosts, as a part of the volume. */
 static snow_status read_slab(const snow_volume *volume, int64_t first,
                              int64_t count, int64_t ghosts, snow_volume **out) {
     snow_context *context = volume->context;
@@ -168,15 +226,8 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     options.crop[2][1] = options.crop[2][0] + end;
     options.crop[2][0] += from;
     snow_volume *slab;
-    double begin = snow_seconds();
-    snow_notice_fn *notice = context->notice;
-    context->notice = NULL;
-    snow_status status =
-        snow_volume_open(context, volume->stream->path, &options, &slab);
-    context->notice = notice;
-    volume->stream->seconds += snow_seconds() - begin;
-    SNOW_TRY(status);
-    status = compare(volume, slab, &part, end - from);
+    SNOW_TRY(open_slab(context, volume->stream, &options, &slab));
+    snow_status status = compare(volume, slab, &part, end - from);
     if (status == SNOW_OK)
         status = snow_volume_set_part(slab, &part);
     if (status != SNOW_OK) {

@@ -202,11 +202,11 @@ static snow_status read_found(const zarr_store *store, zarr_found *found,
     SNOW_TRY(snow_window_lay(store->context, options, info, &window));
     crop(&window, &box);
     spell(found, info->storage, sizeof info->storage);
-    if (!out)
-        return SNOW_OK;
     if (!snow_volume_count(info->dims, info->type, &voxels, &bytes))
         bytes = UINT64_MAX; /* which the window has refused before */
     SNOW_TRY(snow_zarr_check_box(&box, bytes));
+    if (!out)
+        return SNOW_OK;
     return read_voxels(&box, info, out);
 }
 
