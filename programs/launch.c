@@ -35,6 +35,10 @@ bool launch_talks(void) {
     return launch_rank() == 0;
 }
 
+bool launch_broken(void) {
+    return launch_ranks() > 1 && snow_comm_broken(now.comm);
+}
+
 /* What has broken the communicator was told when it did.  A rank that does not
  * talk has kept what it would have said. */
 int launch_agree(int done) {

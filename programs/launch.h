@@ -33,6 +33,9 @@ const char *launch_mpi(void);
 /* Whether this rank talks: the first one. */
 bool launch_talks(void);
 
+/* Whether ranks cannot agree any more, since one is lost. */
+bool launch_broken(void);
+
 /* Collective.  GO_ON, SNOW_OK or another exit code of this rank; answers it
  * where all are well, else the code of the lowest rank that is not, which the
  * rank that talks has told then. */

@@ -82,7 +82,12 @@ int fail_output(const char *format, ...) {
 }
 
 /* The message is complete already: file, fault, remedy. */
+/* A rank that is lost makes all that is under way fail: it is told once. */
 int fail_status(const snow_context *context, snow_status status) {
+    static bool told_broken;
+    if (launch_broken() && told_broken)
+        return (int)status;
+    told_broken = launch_broken();
     const char *message = context ? snow_context_message(context) : "";
     say("%s", *message ? message : snow_status_text(status));
     return (int)status;

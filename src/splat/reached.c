@@ -91,7 +91,8 @@ snow_status snow_reached_make(const snow_bands *bands, const int taps[2],
         return snow_fail(context, SNOW_NO_MEMORY,
                          "no memory for a map of what is in reach");
     SNOW_TRY(snow_reserve(context, &r->bits, &r->capacity, 0, (size_t)bytes));
-    memset(r->bits, 0, (size_t)bytes);
+    if (bytes) /* a part may have no slices */
+        memset(r->bits, 0, (size_t)bytes);
     reached_job job = {bands, windows, r, NULL, 0};
     job.scratch_bytes =
         words * (sizeof(uint64_t) + sizeof(uint32_t)) +
