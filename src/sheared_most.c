@@ -232,8 +232,8 @@ static void draw_cells(const most_stroke *stroke, const most_slice *slice,
         return;
     if (!is_inner(stroke, slice->place, tile)) {
         fill_factors(stroke, slice, tile, 1, factors);
-        memcpy(factors + SNOW_MOST_LINE, factors,
-               SNOW_MOST_LINE * sizeof *factors);
+        for (int i = 0; i < SNOW_MOST_LINE; i++)
+            factors[SNOW_MOST_LINE + i] = factors[i];
         t->factors = factors;
     }
     stroke->pass->fns->most(t);
