@@ -320,16 +320,8 @@ static snow_status draw_alone(scene *s) {
     return status;
 }
 
-/* A rank that is lost makes both pictures under way fail: one message.  Of a
- * volume that stays in its file the library takes less than of others, and that
- * is for want of memory. */
+/* A rank that is lost makes both pictures under way fail: one message. */
 static int fail_picture(scene *s, snow_status status, const char *path) {
-    if (!s->fault && s->plan.streams && status == SNOW_BAD_USAGE) {
-        say("%s: does not fit into memory, and pixels this wide need all its "
-            "voxels at once; give more --memory, or a larger --size",
-            name_of_input(path));
-        s->fault = SNOW_NO_MEMORY;
-    }
     if (!s->fault)
         s->fault = fail_volume(s->context, status, name_of_input(path));
     return s->fault;

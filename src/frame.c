@@ -84,11 +84,17 @@ static snow_status check_part(const snow_job *job) {
 }
 
 /* Of a volume whose voxels stay in their file, bands are made, and nothing else
- * sees voxels. */
-static snow_status check_stream(const snow_job *job, int parts) {
+ * sees voxels; `wide`: no lattice has such pixels. */
+static snow_status check_stream(const snow_job *job, int parts, bool wide) {
     const snow_settings *settings = &job->settings;
     if (!job->volume->stream)
         return SNOW_OK;
+    if (wide)
+        return snow_fail(job->context, SNOW_NO_MEMORY,
+                         "%s: pixels are more than about 15 voxels wide, which "
+                         "needs all voxels in memory at once; allow more of "
+                         "it, or take a larger --size",
+                         snow_stream_path(job->volume));
     const char *what = settings->mode != SNOW_MODE_OVER
                            ? snow_mode_name(settings->mode)
                        : settings->depth ? "depths"
@@ -97,12 +103,12 @@ static snow_status check_stream(const snow_job *job, int parts) {
                            : NULL;
     if (!what && parts == 1)
         return SNOW_OK;
-    return snow_fail(job->context, SNOW_BAD_USAGE,
-                     "%s: a volume whose voxels stay in their file is rendered "
-                     "in mode over, by the method sheared, to pixels no more "
-                     "than about 15 voxels wide, without depths; open it with "
-                     "snow_volume_open",
-                     what ? what : "slabs");
+    return snow_fail(
+        job->context, SNOW_BAD_USAGE,
+        "%s: a volume whose voxels stay in their file is rendered "
+        "in mode over, by the method sheared, without depths; open "
+        "it with snow_volume_open",
+        what ? what : "slabs");
 }
 
 /* What the kernel has to know of a level. */
@@ -121,10 +127,11 @@ static snow_status place(snow_job *job, int parts, int part) {
     SNOW_TRY(
         snow_placement_make(job->context, &whole, job->view, &job->placement));
     tell_level(job->volume, &job->placement);
-    if (job->settings.method == SNOW_METHOD_SHEARED &&
-        !snow_sheared_fits(&job->placement, &job->settings))
+    bool wide = job->settings.method == SNOW_METHOD_SHEARED &&
+                !snow_sheared_fits(&job->placement, &job->settings);
+    if (wide)
         job->settings.method = SNOW_METHOD_FOOTPRINT;
-    SNOW_TRY(check_stream(job, parts));
+    SNOW_TRY(check_stream(job, parts, wide));
     cut_slab(job, parts, part);
     return check_part(job);
 }

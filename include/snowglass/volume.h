@@ -143,8 +143,9 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
  *                        slice axis.  In mode over by the sheared method alone;
  *                        encoding AUTO is the bit-map
  *
- * All else that looks at voxels refuses it (SNOW_BAD_USAGE),
- * snow_volume_voxels is NULL, and snow_volume_measure finds no finite value.
+ * All else that looks at voxels refuses it (SNOW_BAD_USAGE; SNOW_NO_MEMORY where
+ * pixels are too wide for the sheared method), snow_volume_voxels is NULL, and
+ * snow_volume_measure finds no finite value.
  * Path and options are copied; the file must stay as it is and where it is.
  * Errors: as snow_volume_inspect; SNOW_BAD_USAGE (standard input, a pipe); of
  * later readings those of snow_volume_open. */
