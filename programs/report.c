@@ -81,8 +81,8 @@ int fail_output(const char *format, ...) {
     return SNOW_BAD_OUTPUT;
 }
 
-/* The message is complete already: file, fault, remedy. */
-/* A rank that is lost makes all that is under way fail: it is told once. */
+/* The message is complete already: file, fault, remedy.  A rank that is lost
+ * makes all that is under way fail: it is told once. */
 int fail_status(const snow_context *context, snow_status status) {
     static bool told_broken;
     if (launch_broken() && told_broken)

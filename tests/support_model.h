@@ -42,6 +42,11 @@ typedef enum model_matrix {
 reference_scene model_scene(const int64_t dims[3], snow_type type, bool grey,
                             model_matrix matrix, uint64_t seed);
 
+/* A scene of a phantom, whose voxels are the volume's, seen from +z: without
+ * colours, opacities and a size of the picture. */
+reference_scene model_phantom(snow_context *context, const char *name,
+                              const int64_t dims[3], snow_volume **volume);
+
 /* Gives a scene from model_scene a gradient opacity that takes away some of its
  * voxels, and with a step. */
 void model_fade(reference_scene *scene);

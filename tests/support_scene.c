@@ -240,3 +240,15 @@ void model_stand_at(reference_scene *scene, const model_stand *stand,
     model_look(scene, stand->back, stand->up);
     model_turn(scene, stand->azimuth, stand->elevation, stand->roll, zoom);
 }
+
+reference_scene model_phantom(snow_context *context, const char *name,
+                              const int64_t dims[3], snow_volume **volume) {
+    reference_scene scene = {
+        .view = {.back = {0, 0, 1}, .up = {0, 1, 0}, .zoom = 1}};
+    assert_int_equal(snow_volume_phantom(context, name, dims, 1, volume),
+                     SNOW_OK);
+    scene.info = *snow_volume_describe(*volume);
+    scene.voxels = snow_volume_voxels(*volume);
+    snow_settings_init(&scene.settings);
+    return scene;
+}

@@ -420,20 +420,12 @@ static void large_volumes_are_halved_again(void **state) {
 static reference_scene phantom_scene(snow_context *context, const char *name,
                                      const int64_t dims[3], int side,
                                      snow_volume **volume) {
-    reference_scene scene = {.colors = smooth,
-                             .color_count = COUNT(smooth),
-                             .opacities = rising,
-                             .opacity_count = COUNT(rising),
-                             .view = {.width = side,
-                                      .height = side,
-                                      .back = {0, 0, 1},
-                                      .up = {0, 1, 0},
-                                      .zoom = 1}};
-    assert_int_equal(snow_volume_phantom(context, name, dims, 1, volume),
-                     SNOW_OK);
-    scene.info = *snow_volume_describe(*volume);
-    scene.voxels = snow_volume_voxels(*volume);
-    snow_settings_init(&scene.settings);
+    reference_scene scene = model_phantom(context, name, dims, volume);
+    scene.colors = smooth;
+    scene.color_count = COUNT(smooth);
+    scene.opacities = rising;
+    scene.opacity_count = COUNT(rising);
+    scene.view.width = scene.view.height = side;
     scene.settings.quality = SNOW_QUALITY_DRAFT;
     return scene;
 }

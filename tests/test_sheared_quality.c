@@ -25,18 +25,11 @@ static const snow_opacity_point opaque[] = {
 static reference_scene phantom_scene(snow_context *context, const char *name,
                                      snow_volume **volume) {
     const int64_t dims[3] = {48, 48, 48};
-    reference_scene scene = {.colors = colors,
-                             .color_count = COUNT(colors),
-                             .view = {.width = 100,
-                                      .height = 90,
-                                      .back = {0, 0, 1},
-                                      .up = {0, 1, 0},
-                                      .zoom = 1}};
-    assert_int_equal(snow_volume_phantom(context, name, dims, 1, volume),
-                     SNOW_OK);
-    scene.info = *snow_volume_describe(*volume);
-    scene.voxels = snow_volume_voxels(*volume);
-    snow_settings_init(&scene.settings);
+    reference_scene scene = model_phantom(context, name, dims, volume);
+    scene.colors = colors;
+    scene.color_count = COUNT(colors);
+    scene.view.width = 100;
+    scene.view.height = 90;
     return scene;
 }
 
