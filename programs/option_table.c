@@ -237,8 +237,8 @@ const option_row option_table[] = {
      "stands on the command line counts more"},
     {"save-config", 0, "FILE", TOPIC_RUN, RENDER, read_text,
      FIELD(save_config), 0, 0, "", "write such an object, which gives the same "
-     "picture again; - is standard output; a file that exists needs "
-     "--overwrite"},
+     "picture again, and its --depth (figures of a run, as --stats, are none of "
+     "it); - is standard output; a file that exists needs --overwrite"},
 
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
      1000000, "", "pictures of one turn (120)"},
