@@ -190,7 +190,8 @@ snow_status snow_job_order(const snow_job *job, int axis,
                                   .settings = &job->settings,
                                   .placement = placement,
                                   .slab = job->slab,
-                                  .channels = job->channels};
+                                  .channels = job->channels,
+                                  .lay = job->lay};
     snow_clip_make(job->volume, placement, &order->clip);
     if (job->all)
         order->slab = (snow_slab){order->clip.first[2], order->clip.count[2]};

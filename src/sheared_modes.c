@@ -57,10 +57,6 @@ typedef struct modes_stroke {
     const snow_slice_place *place;
 } modes_stroke;
 
-bool snow_sheared_modes_fits(const snow_placement *placement) {
-    return !placement->perspective;
-}
-
 /* --- rows ------------------------------------------------------------------
  */
 
