@@ -271,6 +271,7 @@ static void tell_choices(const work *w) {
     scene_choices(&w->scene, text, sizeof text);
     if (w->scene.asked->verbosity >= 0)
         say("%s%s", text, w->painted.words);
+    scene_tell_method(&w->scene);
 }
 
 /* What can be refused before anything is read; outputs by the rank that
