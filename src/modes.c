@@ -8,8 +8,9 @@
 #include "image/image.h"
 #include "iso.h"
 #include "sheared_modes.h"
+#include "slabs.h"
 #include "transform/eye.h"
-#include "volume/volume.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,7 +27,7 @@ void snow_ramp_fini(snow_ramp *ramp) {
 static snow_status measure(snow_context *context, const snow_volume *volume,
                            snow_ramp *ramp) {
     snow_volume_measures figures;
-    snow_volume_measure(volume, &figures);
+    SNOW_TRY(snow_volume_range(volume, &figures));
     ramp->whole = figures.finite == figures.voxels;
     ramp->empty = !figures.finite;
     ramp->low = figures.finite ? figures.min : 0;
@@ -106,7 +107,15 @@ snow_status snow_ramp_above(snow_job *job, snow_ramp *ramp) {
 /* The ramp of a picture of pairs; what the sheared method cannot do is left to
  * footprints. */
 static snow_status choose_ramp(snow_job *job, snow_ramp *ramp) {
-    if (job->settings.method == SNOW_METHOD_SHEARED && !ramp->whole)
+    bool holes = job->settings.method == SNOW_METHOD_SHEARED && !ramp->whole;
+    if (holes && job->volume->stream)
+        return snow_fail(job->context, SNOW_NO_MEMORY,
+                         "%s: some voxels are no finite numbers, and mode %s "
+                         "of such a volume needs them all in memory at once; "
+                         "allow more of it, or give --crop",
+                         snow_stream_path(job->volume),
+                         snow_mode_name(job->settings.mode));
+    if (holes)
         job->settings.method = SNOW_METHOD_FOOTPRINT;
     const snow_ramp wanted = {.falls = job->settings.mode == SNOW_MODE_MINIP,
                               .sparse =
@@ -374,7 +383,8 @@ snow_status snow_modes_render(snow_frame *frame, snow_job *job,
     SNOW_TRY(check(job));
     SNOW_TRY(snow_ramp_measure(job, &frame->ramp));
     if (job->settings.mode == SNOW_MODE_ISO)
-        return snow_iso_render(frame, job, out);
+        return job->volume->stream ? snow_slabs_iso(frame, job, out)
+                                   : snow_iso_render(frame, job, out);
     SNOW_TRY(snow_modes_pairs(frame, job, &pairs));
     SNOW_TRY(render_pairs(frame, &pairs, &drawn));
     bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
