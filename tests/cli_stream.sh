@@ -105,6 +105,23 @@ run 0 "its first step alone" "$TOOL" render a.nrrd "${look[@]}" -q \
 same "a movie" m_0.png whole.png
 same "its second step" m_1.png whole.png
 
+# --- nothing is left ----------------------------------------------------------
+
+"$TOOL" phantom cube --dims 256x256x200 -q -o mask.nrrd
+for limit in 200M 11M; do # in memory, and in slabs
+    run 0 "a mask of no voxel under $limit" "$TOOL" render a.nrrd -s 64x64 \
+        --view -z -o none.png -y --mask mask.nrrd --labels 300 --memory $limit
+    says 'mask.nrrd: no voxel is left inside this mask, whose values are [0-9]* to 255; correct'
+    check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
+    run 0 "planes that leave nothing under $limit" "$TOOL" render a.nrrd \
+        -s 64x64 --view -z -o none.png -y --clip 1,0,0,-9999 --memory $limit
+    says 'clip: no voxel is left'
+    run 0 "planes that leave some under $limit" "$TOOL" render a.nrrd \
+        -s 64x64 --view -z -o none.png -y --clip 0,0,1,-50 --memory $limit
+    check "are not remarked on" bash -c "! grep -q 'no voxel' '$ERR'"
+done
+rm none.png
+
 # --- what is refused ---------------------------------------------------------
 
 small=(-s 64x64 -o none.png)

@@ -6,6 +6,8 @@
  * file that was replaced in between is noticed by its sizes at the latest. */
 #include "volume/stream.h"
 
+#include "volume/mask.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -16,6 +18,11 @@ struct snow_stream {
     snow_volume_options options; /* with texts of its own */
     uint64_t slab_bytes;         /* of voxels of a slab, ghosts included */
     double seconds;              /* of reading */
+    bool left;                   /* of the present visit: a slab has voxels
+                                    that no mask or plane leaves out */
+    double mask_range[2];        /* of it: the mask's values, NaN where it is
+                                    not known */
+    bool told_empty;             /* that nothing is left */
     bool measured;               /* `range` is known */
     snow_volume_measures range;
     char *path;
@@ -244,6 +251,26 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     return SNOW_OK;
 }
 
+/* What a mask or planes have left of the slabs that one visit has read. */
+static void note_empty(const snow_volume *slab, snow_stream *stream) {
+    if (!slab->emptied)
+        stream->left = true;
+    stream->mask_range[0] = fmin(stream->mask_range[0], slab->mask_range[0]);
+    stream->mask_range[1] = fmax(stream->mask_range[1], slab->mask_range[1]);
+}
+
+/* As of a volume in memory: of one that is cropped nothing is said. */
+static void tell_empty(const snow_volume *volume) {
+    static const int64_t none[3][2];
+    snow_stream *stream = volume->stream;
+    const snow_volume_options *options = &stream->options;
+    if (stream->left || stream->told_empty || !snow_mask_asked(options) ||
+        memcmp(options->crop, none, sizeof none) != 0)
+        return;
+    stream->told_empty = true;
+    snow_mask_remark(volume->context, options, stream->mask_range);
+}
+
 /* Its voxels' room is left to the next one. */
 static void drop_slab(snow_volume *slab) {
     snow_context *context = slab->context;
@@ -262,6 +289,7 @@ static snow_status visit_slab(const snow_volume *volume, int64_t first,
                               snow_slab_fn *visit, void *user) {
     snow_volume *slab;
     SNOW_TRY(read_slab(volume, first, count, ghosts, &slab));
+    note_empty(slab, volume->stream);
     snow_status status = visit(slab, user);
     drop_slab(slab);
     return status;
@@ -284,9 +312,14 @@ static snow_status visit_slabs(const snow_volume *volume,
 snow_status snow_slabs_visit(const snow_volume *volume,
                              const snow_slab_cut *cut, snow_slab_fn *visit,
                              void *user) {
-    if (!volume->stream)
+    snow_stream *stream = volume->stream;
+    if (!stream)
         return visit(volume, user);
+    stream->left = false;
+    stream->mask_range[0] = stream->mask_range[1] = NAN;
     snow_status status = visit_slabs(volume, cut, visit, user);
+    if (status == SNOW_OK)
+        tell_empty(volume);
     snow_context *context = volume->context;
     snow_release(context, context->spare);
     context->spare = NULL;
