@@ -189,6 +189,18 @@ static snow_status check_size(const snow_tiff *file, const tiff_plan *plan) {
                      (long long)page->height, (unsigned long long)size);
 }
 
+/* A page as it says of itself: samples may lie beside one another in one and in
+ * planes in the next, and be packed otherwise. */
+static snow_status read_page(snow_tiff *file, const tiff_plan *plan,
+                             int64_t sample, const snow_window *window,
+                             unsigned char *slice) {
+    tiff_page page;
+    SNOW_TRY(snow_tiff_describe(file, &page));
+    if (!same_page(&page, &plan->page))
+        return snow_tiff_fail(file);
+    return snow_tiff_read_page(file, &page, sample, window, slice);
+}
+
 /* Pages are gone through from the first on, since each tells where the next
  * one is; those wanted are put in their slice. */
 static snow_status read_pages(snow_tiff *file, const tiff_plan *plan,
@@ -211,7 +223,7 @@ static snow_status read_pages(snow_tiff *file, const tiff_plan *plan,
             SNOW_TRY(next_page(file, &got));
         if (!got)
             return snow_tiff_fail(file);
-        SNOW_TRY(snow_tiff_read_page(file, &plan->page, sample, window, slice));
+        SNOW_TRY(read_page(file, plan, sample, window, slice));
     }
     return SNOW_OK;
 }
