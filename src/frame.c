@@ -415,8 +415,12 @@ static snow_status make_depth(snow_frame *frame, const snow_job *job) {
 static snow_status render_over(snow_frame *frame, snow_job *job,
                                snow_image **out) {
     snow_image *image = NULL;
-    SNOW_TRY(snow_image_new(frame->context, job->view->width, job->view->height,
-                            job->channels, &image));
+    /* A sheared picture that is not blended is written once, and whole. */
+    bool written = job->settings.method == SNOW_METHOD_SHEARED &&
+                   job->settings.quality != SNOW_QUALITY_HIGH;
+    SNOW_TRY((written ? snow_image_make : snow_image_new)(
+        frame->context, job->view->width, job->view->height, job->channels,
+        &image));
     job->pixels = snow_image_pixels(image);
     snow_status status = render_slab(frame, job);
     if (status == SNOW_OK)
