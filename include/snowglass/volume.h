@@ -144,9 +144,9 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
  *                        depth, which may differ by rounding.  By the sheared
  *                        method alone; encoding AUTO is the bit-map
  *
- * All else that looks at voxels refuses it (SNOW_BAD_USAGE; SNOW_NO_MEMORY where
- * the sheared method cannot make the picture: pixels are too wide, or some
- * voxels no finite numbers in modes other than over and iso),
+ * All else that looks at voxels refuses it (SNOW_BAD_USAGE; SNOW_NO_MEMORY
+ * where the sheared method cannot make the picture: pixels are too wide, or
+ * some voxels no finite numbers in modes other than over and iso),
  * snow_volume_voxels is NULL, and snow_volume_measure finds no finite value.
  * Path and options are copied; the file must stay as it is and where it is.
  * Errors: as snow_volume_inspect; SNOW_BAD_USAGE (standard input, a pipe); of
