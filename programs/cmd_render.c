@@ -48,15 +48,21 @@ static bool is_beside(const options *asked) {
     return asked->depth && same_output(asked->depth, asked->output);
 }
 
+int check_depth_mode(const options *asked) {
+    if (!asked->depth || strcmp(asked->mode, "over") == 0 ||
+        strcmp(asked->mode, "iso") == 0)
+        return GO_ON;
+    return fail_usage("--depth: mode %s has none; take over or iso",
+                      asked->mode);
+}
+
 /* Depths are of one picture, numbers, and go to a place of their own, or to the
  * picture's where its format has channels for both. */
 static int check_depth(const options *asked) {
     const char *path = asked->depth;
-    if (!path)
-        return GO_ON;
-    if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0)
-        return fail_usage("--depth: mode %s has none; take over or iso",
-                          asked->mode);
+    int done = check_depth_mode(asked);
+    if (!path || done != GO_ON)
+        return done;
     if (snow_image_bits(path) != 0)
         return fail_usage("--depth: %s: depths are numbers; let the name end "
                           "with .npy, .pfm, .exr or .tif",

@@ -58,6 +58,9 @@ int make_settings(const options *asked, const snow_volume_info *info,
 int make_view(snow_context *context, const options *asked,
               const snow_volume_info *info, snow_view *out);
 
+/* Refuses --depth of a mode that has none.  Answers GO_ON or an exit code. */
+int check_depth_mode(const options *asked);
+
 /* How the options ask for a picture's file. */
 snow_image_options picture_form(const options *asked);
 

@@ -136,16 +136,20 @@ static int check_recipe(const char *path) {
 }
 
 /* A depth of the file follows what stands on the command line: to the picture
- * that it was a channel of, if that can have one; another mode has none. */
-static void fit_depth(const options *out, json_t *tree) {
+ * that it was a channel of, if that can have one; another mode has none, and
+ * frames none in a file of its own. */
+static void fit_depth(const options *out, const verb_row *verb, json_t *tree) {
     const char *depth = json_string_value(json_object_get(tree, "depth"));
     const char *output = json_string_value(json_object_get(tree, "output"));
     bool moves = options_told(out, "output") && depth && output &&
                  strcmp(depth, output) == 0;
     if (moves && snow_image_takes_depth(out->output))
         json_object_set_new(tree, "depth", json_string(out->output));
-    else if (moves || (options_told(out, "mode") && strcmp(out->mode, "over") &&
-                       strcmp(out->mode, "iso")))
+    else if (moves ||
+             (depth && verb->bit != VERB_RENDER &&
+              (!output || strcmp(depth, output) != 0)) ||
+             (options_told(out, "mode") && strcmp(out->mode, "over") &&
+              strcmp(out->mode, "iso")))
         json_object_del(tree, "depth");
 }
 
@@ -158,7 +162,7 @@ static int take_file(options *out, const verb_row *verb) {
     if (done != GO_ON)
         return done;
     json_t *tree = json_load_file(out->config, 0, &error);
-    fit_depth(out, tree);
+    fit_depth(out, verb, tree);
     json_object_foreach(tree, key, value) {
         done = take_key(out, verb, key, value);
         if (done != GO_ON)

@@ -139,23 +139,34 @@ snow_status frames_new(const frame_sink *sink, int workers, frame_queue **out) {
     return SNOW_OK;
 }
 
-/* The slot's picture is made anew only where its form has changed. */
-static snow_status copy_image(frame_slot *slot, snow_image *image) {
-    int width = snow_image_width(image), height = snow_image_height(image);
-    int channels = snow_image_channels(image);
-    if (slot->image && (snow_image_width(slot->image) != width ||
-                        snow_image_height(slot->image) != height ||
-                        snow_image_channels(slot->image) != channels)) {
-        snow_image_free(slot->image);
-        slot->image = NULL;
+static void drop_image(snow_image **image) {
+    snow_image_free(*image);
+    *image = NULL;
+}
+
+/* The slot's picture is made anew only where its form has changed; of no
+ * picture there is none. */
+static snow_status copy_image(frame_slot *slot, const snow_image *from,
+                              snow_image **to) {
+    if (!from) {
+        drop_image(to);
+        return SNOW_OK;
     }
-    if (!slot->image) {
-        snow_status status = snow_image_new(slot->context, width, height,
-                                            channels, &slot->image);
+    /* pixels are only read: the library has no other way to them */
+    snow_image *image = (snow_image *)(uintptr_t)from;
+    int width = snow_image_width(from), height = snow_image_height(from);
+    int channels = snow_image_channels(from);
+    if (*to &&
+        (snow_image_width(*to) != width || snow_image_height(*to) != height ||
+         snow_image_channels(*to) != channels))
+        drop_image(to);
+    if (!*to) {
+        snow_status status =
+            snow_image_new(slot->context, width, height, channels, to);
         if (status != SNOW_OK)
             return status;
     }
-    memcpy(snow_image_pixels(slot->image), snow_image_pixels(image),
+    memcpy(snow_image_pixels(*to), snow_image_pixels(image),
            (size_t)width * (size_t)height * (size_t)channels * sizeof(float));
     return SNOW_OK;
 }
@@ -168,7 +179,8 @@ static snow_status wait_for_room(frame_queue *queue) {
     return queue->status;
 }
 
-snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image) {
+snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image,
+                       const snow_image *depth) {
     snow_status status = wait_for_room(queue);
     frame_slot *slot = slot_of(queue, queue->put);
     pthread_mutex_unlock(&queue->lock);
@@ -176,12 +188,9 @@ snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image) {
         return status;
     slot->index = index;
     slot->fault[0] = '\0';
-    if (image) {
-        status = copy_image(slot, image);
-    } else {
-        snow_image_free(slot->image);
-        slot->image = NULL;
-    }
+    status = copy_image(slot, image, &slot->image);
+    if (status == SNOW_OK)
+        status = copy_image(slot, depth, &slot->depth);
     pthread_mutex_lock(&queue->lock);
     note_fault(queue, slot, status);
     status = queue->status;
@@ -228,7 +237,8 @@ void frames_free(frame_queue *queue) {
         frame_slot *slot = &queue->ring[i];
         if (slot->work && queue->sink.release)
             queue->sink.release(queue->sink.user, slot);
-        snow_image_free(slot->image);
+        drop_image(&slot->image);
+        drop_image(&slot->depth);
         snow_context_free(slot->context);
     }
     pthread_cond_destroy(&queue->changed);

@@ -21,6 +21,7 @@ typedef struct frame_slot {
     snow_context *context; /* the slot's own: a context serves one thread at a
                               time, and slots are handed on */
     snow_image *image;     /* NULL: a frame that lies in its file already */
+    snow_image *depth;     /* of its pixels; NULL: none */
     void *work;            /* the sink's; begins as NULL */
     char fault[FRAME_FAULT_BYTES]; /* the sink's own message; "": the context's
                                       counts */
@@ -46,10 +47,11 @@ typedef struct frame_queue frame_queue;
  * workers.  The sink is copied.  Errors: SNOW_NO_MEMORY (or no thread). */
 snow_status frames_new(const frame_sink *sink, int workers, frame_queue **out);
 
-/* Takes a copy of a picture, or NULL for a frame that lies in its file; waits
- * for a free slot.  Answers the status of the queue: a fault may be that of an
- * earlier frame. */
-snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image);
+/* Takes a copy of a picture and of its depths (NULL: none), or NULL for a frame
+ * that lies in its file; waits for a free slot.  Answers the status of the
+ * queue: a fault may be that of an earlier frame. */
+snow_status frames_put(frame_queue *queue, int64_t index, snow_image *image,
+                       const snow_image *depth);
 
 /* The status so far, without waiting. */
 snow_status frames_status(frame_queue *queue);

@@ -53,10 +53,10 @@ const option_row option_table[] = {
      FIELD(overwrite), 0, 0, "",
      "replace files that exist, of --output, --depth and --stats (they are "
      "kept)"},
-    {"depth", 0, "FILE", TOPIC_OUTPUT, VERB_RENDER, read_text, FIELD(depth), 0,
+    {"depth", 0, "FILE", TOPIC_OUTPUT, RENDER, read_text, FIELD(depth), 0,
      0, "", "of modes over and iso: a file of numbers (.npy, .pfm, .exr, .tif), world "
      "distances from the target's plane along the line of sight to where opacity passes 1/2, or to "
-     "the surface; NaN elsewhere; the .exr of --output itself gets them as channel Z"},
+     "the surface; NaN elsewhere; the .exr of --output itself gets them as channel Z, and so do frames of a pattern"},
 
     {"mode", 'm', "over|mip|minip|mean|sum|iso", TOPIC_MODE, RENDER, read_choice,
      FIELD(mode), 0, 0, "",

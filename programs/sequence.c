@@ -31,7 +31,7 @@
 
 /* What slots may hold together: a few huge pictures rather than many. */
 #define QUEUE_BYTES (INT64_C(1) << 30)
-#define PIXEL_BYTES 20 /* floats of four channels, bytes of three */
+#define PIXEL_BYTES 24 /* floats of four channels, depth, bytes of three */
 
 /* Words that ranks share beside exit codes and GO_ON. */
 #define PASS (-2) /* the frame is kept: nobody renders it */
@@ -68,7 +68,14 @@ int sequence_check(const options *asked) {
     if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
                          same_place(asked->stats, asked->output)))
         return fail_usage("--stats: goes where --output goes; name two places");
-    int done = paint_check(asked, true);
+    if (asked->depth && (movie || strcmp(asked->depth, asked->output) != 0 ||
+                         !snow_image_takes_depth(asked->output)))
+        return fail_usage("--depth: frames have theirs in their own files, as "
+                          "channel Z; give the pattern of --output for both, "
+                          "such as f_%%04d.exr");
+    int done = check_depth_mode(asked);
+    if (done == GO_ON)
+        done = paint_check(asked, true);
     return done == GO_ON ? check_settings(asked) : done;
 }
 
@@ -124,6 +131,7 @@ static snow_status make_frame(const sequence *s, frame_slot *slot) {
     snow_status status = marks_make(&s->marks, shot->azimuth, shot->step,
                                     slot->context, &overlay);
     form.overlay = overlay;
+    form.depth = slot->depth;
     place_aside(&s->place, slot->index, path, sizeof path);
     if (status == SNOW_OK)
         status = snow_image_save(slot->image, path, &form);
@@ -344,7 +352,7 @@ static void pass(run *r, int64_t index) {
     if (!r->s)
         return;
     if (r->s->encoding)
-        (void)frames_put(r->s->queue, index, NULL);
+        (void)frames_put(r->s->queue, index, NULL, NULL);
     r->figures.kept++;
     sequence_progress_step(&r->progress, index, false);
 }
@@ -361,7 +369,8 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
     if (!r->s->has_marks) /* the queue's lock shows them to the workers */
         r->renderer->marks(r->renderer->self, &r->s->marks);
     r->s->has_marks = true;
-    (void)frames_put(r->s->queue, index, image);
+    (void)frames_put(r->s->queue, index, image,
+                     r->renderer->depth(r->renderer->self));
     snow_image_free(r->last);
     r->last = image;
     sequence_progress_step(&r->progress, index, true);

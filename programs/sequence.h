@@ -50,6 +50,10 @@ typedef struct sequence_renderer {
     int (*finish)(void *self, snow_image **image);
     int ahead; /* shots to be begun before the one that is finished: 0 or 1 */
 
+    /* Depths of the last picture; NULL where none were asked for.  Called on
+     * the rank that writes. */
+    const snow_image *(*depth)(void *self);
+
     /* Figures of the last picture; their `image` is filled in by the caller.
      * Called on the rank that writes. */
     void (*report)(void *self, render_report *out);

@@ -97,6 +97,12 @@ static int finish(void *self, snow_image **image) {
     return GO_ON;
 }
 
+static const snow_image *depth(void *self) {
+    const shot_renderer *shots = self;
+    return shots->scene.asked->depth ? snow_frame_depth(shots->scene.frame)
+                                     : NULL;
+}
+
 static void report(void *self, render_report *out) {
     const shot_renderer *shots = self;
     *out = scene_report(&shots->scene);
@@ -122,6 +128,7 @@ sequence_renderer shots_renderer(shot_renderer *shots) {
                                .begin = begin,
                                .finish = finish,
                                .ahead = launch_ranks() > 1,
+                               .depth = depth,
                                .report = report,
                                .marks = marks,
                                .share = share,

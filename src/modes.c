@@ -48,11 +48,16 @@ static snow_status make_transfer(snow_context *context, snow_ramp *ramp) {
      * beyond it.  Infinities are outside. */
     double beyond = nextafter(high, INFINITY);
     double from = ramp->steps ? fmin(fmax(ramp->level, low), beyond) : low;
+    if (ramp->sparse && falls > 0)
+        beyond = high;
+    else if (ramp->sparse)
+        from = nextafter(low, INFINITY);
     const snow_opacity_point finite[] = {
         {from, 0}, {from, 1}, {beyond, 1}, {beyond, 0}};
     const snow_opacity_point above[] = {{low, falls}, {high, 1 - falls}};
-    return snow_transfer_new(context, colors, 2, ramp->sparse ? above : finite,
-                             ramp->sparse ? 2 : 4, &ramp->transfer);
+    bool grows = ramp->sparse && !ramp->solid;
+    return snow_transfer_new(context, colors, 2, grows ? above : finite,
+                             grows ? 2 : 4, &ramp->transfer);
 }
 
 snow_status snow_ramp_measure(snow_job *job, snow_ramp *ramp) {
@@ -82,11 +87,12 @@ static snow_status prepare_ramp(const snow_job *job, const snow_ramp *wanted,
                                 snow_ramp *ramp) {
     snow_ramp made = *ramp;
     if (ramp->transfer && ramp->serial && ramp->falls == wanted->falls &&
-        ramp->sparse == wanted->sparse && ramp->steps == wanted->steps &&
-        ramp->level == wanted->level)
+        ramp->sparse == wanted->sparse && ramp->solid == wanted->solid &&
+        ramp->steps == wanted->steps && ramp->level == wanted->level)
         return SNOW_OK;
     made.falls = wanted->falls;
     made.sparse = wanted->sparse;
+    made.solid = wanted->solid;
     made.steps = wanted->steps;
     made.level = wanted->level;
     SNOW_TRY(make_transfer(job->context, &made));
@@ -119,8 +125,8 @@ static snow_status choose_ramp(snow_job *job, snow_ramp *ramp) {
         job->settings.method = SNOW_METHOD_FOOTPRINT;
     const snow_ramp wanted = {.falls = job->settings.mode == SNOW_MODE_MINIP,
                               .sparse =
-                                  job->settings.method == SNOW_METHOD_SHEARED &&
-                                  !job->placement.perspective};
+                                  job->settings.method == SNOW_METHOD_SHEARED,
+                              .solid = job->placement.perspective};
     return prepare_ramp(job, &wanted, ramp);
 }
 

@@ -4,7 +4,9 @@
  * voxel has its own ray and opacity (classify/rays.h).
  *
  * In modes whose order does not matter (composite/reduce.h) a tile of a slice
- * is drawn by itself, and laid into the image by the mode's loop. */
+ * is drawn by itself, and laid into the image by the mode's loop.  Voxels whose
+ * number is 0 are not there; weights are those of the whole grid: of a pixel on
+ * a slice that of its column along u times that of its line along v. */
 #include "classify/rays.h"
 #include "composite/ray_tile.h"
 #include "sheared_parts.h"
@@ -27,6 +29,9 @@ typedef struct snow_seen_slice {
     double height; /* above the eye, slices */
     int32_t *first;
     float *weights;
+    float *whole; /* sums of the weights of voxels in the grid, where they are
+                     wanted */
+    int from, to; /* columns that have them */
 } snow_seen_slice;
 
 /* One picture in the making. */
@@ -74,6 +79,7 @@ typedef struct seen_scratch {
     float *weights;
     float *kept;         /* a cut tile's pixels */
     float *sheet;        /* a tile of one slice */
+    float *whole;        /* along v, of the band's lines: as of a slice */
     float *spare_pixels; /* of bands to be combined */
     unsigned char *spare_drawn;
 } seen_scratch;
@@ -212,6 +218,18 @@ static void choose_tiles(seen_pass *pass) {
                           (size_t)pass->channels;
 }
 
+/* The weights of `count` pixels that fall on the `voxels` of an axis. */
+static void add_teeth(const int32_t *first, const float *weights, int count,
+                      size_t stride, int taps, int64_t voxels, float *whole) {
+    for (int n = 0; n < count; n++) {
+        float sum = 0;
+        for (int m = 0; m < taps; m++)
+            if (first[n] + m >= 0 && first[n] + m < voxels)
+                sum += weights[(size_t)m * stride + (size_t)n];
+        whole[n] = sum;
+    }
+}
+
 /* Weights along u of one slice, where it holds voxels. */
 static void fill_slice(void *job, int64_t item, int worker) {
     const seen_pass *pass = job;
@@ -227,14 +245,21 @@ static void fill_slice(void *job, int64_t item, int worker) {
     /* Whole tiles, which read all of their weights. */
     from -= from % pass->columns;
     to = (to + pass->columns - 1) / pass->columns * pass->columns;
-    if (from < to)
-        snow_rake_fill(rake, from, to, pass->width, slice->first,
-                       slice->weights);
+    slice->from = from;
+    slice->to = from < to ? to : from;
+    if (from >= to)
+        return;
+    snow_rake_fill(rake, from, to, pass->width, slice->first, slice->weights);
+    if (pass->order->lay)
+        add_teeth(slice->first + from, slice->weights + from, to - from,
+                  pass->width, rake->taps, pass->order->placement->columns,
+                  slice->whole + from);
 }
 
 static snow_status fill_slices(seen_pass *pass) {
     snow_sheared *s = pass->sheared;
-    uint64_t entry = pass->width * (1 + (uint64_t)pass->taps[0]) * 4, bytes;
+    uint64_t rows = 1 + (uint64_t)pass->taps[0] + (pass->order->lay != NULL);
+    uint64_t entry = pass->width * rows * 4, bytes;
     /* A group of pixels may read a vector of weights beyond its end. */
     if (!snow_mul_u64(entry, (uint64_t)pass->slice_count, &bytes) ||
         bytes > SIZE_MAX - 64)
@@ -247,6 +272,8 @@ static snow_status fill_slices(seen_pass *pass) {
         char *at = s->teeth + (size_t)n * (size_t)entry;
         pass->slices[n].first = (int32_t *)(void *)at;
         pass->slices[n].weights = (float *)(void *)(at + pass->width * 4);
+        pass->slices[n].whole =
+            pass->slices[n].weights + pass->width * (size_t)pass->taps[0];
     }
     snow_parallel(s->context, pass->order->settings->threads, pass->slice_count,
                   fill_slice, pass);
@@ -347,37 +374,10 @@ static uint64_t draw_cut_tile(const seen_stroke *stroke, int64_t index,
     return snow_cut_restore(&cut, tile->wanted, stroke->pass->tile(tile));
 }
 
-/* The tile by itself, and then as the mode wants it into the image: those of
- * its pixels that are the part's own. */
-static void lay_tile(const seen_stroke *stroke, int64_t index,
-                     const snow_ray_tile *drawn) {
-    const seen_pass *pass = stroke->pass;
-    snow_ray_tile tile = *drawn;
-    const size_t channels = (size_t)pass->channels;
-    const size_t width = (size_t)pass->columns;
-    int range[2] = {0, pass->columns};
-    for (int n = 0; pass->order->clip.cuts && n < 2; n++)
-        range[n] =
-            between_ends(stroke->u_range[n] - index * pass->columns, range[1]);
-    tile.pixels = stroke->scratch.sheet;
-    tile.line = width * channels;
-    for (uint64_t left = tile.wanted; left; left &= left - 1)
-        snow_tile_clear(tile.pixels + (size_t)__builtin_ctzll(left) * tile.line,
-                        width, pass->channels);
-    pass->tile(&tile);
-    for (uint64_t left = tile.wanted; left; left &= left - 1) {
-        size_t line = (size_t)__builtin_ctzll(left);
-        float *sheet = tile.pixels + line * tile.line;
-        size_t first = (size_t)range[0] * channels;
-        snow_tile_finish(sheet, width, pass->channels);
-        pass->order->lay(drawn->pixels + line * drawn->line + first,
-                         sheet + first, (size_t)(range[1] - range[0]));
-    }
-}
-
 /* Lines 08 to 13 for one tile of the slice: the lines that can be seen and have
  * a voxel in reach. */
-static void draw_tile(seen_stroke *stroke, int64_t index) {
+static bool find_tile(const seen_stroke *stroke, int64_t index, uint64_t alive,
+                      snow_ray_tile *out) {
     const seen_pass *pass = stroke->pass;
     const seen_scratch *scratch = &stroke->scratch;
     const snow_seen_slice *slice = stroke->slice;
@@ -387,21 +387,20 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
         slice->first[at + (size_t)pass->columns - 1] - column + slice->u.taps;
     int64_t here = column - pass->stored[0];
     if (here <= -count || here >= pass->voxel_columns)
-        return;
+        return false;
     if (!snow_window_any(&stroke->rows, here, count))
-        return;
+        return false;
     uint64_t bits[SNOW_WINDOW_ROWS];
     uint32_t before[SNOW_WINDOW_ROWS];
-    uint64_t alive = scratch->alive[index] & own_lines(stroke);
     uint64_t held = pass->windows->windows(
         &stroke->rows, rows_of_lines(stroke, stroke->rows.held, alive), here,
         count, bits, before);
     uint64_t lines = lines_of_rows(stroke, held) & alive;
     if (!lines)
-        return;
+        return false;
     held = rows_of_lines(stroke, held, lines);
     sample_rows(stroke, held, column, count, bits, before);
-    snow_ray_tile tile = {
+    *out = (snow_ray_tile){
         .u = {slice->first + at, slice->weights + at, pass->width,
               slice->u.taps},
         .v = {scratch->first, scratch->weights, SNOW_RAY_TILE_LINES,
@@ -418,11 +417,16 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
         .pixels = stroke->pixels + at * (size_t)pass->channels,
         .line = pass->stride,
     };
-    if (pass->order->lay) {
-        lay_tile(stroke, index, &tile);
-        stroke->drawn[index] = 1;
+    return true;
+}
+
+static void draw_tile(seen_stroke *stroke, int64_t index) {
+    const seen_pass *pass = stroke->pass;
+    const seen_scratch *scratch = &stroke->scratch;
+    snow_ray_tile tile;
+    if (!find_tile(stroke, index, scratch->alive[index] & own_lines(stroke),
+                   &tile))
         return;
-    }
     if (pass->lazy && !stroke->drawn[index])
         snow_band_clear_tile(
             &stroke->shape, &(snow_band){stroke->pixels, stroke->drawn}, index);
@@ -431,6 +435,63 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
                             : pass->tile(&tile);
     scratch->alive[index] &= ~finished;
     stroke->finished |= finished != 0;
+    stroke->drawn[index] = 1;
+}
+
+/* --- sheets by themselves --------------------------------------------------
+ */
+
+/* Pairs of a tile's line: values as they were drawn, or none, and weights. */
+static void weigh_line(const float *across, float down, int count, bool drawn,
+                       float *sheet) {
+    for (int x = 0; x < count; x++) {
+        sheet[2 * x] = drawn ? sheet[2 * x] : 0;
+        sheet[2 * x + 1] = across[x] * down;
+    }
+}
+
+/* Pixels of a tile that voxels of the slice may reach, and are the part's own.
+ */
+static void own_columns(const seen_stroke *stroke, int64_t left, int range[2]) {
+    const seen_pass *pass = stroke->pass;
+    const snow_seen_slice *slice = stroke->slice;
+    range[0] = between_ends(slice->from - left, pass->columns);
+    range[1] = between_ends(slice->to - left, pass->columns);
+    if (!pass->order->clip.cuts)
+        return;
+    int first = between_ends(stroke->u_range[0] - left, pass->columns);
+    int end = between_ends(stroke->u_range[1] - left, pass->columns);
+    range[0] = first > range[0] ? first : range[0];
+    range[1] = end < range[1] ? end : range[1];
+}
+
+/* A tile by itself, and then as the mode wants it into the image. */
+static void lay_tile(const seen_stroke *stroke, int64_t index) {
+    const seen_pass *pass = stroke->pass;
+    const seen_scratch *scratch = &stroke->scratch;
+    int64_t left = index * pass->columns;
+    size_t line = 2 * (size_t)pass->columns;
+    snow_ray_tile tile = {.wanted = 0};
+    int own[2];
+    own_columns(stroke, left, own);
+    if (own[0] >= own[1])
+        return;
+    if (find_tile(stroke, index, own_lines(stroke), &tile)) {
+        tile.pixels = scratch->sheet;
+        tile.line = line;
+        snow_tile_clear(tile.pixels, (size_t)stroke->lines * line / 2, 2);
+        pass->tile(&tile);
+    }
+    size_t first = 2 * (size_t)own[0], count = (size_t)(own[1] - own[0]);
+    const float *across = stroke->slice->whole + left + own[0];
+    for (int y = stroke->v_range[0]; y < stroke->v_range[1]; y++) {
+        float *sheet = scratch->sheet + (size_t)y * line + first;
+        weigh_line(across, scratch->whole[y], (int)count, tile.wanted >> y & 1,
+                   sheet);
+        pass->order->lay(stroke->pixels + (size_t)y * pass->stride +
+                             2 * (size_t)left + first,
+                         sheet, count);
+    }
     stroke->drawn[index] = 1;
 }
 
@@ -446,6 +507,10 @@ static void fill_lines(seen_stroke *stroke) {
         for (int m = 0; m < rake->taps; m++)
             stroke->lines_of_row[stroke->scratch.first[n] - stroke->row + m] |=
                 UINT64_C(1) << n;
+    if (stroke->pass->order->lay)
+        add_teeth(stroke->scratch.first, stroke->scratch.weights, stroke->lines,
+                  SNOW_RAY_TILE_LINES, rake->taps,
+                  stroke->pass->order->placement->rows, stroke->scratch.whole);
 }
 
 /* The part's pixels on a slice: columns of the image, lines of the band.  False
@@ -507,13 +572,15 @@ static void draw_slice(seen_stroke *stroke, int64_t index) {
     pass->windows->read(&pass->sheared->bands, index, here,
                         ~UINT64_C(0) >> (64 - (end - stroke->row)),
                         stroke->scratch.spans, &stroke->rows);
-    if (!stroke->rows.held)
+    if (!stroke->rows.held && !pass->order->lay)
         return;
     fill_lines(stroke);
     int64_t tiles[2];
     tiles_of_slice(stroke, tiles);
     for (int64_t tile = tiles[0]; tile < tiles[1]; tile++)
-        if (stroke->scratch.alive[tile])
+        if (pass->order->lay)
+            lay_tile(stroke, tile);
+        else if (stroke->scratch.alive[tile])
             draw_tile(stroke, tile);
 }
 
@@ -546,8 +613,10 @@ static size_t lay_out(const seen_pass *pass, char *base, seen_scratch *out) {
          (size_t)pass->taps[1] * SNOW_RAY_TILE_LINES * sizeof *out->weights);
     if (pass->order->clip.cuts)
         PART(kept, SNOW_RAY_TILE_LINES * filtered);
-    if (pass->order->lay)
+    if (pass->order->lay) {
         PART(sheet, SNOW_RAY_TILE_LINES * filtered);
+        PART(whole, SNOW_RAY_TILE_LINES * sizeof *out->whole);
+    }
     if (pass->grouping.on) {
         PART(spare_pixels,
              SNOW_GROUP_RANKS * spare_floats(pass) * sizeof(float));

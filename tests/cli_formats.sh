@@ -37,7 +37,24 @@ if has .exr; then
     check "and there is more in it" [ "$(stat -c %s z.exr)" -gt \
         "$(stat -c %s a.exr)" ]
     refused 4 "which is kept" 'exists' render -o z.exr --depth z.exr
-    run 0 "unless it may be replaced" render -o z.exr --depth ./z.exr -y
+    run 0 "unless it may be replaced" render -o z.exr --depth ./z.exr -y \
+        -c hot
+    run 0 "frames with depths" "$TOOL" turntable -q phantom:head --dims \
+        32x32x32 -s 90x80 --frames 3 -c hot -o 'z_%d.exr' --depth 'z_%d.exr'
+    check "the first is the picture with its depth" cmp -s z.exr z_0.exr
+    rm z_1.exr
+    run 0 "frames of a configuration" "$TOOL" turntable -q --frames 3 \
+        phantom:head --dims 32x32x32 -s 90x80 -c hot -o 'y_%d.exr' \
+        --depth 'y_%d.exr' --save-config frames.json
+    run 0 "go along with another pattern" "$TOOL" turntable -q --frames 3 \
+        --config frames.json -o 'x_%d.exr'
+    check "depths and all" cmp -s x_2.exr z_2.exr
+    run 0 "and stay out of pictures that take none" "$TOOL" turntable -q \
+        --frames 3 --config frames.json -o 'x_%d.png'
+    run 0 "a depth of a picture" render -o p.npy --depth q.npy \
+        --save-config one.json
+    run 0 "is none of a movie's" "$TOOL" turntable -q --frames 2 \
+        --config one.json -o 'w_%d.exr'
     run 0 "frames of EXR" "$TOOL" turntable -q phantom:cube --dims 20x20x20 \
         -s 30x30 --frames 2 -o 'e_%d.exr'
     run 0 "and of floats" "$TOOL" turntable -q phantom:cube --dims 20x20x20 \

@@ -163,6 +163,24 @@ if [ "$(id -u)" -eq 0 ] && chown 12345 "$TIFF" 2>/dev/null; then
         "$MOVED" info a.tif
     chown 0 "$TIFF"
 fi
+# A group that is neither root's nor one that may change the program.
+if [ "$(id -u)" -ne 0 ] || chgrp 12345 "$TIFF" 2>/dev/null; then
+    chmod g+w "$TIFF"
+    chmod g-w "$MOVED"
+    refused 3 "and one that a group may change" 'others could change' \
+        "$MOVED" info a.tif
+    chgrp "$(stat -c %g "$TIFF")" "$MOVED"
+    chmod g+w "$MOVED"
+    check "but not where it may change the program too" \
+        reads_all "$MOVED" "$MODULES"
+    chmod g-w "$MOVED"
+    chgrp "$(id -g)" "$MOVED"
+    if [ "$(id -u)" -eq 0 ]; then
+        chgrp 0 "$TIFF"
+        check "or is root's" reads_all "$MOVED" "$MODULES"
+    fi
+    chmod g-w "$TIFF"
+fi
 check "once all is well again it is loaded" reads_all "$MOVED" "$MODULES"
 
 # --- threads -------------------------------------------------------------------

@@ -215,6 +215,18 @@ kept = (1 - raw["sparse_ratio"]) * $x * $y * $z / 3
 assert 0.7 * 268083 < kept < 268083, kept # a ball of radius 40
 EOF
 
+for eye in "--view iso" "--view +x --perspective"; do
+    # shellcheck disable=SC2086
+    run 0 "largest values of it, $eye" peak "$TOOL" render big.nhdr -m mip \
+        $eye -s 256x256 -q -o mip.png -y --memory 300M
+    check "within the limit, $(cat kilobytes) KB of the process" \
+        test "$(cat kilobytes)" -lt $((300 * 1024))
+done
+run 0 "a surface of it" peak "$TOOL" render big.nhdr -m iso --iso 2000 \
+    --view iso -s 256x256 -q -o iso.png --memory 300M
+check "within the limit, $(cat kilobytes) KB of the process" \
+    test "$(cat kilobytes)" -lt $((300 * 1024))
+
 # By itself, where addresses are limited.
 run 0 "by itself" bash -c "ulimit -v 1000000 &&
     exec '$TOOL' render big.nhdr --view iso -s 256x256 -v -o itself.png"

@@ -71,7 +71,10 @@ turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
 --depth d.png x -o y.png|--depth: d.png: depths are numbers
 --depth d.npy -m mip x -o y.png|--depth: mode mip has none; take over or iso
 --depth y.npy x -o y.npy|--depth: goes where --output goes; let both be one .exr
-turntable --depth d.npy x -o y.mp4|--depth: no option of turntable
+turntable --depth d.npy x -o y.mp4|--depth: frames have theirs in their own
+turntable --depth y_%d.exr x -o z_%d.exr|--depth: frames have theirs in their own
+turntable --depth y_%d.png x -o y_%d.png|--depth: frames have theirs in their own
+movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has none
 --mode best x|'best' is unknown
 --method ray x|'ray' is unknown
 --method tested x|'tested' is unknown

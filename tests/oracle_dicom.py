@@ -9,9 +9,12 @@ try:
     import numpy as np
     import pydicom
     from pydicom.dataset import Dataset, FileMetaDataset
+    from pydicom.encaps import encapsulate
+    from pydicom.pixel_data_handlers.rle_handler import rle_encode_frame
     from pydicom.sequence import Sequence
     from pydicom.uid import (ExplicitVRBigEndian, ExplicitVRLittleEndian,
-                             ImplicitVRLittleEndian, generate_uid)
+                             ImplicitVRLittleEndian, JPEGBaseline8Bit,
+                             RLELossless, generate_uid)
 except ImportError:
     sys.exit(77)
 import glob
@@ -442,11 +445,88 @@ for planar in (0, 1):
                       name=f"RGB {planar}")
 oracle.refuse("rgb.dcm", "no channel 3", ["--channel", 3], 2)
 rgb.PhotometricInterpretation = "YBR_FULL"
-write("rgb.dcm", rgb)
-oracle.refuse("rgb.dcm", "colours are YBR_FULL")
-write("palette.dcm", image(unsigned[0],
-                           PhotometricInterpretation="PALETTE COLOR"))
-oracle.refuse("palette.dcm", "numbers of a palette")
+write("ybr.dcm", rgb)
+oracle.expect("ybr.dcm", colour[None, ..., 0], grid((0.5, 0.75, 9), (0, 0, 0)),
+              name="brightness of YBR_FULL")
+says("YBR_FULL", "ybr.dcm", "channel 0 is brightness")
+rgb.file_meta.TransferSyntaxUID = JPEGBaseline8Bit
+plain, rgb.PixelData = rgb.PixelData, encapsulate([b"\xff\xd8" + bytes(40)])
+rgb["PixelData"].is_undefined_length = True
+write("ybr.dcm", rgb)
+if GDCM:
+    oracle.refuse("ybr.dcm", "colours are YBR_FULL, packed in transfer syntax")
+rgb.file_meta.TransferSyntaxUID = RLELossless
+rgb.PixelData = encapsulate([rle_encode_frame(colour)])
+rgb["PixelData"].is_undefined_length = True
+write("ybr.dcm", rgb)
+oracle.expect("ybr.dcm", colour[None, ..., 0], grid((0.5, 0.75, 9), (0, 0, 0)),
+              name="brightness of YBR_FULL in run lengths")
+rgb.file_meta.TransferSyntaxUID = ExplicitVRLittleEndian
+rgb.PixelData = plain
+rgb["PixelData"].is_undefined_length = False
+rgb.PhotometricInterpretation = "YBR_FULL_422"
+write("ybr.dcm", rgb)
+oracle.refuse("ybr.dcm", "colours are YBR_FULL_422 with 3 values")
+
+
+def palette(first=0, count=256, bits=16, words=True, **tags):
+    """Of numbers of colours, and the brightness of these."""
+    numbers = oracle.sample(tags.pop("dtype", "u1"), (7, 5))
+    data = image(numbers, (0, 0, 0), PhotometricInterpretation="PALETTE COLOR",
+                 **tags)
+    kind = "u2" if bits == 16 else "u1"
+    tables = [oracle.sample(kind, (count,)) for _ in range(3)]
+    order = ">" if tags.get("syntax") == ExplicitVRBigEndian else "<"
+    for table, name in zip(tables, ("Red", "Green", "Blue")):
+        descriptor = f"{name}PaletteColorLookupTableDescriptor"
+        setattr(data, descriptor, [count % 65536, first, bits])
+        data[descriptor].VR = "SS" if first < 0 else "US"
+        if words:
+            raw = table.astype(order + "u2").tobytes()
+        else:  # two bytes a word
+            raw = table.tobytes() + b"\0" * (count % 2)
+            raw = np.frombuffer(raw, "<u2").astype(order + "u2").tobytes()
+        setattr(data, f"{name}PaletteColorLookupTableData", raw)
+        data[f"{name}PaletteColorLookupTableData"].VR = "OW"
+    at = np.clip(numbers.astype(int) - first, 0, count - 1)
+    most = 65535 if bits == 16 else 255
+    light = sum(w * t[at].astype(float) / most
+                for w, t in zip((0.299, 0.587, 0.114), tables))
+    return data, np.floor(light * 255 + 0.5)[None]
+
+
+for what in ({}, {"bits": 8}, {"bits": 8, "words": False},
+             {"bits": 8, "words": False, "count": 7, "first": 100},
+             {"first": 30, "count": 101}, {"dtype": "u2", "count": 65536},
+             {"dtype": "i2", "first": -900, "count": 2000},
+             {"syntax": ExplicitVRBigEndian, "dtype": "u2"},
+             {"syntax": ExplicitVRBigEndian, "bits": 8, "words": False}):
+    data, light = palette(**what)
+    write("palette.dcm", data)
+    oracle.expect("palette.dcm", light, grid((0.5, 0.75, 9), (0, 0, 0)),
+                  dtype="u1", unit="mm", name=f"palette {what}")
+says("palette", "palette.dcm", "the brightness of these is taken")
+data, light = palette()
+data.RescaleSlope, data.RescaleIntercept = 2, -5  # of no meaning here
+write("palette.dcm", data)
+oracle.expect("palette.dcm", light, grid((0.5, 0.75, 9), (0, 0, 0)),
+              dtype="u1", name="palette with a slope")
+for change, what in (
+        (lambda d: setattr(d, "GreenPaletteColorLookupTableDescriptor",
+                           [255, 0, 16]), "tables are of different lengths"),
+        (lambda d: setattr(d, "BluePaletteColorLookupTableDescriptor",
+                           [256, 0, 12]), "another number of bits"),
+        (lambda d: delattr(d, "RedPaletteColorLookupTableDescriptor"),
+         "the palette is not in the file"),
+        (lambda d: setattr(d, "BluePaletteColorLookupTableData", b"12"),
+         "of which some are missing"),
+        (lambda d: (delattr(d, "RedPaletteColorLookupTableData"),
+                    setattr(d, "SegmentedRedPaletteColorLookupTableData",
+                            b"\0\0\1\0\2\0")), "told in segments")):
+    data, _ = palette()
+    change(data)
+    write("palette.dcm", data)
+    oracle.refuse("palette.dcm", what)
 bit = image(oracle.sample("u1", (8, 8)), BitsAllocated=1, BitsStored=1)
 write("bit.dcm", bit)
 oracle.refuse("bit.dcm", "pixels of 1 bits are not read")

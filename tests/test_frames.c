@@ -83,7 +83,7 @@ static snow_status put_frames(frame_queue *queue, seen *s, snow_image *image,
     for (int i = first; i < last && status == SNOW_OK; i++) {
         snow_image_pixels(image)[0] = (float)i;
         s->puts++;
-        status = frames_put(queue, i, image);
+        status = frames_put(queue, i, image, NULL);
     }
     return status;
 }
@@ -148,7 +148,7 @@ static void frames_that_lie_in_files_keep_their_turn(void **state) {
         if (i % 3)
             assert_int_equal(put_frames(queue, &s, image, i, i + 1), SNOW_OK);
         else
-            assert_int_equal(frames_put(queue, i, NULL), SNOW_OK);
+            assert_int_equal(frames_put(queue, i, NULL, NULL), SNOW_OK);
     }
     assert_int_equal(frames_drain(queue), SNOW_OK);
     for (int i = 0; i < 40; i++) {
@@ -173,7 +173,7 @@ static void nothing_is_committed_after_a_fault(void **state) {
         assert_int_equal(frames_drain(queue), SNOW_BAD_OUTPUT);
         assert_string_equal(frames_message(queue), "no room for 20");
         assert_int_equal(s.count, 21);
-        assert_int_equal(frames_put(queue, 100, image), SNOW_BAD_OUTPUT);
+        assert_int_equal(frames_put(queue, 100, image, NULL), SNOW_BAD_OUTPUT);
         frames_free(queue);
         assert_int_equal(s.count, 21);
     }

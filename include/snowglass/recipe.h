@@ -53,8 +53,8 @@ typedef struct snow_recipe {
     void *owned;              /* what texts lie in; NULL: the caller's */
     size_t gradient_opacity_count; /* of the look; 0: none */
     snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS];
-    const char *tf; /* a file that stands for a preset (tf.h), or NULL */
-    bool log;       /* as in snow_look */
+    const char *tf;    /* a file that stands for a preset (tf.h), or NULL */
+    bool log;          /* as in snow_look */
     const char *depth; /* path of the depths, or NULL; the output's own .exr
                           gets them as a channel (image.h) */
 } snow_recipe;

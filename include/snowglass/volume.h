@@ -140,12 +140,14 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
  *   snow_frame_render    reads it where a volume in memory is encoded, and
  *                        keeps the interesting voxels: for the first picture,
  *                        another opacity function or threshold, and another
- *                        slice axis.  In mode over by the sheared method alone;
- *                        encoding AUTO is the bit-map
+ *                        slice axis; for each picture of mode iso, and for each
+ *                        depth, which may differ by rounding.  By the sheared
+ *                        method alone; encoding AUTO is the bit-map
  *
- * All else that looks at voxels refuses it (SNOW_BAD_USAGE; SNOW_NO_MEMORY where
- * pixels are too wide for the sheared method), snow_volume_voxels is NULL, and
- * snow_volume_measure finds no finite value.
+ * All else that looks at voxels refuses it (SNOW_BAD_USAGE; SNOW_NO_MEMORY
+ * where the sheared method cannot make the picture: pixels are too wide, or
+ * some voxels no finite numbers in modes other than over and iso),
+ * snow_volume_voxels is NULL, and snow_volume_measure finds no finite value.
  * Path and options are copied; the file must stay as it is and where it is.
  * Errors: as snow_volume_inspect; SNOW_BAD_USAGE (standard input, a pipe); of
  * later readings those of snow_volume_open. */

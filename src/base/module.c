@@ -124,11 +124,17 @@ static snow_status find_module(snow_context *context, const char *name,
 }
 
 /* Whether only those may change it who may change the program as well: what is
- * run must not be what anyone put there. */
+ * run must not be what anyone put there.  A group may write that is root's, or
+ * the program's that may write there too: so it is in the folders of who works
+ * with a group of his own (umask 002). */
 static bool is_ours(const struct stat *file, const struct stat *self) {
     bool owned = file->st_uid == 0 || file->st_uid == geteuid() ||
                  file->st_uid == self->st_uid;
-    return owned && (!(file->st_mode & S_IWOTH) || (self->st_mode & S_IWOTH));
+    bool shared = file->st_gid == 0 ||
+                  (file->st_gid == self->st_gid && (self->st_mode & S_IWGRP));
+    bool group = !(file->st_mode & S_IWGRP) || shared;
+    bool others = !(file->st_mode & S_IWOTH) || (self->st_mode & S_IWOTH);
+    return owned && group && others;
 }
 
 static snow_status check_owner(snow_context *context, const module_file *file) {
@@ -139,7 +145,7 @@ static snow_status check_owner(snow_context *context, const module_file *file) {
     return snow_fail(context, SNOW_BAD_INPUT,
                      "needs %s, which others could change; let it and its "
                      "folder have the owner of %s, and nobody else write there "
-                     "(chmod o-w)",
+                     "(chmod go-w)",
                      file->path, file->self);
 }
 

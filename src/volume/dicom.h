@@ -10,7 +10,8 @@
  *     |
  *   voxels  dicom_voxels.c   frames scaled and put in place
  *     |
- *   pixels  dicom_pixels.c   a frame's words, plain or packed
+ *   pixels  dicom_palette.c  what numbers of colours are worth
+ *           dicom_pixels.c   a frame's words, plain or packed
  *           dicom_codec.c    what packed ones say, before GDCM unpacks them
  *
  * Places are in LPS and mm, as DICOM has them, up to the matrix, which is RAS.
@@ -221,6 +222,23 @@ uint64_t snow_dicom_frame_bytes(const dicom_image *image);
 snow_status snow_dicom_read_words(dicom_reader *reader,
                                   const dicom_image *image, int64_t number,
                                   void *out, dicom_words *words);
+
+/* --- dicom_palette.c ------------------------------------------------------
+ */
+
+/* Brightness, 0 to 255 in whole steps, of `count` stored values from `first`
+ * on; what is beyond has that of the nearest. */
+typedef struct dicom_palette {
+    int64_t first;
+    size_t count;
+    float *levels; /* of the context; NULL: no palette */
+} dicom_palette;
+
+/* That of a file whose values are numbers of colours.  Errors: SNOW_BAD_INPUT
+ * (it has none, or one that is not read), SNOW_NO_MEMORY. */
+snow_status snow_dicom_palette_read(dicom_reader *reader,
+                                    const dicom_image *image,
+                                    dicom_palette *out);
 
 /* --- dicom_codec.c --------------------------------------------------------
  */

@@ -191,6 +191,12 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                          "(transfer syntax %.64s); unpack it, with gdcmconv "
                          "--raw say",
                          reader->syntax);
+    if (strncmp(image->photometric, "YBR_FULL", 8) == 0)
+        return snow_fail(reader->context, SNOW_BAD_INPUT,
+                         "its colours are %.16s, packed in transfer syntax "
+                         "%.64s, which are not read; convert it to RGB, with "
+                         "gdcmconv say",
+                         image->photometric, reader->syntax);
     SNOW_TRY(snow_dicom_check_packed(reader->context, reader->syntax, image,
                                      bytes, size));
     SNOW_TRY(find_codec(reader->context, &codec));

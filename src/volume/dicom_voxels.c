@@ -5,7 +5,8 @@
  * 16 or 32 (PS3.5, 8.1.1); what else is in the word, old overlays, is dropped.
  * Values stay as they are stored, with one scale for all.  They become floats
  * where padding is told, which is then NaN, where slices differ in scale, and
- * where slices are made between others.
+ * where slices are made between others.  Of numbers of a palette's colours the
+ * brightness of these is taken; of YBR_FULL the first sample is brightness.
  *
  * A file stays open until another is needed. */
 #include "volume/dicom.h"
@@ -27,7 +28,8 @@ typedef struct decoder {
     snow_source *source;      /* NULL: the given file's store is read */
     snow_random *store;
     dicom_reader reader;
-    unsigned char *bytes; /* of a frame */
+    dicom_palette palette; /* of the open file */
+    unsigned char *bytes;  /* of a frame */
     dicom_words words;
     const snow_window *window;
     int64_t channel;
@@ -41,6 +43,8 @@ typedef struct decoder {
 static void close_image(decoder *d) {
     if (d->image)
         snow_dicom_close(&d->reader);
+    snow_release(d->input->context, d->palette.levels);
+    d->palette = (dicom_palette){0};
     if (d->source) {
         snow_random_close(d->store);
         snow_source_close(d->source);
@@ -48,6 +52,10 @@ static void close_image(decoder *d) {
     d->image = NULL;
     d->source = NULL;
     d->store = NULL;
+}
+
+static bool has_palette(const dicom_image *image) {
+    return strcmp(image->photometric, "PALETTE COLOR") == 0;
 }
 
 /* The file of an image is what is open from here on. */
@@ -63,7 +71,9 @@ static snow_status open_image(decoder *d, const dicom_image *image) {
     }
     SNOW_TRY(snow_dicom_open(context, d->store, true, &d->reader));
     d->image = image;
-    return SNOW_OK;
+    return has_palette(image)
+               ? snow_dicom_palette_read(&d->reader, image, &d->palette)
+               : SNOW_OK;
 }
 
 /* --- a frame ---------------------------------------------------------------
@@ -110,6 +120,13 @@ static bool is_padding(const dicom_image *image, double value, uint32_t word,
     return size == 2 && word == (uint16_t)(int32_t)image->padding[0];
 }
 
+static double brightness_of(const dicom_palette *palette, double value) {
+    double at = value - (double)palette->first;
+    double last = (double)(palette->count - 1);
+    at = at > 0 ? (at < last ? at : last) : 0;
+    return (double)palette->levels[(size_t)at];
+}
+
 /* A row of the box from its first word on, `step` bytes from word to word. */
 static void take_row(const decoder *d, const dicom_frame *frame,
                      const unsigned char *at, size_t step, double *out) {
@@ -123,6 +140,8 @@ static void take_row(const decoder *d, const dicom_frame *frame,
         double value = value_of(word, b);
         if (pads && is_padding(frame->image, value, word, size))
             out[x] = NAN;
+        else if (d->palette.levels)
+            out[x] = brightness_of(&d->palette, value);
         else
             out[x] = slope * value + intercept;
     }
@@ -339,6 +358,24 @@ static void remark(snow_context *context, const dicom_stack *stack) {
         snow_notify(context, "a rescale slope of 0 is not possible; 1 is used");
 }
 
+/* Colours by --channel, but for numbers of a palette. */
+static snow_status check_colors(snow_context *context,
+                                const dicom_image *image) {
+    bool ybr = strcmp(image->photometric, "YBR_FULL") == 0;
+    if (image->samples != 1 && !ybr && strcmp(image->photometric, "RGB") != 0)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "its colours are %.16s with %d values a pixel, which "
+                         "are not read; convert it to RGB, with gdcmconv say",
+                         image->photometric, image->samples);
+    if (image->samples == 1 && has_palette(image))
+        snow_notify(context, "its values are numbers of a palette's colours; "
+                             "the brightness of these is taken, 0 to 255");
+    if (ybr)
+        snow_notify(context, "its colours are YBR_FULL, of which channel 0 is "
+                             "brightness");
+    return SNOW_OK;
+}
+
 static snow_status describe(const dicom_input *input, const dicom_stack *stack,
                             const snow_volume_options *options,
                             snow_volume_info *info, decoder *d) {
@@ -348,24 +385,19 @@ static snow_status describe(const dicom_input *input, const dicom_stack *stack,
     bool pads;
     *info = snow_volume_info_default("dicom");
     SNOW_TRY(stored_type(context, image, &info->type));
-    if (image->samples != 1 && strcmp(image->photometric, "RGB") != 0)
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "its colours are %.16s with %d values a pixel, which "
-                         "are not read; convert it to RGB, with gdcmconv say",
-                         image->photometric, image->samples);
-    if (!strcmp(image->photometric, "PALETTE COLOR"))
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "its values are numbers of a palette's colours, which "
-                         "are not read; convert it to grey");
+    SNOW_TRY(check_colors(context, image));
     survey(stack, &d->scales, &pads);
     if (pads || d->scales || stack->slices)
         info->type = image->allocated > 16 ? SNOW_FLOAT64 : SNOW_FLOAT32;
+    else if (has_palette(image))
+        info->type = SNOW_UINT8;
     info->dims[0] = image->columns;
     info->dims[1] = image->rows;
     info->dims[2] = (int64_t)stack->slice_count;
     info->times = (int64_t)stack->times;
-    info->slope = d->scales ? 1 : first->slope;
-    info->intercept = d->scales ? 0 : first->intercept;
+    bool plain = d->scales || has_palette(image);
+    info->slope = plain ? 1 : first->slope;
+    info->intercept = plain ? 0 : first->intercept;
     info->medical = stack->placed;
     memcpy(info->unit, "mm", 3);
     memcpy(info->matrix, stack->matrix, sizeof info->matrix);
