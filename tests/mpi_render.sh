@@ -57,6 +57,21 @@ prints '"interesting": |"load": 1'
 check "bytes of EA are those of one process" [ "$(number ea)" = \
     "$(sed -n 's/.*"ea": \([0-9]*\).*/\1/p' one.json)" ]
 
+# Drafts of few pixels, of a level of half as many voxels or a quarter.
+for draft in "64x64 --view +x --cut counted" "40x50 --azimuth 33 --cut bricks" \
+    "64x64 --azimuth 70 --roll 20 --perspective --cut equal"; do
+    # shellcheck disable=SC2086
+    set -- phantom:engine --dims 131x144x127 --quality draft -q -s $draft
+    run 0 "a draft alone, $draft" "$TOOL" "${@:1:$(($# - 2))}" -y -o one.npy
+    for ranks in $COUNTS; do
+        run 0 "a draft by $ranks ranks" \
+            launch "$ranks" "$MPI_TOOL" "$@" -y -o many.npy --stats -
+        prints '"halvings": \[1, 1, 1\]'
+        run 0 "it is as by one" "$TOOL" compare one.npy many.npy \
+            --tolerance 1/255
+    done
+done
+
 # Files of which each rank reads its part, and unpacks all.
 run 0 "a file" "$TOOL" phantom engine --dims 40x40x40 -o v.nrrd
 run 0 "a packed file" "$TOOL" phantom engine --dims 40x40x40 -o v.nii.gz

@@ -37,6 +37,7 @@ typedef struct scene {
     double difference; /* from the serial picture */
     snow_insitu_figures figures;
     uint64_t encoded; /* of a second picture of the same voxels */
+    int halvings;     /* of axis x */
 } scene;
 
 /* A few blobs that look different from all sides; `t` moves them. */
@@ -284,6 +285,7 @@ static snow_status draw_twice(snow_insitu *insitu, scene *s, int rank) {
     if (rank == 0) {
         s->figures = figures;
         s->encoded = (uint64_t)snow_frame_stats(insitu->frame)->encoded;
+        s->halvings = snow_frame_stats(insitu->frame)->halvings[0];
     }
     return SNOW_OK;
 }
@@ -348,6 +350,25 @@ static void every_view_does(void **state) {
         expect_serial(&s, "a view");
         s.view.fov = 40;
         expect_serial(&s, "perspective");
+    }
+}
+
+/* Of the level that one process takes (levels.h). */
+static void drafts_of_few_pixels_do(void **state) {
+    (void)state;
+    static const int cuts[][4] = {
+        {1, 1, 1, 1}, {2, 1, 1, 2}, {3, 1, 3, 1}, {8, 2, 2, 2}, {12, 3, 2, 2}};
+    for (size_t i = 0; i < 4 * sizeof cuts / sizeof *cuts; i++) {
+        const int *cut = cuts[i / 4];
+        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
+        s.settings.quality = SNOW_QUALITY_DRAFT;
+        s.view.width = s.view.height = 15;
+        s.view.azimuth = 30.0 * (double)i;
+        s.fades = i % 4 == 1;
+        s.balance = i % 4 == 2 ? SNOW_BALANCE_RECUT : s.balance;
+        s.layout = i % 4 == 3;
+        expect_serial(&s, "a small draft");
+        assert_int_equal(s.halvings, 1);
     }
 }
 
@@ -1152,6 +1173,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_cut_gives_the_picture_of_one_process),
         cmocka_unit_test(every_view_does),
+        cmocka_unit_test(drafts_of_few_pixels_do),
         cmocka_unit_test(a_gradient_opacity_does),
         cmocka_unit_test(every_type_and_layout_does),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
