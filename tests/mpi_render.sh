@@ -118,6 +118,28 @@ for frame in 0 1 2; do
         --tolerance 1/255
 done
 
+# Ranks share the reading for the look of all steps where there are more of them
+# than steps, or a step is too large for one: the look is that of one process.
+"$TOOL" phantom engine --dims 240x240x251 -q -o large0.nrrd
+"$TOOL" phantom engine --dims 240x240x251 --seed 1 -q -o large1.nrrd
+for way in "step0.nrrd step1.nrrd" "step0.nrrd step1.nrrd --crop :,3:30,5:31" \
+    "large0.nrrd large1.nrrd"; do
+    # shellcheck disable=SC2086
+    run 0 "a movie alone, $way" "$TOOL" movie $way -s 64x64 -y -o step_%d.npy
+    look=$(grep -o 'grey .*histogram)' "$ERR")
+    [ "${way%%0*}" = large ] && way+=" --memory 13M"
+    # shellcheck disable=SC2086
+    run 0 "by $MOST" launch "$MOST" "$MPI_TOOL" movie $way -s 64x64 -y \
+        -o steps_%d.npy
+    check "one look: $look" grep -qF "${look:-none}" "$ERR"
+    for frame in 0 1; do
+        run 0 "step $frame" "$TOOL" compare step_$frame.npy steps_$frame.npy \
+            --tolerance 1/255
+    done
+done
+refused 5 "a step too large for one" 'the range of all steps needs' \
+    "$TOOL" movie large0.nrrd large1.nrrd --memory 13M -o x_%d.png
+
 # Each rank reads its box of a mask.
 "$TOOL" phantom shells --dims 40x36x44 -q -o mask.nrrd
 mask="--mask mask.nrrd --labels 1-120 --clip 1,0.5,0,30 --azimuth 33"
