@@ -4,6 +4,7 @@
 #define SNOW_SHEARED_H
 
 #include "base/base.h"
+#include "composite/over.h"
 #include "decompose/part.h"
 #include "transform/clip.h"
 
@@ -29,8 +30,11 @@ typedef struct snow_sheared_order {
     const snow_settings *settings;
     const snow_placement *placement; /* of the whole */
     snow_clip clip;                  /* of the volume's part */
-    snow_slab slab; /* slices of the whole that are drawn, within the part */
-    int channels;   /* 2 or 4 */
+    snow_slab slab;    /* slices of the whole that are drawn, within the part */
+    int channels;      /* 2 or 4 */
+    snow_over_fn *lay; /* in perspective, in the place of over; NULL: over */
+    float share;       /* of the image that it makes, so that sums, too, are of
+                          0 to 1 */
 } snow_sheared_order;
 
 /* The intermediate image of a part.  Where a tile was not drawn on, its pixels
