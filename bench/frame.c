@@ -27,7 +27,7 @@ static const char help[] =
     "  --threshold X    opacity 0 to 255 (0)\n"
     "  --azimuth DEG    (0)\n"
     "  --elevation DEG  (0)\n"
-    "  --cut NAME       auto, equal, counted or bricks (auto)\n"
+    "  --cut NAME       auto, equal, counted, bricks or measured (auto)\n"
     "  --combine NAME   auto, tree, swap, direct or radix (auto)\n"
     "  --radix K        of radix (chosen)\n"
     "  --check          compare also where there are more than 64 ranks\n"
@@ -75,9 +75,13 @@ static const char help[] =
     "turn_overlap_ms are of one picture of a turning volume, without and with\n"
     "overlap; hidden_ms of the latter was splatted where a rank else had "
     "waited.\n"
+    "splat_least are of each rank the fastest of --runs, and splat_uneven the\n"
+    "slowest rank's over the mean; with --cut measured after the last of the\n"
+    "cuts_by_time, which are made in the first two thirds of --runs.\n"
     "Where these pictures differ in a bit, the exit code is 1.\n";
 
-static const char *const cuts[] = {"auto", "equal", "counted", "bricks", NULL};
+static const char *const cuts[] = {"auto",   "equal",    "counted",
+                                   "bricks", "measured", NULL};
 static const char *const combinings[] = {"auto",   "tree",  "swap",
                                          "direct", "radix", NULL};
 

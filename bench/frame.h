@@ -22,6 +22,9 @@
 /* Rounds of the exchange that are told. */
 #define FRAME_ROUNDS_MOST 16
 
+/* What cuts by time are told: they pay off always. */
+#define FRAME_PICTURES_LEFT 1000000
+
 typedef struct frame_options {
     const char *path;
     snow_volume_options data;
@@ -85,6 +88,10 @@ typedef struct frame_result {
     double most[FRAME_STAGES], mean[FRAME_STAGES];
     uint64_t messages_most, bytes_most, bytes_sum;
     int64_t voxels_most, voxels_sum, slices_least, active_most;
+    /* Processor time of local images after the last cut by time, if there is
+     * one: medians of the pictures, of the slowest rank and in the mean. */
+    double splat_most, splat_mean;
+    int cuts;
     int64_t shown; /* pixels of the picture that are not transparent */
     bool checked;
     double difference; /* from the picture of one rank, if checked */
@@ -119,6 +126,9 @@ typedef struct frame_rank {
     snow_frame *frame;
     snow_image *image; /* rank 0's */
     frame_figures mine, *all;
+    double *splats; /* processor time of local images, runs of each rank */
+    int cuts;       /* by time */
+    int cut_before; /* the number of the run before which the last was made */
 } frame_rank;
 
 /* Collective: the figures of a turning volume. */

@@ -9,7 +9,8 @@ static const double allowed = 1.0 / 255 + 1e-6;
 
 static void put_setting(bench_line *out, const frame_options *options,
                         const frame_result *result) {
-    static const char *const cuts[] = {"auto", "equal", "counted", "bricks"};
+    static const char *const cuts[] = {"auto", "equal", "counted", "bricks",
+                                       "measured"};
     static const char *const combinings[] = {"auto", "tree", "swap", "direct",
                                              "radix"};
     char size[32];
@@ -43,6 +44,12 @@ static void put_counters(bench_line *out, const frame_result *result) {
     bench_line_number(out, "imbalance",
                       mean > 0 ? (double)result->voxels_most / mean : 1);
     bench_line_int(out, "slices_min", result->slices_least);
+    bench_line_int(out, "cuts_by_time", result->cuts);
+    bench_line_number(
+        out, "splat_uneven",
+        result->splat_mean > 0 ? result->splat_most / result->splat_mean : 1);
+    bench_line_ms(out, "splat_least_ms", result->splat_most);
+    bench_line_ms(out, "splat_least_mean_ms", result->splat_mean);
 }
 
 static void put_times(bench_line *out, const frame_result *result) {

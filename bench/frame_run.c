@@ -46,7 +46,9 @@ static snow_status prepare(frame_rank *s) {
                                   .pixel_bits = 8,
                                   .turns = options->turn > 0};
     s->all = calloc((size_t)snow_comm_ranks(s->comm), sizeof *s->all);
-    if (!s->all)
+    s->splats = calloc((size_t)snow_comm_ranks(s->comm) * (size_t)options->runs,
+                       sizeof *s->splats);
+    if (!s->all || !s->splats)
         return snow_context_fail(s->context, SNOW_NO_MEMORY,
                                  "no memory for figures; close other programs");
     snow_status status = fill_view(s);
@@ -70,6 +72,7 @@ static void finish(frame_rank *s) {
     snow_transfer_free(s->transfer);
     snow_volume_close(s->volume);
     free(s->all);
+    free(s->splats);
 }
 
 /* --- a picture -------------------------------------------------------------
@@ -191,18 +194,67 @@ static snow_status sum_up(frame_rank *s, frame_result *out) {
     return SNOW_OK;
 }
 
+/* What local images took, of all ranks. */
+static void note_splats(frame_rank *s, int number) {
+    const int ranks = snow_comm_ranks(s->comm);
+    for (int i = 0; i < ranks; i++)
+        s->splats[i * s->options->runs + number] =
+            s->all[i].seconds[FRAME_SPLAT_CPU];
+}
+
+/* Ranks' least over the pictures since the last cut, but the first of them,
+ * which encodes: noise would make some rank slow at every picture. */
+static void tell_uneven(frame_rank *s, frame_result *out) {
+    const int ranks = snow_comm_ranks(s->comm), runs = s->options->runs;
+    const int first = s->cuts ? s->cut_before + 1 : 0;
+    double most = 0, sum = 0;
+    for (int i = 0; i < ranks && first < runs; i++) {
+        const double *row = s->splats + i * runs;
+        double least = row[first];
+        for (int n = first + 1; n < runs; n++)
+            least = row[n] < least ? row[n] : least;
+        most = least > most ? least : most;
+        sum += least;
+    }
+    out->cuts = s->cuts;
+    out->splat_most = most;
+    out->splat_mean = sum / ranks;
+}
+
+/* Collective.  Parts may be cut anew by the time that pictures took; but the
+ * last pictures are of one cut. */
+static snow_status balance(frame_rank *s, int number) {
+    const snow_volume *before = s->volume;
+    if (number > s->options->runs * 2 / 3)
+        return SNOW_OK;
+    snow_status status = snow_ranks_balance(s->frame, s->comm, s->transfer,
+                                            &s->view, &s->settings, &s->how,
+                                            FRAME_PICTURES_LEFT, &s->volume);
+    if (status == SNOW_OK && before != s->volume)
+        s->cut_before = number;
+    s->cuts += before != s->volume;
+    return status;
+}
+
 /* Collective.  Of the later pictures the fastest counts. */
 static snow_status measure(frame_rank *s, frame_result *out) {
     snow_status status = draw(s, true);
     for (int i = 0; i < s->options->runs && status == SNOW_OK; i++) {
         frame_result this = {0};
-        status = draw(s, false);
+        status = balance(s, i);
+        if (status == SNOW_OK)
+            status = draw(s, false);
         if (status == SNOW_OK)
             status = sum_up(s, &this);
+        if (status == SNOW_OK)
+            note_splats(s, i);
         if (status == SNOW_OK &&
-            (i == 0 || this.most[FRAME_TOTAL] < out->most[FRAME_TOTAL]))
+            (i == 0 || i == s->cut_before + 1 ||
+             this.most[FRAME_TOTAL] < out->most[FRAME_TOTAL]))
             *out = this;
     }
+    if (status == SNOW_OK)
+        tell_uneven(s, out);
     return status;
 }
 

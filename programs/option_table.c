@@ -247,10 +247,11 @@ const option_row option_table[] = {
     {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
      "go on where an earlier run was ended, with the frames that it left whole; "
      "the other options must be the same"},
-    {"cut", 0, "auto|equal|counted|bricks", TOPIC_RANKS, RENDER, read_choice,
-     FIELD(cut), 0, 0, "", "the parts of the volume: equal slabs as in the "
-     "paper, slabs or bricks of equally many interesting voxels (auto: counted, "
-     "and bricks where slabs would be thin)"},
+    {"cut", 0, "auto|equal|counted|bricks|measured", TOPIC_RANKS, RENDER,
+     read_choice, FIELD(cut), 0, 0, "", "the parts of the volume: equal slabs "
+     "as in the paper, slabs or bricks of equally many interesting voxels; "
+     "measured: as auto, and in a turntable slabs again by the time that "
+     "pictures took (auto: counted, and bricks where slabs would be thin)"},
     {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, RENDER,
      read_choice, FIELD(combine), 0, 0, "", "how the ranks' pictures become "
      "one: the paper's tree, binary swap, direct send or radix-k (auto: by "

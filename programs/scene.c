@@ -311,8 +311,9 @@ static snow_status begin_part(scene *s) {
     snow_ranks_options how = how_of(s);
     snow_status status = SNOW_OK;
     if (s->turns)
-        status = snow_ranks_recut(launch_comm(), s->transfer, &s->view,
-                                  &s->settings, &how, &s->volume);
+        status =
+            snow_ranks_balance(s->frame, launch_comm(), s->transfer, &s->view,
+                               &s->settings, &how, s->left, &s->volume);
     return status == SNOW_OK
                ? snow_ranks_begin(s->frame, launch_comm(), s->volume,
                                   s->transfer, &s->view, &s->settings, &how)

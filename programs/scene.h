@@ -20,6 +20,7 @@ typedef struct scene {
     const options *asked;
     const char *path; /* of the volume */
     bool turns;       /* pictures from several sides are asked for */
+    int64_t left;     /* then: how many are to come, the next one with them */
     memory_plan plan; /* for it, where this process is alone */
     bool in_slabs;    /* it did not fit beside its interesting voxels: this one
                          and all after it stay in their files */

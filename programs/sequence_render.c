@@ -79,6 +79,7 @@ static void tell_choices(const shot_renderer *shots) {
 static int begin(void *self, const movie_shot *shot) {
     shot_renderer *shots = self;
     int done = shots_volume(shots, shot);
+    shots->scene.left = shots->count - shots->begun++;
     return done == GO_ON ? scene_begin(&shots->scene, shot->azimuth) : done;
 }
 

@@ -10,6 +10,7 @@
 typedef struct shot_renderer {
     scene scene;
     int64_t count;         /* of frames, to be told */
+    int64_t begun;         /* of those */
     int64_t time;          /* of the present volume */
     snow_volume_info grid; /* of the first volume */
     bool whole_files;      /* a file with several time steps is an error: it is

@@ -10,6 +10,7 @@
 #include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -249,13 +250,21 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
 #define POOL_VALUES (INT64_C(1) << 22)
 #define STEP_VALUES 1024
 
+/* What a rank has read: values of its share of a step, and the smallest and the
+ * largest of that. */
+typedef struct step_values {
+    int64_t count;
+    double ends[2];
+} step_values;
+
 /* Values of all steps, in their order. */
 typedef struct value_pool {
     double *values;
     int64_t count;
-    double *step; /* those of the step that this rank has read */
-    int64_t step_count;
-    int64_t quota; /* of one step, less its ends */
+    double *step;     /* those of the step that this rank has read */
+    step_values told; /* of these */
+    int64_t quota;    /* of one step, less its ends */
+    int group;        /* ranks that read a step together, slabs of it */
 } value_pool;
 
 static int64_t common_factor(int64_t a, int64_t b) {
@@ -290,20 +299,24 @@ static double native(const void *voxels, snow_type type, int64_t i) {
     }
 }
 
-/* A sample of a step's data values, and its ends, which no sample may miss. */
-static void pool_step(value_pool *pool, const snow_volume *volume) {
+/* A sample of a step's data values, and its ends, which no sample may miss: of
+ * slices `first` on of a step that is like `whole`.  What is sampled does not
+ * depend on how many ranks share it. */
+static void pool_slab(value_pool *pool, const snow_volume_info *whole,
+                      int64_t first, const snow_volume *volume) {
     const snow_volume_info *info = snow_volume_describe(volume);
     const void *voxels = snow_volume_voxels(volume);
-    int64_t all = info->dims[0] * info->dims[1] * info->dims[2];
-    int64_t stride = stride_of(info, pool->quota), count = 0;
+    int64_t slice = info->dims[0] * info->dims[1];
+    int64_t begin = first * slice, end = begin + slice * info->dims[2];
+    int64_t stride = stride_of(whole, pool->quota);
+    int64_t at = (begin + stride - 1) / stride;
     snow_volume_measures ends;
     snow_volume_measure(volume, &ends);
-    for (int64_t i = 0; i < all && count < pool->quota; i += stride)
-        pool->step[count++] =
-            info->slope * native(voxels, info->type, i) + info->intercept;
-    pool->step[count++] = ends.min;
-    pool->step[count++] = ends.max;
-    pool->step_count = count;
+    pool->told = (step_values){0, {ends.min, ends.max}};
+    for (; at < pool->quota && at * stride < end; at++)
+        pool->step[pool->told.count++] =
+            info->slope * native(voxels, info->type, at * stride - begin) +
+            info->intercept;
 }
 
 /* The look of a volume that consists of the pool. */
@@ -327,10 +340,46 @@ static void tell_step(const options *asked, int64_t step, int64_t count) {
         progress(asked, line);
 }
 
+/* A member's slices: from slab[0] to slab[1] less one. */
+static void share_of(int64_t slices, int group, int member, int64_t slab[2]) {
+    slab[0] = slices / group * member + slices % group * member / group;
+    member++;
+    slab[1] = slices / group * member + slices % group * member / group;
+}
+
+/* A share of a step, which may be all. */
+static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
+                      value_pool *pool) {
+    scene *s = &shots->scene;
+    snow_volume *volume = NULL;
+    snow_volume_info whole;
+    int64_t slab[2];
+    options step = *s->asked;
+    step.time = shot->time;
+    snow_volume_options data = data_options(&step);
+    int done = inspect(shots, shot, &whole);
+    if (done == GO_ON)
+        done = shots_check(shots, shot->path, &whole);
+    if (done != GO_ON)
+        return done;
+    share_of(whole.dims[2], pool->group, member, slab);
+    pool->told = (step_values){0, {NAN, NAN}};
+    if (slab[0] == slab[1])
+        return GO_ON;
+    data.crop[2][1] = data.crop[2][0] + slab[1];
+    data.crop[2][0] += slab[0];
+    snow_status status =
+        snow_volume_open(s->context, shot->path, &data, &volume);
+    if (status != SNOW_OK)
+        return fail_status(s->context, status);
+    pool_slab(pool, &whole, slab[0], volume);
+    snow_volume_close(volume);
+    return GO_ON;
+}
+
 static int read_step(shot_renderer *shots, const movie_shot *shot,
                      value_pool *pool) {
     scene *s = &shots->scene;
-    double begin = seconds_now();
     snow_volume *volume = NULL;
     options step = *s->asked;
     step.time = shot->time;
@@ -341,42 +390,75 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
     if (done == GO_ON)
         done = shots_check(shots, shot->path, snow_volume_describe(volume));
     if (done == GO_ON)
-        pool_step(pool, volume);
+        pool_slab(pool, snow_volume_describe(volume), 0, volume);
     snow_volume_close(volume);
-    s->times.read += seconds_now() - begin;
     return done;
 }
 
-/* Appends the step that a rank has read. */
-static int append_step(value_pool *pool, int rank) {
+/* Appends what a rank has read; the ends of a step follow its last values. */
+static int append_share(value_pool *pool, int rank, double ends[2]) {
     double *to = pool->values + pool->count;
-    int64_t count = pool->step_count;
+    step_values told = pool->told;
     snow_comm *comm = launch_comm();
     snow_status status = SNOW_OK;
     if (comm)
-        status = snow_comm_broadcast(comm, &count, sizeof count, rank);
-    size_t bytes = (size_t)count * sizeof *to;
+        status = snow_comm_broadcast(comm, &told, sizeof told, rank);
+    size_t bytes = (size_t)told.count * sizeof *to;
     if (rank == launch_rank())
         memcpy(to, pool->step, bytes);
     if (comm && status == SNOW_OK)
         status = snow_comm_broadcast(comm, to, bytes, rank);
-    pool->count += count;
+    pool->count += told.count;
+    ends[0] = fmin(ends[0], told.ends[0]); /* NaN where there is none */
+    ends[1] = fmax(ends[1], told.ends[1]);
     return status == SNOW_OK ? GO_ON
                              : fail_status(snow_comm_context(comm), status);
 }
 
-/* Steps from `first` on, one for each rank. */
+static int append_step(value_pool *pool, int group) {
+    double ends[2] = {NAN, NAN};
+    int done = GO_ON;
+    for (int member = 0; member < pool->group && done == GO_ON; member++)
+        done = append_share(pool, group * pool->group + member, ends);
+    pool->values[pool->count++] = ends[0];
+    pool->values[pool->count++] = ends[1];
+    return done;
+}
+
+/* Steps from `first` on, one for each group of ranks. */
 static int pool_round(const shot_list *list, int64_t first,
                       shot_renderer *shots, value_pool *pool) {
-    int64_t mine = first + launch_rank(), left = list->count - first;
-    int done = GO_ON;
-    if (mine < list->count)
-        done = read_step(shots, &list->shots[mine], pool);
+    const int groups = launch_ranks() / pool->group;
+    int mine = launch_rank() / pool->group, done = GO_ON;
+    double begin = seconds_now();
+    if (mine < groups && first + mine < list->count) {
+        const movie_shot *shot = &list->shots[first + mine];
+        done = pool->group == 1
+                   ? read_step(shots, shot, pool)
+                   : read_share(shots, shot, launch_rank() % pool->group, pool);
+    }
+    shots->scene.times.read += seconds_now() - begin;
     done = launch_agree(done);
-    for (int rank = 0; rank < launch_ranks() && rank < left; rank++)
+    for (int group = 0; group < groups && first + group < list->count; group++)
         if (done == GO_ON)
-            done = append_step(pool, rank);
+            done = append_step(pool, group);
     return done;
+}
+
+/* As many that no rank is left over, where there are few steps; more, where a
+ * step is too large for so few. */
+static int choose_group(const options *asked, const snow_volume_info *step,
+                        int64_t steps) {
+    const int ranks = launch_ranks();
+    int group = steps < ranks ? ranks / (int)steps : 1;
+    snow_volume_info share = *step;
+    for (; group < ranks; group++) {
+        share.dims[2] = (step->dims[2] + group - 1) / group;
+        if (!asked->memory ||
+            memory_needed(asked, &share).least <= asked->memory)
+            break;
+    }
+    return group;
 }
 
 /* All ranks compare their steps with the first. */
@@ -387,7 +469,10 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
     if (done == GO_ON)
         done = shots_check(shots, list->shots[0].path, &first);
     done = launch_agree(done);
-    for (int64_t i = 0; i < list->count && done == GO_ON; i += launch_ranks()) {
+    if (done == GO_ON)
+        pool->group = choose_group(shots->scene.asked, &first, list->count);
+    int groups = done == GO_ON ? launch_ranks() / pool->group : 1;
+    for (int64_t i = 0; i < list->count && done == GO_ON; i += groups) {
         tell_step(shots->scene.asked, i, list->count);
         done = pool_round(list, i, shots, pool);
     }

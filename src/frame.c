@@ -46,6 +46,7 @@ void snow_frame_free(snow_frame *frame) {
     snow_ramp_fini(&frame->ramp);
     snow_iso_free(frame->iso);
     snow_levels_free(frame->levels);
+    snow_work_fini(frame->context, &frame->work);
     snow_image_free(frame->depth);
     snow_release(frame->context, frame);
 }

@@ -9,6 +9,7 @@
 #include "iso.h"
 #include "levels.h"
 #include "modes.h"
+#include "ranks_work.h"
 #include "sheared.h"
 #include "splat/splat.h"
 #include "transform/clip.h"
@@ -37,6 +38,7 @@ struct snow_frame {
     snow_iso *iso;       /* of mode iso; NULL until needed */
     snow_image *depth;   /* of the last picture; NULL: not asked for */
     snow_levels *levels; /* of the volume; NULL until needed */
+    snow_work work;      /* of pictures by many ranks */
 };
 
 /* What one picture is made from; lives as long as the call that makes it. */

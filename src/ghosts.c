@@ -12,11 +12,15 @@
  * Along the slice axis kernels do not reach; a slice half-way to the next one
  * (quality high) does, and mode iso looks at the slice that the ray met before,
  * where it was as many voxels aside as it is slanted.  A pixel wider than a
- * voxel widens the kernel, and how wide it is depends on the view. */
+ * voxel widens the kernel, and how wide it is depends on the view.
+ *
+ * A level's part needs as many of the level's voxels, and is made of twice as
+ * many of the volume's, and of those across its border. */
 #include "ghosts.h"
 
 #include "base/vec3.h"
 #include "frame.h"
+#include "levels.h"
 #include "splat/kernel.h"
 #include "transform/eye.h"
 #include "volume/volume.h"
@@ -231,6 +235,24 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     return SNOW_OK;
 }
 
+/* --- levels ---------------------------------------------------------------
+ */
+
+/* What a level of so many halvings needs, in voxels of the whole. */
+static snow_status ask_level(const question *q, bool any_turn,
+                             const int halvings[3], int64_t layers[3]) {
+    int64_t wanted[3] = {0, 0, 0};
+    const snow_volume_info level = snow_levels_info(q->whole, halvings);
+    question of_level = *q;
+    of_level.whole = &level;
+    SNOW_TRY(any_turn ? ask_all(&of_level, wanted)
+                      : ask_view(&of_level, wanted));
+    snow_levels_layers(q->whole, halvings, wanted);
+    for (int axis = 0; axis < 3; axis++)
+        at_least(&layers[axis], (double)wanted[axis], q->whole->dims[axis] - 1);
+    return SNOW_OK;
+}
+
 snow_status snow_ghosts_needed(snow_context *context,
                                const snow_volume_info *whole,
                                const snow_view *view,
@@ -238,29 +260,35 @@ snow_status snow_ghosts_needed(snow_context *context,
                                bool any_turn, int64_t layers[3]) {
     snow_settings resolved = snow_settings_known(settings);
     int64_t found[3] = {0, 0, 0};
+    int halvings[3] = {0, 0, 0};
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
     question q = {context, whole, view, &resolved,
                   fades || resolved.shade == SNOW_SHADE_PHONG};
     SNOW_TRY(any_turn ? ask_all(&q, found) : ask_view(&q, found));
+    /* Whether colours have steps is not known: then there is no level. */
+    if (snow_levels_serve(&resolved))
+        SNOW_TRY(snow_levels_wanted(context, whole, view, halvings));
+    if (halvings[0] || halvings[1] || halvings[2])
+        SNOW_TRY(ask_level(&q, any_turn, halvings, found));
     memcpy(layers, found, sizeof found);
     return SNOW_OK;
 }
 
-/* A part without voxels of its own makes no samples. */
-snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
-                              const snow_view *view,
-                              const snow_settings *settings, bool fades) {
-    const char names[] = "xyz";
-    int64_t layers[3] = {0, 0, 0};
-    snow_volume_info whole;
+/* --- parts ----------------------------------------------------------------
+ */
+
+static bool is_empty(const snow_volume *volume) {
     snow_part part;
-    snow_volume_whole(volume, &whole);
     snow_volume_get_part(volume, &part);
-    if (!part.count[0] || !part.count[1] || !part.count[2])
-        return SNOW_OK;
-    question q = {context, &whole, view, settings,
-                  fades || settings->shade == SNOW_SHADE_PHONG};
-    SNOW_TRY(ask_view(&q, layers));
+    return !part.count[0] || !part.count[1] || !part.count[2];
+}
+
+static snow_status check_layers(snow_context *context,
+                                const snow_volume *volume,
+                                const int64_t layers[3]) {
+    const char names[] = "xyz";
+    snow_part part;
+    snow_volume_get_part(volume, &part);
     for (int axis = 0; axis < 3; axis++) {
         int64_t below = part.first[axis] - part.stored[axis];
         int64_t end = part.first[axis] + part.count[axis];
@@ -268,7 +296,7 @@ snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
         int64_t few = below < above ? below : above;
         bool enough_below = below >= layers[axis] || part.stored[axis] == 0;
         bool enough_above =
-            above >= layers[axis] || end + above == whole.dims[axis];
+            above >= layers[axis] || end + above == part.dims[axis];
         if (!enough_below || !enough_above)
             return snow_fail(context, SNOW_BAD_USAGE,
                              "this view needs %lld layers of ghost voxels "
@@ -278,4 +306,35 @@ snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                              (long long)few);
     }
     return SNOW_OK;
+}
+
+/* A part without voxels of its own makes no samples. */
+static snow_status check_part(snow_context *context, const snow_volume *volume,
+                              const snow_view *view,
+                              const snow_settings *settings, bool fades,
+                              const int halvings[3]) {
+    int64_t layers[3] = {0, 0, 0};
+    snow_volume_info whole;
+    snow_volume_whole(volume, &whole);
+    if (is_empty(volume))
+        return SNOW_OK;
+    question q = {context, &whole, view, settings,
+                  fades || settings->shade == SNOW_SHADE_PHONG};
+    SNOW_TRY(halvings ? ask_level(&q, false, halvings, layers)
+                      : ask_view(&q, layers));
+    return check_layers(context, volume, layers);
+}
+
+snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
+                              const snow_view *view,
+                              const snow_settings *settings, bool fades) {
+    return check_part(context, volume, view, settings, fades, NULL);
+}
+
+snow_status snow_ghosts_check_level(snow_context *context,
+                                    const snow_volume *volume,
+                                    const snow_view *view,
+                                    const snow_settings *settings, bool fades,
+                                    const int halvings[3]) {
+    return check_part(context, volume, view, settings, fades, halvings);
 }

@@ -9,7 +9,8 @@
 
 /* Layers of ghost voxels that a part of the volume `whole` must have on either
  * side along each axis, but beyond the grid, for a picture by these settings,
- * which need not be resolved; no more than dims - 1.
+ * which need not be resolved; no more than dims - 1.  Where it may be one of a
+ * level (levels.h), these are enough for the level too.
  *
  * `fades` says that opacity depends on gradients, which then are wanted
  * unshaded too.  With `any_turn` for every direction that the camera may look
@@ -27,5 +28,12 @@ snow_status snow_ghosts_needed(snow_context *context,
 snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings, bool fades);
+
+/* The same of a part whose level of so many halvings is to be drawn. */
+snow_status snow_ghosts_check_level(snow_context *context,
+                                    const snow_volume *volume,
+                                    const snow_view *view,
+                                    const snow_settings *settings, bool fades,
+                                    const int halvings[3]);
 
 #endif

@@ -550,6 +550,7 @@ static snow_status wrap(snow_insitu *insitu, const void *voxels,
     SNOW_TRY(
         snow_volume_share(insitu->context, &info, voxels, &insitu->volume));
     SNOW_TRY(snow_volume_set_part(insitu->volume, &part));
+    snow_volume_set_whole(insitu->volume, &insitu->whole);
     snow_volume_freeze(insitu->volume); /* until the next update */
     return SNOW_OK;
 }

@@ -33,6 +33,14 @@ static int place_pixel(int at, int to, int from, float *share) {
     return (int)low;
 }
 
+/* `share` of the way from a to b; the nearer one where one of them is no
+ * number, as those of rays that meet nothing are in modes mean and sum. */
+static float between(float a, float b, float share) {
+    if (isnan(a) || isnan(b))
+        return share < 0.5f ? a : b;
+    return a + share * (b - a);
+}
+
 /* One line of the large picture, between two lines of the small one. */
 static void enlarge_line(const float *a, const float *b, float share, int from,
                          int to, int channels, float *out) {
@@ -41,9 +49,9 @@ static void enlarge_line(const float *a, const float *b, float share, int from,
         int n = place_pixel(x, to, from, &across) * channels;
         int next = from > 1 ? channels : 0;
         for (int c = 0; c < channels; c++) {
-            float top = a[n + c] + across * (a[n + next + c] - a[n + c]);
-            float low = b[n + c] + across * (b[n + next + c] - b[n + c]);
-            *out++ = top + share * (low - top);
+            float top = between(a[n + c], a[n + next + c], across);
+            float low = between(b[n + c], b[n + next + c], across);
+            *out++ = between(top, low, share);
         }
     }
 }
@@ -257,13 +265,15 @@ static snow_status draw(snow_insitu *insitu, snow_image **out) {
 }
 
 /* Bars and the step's number for a picture that was enlarged to its size, where
- * it was drawn smaller. */
+ * it was drawn smaller; `range` of values that colours were made of, or NULL.
+ */
 static snow_status add_marks(snow_insitu *insitu, int64_t step,
-                             snow_overlay *overlay) {
+                             const double range[2], snow_overlay *overlay) {
     snow_view view = snow_insitu_view(insitu);
     char text[40];
     if (insitu->legend) {
-        SNOW_TRY(snow_overlay_color_bar(overlay, insitu->transfer, NULL, NULL));
+        SNOW_TRY(
+            snow_overlay_color_bar(overlay, insitu->transfer, NULL, range));
         SNOW_TRY(snow_overlay_scale_bar(overlay, &insitu->whole, &view));
     }
     if (!insitu->step_label)
@@ -272,8 +282,9 @@ static snow_status add_marks(snow_insitu *insitu, int64_t step,
     return snow_overlay_note(overlay, text);
 }
 
-static snow_status save(snow_insitu *insitu, int64_t step, const char *path,
-                        const snow_image *image) {
+static snow_status save_colors(snow_insitu *insitu, int64_t step,
+                               const char *path, const snow_image *image,
+                               const double range[2]) {
     snow_image_options form = insitu->form;
     snow_overlay *overlay = NULL;
     bool marked = insitu->legend || insitu->step_label;
@@ -281,11 +292,27 @@ static snow_status save(snow_insitu *insitu, int64_t step, const char *path,
         return snow_image_save(image, path, &form);
     SNOW_TRY(snow_overlay_new(insitu->context, image->width, image->height,
                               &overlay));
-    snow_status status = add_marks(insitu, step, overlay);
+    snow_status status = add_marks(insitu, step, range, overlay);
     form.overlay = overlay;
     if (status == SNOW_OK)
         status = snow_image_save(image, path, &form);
     snow_overlay_free(overlay);
+    return status;
+}
+
+/* Values (modes mean and sum) become colours where the file holds colours, over
+ * what the look spreads over: the same in all frames. */
+static snow_status save(snow_insitu *insitu, int64_t step, const char *path,
+                        const snow_image *image) {
+    double range[2];
+    snow_image *painted = NULL;
+    if (image->channels != 1 || snow_image_bits(path) <= 0)
+        return save_colors(insitu, step, path, image, NULL);
+    snow_transfer_span(insitu->transfer, &range[0], &range[1]);
+    SNOW_TRY(snow_values_paint(image, insitu->transfer, range[0], range[1],
+                               &painted));
+    snow_status status = save_colors(insitu, step, path, painted, range);
+    snow_image_free(painted);
     return status;
 }
 
@@ -321,15 +348,26 @@ snow_status snow_insitu_draw(snow_insitu *insitu, snow_image **image) {
     return snow_insitu_end(insitu, status);
 }
 
+/* Whether pictures can be written.  Sums are no values of the data, so that no
+ * range of those gives them colours. */
+static snow_status check_output(const snow_insitu *insitu) {
+    if (!insitu->pattern) /* on one rank only: found by its print below */
+        return snow_fail(insitu->context, SNOW_BAD_USAGE,
+                         "there is no path for pictures; call "
+                         "snow_insitu_set_output");
+    if (insitu->settings.mode == SNOW_MODE_SUM &&
+        insitu->look.look.range == SNOW_RANGE_AUTO &&
+        snow_image_bits(insitu->pattern) > 0)
+        return snow_fail(insitu->context, SNOW_BAD_USAGE,
+                         "pictures of mode sum share one range of sums; give "
+                         "the look a range, or name files .npy");
+    return SNOW_OK;
+}
+
 static snow_status make_step(snow_insitu *insitu, int64_t step) {
     double start = snow_comm_seconds(insitu->comm);
     snow_image *image = NULL;
-    if (!insitu->pattern) /* on one rank only: found by its print below */
-        snow_fail(insitu->context, SNOW_BAD_USAGE,
-                  "there is no path for pictures; call "
-                  "snow_insitu_set_output");
-    SNOW_TRY(snow_comm_agree(insitu->comm,
-                             insitu->pattern ? SNOW_OK : SNOW_BAD_USAGE));
+    SNOW_TRY(snow_comm_agree(insitu->comm, check_output(insitu)));
     if (insitu->how.scattered) /* the same on all ranks, or found so */
         return snow_fail(insitu->context, SNOW_BAD_USAGE,
                          "a scattered picture is in no one place to be written "

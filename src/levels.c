@@ -1,7 +1,9 @@
 /* levels.c - see levels.h. */
 #include "levels.h"
 #include "base/vec3.h"
+#include "classify/fade.h"
 #include "classify/transfer.h"
+#include "ghosts.h"
 #include "transform/transform.h"
 #include "volume/halve.h"
 
@@ -103,15 +105,85 @@ static int lean_of(const snow_transfer *transfer,
 /* --- making -----------------------------------------------------------------
  */
 
+static int most_halvings(const int halvings[3]) {
+    int most = halvings[0] > halvings[1] ? halvings[0] : halvings[1];
+    return most > halvings[2] ? most : halvings[2];
+}
+
+/* The axes that are halved for level n.  Voxels become alike: those first that
+ * are to be halved most often. */
+static void axes_of(int n, const int halvings[3], bool axes[3]) {
+    for (int axis = 0; axis < 3; axis++)
+        axes[axis] = halvings[axis] >= most_halvings(halvings) - n;
+}
+
+snow_volume_info snow_levels_info(const snow_volume_info *info,
+                                  const int halvings[3]) {
+    snow_volume_info level = *info;
+    for (int n = 0; n < most_halvings(halvings); n++) {
+        bool axes[3];
+        axes_of(n, halvings, axes);
+        level = snow_halved_info(&level, axes);
+    }
+    return level;
+}
+
+void snow_levels_layers(const snow_volume_info *info, const int halvings[3],
+                        int64_t layers[3]) {
+    for (int axis = 0; axis < 3; axis++)
+        for (int n = halvings[axis]; n > 0; n--) {
+            int64_t dims = info->dims[axis];
+            for (int before = 1; before < n; before++)
+                dims = (dims + 1) / 2;
+            layers[axis] = snow_halved_layers(dims, layers[axis]);
+        }
+}
+
 static bool same_grid(const snow_volume_info *a, const snow_volume_info *b) {
     return a->type == b->type && memcmp(a->dims, b->dims, sizeof a->dims) == 0;
 }
 
+/* What is known of a level of `from` before there are voxels.  False where it
+ * has none of its own. */
+static bool plan_level(const snow_volume *from, bool axes[3],
+                       snow_volume_info *whole, snow_part *part,
+                       snow_volume_info *info) {
+    int64_t stored[3];
+    snow_volume_info before;
+    snow_volume_whole(from, &before);
+    *whole = snow_halved_info(&before, axes);
+    bool any = snow_halved_part(from, whole->dims, part, stored);
+    *info = from->is_part ? snow_volume_info_of_box(whole, part->stored, stored)
+                          : *whole;
+    return any;
+}
+
+/* Tells a level's volume what it is; its voxels are to be made. */
+static snow_status tell_level(snow_volume *level, const snow_volume *from,
+                              const snow_volume_info *whole,
+                              const snow_part *part,
+                              const snow_volume_info *info) {
+    snow_part before;
+    snow_volume_get_part(from, &before);
+    level->info = *info;
+    level->is_part = level->knows_origin = false;
+    for (int axis = 0; axis < 3; axis++) {
+        double step = (double)whole->dims[axis] / (double)before.dims[axis];
+        level->fine[axis] =
+            step * (from->fine[axis] > 0 ? from->fine[axis] : 1);
+    }
+    if (!from->is_part)
+        return SNOW_OK;
+    snow_volume_set_whole(level, whole);
+    return snow_volume_set_part(level, part);
+}
+
 /* Level n, made of `from`, unless it is there. */
 static snow_status make_level(snow_levels *levels, int n, int lean, int threads,
-                              const snow_volume *from, const bool wanted[3]) {
-    bool axes[3] = {wanted[0], wanted[1], wanted[2]};
-    snow_volume_info info = snow_halved_info(&from->info, axes);
+                              const snow_volume *from, bool axes[3]) {
+    snow_volume_info whole, info;
+    snow_part part;
+    bool any = plan_level(from, axes, &whole, &part, &info);
     snow_volume **made = &levels->levels[n].volume;
     bool same = *made && same_grid(&info, &(*made)->info);
     if (same && from->serial && levels->levels[n].of == from->serial &&
@@ -123,43 +195,33 @@ static snow_status make_level(snow_levels *levels, int n, int lean, int threads,
         *made = NULL;
         SNOW_TRY(snow_volume_new(levels->context, &info, made));
     }
-    (*made)->info = info;
-    for (int axis = 0; axis < 3; axis++) {
-        double step = (double)info.dims[axis] / (double)from->info.dims[axis];
-        (*made)->fine[axis] =
-            step * (from->fine[axis] > 0 ? from->fine[axis] : 1);
-    }
-    SNOW_TRY(
-        snow_volume_halve(from, axes, lean, threads, &levels->room, *made));
+    SNOW_TRY(tell_level(*made, from, &whole, &part, &info));
+    if (any)
+        SNOW_TRY(
+            snow_volume_halve(from, axes, lean, threads, &levels->room, *made));
+    else /* the one voxel that a volume has at least */
+        memset((*made)->owned, 0, snow_type_size(info.type));
     levels->levels[n].of = from->serial;
     levels->levels[n].lean = lean;
     return SNOW_OK;
 }
 
-/* Axes are halved in such an order that voxels become alike: those first that
- * are to be halved most often. */
 static snow_status make_levels(snow_levels *levels, int lean, int threads,
                                const int halvings[3],
                                const snow_volume **level) {
-    int most = 0;
-    for (int axis = 0; axis < 3; axis++)
-        most = halvings[axis] > most ? halvings[axis] : most;
-    for (int n = 0; n < most; n++) {
-        const bool axes[3] = {halvings[0] >= most - n, halvings[1] >= most - n,
-                              halvings[2] >= most - n};
+    for (int n = 0; n < most_halvings(halvings); n++) {
+        bool axes[3];
+        axes_of(n, halvings, axes);
         SNOW_TRY(make_level(levels, n, lean, threads, *level, axes));
         *level = levels->levels[n].volume;
     }
     return SNOW_OK;
 }
 
-/* Voxels that stay in their file are not read for a level. */
-static bool are_for(const snow_volume *volume, const snow_transfer *transfer,
-                    const snow_settings *s) {
+bool snow_levels_serve(const snow_settings *s) {
     return s->method == SNOW_METHOD_SHEARED &&
            s->quality == SNOW_QUALITY_DRAFT && s->mode == SNOW_MODE_OVER &&
-           !s->deterministic && !volume->is_part && !volume->stream &&
-           !has_categories(transfer);
+           !s->deterministic;
 }
 
 snow_status snow_levels_take(snow_levels **levels, const snow_volume *volume,
@@ -170,9 +232,16 @@ snow_status snow_levels_take(snow_levels **levels, const snow_volume *volume,
     int wanted[3] = {0, 0, 0};
     snow_context *context = volume->context;
     const snow_volume *found = volume;
-    if (are_for(volume, transfer, settings))
-        SNOW_TRY(snow_levels_wanted(context, &volume->info, view, wanted));
-    if (wanted[0] || wanted[1] || wanted[2]) {
+    snow_volume_info whole;
+    snow_volume_whole(volume, &whole);
+    /* Voxels that stay in their file are not read for a level. */
+    if (snow_levels_serve(settings) && !volume->stream &&
+        !has_categories(transfer))
+        SNOW_TRY(snow_levels_wanted(context, &whole, view, wanted));
+    if (most_halvings(wanted)) {
+        SNOW_TRY(snow_ghosts_check_level(context, volume, view, settings,
+                                         snow_transfer_fades(transfer),
+                                         wanted));
         if (!*levels) {
             *levels = snow_allocate_clear(context, sizeof **levels);
             if (!*levels)

@@ -11,7 +11,12 @@
  * SNOW_LEVEL_MANY in all: each level is farther from the exact picture, and
  * small ones cost little.  In perspective that is a pixel where the volume
  * could come nearest to the eye.  How the camera is turned does not matter, so
- * that nothing jumps while it turns. */
+ * that nothing jumps while it turns.
+ *
+ * Of a part of a volume the part of the whole's level is made, of the ghost
+ * voxels too that lie across its borders: the rule is one of the whole, so that
+ * all ranks take the same level, and its voxels are those of one process to the
+ * bit.  ghosts.h tells how many ghosts that takes. */
 #ifndef SNOW_LEVELS_H
 #define SNOW_LEVELS_H
 
@@ -33,10 +38,21 @@ snow_status snow_levels_wanted(snow_context *context,
                                const snow_volume_info *info,
                                const snow_view *view, int halvings[3]);
 
+/* Whether pictures by such settings, which are resolved, may be of a level. */
+bool snow_levels_serve(const snow_settings *settings);
+
+/* What a level is like.  Layers of it become layers of the volume, on either
+ * side of a part: as many as the level's part has then. */
+snow_volume_info snow_levels_info(const snow_volume_info *info,
+                                  const int halvings[3]);
+void snow_levels_layers(const snow_volume_info *info, const int halvings[3],
+                        int64_t layers[3]);
+
 /* The level for a picture: *level is the volume itself where there is none to
  * be taken, and `halvings` are told; then it belongs to *levels, which is made
  * when it is NULL, until the next call.  `settings` are resolved.  Errors:
- * those of snow_camera_make, SNOW_NO_MEMORY. */
+ * those of snow_camera_make, SNOW_NO_MEMORY, SNOW_BAD_USAGE (a part has too few
+ * ghosts). */
 snow_status snow_levels_take(snow_levels **levels, const snow_volume *volume,
                              const snow_transfer *transfer,
                              const snow_view *view,

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* Slabs of fewer slices on the average are too coarse to be made equal. */
-#define LEAST_SLICES 8
+#define LEAST_SLICES 5
 
 static snow_ranks_options known_options(const snow_ranks_options *how) {
     snow_ranks_options known = {0};
@@ -53,7 +53,8 @@ snow_status snow_cut_order_make(snow_context *context,
     snow_ranks_options how = known_options(asked);
     snow_settings resolved = snow_settings_known(settings);
     snow_placement placement;
-    if (how.cut < SNOW_CUT_AUTO || how.cut > SNOW_CUT_BRICKS)
+    bool chooses = how.cut == SNOW_CUT_AUTO || how.cut == SNOW_CUT_MEASURED;
+    if (how.cut < SNOW_CUT_AUTO || how.cut > SNOW_CUT_MEASURED)
         return snow_fail(context, SNOW_BAD_USAGE,
                          "cut %d is none; take a value of snow_cut", how.cut);
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
@@ -70,7 +71,7 @@ snow_status snow_cut_order_make(snow_context *context,
     /* Groups of slices are laid over one another as such. */
     out->slabs_only = resolved.deterministic || how.cut == SNOW_CUT_EQUAL ||
                       how.cut == SNOW_CUT_COUNTED;
-    out->cut = how.cut ? how.cut : choose_cut(out, resolved.method);
+    out->cut = chooses ? choose_cut(out, resolved.method) : how.cut;
     if (out->cut == SNOW_CUT_BRICKS && resolved.deterministic) {
         snow_notify(context, "bricks cannot share a deterministic picture; "
                              "slabs are cut");
@@ -126,6 +127,42 @@ snow_status snow_cut_boxes(snow_comm *comm, const snow_cut_order *order,
         snow_cut_loads(&tally, boxes, order->ranks, loads);
     snow_release(volume->context, tally.counts);
     return comm ? snow_comm_agree(comm, status) : status;
+}
+
+int64_t snow_cut_slices(const snow_cut_order *order) {
+    return snow_tally_for_slabs(&order->grid).blocks[order->grid.axis];
+}
+
+snow_status snow_cut_count(snow_comm *comm, const snow_cut_order *order,
+                           const snow_volume *volume,
+                           const snow_transfer *transfer, double *costs) {
+    snow_tally tally = snow_tally_for_slabs(&order->grid);
+    snow_status status = count_all(comm, order, volume, transfer, &tally);
+    for (size_t n = 0; n < snow_tally_blocks(&tally) && status == SNOW_OK; n++)
+        costs[n] = (double)tally.counts[n];
+    snow_release(volume->context, tally.counts);
+    return status;
+}
+
+/* What all costs become together in whole numbers. */
+#define COST_OF_ALL 0x1p40
+
+snow_status snow_cut_costs(snow_context *context, const snow_cut_order *order,
+                           const double *costs, snow_box *boxes) {
+    snow_tally tally = snow_tally_for_slabs(&order->grid);
+    size_t slices = snow_tally_blocks(&tally);
+    double sum = 0;
+    tally.counts = snow_allocate_array(context, slices, sizeof *tally.counts);
+    if (!tally.counts)
+        return SNOW_NO_MEMORY;
+    for (size_t n = 0; n < slices; n++)
+        sum += costs[n];
+    for (size_t n = 0; n < slices; n++)
+        tally.counts[n] =
+            sum > 0 ? (int64_t)(costs[n] / sum * COST_OF_ALL + 0.5) : 0;
+    snow_status status = snow_cut_counted(context, &tally, order->ranks, boxes);
+    snow_release(context, tally.counts);
+    return status;
 }
 
 snow_status snow_ranks_plan(const snow_volume *volume,

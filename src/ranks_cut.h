@@ -41,4 +41,14 @@ snow_status snow_cut_boxes(snow_comm *comm, const snow_cut_order *order,
                            const snow_transfer *transfer, snow_box *boxes,
                            int64_t *loads);
 
+/* Slabs by costs of their slices, of which an order has so many.  First they
+ * are numbers of interesting voxels: collective, as above.  Cutting by them is
+ * not; the boxes are a function of the costs. */
+int64_t snow_cut_slices(const snow_cut_order *order);
+snow_status snow_cut_count(snow_comm *comm, const snow_cut_order *order,
+                           const snow_volume *volume,
+                           const snow_transfer *transfer, double *costs);
+snow_status snow_cut_costs(snow_context *context, const snow_cut_order *order,
+                           const double *costs, snow_box *boxes);
+
 #endif

@@ -12,11 +12,11 @@
  * than the largest box will be, since that has at least the mean, and so the
  * most that any rank stores does not rise for it.  Invariant: the owned boxes
  * of all ranks cover the grid and do not overlap, before and after. */
+#include "ranks_open.h"
 #include "classify/fade.h"
 #include "classify/look.h"
 #include "decompose/slab.h"
 #include "decompose/voxels.h"
-#include "ranks_cut.h"
 #include "volume/volume.h"
 
 #include <string.h>
@@ -127,6 +127,23 @@ static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
     return status;
 }
 
+/* Collective.  Voxels that all ranks hold go where the boxes say. */
+static snow_status deal_to(snow_comm *comm, const snow_volume_info *whole,
+                           const snow_cut_order *order, const snow_box *boxes,
+                           const snow_volume *held, snow_volume **out) {
+    snow_volume *volume = NULL;
+    place p = place_box(whole, &boxes[snow_comm_rank(comm)], order->layers);
+    snow_status status = snow_comm_agree(
+        comm, make_part(snow_comm_context(comm), whole, &p, &volume));
+    if (status == SNOW_OK)
+        status = move_voxels(comm, held, &p, volume);
+    if (status == SNOW_OK)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
+}
+
 /* Collective.  Cuts what all ranks hold as the order says. */
 static snow_status deal_out(snow_comm *comm, const snow_volume_info *whole,
                             const snow_cut_order *order,
@@ -135,23 +152,13 @@ static snow_status deal_out(snow_comm *comm, const snow_volume_info *whole,
     snow_context *context = snow_comm_context(comm);
     snow_box *boxes =
         snow_allocate_array(context, (uint64_t)order->ranks, sizeof *boxes);
-    snow_volume *volume = NULL;
-    place p;
     snow_status status =
         snow_comm_agree(comm, boxes ? SNOW_OK : SNOW_NO_MEMORY);
     if (status == SNOW_OK)
         status = snow_cut_boxes(comm, order, held, transfer, boxes, NULL);
-    if (status == SNOW_OK) {
-        p = place_box(whole, &boxes[snow_comm_rank(comm)], order->layers);
-        status = snow_comm_agree(comm, make_part(context, whole, &p, &volume));
-    }
     if (status == SNOW_OK)
-        status = move_voxels(comm, held, &p, volume);
+        status = deal_to(comm, whole, order, boxes, held, out);
     snow_release(context, boxes);
-    if (status == SNOW_OK)
-        *out = volume;
-    else
-        snow_volume_close(volume);
     return status;
 }
 
@@ -365,8 +372,7 @@ static bool is_border(const snow_cut_order *order, int64_t slice) {
     return !order->grid.borders;
 }
 
-/* Whether this rank's part gives its share of a picture. */
-static bool serves(const snow_volume *volume, const snow_cut_order *order) {
+bool snow_part_serves(const snow_volume *volume, const snow_cut_order *order) {
     snow_part part;
     snow_volume_get_part(volume, &part);
     int axis = order->grid.axis;
@@ -386,27 +392,35 @@ static bool serves(const snow_volume *volume, const snow_cut_order *order) {
            is_border(order, part.first[axis] + part.count[axis]);
 }
 
+snow_status snow_ranks_deal(snow_comm *comm, const snow_volume_info *whole,
+                            const snow_cut_order *order, const snow_box *boxes,
+                            const snow_transfer *transfer,
+                            snow_volume **volume) {
+    snow_volume *recut;
+    SNOW_TRY(boxes ? deal_to(comm, whole, order, boxes, *volume, &recut)
+                   : deal_out(comm, whole, order, *volume, transfer, &recut));
+    snow_volume_close(*volume);
+    *volume = recut;
+    return SNOW_OK;
+}
+
 snow_status snow_ranks_recut(snow_comm *comm, const snow_transfer *transfer,
                              const snow_view *view,
                              const snow_settings *settings,
                              const snow_ranks_options *how,
                              snow_volume **volume) {
     snow_volume_info whole;
-    snow_volume *recut;
     snow_cut_order order;
     snow_volume_whole(*volume, &whole);
     snow_status status = snow_cut_order_make(
         snow_comm_context(comm), &whole, view, settings, how,
         snow_transfer_fades(transfer), snow_comm_ranks(comm), &order);
     /* One round: 0, all serve; 1, some do not; 2, some failed. */
-    int64_t worst = status != SNOW_OK ? 2 : !serves(*volume, &order);
+    int64_t worst = status != SNOW_OK ? 2 : !snow_part_serves(*volume, &order);
     SNOW_TRY(snow_comm_reduce_ints(comm, &worst, 1, SNOW_MAX));
     if (worst == 0)
         return SNOW_OK;
     if (worst == 2)
         return snow_comm_agree(comm, status);
-    SNOW_TRY(deal_out(comm, &whole, &order, *volume, transfer, &recut));
-    snow_volume_close(*volume);
-    *volume = recut;
-    return SNOW_OK;
+    return snow_ranks_deal(comm, &whole, &order, NULL, transfer, volume);
 }

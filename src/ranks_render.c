@@ -24,6 +24,17 @@
 /* --- the beginning --------------------------------------------------------
  */
 
+/* The volume's level where the picture is of one (levels.h).  Its settings are
+ * the volume's. */
+static snow_status take_level(snow_picture *p, const snow_transfer *transfer,
+                              snow_settings *settings,
+                              const snow_volume **volume, int halvings[3]) {
+    SNOW_TRY(
+        snow_settings_resolve(p->frame->context, &(*volume)->info, settings));
+    return snow_levels_take(&p->frame->levels, *volume, transfer, &p->view,
+                            settings, volume, halvings);
+}
+
 /* What the beginning of a job counts is this picture's. */
 static snow_status begin_job(snow_picture *p, const snow_volume *volume,
                              const snow_transfer *transfer,
@@ -111,14 +122,20 @@ void snow_picture_fail(snow_picture *p, snow_status status) {
 void snow_picture_begin(snow_picture *p, const snow_volume *volume,
                         const snow_transfer *transfer,
                         const snow_settings *settings, bool aside) {
+    snow_settings own = snow_settings_known(settings);
+    int halvings[3] = {0, 0, 0};
+    snow_picture_fail(p, take_level(p, transfer, &own, &volume, halvings));
     p->serial = volume->serial;
     snow_volume_get_part(volume, &p->part);
-    snow_status status = begin_picture(p, volume, transfer, settings);
+    /* Also where there is no level: all ranks begin in the same way. */
+    snow_status status = begin_picture(p, volume, transfer, &own);
+    memcpy(p->stats.halvings, halvings, sizeof halvings);
     int axis = axis_alone(p);
     p->ahead = axis >= 0;
-    if (status == SNOW_OK && p->ahead)
+    if (p->status == SNOW_OK && status == SNOW_OK && p->ahead)
         status = begin_ahead(p, axis, aside);
-    snow_picture_fail(p, status);
+    if (p->status == SNOW_OK)
+        snow_picture_fail(p, status);
 }
 
 void snow_picture_settle(snow_picture *p) {

@@ -65,6 +65,22 @@ for way in vertex element ghosts multi empty; do
     run 0 "$way: picture and picture differ by rounding" \
         "$TOOL" compare f_01.png tool.png --tolerance $STEP
 done
+for mode in mip minip mean sum "iso --iso 60"; do
+    read -r name _ value <<<"$mode"
+    cat >mode.json <<END
+{"input": "grid/v", "output": "m_%02d.png", "size": [200, 160],
+ "colormap": "viridis", "range": [0, 100], "mode": "$name",
+ ${value:+\"iso\": $value,} "view": "iso", "overwrite": true}
+END
+    run 0 "Catalyst, mode $name, on 3 ranks" launch 3 \
+        "$TESTS/catalyst/catalyst_driver" "$PLUGIN" mode.json element field.raw
+    # shellcheck disable=SC2086
+    run 0 "the tool draws its field" "$TOOL" render field.raw \
+        --dims 30x26x22 --type float64 --spacing 0.2x0.2x0.25 -o tool.png -y \
+        -q -s 200x160 -c viridis --range 0,100 --mode $mode --view iso
+    run 0 "mode $name: picture and picture differ by rounding" \
+        "$TOOL" compare m_01.png tool.png --tolerance $STEP
+done
 rm -f f_*.png
 run 0 "a mesh on one rank that cannot be shown" launch 3 \
     "$TESTS/catalyst/catalyst_driver" "$PLUGIN" look.json mixed field.raw

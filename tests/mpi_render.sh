@@ -57,6 +57,21 @@ prints '"interesting": |"load": 1'
 check "bytes of EA are those of one process" [ "$(number ea)" = \
     "$(sed -n 's/.*"ea": \([0-9]*\).*/\1/p' one.json)" ]
 
+# Drafts of few pixels, of a level of half as many voxels or a quarter.
+for draft in "64x64 --view +x --cut counted" "40x50 --azimuth 33 --cut bricks" \
+    "64x64 --azimuth 70 --roll 20 --perspective --cut equal"; do
+    # shellcheck disable=SC2086
+    set -- phantom:engine --dims 131x144x127 --quality draft -q -s $draft
+    run 0 "a draft alone, $draft" "$TOOL" "${@:1:$(($# - 2))}" -y -o one.npy
+    for ranks in $COUNTS; do
+        run 0 "a draft by $ranks ranks" \
+            launch "$ranks" "$MPI_TOOL" "$@" -y -o many.npy --stats -
+        prints '"halvings": \[1, 1, 1\]'
+        run 0 "it is as by one" "$TOOL" compare one.npy many.npy \
+            --tolerance 1/255
+    done
+done
+
 # Files of which each rank reads its part, and unpacks all.
 run 0 "a file" "$TOOL" phantom engine --dims 40x40x40 -o v.nrrd
 run 0 "a packed file" "$TOOL" phantom engine --dims 40x40x40 -o v.nii.gz
@@ -77,6 +92,14 @@ for frame in 0 1 2 3; do
     run 0 "frame $frame" "$TOOL" compare one_0$frame.png many_0$frame.png \
         --tolerance 1/255
 done
+# By the time that pictures took; the last view's slices lie along another axis.
+# shellcheck disable=SC2086
+run 0 "a turntable of measured parts" launch 3 "$MPI_TOOL" $turn --cut measured \
+    -o timed_%02d.png
+for frame in 0 1 2 3; do
+    run 0 "measured frame $frame" "$TOOL" compare one_0$frame.png \
+        timed_0$frame.png --tolerance 1/255
+done
 rm many_02.png
 # shellcheck disable=SC2086
 run 0 "a turntable is resumed" launch 3 "$MPI_TOOL" $turn --resume \
@@ -94,6 +117,28 @@ for frame in 0 1 2; do
     run 0 "step $frame" "$TOOL" compare step_$frame.png steps_$frame.png \
         --tolerance 1/255
 done
+
+# Ranks share the reading for the look of all steps where there are more of them
+# than steps, or a step is too large for one: the look is that of one process.
+"$TOOL" phantom engine --dims 240x240x251 -q -o large0.nrrd
+"$TOOL" phantom engine --dims 240x240x251 --seed 1 -q -o large1.nrrd
+for way in "step0.nrrd step1.nrrd" "step0.nrrd step1.nrrd --crop :,3:30,5:31" \
+    "large0.nrrd large1.nrrd"; do
+    # shellcheck disable=SC2086
+    run 0 "a movie alone, $way" "$TOOL" movie $way -s 64x64 -y -o step_%d.npy
+    look=$(grep -o 'grey .*histogram)' "$ERR")
+    [ "${way%%0*}" = large ] && way+=" --memory 13M"
+    # shellcheck disable=SC2086
+    run 0 "by $MOST" launch "$MOST" "$MPI_TOOL" movie $way -s 64x64 -y \
+        -o steps_%d.npy
+    check "one look: $look" grep -qF "${look:-none}" "$ERR"
+    for frame in 0 1; do
+        run 0 "step $frame" "$TOOL" compare step_$frame.npy steps_$frame.npy \
+            --tolerance 1/255
+    done
+done
+refused 5 "a step too large for one" 'the range of all steps needs' \
+    "$TOOL" movie large0.nrrd large1.nrrd --memory 13M -o x_%d.png
 
 # Each rank reads its box of a mask.
 "$TOOL" phantom shells --dims 40x36x44 -q -o mask.nrrd
@@ -117,7 +162,7 @@ run 6 "compare" launch 2 "$MPI_TOOL" compare one_00.png one_01.png
 run 0 "doctor" launch 2 "$MPI_TOOL" doctor
 prints '^mpi  *[A-Z].*, 2 ranks$'
 run 0 "help" launch 2 "$MPI_TOOL" help ranks
-prints '^      --cut auto.equal.counted.bricks'
+prints '^      --cut auto.equal.counted.bricks.measured'
 refused 2 "--cut alone" 'snowglass-mpi' "$TOOL" v.nrrd -o x.png --cut equal
 run 2 "help ranks alone" "$TOOL" help ranks
 finish

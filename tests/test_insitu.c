@@ -5,6 +5,7 @@
 #include "support.h"
 #include "support_folder.h"
 
+#include "image/image.h"
 #include "insitu_parts.h"
 
 #include <math.h>
@@ -37,6 +38,7 @@ typedef struct scene {
     double difference; /* from the serial picture */
     snow_insitu_figures figures;
     uint64_t encoded; /* of a second picture of the same voxels */
+    int halvings;     /* of axis x */
 } scene;
 
 /* A few blobs that look different from all sides; `t` moves them. */
@@ -253,8 +255,27 @@ static snow_status tell_picture(snow_insitu *insitu, const scene *s) {
     return snow_insitu_set_look(insitu, &look);
 }
 
+/* Of values as a part of the largest; infinite where one of both has none. */
+static double values_difference(const snow_image *a, const snow_image *b) {
+    size_t count = (size_t)a->width * (size_t)a->height;
+    double gap = 0, most = 0;
+    for (size_t n = 0; n < count; n++) {
+        if (isnan(a->pixels[n]) != isnan(b->pixels[n]))
+            return INFINITY;
+        if (isnan(a->pixels[n]))
+            continue;
+        gap = fmax(gap, fabs((double)a->pixels[n] - (double)b->pixels[n]));
+        most = fmax(most, fabs((double)b->pixels[n]));
+    }
+    return most > 0 ? gap / most : INFINITY;
+}
+
 static double largest_difference(const snow_image *a, const snow_image *b) {
     snow_image_difference d;
+    if (a->width != b->width || a->height != b->height)
+        return INFINITY;
+    if (a->channels == 1 && b->channels == 1)
+        return values_difference(a, b);
     if (snow_image_compare(a, b, &d) != SNOW_OK)
         return INFINITY;
     return d.largest;
@@ -284,6 +305,7 @@ static snow_status draw_twice(snow_insitu *insitu, scene *s, int rank) {
     if (rank == 0) {
         s->figures = figures;
         s->encoded = (uint64_t)snow_frame_stats(insitu->frame)->encoded;
+        s->halvings = snow_frame_stats(insitu->frame)->halvings[0];
     }
     return SNOW_OK;
 }
@@ -348,6 +370,56 @@ static void every_view_does(void **state) {
         expect_serial(&s, "a view");
         s.view.fov = 40;
         expect_serial(&s, "perspective");
+    }
+}
+
+/* Of the level that one process takes (levels.h). */
+static void drafts_of_few_pixels_do(void **state) {
+    (void)state;
+    static const int cuts[][4] = {
+        {1, 1, 1, 1}, {2, 1, 1, 2}, {3, 1, 3, 1}, {8, 2, 2, 2}, {12, 3, 2, 2}};
+    for (size_t i = 0; i < 4 * sizeof cuts / sizeof *cuts; i++) {
+        const int *cut = cuts[i / 4];
+        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
+        s.settings.quality = SNOW_QUALITY_DRAFT;
+        s.view.width = s.view.height = 15;
+        s.view.azimuth = 30.0 * (double)i;
+        s.fades = i % 4 == 1;
+        s.balance = i % 4 == 2 ? SNOW_BALANCE_RECUT : s.balance;
+        s.layout = i % 4 == 3;
+        expect_serial(&s, "a small draft");
+        assert_int_equal(s.halvings, 1);
+    }
+}
+
+/* Largest and smallest values and surfaces to the bit, sums but for rounding.
+ */
+static void every_mode_does(void **state) {
+    (void)state;
+    static const snow_mode modes[] = {SNOW_MODE_MIP, SNOW_MODE_MINIP,
+                                      SNOW_MODE_MEAN, SNOW_MODE_SUM,
+                                      SNOW_MODE_ISO};
+    static const int cuts[][4] = {{1, 1, 1, 1}, {2, 1, 1, 2}, {3, 1, 3, 1},
+                                  {3, 1, 2, 3}, {8, 2, 2, 2}, {12, 3, 2, 2}};
+    static const snow_type types[] = {SNOW_FLOAT32, SNOW_UINT8, SNOW_INT16,
+                                      SNOW_FLOAT64};
+    for (int n = 0; n < 60; n++) {
+        const int *cut = cuts[n / 5 % 6];
+        scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
+        s.settings.mode = modes[n % 5];
+        s.type = types[n / 3 % 4];
+        s.settings.iso = 90 * scale_of(s.type);
+        s.settings.method = n / 7 % 3 ? SNOW_METHOD_AUTO : SNOW_METHOD_TESTED;
+        s.balance = n / 4 % 3 == 1 ? SNOW_BALANCE_RECUT : s.balance;
+        s.layout = n / 2 % 3;
+        s.halo = n / 11 % 2;
+        s.view.azimuth = 37.0 * n;
+        s.view.fov = n / 30 ? 40 : 0;
+        run_scene(&s);
+        bool sums = n % 5 == 2 || n % 5 == 3;
+        if (!(s.difference <= (sums ? 2e-6 : 0)))
+            fail_msg("mode %s, %d ranks, picture %d: it differs by %g",
+                     snow_mode_name(s.settings.mode), s.ranks, n, s.difference);
     }
 }
 
@@ -638,7 +710,8 @@ static void bricks_that_fit_no_grid_are_refused(void **state) {
 typedef struct movie {
     scene scene;
     int steps;
-    double speed; /* of the field, a step */
+    double speed;       /* of the field, a step */
+    const char *suffix; /* of the frames; NULL: png */
     char pattern[256];
     double limit_seconds;
     uint64_t limit_bytes;
@@ -716,7 +789,8 @@ static void run_movie(movie *m, const char *folder) {
     const snow_allocator allocator = {count_allocate, count_release, &count};
     snow_context *context = NULL;
     assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
-    snprintf(m->pattern, sizeof m->pattern, "%s/u_%%03d.png", folder);
+    snprintf(m->pattern, sizeof m->pattern, "%s/u_%%03d.%s", folder,
+             m->suffix ? m->suffix : "png");
     m->status = snow_comm_threads(context, m->scene.ranks, movie_rank, m);
     snprintf(m->message, sizeof m->message, "%s",
              snow_context_message(context));
@@ -805,6 +879,93 @@ static void colours_keep_their_meaning_through_a_movie(void **state) {
     snow_image_free(serial);
     snow_context_free(context);
     assert_int_equal(count_frames(folder, 4), 4);
+    support_folder_remove(folder);
+}
+
+/* Means are painted as the tool paints those of a movie; sums are, where the
+ * look has a range. */
+static void values_become_colours_in_files_of_colours(void **state) {
+    (void)state;
+    for (int n = 0; n < 2; n++) {
+        char folder[SUPPORT_FOLDER_BYTES];
+        support_folder_make(folder);
+        movie m = {.scene = make_scene(3, 1, 1, 3), .steps = 1};
+        m.scene.settings.mode = n ? SNOW_MODE_SUM : SNOW_MODE_MEAN;
+        run_movie(&m, folder);
+        assert_int_equal(m.status, SNOW_OK);
+        snow_context *context = support_context();
+        snow_opacity_point scaled[5];
+        snow_look look = look_of(&m.scene, scaled);
+        snow_image *frame = load_frame(context, folder, 0), *painted = NULL;
+        snow_image *values = serial_picture(context, &m.scene, 0, &look);
+        snow_volume *volume = NULL;
+        snow_transfer *transfer = NULL;
+        snow_volume_info info = {.type = m.scene.type, .dims = {1, 1, 1}};
+        double voxel = 0;
+        snow_volume_share(context, &info, &voxel, &volume);
+        assert_int_equal(snow_transfer_make(volume, &look, &transfer), SNOW_OK);
+        assert_int_equal(snow_values_paint(values, transfer, 0, 200, &painted),
+                         SNOW_OK);
+        assert_true(largest_difference(frame, painted) < 1.01 / 255);
+        snow_image_free(painted);
+        snow_image_free(values);
+        snow_image_free(frame);
+        snow_transfer_free(transfer);
+        snow_volume_close(volume);
+        snow_context_free(context);
+        assert_int_equal(count_frames(folder, 1), 1);
+        support_folder_remove(folder);
+    }
+}
+
+static void sums_without_a_range_are_for_files_of_numbers(void **state) {
+    (void)state;
+    char folder[SUPPORT_FOLDER_BYTES], path[300];
+    support_folder_make(folder);
+    movie m = {.scene = make_scene(2, 1, 1, 2), .steps = 1, .automatic = true};
+    m.scene.settings.mode = SNOW_MODE_SUM;
+    run_movie(&m, folder);
+    assert_int_equal(m.status, SNOW_BAD_USAGE);
+    assert_non_null(strstr(m.message, "share one range of sums; give"));
+    assert_int_equal(count_frames(folder, 1), 0);
+    m.suffix = "npy";
+    run_movie(&m, folder);
+    assert_int_equal(m.status, SNOW_OK);
+    snprintf(path, sizeof path, "%s/u_000.npy", folder);
+    assert_int_equal(unlink(path), 0);
+    support_folder_remove(folder);
+}
+
+/* Rays that meet nothing have no value: what a picture made larger has of them
+ * is as much. */
+static void values_that_are_made_larger_keep_their_outline(void **state) {
+    (void)state;
+    char folder[SUPPORT_FOLDER_BYTES], path[300];
+    double empty[8];
+    support_folder_make(folder);
+    movie m = {.scene = make_scene(2, 1, 1, 2),
+               .steps = 4,
+               .limit_seconds = 1e-9,
+               .suffix = "npy"};
+    m.scene.settings.mode = SNOW_MODE_MEAN;
+    run_movie(&m, folder);
+    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.figures[3].lowering, SNOW_LOWERED_QUARTER);
+    snow_context *context = support_context();
+    for (int step = 0; step < 4; step++) {
+        snow_image *image = NULL;
+        snprintf(path, sizeof path, "%s/u_%03d.npy", folder, step);
+        assert_int_equal(snow_image_load(context, path, &image), SNOW_OK);
+        int pixels = image->width * image->height;
+        empty[step] = 0;
+        for (int n = 0; n < pixels; n++)
+            empty[step] += (double)isnan(image->pixels[n]) / pixels;
+        snow_image_free(image);
+        assert_int_equal(unlink(path), 0);
+    }
+    assert_true(empty[0] > 0.1 && empty[0] < 0.9);
+    assert_true(fabs(empty[3] / empty[0] - 1) < 0.07);
+    snow_context_free(context);
     support_folder_remove(folder);
 }
 
@@ -1152,6 +1313,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_cut_gives_the_picture_of_one_process),
         cmocka_unit_test(every_view_does),
+        cmocka_unit_test(drafts_of_few_pixels_do),
+        cmocka_unit_test(every_mode_does),
         cmocka_unit_test(a_gradient_opacity_does),
         cmocka_unit_test(every_type_and_layout_does),
         cmocka_unit_test(wide_halos_are_used_in_place_of_messages),
@@ -1169,6 +1332,9 @@ int main(void) {
         cmocka_unit_test(bricks_that_fit_no_grid_are_refused),
         cmocka_unit_test(no_step_takes_more_memory_than_the_one_before),
         cmocka_unit_test(colours_keep_their_meaning_through_a_movie),
+        cmocka_unit_test(values_become_colours_in_files_of_colours),
+        cmocka_unit_test(sums_without_a_range_are_for_files_of_numbers),
+        cmocka_unit_test(values_that_are_made_larger_keep_their_outline),
         cmocka_unit_test(frames_of_an_earlier_run_are_kept),
         cmocka_unit_test(
             a_limit_of_time_lowers_pictures_and_then_leaves_some_out),

@@ -124,6 +124,152 @@ static void voxels_are_means_that_lean(void **state) {
     model_close(&stage);
 }
 
+/* A part of a volume, as snow_volume_set_part has it: the voxels of `box` and
+ * so many layers more.  Its voxels are to be freed. */
+static snow_volume *part_of(snow_context *context, const snow_volume *whole,
+                            const snow_part *box, const int64_t layers[3],
+                            void **voxels) {
+    snow_part part = *box;
+    size_t size = snow_type_size(whole->info.type);
+    int64_t count[3], at = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t low = box->first[axis] - layers[axis];
+        int64_t end = box->first[axis] + box->count[axis] + layers[axis];
+        part.stored[axis] = low > 0 ? low : 0;
+        end = end < part.dims[axis] ? end : part.dims[axis];
+        count[axis] = end - part.stored[axis];
+    }
+    snow_volume_info info =
+        snow_volume_info_of_box(&whole->info, part.stored, count);
+    *voxels = malloc((size_t)(count[0] * count[1] * count[2]) * size);
+    assert_non_null(*voxels);
+    for (int64_t k = 0; k < count[2]; k++)
+        for (int64_t j = 0; j < count[1]; j++, at += count[0])
+            memcpy((char *)*voxels + (size_t)at * size,
+                   (const char *)whole->voxels +
+                       (size_t)(((part.stored[2] + k) * part.dims[1] +
+                                 part.stored[1] + j) *
+                                    part.dims[0] +
+                                part.stored[0]) *
+                           size,
+                   (size_t)count[0] * size);
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_share(context, &info, *voxels, &volume),
+                     SNOW_OK);
+    assert_int_equal(snow_volume_set_part(volume, &part), SNOW_OK);
+    return volume;
+}
+
+/* The part of `half` that is made of a part, whose own voxels it counts: to the
+ * bit, and with as many ghosts as were asked for. */
+static int64_t check_part_of(snow_context *context, const snow_volume *volume,
+                             const snow_volume *half, const bool axes[3],
+                             const int64_t ghosts[3], int lean) {
+    snow_part part;
+    int64_t stored[3];
+    snow_volume *made = NULL;
+    snow_halve_room room = {0};
+    size_t size = snow_type_size(half->info.type);
+    if (!snow_halved_part(volume, half->info.dims, &part, stored)) {
+        assert_int_equal(stored[0] * stored[1] * stored[2], 1);
+        return 0;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t below = part.first[axis] - part.stored[axis];
+        int64_t above = stored[axis] - below - part.count[axis];
+        bool end = part.stored[axis] + stored[axis] == part.dims[axis];
+        assert_true(below >= ghosts[axis] || part.stored[axis] == 0);
+        assert_true(above >= ghosts[axis] || end);
+    }
+    snow_volume_info info =
+        snow_volume_info_of_box(&half->info, part.stored, stored);
+    assert_int_equal(snow_volume_new(context, &info, &made), SNOW_OK);
+    assert_int_equal(snow_volume_set_part(made, &part), SNOW_OK);
+    assert_int_equal(snow_volume_halve(volume, axes, lean, 2, &room, made),
+                     SNOW_OK);
+    for (int64_t k = 0; k < stored[2]; k++)
+        for (int64_t j = 0; j < stored[1]; j++) {
+            int64_t at =
+                ((part.stored[2] + k) * part.dims[1] + part.stored[1] + j) *
+                    part.dims[0] +
+                part.stored[0];
+            assert_memory_equal((const char *)made->voxels +
+                                    (size_t)((k * stored[1] + j) * stored[0]) *
+                                        size,
+                                (const char *)half->voxels + (size_t)at * size,
+                                (size_t)stored[0] * size);
+        }
+    snow_release(context, room.block);
+    snow_volume_close(made);
+    return part.count[0] * part.count[1] * part.count[2];
+}
+
+/* Borders at random, so many along each axis. */
+static void cut_at_random(int64_t dims, int parts, uint64_t *random,
+                          int64_t borders[4]) {
+    borders[0] = 0;
+    for (int n = 1; n < parts; n++) {
+        int64_t left = dims - borders[n - 1];
+        borders[n] = borders[n - 1] +
+                     (int64_t)(support_random(random) % (uint64_t)(left + 1));
+    }
+    borders[parts] = dims;
+}
+
+static void parts_have_the_voxels_of_the_whole_level(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    uint64_t random = 3;
+    for (int n = 0; n < 120; n++) {
+        const int64_t *dims = sizes[(size_t)n % COUNT(sizes)];
+        snow_type type = (snow_type)(SNOW_INT8 + n % 10);
+        int lean = n % 3 - 1, parts = 1 + n % 3;
+        bool axes[3] = {(n + 1) % 8 & 1, (n + 1) % 8 & 2, (n + 1) % 8 & 4};
+        snow_volume *half = NULL, *whole = NULL;
+        reference_scene scene = model_scene(
+            dims, type, false, (model_matrix)(n % MODEL_MATRICES), (uint64_t)n);
+        half_of(stage.context, &scene, axes, lean, 1, &half);
+        assert_int_equal(
+            snow_volume_share(stage.context, &scene.info, scene.voxels, &whole),
+            SNOW_OK);
+        int64_t borders[3][4], ghosts[3], layers[3], owned = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            cut_at_random(dims[axis], parts, &random, borders[axis]);
+            ghosts[axis] = n / 3 % 3;
+            layers[axis] = axes[axis]
+                               ? snow_halved_layers(dims[axis], ghosts[axis])
+                               : ghosts[axis];
+        }
+        for (int id = 0; id < parts * parts * parts; id++) {
+            const int at[3] = {id % parts, id / parts % parts,
+                               id / parts / parts};
+            snow_part part = {.dims = {dims[0], dims[1], dims[2]}};
+            bool none = false;
+            for (int axis = 0; axis < 3; axis++) {
+                part.first[axis] = borders[axis][at[axis]];
+                part.count[axis] =
+                    borders[axis][at[axis] + 1] - part.first[axis];
+                none = none || part.count[axis] == 0;
+            }
+            if (none)
+                continue;
+            void *voxels = NULL;
+            snow_volume *volume =
+                part_of(stage.context, whole, &part, layers, &voxels);
+            owned +=
+                check_part_of(stage.context, volume, half, axes, ghosts, lean);
+            snow_volume_close(volume);
+            free(voxels);
+        }
+        const int64_t *all = half->info.dims;
+        assert_int_equal(owned, all[0] * all[1] * all[2]);
+        snow_volume_close(half);
+        snow_volume_close(whole);
+        model_free(&scene);
+    }
+    model_close(&stage);
+}
+
 /* Sums must not overflow, and negative halves are rounded up. */
 static void extreme_values_are_kept(void **state) {
     (void)state;
@@ -713,6 +859,7 @@ static void drafts_are_near_to_normal_pictures(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(voxels_are_means_that_lean),
+        cmocka_unit_test(parts_have_the_voxels_of_the_whole_level),
         cmocka_unit_test(extreme_values_are_kept),
         cmocka_unit_test(what_is_no_number_has_no_weight),
         cmocka_unit_test(a_level_fills_the_box_of_its_volume),

@@ -50,7 +50,9 @@ typedef struct play {
     float *depths;               /* NULL: not asked for */
     snow_stats stats;            /* of rank 0 */
     snow_stats each[MOST_RANKS]; /* of every rank */
-    int64_t interesting;         /* in the serial picture */
+    /* Of the serial picture. */
+    int64_t interesting, voxels_drawn;
+    int halvings[3];
 } play;
 
 static size_t floats_of(const play *p) {
@@ -203,17 +205,14 @@ static float *serial_picture(snow_context *context, play *p,
     snow_image *image = NULL;
     assert_int_equal(snow_volume_share(context, &p->info, p->voxels, &volume),
                      SNOW_OK);
-    /* A part that is all of the whole: levels of drafts are made of volumes
-     * that are no parts. */
-    snow_part part;
-    snow_volume_get_part(volume, &part);
-    assert_int_equal(snow_volume_set_part(volume, &part), SNOW_OK);
     assert_int_equal(copy_transfer(context, p->transfer, &transfer), SNOW_OK);
     assert_int_equal(snow_frame_new(context, &frame), SNOW_OK);
     if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
                           &image) != SNOW_OK)
         fail_msg("%s", snow_context_message(context));
     p->interesting = snow_frame_stats(frame)->interesting;
+    p->voxels_drawn = snow_frame_stats(frame)->voxels;
+    memcpy(p->halvings, snow_frame_stats(frame)->halvings, sizeof p->halvings);
     p->channels = snow_image_channels(image);
     float *pixels = malloc(floats_of(p) * sizeof(float));
     assert_non_null(pixels);
@@ -252,13 +251,13 @@ static double largest_gap(const play *p, const float *serial) {
 
 /* Voxels of borders, which several ranks hold, count for their owner only. */
 static void check_counts(const play *p, int ranks) {
-    int64_t interesting = 0, voxels = 0, all = 1;
+    int64_t interesting = 0, voxels = 0, all = p->voxels_drawn;
     for (int rank = 0; rank < ranks; rank++) {
         interesting += p->each[rank].interesting;
         voxels += p->each[rank].voxels;
+        assert_memory_equal(p->each[rank].halvings, p->halvings,
+                            sizeof p->halvings);
     }
-    for (int axis = 0; axis < 3; axis++)
-        all *= p->info.dims[axis];
     if (interesting != p->interesting || voxels != all)
         fail_msg("%d ranks count %lld of %lld voxels as interesting, one "
                  "counts %lld of %lld; cut %d, method %d, quality %d",
@@ -502,7 +501,7 @@ static void surfaces_of_many_ranks_have_the_serial_bits(void **state) {
     mode_pictures(SNOW_MODE_ISO, 0);
 }
 
-/* --- phantoms and real volumes --------------------------------------------
+/* --- phantoms -------------------------------------------------------------
  */
 
 /* Views along all axes from both sides, and oblique; every number of ranks; all
@@ -560,6 +559,76 @@ static void phantoms_are_seen_alike_by_many_ranks(void **state) {
     }
 }
 
+/* --- drafts of few pixels -------------------------------------------------
+ */
+
+/* A volume's draft from one side, by every number of ranks: as one process
+ * makes it, of a level that is halved so often at most. */
+static void drafts_of(const char *name, const snow_volume *volume, int side,
+                      int halved) {
+    static const char *const names[] = {"+x", "-y", "+z", "iso", "-z", "iso"};
+    snow_context *context = support_context();
+    snow_transfer *transfer = NULL;
+    sweep_tally tally = {0};
+    assert_int_equal(snow_transfer_make(volume, NULL, &transfer), SNOW_OK);
+    for (int n = 0; n < 6; n++) {
+        double strongest;
+        play p = {.info = *snow_volume_describe(volume),
+                  .voxels = snow_volume_voxels(volume),
+                  .transfer = transfer,
+                  .how = {.size = sizeof(snow_ranks_options)},
+                  .pictures = 1};
+        assert_int_equal(snow_view_named(context, names[n], &p.view), SNOW_OK);
+        snow_settings_init(&p.settings);
+        p.view.width = p.view.height = side;
+        p.view.fov = n == 5 ? 30 : 0;
+        p.settings.threads = 1;
+        p.settings.quality = SNOW_QUALITY_DRAFT;
+        p.settings.shade = n % 3 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+        if (n / 2 % 2) /* thin */
+            p.settings.opacity_length = 100;
+        float *serial = serial_picture(context, &p, &strongest);
+        int most = 0;
+        for (int axis = 0; axis < 3; axis++)
+            most = p.halvings[axis] > most ? p.halvings[axis] : most;
+        assert_in_range(most, halved - (n == 5), halved);
+        for (int i = 0; i < COUNTS; i++) {
+            p.cut = (cutting)((n + i) % CUTTINGS);
+            check(context, &p, serial, strongest, rank_counts[i], &tally);
+        }
+        free(serial);
+    }
+    report(name, &tally);
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void drafts_of_few_pixels_are_of_the_same_level(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        int64_t dims[3];
+        int side, halved;
+    } cases[] = {
+        {"engine", {201, 186, 173}, 128, 1}, {"head", {128, 144, 150}, 64, 1},
+        {"shells", {161, 159, 163}, 64, 1},  {"engine", {290, 281, 263}, 64, 2},
+        {"head", {100, 90, 99}, 20, 1},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        snow_context *context = support_context();
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_phantom(context, cases[n].name,
+                                             cases[n].dims, 1, &volume),
+                         SNOW_OK);
+        drafts_of(cases[n].name, volume, cases[n].side, cases[n].halved);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+}
+
+/* --- real volumes ---------------------------------------------------------
+ */
+
 static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
     (void)state;
     static const struct {
@@ -583,6 +652,7 @@ static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
                              &files[n].options, &volume) != SNOW_OK)
             fail_msg("%s", snow_context_message(context));
         look_around(n ? "CThead" : "Engine", volume);
+        drafts_of(n ? "CThead, 128x128" : "Engine, 128x128", volume, 128, 1);
         snow_volume_close(volume);
         snow_context_free(context);
     }
@@ -726,15 +796,18 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
         bool deterministic, again;
         int bits;
         cutting cut;
+        bool draft; /* of few pixels */
     } cases[] = {
-        {other_view, "different pictures", false, true, 0, BRICKS},
-        {bad_threshold, "rank 2: threshold is 300", false, true, 0, ACROSS},
-        {modest, "voxels do not make up", false, false, 0, BESIDE},
-        {ghostless, "rank 2: this view needs", false, false, 0, BESIDE},
+        {other_view, "different pictures", false, true, 0, BRICKS, false},
+        {bad_threshold, "rank 2: threshold is 300", false, true, 0, ACROSS,
+         false},
+        {modest, "voxels do not make up", false, false, 0, BESIDE, false},
+        {ghostless, "rank 2: this view needs", false, false, 0, BESIDE, false},
+        {ghostless, "rank 2: this view needs", false, false, 0, ACROSS, true},
         {NULL, "deterministic pictures are made of slabs", true, false, 0,
-         BESIDE},
-        {NULL, "whole groups", true, false, 0, ACROSS},
-        {NULL, "pixels of 7 bits", false, false, 7, ACROSS},
+         BESIDE, false},
+        {NULL, "whole groups", true, false, 0, ACROSS, false},
+        {NULL, "pixels of 7 bits", false, false, 7, ACROSS, false},
     };
     snow_context *context = support_context();
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
@@ -750,6 +823,10 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
         m.play.cut = cases[n].cut;
         m.play.settings.deterministic = cases[n].deterministic;
         m.play.how.pixel_bits = cases[n].bits;
+        if (cases[n].draft) {
+            m.play.settings.quality = SNOW_QUALITY_DRAFT;
+            m.play.view.width = m.play.view.height = 6;
+        }
         cut_up(context, &m.play, 5);
         if (snow_comm_threads(context, 5, stumble, &m) != SNOW_OK)
             fail_msg("case %zu: %s", n, snow_context_message(context));
@@ -785,14 +862,18 @@ static void take_back(void *user, void *block) {
  * what counts is that all ranks end, and nothing is left. */
 static void ranks_without_memory_fail_together(void **state) {
     (void)state;
-    for (int n = 0; n < 3; n++) {
+    for (int n = 0; n < 4; n++) {
         reference_scene scene;
         snow_context *maker = support_context();
         snow_transfer *transfer = NULL;
         play p = play_of(2 + n, 70, &scene);
         p.settings.method =
             n == 2 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_SHEARED;
-        p.settings.quality = SNOW_QUALITY_NORMAL;
+        p.settings.quality = n == 3 ? SNOW_QUALITY_DRAFT : SNOW_QUALITY_NORMAL;
+        if (n == 3) { /* of a level */
+            scene.color_count = 2;
+            p.view.width = p.view.height = 12;
+        }
         p.settings.deterministic = n == 1;
         p.settings.shade = SNOW_SHADE_NONE;
         p.settings.threads = 1;
@@ -818,6 +899,9 @@ static void ranks_without_memory_fail_together(void **state) {
             assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
             if (failing < 0)
                 last = atomic_load(&m.asked);
+            const int *halvings = p.each[2].halvings;
+            if (failing < 0 && n == 3)
+                assert_true(halvings[0] + halvings[1] + halvings[2] > 0);
             assert_int_equal(snow_context_bytes(context), 0);
             snow_context_free(context);
         }
@@ -829,7 +913,7 @@ static void ranks_without_memory_fail_together(void **state) {
     }
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_ranks_makes_the_serial_picture),
         cmocka_unit_test(so_it_does_in_perspective),
@@ -839,10 +923,13 @@ int main(void) {
         cmocka_unit_test(depths_of_over_by_many_ranks),
         cmocka_unit_test(surfaces_of_many_ranks_have_the_serial_bits),
         cmocka_unit_test(phantoms_are_seen_alike_by_many_ranks),
+        cmocka_unit_test(drafts_of_few_pixels_are_of_the_same_level),
         cmocka_unit_test(real_volumes_are_seen_alike_by_many_ranks),
         cmocka_unit_test(deterministic_pictures_are_the_same_bit_for_bit),
         cmocka_unit_test(what_one_rank_finds_wrong_all_are_told),
         cmocka_unit_test(ranks_without_memory_fail_together),
     };
+    if (argc > 1)
+        cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,7 +18,9 @@ typedef enum snow_cut {
     SNOW_CUT_AUTO = 0, /* by count; into bricks where slabs would be thin */
     SNOW_CUT_EQUAL,    /* the paper's slabs: as equal as can be */
     SNOW_CUT_COUNTED,  /* slabs of about equally many interesting voxels */
-    SNOW_CUT_BRICKS    /* boxes of about equally many interesting voxels */
+    SNOW_CUT_BRICKS,   /* boxes of about equally many interesting voxels */
+    SNOW_CUT_MEASURED  /* as AUTO, and for later pictures by the time that the
+                          first ones took (snow_ranks_balance) */
 } snow_cut;
 
 /* How local images are combined. */
@@ -78,6 +80,21 @@ SNOW_API snow_status snow_ranks_recut(snow_comm *comm,
                                       const snow_settings *settings,
                                       const snow_ranks_options *how,
                                       snow_volume **volume);
+
+/* The same before one of many pictures, of which `left` are to come, this one
+ * with them; called before each of a frame.  With SNOW_CUT_MEASURED parts are
+ * also cut anew where the ranks' last pictures took unequally long, in
+ * processor time up to the local image, and where that is made good within the
+ * pictures that are left: an interesting voxel then costs what those of its
+ * rank took. Pictures are those of any other cut, within what snow_ranks_render
+ * says. Parts of deterministic pictures, and with any other cut, are not
+ * touched by time.  One small message round more. */
+SNOW_API snow_status snow_ranks_balance(snow_frame *frame, snow_comm *comm,
+                                        const snow_transfer *transfer,
+                                        const snow_view *view,
+                                        const snow_settings *settings,
+                                        const snow_ranks_options *how,
+                                        int64_t left, snow_volume **volume);
 
 /* snow_transfer_make for the whole that the ranks' volumes are parts of. */
 SNOW_API snow_status snow_ranks_transfer(snow_comm *comm,

@@ -15,10 +15,11 @@
 /* Rows of an output slice that are made at once. */
 #define ROWS_AT_ONCE 16
 
-/* How `from` voxels become `to`: as many, or (from + 1) / 2. */
+/* How `from` voxels of the whole become `to`: as many, or (from + 1) / 2. */
 typedef struct axis_taps {
     int64_t from, to;
-    int taps; /* the most voxels that one is made of */
+    int taps;             /* the most voxels that one is made of */
+    int64_t stored, made; /* the first voxel that is stored, that is made */
 } axis_taps;
 
 /* The voxels of a row that one is made of; weights add up to 1. */
@@ -45,11 +46,12 @@ struct halving {
     snow_volume *out;
     axis_taps axes[3];
     int lean;
-    bool even;      /* all weights are one */
-    int shift;      /* then: a mean is of 2^shift voxels */
-    int64_t blocks; /* of rows, of a slice */
-    size_t size;    /* bytes of a voxel */
-    column_taps *columns;
+    bool even;            /* all weights are one */
+    int shift;            /* then: a mean is of 2^shift voxels */
+    int64_t blocks;       /* of rows, of a slice */
+    size_t size;          /* bytes of a voxel */
+    int64_t left, width;  /* the stored columns that are looked at */
+    column_taps *columns; /* of those */
     char *lines;
     size_t line_bytes;
     row_fn *row; /* makes one of rows */
@@ -58,25 +60,27 @@ struct halving {
 /* The rows that a row is made of; weights add up to 1. */
 struct row_taps {
     int count;
-    int64_t first[9]; /* linear index of the row's first voxel */
+    int64_t first[9]; /* linear index of the first voxel that is looked at */
     double weights[9];
 };
 
-/* The voxels that voxel `at` is made of: returns how many, from *first on, and
- * their weights, which add up to 1.  It covers [at, at + 1) from / to. */
+/* The stored voxels that voxel `at` of those to be made is made of: returns how
+ * many, from *first on, and their weights, which add up to 1.  Of the whole it
+ * covers [at, at + 1) from / to. */
 static int taps_at(const axis_taps *axis, int64_t at, int64_t *first,
                    double weights[3]) {
     int64_t n = axis->from, m = axis->to;
+    at += axis->made;
     if (n == m) {
-        *first = at;
+        *first = at - axis->stored;
         weights[0] = 1;
         return 1;
     }
     /* In units of a voxel / m, where all borders are whole. */
     int64_t low = at * n, high = low + n;
     int count = 0;
-    *first = low / m;
-    for (int64_t voxel = *first; voxel * m < high; voxel++) {
+    *first = low / m - axis->stored;
+    for (int64_t voxel = low / m; voxel * m < high; voxel++) {
         int64_t from = voxel * m > low ? voxel * m : low;
         int64_t end = (voxel + 1) * m < high ? (voxel + 1) * m : high;
         weights[count++] = (double)(end - from) / (double)n;
@@ -94,7 +98,7 @@ static void rows_at(const halving *h, int64_t j, int64_t k, row_taps *out) {
     for (int z = 0; z < slices; z++)
         for (int y = 0; y < rows; y++) {
             out->first[out->count] =
-                ((slice + z) * dims[1] + row + y) * dims[0];
+                ((slice + z) * dims[1] + row + y) * dims[0] + h->left;
             out->weights[out->count++] = deep[z] * across[y];
         }
 }
@@ -275,8 +279,10 @@ static void halve_block(void *job, int64_t item, int worker) {
     }
 }
 
-static axis_taps taps_of(int64_t from, int64_t to) {
-    return (axis_taps){from, to, from == to ? 1 : 2 + (int)(from % 2)};
+static axis_taps taps_of(int64_t from, int64_t to, int64_t stored,
+                         int64_t made) {
+    return (axis_taps){from, to, from == to ? 1 : 2 + (int)(from % 2), stored,
+                       made};
 }
 
 snow_volume_info snow_halved_info(const snow_volume_info *info, bool axes[3]) {
@@ -298,11 +304,50 @@ snow_volume_info snow_halved_info(const snow_volume_info *info, bool axes[3]) {
     return out;
 }
 
+/* Of `from` voxels that become `to`: the first that begins where voxel `at`
+ * does, or behind. */
+static int64_t first_behind(int64_t at, int64_t from, int64_t to) {
+    return (at * to + from - 1) / from;
+}
+
+bool snow_halved_part(const snow_volume *volume, const int64_t dims[3],
+                      snow_part *out, int64_t stored[3]) {
+    snow_part part;
+    bool any = true;
+    snow_volume_get_part(volume, &part);
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t from = part.dims[axis], to = dims[axis];
+        int64_t end = part.first[axis] + part.count[axis];
+        int64_t stored_end = part.stored[axis] + volume->info.dims[axis];
+        out->dims[axis] = to;
+        out->stored[axis] = first_behind(part.stored[axis], from, to);
+        stored[axis] = stored_end * to / from - out->stored[axis];
+        out->first[axis] = first_behind(part.first[axis], from, to);
+        out->count[axis] = first_behind(end, from, to) - out->first[axis];
+        any = any && part.count[axis] > 0 && out->count[axis] > 0;
+    }
+    for (int axis = 0; axis < 3 && !any; axis++) {
+        out->stored[axis] = out->first[axis] = out->count[axis] = 0;
+        stored[axis] = 1;
+    }
+    return any;
+}
+
+/* A border between parts is followed within two voxels by the one that takes
+ * its place, and voxels of the halved volume are two voxels long at most: below
+ * a part that is 2 `layers`, above it less than 2 (`layers` + 1), or just so
+ * many voxels where the last of them lies across. */
+int64_t snow_halved_layers(int64_t dims, int64_t layers) {
+    int64_t most = dims - 1;
+    return layers < most / 2 ? 2 * layers + 1 + dims % 2 : most;
+}
+
 static void fill_columns(halving *h) {
-    const axis_taps *x = &h->axes[0];
-    for (int64_t i = 0; i < x->to; i++) {
+    for (int64_t i = 0; i < h->out->info.dims[0]; i++) {
         column_taps *column = &h->columns[i];
-        column->count = taps_at(x, i, &column->first, column->weights);
+        column->count =
+            taps_at(&h->axes[0], i, &column->first, column->weights);
+        column->first -= h->left;
     }
 }
 
@@ -311,8 +356,8 @@ static size_t aligned(size_t bytes) {
 }
 
 static snow_status make_room(halving *h, int threads, snow_halve_room *room) {
-    size_t columns = aligned((size_t)h->axes[0].to * sizeof *h->columns);
-    h->line_bytes = aligned((size_t)h->axes[0].from * sizeof(double));
+    size_t columns = aligned((size_t)h->out->info.dims[0] * sizeof *h->columns);
+    h->line_bytes = aligned((size_t)h->width * sizeof(double));
     SNOW_TRY(snow_reserve(h->volume->context, &room->block, &room->capacity, 0,
                           columns + 2 * (size_t)threads * h->line_bytes));
     h->columns = room->block;
@@ -320,10 +365,22 @@ static snow_status make_room(halving *h, int threads, snow_halve_room *room) {
     return SNOW_OK;
 }
 
+/* Which stored columns all that is made is made of. */
+static void find_columns(halving *h) {
+    double weights[3];
+    int64_t first, last;
+    taps_at(&h->axes[0], 0, &h->left, weights);
+    last = taps_at(&h->axes[0], h->out->info.dims[0] - 1, &first, weights);
+    h->width = first + last - h->left;
+}
+
 snow_status snow_volume_halve(const snow_volume *volume, const bool axes[3],
                               int lean, int threads, snow_halve_room *room,
                               snow_volume *out) {
     const int64_t *dims = out->info.dims;
+    snow_part whole, made;
+    snow_volume_get_part(volume, &whole);
+    snow_volume_get_part(out, &made);
     halving h = {.volume = volume,
                  .out = out,
                  .lean = lean,
@@ -331,12 +388,14 @@ snow_status snow_volume_halve(const snow_volume *volume, const bool axes[3],
                  .blocks = (dims[1] + ROWS_AT_ONCE - 1) / ROWS_AT_ONCE,
                  .size = snow_type_size(volume->info.type)};
     for (int axis = 0; axis < 3; axis++) {
-        int64_t from = volume->info.dims[axis];
-        h.axes[axis] = taps_of(from, dims[axis]);
+        int64_t from = whole.dims[axis];
+        h.axes[axis] = taps_of(from, made.dims[axis], whole.stored[axis],
+                               made.stored[axis]);
         h.even = h.even && (!axes[axis] || from % 2 == 0);
         h.shift += axes[axis];
     }
     h.row = row_fn_of(volume->info.type, h.even);
+    find_columns(&h);
     SNOW_TRY(make_room(&h, threads, room));
     fill_columns(&h);
     snow_parallel(volume->context, threads, dims[2] * h.blocks, halve_block,

@@ -37,8 +37,21 @@ typedef struct snow_halve_room {
     size_t capacity;
 } snow_halve_room;
 
+/* The part of a halved volume, of `dims` voxels, that can be made of a part of
+ * the volume: of voxels that are stored, all of whose own are.  A voxel is made
+ * by the owner of the first that it is made of, so that the parts of all make
+ * up the halved volume; a part that owns none stores one voxel, which is not
+ * made.  Returns false then. */
+bool snow_halved_part(const snow_volume *volume, const int64_t dims[3],
+                      snow_part *part, int64_t stored[3]);
+
+/* Layers of voxels along an axis of `dims` that a part needs on either side for
+ * the halved volume to have `layers`. */
+int64_t snow_halved_layers(int64_t dims, int64_t layers);
+
 /* Fills the voxels of `out`, which snow_volume_new has made of snow_halved_info
- * with the same axes, and gives it a new serial number.
+ * with the same axes, and gives it a new serial number.  Where the volume is a
+ * part, `out` is its part of the whole's, as told above, of which it has some.
  *
  * A voxel is the weighted mean of native values, which leans to the largest
  * where `lean` is above 0, to the smallest where it is below; in the volume's

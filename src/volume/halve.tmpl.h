@@ -16,7 +16,7 @@
  * smallest. */
 static void NAME(extreme_rows)(const halving *h, const row_taps *rows,
                                TYPE *restrict line) {
-    int64_t n = h->volume->info.dims[0];
+    int64_t n = h->width;
     memcpy(line, row_of(h, rows, 0), (size_t)n * sizeof *line);
     for (int tap = 1; tap < rows->count; tap++) {
         const TYPE *restrict row = row_of(h, rows, tap);
@@ -34,7 +34,7 @@ static void NAME(extreme_rows)(const halving *h, const row_taps *rows,
 static void NAME(add_rows)(const halving *h, const row_taps *rows,
                            SUM *restrict line) {
     const TYPE *a = row_of(h, rows, 0), *b, *c, *d;
-    int64_t n = h->volume->info.dims[0];
+    int64_t n = h->width;
     switch (rows->count) {
     case 1:
         for (int64_t i = 0; i < n; i++)
@@ -121,7 +121,7 @@ static void NAME(odd_row)(const halving *h, const row_taps *rows,
                           const scratch_lines *lines, void *out) {
     TYPE *to = out, *extremes = lines->extremes;
     WORK *restrict means = lines->work;
-    int64_t n = h->volume->info.dims[0];
+    int64_t n = h->width;
     for (int64_t i = 0; i < n; i++)
         means[i] = 0;
     for (int tap = 0; tap < rows->count; tap++) {
