@@ -59,6 +59,9 @@ void snow_comm_work(snow_comm *comm, double seconds);
  * NULL: nothing, as in the beginning. */
 void snow_comm_occupy(snow_comm *comm, snow_meanwhile_fn *work, void *user);
 
+/* Between pieces of work while messages are under way: lets them move on. */
+void snow_comm_progress(snow_comm *comm);
+
 /* Collective, as are broadcast and share (snowglass/comm.h): element by element
  * over all ranks; the result replaces `values` on every rank, and has the same
  * bits there. */
