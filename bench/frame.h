@@ -71,6 +71,7 @@ typedef struct frame_figures {
                            bricks those at the borders that neighbours own */
     int64_t slices;     /* of its part, along the view's slice axis */
     int64_t active;     /* pixels of its local image */
+    uint64_t early;     /* bytes that it sent before that was drawn */
     double first_local; /* processor time of the first local image */
     int rounds, radices[FRAME_ROUNDS_MOST];
     snow_method method;
@@ -83,7 +84,7 @@ typedef struct frame_result {
     int channels, rounds, radices[FRAME_ROUNDS_MOST];
     snow_method method;
     double most[FRAME_STAGES], mean[FRAME_STAGES];
-    uint64_t messages_most, bytes_most, bytes_sum;
+    uint64_t messages_most, bytes_most, bytes_sum, early_sum;
     int64_t voxels_most, voxels_sum, slices_least, active_most;
     int64_t shown; /* pixels of the picture that are not transparent */
     bool checked;

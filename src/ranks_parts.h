@@ -81,6 +81,9 @@ struct snow_ranks {
     int *order; /* ranks from front to back */
     /* Pieces of the combined image, pixels. */
     int64_t *firsts, *counts;
+    /* Active pixels of the picture before (snow_exchange_counts). */
+    int64_t group_counts[SNOW_COUNTS_MOST];
+    int groups;             /* 0: it was not counted */
     snow_message *messages; /* 2 for each rank */
     int rank, ranks;
     /* Layers that were sent and that came, the piece made of them, its halves;

@@ -201,17 +201,24 @@ static bool knows_parts(const snow_picture *p) {
     return p->serial && p->ranks->serial == p->serial;
 }
 
-/* Collective.  How the ranks' own work went; parts, where one is new. */
+/* Collective.  How the ranks' own work went, and what they have counted in the
+ * picture before; parts, where one is new. */
 static snow_status meet(snow_picture *p, snow_status status, bool *new_parts) {
     enum { FAILED, NEW, TERMS, MINUS_TERMS, COUNT };
-    snow_comm *comm = p->ranks->comm;
-    int64_t words[COUNT] = {status != SNOW_OK, 1, 0, 0};
+    snow_ranks *r = p->ranks;
+    snow_comm *comm = r->comm;
+    const int64_t *counts;
+    int64_t words[COUNT + SNOW_COUNTS_MOST] = {status != SNOW_OK, 1, 0, 0};
+    r->groups = snow_exchange_counts(r->combiner, &counts);
+    const size_t count_bytes = (size_t)r->groups * sizeof *counts;
+    memcpy(words + COUNT, counts, count_bytes);
     if (status == SNOW_OK) {
         words[NEW] = !knows_parts(p);
         words[TERMS] = terms_of(p);
         words[MINUS_TERMS] = -words[TERMS];
     }
-    SNOW_TRY(snow_comm_reduce_ints(comm, words, COUNT, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_both(comm, words, COUNT, (size_t)r->groups));
+    memcpy(r->group_counts, words + COUNT, count_bytes);
     if (words[FAILED])
         return snow_comm_agree(comm, status);
     if (words[TERMS] != -words[MINUS_TERMS])
@@ -310,19 +317,21 @@ static snow_status exchange(snow_picture *p, const snow_local *local,
                                         p};
     if (p->job.settings.deterministic)
         return snow_layers_exchange(r, local, placement, piece);
-    const snow_exchange_order order = {.width = local->width,
-                                       .height = local->height,
-                                       .channels = local->channels,
-                                       .pixels = local->pixels,
-                                       .stride = local->stride,
-                                       .drawn = local->drawn[0],
-                                       .ranks = r->order,
-                                       .method = p->how.combining,
-                                       .radix = p->how.radix,
-                                       .laying = local->laying,
-                                       .grain = grain,
-                                       .unfinished =
-                                           p->drawing ? &unfinished : NULL};
+    const snow_exchange_order order = {
+        .width = local->width,
+        .height = local->height,
+        .channels = local->channels,
+        .pixels = local->pixels,
+        .stride = local->stride,
+        .drawn = local->drawn[0],
+        .ranks = r->order,
+        .method = p->how.combining,
+        .radix = p->how.radix,
+        .laying = local->laying,
+        .grain = grain,
+        .counts = p->ahead ? r->group_counts : NULL,
+        .count_groups = r->groups,
+        .unfinished = p->drawing ? &unfinished : NULL};
     SNOW_TRY(snow_exchange(r->combiner, &order, piece));
     tell_rounds(p, snow_exchange_told(r->combiner));
     snow_exchange_pieces(r->combiner, r->firsts, r->counts);

@@ -157,9 +157,18 @@ static snow_status paint(painter *p, int seed, bool early, float *picture,
                                  .whole = p->way->whole,
                                  .unfinished = early ? &unfinished : NULL};
     snow_piece piece;
+    const int64_t *mine;
+    int64_t counts[SNOW_COUNTS_MOST];
     begin_sketch(s, seed, p->begin_at);
     if (!early)
         end(s);
+    if (early) {
+        order.counts = counts;
+        order.count_groups = snow_exchange_counts(p->combiner, &mine);
+        memcpy(counts, mine, sizeof counts);
+        SNOW_TRY(
+            snow_comm_reduce_both(comm, counts, 0, (size_t)order.count_groups));
+    }
     SNOW_TRY(snow_exchange(p->combiner, &order, &piece));
     CHECK(s->ended == 1 && s->finished == s->bands);
     p->begin_at = snow_exchange_told(p->combiner)->begin_at;

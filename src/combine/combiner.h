@@ -73,9 +73,8 @@ struct snow_combiner {
     snow_rounds rounds;
     bool filled; /* the lists of `rounds`, for its seat and display */
     snow_borders borders;
-    int64_t counts[SNOW_BINS_MOST]; /* this rank's active pixels in the last
-                                       picture that was counted */
-    int counted_bins;               /* 0: there was none */
+    int64_t counts[SNOW_BINS_MOST]; /* snow_exchange_counts */
+    int counted_bins;
     int *lines;           /* the order of lines, NULL for the picture's */
     int *ranks;           /* of seats, as in the last order */
     int *table;           /* of snow_rounds_fill */

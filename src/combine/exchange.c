@@ -331,13 +331,12 @@ static snow_status take_seats(snow_combiner *combiner,
 #define LINES_COUNTED 128
 
 static void count_lines(snow_combiner *combiner,
-                        const snow_exchange_order *order) {
-    snow_borders *borders = &combiner->borders;
-    int64_t *counts = combiner->counts, scanned = 0;
+                        const snow_exchange_order *order, int64_t *counts) {
+    const snow_borders *borders = &combiner->borders;
+    int64_t scanned = 0;
     int step =
         order->height / LINES_COUNTED > 1 ? order->height / LINES_COUNTED : 1;
     int bin = 0;
-    memset(counts, 0, sizeof combiner->counts);
     for (int y = step / 2; y < order->height; y += step) {
         while (y >= snow_borders_line(borders, bin + 1))
             bin++;
@@ -442,24 +441,25 @@ static void tally(snow_combiner *combiner, stretch part) {
     }
 }
 
-/* Cuts the picture by counts: its own, where it is there, else those of the
- * picture before, while its own are made for the next. */
+/* Cuts the picture by counts: those that are known, or its own, for which it
+ * must be there. */
 static snow_status count_pieces(exchange *run) {
     snow_combiner *combiner = run->combiner;
+    const snow_exchange_order *order = run->order;
     snow_borders *borders = &combiner->borders;
-    int64_t counts[SNOW_BINS_MOST];
-    if (combiner->counted_bins != borders->bins || run->order->whole)
+    const size_t bins = (size_t)borders->bins;
+    int64_t counts[SNOW_BINS_MOST] = {0};
+    if (order->counts && order->count_groups == borders->bins) {
+        memcpy(counts, order->counts, bins * sizeof *counts);
+    } else {
         end_drawing(run);
-    run->tallies = run->order->unfinished != NULL;
-    if (!run->tallies)
-        count_lines(combiner, run->order);
-    memcpy(counts, combiner->counts, sizeof counts);
-    if (run->tallies)
-        memset(combiner->counts, 0, sizeof combiner->counts);
-    combiner->counted_bins = borders->bins;
-    SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts,
-                                   (size_t)borders->bins, SNOW_SUM));
+        count_lines(combiner, order, counts);
+        SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts, bins, SNOW_SUM));
+    }
     snow_borders_count(borders, counts);
+    memset(combiner->counts, 0, sizeof combiner->counts);
+    run->tallies = !order->whole;
+    combiner->counted_bins = run->tallies ? borders->bins : 0;
     return SNOW_OK;
 }
 
@@ -723,6 +723,8 @@ static snow_status combine(exchange *run, stretch *mine) {
         snow_pixels_pick(SNOW_ISA_AUTO, order->channels, order->laying);
     SNOW_TRY(take_seats(combiner, order));
     begin_figures(combiner, order);
+    run->tallies = false;
+    combiner->counted_bins = 0;
     if (combiner->borders.counted)
         SNOW_TRY(count_pieces(run));
     SNOW_TRY(fit_buffers(combiner));
@@ -774,6 +776,12 @@ void snow_exchange_pieces(const snow_combiner *combiner, int64_t *firsts,
         firsts[combiner->ranks[i]] = piece.first;
         counts[combiner->ranks[i]] = piece.last - piece.first;
     }
+}
+
+int snow_exchange_counts(const snow_combiner *combiner,
+                         const int64_t **counts) {
+    *counts = combiner->counts;
+    return combiner->counted_bins;
 }
 
 int snow_exchange_line(const snow_combiner *combiner, int place) {

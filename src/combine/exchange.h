@@ -80,7 +80,11 @@ typedef struct snow_exchange_order {
     snow_laying laying; /* of 2 channels where it is not over */
     bool whole;         /* all pixels travel, as in the paper: no masks */
     const snow_unfinished *unfinished; /* tells `drawn`; NULL: all is there */
-    const snow_rehearsal *rehearsal;   /* NULL: a real exchange */
+    /* snow_exchange_counts, summed up over all ranks: counted pieces are cut by
+     * these, NULL: by the local images. */
+    const int64_t *counts;
+    int count_groups;
+    const snow_rehearsal *rehearsal; /* NULL: a real exchange */
     /* Seconds that a simulated processor takes (snow_comm_work) to look at a
      * pixel of its local image, or to move 16 bytes of a gathered picture; and
      * to lay a pixel over another, or to round it to 8 bits. */
@@ -124,9 +128,8 @@ void snow_combiner_free(snow_combiner *combiner);
  * alike: SNOW_NO_MEMORY, SNOW_BAD_USAGE (an order that is none), those of the
  * transport.
  *
- * An unfinished local image is ended, whatever becomes of the exchange, and
- * changes no bit.  Where pieces are counted, it is by the counts of the picture
- * before; without one it is ended first. */
+ * An unfinished local image is ended, whatever becomes of the exchange; before
+ * it where its pieces are counted without `counts`. */
 snow_status snow_exchange(snow_combiner *combiner,
                           const snow_exchange_order *order, snow_piece *out);
 
@@ -136,6 +139,13 @@ const snow_exchange_figures *snow_exchange_told(const snow_combiner *combiner);
  * firsts[rank + 1] - 1 need not hold, so both are told. */
 void snow_exchange_pieces(const snow_combiner *combiner, int64_t *firsts,
                           int64_t *counts);
+
+/* This rank's active pixels in groups of lines of the picture of the last
+ * exchange, SNOW_COUNTS_MOST at most; how many groups, the same on all ranks,
+ * 0 where pieces were not counted.  Good for the next picture, which often is
+ * much like the last one; groups of another number are passed over. */
+#define SNOW_COUNTS_MOST 256
+int snow_exchange_counts(const snow_combiner *combiner, const int64_t **counts);
 
 /* The line of the picture that is in place `place` of the order of lines. */
 int snow_exchange_line(const snow_combiner *combiner, int place);
