@@ -8,6 +8,7 @@
 #include "image/image.h"
 
 #include <snowglass/ranks.h>
+#include <stdatomic.h>
 
 #define PICTURES 5
 
@@ -26,9 +27,9 @@ typedef struct flight {
     snow_settings settings;
     snow_ranks_options how;
     double step;
-    double hidden;           /* of rank 0 */
-    uint64_t early;          /* of rank 0, of pictures one after another */
-    float *pixels[PICTURES]; /* one after another */
+    double hidden;              /* of rank 0 */
+    atomic_uint_fast64_t early; /* of all ranks, one after another */
+    float *pixels[PICTURES];    /* one after another */
 } flight;
 
 typedef struct seat {
@@ -74,7 +75,6 @@ static snow_status finish(seat *s, int number, bool keep) {
     float *pixels = s->f->pixels[number];
     bool good = (snow_comm_rank(s->comm) == 0) == (image != NULL);
     if (image) {
-        const snow_stats *stats = snow_frame_stats(s->frame);
         size_t bytes =
             (size_t)(image->width * image->height * image->channels) *
             sizeof *pixels;
@@ -82,9 +82,10 @@ static snow_status finish(seat *s, int number, bool keep) {
             memcpy(pixels, image->pixels, bytes);
         else
             good = memcmp(pixels, image->pixels, bytes) == 0;
-        s->f->hidden += stats->seconds_hidden;
-        s->f->early += keep ? stats->bytes_early : 0;
+        s->f->hidden += snow_frame_stats(s->frame)->seconds_hidden;
     }
+    if (keep)
+        atomic_fetch_add(&s->f->early, snow_frame_stats(s->frame)->bytes_early);
     snow_image_free(image);
     REQUIRE(s->comm, good);
     return SNOW_OK;
