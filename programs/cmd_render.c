@@ -39,7 +39,17 @@ int check_settings(const options *asked) {
     return done == GO_ON ? check_look(asked) : done;
 }
 
-/* Depths are of one picture, numbers, and go to a place of their own. */
+static bool same_output(const char *a, const char *b) {
+    return a && b && (strcmp(a, b) == 0 || same_place(a, b));
+}
+
+/* Whether the depth is channel Z of the picture's own file. */
+static bool is_beside(const options *asked) {
+    return asked->depth && same_output(asked->depth, asked->output);
+}
+
+/* Depths are of one picture, numbers, and go to a place of their own, or to the
+ * picture's where its format has channels for both. */
 static int check_depth(const options *asked) {
     const char *path = asked->depth;
     if (!path)
@@ -51,12 +61,11 @@ static int check_depth(const options *asked) {
         return fail_usage("--depth: %s: depths are numbers; let the name end "
                           "with .npy, .pfm, .exr or .tif",
                           path);
-    const char *others[] = {asked->output, asked->stats};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
-        if (others[i] &&
-            (strcmp(path, others[i]) == 0 || same_place(path, others[i])))
-            return fail_usage("--depth: goes where --%s goes; name two places",
-                              i ? "stats" : "output");
+    if (same_output(path, asked->stats))
+        return fail_usage("--depth: goes where --stats goes; name two places");
+    if (is_beside(asked) && !snow_image_takes_depth(asked->output))
+        return fail_usage("--depth: goes where --output goes; let both be one "
+                          ".exr, or name two places");
     return GO_ON;
 }
 
@@ -97,7 +106,7 @@ static int check_paths(snow_context *context, const options *asked) {
     snow_status status =
         snow_image_check(context, asked->output, (int)asked->size[0],
                          (int)asked->size[1], &form);
-    if (status == SNOW_OK && asked->depth)
+    if (status == SNOW_OK && asked->depth && !is_beside(asked))
         status = snow_image_check_path(context, asked->depth, asked->overwrite);
     if (status != SNOW_OK)
         return fail_status(context, status);
@@ -226,14 +235,16 @@ static int write_picture(work *w, const options *asked) {
     if (!launch_talks())
         return GO_ON;
     const snow_image_options plain = {.overwrite = asked->overwrite};
+    const snow_image *depth = snow_frame_depth(w->scene.frame);
+    bool beside = is_beside(asked);
     snow_status status = make_marks(w, &overlay);
     progress_begin(asked, "writing");
     form.overlay = overlay;
+    form.depth = beside ? depth : NULL;
     if (status == SNOW_OK)
         status = snow_image_save(w->image, asked->output, &form);
-    if (status == SNOW_OK && asked->depth)
-        status = snow_image_save(snow_frame_depth(w->scene.frame), asked->depth,
-                                 &plain);
+    if (status == SNOW_OK && asked->depth && !beside)
+        status = snow_image_save(depth, asked->depth, &plain);
     snow_overlay_free(overlay);
     w->scene.times.write = seconds_now() - begin;
     return status == SNOW_OK ? GO_ON : fail_status(w->scene.context, status);
@@ -260,6 +271,7 @@ static void tell_choices(const work *w) {
     scene_choices(&w->scene, text, sizeof text);
     if (w->scene.asked->verbosity >= 0)
         say("%s%s", text, w->painted.words);
+    scene_tell_method(&w->scene);
 }
 
 /* What can be refused before anything is read; outputs by the rank that

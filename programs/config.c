@@ -135,6 +135,20 @@ static int check_recipe(const char *path) {
     return done;
 }
 
+/* A depth of the file follows what stands on the command line: to the picture
+ * that it was a channel of, if that can have one; another mode has none. */
+static void fit_depth(const options *out, json_t *tree) {
+    const char *depth = json_string_value(json_object_get(tree, "depth"));
+    const char *output = json_string_value(json_object_get(tree, "output"));
+    bool moves = options_told(out, "output") && depth && output &&
+                 strcmp(depth, output) == 0;
+    if (moves && snow_image_takes_depth(out->output))
+        json_object_set_new(tree, "depth", json_string(out->output));
+    else if (moves || (options_told(out, "mode") && strcmp(out->mode, "over") &&
+                       strcmp(out->mode, "iso")))
+        json_object_del(tree, "depth");
+}
+
 /* Keys in the order of the file. */
 static int take_file(options *out, const verb_row *verb) {
     json_error_t error;
@@ -144,6 +158,7 @@ static int take_file(options *out, const verb_row *verb) {
     if (done != GO_ON)
         return done;
     json_t *tree = json_load_file(out->config, 0, &error);
+    fit_depth(out, tree);
     json_object_foreach(tree, key, value) {
         done = take_key(out, verb, key, value);
         if (done != GO_ON)
@@ -226,6 +241,7 @@ static void fill_recipe(const options *asked, snow_recipe *out) {
     if (asked->operand_count == 1 && strcmp(asked->operands[0], "-") != 0)
         out->input = asked->operands[0];
     out->output = asked->output;
+    out->depth = asked->depth;
     out->image.overwrite = asked->overwrite;
     out->image.flatten = asked->background.given;
     memcpy(out->image.background, asked->background.rgb,
@@ -242,10 +258,14 @@ static void fill_recipe(const options *asked, snow_recipe *out) {
 }
 
 static int check_place(const options *asked) {
-    if (asked->output && (strcmp(asked->save_config, asked->output) == 0 ||
-                          same_place(asked->save_config, asked->output)))
-        return fail_usage("--save-config: goes where --output goes; name two "
-                          "places");
+    static const char *const names[] = {"output", "depth", "stats"};
+    const char *const paths[] = {asked->output, asked->depth, asked->stats};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        if (paths[i] && (strcmp(asked->save_config, paths[i]) == 0 ||
+                         same_place(asked->save_config, paths[i])))
+            return fail_usage("--save-config: goes where --%s goes; name two "
+                              "places",
+                              names[i]);
     return check_stats_path(asked->save_config, asked->overwrite);
 }
 

@@ -171,10 +171,6 @@ static const char *why_whole(const options *asked, const char *path) {
         return "it";
     if (strncmp(path, "phantom:", 8) == 0)
         return "a phantom";
-    if (strcmp(asked->mode, "over") != 0)
-        return "its mode";
-    if (asked->depth)
-        return "--depth";
     if (strcmp(asked->method, "auto") != 0 &&
         strcmp(asked->method, "sheared") != 0)
         return "its method";

@@ -56,7 +56,7 @@ const option_row option_table[] = {
     {"depth", 0, "FILE", TOPIC_OUTPUT, VERB_RENDER, read_text, FIELD(depth), 0,
      0, "", "of modes over and iso: a file of numbers (.npy, .pfm, .exr, .tif), world "
      "distances from the target's plane along the line of sight to where opacity passes 1/2, or to "
-     "the surface; NaN elsewhere"},
+     "the surface; NaN elsewhere; the .exr of --output itself gets them as channel Z"},
 
     {"mode", 'm', "over|mip|minip|mean|sum|iso", TOPIC_MODE, RENDER, read_choice,
      FIELD(mode), 0, 0, "",
@@ -237,8 +237,8 @@ const option_row option_table[] = {
      "stands on the command line counts more"},
     {"save-config", 0, "FILE", TOPIC_RUN, RENDER, read_text,
      FIELD(save_config), 0, 0, "", "write such an object, which gives the same "
-     "picture again; - is standard output; a file that exists needs "
-     "--overwrite"},
+     "picture again, and its --depth (figures of a run, as --stats, are none of "
+     "it); - is standard output; a file that exists needs --overwrite"},
 
     {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
      1000000, "", "pictures of one turn (120)"},

@@ -18,6 +18,18 @@ typedef struct rank_figures {
     uint64_t peak;
 } rank_figures;
 
+/* Of what is asked for by its name. */
+void scene_tell_method(const scene *s) {
+    const options *asked = s->asked;
+    snow_mode mode = s->settings.mode;
+    if (strcmp(asked->method, "sheared") != 0 || mode == SNOW_MODE_ISO ||
+        s->stats.method == SNOW_METHOD_SHEARED || asked->verbosity < 0)
+        return;
+    say("note: method footprint in place of sheared: pixels are too many "
+        "voxels wide, the eye is too near%s",
+        mode == SNOW_MODE_OVER ? "" : ", or a voxel is no finite number");
+}
+
 /* Options that a mode makes no use of are named rather than passed over. */
 static void tell_unused(const options *asked) {
     static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
@@ -34,6 +46,9 @@ static void tell_unused(const options *asked) {
     for (size_t i = 0; i < sizeof of_light / sizeof *of_light && !lit; i++)
         if (options_told(asked, of_light[i]))
             say("note: --%s has no part in mode %s", of_light[i], asked->mode);
+    if (lit && strcmp(asked->method, "sheared") == 0)
+        say("note: --method sheared has no part in mode iso: rays find the "
+            "surface among the encoded voxels");
 }
 
 int scene_check(const options *asked) {

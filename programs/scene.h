@@ -70,4 +70,7 @@ render_report scene_report(const scene *s);
  * end. */
 void scene_choices(const scene *s, char *out, size_t size);
 
+/* A note where --method sheared was asked for and cannot make the picture. */
+void scene_tell_method(const scene *s);
+
 #endif

@@ -72,6 +72,7 @@ static void tell_choices(const shot_renderer *shots) {
         say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
             shots->painted.words, shots->count, (long long)asked->size[0],
             (long long)asked->size[1], asked->output);
+    scene_tell_method(&shots->scene);
     marks_tell(asked);
 }
 

@@ -15,6 +15,7 @@
 #include "perspective.h"
 #include "ranks_parts.h"
 #include "sheared.h"
+#include "slabs.h"
 #include "volume/stream.h"
 
 #include <string.h>
@@ -83,8 +84,9 @@ static snow_status check_part(const snow_job *job) {
                              snow_transfer_fades(job->transfer));
 }
 
-/* Of a volume whose voxels stay in their file, bands are made, and nothing else
- * sees voxels; `wide`: no lattice has such pixels. */
+/* Of a volume whose voxels stay in their file, bands are made, or pictures of
+ * parts (slabs.h), and nothing else sees voxels; `wide`: no lattice has such
+ * pixels. */
 static snow_status check_stream(const snow_job *job, int parts, bool wide) {
     const snow_settings *settings = &job->settings;
     if (!job->volume->stream)
@@ -95,19 +97,15 @@ static snow_status check_stream(const snow_job *job, int parts, bool wide) {
                          "needs all voxels in memory at once; allow more of "
                          "it, or take a larger --size",
                          snow_stream_path(job->volume));
-    const char *what = settings->mode != SNOW_MODE_OVER
-                           ? snow_mode_name(settings->mode)
-                       : settings->depth ? "depths"
-                       : settings->method != SNOW_METHOD_SHEARED
+    const char *what = settings->method != SNOW_METHOD_SHEARED
                            ? snow_method_name(settings->method)
                            : NULL;
     if (!what && parts == 1)
         return SNOW_OK;
     return snow_fail(
         job->context, SNOW_BAD_USAGE,
-        "%s: a volume whose voxels stay in their file is rendered "
-        "in mode over, by the method sheared, without depths; open "
-        "it with snow_volume_open",
+        "%s: a volume whose voxels stay in their file is rendered as a whole "
+        "by the method sheared; open it with snow_volume_open",
         what ? what : "slabs");
 }
 
@@ -190,7 +188,8 @@ snow_status snow_job_order(const snow_job *job, int axis,
                                   .settings = &job->settings,
                                   .placement = placement,
                                   .slab = job->slab,
-                                  .channels = job->channels};
+                                  .channels = job->channels,
+                                  .lay = job->lay};
     snow_clip_make(job->volume, placement, &order->clip);
     if (job->all)
         order->slab = (snow_slab){order->clip.first[2], order->clip.count[2]};
@@ -416,8 +415,12 @@ static snow_status make_depth(snow_frame *frame, const snow_job *job) {
 static snow_status render_over(snow_frame *frame, snow_job *job,
                                snow_image **out) {
     snow_image *image = NULL;
-    SNOW_TRY(snow_image_new(frame->context, job->view->width, job->view->height,
-                            job->channels, &image));
+    /* A sheared picture that is not blended is written once, and whole. */
+    bool written = job->settings.method == SNOW_METHOD_SHEARED &&
+                   job->settings.quality != SNOW_QUALITY_HIGH;
+    SNOW_TRY((written ? snow_image_make : snow_image_new)(
+        frame->context, job->view->width, job->view->height, job->channels,
+        &image));
     job->pixels = snow_image_pixels(image);
     snow_status status = render_slab(frame, job);
     if (status == SNOW_OK)
@@ -454,7 +457,8 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
     frame->stats.cpu_frame = snow_cpu_seconds() - cpu;
     snow_status status = over ? snow_job_finish(frame, &job) : SNOW_OK;
     if (status == SNOW_OK && over && frame->depth)
-        status = snow_depth_over(frame, &job);
+        status = volume->stream ? snow_slabs_depth(frame, &job)
+                                : snow_depth_over(frame, &job);
     if (status == SNOW_OK)
         *out = image;
     else

@@ -8,7 +8,9 @@
 #include "image/image.h"
 #include "iso.h"
 #include "sheared_modes.h"
-#include "volume/volume.h"
+#include "slabs.h"
+#include "transform/eye.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -25,7 +27,7 @@ void snow_ramp_fini(snow_ramp *ramp) {
 static snow_status measure(snow_context *context, const snow_volume *volume,
                            snow_ramp *ramp) {
     snow_volume_measures figures;
-    snow_volume_measure(volume, &figures);
+    SNOW_TRY(snow_volume_range(volume, &figures));
     ramp->whole = figures.finite == figures.voxels;
     ramp->empty = !figures.finite;
     ramp->low = figures.finite ? figures.min : 0;
@@ -105,12 +107,20 @@ snow_status snow_ramp_above(snow_job *job, snow_ramp *ramp) {
 /* The ramp of a picture of pairs; what the sheared method cannot do is left to
  * footprints. */
 static snow_status choose_ramp(snow_job *job, snow_ramp *ramp) {
-    if (job->settings.method == SNOW_METHOD_SHEARED &&
-        !(ramp->whole && snow_sheared_modes_fits(&job->placement)))
+    bool holes = job->settings.method == SNOW_METHOD_SHEARED && !ramp->whole;
+    if (holes && job->volume->stream)
+        return snow_fail(job->context, SNOW_NO_MEMORY,
+                         "%s: some voxels are no finite numbers, and mode %s "
+                         "of such a volume needs them all in memory at once; "
+                         "allow more of it, or give --crop",
+                         snow_stream_path(job->volume),
+                         snow_mode_name(job->settings.mode));
+    if (holes)
         job->settings.method = SNOW_METHOD_FOOTPRINT;
     const snow_ramp wanted = {.falls = job->settings.mode == SNOW_MODE_MINIP,
                               .sparse =
-                                  job->settings.method == SNOW_METHOD_SHEARED};
+                                  job->settings.method == SNOW_METHOD_SHEARED &&
+                                  !job->placement.perspective};
     return prepare_ramp(job, &wanted, ramp);
 }
 
@@ -126,6 +136,7 @@ typedef struct finish_job {
     snow_image *image;
     double share; /* of a sum: of the weights in its unit */
     double least; /* weights of a ray that does not miss */
+    bool weigh;   /* pairs are to be weighted with the ray's length */
 } finish_job;
 
 /* Colours of numbers 0 to 1 at equal steps.  Between two of them colours are
@@ -216,6 +227,22 @@ static void value_line(const finish_job *f, const float *pairs, int count,
     }
 }
 
+/* Sums of a line in perspective, of which each ray has its own length from
+ * slice to slice. */
+static void weigh_line(const finish_job *f, int y, int count, float *pairs) {
+    const snow_eye *eye = &f->job->placement.eye;
+    for (int x = 0; x < count; x++, pairs += 2) {
+        double ray[3];
+        snow_eye_ray(eye, x + 0.5, y + 0.5, ray);
+        double path =
+            snow_eye_path(eye, eye->at[0] + ray[0] / ray[2],
+                          eye->at[1] + ray[1] / ray[2], eye->at[2] + 1);
+        float share = (float)(path / f->job->settings.opacity_length);
+        for (int n = 0; n < 2; n++) /* 0 stays 0 beside a slice's plane */
+            pairs[n] = pairs[n] != 0 ? pairs[n] * share : 0;
+    }
+}
+
 static void finish_line(void *of, int64_t y, int worker) {
     const finish_job *f = of;
     int width = f->image->width;
@@ -224,8 +251,12 @@ static void finish_line(void *of, int64_t y, int worker) {
     float *pairs = f->pairs + 2 * at;
     if (f->sheared) {
         pairs = f->pairs + 2 * (size_t)worker * (size_t)width;
-        snow_sheared_warp(f->sheared, (int)y, 0, width, pairs);
+        memset(pairs, 0, 2 * (size_t)width * sizeof *pairs);
+        if (f->sheared->width > 0)
+            snow_sheared_warp(f->sheared, (int)y, 0, width, pairs);
     }
+    if (f->weigh)
+        weigh_line(f, (int)y, width, pairs);
     if (f->image->channels == 1)
         value_line(f, pairs, width, pixels);
     else
@@ -240,8 +271,8 @@ static void finish(snow_frame *frame, const snow_job *job,
                    snow_image *image) {
     double path = job->placement.path / job->settings.opacity_length;
     bool sheared = job->settings.method == SNOW_METHOD_SHEARED;
-    bool weighed =
-        job->settings.mode == SNOW_MODE_SUM && job->placement.perspective;
+    bool seen = job->placement.perspective;
+    bool weighed = job->settings.mode == SNOW_MODE_SUM && seen;
     double slices = sheared ? (double)job->placement.slices : 1;
     if (image->channels > 1)
         fill_colors(job, &frame->ramp, &frame->mode_colors);
@@ -251,9 +282,9 @@ static void finish(snow_frame *frame, const snow_job *job,
                     .sheared = drawn,
                     .pairs = pairs,
                     .image = image,
-                    .share = weighed ? 1 : path * slices,
-                    .least =
-                        SNOW_WEIGHT_ENOUGH * (weighed ? path : 1 / slices)};
+                    .share = (weighed ? 1 : path) * slices,
+                    .least = SNOW_WEIGHT_ENOUGH * (weighed ? path : 1) / slices,
+                    .weigh = weighed && sheared};
     snow_parallel(job->context, job->settings.threads, image->height,
                   finish_line, &f);
 }
@@ -302,9 +333,13 @@ snow_status snow_modes_reduce(snow_frame *frame, const snow_job *pairs,
         snow_job_order(pairs, pairs->placement.slice_axis, placement, &order));
     if (!frame->sheared[0])
         SNOW_TRY(snow_sheared_new(frame->context, &frame->sheared[0]));
-    return snow_sheared_reduce(frame->sheared[0], &order,
-                               mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP,
-                               &scale, pairs->stats, drawn);
+    bool largest = mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP;
+    order.share = largest ? 1 : 1 / (float)placement->slices;
+    if (placement->perspective)
+        return snow_sheared_splat(frame->sheared[0], &order, pairs->stats,
+                                  drawn);
+    return snow_sheared_reduce(frame->sheared[0], &order, largest, &scale,
+                               pairs->stats, drawn);
 }
 
 /* Room for pairs: of all pixels, or of a line for each thread. */
@@ -348,7 +383,8 @@ snow_status snow_modes_render(snow_frame *frame, snow_job *job,
     SNOW_TRY(check(job));
     SNOW_TRY(snow_ramp_measure(job, &frame->ramp));
     if (job->settings.mode == SNOW_MODE_ISO)
-        return snow_iso_render(frame, job, out);
+        return job->volume->stream ? snow_slabs_iso(frame, job, out)
+                                   : snow_iso_render(frame, job, out);
     SNOW_TRY(snow_modes_pairs(frame, job, &pairs));
     SNOW_TRY(render_pairs(frame, &pairs, &drawn));
     bool sheared = job->settings.method == SNOW_METHOD_SHEARED;

@@ -4,10 +4,11 @@
  * whose grey is the data value itself, carried from the volume's own range to 0
  * to 1, and whose opacity says which voxels there are:
  *
- *   every finite one  opacity 1: for the exact methods, whose sheets add up
- *                     weights beside weighted values
- *   those above 0     for the sheared method, which knows what the weights of
- *                     a whole grid add up to: a voxel of value 0 adds nothing
+ *   every finite one  opacity 1: for the exact methods and in perspective,
+ *                     where sheets add up weights beside weighted values
+ *   those above 0     for the sheared method of parallel views, which knows
+ *                     what the weights of a whole grid add up to: a voxel of
+ *                     value 0 adds nothing
  *
  * so that classification, the three encodings and splatting serve as they are,
  * and a sheet's pixel is (weighted values, weights).  composite/reduce.h tells

@@ -4,6 +4,7 @@
 #define SNOW_SHEARED_H
 
 #include "base/base.h"
+#include "composite/over.h"
 #include "decompose/part.h"
 #include "transform/clip.h"
 
@@ -33,6 +34,9 @@ typedef struct snow_sheared_order {
     int channels;    /* 2 or 4 */
     double begin_at; /* 0 to below 1: the share of the image's lines before the
                         one that is drawn first */
+    snow_over_fn *lay; /* in perspective, in the place of over; NULL: over */
+    float share;       /* of the image that it makes, so that sums, too, are of
+                          0 to 1 */
 } snow_sheared_order;
 
 /* The intermediate image of a part.  Where a tile was not drawn on, its pixels

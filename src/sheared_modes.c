@@ -57,10 +57,6 @@ typedef struct modes_stroke {
     const snow_slice_place *place;
 } modes_stroke;
 
-bool snow_sheared_modes_fits(const snow_placement *placement) {
-    return !placement->perspective;
-}
-
 /* --- rows ------------------------------------------------------------------
  */
 
@@ -677,9 +673,11 @@ snow_status snow_sheared_reduce(snow_sheared *s,
         .windows = snow_window_fns_of(settings->isa),
         .fns = snow_row_fns_of(settings->isa)};
     double mark = snow_seconds();
+    double reading = snow_volume_read_seconds(order->volume);
     SNOW_TRY(snow_sheared_encode(s, order, stats));
     double encoded = snow_seconds();
-    stats->seconds_encode += encoded - mark;
+    reading = snow_volume_read_seconds(order->volume) - reading;
+    stats->seconds_encode += encoded - mark - reading;
     snow_sheared_fill_figures(s, stats);
     scale_codes(&pass, scale);
     SNOW_TRY(place_lattice(&pass));

@@ -1,12 +1,10 @@
 /* sheared_modes.h - the sheared method in modes whose order does not matter
- * (composite/reduce.h). */
+ * (composite/reduce.h), of parallel views; those in perspective are
+ * sheared_seen.c's. */
 #ifndef SNOW_SHEARED_MODES_H
 #define SNOW_SHEARED_MODES_H
 
 #include "sheared.h"
-
-/* Whether the method makes such pictures of this view: parallel ones. */
-bool snow_sheared_modes_fits(const snow_placement *placement);
 
 /* Lines 03 to 13 up to the intermediate image, which snow_sheared_warp takes to
  * pairs (value, weight): for mip and minip, where `largest`, as told there; for

@@ -1,7 +1,10 @@
 /* sheared_seen.c - the sheared method in perspective: as sheared.c, but slices
  * are scaled as they are moved (transform/scaled.h), so that each has its own
  * kernel, and each pixel of the intermediate image its own weights; and each
- * voxel has its own ray and opacity (classify/rays.h). */
+ * voxel has its own ray and opacity (classify/rays.h).
+ *
+ * In modes whose order does not matter (composite/reduce.h) a tile of a slice
+ * is drawn by itself, and laid into the image by the mode's loop. */
 #include "classify/rays.h"
 #include "composite/ray_tile.h"
 #include "sheared_parts.h"
@@ -70,6 +73,7 @@ typedef struct seen_scratch {
     int32_t *first; /* along v, of the band's lines */
     float *weights;
     float *kept;         /* a cut tile's pixels */
+    float *sheet;        /* a tile of one slice */
     float *spare_pixels; /* of bands to be combined */
     unsigned char *spare_drawn;
 } seen_scratch;
@@ -343,6 +347,34 @@ static uint64_t draw_cut_tile(const seen_stroke *stroke, int64_t index,
     return snow_cut_restore(&cut, tile->wanted, stroke->pass->tile(tile));
 }
 
+/* The tile by itself, and then as the mode wants it into the image: those of
+ * its pixels that are the part's own. */
+static void lay_tile(const seen_stroke *stroke, int64_t index,
+                     const snow_ray_tile *drawn) {
+    const seen_pass *pass = stroke->pass;
+    snow_ray_tile tile = *drawn;
+    const size_t channels = (size_t)pass->channels;
+    const size_t width = (size_t)pass->columns;
+    int range[2] = {0, pass->columns};
+    for (int n = 0; pass->order->clip.cuts && n < 2; n++)
+        range[n] =
+            between_ends(stroke->u_range[n] - index * pass->columns, range[1]);
+    tile.pixels = stroke->scratch.sheet;
+    tile.line = width * channels;
+    for (uint64_t left = tile.wanted; left; left &= left - 1)
+        snow_tile_clear(tile.pixels + (size_t)__builtin_ctzll(left) * tile.line,
+                        width, pass->channels);
+    pass->tile(&tile);
+    for (uint64_t left = tile.wanted; left; left &= left - 1) {
+        size_t line = (size_t)__builtin_ctzll(left);
+        float *sheet = tile.pixels + line * tile.line;
+        size_t first = (size_t)range[0] * channels;
+        snow_tile_finish(sheet, width, pass->channels);
+        pass->order->lay(drawn->pixels + line * drawn->line + first,
+                         sheet + first, (size_t)(range[1] - range[0]));
+    }
+}
+
 /* Lines 08 to 13 for one tile of the slice: the lines that can be seen and have
  * a voxel in reach. */
 static void draw_tile(seen_stroke *stroke, int64_t index) {
@@ -386,6 +418,11 @@ static void draw_tile(seen_stroke *stroke, int64_t index) {
         .pixels = stroke->pixels + at * (size_t)pass->channels,
         .line = pass->stride,
     };
+    if (pass->order->lay) {
+        lay_tile(stroke, index, &tile);
+        stroke->drawn[index] = 1;
+        return;
+    }
     if (pass->lazy && !stroke->drawn[index])
         snow_band_clear_tile(
             &stroke->shape, &(snow_band){stroke->pixels, stroke->drawn}, index);
@@ -509,6 +546,8 @@ static size_t lay_out(const seen_pass *pass, char *base, seen_scratch *out) {
          (size_t)pass->taps[1] * SNOW_RAY_TILE_LINES * sizeof *out->weights);
     if (pass->order->clip.cuts)
         PART(kept, SNOW_RAY_TILE_LINES * filtered);
+    if (pass->order->lay)
+        PART(sheet, SNOW_RAY_TILE_LINES * filtered);
     if (pass->grouping.on) {
         PART(spare_pixels,
              SNOW_GROUP_RANKS * spare_floats(pass) * sizeof(float));
@@ -565,6 +604,14 @@ static void draw_band(seen_stroke *stroke, const snow_band *band) {
         return;
     }
     memset(band->drawn, 0, (size_t)pass->tiles);
+    if (pass->order->lay) {
+        memset(band->pixels, 0,
+               pixels * (size_t)pass->channels * sizeof *band->pixels);
+        draw_slab(stroke, 0, pass->slice_count, band);
+        for (size_t n = 0; n < pixels * (size_t)pass->channels; n++)
+            band->pixels[n] *= pass->order->share;
+        return;
+    }
     if (!pass->lazy)
         snow_tile_clear(band->pixels, pixels, pass->channels);
     draw_slab(stroke, 0, pass->slice_count, band);

@@ -146,11 +146,14 @@ static snow_status tell_count(reading *r) {
         context, SNOW_NO_MEMORY,
         "%s: %lld of %.0f voxels are interesting (%.3g %%) and take about %.1f "
         "MiB "
-        "when encoded, which do not fit beside slabs of %.1f MiB%s; raise "
-        "--threshold, make more values transparent, give --crop or more memory",
+        "when encoded, which do not fit beside slabs of %.1f MiB%s; %sgive "
+        "--crop or more memory",
         snow_stream_path(volume), (long long)r->interesting, all,
         100 * (double)r->interesting / all, encoded_bytes(r) / MIB,
-        (double)snow_slab_bytes(volume, &read) / MIB, limit);
+        (double)snow_slab_bytes(volume, &read) / MIB, limit,
+        r->order->settings->mode == SNOW_MODE_OVER
+            ? "raise --threshold, make more values transparent, "
+            : "");
 }
 
 snow_status snow_sheared_encode_stream(snow_sheared *s,

@@ -41,6 +41,37 @@ check "as a range" cmp -s h.png i.png
 run 0 "to standard output" render phantom:cube -o j.png --save-config -
 prints '^\{"input": "phantom:cube", "output": "j.png", "size": \[512, 512\]'
 
+# --- depths -------------------------------------------------------------------
+run 0 "a depth" render phantom:shells --dims 24x20x22 -s 60x50 -o da.npy \
+    --depth dd.npy --stats ds.json --save-config depth.json
+refused 4 "is kept as the output is" 'dd.npy: ' \
+    "$TOOL" render --config depth.json -o db.npy
+check "before anything is made" absent db.npy
+cp dd.npy before.npy
+run 0 "and made again" render --config depth.json -y
+check "as it was" cmp -s dd.npy before.npy
+check "without its figures" bash -c '! grep -q stats depth.json'
+run 0 "another place on the command line" render --config depth.json \
+    -o db.npy --depth de.npy
+check "counts more" cmp -s de.npy before.npy
+run 0 "a mode without depth" render --config depth.json -m mip -o dm.npy
+run 2 "beside a depth on the command line" \
+    "$TOOL" render --config depth.json -m mip -o dn.npy --depth dn2.npy
+if "$TOOL" doctor --json | grep -q '".exr"'; then
+    run 0 "a picture with its depth" render phantom:shells --dims 24x20x22 \
+        -s 60x50 -o z.exr --depth z.exr --save-config z.json
+    cp z.exr before.exr
+    run 0 "another picture" render --config z.json -o y.exr -y
+    check "gets the depth too" cmp -s y.exr before.exr
+    check "and the first is as it was" cmp -s z.exr before.exr
+    run 0 "a picture that takes none" render --config z.json -o y.png -y
+    check "has none, and the first is as it was" cmp -s z.exr before.exr
+fi
+refused 2 "a configuration in the depth's place" '--depth goes; name two' \
+    "$TOOL" render phantom:cube -o w.png --depth w.npy --save-config w.npy
+refused 2 "and in the figures'" '--stats goes; name two' \
+    "$TOOL" render phantom:cube -o w.png --stats q.json --save-config q.json
+
 # --- the command line counts more ---------------------------------------------
 echo '{"input": "phantom:cube", "size": [50, 40], "range": [10, 20],
        "azimuth": 10, "deterministic": true, "overwrite": false,

@@ -30,6 +30,14 @@ refused 2 "an unknown suffix" 'let it end with' render -o a.bmp
 if has .exr; then
     refused 2 "a background of EXR" '\-\-background and --bits' \
         render -o b.exr --background white
+    run 0 "a picture and its depth in one EXR" render -o z.exr --depth z.exr \
+        -c hot
+    run 0 "and in two files" render -o z.npy --depth zz.npy -c hot
+    run 0 "are the same picture" "$TOOL" compare z.npy z.exr
+    check "and there is more in it" [ "$(stat -c %s z.exr)" -gt \
+        "$(stat -c %s a.exr)" ]
+    refused 4 "which is kept" 'exists' render -o z.exr --depth z.exr
+    run 0 "unless it may be replaced" render -o z.exr --depth ./z.exr -y
     run 0 "frames of EXR" "$TOOL" turntable -q phantom:cube --dims 20x20x20 \
         -s 30x30 --frames 2 -o 'e_%d.exr'
     run 0 "and of floats" "$TOOL" turntable -q phantom:cube --dims 20x20x20 \

@@ -50,6 +50,40 @@ run 0 "floats in slabs" "$TOOL" render a_f32.nrrd "${look[@]}" --view -z \
     --range 0,255 -q -o slabs.png -y --memory 46M
 same "floats" whole.png slabs.png
 
+# Other modes, and depths; of the surface slabs that hold nothing of it too.
+for mode in mip minip mean sum iso; do
+    value=()
+    [ "$mode" = iso ] && value=(--iso 120 --depth near.npy)
+    for eye in "--view -z" "--view left --azimuth 30 --perspective"; do
+        # shellcheck disable=SC2086
+        run 0 "$mode $eye, whole" "$TOOL" render a_f32.nrrd -s 96x96 $eye -q \
+            -m $mode "${value[@]}" -o whole.npy -y
+        [ "$mode" = iso ] && mv near.npy whole.near.npy
+        # shellcheck disable=SC2086
+        run 0 "$mode $eye, in slabs" "$TOOL" render a_f32.nrrd -s 96x96 $eye \
+            -v -m $mode "${value[@]}" -o slabs.npy -y --memory 46M
+        says 'a_f32.nrrd: stays in its file'
+        same "$mode $eye" whole.npy slabs.npy
+        [ "$mode" = iso ] && same "$mode, depth $eye" whole.near.npy near.npy
+    done
+done
+run 0 "bytes of a surface, whole" "$TOOL" render a.nrrd -s 96x96 -q -m iso \
+    --iso 120 -o whole.npy -y
+run 0 "bytes of a surface in slabs" "$TOOL" render a.nrrd -s 96x96 -q -m iso \
+    --iso 120 -o slabs.npy -y --memory 11M
+same "bytes of a surface" whole.npy slabs.npy
+mv slabs.npy slabs_iso.npy
+run 0 "depths, whole" "$TOOL" render a.nrrd "${look[@]}" --view -z -q \
+    -o whole.npy -y --depth whole.depth.npy
+run 0 "depths in slabs" "$TOOL" render a.nrrd "${look[@]}" --view -z -q \
+    -o slabs.npy -y --memory 11M --depth slabs.depth.npy
+same "the picture of depths" whole.npy slabs.npy
+run 0 "depths but for rounding" "$TOOL" compare whole.depth.npy \
+    slabs.depth.npy --tolerance 4e-6
+run 0 "a turntable of a surface in slabs" "$TOOL" turntable a.nrrd -s 96x96 \
+    -q -m iso --iso 120 --frames 2 -o 'i_%d.npy' --memory 11M
+same "its first frame" i_0.npy slabs_iso.npy
+
 run 0 "a packed file, whole" "$TOOL" render a.nii.gz "${look[@]}" -q \
     -o whole.png -y
 run 0 "a packed file in slabs" "$TOOL" render a.nii.gz "${look[@]}" \
@@ -71,6 +105,23 @@ run 0 "its first step alone" "$TOOL" render a.nrrd "${look[@]}" -q \
 same "a movie" m_0.png whole.png
 same "its second step" m_1.png whole.png
 
+# --- nothing is left ----------------------------------------------------------
+
+"$TOOL" phantom cube --dims 256x256x200 -q -o mask.nrrd
+for limit in 200M 11M; do # in memory, and in slabs
+    run 0 "a mask of no voxel under $limit" "$TOOL" render a.nrrd -s 64x64 \
+        --view -z -o none.png -y --mask mask.nrrd --labels 300 --memory $limit
+    says 'mask.nrrd: no voxel is left inside this mask, whose values are [0-9]* to 255; correct'
+    check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
+    run 0 "planes that leave nothing under $limit" "$TOOL" render a.nrrd \
+        -s 64x64 --view -z -o none.png -y --clip 1,0,0,-9999 --memory $limit
+    says 'clip: no voxel is left'
+    run 0 "planes that leave some under $limit" "$TOOL" render a.nrrd \
+        -s 64x64 --view -z -o none.png -y --clip 0,0,1,-50 --memory $limit
+    check "are not remarked on" bash -c "! grep -q 'no voxel' '$ERR'"
+done
+rm none.png
+
 # --- what is refused ---------------------------------------------------------
 
 small=(-s 64x64 -o none.png)
@@ -83,21 +134,16 @@ refused 5 "the same beside the volume in memory" \
 refused 5 "the smallest slab" \
     'a.nrrd: a slab of slices, tables and the picture alone need 17.2 MiB, over the --memory of 3.0 MiB; raise it' \
     "$TOOL" render a.nrrd -s 1024x1024 -o none.png --memory 3M
-for mode in mip mean iso; do
-    value=()
-    [ "$mode" = iso ] && value=(--iso 100)
-    refused 5 "mode $mode" \
-        "a.nrrd: voxels and picture need 12.6 MiB, over the --memory of 11.0 MiB, and its mode needs all of them at once" \
-        "$TOOL" render a.nrrd "${small[@]}" -m "$mode" "${value[@]}" \
-        --memory 11M
+for mode in mip mean; do
+    refused 5 "mode $mode of too many voxels" \
+        'when encoded, which do not fit beside slabs of [0-9.]* MiB under the limit of 11.0 MiB; give --crop or more memory' \
+        "$TOOL" render a.nrrd "${small[@]}" -m "$mode" --memory 11M -q
 done
 refused 5 "an exact method" 'and its method needs all of them' \
     "$TOOL" render a.nrrd "${small[@]}" --method footprint --memory 11M
-refused 5 "depths" 'and --depth needs all of them' \
-    "$TOOL" render a.nrrd "${small[@]}" --depth d.npy --memory 11M
 refused 5 "the range of all steps" 'and the range of all steps needs all' \
     "$TOOL" movie a.nrrd a.nrrd -s 64x64 -o 'n_%d.png' --memory 11M
-check "nothing is left" test ! -e none.png -a ! -e d.npy -a ! -e n_0.png
+check "nothing is left" test ! -e none.png -a ! -e n_0.png
 
 # --- slices in files of their own --------------------------------------------
 

@@ -70,7 +70,7 @@ turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
 --iso high x -o y.png|--iso: 'high' is not a finite number
 --depth d.png x -o y.png|--depth: d.png: depths are numbers
 --depth d.npy -m mip x -o y.png|--depth: mode mip has none; take over or iso
---depth y.npy x -o y.npy|--depth: goes where --output goes
+--depth y.npy x -o y.npy|--depth: goes where --output goes; let both be one .exr
 turntable --depth d.npy x -o y.mp4|--depth: no option of turntable
 --mode best x|'best' is unknown
 --method ray x|'ray' is unknown

@@ -9,7 +9,9 @@ except ImportError:
     sys.exit(77)
 import json
 import shutil
+import struct
 import subprocess
+import zlib
 
 import oracle
 
@@ -30,6 +32,71 @@ def same(name, a, b):
     if a.shape != b.shape or not (a == b).all():
         oracle.fail(name, f"{a.shape} and {b.shape} differ")
 
+
+def read_exr(path):
+    """Channels of float32 by name, from the format's description: one part of
+    scan lines, ZIP blocks of 16 lines, predicted and interleaved bytes."""
+    data = open(path, "rb").read()
+    assert struct.unpack_from("<II", data) == (20000630, 2)
+    at, header = 8, {}
+    while data[at]:
+        name, kind = data[at:].split(b"\0", 2)[:2]
+        at += len(name) + len(kind) + 2
+        size, = struct.unpack_from("<I", data, at)
+        header[name.decode()] = data[at + 4:at + 4 + size]
+        at += 4 + size
+    assert header["compression"] == b"\3" and header["lineOrder"] == b"\0"
+    rest, names = header["channels"], []
+    while rest[0]:
+        name, rest = rest.split(b"\0", 1)
+        assert struct.unpack_from("<iIii", rest) == (2, 1, 1, 1)  # float
+        names.append(name.decode())
+        rest = rest[16:]
+    assert names == sorted(names)
+    x0, y0, x1, y1 = struct.unpack("<4i", header["dataWindow"])
+    width, height = x1 - x0 + 1, y1 - y0 + 1
+    planes = np.empty((len(names), height, width), "<f4")
+    blocks = struct.unpack_from(f"<{-(-height // 16)}Q", data, at + 1)
+    for begin in blocks:
+        y, size = struct.unpack_from("<iI", data, begin)
+        y -= y0
+        lines = min(16, height - y)
+        packed = data[begin + 8:begin + 8 + size]
+        if size < lines * width * len(names) * 4:
+            raw = np.frombuffer(zlib.decompress(packed), "u1").astype(int)
+            raw[1:] -= 128
+            raw = (np.cumsum(raw) % 256).astype("u1")
+            half = (len(raw) + 1) // 2
+            packed = np.empty_like(raw)
+            packed[0::2], packed[1::2] = raw[:half], raw[half:]
+        block = np.frombuffer(packed, "<f4").reshape(lines, len(names), width)
+        planes[:, y:y + lines] = block.transpose(1, 0, 2)
+    return dict(zip(names, planes))
+
+
+def rgba(channels):
+    return np.stack([channels[n] for n in "RGBA"], -1)
+
+
+if ".exr" in outputs:
+    for options in ([], ["-c", "hot", "--perspective"],
+                    ["-m", "iso", "--iso", "120"]):
+        render("d.npy", "-y", "--depth", "z.npy", *options)
+        floats, depth = np.load("d.npy"), np.load("z.npy")
+        if not np.isnan(depth).any() or np.isnan(depth).all():
+            oracle.fail("depth", "has no border")
+        render("d.exr", "-y", "--depth", "./d.exr", *options)
+        got = read_exr("d.exr")
+        same(f"Z beside RGBA {options}", rgba(got), floats)
+        same(f"Z {options}", np.nan_to_num(got["Z"], nan=-1e9),
+             np.nan_to_num(depth, nan=-1e9))
+        if sorted(got) != list("ABGRZ"):
+            oracle.fail("channels", sorted(got))
+        render("d.exr", "-y", "--depth", "z.exr", *options)
+        same("no Z unasked", np.array(sorted(read_exr("d.exr"))),
+             np.array(list("ABGR")))
+        same("depth alone", np.array(sorted(read_exr("z.exr"))),
+             np.array(["Y"]))
 
 for look in ([], ["-c", "inferno"], ["--perspective", "-c", "hot"]):
     render("a.npy", "-y", *look)

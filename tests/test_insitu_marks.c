@@ -55,9 +55,31 @@ static void a_recipes_legend_and_step_are_drawn(void **state) {
     assert_true(label[0] != label[1] && label[0] != plain[0]);
 }
 
+static void a_depth_is_refused_in_situ(void **state) {
+    image_fixture *f = *state;
+    static const char text[] = "{\"depth\": \"d.npy\"}";
+    snow_comm *comm = NULL;
+    snow_insitu *insitu = NULL;
+    snow_recipe r;
+    assert_int_equal(snow_comm_self(f->context, &comm), SNOW_OK);
+    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_OK);
+    assert_int_equal(
+        snow_recipe_parse(f->context, "text", text, strlen(text), &r), SNOW_OK);
+    assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_BAD_USAGE);
+    assert_non_null(strstr(snow_context_message(snow_comm_context(comm)),
+                           "\"depth\" is for pictures of files"));
+    snow_recipe_clear(&r);
+    snow_insitu_free(insitu);
+    snow_comm_free(comm);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(
-        a_recipes_legend_and_step_are_drawn, support_image_setup,
-        support_image_teardown)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(a_depth_is_refused_in_situ,
+                                        support_image_setup,
+                                        support_image_teardown),
+        cmocka_unit_test_setup_teardown(a_recipes_legend_and_step_are_drawn,
+                                        support_image_setup,
+                                        support_image_teardown)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

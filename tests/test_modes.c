@@ -242,7 +242,8 @@ static void and_in_perspective(void **state) {
  * ends, where a largest value jumps as a slice ends within the picture.  Means
  * of differences are bounded, in units of colour or of a hundredth of the
  * data's range. */
-static void sheared_pictures(snow_quality quality, const double bounds[4]) {
+static void sheared_pictures(snow_quality quality, bool seen,
+                             const double bounds[4]) {
     model_stage stage = model_open();
     uint64_t random = 12;
     for (size_t m = 0; m < COUNT(modes); m++) {
@@ -251,6 +252,8 @@ static void sheared_pictures(snow_quality quality, const double bounds[4]) {
             reference_scene scene = mode_scene(&random, n, modes[m]);
             scene.settings.method = SNOW_METHOD_SHEARED;
             scene.settings.quality = quality;
+            if (seen)
+                scene.view.fov = fovs[draw(&random, COUNT(fovs))];
             add_picture(&stage, &scene, &t);
             model_free(&scene);
         }
@@ -265,13 +268,20 @@ static void sheared_pictures(snow_quality quality, const double bounds[4]) {
 static void sheared_pictures_are_near(void **state) {
     (void)state;
     const double bounds[4] = {0.015, 0.025, 0.01, 0.03};
-    sheared_pictures(SNOW_QUALITY_NORMAL, bounds);
+    sheared_pictures(SNOW_QUALITY_NORMAL, false, bounds);
+}
+
+static void they_are_in_perspective(void **state) {
+    (void)state;
+    const double bounds[4] = {0.015, 0.025, 0.01, 0.03};
+    sheared_pictures(SNOW_QUALITY_NORMAL, true, bounds);
 }
 
 static void drafts_are_not_far(void **state) {
     (void)state;
     const double bounds[4] = {0.03, 0.045, 0.02, 0.03};
-    sheared_pictures(SNOW_QUALITY_DRAFT, bounds);
+    sheared_pictures(SNOW_QUALITY_DRAFT, false, bounds);
+    sheared_pictures(SNOW_QUALITY_DRAFT, true, bounds);
 }
 
 /* A picture of the engine of the paper, or of the test's caller. */
@@ -353,23 +363,24 @@ static void sheared_pictures_of_smooth_data_are_very_near(void **state) {
     (void)state;
     static const double bounds[] = {0.0032, 0.0032, 0.00056, 0.00056};
     model_stage stage = model_open();
-    for (int type = 0; type < 2; type++) {
+    for (int n = 0; n < 4; n++) {
         snow_volume *volume =
-            open_phantom(stage.context, type ? SNOW_FLOAT32 : SNOW_UINT8);
+            open_phantom(stage.context, n % 2 ? SNOW_FLOAT32 : SNOW_UINT8);
+        double fov = n / 2 ? 30 : 0;
         for (size_t m = 0; m < COUNT(modes); m++) {
             snow_settings settings;
             snow_settings_init(&settings);
             settings.mode = modes[m];
             snow_image *fast = engine_picture(stage.context, stage.frame,
-                                              volume, &settings, 0);
+                                              volume, &settings, fov);
             assert_int_equal(snow_frame_stats(stage.frame)->method,
                              SNOW_METHOD_SHEARED);
             settings.method = SNOW_METHOD_FOOTPRINT;
             snow_image *exact = engine_picture(stage.context, stage.frame,
-                                               volume, &settings, 0);
+                                               volume, &settings, fov);
             double distance = distance_of(fast, exact);
-            print_message("             %s: %.1f dB\n",
-                          snow_mode_name(modes[m]), -20 * log10(distance));
+            print_message("             %s, %g degrees: %.1f dB\n",
+                          snow_mode_name(modes[m]), fov, -20 * log10(distance));
             assert_true(distance < bounds[m]);
             snow_image_free(fast);
             snow_image_free(exact);
@@ -398,14 +409,14 @@ static void threads_and_encodings_change_no_bit(void **state) {
     model_stage stage = model_open();
     snow_volume *volume = open_phantom(stage.context, SNOW_FLOAT32);
     for (int mode = SNOW_MODE_MIP; mode <= SNOW_MODE_ISO; mode++)
-        for (int n = 0; n < 3; n++) { /* the last in perspective */
+        for (int n = 0; n < 4; n++) { /* the last two in perspective */
             snow_settings settings;
             snow_settings_init(&settings);
             settings.mode = (snow_mode)mode;
             settings.iso = 90;
             settings.method = methods[n % 2];
             settings.threads = 1;
-            double fov = n == 2 ? 40 : 0;
+            double fov = n >= 2 ? 40 : 0;
             uint64_t first = sum_of(&stage, volume, &settings, fov);
             for (int way = 0; way < 9; way++) {
                 settings.threads = 1 + way % 3;
@@ -421,21 +432,22 @@ static void levels_make_the_same_picture(void **state) {
     (void)state;
     model_stage stage = model_open();
     snow_volume *volume = open_phantom(stage.context, SNOW_UINT8);
-    for (int mode = SNOW_MODE_MIP; mode <= SNOW_MODE_ISO; mode++) {
+    for (int way = 2 * SNOW_MODE_MIP; way < 2 * SNOW_MODE_ISO + 2; way++) {
+        double fov = way % 2 ? 30 : 0;
         snow_settings settings;
         snow_settings_init(&settings);
-        settings.mode = (snow_mode)mode;
+        settings.mode = (snow_mode)(way / 2);
         settings.iso = 90;
         settings.isa = SNOW_ISA_SCALAR;
         snow_image *plain =
-            engine_picture(stage.context, stage.frame, volume, &settings, 0);
+            engine_picture(stage.context, stage.frame, volume, &settings, fov);
         uint64_t sums[2] = {0, 0};
         for (int n = 0; n < 2; n++) {
             settings.isa = n ? SNOW_ISA_AVX512 : SNOW_ISA_AVX2;
             if (!snow_isa_runs(settings.isa))
                 continue;
             snow_image *image = engine_picture(stage.context, stage.frame,
-                                               volume, &settings, 0);
+                                               volume, &settings, fov);
             if (!(distance_of(image, plain) < 1e-5))
                 fail_msg("%s %g", snow_mode_name(settings.mode),
                          distance_of(image, plain));
@@ -576,6 +588,7 @@ int main(void) {
         UNIT(and_in_perspective),
         UNIT(depths_of_over),
         UNIT(sheared_pictures_are_near),
+        UNIT(they_are_in_perspective),
         UNIT(drafts_are_not_far),
         UNIT(sheared_pictures_of_smooth_data_are_very_near),
         UNIT(threads_and_encodings_change_no_bit),

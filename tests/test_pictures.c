@@ -100,6 +100,38 @@ static void floats_come_back_bit_for_bit(void **state) {
             }
 }
 
+/* What Z holds is read by tests/oracle_pictures.py: no reader here takes it. */
+static void a_depth_lies_beside_an_exr_picture_only(void **state) {
+    image_fixture *f = *state;
+    assert_true(snow_image_takes_depth("a.exr"));
+    assert_false(snow_image_takes_depth("a.tif"));
+    assert_false(snow_image_takes_depth("-"));
+    assert_false(snow_image_takes_depth("a"));
+    for (int channels = 1; channels <= 4 && is_built(".exr"); channels *= 2) {
+        snow_image *image =
+            channels == 1 ? values_of(f->context, 33, 20)
+                          : support_picture(f->context, 33, 20, channels, 1);
+        snow_image *depth = values_of(f->context, 33, 20);
+        snow_image *other = values_of(f->context, 20, 33);
+        const snow_image_options beside = {.depth = depth},
+                                 wrong = {.depth = other};
+        snow_image *read = NULL;
+        snow_image_difference difference;
+        refuse_save(f, image, "a.npy", &beside, "takes no depth beside");
+        refuse_save(f, image, "a.exr", &wrong, "the depth is of 20 x 33");
+        const char *path = support_image_path(f, "a.exr");
+        assert_int_equal(snow_image_save(image, path, &beside), SNOW_OK);
+        assert_int_equal(snow_image_load(f->context, path, &read), SNOW_OK);
+        assert_int_equal(snow_image_compare(image, read, &difference), SNOW_OK);
+        assert_true(difference.largest == 0);
+        remove(path);
+        snow_image_free(read);
+        snow_image_free(other);
+        snow_image_free(depth);
+        snow_image_free(image);
+    }
+}
+
 static void webp_holds_what_png_holds(void **state) {
     image_fixture *f = *state;
     if (!is_built(".webp"))
@@ -243,6 +275,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         HERE(a_build_without_a_library_says_so),
         HERE(floats_come_back_bit_for_bit),
+        HERE(a_depth_lies_beside_an_exr_picture_only),
         HERE(webp_holds_what_png_holds),
         HERE(what_a_format_cannot_hold_is_refused),
         HERE(damaged_files_are_refused_or_read),

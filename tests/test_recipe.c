@@ -8,6 +8,7 @@
 /* Every key but window and level, none with its default. */
 static const char all_keys[] =
     "{\"input\": \"a.raw\", \"output\": \"b_%04d.png\", \"overwrite\": true,"
+    " \"depth\": \"d.npy\","
     " \"size\": [640, 480], \"background\": [1, 0.5, 0], \"bits\": 16,"
     " \"mode\": \"mip\", \"threshold\": 10.5, \"encoding\": \"rle\","
     " \"method\": \"footprint\", \"kernel\": \"gauss\", \"footprint\": 5,"
@@ -55,6 +56,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_int_equal(parse(context, all_keys, &r), SNOW_OK);
     assert_string_equal(r.input, "a.raw");
     assert_string_equal(r.output, "b_%04d.png");
+    assert_string_equal(r.depth, "d.npy");
     assert_true(r.image.overwrite && r.image.flatten && r.image.bits == 16);
     assert_true(r.image.background[1] == 0.5);
     assert_true(r.width == 640 && r.height == 480);
@@ -125,6 +127,7 @@ static void what_is_written_reads_as_it_was(void **state) {
         assert_memory_equal(&a.settings, &b.settings, sizeof a.settings);
         assert_int_equal(a.data.dataset == NULL, b.data.dataset == NULL);
         assert_int_equal(a.data.series == NULL, b.data.series == NULL);
+        assert_int_equal(a.depth == NULL, b.depth == NULL);
         a.data.dataset = b.data.dataset = NULL;
         a.data.series = b.data.series = NULL;
         assert_int_equal(a.data.mask == NULL, b.data.mask == NULL);
@@ -186,6 +189,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"labels\": 3}", "\"labels\" must be"},
         {"{\"clip\": [[0, 0, 0, 1]]}", "\"clip\" must be [[a, b, c, d], ...]"},
         {"{\"clip\": [1, 0, 0, 1]}", "\"clip\" must be"},
+        {"{\"depth\": true}", "\"depth\" must be a text"},
         {"{\"mask\": 3}", "\"mask\" must be"},
         {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},
         {"[1]", "one JSON object"},

@@ -3,6 +3,7 @@
  * slabs are; and never holds more of it than a slab. */
 #include "support_volumes.h"
 
+#include "image/image.h"
 #include "volume/stream.h"
 
 #include <math.h>
@@ -98,7 +99,7 @@ static bool is_seen(snow_image *image) {
     size_t channels = (size_t)snow_image_channels(image);
     size_t count = WIDTH * HEIGHT * channels;
     for (size_t n = channels - 1; n < count; n += channels)
-        if (pixels[n] > 0.05F)
+        if (channels == 1 ? !isnan(pixels[n]) : pixels[n] > 0.05F)
             return true;
     return false;
 }
@@ -114,11 +115,15 @@ static void same_pictures(pair *p, const snow_view *view,
                      SNOW_OK);
     const snow_stats *told = snow_frame_stats(p->of_whole);
     const snow_stats *same = snow_frame_stats(p->of_stream);
-    assert_int_equal(told->method, SNOW_METHOD_SHEARED);
+    bool iso = settings->mode == SNOW_MODE_ISO;
+    assert_int_equal(told->method,
+                     iso ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_SHEARED);
+    assert_int_equal(same->method, told->method);
     assert_int_equal(same->interesting, told->interesting);
     assert_int_equal(same->voxels, told->voxels);
     assert_int_equal(same->slice_axis, told->slice_axis);
-    assert_int_equal(same->ia_bytes, told->ia_bytes);
+    if (!iso) /* whose slabs have ghosts */
+        assert_int_equal(same->ia_bytes, told->ia_bytes);
     assert_true(is_seen(a));
     assert_int_equal(snow_image_channels(a), snow_image_channels(b));
     assert_memory_equal(snow_image_pixels(a), snow_image_pixels(b),
@@ -180,6 +185,79 @@ static void pictures_are_those_of_the_volume_in_memory(void **state) {
         }
     }
     assert_int_equal(pictures, COUNT(types) * COUNT(slices) * COUNT(stands));
+}
+
+/* Depths are the same to a few units of the last place: samples of slabs are
+ * added up from another voxel on. */
+static void same_depths(const pair *p) {
+    const snow_image *a = snow_frame_depth(p->of_whole);
+    const snow_image *b = snow_frame_depth(p->of_stream);
+    int shown = 0;
+    assert_non_null(a);
+    assert_non_null(b);
+    for (int n = 0; n < WIDTH * HEIGHT; n++) {
+        shown += !isnan(a->pixels[n]);
+        if (isnan(a->pixels[n]) || isnan(b->pixels[n]))
+            assert_true(isnan(a->pixels[n]) && isnan(b->pixels[n]));
+        else if (fabsf(a->pixels[n] - b->pixels[n]) > 4e-6F)
+            fail_msg("depths %g and %g", (double)a->pixels[n],
+                     (double)b->pixels[n]);
+    }
+    assert_true(shown > WIDTH * HEIGHT / 50);
+}
+
+static void other_modes_are_those_of_the_volume_in_memory(void **state) {
+    static const int slices[] = {4, 35};
+    support_place *place = *state;
+    int pictures = 0;
+    for (size_t t = 0; t < COUNT(types); t++) {
+        const char *path = write_head(place, types[t], "head.nrrd");
+        for (size_t s = 0; s < COUNT(slices); s++) {
+            pair p = open_pair(place, path, NULL,
+                               slices_of(types[t], slices[s]), NULL);
+            for (size_t n = 0; n < COUNT(stands); n++) {
+                snow_view view = stand_at(place, n);
+                snow_settings settings;
+                snow_settings_init(&settings);
+                size_t i = n + 3 * s + t;
+                settings.mode = (snow_mode)(1 + i % SNOW_MODE_ISO);
+                settings.quality = (snow_quality)(1 + i % 2);
+                settings.encoding = (snow_encoding)(i / 2 % 4);
+                settings.threads = 1 + (int)(i % 3);
+                settings.shade = i % 3 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+                settings.deterministic = i % 4 == 0;
+                settings.iso = types[t] == SNOW_UINT8     ? 90
+                               : types[t] == SNOW_FLOAT32 ? 90
+                                                          : 9000;
+                settings.depth = settings.mode == SNOW_MODE_ISO && i % 2;
+                same_pictures(&p, &view, &settings);
+                if (settings.depth)
+                    same_depths(&p);
+            }
+            pictures += p.pictures;
+            close_pair(&p);
+        }
+    }
+    assert_int_equal(pictures, COUNT(types) * COUNT(slices) * COUNT(stands));
+}
+
+static void depths_of_over_are_those_of_the_volume_in_memory(void **state) {
+    support_place *place = *state;
+    for (size_t t = 0; t < COUNT(types); t++) {
+        const char *path = write_head(place, types[t], "head.nrrd");
+        pair p = open_pair(place, path, NULL,
+                           slices_of(types[t], 60 + 40 * (int)t), NULL);
+        for (size_t n = t; n < COUNT(stands); n += COUNT(types)) {
+            snow_view view = stand_at(place, n);
+            snow_settings settings;
+            snow_settings_init(&settings);
+            settings.depth = 1;
+            settings.deterministic = n % 4 == 0;
+            same_pictures(&p, &view, &settings);
+            same_depths(&p);
+        }
+        close_pair(&p);
+    }
 }
 
 static void opacity_by_gradients_sees_beyond_a_slabs_border(void **state) {
@@ -413,7 +491,8 @@ static void what_does_not_fit_is_counted(void **state) {
 
 /* The first call that fails; nothing may be left of it. */
 static snow_status draw_once(support_place *place, const char *path,
-                             const snow_view *view) {
+                             const snow_view *view, snow_mode mode,
+                             bool depth) {
     snow_volume *stream = NULL;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
@@ -421,6 +500,9 @@ static snow_status draw_once(support_place *place, const char *path,
     snow_settings settings;
     snow_settings_init(&settings);
     settings.threads = 1;
+    settings.mode = mode;
+    settings.iso = 90;
+    settings.depth = depth;
     snow_status status = snow_volume_stream(place->context, path, NULL,
                                             slices_of(SNOW_UINT8, 40), &stream);
     if (status == SNOW_OK)
@@ -437,22 +519,30 @@ static snow_status draw_once(support_place *place, const char *path,
     return status;
 }
 
-static void any_allocation_may_fail(void **state) {
-    support_place *place = *state;
-    char path[128];
-    strcpy(path, write_head(place, SNOW_UINT8, "head.nrrd"));
+static void fail_everywhere(support_place *place, const char *path,
+                            snow_mode mode, bool depth, int step) {
     const snow_view view = stand_at(place, 2);
     snow_status status = SNOW_NO_MEMORY;
     int failures = 0;
     uint64_t held = snow_context_bytes(place->context);
-    for (int64_t n = 1; status != SNOW_OK; n++, failures++) {
+    for (int64_t n = 1; status != SNOW_OK; n += step, failures++) {
         place->fail_at = place->allocations + n;
-        status = draw_once(place, path, &view);
+        status = draw_once(place, path, &view, mode, depth);
         assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
         assert_int_equal(snow_context_bytes(place->context), held);
     }
     place->fail_at = 0;
-    assert_true(failures > 50);
+    assert_true(failures * step > 50);
+}
+
+static void any_allocation_may_fail(void **state) {
+    support_place *place = *state;
+    char path[128];
+    strcpy(path, write_head(place, SNOW_UINT8, "head.nrrd"));
+    fail_everywhere(place, path, SNOW_MODE_OVER, false, 1);
+    fail_everywhere(place, path, SNOW_MODE_OVER, true, 37);
+    fail_everywhere(place, path, SNOW_MODE_SUM, false, 3);
+    fail_everywhere(place, path, SNOW_MODE_ISO, true, 3);
 }
 
 /* --- what is refused ------------------------------------------------------
@@ -476,11 +566,9 @@ static void pictures_that_look_at_voxels_are_refused(void **state) {
     snow_settings settings;
     snow_settings_init(&settings);
     settings.mode = SNOW_MODE_MIP;
-    refuse(&p, "mip: a volume whose voxels stay", &view, &settings,
-           SNOW_BAD_USAGE);
-    settings.mode = SNOW_MODE_OVER;
     settings.depth = 1;
-    refuse(&p, "depths: a volume", &view, &settings, SNOW_BAD_USAGE);
+    refuse(&p, "mode mip has no depth", &view, &settings, SNOW_BAD_USAGE);
+    settings.mode = SNOW_MODE_OVER;
     settings.depth = 0;
     settings.method = SNOW_METHOD_FOOTPRINT;
     refuse(&p, "footprint: a volume", &view, &settings, SNOW_BAD_USAGE);
@@ -489,6 +577,43 @@ static void pictures_that_look_at_voxels_are_refused(void **state) {
     settings.method = SNOW_METHOD_AUTO;
     view.zoom = 0.01; /* wide pixels are the exact method's */
     refuse(&p, "15 voxels wide", &view, &settings, SNOW_NO_MEMORY);
+    close_pair(&p);
+}
+
+/* What weights add up to around holes is known of voxels alone. */
+static void modes_of_a_volume_with_holes_are_refused(void **state) {
+    support_place *place = *state;
+    const char *path = support_place_path(place, "holes.nrrd");
+    snow_volume *volume = NULL;
+    float voxels[6 * 5 * 4];
+    snow_volume_info info = {.dims = {6, 5, 4},
+                             .type = SNOW_FLOAT32,
+                             .slope = 1,
+                             .spacing = {1, 1, 1},
+                             .format = "memory",
+                             .times = 1};
+    for (int n = 0; n < 4; n++)
+        info.matrix[n][n] = 1;
+    for (int n = 0; n < 6 * 5 * 4; n++)
+        voxels[n] = n == 70 ? NAN : (float)n;
+    assert_int_equal(snow_volume_share(place->context, &info, voxels, &volume),
+                     SNOW_OK);
+    assert_int_equal(snow_volume_save(volume, path, true), SNOW_OK);
+    snow_volume_close(volume);
+    pair p = open_pair(place, path, NULL, 0, NULL);
+    snow_view view = stand_at(place, 0);
+    snow_settings settings;
+    snow_settings_init(&settings);
+    for (int mode = SNOW_MODE_MIP; mode <= SNOW_MODE_SUM; mode++) {
+        settings.mode = (snow_mode)mode;
+        refuse(&p, "some voxels are no finite numbers, and mode m", &view,
+               &settings, SNOW_NO_MEMORY);
+        if (mode == SNOW_MODE_MEAN)
+            break;
+    }
+    settings.mode = SNOW_MODE_ISO;
+    settings.iso = 60;
+    same_pictures(&p, &view, &settings);
     close_pair(&p);
 }
 
@@ -582,6 +707,8 @@ static void streams_that_cannot_be_read_twice_are_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         TEST(pictures_are_those_of_the_volume_in_memory),
+        TEST(other_modes_are_those_of_the_volume_in_memory),
+        TEST(depths_of_over_are_those_of_the_volume_in_memory),
         TEST(opacity_by_gradients_sees_beyond_a_slabs_border),
         TEST(a_box_a_spacing_a_mask_and_a_plane_are_heeded),
         TEST(deterministic_pictures_are_the_same_too),
@@ -593,6 +720,7 @@ int main(void) {
         TEST(what_does_not_fit_is_counted),
         TEST(any_allocation_may_fail),
         TEST(pictures_that_look_at_voxels_are_refused),
+        TEST(modes_of_a_volume_with_holes_are_refused),
         TEST(all_else_that_looks_at_voxels_is_refused),
         TEST(a_file_that_goes_away_or_changes_is_an_error),
         TEST(streams_that_cannot_be_read_twice_are_refused),

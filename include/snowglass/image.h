@@ -45,6 +45,8 @@ typedef struct snow_image_options {
     bool overwrite;       /* replace an existing file */
     const snow_overlay *overlay; /* PNG, WebP: drawn over the picture, whose
                                     size it has; NULL: nothing */
+    const snow_image *depth;     /* EXR: an array of the picture's size, channel
+                                    Z beside the picture; NULL: none */
 } snow_image_options;
 
 /* Writes a picture in the format of the path's suffix; "-" is standard output,
@@ -56,7 +58,7 @@ typedef struct snow_image_options {
  *         width)
  *   .pfm  float32 RGB, premultiplied, without alpha; values as grey
  *   .exr  OpenEXR: float32 RGBA, premultiplied, packed without loss (ZIP);
- *         values as channel Y
+ *         values as channel Y; options->depth as channel Z
  *   .tif  TIFF: float32 RGBA, premultiplied (associated alpha), packed without
  *         loss (Deflate); values as one sample; also .tiff
  *   .webp straight alpha as in PNG, 8 bits, packed without loss; at most 16383
@@ -68,7 +70,8 @@ typedef struct snow_image_options {
  * existing one is kept, and an error, unless options->overwrite.  `options`
  * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix, or
  * one that this build lacks; a background, bits or an overlay for floats;
- * values into levels), SNOW_NO_MEMORY. */
+ * values into levels; a depth for other formats than EXR, or of another size),
+ * SNOW_NO_MEMORY. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
 
@@ -76,6 +79,10 @@ SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
  * for .png and "-", 8 for .webp; 0 where it holds floats, which takes neither
  * bits, a background nor an overlay; -1: none that snow_image_save writes. */
 SNOW_API int snow_image_bits(const char *path);
+
+/* Whether the format of a path's suffix has a channel for a depth beside the
+ * picture (snow_image_options): .exr. */
+SNOW_API bool snow_image_takes_depth(const char *path);
 
 /* The suffix of picture format `index` (from 0), and whether this build writes
  * and reads it, and has beside it what it must load for that; NULL past the

@@ -55,6 +55,8 @@ typedef struct snow_recipe {
     snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS];
     const char *tf; /* a file that stands for a preset (tf.h), or NULL */
     bool log;       /* as in snow_look */
+    const char *depth; /* path of the depths, or NULL; the output's own .exr
+                          gets them as a channel (image.h) */
 } snow_recipe;
 
 /* The defaults. */
@@ -94,7 +96,8 @@ SNOW_API snow_status snow_recipe_settings(snow_context *context,
 
 /* Tells it all to pictures in situ: look, view, settings, and the output where
  * there is one.  A grid in situ has no unit: opacities per millimetre are those
- * of a length of 1.  Errors: as above and of the setters. */
+ * of a length of 1.  Errors: as above and of the setters; SNOW_BAD_USAGE (a
+ * depth, which pictures in situ have none of). */
 SNOW_API snow_status snow_recipe_apply(const snow_recipe *recipe,
                                        snow_insitu *insitu);
 

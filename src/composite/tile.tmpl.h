@@ -3,6 +3,7 @@
  *
  *   TILE_CHANNELS  floats of a pixel: 2 or 4
  *   TILE_WEAVE     V(weave2) or V(weave4)
+ *   TILE_EVENS     V(evens2) or V(evens4)
  *   TILE_ALPHA     V(alpha2) or V(alpha4)
  *   TILE_NAME      names of the functions
  *
@@ -13,6 +14,13 @@
 
 /* Floats of a filtered row. */
 #define TILE_ROW (2 * SNOW_TILE_COLUMNS * TILE_CHANNELS)
+
+/* Vectors of so many floats that are summed side by side. */
+#define TILE_ABREAST(floats) ((floats) / LANES < 4 ? (floats) / LANES : 4)
+
+/* Pixels of a vector; taps that are no constant are more than TILE_TAPS. */
+#define TILE_VECTOR (LANES / TILE_CHANNELS)
+#define TILE_TAPS 6
 
 /* Returns a function of (tile, width, taps, phases, lead), with constants in
  * the cases that pictures are made of. */
@@ -46,6 +54,28 @@ TILE_NAME(_single)(const float *samples, const V(vec) * weights, const int taps,
     }
 }
 
+/* The same for kernels so wide that their taps are no constant: vectors side by
+ * side, since each sum waits for itself at every tap. */
+TARGET static inline __attribute__((always_inline)) void
+TILE_NAME(_single_wide)(const float *samples, const V(vec) * weights,
+                        const int taps, float *pixels) {
+    const int abreast = TILE_ABREAST(SNOW_TILE_COLUMNS * TILE_CHANNELS);
+    for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS;
+         at += abreast * LANES) {
+        V(vec) sums[4];
+        for (int n = 0; n < abreast; n++)
+            sums[n] = V(mul)(weights[0], V(load)(samples + at + n * LANES));
+        for (int m = 1; m < taps; m++)
+            for (int n = 0; n < abreast; n++)
+                sums[n] = V(fma)(
+                    weights[m],
+                    V(load)(samples + at + n * LANES + m * TILE_CHANNELS),
+                    sums[n]);
+        for (int n = 0; n < abreast; n++)
+            V(store)(pixels + at + n * LANES, sums[n]);
+    }
+}
+
 /* Along u, two pixels a column, each phase with its own weights; the odd one
  * begins `lead` voxels later.  A vector of voxels is loaded once for both:
  * loads are what the loop waits for. */
@@ -69,17 +99,22 @@ TILE_NAME(_double)(const float *samples, const V(vec) * weights, const int taps,
     }
 }
 
-/* Along u, several voxels a pixel. */
-TARGET static void TILE_NAME(_strided)(const float *samples, const snow_comb *u,
-                                       int taps, int stride, float *pixels) {
-    for (int n = 0; n < SNOW_TILE_COLUMNS; n++)
-        for (int c = 0; c < TILE_CHANNELS; c++) {
-            const float *sample = samples + n * stride * TILE_CHANNELS + c;
-            float sum = u->weights[0][0] * *sample;
-            for (int m = 1; m < taps; m++)
-                sum += u->weights[0][m] * sample[m * TILE_CHANNELS];
-            pixels[n * TILE_CHANNELS + c] = sum;
+/* Along u, two voxels a pixel: of sums at every voxel, which whole vectors
+ * make, every other one. */
+TARGET static inline __attribute__((always_inline)) void
+TILE_NAME(_halved)(const float *samples, const V(vec) * weights, const int taps,
+                   float *pixels) {
+    for (int n = 0; n < SNOW_TILE_COLUMNS; n += TILE_VECTOR) {
+        const float *at = samples + 2 * n * TILE_CHANNELS;
+        V(vec) a = V(mul)(weights[0], V(load)(at));
+        V(vec) b = V(mul)(weights[0], V(load)(at + LANES));
+        for (int m = 1; m < taps; m++) {
+            at += TILE_CHANNELS;
+            a = V(fma)(weights[m], V(load)(at), a);
+            b = V(fma)(weights[m], V(load)(at + LANES), b);
         }
+        V(store)(pixels + n * TILE_CHANNELS, TILE_EVENS(a, b));
+    }
 }
 
 /* One line: rows weighted and added up, behind the image.  True while something
@@ -87,9 +122,9 @@ TARGET static void TILE_NAME(_strided)(const float *samples, const snow_comb *u,
 TARGET static inline __attribute__((always_inline)) bool
 TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
                  const int taps, const int width) {
-    const float *row[SNOW_TAPS_MOST];
+    const float *row[SNOW_TAPS_MOST] = {rows[0]};
     V(vec) least = V(set1)(0);
-    for (int m = 0; m < taps; m++)
+    for (int m = 1; m < taps; m++)
         row[m] = rows[m];
     for (int at = 0; at < width; at += LANES) {
         V(vec) front = V(load)(line + at);
@@ -101,6 +136,30 @@ TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
         least = V(min)(least, front);
     }
     /* Colours are never below 0, so that only alpha - 1 counts. */
+    return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
+}
+
+/* The same for kernels so wide that their taps are no constant. */
+TARGET static inline __attribute__((always_inline)) bool
+TILE_NAME(_line_wide)(float *line, const float *const *rows,
+                      const V(vec) * weights, const int taps, const int width) {
+    const int abreast = TILE_ABREAST(width);
+    V(vec) least = V(set1)(0);
+    for (int at = 0; at < width; at += abreast * LANES) {
+        V(vec) sums[4];
+        for (int n = 0; n < abreast; n++)
+            sums[n] = V(mul)(weights[0], V(load)(rows[0] + at + n * LANES));
+        for (int m = 1; m < taps; m++)
+            for (int n = 0; n < abreast; n++)
+                sums[n] = V(fma)(weights[m], V(load)(rows[m] + at + n * LANES),
+                                 sums[n]);
+        for (int n = 0; n < abreast; n++) {
+            V(vec) front = V(load)(line + at + n * LANES);
+            front = V(fnma)(TILE_ALPHA(front), sums[n], front);
+            V(store)(line + at + n * LANES, front);
+            least = V(min)(least, front);
+        }
+    }
     return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
 }
 
@@ -159,10 +218,12 @@ TILE_NAME(_along_u)(const snow_tile *t, const int width, const int taps,
         float *pixels = t->ring + row * TILE_ROW;
         if (phases == 2)
             TILE_NAME(_double)(samples, weights, taps, lead, pixels);
-        else if (stride == 1)
-            TILE_NAME(_single)(samples, weights, taps, pixels);
+        else if (stride == 2)
+            TILE_NAME(_halved)(samples, weights, taps, pixels);
+        else if (taps > TILE_TAPS)
+            TILE_NAME(_single_wide)(samples, weights, taps, pixels);
         else
-            TILE_NAME(_strided)(samples, t->u, taps, stride, pixels);
+            TILE_NAME(_single)(samples, weights, taps, pixels);
     }
     return 0;
 }
@@ -183,10 +244,12 @@ TILE_NAME(_along_v)(const snow_tile *t, const int width, const int taps,
             rows[row] = t->held >> row & 1 ? t->ring + row * TILE_ROW : t->zero;
         const float *const *first = rows + cell * stride;
         float *line = t->pixels + (size_t)(cell * phases) * t->line;
-        bool seen = phases == 2
-                        ? TILE_NAME(_lines)(line, line + t->line, first,
+        bool seen =
+            phases == 2 ? TILE_NAME(_lines)(line, line + t->line, first,
                                             weights, taps, lead, width)
-                        : TILE_NAME(_line)(line, first, weights, taps, width);
+            : taps > TILE_TAPS
+                ? TILE_NAME(_line_wide)(line, first, weights, taps, width)
+                : TILE_NAME(_line)(line, first, weights, taps, width);
         finished |= seen ? 0 : left & -left;
     }
     return finished;
@@ -209,9 +272,13 @@ TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
 }
 
 #undef TILE_ROW
+#undef TILE_ABREAST
+#undef TILE_VECTOR
+#undef TILE_TAPS
 #undef TILE_CASE
 #undef TILE_CASES
 #undef TILE_CHANNELS
 #undef TILE_WEAVE
+#undef TILE_EVENS
 #undef TILE_ALPHA
 #undef TILE_NAME

@@ -1,10 +1,10 @@
 /* image/exr.c - OpenEXR files, by the core library of OpenEXR 3 (in C).
  *
  * Written: one part of scan lines with channels A, B, G, R of 32-bit floats,
- * premultiplied as the format wants it, or Y of values in data units, ZIP
- * packed.  The format means light to
- * be linear; our values are written as they are.  Read: parts of scan lines,
- * any packing, channels R, G, B, A or Y, halves and integers too.
+ * premultiplied as the format wants it, or Y of values in data units, and Z of
+ * a depth beside them; ZIP packed.  The format means light to be linear; our
+ * values are written as they are.  Read: parts of scan lines, any packing,
+ * channels R, G, B, A or Y, halves and integers too; others are passed over.
  *
  * The library takes its own memory, which no context counts: of a chunk of 16
  * lines at a time. */
@@ -86,36 +86,64 @@ static exr_context_initializer_t hooks_of(exr_file *file) {
 /* --- writing ---------------------------------------------------------------
  */
 
+/* Samples of a pixel while it is written: red, green, blue (or the value),
+ * alpha, depth. */
+#define SAMPLES 5
+
 /* In the order of their names, as the format has them, and the sample of a
  * pixel that each is. */
-static const struct {
+typedef struct exr_channel {
     const char *name;
     int sample;
-} channels[4] = {{"A", 3}, {"B", 2}, {"G", 1}, {"R", 0}};
+} exr_channel;
 
-static exr_result_t begin_part(exr_file *file, const snow_image *image) {
+static const exr_channel channels[] = {
+    {"A", 3}, {"B", 2}, {"G", 1}, {"R", 0}, {"Z", 4}};
+static const exr_channel value_channels[] = {{"Y", 0}, {"Z", 4}};
+
+/* A picture, and what is written beside it. */
+typedef struct exr_content {
+    const snow_image *image, *depth; /* NULL: none */
+    const exr_channel *channels;
+    int count; /* of them */
+} exr_content;
+
+static exr_content content_of(const snow_image *image,
+                              const snow_image *depth) {
+    bool values = image->channels == 1;
+    return (exr_content){.image = image,
+                         .depth = depth,
+                         .channels = values ? value_channels : channels,
+                         .count = (values ? 1 : 4) + (depth != NULL)};
+}
+
+static exr_result_t begin_part(exr_file *file, const exr_content *content) {
     int part = 0;
     exr_result_t code =
         exr_add_part(file->exr, "picture", EXR_STORAGE_SCANLINE, &part);
     if (code == EXR_ERR_SUCCESS)
         code = exr_initialize_required_attr_simple(
-            file->exr, part, image->width, image->height, EXR_COMPRESSION_ZIP);
-    bool values = image->channels == 1;
-    for (int n = 0; n < (values ? 1 : 4) && code == EXR_ERR_SUCCESS; n++)
-        code = exr_add_channel(file->exr, part, values ? "Y" : channels[n].name,
+            file->exr, part, content->image->width, content->image->height,
+            EXR_COMPRESSION_ZIP);
+    for (int n = 0; n < content->count && code == EXR_ERR_SUCCESS; n++)
+        code = exr_add_channel(file->exr, part, content->channels[n].name,
                                EXR_PIXEL_FLOAT, EXR_PERCEPTUALLY_LINEAR, 1, 1);
     return code == EXR_ERR_SUCCESS ? exr_write_header(file->exr) : code;
 }
 
-/* Lines from y on, as RGBA. */
-static void fill_lines(const snow_image *image, int y, int count, float *out) {
-    size_t width = (size_t)image->width, first = (size_t)y * width;
-    for (size_t i = 0; i < (size_t)count * width; i++)
-        snow_image_rgba(image, first + i, out + 4 * i);
+/* Lines from y on. */
+static void fill_lines(const exr_content *content, int y, int count,
+                       float *out) {
+    size_t width = (size_t)content->image->width, first = (size_t)y * width;
+    for (size_t i = 0; i < (size_t)count * width; i++, out += SAMPLES) {
+        snow_image_rgba(content->image, first + i, out);
+        out[4] = content->depth ? content->depth->pixels[first + i] : 0;
+    }
 }
 
 static exr_result_t write_chunk(exr_file *file, int y, const float *lines,
-                                int width, exr_encode_pipeline_t *pipe) {
+                                const exr_content *content,
+                                exr_encode_pipeline_t *pipe) {
     exr_chunk_info_t info;
     exr_result_t code = exr_write_scanline_chunk_info(file->exr, 0, y, &info);
     if (code != EXR_ERR_SUCCESS)
@@ -127,13 +155,11 @@ static exr_result_t write_chunk(exr_file *file, int y, const float *lines,
     for (int n = 0; n < pipe->channel_count; n++) {
         exr_coding_channel_info_t *channel = &pipe->channels[n];
         channel->encode_from_ptr =
-            (const uint8_t *)(lines + (pipe->channel_count == 1
-                                           ? 0
-                                           : channels[n].sample));
+            (const uint8_t *)(lines + content->channels[n].sample);
         channel->user_bytes_per_element = 4;
         channel->user_data_type = EXR_PIXEL_FLOAT;
-        channel->user_pixel_stride = 16;
-        channel->user_line_stride = 16 * width;
+        channel->user_pixel_stride = 4 * SAMPLES;
+        channel->user_line_stride = 4 * SAMPLES * content->image->width;
     }
     if (y == 0)
         code = exr_encoding_choose_default_routines(file->exr, 0, pipe);
@@ -141,36 +167,36 @@ static exr_result_t write_chunk(exr_file *file, int y, const float *lines,
                                    : code;
 }
 
-static exr_result_t write_lines(exr_file *file, const snow_image *image,
+static exr_result_t write_lines(exr_file *file, const exr_content *content,
                                 float *lines, int at_once) {
+    int height = content->image->height;
     exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
     exr_result_t code = EXR_ERR_SUCCESS;
-    for (int y = 0; y < image->height && code == EXR_ERR_SUCCESS;
-         y += at_once) {
-        int rest = image->height - y;
-        fill_lines(image, y, rest < at_once ? rest : at_once, lines);
-        code = write_chunk(file, y, lines, image->width, &pipe);
+    for (int y = 0; y < height && code == EXR_ERR_SUCCESS; y += at_once) {
+        int rest = height - y;
+        fill_lines(content, y, rest < at_once ? rest : at_once, lines);
+        code = write_chunk(file, y, lines, content, &pipe);
     }
     exr_encoding_destroy(file->exr, &pipe);
     return code;
 }
 
-static snow_status make_file(exr_file *file, const snow_image *image) {
+static snow_status make_file(exr_file *file, const exr_content *content) {
     exr_context_initializer_t hooks = hooks_of(file);
     int at_once = 0;
     float *lines = NULL;
     exr_result_t code = exr_start_write(&file->exr, "picture.exr",
                                         EXR_WRITE_FILE_DIRECTLY, &hooks);
     if (code == EXR_ERR_SUCCESS)
-        code = begin_part(file, image);
+        code = begin_part(file, content);
     if (code == EXR_ERR_SUCCESS)
         code = exr_get_scanlines_per_chunk(file->exr, 0, &at_once);
     if (code == EXR_ERR_SUCCESS) {
-        uint64_t pixels = (uint64_t)image->width * (uint64_t)at_once;
-        lines = snow_allocate_array(file->context, pixels, 16);
+        uint64_t pixels = (uint64_t)content->image->width * (uint64_t)at_once;
+        lines = snow_allocate_array(file->context, pixels, 4 * SAMPLES);
         if (!lines)
             return SNOW_NO_MEMORY;
-        code = write_lines(file, image, lines, at_once);
+        code = write_lines(file, content, lines, at_once);
     }
     snow_release(file->context, lines);
     if (code == EXR_ERR_SUCCESS)
@@ -189,8 +215,8 @@ static snow_status write_exr(const snow_image *image,
                              snow_writer *writer) {
     exr_file file = {.context = image->context,
                      .store = {.context = image->context}};
-    (void)options;
-    snow_status status = make_file(&file, image);
+    const exr_content content = content_of(image, options->depth);
+    snow_status status = make_file(&file, &content);
     if (file.exr)
         exr_finish(&file.exr);
     if (status == SNOW_OK)
@@ -377,13 +403,15 @@ const snow_image_format snow_image_exr = {.name = "EXR",
                                           .write = write_exr,
                                           .probe = probe_exr,
                                           .read = read_exr,
-                                          .in_any_order = true};
+                                          .in_any_order = true,
+                                          .takes_depth = true};
 
 #else
 
 const snow_image_format snow_image_exr = {.name = "EXR",
                                           .suffix = ".exr",
                                           .package = "libopenexr-dev",
+                                          .takes_depth = true,
                                           .probe = probe_exr};
 
 #endif

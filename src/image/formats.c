@@ -46,6 +46,11 @@ int snow_image_bits(const char *path) {
     return format ? format->bits : -1;
 }
 
+bool snow_image_takes_depth(const char *path) {
+    const snow_image_format *format = format_of(path);
+    return format && format->takes_depth;
+}
+
 /* A module that is missing is told of before there is anything to write. */
 static snow_status load_module(snow_context *context, const char *path,
                                const snow_image_format *format) {
@@ -93,6 +98,27 @@ static snow_status check_overlay(snow_context *context, const char *path,
     return SNOW_OK;
 }
 
+static snow_status check_depth(snow_context *context, const char *path,
+                               int width, int height,
+                               const snow_image_format *format,
+                               const snow_image *depth) {
+    if (!depth)
+        return SNOW_OK;
+    if (!format->takes_depth)
+        return snow_fail(context, SNOW_BAD_USAGE,
+                         "%s: %s takes no depth beside the picture; write a "
+                         ".exr, or the depth to a file of its own",
+                         path, format->name);
+    if (depth->channels == 1 && depth->width == width &&
+        depth->height == height)
+        return SNOW_OK;
+    return snow_fail(context, SNOW_BAD_USAGE,
+                     "%s: the depth is of %d x %d pixels of %d channels, the "
+                     "picture of %d x %d; make one for it",
+                     path, depth->width, depth->height, depth->channels, width,
+                     height);
+}
+
 /* Refuses what a format cannot heed, rather than to ignore it. */
 static snow_status check_options(snow_context *context, const char *path,
                                  int width, int height,
@@ -124,6 +150,7 @@ static snow_status check_options(snow_context *context, const char *path,
                              "%s: the background has a channel of %g; take 0 "
                              "to 1",
                              path, options->background[i]);
+    SNOW_TRY(check_depth(context, path, width, height, format, options->depth));
     return check_overlay(context, path, width, height, format,
                          options->overlay);
 }

@@ -47,6 +47,7 @@ typedef struct snow_image_format {
     const char *module;  /* base/module.h: it is loaded to read and write, and
                             may be missing; NULL: none */
     bool in_any_order;   /* reads the source by base/random.h */
+    bool takes_depth;    /* beside the picture (snow_image_options) */
     int most_side;       /* pixels; 0: SNOW_IMAGE_SIDE */
     int bits;            /* the most a channel, of levels; 0: floats, without
                             background and overlay */

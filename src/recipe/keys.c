@@ -611,6 +611,7 @@ static bool read_bits(const recipe_key *key, const json_t *value, void *field,
 const recipe_key recipe_keys[] = {
     TEXT("input", input),
     TEXT("output", output),
+    TEXT("depth", depth),
     MADE("overwrite", flag, image.overwrite, 0, 0, 0),
     MADE("size", size, width, 1, 32768, 2),
     MADE("background", color, image, 0, 1, 3),

@@ -240,6 +240,10 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
     snow_view usual, view;
     snow_settings settings;
     snow_tf *tf = NULL;
+    if (recipe->depth)
+        return snow_context_fail(context, SNOW_BAD_USAGE,
+                                 "\"depth\" is for pictures of files; leave it "
+                                 "out of a recipe for a simulation");
     snow_recipe_look(recipe, &look);
     snow_status status = snow_view_named(context, "+z", &usual);
     if (status == SNOW_OK && recipe->tf)

@@ -50,6 +50,7 @@
  *   V(popcount)(x)                   bits that are set in a uint64_t
  *   V(weave2)(a, b, p), V(weave4)    stores the pixels (of 2 or 4 floats) of a
  *                                    and b in turns: a0 b0 a1 b1 ...
+ *   V(evens2)(a, b), V(evens4)       pixels 0, 2, 4 ... of a and b
  *   V(fold2)(v), V(fold4)(v)         the sum of the vector's pixels, by halves,
  *                                    in the first 2 or 4 floats of a scalar
  *                                    vector

@@ -65,6 +65,17 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha4(snow_avx2_vec v) {
     return _mm256_permute_ps(v, 0xFF);
 }
 
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_evens2(snow_avx2_vec a,
+                                                snow_avx2_vec b) {
+    __m256d low = _mm256_unpacklo_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
+    return _mm256_castpd_ps(_mm256_permute4x64_pd(low, 0xD8));
+}
+
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_evens4(snow_avx2_vec a,
+                                                snow_avx2_vec b) {
+    return _mm256_permute2f128_ps(a, b, 0x20);
+}
+
 SNOW_AVX2_INLINE void snow_avx2_weave2(snow_avx2_vec a, snow_avx2_vec b,
                                        float *p) {
     __m256d low = _mm256_unpacklo_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));

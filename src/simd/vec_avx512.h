@@ -75,6 +75,20 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha4(snow_avx512_vec v) {
     return _mm512_permute_ps(v, 0xFF);
 }
 
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_evens2(snow_avx512_vec a,
+                                                      snow_avx512_vec b) {
+    return _mm512_castpd_ps(_mm512_permutex2var_pd(
+        _mm512_castps_pd(a), _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14),
+        _mm512_castps_pd(b)));
+}
+
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_evens4(snow_avx512_vec a,
+                                                      snow_avx512_vec b) {
+    return _mm512_castpd_ps(_mm512_permutex2var_pd(
+        _mm512_castps_pd(a), _mm512_setr_epi64(0, 1, 4, 5, 8, 9, 12, 13),
+        _mm512_castps_pd(b)));
+}
+
 SNOW_AVX512_INLINE void snow_avx512_interleave(snow_avx512_vec a,
                                                snow_avx512_vec b, __m512i low,
                                                __m512i high, float *p) {

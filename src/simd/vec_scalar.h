@@ -78,6 +78,17 @@ static inline snow_scalar_vec snow_scalar_alpha4(snow_scalar_vec v) {
     return (snow_scalar_vec){v[3], v[3], v[3], v[3]};
 }
 
+static inline snow_scalar_vec snow_scalar_evens2(snow_scalar_vec a,
+                                                 snow_scalar_vec b) {
+    return (snow_scalar_vec){a[0], a[1], b[0], b[1]};
+}
+
+static inline snow_scalar_vec snow_scalar_evens4(snow_scalar_vec a,
+                                                 snow_scalar_vec b) {
+    (void)b;
+    return a;
+}
+
 static inline void snow_scalar_weave2(snow_scalar_vec a, snow_scalar_vec b,
                                       float *p) {
     snow_scalar_store(p, (snow_scalar_vec){a[0], a[1], b[0], b[1]});

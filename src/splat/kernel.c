@@ -150,11 +150,11 @@ double snow_taper_weight(const snow_taper *taper, double t) {
 
 void snow_taper_spread(const snow_taper *taper, double t, int first, int count,
                        float *weights) {
-    double sum = 0;
+    double sum = 0, values[SNOW_PHASE_TAPS_MOST];
     for (int n = 0; n < count; n++)
-        sum += value_at(taper, t - (first + n));
+        sum += values[n] = value_at(taper, t - (first + n));
     for (int n = 0; n < count; n++)
-        weights[n] = (float)(value_at(taper, t - (first + n)) / sum);
+        weights[n] = (float)(values[n] / sum);
 }
 
 float snow_taper_box(const snow_taper *taper, double t) {

@@ -70,7 +70,7 @@ void snow_taper_phase(const snow_taper *taper, double phase, double *weights);
 
 /* Weights of the voxels at first, first + 1 ... for a point at `t`, all in one:
  * what snow_taper_weight gives, but for rounding.  None but these may be in
- * reach. */
+ * reach; there are SNOW_PHASE_TAPS_MOST at most. */
 void snow_taper_spread(const snow_taper *taper, double t, int first, int count,
                        float *weights);
 

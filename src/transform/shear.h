@@ -22,7 +22,7 @@
  */
 typedef struct snow_lattice {
     int phases; /* pixels a voxel, 1 or 2 */
-    int stride; /* voxels a pixel, above 1 only where phases is 1 */
+    int stride; /* voxels a pixel, 2 only where phases is 1 */
     double slope;
     int64_t first; /* a multiple of phases */
     int count;     /* pixels, 0 when nothing is in view */
@@ -43,9 +43,10 @@ typedef struct snow_shear_options {
 } snow_shear_options;
 
 /* The part of the lattice that both holds voxels and is in view, with a border
- * of SNOW_SHEAR_BORDER pixels that are empty or out of view.  Errors:
+ * of SNOW_SHEAR_BORDER pixels that are empty or out of view: the two that a
+ * warp reads beyond its place, and what it keeps away from the ends.  Errors:
  * SNOW_BAD_USAGE (an intermediate image beyond all measure). */
-#define SNOW_SHEAR_BORDER 3
+#define SNOW_SHEAR_BORDER 5
 snow_status snow_shear_make(snow_context *context,
                             const snow_placement *placement,
                             const snow_shear_options *options, snow_shear *out);

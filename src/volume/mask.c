@@ -459,22 +459,32 @@ static snow_status look_at_both(opening *o) {
     return compare(o, &info);
 }
 
+void snow_mask_remark(snow_context *context, const snow_volume_options *options,
+                      const double mask_range[2]) {
+    if (options->mask)
+        snow_notify(context,
+                    "%s: no voxel is left inside this mask, whose values are "
+                    "%g to %g; correct --labels, or the mask",
+                    options->mask, mask_range[0], mask_range[1]);
+    else
+        snow_notify(context, "--clip: no voxel is left; these are beyond "
+                             "A x + B y + C z = D of the world");
+}
+
 /* An empty picture must not pass for one of an empty volume.  A box may be
- * empty, as that of a rank often is. */
-static void warn(const opening *o, const snow_volume *mask) {
-    snow_volume_measures m;
-    if (is_cropped(&o->options))
-        return;
-    if (!mask) {
-        snow_notify(o->context, "--clip: no voxel is left; these are beyond "
-                                "A x + B y + C z = D of the world");
-        return;
-    }
-    snow_volume_measure(mask, &m);
-    snow_notify(o->context,
-                "%s: no voxel is left inside this mask, whose values are "
-                "%g to %g; correct --labels, or the mask",
-                o->mask_path, m.min, m.max);
+ * empty, as that of a rank often is; who reads all boxes looks at all. */
+static void note_empty(const opening *o, const snow_volume *mask,
+                       snow_volume *volume) {
+    snow_volume_measures m = {.min = NAN, .max = NAN};
+    snow_volume_options options = o->options;
+    options.mask = o->mask_path;
+    if (mask)
+        snow_volume_measure(mask, &m);
+    volume->emptied = true;
+    volume->mask_range[0] = m.min;
+    volume->mask_range[1] = m.max;
+    if (!is_cropped(&options))
+        snow_mask_remark(o->context, &options, volume->mask_range);
 }
 
 static snow_status leave_out_of(const opening *o, const snow_volume *volume,
@@ -483,7 +493,7 @@ static snow_status leave_out_of(const opening *o, const snow_volume *volume,
     bool any;
     SNOW_TRY(apply(volume, &by, &any, out));
     if (!any)
-        warn(o, mask);
+        note_empty(o, mask, *out);
     return SNOW_OK;
 }
 

@@ -16,4 +16,9 @@ snow_status snow_mask_open(snow_context *context, const char *path,
                            const snow_volume_options *options,
                            snow_volume_info *info, snow_volume **out);
 
+/* Tells that no voxel is left of a volume that was opened with these options,
+ * by a mask of these values, or by planes alone. */
+void snow_mask_remark(snow_context *context, const snow_volume_options *options,
+                      const double mask_range[2]);
+
 #endif

@@ -6,6 +6,9 @@
  * file that was replaced in between is noticed by its sizes at the latest. */
 #include "volume/stream.h"
 
+#include "volume/mask.h"
+
+#include <math.h>
 #include <string.h>
 
 #define REMARKS_MOST 64
@@ -15,6 +18,13 @@ struct snow_stream {
     snow_volume_options options; /* with texts of its own */
     uint64_t slab_bytes;         /* of voxels of a slab, ghosts included */
     double seconds;              /* of reading */
+    bool left;                   /* of the present visit: a slab has voxels
+                                    that no mask or plane leaves out */
+    double mask_range[2];        /* of it: the mask's values, NaN where it is
+                                    not known */
+    bool told_empty;             /* that nothing is left */
+    bool measured;               /* `range` is known */
+    snow_volume_measures range;
     char *path;
     /* Remarks of reading, each of which is told once: a sum for each. */
     snow_notice_fn *notice;
@@ -157,6 +167,8 @@ static int64_t slab_slices(const snow_volume *volume,
     uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
                      (uint64_t)snow_type_size(volume->info.type);
     uint64_t room = volume->stream->slab_bytes / slice;
+    if (cut->thin > 1)
+        room /= (uint64_t)cut->thin;
     uint64_t around = 2 * (uint64_t)cut->ghosts, step = (uint64_t)cut->step;
     if (room < around + step)
         return cut->step;
@@ -239,6 +251,26 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     return SNOW_OK;
 }
 
+/* What a mask or planes have left of the slabs that one visit has read. */
+static void note_empty(const snow_volume *slab, snow_stream *stream) {
+    if (!slab->emptied)
+        stream->left = true;
+    stream->mask_range[0] = fmin(stream->mask_range[0], slab->mask_range[0]);
+    stream->mask_range[1] = fmax(stream->mask_range[1], slab->mask_range[1]);
+}
+
+/* As of a volume in memory: of one that is cropped nothing is said. */
+static void tell_empty(const snow_volume *volume) {
+    static const int64_t none[3][2];
+    snow_stream *stream = volume->stream;
+    const snow_volume_options *options = &stream->options;
+    if (stream->left || stream->told_empty || !snow_mask_asked(options) ||
+        memcmp(options->crop, none, sizeof none) != 0)
+        return;
+    stream->told_empty = true;
+    snow_mask_remark(volume->context, options, stream->mask_range);
+}
+
 /* Its voxels' room is left to the next one. */
 static void drop_slab(snow_volume *slab) {
     snow_context *context = slab->context;
@@ -252,29 +284,79 @@ static void drop_slab(snow_volume *slab) {
     snow_volume_close(slab);
 }
 
+static snow_status visit_slab(const snow_volume *volume, int64_t first,
+                              int64_t count, int64_t ghosts,
+                              snow_slab_fn *visit, void *user) {
+    snow_volume *slab;
+    SNOW_TRY(read_slab(volume, first, count, ghosts, &slab));
+    note_empty(slab, volume->stream);
+    snow_status status = visit(slab, user);
+    drop_slab(slab);
+    return status;
+}
+
 static snow_status visit_slabs(const snow_volume *volume,
                                const snow_slab_cut *cut, snow_slab_fn *visit,
                                void *user) {
     int64_t all = volume->info.dims[2], count = slab_slices(volume, cut);
-    for (int64_t first = 0; first < all; first += count) {
-        snow_volume *slab;
-        int64_t some = all - first < count ? all - first : count;
-        SNOW_TRY(read_slab(volume, first, some, cut->ghosts, &slab));
-        snow_status status = visit(slab, user);
-        drop_slab(slab);
-        SNOW_TRY(status);
-    }
+    int64_t nearest = cut->from / count * count;
+    for (int64_t first = nearest; first < all; first += count)
+        SNOW_TRY(visit_slab(volume, first,
+                            all - first < count ? all - first : count,
+                            cut->ghosts, visit, user));
+    for (int64_t first = nearest - count; first >= 0; first -= count)
+        SNOW_TRY(visit_slab(volume, first, count, cut->ghosts, visit, user));
     return SNOW_OK;
 }
 
 snow_status snow_slabs_visit(const snow_volume *volume,
                              const snow_slab_cut *cut, snow_slab_fn *visit,
                              void *user) {
-    if (!volume->stream)
+    snow_stream *stream = volume->stream;
+    if (!stream)
         return visit(volume, user);
+    stream->left = false;
+    stream->mask_range[0] = stream->mask_range[1] = NAN;
     snow_status status = visit_slabs(volume, cut, visit, user);
+    if (status == SNOW_OK)
+        tell_empty(volume);
     snow_context *context = volume->context;
     snow_release(context, context->spare);
     context->spare = NULL;
     return status;
+}
+
+/* --- the range ------------------------------------------------------------
+ */
+
+/* `user` is what is known so far; NaN where nothing is. */
+static snow_status measure_slab(const snow_volume *slab, void *user) {
+    snow_volume_measures *range = user, here;
+    snow_volume_measure(slab, &here);
+    range->voxels += here.voxels;
+    range->finite += here.finite;
+    range->min = fmin(range->min, here.min);
+    range->max = fmax(range->max, here.max);
+    return SNOW_OK;
+}
+
+snow_status snow_volume_range(const snow_volume *volume,
+                              snow_volume_measures *out) {
+    static const snow_slab_cut cut = {.step = 1};
+    snow_volume_measures range = {.min = NAN, .max = NAN};
+    if (volume->stream && volume->stream->measured) {
+        *out = volume->stream->range;
+        return SNOW_OK;
+    }
+    SNOW_TRY(snow_slabs_visit(volume, &cut, measure_slab, &range));
+    if (volume->stream)
+        snow_stream_note_range(volume, &range);
+    *out = range;
+    return SNOW_OK;
+}
+
+void snow_stream_note_range(const snow_volume *volume,
+                            const snow_volume_measures *range) {
+    volume->stream->range = *range;
+    volume->stream->measured = true;
 }

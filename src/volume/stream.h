@@ -19,13 +19,17 @@ typedef struct snow_slab_cut {
     int64_t step;   /* slices of a slab are a multiple of it, but for the last
                        ones; at least 1 */
     int64_t ghosts; /* layers on either side, but beyond the grid */
+    int64_t thin;   /* so many times thinner than usual, where what is made of a
+                       slab takes as many times its bytes; 0: as usual */
+    int64_t from;   /* a slice: its slab comes first, then those above it,
+                       rising, then those below it, falling */
 } snow_slab_cut;
 
 /* Is handed a slab, which is a part of the volume (or the volume itself), and
  * gone after the call. */
 typedef snow_status snow_slab_fn(const snow_volume *slab, void *user);
 
-/* Hands out all slabs, rising.  Errors: of the function, which ends it; of
+/* Hands out all slabs.  Errors: of the function, which ends it; of
  * snow_volume_open; SNOW_BAD_INPUT (the file is another one by now). */
 snow_status snow_slabs_visit(const snow_volume *volume,
                              const snow_slab_cut *cut, snow_slab_fn *visit,
@@ -33,6 +37,17 @@ snow_status snow_slabs_visit(const snow_volume *volume,
 
 /* The most bytes that one of them has, ghosts included. */
 uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut);
+
+/* All of snow_volume_measure but the sums.  Of a volume in its file slabs are
+ * read, unless the range is known; of a part it is that of the part.  Errors:
+ * as snow_slabs_visit. */
+snow_status snow_volume_range(const snow_volume *volume,
+                              snow_volume_measures *out);
+
+/* Makes known the range of a volume in its file, as snow_volume_range finds it.
+ */
+void snow_stream_note_range(const snow_volume *volume,
+                            const snow_volume_measures *range);
 
 /* For what needs all voxels at once.  Errors: SNOW_BAD_USAGE (these stay in
  * their file). */

@@ -31,6 +31,8 @@ struct snow_volume {
     /* Of a level (levels.h): a step of the volume's that it was made of, in its
      * own; else 0. */
     double fine[3];
+    bool emptied;         /* a mask or planes have left no voxel: */
+    double mask_range[2]; /* the mask's values, NaN where there is none */
 };
 
 /* What is known of the whole that a volume is a part of: its dims and its

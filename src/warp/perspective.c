@@ -2,7 +2,7 @@
  *
  * Along a line of the picture both places in the intermediate image are
  * quotients of linear functions with one denominator: a division a pixel. */
-#include "warp/warp.h"
+#include "warp/blocks.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,43 +42,32 @@ static inline void place_pixel(double line[3][2], int x, int64_t place[2]) {
     place[1] = (int64_t)((line[1][0] + x * line[1][1]) * scale);
 }
 
-/* The blocks of `size` pixels, within 0 .. most, that are read between two
- * places.  Along a line a place only rises or only falls. */
-static void blocks_between(int64_t a, int64_t b, int size, int most,
-                           int range[2]) {
-    int64_t low = ((a < b ? a : b) >> 32) - 1,
-            high = ((a < b ? b : a) >> 32) + 2;
-    range[0] = (int)(low < 0 ? 0 : low) / size;
-    range[1] = (int)(high > most ? most : high) / size;
-}
-
-static bool any_drawn(const snow_plane *plane, const int64_t first[2],
-                      const int64_t last[2]) {
-    int x[2], y[2];
-    blocks_between(first[0], last[0], plane->block_width, plane->width - 1, x);
-    blocks_between(first[1], last[1], plane->block_height, plane->height - 1,
-                   y);
-    for (int j = y[0]; j <= y[1]; j++)
-        for (int i = x[0]; i <= x[1]; i++)
-            if (plane->drawn[j * plane->blocks + i])
-                return true;
-    return false;
-}
-
 /* Pixels x .. x + count - 1 of a line, which lie within the plane. */
-static void warp_run(const snow_plane *plane, double line[3][2],
+static void warp_run(const snow_blocks *blocks, double line[3][2],
                      snow_warp_places_fn *warp, int x, int count,
                      float *pixels) {
+    const snow_plane *plane = blocks->plane;
     int64_t places[CHUNK][2];
     place_pixel(line, x, places[0]);
     place_pixel(line, x + count - 1, places[count - 1]);
-    if (!any_drawn(plane, places[0], places[count - 1])) {
+    if (!snow_blocks_drawn(blocks, places[0], places[count - 1])) {
         memset(pixels, 0, (size_t)(count * plane->channels) * sizeof *pixels);
         return;
     }
     for (int n = 1; n < count - 1; n++)
         place_pixel(line, x + n, places[n]);
     warp(plane, (const int64_t(*)[2])places, count, pixels);
+}
+
+/* Pixels first .. last of a line, of which there is one, in chunks. */
+static void warp_runs(const snow_plane *plane, double line[3][2],
+                      snow_warp_places_fn *warp, int first, int last,
+                      float *pixels) {
+    const snow_blocks blocks = snow_blocks_of(plane);
+    for (int x = first; x <= last; x += CHUNK)
+        warp_run(&blocks, line, warp, x,
+                 last - x + 1 < CHUNK ? last - x + 1 : CHUNK,
+                 pixels + (size_t)(x * plane->channels));
 }
 
 void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
@@ -98,10 +87,8 @@ void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
         first = to, last = to - 1;
     memset(pixels + (size_t)from * pixel, 0,
            (size_t)(first - from) * pixel * sizeof *pixels);
-    for (int x = first; x <= last; x += CHUNK)
-        warp_run(plane, line, warp, x,
-                 last - x + 1 < CHUNK ? last - x + 1 : CHUNK,
-                 pixels + (size_t)x * pixel);
+    if (first <= last)
+        warp_runs(plane, line, warp, first, last, pixels);
     memset(pixels + (size_t)(last + 1) * pixel, 0,
            (size_t)(to - 1 - last) * pixel * sizeof *pixels);
 }

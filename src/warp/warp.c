@@ -3,7 +3,7 @@
  * Catmull-Rom's cubic (Keys 1981, a = -1/2) keeps what a bilinear warp blurs;
  * it may swing beyond its data beside an edge, so that results are held to 0
  * <= colour <= alpha <= 1, which premultiplied pictures obey. */
-#include "warp/warp.h"
+#include "warp/blocks.h"
 
 #include <math.h>
 #include <string.h>
@@ -105,37 +105,23 @@ static int64_t fixed(double x) {
 /* Pixels of the picture that are warped, or left out, together. */
 #define RUN GROUP
 
-/* The blocks that pixels first .. last of a line read along an axis. */
-static void blocks_of(const snow_warp_line *line, int axis, int first, int last,
-                      int size, int most, int range[2]) {
-    int64_t a = (line->start[axis] + first * line->step[axis]) >> 32;
-    int64_t b = (line->start[axis] + last * line->step[axis]) >> 32;
-    int64_t low = (a < b ? a : b) - 1, high = (a < b ? b : a) + 2;
-    range[0] = (int)(low < 0 ? 0 : low) / size;
-    range[1] = (int)(high > most ? most : high) / size;
+static void place_of(const snow_warp_line *line, int x, int64_t place[2]) {
+    place[0] = line->start[0] + x * line->step[0];
+    place[1] = line->start[1] + x * line->step[1];
 }
 
-/* Whether anything was drawn where pixels first .. last of a line read. */
-static bool any_drawn(const snow_plane *plane, const snow_warp_line *line,
-                      int first, int last) {
-    int x[2], y[2];
-    blocks_of(line, 0, first, last, plane->block_width, plane->width - 1, x);
-    blocks_of(line, 1, first, last, plane->block_height, plane->height - 1, y);
-    for (int j = y[0]; j <= y[1]; j++)
-        for (int i = x[0]; i <= x[1]; i++)
-            if (plane->drawn[j * plane->blocks + i])
-                return true;
-    return false;
-}
-
-/* Pixels first .. last of a line, which lie within the plane. */
+/* Pixels first .. last of a line, of which there is one, within the plane. */
 static void warp_runs(const snow_plane *plane, const snow_warp_line *line,
                       snow_warp_fn *warp, int first, int last, float *pixels) {
     size_t pixel = (size_t)plane->channels;
+    const snow_blocks blocks = snow_blocks_of(plane);
+    int64_t ends[2][2];
     int begun = first; /* of pixels that are still to be warped */
     for (int x = first; x <= last; x += RUN) {
         int end = x + RUN <= last ? x + RUN : last + 1;
-        if (any_drawn(plane, line, x, end - 1))
+        place_of(line, x, ends[0]);
+        place_of(line, end - 1, ends[1]);
+        if (snow_blocks_drawn(&blocks, ends[0], ends[1]))
             continue;
         if (begun < x)
             warp(plane, line, begun, x - begun, pixels + (size_t)begun * pixel);
@@ -170,7 +156,8 @@ void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
         first = to, last = to - 1;
     memset(pixels + (size_t)from * pixel, 0,
            (size_t)(first - from) * pixel * sizeof *pixels);
-    warp_runs(plane, &line, warp, first, last, pixels);
+    if (first <= last)
+        warp_runs(plane, &line, warp, first, last, pixels);
     memset(pixels + (size_t)(last + 1) * pixel, 0,
            (size_t)(to - 1 - last) * pixel * sizeof *pixels);
 }
