@@ -1,5 +1,6 @@
 /* ranks_flight.c - pictures by many processors that are under way at the same
- * time: while one is combined, the next is drawn.
+ * time: while one is combined, the next is drawn.  One that no other follows is
+ * still drawn when its turn comes, and sent meanwhile (ranks_render.c).
  *
  *   begin 0   draw 0
  *   begin 1             draw 1, where it waits | the rest of it

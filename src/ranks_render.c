@@ -11,8 +11,17 @@
  *
  * A local image by the sheared method along one axis is begun as soon as the
  * picture is, and then drawn while others wait, for messages of the picture
- * before it (ranks_flight.c).  From then on it needs no volume.  Other local
- * images are made when it is their picture's turn. */
+ * before it (ranks_flight.c).  From then on it needs no volume.  Where its turn
+ * comes before all of it is drawn, its parts are sent as they are done:
+ *
+ *   rank 0   draw 1 | send 1, draw 2 | send 2, draw 0
+ *   rank 1   draw 2 | send 2, draw 0 | send 0, draw 1
+ *   rank 2   draw 0 | send 0, draw 1 | send 1, draw 2     pieces are numbered
+ *                                                         as their ranks are
+ *
+ * Every rank begins behind its own piece, so that nobody gets all messages at
+ * once, and what is drawn last need not be sent.  Other local images are made
+ * when it is their picture's turn. */
 #include "ranks_parts.h"
 
 #include "decompose/order.h"

@@ -4,8 +4,9 @@
  * Before the first round each rank's combined image is its local image.  In a
  * round it is cut into parts, each looked through (or, later, merged from what
  * came in the round before) only when it is sent, so that computing and sending
- * overlap.  Pixels are read and written once a round, packed; only the last
- * round unpacks them.
+ * overlap; an unfinished local image is drawn on until one is there, and which
+ * part is sent first changes no bit.  Pixels are read and written once a round,
+ * packed; only the last round unpacks them.
  *
  * Memory is taken when the order's shape changes, or when counted pieces are
  * larger than any before.  All ranks know that, and agree on whether there was
