@@ -74,6 +74,7 @@ typedef struct frame_figures {
                            bricks those at the borders that neighbours own */
     int64_t slices;     /* of its part, along the view's slice axis */
     int64_t active;     /* pixels of its local image */
+    uint64_t early;     /* bytes that it sent before that was drawn */
     double first_local; /* processor time of the first local image */
     int rounds, radices[FRAME_ROUNDS_MOST];
     snow_method method;
@@ -86,7 +87,7 @@ typedef struct frame_result {
     int channels, rounds, radices[FRAME_ROUNDS_MOST];
     snow_method method;
     double most[FRAME_STAGES], mean[FRAME_STAGES];
-    uint64_t messages_most, bytes_most, bytes_sum;
+    uint64_t messages_most, bytes_most, bytes_sum, early_sum;
     int64_t voxels_most, voxels_sum, slices_least, active_most;
     /* Processor time of local images after the last cut by time, if there is
      * one: medians of the pictures, of the slowest rank and in the mean. */

@@ -34,6 +34,7 @@ static void put_counters(bench_line *out, const frame_result *result) {
     const double mean = (double)result->voxels_sum / result->ranks;
     bench_line_int(out, "bytes_sent_max", (int64_t)result->bytes_most);
     bench_line_int(out, "bytes_sent_sum", (int64_t)result->bytes_sum);
+    bench_line_int(out, "bytes_early_sum", (int64_t)result->early_sum);
     bench_line_int(out, "msgs_max", (int64_t)result->messages_most);
     bench_line_int(out, "active_px_max", result->active_most);
     bench_line_int(out, "voxels_max", result->voxels_most);

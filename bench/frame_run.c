@@ -102,6 +102,7 @@ static void take_stats(frame_rank *s, bool first) {
     seconds[FRAME_WARP_CPU] = stats->cpu_warp;
     seconds[FRAME_GATHER_CPU] = stats->cpu_gather;
     s->mine.active = stats->active_pixels;
+    s->mine.early = stats->bytes_early;
     s->mine.rounds =
         stats->rounds < FRAME_ROUNDS_MOST ? stats->rounds : FRAME_ROUNDS_MOST;
     memcpy(s->mine.radices, stats->radices, sizeof s->mine.radices);
@@ -144,6 +145,7 @@ static void add_rank(const frame_figures *f, int ranks, frame_result *out) {
         out->mean[i] += f->seconds[i] / ranks;
     }
     out->bytes_sum += f->bytes;
+    out->early_sum += f->early;
     out->voxels_sum += f->voxels;
     if (f->bytes > out->bytes_most)
         out->bytes_most = f->bytes;

@@ -1,5 +1,6 @@
 /* ranks_flight.c - pictures by many processors that are under way at the same
- * time: while one is combined, the next is drawn.
+ * time: while one is combined, the next is drawn.  One that no other follows is
+ * still drawn when its turn comes, and sent meanwhile (ranks_render.c).
  *
  *   begin 0   draw 0
  *   begin 1             draw 1, where it waits | the rest of it
@@ -86,6 +87,7 @@ static snow_status new_ranks(snow_frame *frame, snow_comm *comm) {
     r->comm = comm;
     r->rank = snow_comm_rank(comm);
     r->ranks = snow_comm_ranks(comm);
+    r->begin_at = (double)(r->rank + 1) / r->ranks;
     frame->ranks = r;
     return take_arrays(r);
 }
@@ -108,7 +110,7 @@ static snow_status open_ranks(snow_frame *frame, snow_comm *comm) {
  */
 
 double snow_ranks_clock(const snow_ranks *r) {
-    return snow_comm_seconds(r->comm) - r->hidden;
+    return snow_comm_seconds(r->comm) - r->apart;
 }
 
 static double processor_time(const snow_picture *p) {
@@ -117,30 +119,52 @@ static double processor_time(const snow_picture *p) {
 }
 
 double snow_picture_cpu(const snow_picture *p) {
-    return processor_time(p) - p->ranks->hidden_cpu;
+    return processor_time(p) - p->ranks->apart_cpu;
 }
 
-/* One band of the picture that is drawn. */
+/* Bands that follow one another are timed together: to look at a clock takes
+ * time too. */
+static void stop_clock(snow_ranks *r) {
+    if (r->standing)
+        return;
+    r->standing = true;
+    r->since = snow_comm_seconds(r->comm);
+    r->since_cpu = processor_time(r->drawn);
+}
+
+double snow_ranks_pause(snow_ranks *r) {
+    if (!r->standing)
+        return 0;
+    double took = snow_comm_seconds(r->comm) - r->since;
+    double cpu = processor_time(r->drawn) - r->since_cpu;
+    r->standing = false;
+    r->apart += took;
+    r->apart_cpu += cpu;
+    r->drawn->apart += took;
+    r->drawn->stats.cpu_splat += cpu;
+    return took;
+}
+
+bool snow_ranks_draw(snow_ranks *r) {
+    stop_clock(r);
+    return snow_sheared_step(r->drawn->work.sheared);
+}
+
 static bool draw_meanwhile(void *of) {
     snow_ranks *r = of;
-    double mark = snow_comm_seconds(r->comm), cpu = processor_time(r->drawn);
-    bool any = snow_sheared_step(r->drawn->work.sheared);
-    double took = snow_comm_seconds(r->comm) - mark;
-    cpu = processor_time(r->drawn) - cpu;
-    r->hidden += took;
-    r->hidden_cpu += cpu;
-    r->drawn->stats.cpu_splat += cpu;
-    r->drawn->stats.seconds_hidden += took;
+    bool any = snow_ranks_draw(r);
+    r->drawn->stats.seconds_hidden += snow_ranks_pause(r);
     return any;
 }
 
-/* Ends the drawing of a picture: its turn has come, or another's to be drawn.
- */
-static void settle(snow_ranks *r) {
+void snow_ranks_settle(snow_ranks *r) {
     if (!r->drawn)
         return;
     snow_comm_occupy(r->comm, NULL, NULL);
-    snow_picture_settle(r->drawn);
+    stop_clock(r);
+    snow_sheared_end(r->drawn->work.sheared);
+    snow_ranks_pause(r);
+    r->drawn->drawing = false;
     r->drawn = NULL;
 }
 
@@ -190,12 +214,11 @@ static void complete(snow_picture *p) {
     if (p->done)
         return;
     double mark = snow_ranks_clock(r), cpu = snow_cpu_seconds();
-    if (r->drawn == p)
-        settle(r);
     snow_status status = snow_picture_combine(p);
-    p->stats.seconds_splat += p->stats.seconds_hidden;
-    p->stats.seconds_frame +=
-        snow_ranks_clock(r) - mark + p->stats.seconds_hidden;
+    if (r->drawn == p) /* where it failed */
+        snow_ranks_settle(r);
+    p->stats.seconds_splat += p->apart;
+    p->stats.seconds_frame += snow_ranks_clock(r) - mark + p->apart;
     p->stats.cpu_frame += snow_cpu_seconds() - cpu;
     p->done = true;
     snow_picture_fail(p, status);
@@ -214,7 +237,7 @@ static void begin_together(snow_picture *p, const snow_volume *volume,
                            const snow_settings *settings) {
     snow_ranks *r = p->ranks;
     snow_picture *before = picture_before(r);
-    settle(r);
+    snow_ranks_settle(r);
     double mark = snow_ranks_clock(r), cpu = snow_cpu_seconds();
     snow_picture_begin(p, volume, transfer, settings, before != NULL);
     double seconds = snow_ranks_clock(r) - mark;

@@ -49,6 +49,7 @@ typedef struct snow_picture {
     unsigned char *bytes;
     snow_axis_work work; /* of a picture along one axis */
     snow_stats stats;
+    double apart; /* seconds it was drawn that the clock stood */
     /* What became of it: on this rank, or, when it is done, on all. */
     snow_status status;
     char message[SNOW_MESSAGE_BYTES]; /* of a failure */
@@ -67,9 +68,12 @@ struct snow_ranks {
     snow_combiner *combiner;
     snow_picture *pictures; /* SNOW_PICTURES_MOST, in turn */
     int first, under_way;   /* the oldest; how many */
-    snow_picture *drawn;    /* in waits for messages; or NULL */
-    double hidden;          /* seconds of that, of all pictures */
-    double hidden_cpu;      /* the same in processor time */
+    snow_picture *drawn;    /* not ended yet, in waits for messages; or NULL */
+    double apart;           /* seconds of that, of all pictures */
+    double apart_cpu;       /* the same in processor time */
+    bool standing;          /* the clock, since then: */
+    double since, since_cpu;
+    double begin_at; /* where drawing begins (snow_sheared_order) */
     /* Every rank's part, shared when one has changed. */
     uint64_t serial; /* of the volume that `parts` were shared for */
     snow_part *parts;
@@ -77,6 +81,9 @@ struct snow_ranks {
     int *order; /* ranks from front to back */
     /* Pieces of the combined image, pixels. */
     int64_t *firsts, *counts;
+    /* Active pixels of the picture before (snow_exchange_counts). */
+    int64_t group_counts[SNOW_COUNTS_MOST];
+    int groups;             /* 0: it was not counted */
     snow_message *messages; /* 2 for each rank */
     int rank, ranks;
     /* Layers that were sent and that came, the piece made of them, its halves;
@@ -99,7 +106,8 @@ void snow_ranks_free(snow_ranks *ranks);
 /* Whether pictures are under way whose local images the frame holds. */
 bool snow_ranks_busy(const snow_ranks *ranks);
 
-/* The communicator's clock, which stands while other pictures are drawn. */
+/* The communicator's clock, which stands while pictures are drawn ahead, or
+ * while they are exchanged. */
 double snow_ranks_clock(const snow_ranks *ranks);
 
 /* Processor time for a picture (snow_stats.cpu_splat), which stands alike. */
@@ -112,8 +120,14 @@ void snow_picture_begin(snow_picture *picture, const snow_volume *volume,
                         const snow_transfer *transfer,
                         const snow_settings *settings, bool aside);
 
-/* Ends drawing ahead. */
-void snow_picture_settle(snow_picture *picture);
+/* Draws a band of the picture that is drawn, while the clock stands; false:
+ * none is left to begin.  Lets the clock go on, and tells for how long it
+ * stood. */
+bool snow_ranks_draw(snow_ranks *ranks);
+double snow_ranks_pause(snow_ranks *ranks);
+
+/* Ends its drawing: its turn has come, or another's to be drawn. */
+void snow_ranks_settle(snow_ranks *ranks);
 
 /* Collective.  All the rest.  What failed, on all ranks alike. */
 snow_status snow_picture_combine(snow_picture *picture);

@@ -11,8 +11,17 @@
  *
  * A local image by the sheared method along one axis is begun as soon as the
  * picture is, and then drawn while others wait, for messages of the picture
- * before it (ranks_flight.c).  From then on it needs no volume.  Other local
- * images are made when it is their picture's turn. */
+ * before it (ranks_flight.c).  From then on it needs no volume.  Where its turn
+ * comes before all of it is drawn, its parts are sent as they are done:
+ *
+ *   rank 0   draw 1 | send 1, draw 2 | send 2, draw 0
+ *   rank 1   draw 2 | send 2, draw 0 | send 0, draw 1
+ *   rank 2   draw 0 | send 0, draw 1 | send 1, draw 2     pieces are numbered
+ *                                                         as their ranks are
+ *
+ * Every rank begins behind its own piece, so that nobody gets all messages at
+ * once, and what is drawn last need not be sent.  Other local images are made
+ * when it is their picture's turn. */
 #include "ranks_parts.h"
 
 #include "decompose/order.h"
@@ -93,6 +102,7 @@ static snow_status begin_axis(snow_picture *p, int axis, bool aside,
     bool high = p->job.settings.quality == SNOW_QUALITY_HIGH;
     snow_sheared **sheared = &p->frame->sheared[high ? axis : 0];
     SNOW_TRY(snow_job_order(&p->job, axis, &work->placement, &work->order));
+    work->order.begin_at = p->ranks->begin_at;
     if (p->job.settings.deterministic && work->order.clip.cuts)
         return snow_fail(p->job.context, SNOW_BAD_USAGE,
                          "deterministic pictures are not blended of several "
@@ -136,16 +146,6 @@ void snow_picture_begin(snow_picture *p, const snow_volume *volume,
         status = begin_ahead(p, axis, aside);
     if (p->status == SNOW_OK)
         snow_picture_fail(p, status);
-}
-
-void snow_picture_settle(snow_picture *p) {
-    if (!p->drawing)
-        return;
-    double mark = snow_ranks_clock(p->ranks), cpu = snow_picture_cpu(p);
-    snow_sheared_end(p->work.sheared);
-    p->drawing = false;
-    p->stats.seconds_splat += snow_ranks_clock(p->ranks) - mark;
-    p->stats.cpu_splat += snow_picture_cpu(p) - cpu;
 }
 
 /* --- meeting --------------------------------------------------------------
@@ -227,17 +227,24 @@ static bool knows_parts(const snow_picture *p) {
     return p->serial && p->ranks->serial == p->serial;
 }
 
-/* Collective.  How the ranks' own work went; parts, where one is new. */
+/* Collective.  How the ranks' own work went, and what they have counted in the
+ * picture before; parts, where one is new. */
 static snow_status meet(snow_picture *p, snow_status status, bool *new_parts) {
     enum { FAILED, NEW, TERMS, MINUS_TERMS, COUNT };
-    snow_comm *comm = p->ranks->comm;
-    int64_t words[COUNT] = {status != SNOW_OK, 1, 0, 0};
+    snow_ranks *r = p->ranks;
+    snow_comm *comm = r->comm;
+    const int64_t *counts;
+    int64_t words[COUNT + SNOW_COUNTS_MOST] = {status != SNOW_OK, 1, 0, 0};
+    r->groups = snow_exchange_counts(r->combiner, &counts);
+    const size_t count_bytes = (size_t)r->groups * sizeof *counts;
+    memcpy(words + COUNT, counts, count_bytes);
     if (status == SNOW_OK) {
         words[NEW] = !knows_parts(p);
         words[TERMS] = terms_of(p);
         words[MINUS_TERMS] = -words[TERMS];
     }
-    SNOW_TRY(snow_comm_reduce_ints(comm, words, COUNT, SNOW_MAX));
+    SNOW_TRY(snow_comm_reduce_both(comm, words, COUNT, (size_t)r->groups));
+    memcpy(r->group_counts, words + COUNT, count_bytes);
     if (words[FAILED])
         return snow_comm_agree(comm, status);
     if (words[TERMS] != -words[MINUS_TERMS])
@@ -246,6 +253,60 @@ static snow_status meet(snow_picture *p, snow_status status, bool *new_parts) {
                          "the same view and settings");
     *new_parts = words[NEW] != 0;
     return *new_parts ? share_parts(p->ranks, p) : SNOW_OK;
+}
+
+/* --- the local image ------------------------------------------------------
+ */
+
+/* Tiles of tile lines y0 .. y1 - 1 of a layer that were drawn on, as pixels;
+ * what else lies among them is cleared. */
+static snow_rectangle drawn_part(const snow_sheared_image *image, int layer,
+                                 int y0, int y1) {
+    const unsigned char *drawn =
+        image->drawn + (size_t)layer * image->layer_tiles;
+    snow_rectangle box = {image->tiles, INT32_MAX, 0, 0};
+    for (int n = y0 * image->tiles; n < y1 * image->tiles; n++) {
+        int x = n % image->tiles, y = n / image->tiles;
+        if (!drawn[n])
+            continue;
+        box.x0 = x < box.x0 ? x : box.x0;
+        box.y0 = y < box.y0 ? y : box.y0;
+        box.x1 = x + 1 > box.x1 ? x + 1 : box.x1;
+        box.y1 = y + 1;
+    }
+    if (box.x0 >= box.x1)
+        return (snow_rectangle){0, 0, 0, 0};
+    snow_sheared_clear(image, layer, box.x0, box.y0, box.x1, box.y1);
+    box.x0 *= image->tile_width;
+    box.x1 *= image->tile_width;
+    box.y0 *= image->tile_height;
+    box.y1 *= image->tile_height;
+    box.x1 = box.x1 < image->width ? box.x1 : image->width;
+    box.y1 = box.y1 < image->height ? box.y1 : image->height;
+    return box;
+}
+
+/* While it is exchanged (snow_unfinished). */
+static bool draw_band(void *of) {
+    const snow_picture *p = of;
+    return snow_ranks_draw(p->ranks);
+}
+
+static bool look_at_lines(void *of, int y0, int y1, snow_rectangle *drawn) {
+    const snow_picture *p = of;
+    const snow_sheared_image *image = &p->work.image;
+    int first = y0 / image->tile_height,
+        end = (y1 - 1) / image->tile_height + 1;
+    if (p->drawing && !snow_sheared_drawn(p->work.sheared, first, end))
+        return false;
+    snow_ranks_pause(p->ranks);
+    *drawn = drawn_part(image, 0, first, end);
+    return true;
+}
+
+static void end_drawing(void *of) {
+    const snow_picture *p = of;
+    snow_ranks_settle(p->ranks);
 }
 
 /* --- the exchange ---------------------------------------------------------
@@ -269,6 +330,8 @@ static void tell_rounds(snow_picture *p, const snow_exchange_figures *told) {
     for (int i = 0; i < told->rounds && i < most; i++)
         stats->radices[i] = told->radices[i];
     stats->active_pixels = told->active;
+    stats->bytes_early = (uint64_t)told->early;
+    p->ranks->begin_at = told->begin_at;
 }
 
 /* Collective.  Local images to pieces, of `grain` pixels or multiples. */
@@ -276,19 +339,25 @@ static snow_status exchange(snow_picture *p, const snow_local *local,
                             const snow_placement *placement, int grain,
                             snow_piece *piece) {
     snow_ranks *r = p->ranks;
+    const snow_unfinished unfinished = {draw_band, look_at_lines, end_drawing,
+                                        p};
     if (p->job.settings.deterministic)
         return snow_layers_exchange(r, local, placement, piece);
-    const snow_exchange_order order = {.width = local->width,
-                                       .height = local->height,
-                                       .channels = local->channels,
-                                       .pixels = local->pixels,
-                                       .stride = local->stride,
-                                       .drawn = local->drawn[0],
-                                       .ranks = r->order,
-                                       .method = p->how.combining,
-                                       .radix = p->how.radix,
-                                       .laying = local->laying,
-                                       .grain = grain};
+    const snow_exchange_order order = {
+        .width = local->width,
+        .height = local->height,
+        .channels = local->channels,
+        .pixels = local->pixels,
+        .stride = local->stride,
+        .drawn = local->drawn[0],
+        .ranks = r->order,
+        .method = p->how.combining,
+        .radix = p->how.radix,
+        .laying = local->laying,
+        .grain = grain,
+        .counts = p->ahead ? r->group_counts : NULL,
+        .count_groups = r->groups,
+        .unfinished = p->drawing ? &unfinished : NULL};
     SNOW_TRY(snow_exchange(r->combiner, &order, piece));
     tell_rounds(p, snow_exchange_told(r->combiner));
     snow_exchange_pieces(r->combiner, r->firsts, r->counts);
@@ -329,34 +398,8 @@ static snow_status deliver(snow_picture *p, int pixel_bits, snow_image *image) {
 /* --- the sheared method ---------------------------------------------------
  */
 
-/* The tiles of a layer that were drawn on, as pixels; what else lies among
- * them is cleared. */
-static snow_rectangle drawn_part(const snow_sheared_image *image, int layer) {
-    const unsigned char *drawn =
-        image->drawn + (size_t)layer * image->layer_tiles;
-    snow_rectangle box = {image->tiles, INT32_MAX, 0, 0};
-    for (int n = 0; n < (int)image->layer_tiles; n++) {
-        int x = n % image->tiles, y = n / image->tiles;
-        if (!drawn[n])
-            continue;
-        box.x0 = x < box.x0 ? x : box.x0;
-        box.y0 = y < box.y0 ? y : box.y0;
-        box.x1 = x + 1 > box.x1 ? x + 1 : box.x1;
-        box.y1 = y + 1;
-    }
-    if (box.x0 >= box.x1)
-        return (snow_rectangle){0, 0, 0, 0};
-    snow_sheared_clear(image, layer, box.x0, box.y0, box.x1, box.y1);
-    box.x0 *= image->tile_width;
-    box.x1 *= image->tile_width;
-    box.y0 *= image->tile_height;
-    box.y1 *= image->tile_height;
-    box.x1 = box.x1 < image->width ? box.x1 : image->width;
-    box.y1 = box.y1 < image->height ? box.y1 : image->height;
-    return box;
-}
-
-static snow_local local_of(const snow_sheared_image *image) {
+/* What was drawn is told where that is over. */
+static snow_local local_of(const snow_sheared_image *image, bool drawing) {
     snow_local local = {.width = image->width,
                         .height = image->height,
                         .channels = image->channels,
@@ -365,8 +408,9 @@ static snow_local local_of(const snow_sheared_image *image) {
                         .layers = image->layers,
                         .layer_floats = image->layer_floats};
     memcpy(local.nodes, image->nodes, sizeof local.nodes);
-    for (int n = 0; image->width && n < image->layers; n++)
-        local.drawn[n] = drawn_part(image, n);
+    for (int n = 0; image->width && n < image->layers && !drawing; n++)
+        local.drawn[n] =
+            drawn_part(image, n, 0, (int)image->layer_tiles / image->tiles);
     return local;
 }
 
@@ -374,7 +418,7 @@ snow_status snow_picture_prepare(snow_picture *p, snow_axis_work *work) {
     snow_laying laying = work->local.laying;
     if (!work->image.width)
         return SNOW_OK;
-    work->local = local_of(&work->image);
+    work->local = local_of(&work->image, p->drawing);
     work->local.laying = laying;
     SNOW_TRY(snow_lines_prepare(p->ranks, &work->local));
     return prepare_exchange(p, &work->local, &work->placement);
@@ -548,7 +592,8 @@ static snow_status render_wholly(snow_picture *p, snow_status status) {
 
 snow_status snow_picture_combine(snow_picture *p) {
     snow_status status = p->status;
-    snow_picture_settle(p);
+    if (p->drawing && p->job.settings.deterministic)
+        snow_ranks_settle(p->ranks);
     if (status != SNOW_OK) /* others may have failed since */
         status = snow_fail(p->frame->context, status, "%s", p->message);
     return p->ahead ? render_ahead(p, status) : render_wholly(p, status);

@@ -125,6 +125,7 @@ void snow_sheared_free(snow_sheared *s) {
         snow_release(s->context, s->canvases[n].drawn);
     }
     snow_release(s->context, s->scratch);
+    snow_release(s->context, s->finished);
     snow_release(s->context, s->pass);
     snow_release(s->context, s->seen);
     snow_release(s->context, s->teeth);
@@ -884,8 +885,7 @@ static snow_status begin_sheared(snow_sheared *s,
     double mark = snow_seconds();
     SNOW_TRY(place_slices(pass));
     SNOW_TRY(reserve_buffers(pass));
-    snow_parallel_begin(s->context, order->settings->threads, pass->bands,
-                        splat_band, pass, &s->batch);
+    SNOW_TRY(snow_sheared_begin_bands(s, order, pass->bands, splat_band));
     *out = pass->image;
     stats->seconds_splat += snow_seconds() - mark;
     return SNOW_OK;
@@ -916,14 +916,6 @@ snow_status snow_sheared_begin(snow_sheared *s, const snow_sheared_order *order,
     image.warping = warping;
     *out = image;
     return SNOW_OK;
-}
-
-bool snow_sheared_step(snow_sheared *s) {
-    return snow_parallel_step(&s->batch);
-}
-
-void snow_sheared_end(snow_sheared *s) {
-    snow_parallel_end(s->context, &s->batch);
 }
 
 snow_status snow_sheared_splat(snow_sheared *s, const snow_sheared_order *order,

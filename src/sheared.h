@@ -30,8 +30,10 @@ typedef struct snow_sheared_order {
     const snow_settings *settings;
     const snow_placement *placement; /* of the whole */
     snow_clip clip;                  /* of the volume's part */
-    snow_slab slab;    /* slices of the whole that are drawn, within the part */
-    int channels;      /* 2 or 4 */
+    snow_slab slab;  /* slices of the whole that are drawn, within the part */
+    int channels;    /* 2 or 4 */
+    double begin_at; /* 0 to below 1: the share of the image's lines before the
+                        one that is drawn first */
     snow_over_fn *lay; /* in perspective, in the place of over; NULL: over */
     float share;       /* of the image that it makes, so that sums, too, are of
                           0 to 1 */
@@ -83,6 +85,10 @@ snow_status snow_sheared_begin(snow_sheared *sheared,
                                snow_stats *stats, snow_sheared_image *out);
 bool snow_sheared_step(snow_sheared *sheared);
 void snow_sheared_end(snow_sheared *sheared);
+
+/* Before the end: whether tile lines first .. end - 1 of the image are there.
+ */
+bool snow_sheared_drawn(const snow_sheared *sheared, int first, int end);
 
 /* Clears what was not drawn on of tiles x0 .. x1 - 1 of tile lines y0 .. y1 - 1
  * of a layer. */

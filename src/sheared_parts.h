@@ -89,9 +89,15 @@ struct snow_sheared {
     snow_comb *combs;    /* of all slices, along u and v */
     snow_canvas *canvas; /* that is drawn on: one of these */
     snow_canvas canvases[2];
-    char *scratch;    /* of all workers */
-    void *pass;       /* the picture in the making, of either half */
-    snow_batch batch; /* its bands */
+    char *scratch; /* of all workers */
+    void *pass;    /* the picture in the making, of either half */
+    /* Its bands (sheared_steps.c): how one is drawn, the first that is, and
+     * which are finished. */
+    snow_batch batch;
+    snow_work_fn *draw;
+    int64_t band_count, first_band;
+    atomic_uchar *finished;
+    size_t finished_capacity; /* bytes */
     size_t gloss_capacity, combs_capacity, scratch_capacity,
         pass_capacity; /* bytes */
     /* In perspective: all slices, how they are resampled along u, and how far
@@ -152,6 +158,12 @@ void snow_sheared_fill_figures(const snow_sheared *sheared, snow_stats *stats);
 snow_status snow_sheared_make_layers(snow_sheared *sheared, int layers,
                                      int64_t bands, size_t lines,
                                      snow_sheared_image *image);
+
+/* Begins to draw bands 0 .. bands - 1, more than none, of `sheared->pass` with
+ * `draw`.  Errors: SNOW_NO_MEMORY. */
+snow_status snow_sheared_begin_bands(snow_sheared *sheared,
+                                     const snow_sheared_order *order,
+                                     int64_t bands, snow_work_fn *draw);
 
 /* The same method in perspective: sheared_seen.c. */
 bool snow_sheared_seen_fits(const snow_placement *placement,

@@ -808,8 +808,7 @@ snow_status snow_sheared_seen_begin(snow_sheared *s,
     choose_tiles(pass);
     SNOW_TRY(fill_slices(pass));
     SNOW_TRY(reserve_buffers(pass));
-    snow_parallel_begin(s->context, order->settings->threads, pass->bands,
-                        splat_band, pass, &s->batch);
+    SNOW_TRY(snow_sheared_begin_bands(s, order, pass->bands, splat_band));
     *out = pass->image;
     stats->seconds_splat += snow_seconds() - mark;
     return SNOW_OK;

@@ -85,6 +85,14 @@ assert math.isclose(modelled["efficiency"], modelled["t1_ms"] / 3 /
 assert "projected_ms" not in told["r3"]
 END
 
+# A rank that waits for nobody sends before it has drawn all.
+run 0 "a larger picture" "$TOOL" bench frame phantom:head --dims 96x96x96 \
+    --size 160 --ranks 3 --json --runs 1 --network 0,1e10,0
+check "it is sent while it is drawn" python3 -c '
+import json, sys
+t = json.load(open(sys.argv[1]))
+assert 0 < t["bytes_early_sum"] < t["bytes_sent_sum"], t' "$OUT"
+
 # Pictures of a turning volume are the same with and without overlap.
 run 0 "a turning volume" frame --ranks 3 --turn 4 --json --network 0.05,1e9,0
 check "overlap hides splatting" python3 -c '

@@ -23,6 +23,13 @@ done
 # shellcheck disable=SC2086
 run 0 "frame by one rank of MPI" launch 1 "$MPI_TOOL" bench frame $head
 prints "^ranks=1 .* check=ok "
+# Single pictures are sent while they are drawn, overlapping ones are not.
+for way in auto tree swap direct; do
+    # shellcheck disable=SC2086
+    run 0 "frames of a turning volume, $way" bench frame $head --turn 4 \
+        --combine $way
+    prints " turn_check=ok$"
+done
 # shellcheck disable=SC2086
 run 2 "frame with a number of ranks" bench frame $head --ranks 4
 says "mpirun tells how many ranks"

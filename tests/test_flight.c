@@ -8,9 +8,9 @@
 #include "image/image.h"
 
 #include <snowglass/ranks.h>
+#include <stdatomic.h>
 
 #define PICTURES 5
-#define SIDE 72
 
 /* On threads of their own nothing can be asserted. */
 #define REQUIRE(comm, condition)                                      \
@@ -27,8 +27,9 @@ typedef struct flight {
     snow_settings settings;
     snow_ranks_options how;
     double step;
-    double hidden;                           /* of rank 0 */
-    float pixels[PICTURES][SIDE * SIDE * 4]; /* one after another */
+    double hidden;              /* of rank 0 */
+    atomic_uint_fast64_t early; /* of all ranks, one after another */
+    float *pixels[PICTURES];    /* one after another */
 } flight;
 
 typedef struct seat {
@@ -74,13 +75,17 @@ static snow_status finish(seat *s, int number, bool keep) {
     float *pixels = s->f->pixels[number];
     bool good = (snow_comm_rank(s->comm) == 0) == (image != NULL);
     if (image) {
-        size_t bytes = (size_t)(SIDE * SIDE * image->channels) * sizeof *pixels;
+        size_t bytes =
+            (size_t)(image->width * image->height * image->channels) *
+            sizeof *pixels;
         if (keep)
             memcpy(pixels, image->pixels, bytes);
         else
             good = memcmp(pixels, image->pixels, bytes) == 0;
         s->f->hidden += snow_frame_stats(s->frame)->seconds_hidden;
     }
+    if (keep)
+        atomic_fetch_add(&s->f->early, snow_frame_stats(s->frame)->bytes_early);
     snow_image_free(image);
     REQUIRE(s->comm, good);
     return SNOW_OK;
@@ -111,25 +116,36 @@ static snow_status compare_ways(snow_comm *comm, void *user) {
 /* --- what is flown --------------------------------------------------------
  */
 
-static flight *flight_new(const char *folder) {
+static void flight_free(flight *f) {
+    for (int n = 0; n < PICTURES; n++)
+        free(f->pixels[n]);
+    free(f);
+}
+
+static flight *flight_of(const char *folder, const int64_t dims[3], int side) {
     flight *f = calloc(1, sizeof *f);
     assert_non_null(f);
+    for (int n = 0; n < PICTURES; n++)
+        f->pixels[n] = calloc((size_t)(side * side) * 4, sizeof(float));
     f->path = support_folder_path(folder, "v.nrrd");
     snow_context *context = support_context();
     snow_volume *volume;
-    int64_t dims[3] = {34, 30, 38};
     assert_int_equal(snow_volume_phantom(context, "head", dims, 0, &volume),
                      SNOW_OK);
     assert_int_equal(snow_volume_save(volume, f->path, true), SNOW_OK);
     snow_view_default(volume, &f->view);
     snow_volume_close(volume);
     snow_context_free(context);
-    f->view.width = f->view.height = SIDE;
+    f->view.width = f->view.height = side;
     snow_settings_init(&f->settings);
     f->settings.threads = 1;
     f->how = (snow_ranks_options){.size = sizeof f->how, .turns = 1};
     f->step = 7;
     return f;
+}
+
+static flight *flight_new(const char *folder) {
+    return flight_of(folder, (const int64_t[3]){34, 30, 38}, 72);
 }
 
 static void run(flight *f, int ranks, snow_comm_body_fn *body) {
@@ -167,7 +183,7 @@ static void pictures_that_overlap_have_the_same_bits(void **state) {
                 f->how.combining = (snow_combining)((n + seen + i) % 5);
                 run(f, rank_counts[i], compare_ways);
             }
-    free(f);
+    flight_free(f);
     support_folder_remove(folder);
 }
 
@@ -190,7 +206,54 @@ static void pictures_of_every_method_may_be_begun(void **state) {
             f->step = way == 4 ? 0 : 6;
             run(f, rank_counts[i], compare_ways);
         }
-    free(f);
+    flight_free(f);
+    support_folder_remove(folder);
+}
+
+/* A picture that no other follows is sent while it is drawn; one that another
+ * follows was drawn before.  Fewer lines than ranks are shared as well. */
+static void pictures_sent_early_have_the_same_bits(void **state) {
+    (void)state;
+    char folder[SUPPORT_FOLDER_BYTES];
+    support_folder_make(folder);
+    flight *f = flight_new(folder);
+    for (int ranks = 2; ranks <= 33; ranks++) {
+        f->view.azimuth = 11 * ranks;
+        f->view.elevation = 5 * (ranks % 7);
+        f->view.zoom = ranks % 4 ? 1 : 0.1;
+        f->view.fov = ranks % 3 ? 0 : 50;
+        f->settings.threads = 1 + ranks % 2;
+        f->how.combining = (snow_combining)(ranks % 5);
+        run(f, ranks, compare_ways);
+    }
+    flight_free(f);
+    support_folder_remove(folder);
+}
+
+static void run_modelled(flight *f, int ranks, double latency) {
+    const snow_network network = {
+        .latency = latency, .bandwidth = 1e9, .slowness = 1};
+    snow_context *context = support_context();
+    if (snow_comm_modelled(context, ranks, &network, compare_ways, f) !=
+        SNOW_OK)
+        fail_msg("%s", snow_context_message(context));
+    snow_context_free(context);
+}
+
+/* Pieces of so large a picture are counted, from the second one on before it is
+ * drawn. */
+static void pictures_are_sent_while_they_are_drawn(void **state) {
+    (void)state;
+    char folder[SUPPORT_FOLDER_BYTES];
+    support_folder_make(folder);
+    flight *f = flight_of(folder, (const int64_t[3]){150, 160, 170}, 300);
+    f->step = 2;
+    for (int ranks = 2; ranks <= 4; ranks++) {
+        f->early = 0;
+        run_modelled(f, ranks, 0);
+        assert_true(f->early > 0);
+    }
+    flight_free(f);
     support_folder_remove(folder);
 }
 
@@ -198,15 +261,11 @@ static void pictures_of_every_method_may_be_begun(void **state) {
 static void pictures_are_drawn_while_messages_travel(void **state) {
     (void)state;
     char folder[SUPPORT_FOLDER_BYTES];
-    const snow_network slow = {.latency = 1, .bandwidth = 1e9, .slowness = 1};
     support_folder_make(folder);
     flight *f = flight_new(folder);
-    snow_context *context = support_context();
-    if (snow_comm_modelled(context, 3, &slow, compare_ways, f) != SNOW_OK)
-        fail_msg("%s", snow_context_message(context));
+    run_modelled(f, 3, 1);
     assert_true(f->hidden > 0);
-    snow_context_free(context);
-    free(f);
+    flight_free(f);
     support_folder_remove(folder);
 }
 
@@ -258,7 +317,7 @@ static void too_many_pictures_are_refused_and_those_begun_end(void **state) {
         f->settings.threads = 1 + i % 3;
         run(f, rank_counts[i], misuse);
     }
-    free(f);
+    flight_free(f);
     support_folder_remove(folder);
 }
 
@@ -301,7 +360,7 @@ static void a_wrong_picture_is_told_in_its_turn(void **state) {
     flight *f = flight_new(folder);
     for (int i = 1; i < 5; i++)
         run(f, rank_counts[i], spoil);
-    free(f);
+    flight_free(f);
     support_folder_remove(folder);
 }
 
@@ -309,6 +368,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_that_overlap_have_the_same_bits),
         cmocka_unit_test(pictures_of_every_method_may_be_begun),
+        cmocka_unit_test(pictures_sent_early_have_the_same_bits),
+        cmocka_unit_test(pictures_are_sent_while_they_are_drawn),
         cmocka_unit_test(pictures_are_drawn_while_messages_travel),
         cmocka_unit_test(too_many_pictures_are_refused_and_those_begun_end),
         cmocka_unit_test(a_wrong_picture_is_told_in_its_turn),

@@ -62,6 +62,9 @@ typedef struct snow_comm_ops {
      * their messages is done; NULL: no more.  A transport without this function
      * waits idly. */
     void (*occupy)(void *self, snow_meanwhile_fn *work, void *user);
+    /* Lets messages under way move on, without waiting for any: called now and
+     * then by who works while some are.  NULL where they move by themselves. */
+    void (*progress)(void *self);
     /* The longest that a wait may last in which nobody who is waited for
      * answers, after which it fails; 0: for ever.  NULL where ranks cannot
      * stop alone. */

@@ -125,6 +125,9 @@ SNOW_API snow_status snow_ranks_plan(const snow_volume *volume,
  * which parts do later than the whole.  Where quality high blends pictures
  * along several axes, floats travel and the blend is rank 0's.
  *
+ * Parts of a local image by the sheared method travel while the rest of it is
+ * splatted (snow_stats.bytes_early); that changes no bit.
+ *
  * With settings->deterministic it is the same bit for bit as
  * snow_frame_render's, for any number of ranks: parts then are slabs across the
  * view's slices, cut at borders of groups of slices (1/32 of them each), and a

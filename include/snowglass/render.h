@@ -168,6 +168,8 @@ typedef struct snow_stats {
      * local image. */
     int rounds, radices[16];
     int64_t active_pixels;
+    uint64_t bytes_early; /* of the local image that were sent while the rest of
+                             it was still drawn */
     /* How often each axis of the volume was halved for a picture that has few
      * pixels; the counts of voxels above are those of what came of it. */
     int halvings[3];

@@ -130,6 +130,15 @@ int64_t snow_active_in_line(const snow_pixel_loops *loops,
     return active;
 }
 
+int64_t snow_active_count(const uint64_t *words, int64_t first, int64_t from,
+                          int64_t to) {
+    int64_t active = 0;
+    for (int64_t i = from / 64; i * 64 < to; i++)
+        active +=
+            population(words[i - first / 64] & snow_active_range(i, from, to));
+    return active;
+}
+
 /* --- messages ------------------------------------------------------------- */
 
 /* The end of a message. */

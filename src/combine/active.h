@@ -77,6 +77,11 @@ int64_t snow_active_scan(const snow_pixel_loops *loops,
 int64_t snow_active_in_line(const snow_pixel_loops *loops,
                             const snow_exchange_order *order, int y);
 
+/* How many of pixels from .. to - 1 are active by a mask whose first pixel is
+ * `first`. */
+int64_t snow_active_count(const uint64_t *words, int64_t first, int64_t from,
+                          int64_t to);
+
 /* Completes a message that begins with `count` pixels of pixel_bytes, which
  * are there already; returns its length. */
 size_t snow_active_close(unsigned char *message, const uint64_t *words,

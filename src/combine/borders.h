@@ -9,7 +9,7 @@
 
 #include "combine/exchange.h"
 
-#define SNOW_BINS_MOST 256
+#define SNOW_BINS_MOST SNOW_COUNTS_MOST
 
 /* A counted piece has at most so many times the pixels of an even one, whatever
  * is seen in the picture: what bounds buffers. */

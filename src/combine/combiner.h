@@ -15,6 +15,12 @@ typedef struct snow_traffic {
     int count;
 } snow_traffic;
 
+/* Pixels first .. last - 1, and the share of the rounds that they go to. */
+typedef struct snow_parcel {
+    int64_t first, last;
+    int share;
+} snow_parcel;
+
 /* What all sizes of buffers depend on; the same on all ranks, so that all take
  * memory at the same time and can agree on it. */
 typedef struct snow_exchange_shape {
@@ -67,12 +73,15 @@ struct snow_combiner {
     snow_rounds rounds;
     bool filled; /* the lists of `rounds`, for its seat and display */
     snow_borders borders;
-    int *lines;          /* the order of lines, NULL for the picture's */
-    int *ranks;          /* of seats, as in the last order */
-    int *table;          /* of snow_rounds_fill */
-    snow_active *layers; /* of one round */
-    uint64_t *words;     /* their masks */
-    uint64_t *part;      /* the mask of what is about to be sent */
+    int64_t counts[SNOW_BINS_MOST]; /* snow_exchange_counts */
+    int counted_bins;
+    int *lines;           /* the order of lines, NULL for the picture's */
+    int *ranks;           /* of seats, as in the last order */
+    int *table;           /* of snow_rounds_fill */
+    snow_parcel *parcels; /* of one round, that are not sent yet */
+    snow_active *layers;  /* of one round */
+    uint64_t *words;      /* their masks */
+    uint64_t *part;       /* the mask of what is about to be sent */
     snow_traffic in[2], out[2];
     float *piece;
     snow_exchange_figures figures;

@@ -4,8 +4,9 @@
  * Before the first round each rank's combined image is its local image.  In a
  * round it is cut into parts, each looked through (or, later, merged from what
  * came in the round before) only when it is sent, so that computing and sending
- * overlap.  Pixels are read and written once a round, packed; only the last
- * round unpacks them.
+ * overlap; an unfinished local image is drawn on until one is there, and which
+ * part is sent first changes no bit.  Pixels are read and written once a round,
+ * packed; only the last round unpacks them.
  *
  * Memory is taken when the order's shape changes, or when counted pieces are
  * larger than any before.  All ranks know that, and agree on whether there was
@@ -50,12 +51,14 @@ static void drop_buffers(snow_combiner *combiner) {
     snow_release(context, combiner->ranks);
     snow_release(context, combiner->table);
     snow_release(context, combiner->layers);
+    snow_release(context, combiner->parcels);
     snow_release(context, combiner->words);
     snow_release(context, combiner->part);
     snow_release(context, combiner->piece);
     combiner->rounds.shares = NULL;
     combiner->lines = combiner->ranks = combiner->table = NULL;
     combiner->layers = NULL;
+    combiner->parcels = NULL;
     combiner->words = combiner->part = NULL;
     combiner->piece = NULL;
     combiner->needs = (snow_exchange_needs){0};
@@ -156,6 +159,8 @@ static snow_status take_lists(snow_combiner *combiner) {
         (combiner->table = snow_allocate_array(context, seats, sizeof(int))) &&
         (combiner->layers =
              snow_allocate_array(context, peers, sizeof(snow_active))) &&
+        (combiner->parcels =
+             snow_allocate_array(context, peers, sizeof(snow_parcel))) &&
         (combiner->part = snow_allocate_array(
              context, (uint64_t)held(combiner, 0) / 64 + 2, sizeof(uint64_t)));
     if (fine && combiner->shape.pieces == SNOW_PIECES_INTERLACED)
@@ -326,10 +331,10 @@ static snow_status take_seats(snow_combiner *combiner,
  * large one: what is saved by exact counts is less than what they take. */
 #define LINES_COUNTED 128
 
-static snow_status count_pieces(snow_combiner *combiner,
-                                const snow_exchange_order *order) {
-    snow_borders *borders = &combiner->borders;
-    int64_t counts[SNOW_BINS_MOST] = {0}, scanned = 0;
+static void count_lines(snow_combiner *combiner,
+                        const snow_exchange_order *order, int64_t *counts) {
+    const snow_borders *borders = &combiner->borders;
+    int64_t scanned = 0;
     int step =
         order->height / LINES_COUNTED > 1 ? order->height / LINES_COUNTED : 1;
     int bin = 0;
@@ -342,10 +347,6 @@ static snow_status count_pieces(snow_combiner *combiner,
     }
     combiner->figures.scanned += scanned;
     snow_comm_work(combiner->comm, (double)scanned * order->scan_seconds);
-    SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts,
-                                   (size_t)borders->bins, SNOW_SUM));
-    snow_borders_count(borders, counts);
-    return SNOW_OK;
 }
 
 /* --- one part ------------------------------------------------------------- */
@@ -372,12 +373,96 @@ static stretch overlap(stretch a, stretch b) {
 /* All that is the same during one exchange. */
 typedef struct exchange {
     snow_combiner *combiner;
-    const snow_exchange_order *order;
+    snow_exchange_order *order; /* `unfinished` until the image is there */
     size_t pixel_bytes;
+    bool tallies;             /* counts for the picture after this one */
+    int64_t sent;             /* bytes, in the first round */
     int layer_count;          /* of combiner->layers, to be merged */
     const unsigned char *own; /* the message to oneself */
     size_t own_bytes;
 } exchange;
+
+static void clip_drawn(snow_exchange_order *order) {
+    snow_rectangle *drawn = &order->drawn;
+    drawn->x0 = drawn->x0 > 0 ? drawn->x0 : 0;
+    drawn->y0 = drawn->y0 > 0 ? drawn->y0 : 0;
+    drawn->x1 = drawn->x1 < order->width ? drawn->x1 : order->width;
+    drawn->y1 = drawn->y1 < order->height ? drawn->y1 : order->height;
+    if (drawn->x0 >= drawn->x1 || drawn->y0 >= drawn->y1)
+        *drawn = (snow_rectangle){0, 0, 0, 0};
+}
+
+/* Whether a part of the local image is there. */
+static bool is_there(exchange *run, stretch part) {
+    snow_exchange_order *order = run->order;
+    const snow_unfinished *unfinished = order->unfinished;
+    bool all = run->combiner->lines != NULL; /* of all regions */
+    int y0 = all ? 0 : (int)(part.first / order->width);
+    int y1 = all ? order->height : (int)((part.last - 1) / order->width) + 1;
+    if (!unfinished)
+        return true;
+    if (!unfinished->look(unfinished->user, y0, y1, &order->drawn))
+        return false;
+    clip_drawn(order);
+    return true;
+}
+
+static void end_drawing(exchange *run) {
+    const snow_unfinished *unfinished = run->order->unfinished;
+    if (!unfinished)
+        return;
+    unfinished->end(unfinished->user);
+    is_there(run,
+             (stretch){0, (int64_t)run->order->width * run->order->height});
+    run->order->unfinished = NULL;
+}
+
+/* Draws on while messages travel. */
+static void draw_on(exchange *run) {
+    const snow_unfinished *unfinished = run->order->unfinished;
+    if (unfinished->step(unfinished->user))
+        run->combiner->figures.early = run->sent;
+    else
+        end_drawing(run);
+    snow_comm_progress(run->combiner->comm);
+}
+
+/* Adds a part of the local image, whose mask is there, to the counts. */
+static void tally(snow_combiner *combiner, stretch part) {
+    const snow_borders *borders = &combiner->borders;
+    int64_t end;
+    int bin = 0;
+    for (int64_t at = part.first; at < part.last; at = end) {
+        int64_t line = at / borders->width, next = (line + 1) * borders->width;
+        end = next < part.last ? next : part.last;
+        while (line >= snow_borders_line(borders, bin + 1))
+            bin++;
+        combiner->counts[bin] +=
+            snow_active_count(combiner->part, part.first, at, end);
+    }
+}
+
+/* Cuts the picture by counts: those that are known, or its own, for which it
+ * must be there. */
+static snow_status count_pieces(exchange *run) {
+    snow_combiner *combiner = run->combiner;
+    const snow_exchange_order *order = run->order;
+    snow_borders *borders = &combiner->borders;
+    const size_t bins = (size_t)borders->bins;
+    int64_t counts[SNOW_BINS_MOST] = {0};
+    if (order->counts && order->count_groups == borders->bins) {
+        memcpy(counts, order->counts, bins * sizeof *counts);
+    } else {
+        end_drawing(run);
+        count_lines(combiner, order, counts);
+        SNOW_TRY(snow_comm_reduce_ints(combiner->comm, counts, bins, SNOW_SUM));
+    }
+    snow_borders_count(borders, counts);
+    memset(combiner->counts, 0, sizeof combiner->counts);
+    run->tallies = !order->whole;
+    combiner->counted_bins = run->tallies ? borders->bins : 0;
+    return SNOW_OK;
+}
 
 /* Writes the part of this rank's combined image that is in `part` as a message
  * to `out`; its length. */
@@ -393,6 +478,8 @@ static size_t write_part(exchange *run, int level, stretch part,
                                  part.first, part.last, combiner->part, pixels,
                                  &scanned);
         figures->active += count;
+        if (run->tallies)
+            tally(combiner, part);
     } else {
         count =
             snow_active_merge(combiner->loops, combiner->layers,
@@ -447,41 +534,72 @@ static snow_status begin_receives(exchange *run, int level) {
     return SNOW_OK;
 }
 
-/* Sends what this rank holds to the owners of new pieces, and keeps its own. */
-static snow_status send_round(exchange *run, int level) {
-    snow_combiner *combiner = run->combiner;
+/* Lists what this rank sends in a round, or keeps; how much.  Ranks begin with
+ * different parts, lest all send to one; merged parts come in rising order. */
+static int list_parcels(const snow_combiner *combiner, int level) {
     const snow_round *round = &combiner->rounds.rounds[level];
-    snow_traffic *out = &combiner->out[level & 1];
     const stretch holds = held_before(combiner, level);
-    size_t at = 0;
-    int from = 0;
-    SNOW_TRY(snow_comm_wait_all(combiner->comm, out->messages, out->count));
-    out->count = 0;
-    run->own_bytes = 0;
-    /* Ranks begin with different parts, lest all send to one; merged parts come
-     * in rising order. */
+    int from = 0, count = 0;
     for (int i = 0; i < round->sends && level == 0; i++)
         if (share_at(combiner, round->first_send + i)->seat ==
             combiner->rounds.seat)
             from = i + 1;
     for (int i = 0; i < round->sends; i++) {
-        const snow_share *share =
-            share_at(combiner, round->first_send + (from + i) % round->sends);
-        stretch part = overlap(holds, stretch_of(combiner, share));
-        if (part.first >= part.last)
-            continue;
-        size_t bytes = write_part(run, level, part, out->bytes + at);
-        if (share->seat == combiner->rounds.seat) {
-            run->own = out->bytes + at;
-            run->own_bytes = bytes;
-        } else {
-            SNOW_TRY(snow_comm_send(combiner->comm, out->bytes + at, bytes,
-                                    run->order->ranks[share->seat],
-                                    SNOW_TAG_COMBINE,
-                                    &out->messages[out->count++]));
-        }
-        at += align(snow_active_room(part.last - part.first, run->pixel_bytes));
+        int share = round->first_send + (from + i) % round->sends;
+        stretch part =
+            overlap(holds, stretch_of(combiner, share_at(combiner, share)));
+        if (part.first < part.last)
+            combiner->parcels[count++] =
+                (snow_parcel){part.first, part.last, share};
     }
+    return count;
+}
+
+/* Sends a part of what this rank holds to the owner of the new piece, or keeps
+ * it; `at` is its place in the buffer, and then the next one's. */
+static snow_status send_part(exchange *run, int level, int index, stretch part,
+                             size_t *at) {
+    snow_combiner *combiner = run->combiner;
+    const snow_share *share = share_at(combiner, index);
+    snow_traffic *out = &combiner->out[level & 1];
+    unsigned char *message = out->bytes + *at;
+    size_t bytes = write_part(run, level, part, message);
+    *at += align(snow_active_room(part.last - part.first, run->pixel_bytes));
+    if (share->seat == combiner->rounds.seat) {
+        run->own = message;
+        run->own_bytes = bytes;
+        return SNOW_OK;
+    }
+    run->sent += (int64_t)bytes;
+    return snow_comm_send(combiner->comm, message, bytes,
+                          run->order->ranks[share->seat], SNOW_TAG_COMBINE,
+                          &out->messages[out->count++]);
+}
+
+/* Sends what this rank holds, parts of an unfinished image when they are there.
+ */
+static snow_status send_round(exchange *run, int level) {
+    snow_combiner *combiner = run->combiner;
+    snow_parcel *parcels = combiner->parcels;
+    snow_traffic *out = &combiner->out[level & 1];
+    size_t at = 0;
+    SNOW_TRY(snow_comm_wait_all(combiner->comm, out->messages, out->count));
+    out->count = 0;
+    run->own_bytes = 0;
+    for (int left = list_parcels(combiner, level); left;) {
+        int absent = 0;
+        for (int i = 0; i < left; i++) {
+            stretch part = {parcels[i].first, parcels[i].last};
+            if (is_there(run, part))
+                SNOW_TRY(send_part(run, level, parcels[i].share, part, &at));
+            else
+                parcels[absent++] = parcels[i];
+        }
+        left = absent;
+        if (left)
+            draw_on(run);
+    }
+    end_drawing(run);
     return SNOW_OK;
 }
 
@@ -570,20 +688,11 @@ static snow_status run_rounds(exchange *run) {
 static snow_status run_alone(exchange *run, stretch all) {
     snow_combiner *combiner = run->combiner;
     unsigned char *out = combiner->out[0].bytes;
+    end_drawing(run);
     size_t bytes = write_part(run, 0, all, out);
     run->layer_count = 1;
     open_layer(run, out, bytes, all, combiner->words, combiner->layers);
     return SNOW_OK;
-}
-
-static void clip_drawn(snow_exchange_order *order) {
-    snow_rectangle *drawn = &order->drawn;
-    drawn->x0 = drawn->x0 > 0 ? drawn->x0 : 0;
-    drawn->y0 = drawn->y0 > 0 ? drawn->y0 : 0;
-    drawn->x1 = drawn->x1 < order->width ? drawn->x1 : order->width;
-    drawn->y1 = drawn->y1 < order->height ? drawn->y1 : order->height;
-    if (drawn->x0 >= drawn->x1 || drawn->y0 >= drawn->y1)
-        *drawn = (snow_rectangle){0, 0, 0, 0};
 }
 
 static void begin_figures(snow_combiner *combiner,
@@ -595,35 +704,55 @@ static void begin_figures(snow_combiner *combiner,
     memcpy(figures->radices, combiner->rounds.radices, sizeof figures->radices);
 }
 
-snow_status snow_exchange(snow_combiner *combiner,
-                          const snow_exchange_order *asked, snow_piece *out) {
-    snow_exchange_order order = *asked;
-    exchange run = {.combiner = combiner,
-                    .order = &order,
-                    .pixel_bytes = (size_t)order.channels * sizeof(float)};
-    const snow_exchange_shape shape = shape_of(&order);
-    SNOW_TRY(check_order(combiner, &order));
-    clip_drawn(&order);
+/* The end of this rank's part of the first round, which it does not send. */
+static double where_to_begin(const snow_combiner *combiner) {
+    const snow_borders *borders = &combiner->borders;
+    const stretch mine = held_before(combiner, combiner->rounds.count ? 1 : 0);
+    int64_t pixels = (int64_t)borders->width * borders->height;
+    return mine.last < pixels ? (double)mine.last / (double)pixels : 0;
+}
+
+static snow_status combine(exchange *run, stretch *mine) {
+    snow_combiner *combiner = run->combiner;
+    snow_exchange_order *order = run->order;
+    const snow_exchange_shape shape = shape_of(order);
+    SNOW_TRY(check_order(combiner, order));
+    clip_drawn(order);
     if (!same_shape(&shape, &combiner->shape))
-        SNOW_TRY(take_shape(combiner, &order));
+        SNOW_TRY(take_shape(combiner, order));
     combiner->loops =
-        snow_pixels_pick(SNOW_ISA_AUTO, order.channels, order.laying);
-    SNOW_TRY(take_seats(combiner, &order));
-    begin_figures(combiner, &order);
+        snow_pixels_pick(SNOW_ISA_AUTO, order->channels, order->laying);
+    SNOW_TRY(take_seats(combiner, order));
+    begin_figures(combiner, order);
+    run->tallies = false;
+    combiner->counted_bins = 0;
     if (combiner->borders.counted)
-        SNOW_TRY(count_pieces(combiner, &order));
+        SNOW_TRY(count_pieces(run));
     SNOW_TRY(fit_buffers(combiner));
-    stretch mine = held_before(combiner, combiner->rounds.count);
-    snow_status status =
-        combiner->rounds.count ? run_rounds(&run) : run_alone(&run, mine);
-    SNOW_TRY(status);
-    lay_piece(&run, mine);
+    combiner->figures.begin_at = where_to_begin(combiner);
+    *mine = held_before(combiner, combiner->rounds.count);
+    SNOW_TRY(combiner->rounds.count ? run_rounds(run) : run_alone(run, *mine));
+    lay_piece(run, *mine);
     for (int i = 0; i < 2; i++) {
         snow_traffic *sent = &combiner->out[i];
         SNOW_TRY(
             snow_comm_wait_all(combiner->comm, sent->messages, sent->count));
         sent->count = 0;
     }
+    return SNOW_OK;
+}
+
+snow_status snow_exchange(snow_combiner *combiner,
+                          const snow_exchange_order *asked, snow_piece *out) {
+    snow_exchange_order order = *asked;
+    exchange run = {.combiner = combiner,
+                    .order = &order,
+                    .pixel_bytes = (size_t)order.channels * sizeof(float)};
+    stretch mine;
+    snow_status status = combine(&run, &mine);
+    if (order.unfinished) /* where it failed */
+        order.unfinished->end(order.unfinished->user);
+    SNOW_TRY(status);
     combiner->scan_seconds = order.scan_seconds;
     combiner->blend_seconds = order.blend_seconds;
     *out =
@@ -648,6 +777,12 @@ void snow_exchange_pieces(const snow_combiner *combiner, int64_t *firsts,
         firsts[combiner->ranks[i]] = piece.first;
         counts[combiner->ranks[i]] = piece.last - piece.first;
     }
+}
+
+int snow_exchange_counts(const snow_combiner *combiner,
+                         const int64_t **counts) {
+    *counts = combiner->counts;
+    return combiner->counted_bins;
 }
 
 int snow_exchange_line(const snow_combiner *combiner, int place) {

@@ -49,8 +49,21 @@ typedef struct snow_rehearsal {
     void *user;
 } snow_rehearsal;
 
-/* What is combined.  All but `pixels`, `stride`, `drawn` and the rehearsal's
- * user is the same on all ranks. */
+/* A local image in the making.  What is there of it is sent while the rest is
+ * drawn. */
+typedef struct snow_unfinished {
+    /* Draws a little more; false: nothing is left to begin. */
+    bool (*step)(void *user);
+    /* Whether lines y0 .. y1 - 1 are there; then what of them was drawn, as in
+     * the order. */
+    bool (*look)(void *user, int y0, int y1, snow_rectangle *drawn);
+    /* Returns when all is there; once. */
+    void (*end)(void *user);
+    void *user;
+} snow_unfinished;
+
+/* What is combined.  All but `pixels`, `stride`, `drawn` and the users of the
+ * rehearsal and of what is unfinished is the same on all ranks. */
 typedef struct snow_exchange_order {
     int width, height, channels; /* of the picture; 2 (grey, a) or 4 (r, g, b,
                                     a), premultiplied */
@@ -66,6 +79,11 @@ typedef struct snow_exchange_order {
     snow_pieces pieces; /* of all methods but the tree, which has one */
     snow_laying laying; /* of 2 channels where it is not over */
     bool whole;         /* all pixels travel, as in the paper: no masks */
+    const snow_unfinished *unfinished; /* tells `drawn`; NULL: all is there */
+    /* snow_exchange_counts, summed up over all ranks: counted pieces are cut by
+     * these, NULL: by the local images. */
+    const int64_t *counts;
+    int count_groups;
     const snow_rehearsal *rehearsal; /* NULL: a real exchange */
     /* Seconds that a simulated processor takes (snow_comm_work) to look at a
      * pixel of its local image, or to move 16 bytes of a gathered picture; and
@@ -92,6 +110,10 @@ typedef struct snow_exchange_figures {
     int64_t active;          /* pixels of the local image that are */
     int64_t scanned, laid;   /* pixels looked at; laid over one another */
     int64_t receive_largest; /* bytes of the largest message that came */
+    int64_t early;           /* bytes sent before the local image was there */
+    double begin_at; /* what share of the picture's pixels a rank had best begin
+                        to draw behind, that it may send more of them early: its
+                        own are drawn last */
 } snow_exchange_figures;
 
 /* Buffers, kept from picture to picture.  The communicator outlives it. */
@@ -104,7 +126,10 @@ void snow_combiner_free(snow_combiner *combiner);
  * the same sizes, method and pieces takes no memory; where pieces are counted,
  * unless they are larger than before.  Errors, on all ranks
  * alike: SNOW_NO_MEMORY, SNOW_BAD_USAGE (an order that is none), those of the
- * transport. */
+ * transport.
+ *
+ * An unfinished local image is ended, whatever becomes of the exchange; before
+ * it where its pieces are counted without `counts`. */
 snow_status snow_exchange(snow_combiner *combiner,
                           const snow_exchange_order *order, snow_piece *out);
 
@@ -114,6 +139,13 @@ const snow_exchange_figures *snow_exchange_told(const snow_combiner *combiner);
  * firsts[rank + 1] - 1 need not hold, so both are told. */
 void snow_exchange_pieces(const snow_combiner *combiner, int64_t *firsts,
                           int64_t *counts);
+
+/* This rank's active pixels in groups of lines of the picture of the last
+ * exchange, SNOW_COUNTS_MOST at most; how many groups, the same on all ranks,
+ * 0 where pieces were not counted.  Good for the next picture, which often is
+ * much like the last one; groups of another number are passed over. */
+#define SNOW_COUNTS_MOST 256
+int snow_exchange_counts(const snow_combiner *combiner, const int64_t **counts);
 
 /* The line of the picture that is in place `place` of the order of lines. */
 int snow_exchange_line(const snow_combiner *combiner, int place);

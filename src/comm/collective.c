@@ -39,13 +39,14 @@ static snow_status receive_one(snow_comm *comm, void *bytes, size_t count,
 
 /* values[i] = values[i] by others[i]. */
 typedef void reduce_fn(void *values, const void *others, size_t count,
-                       snow_reduction by);
+                       const void *how);
 
 /* Whole numbers add up without overflow being undefined. */
 static void reduce_ints(void *values, const void *others, size_t count,
-                        snow_reduction by) {
+                        const void *how) {
     int64_t *a = values;
     const int64_t *b = others;
+    const snow_reduction by = *(const snow_reduction *)how;
     for (size_t i = 0; i < count; i++) {
         if (by == SNOW_SUM)
             a[i] = (int64_t)((uint64_t)a[i] + (uint64_t)b[i]);
@@ -54,10 +55,20 @@ static void reduce_ints(void *values, const void *others, size_t count,
     }
 }
 
+/* How many maxima there are before the sums. */
+static void reduce_both(void *values, const void *others, size_t count,
+                        const void *how) {
+    const size_t maxima = *(const size_t *)how;
+    reduce_ints(values, others, maxima, &(snow_reduction){SNOW_MAX});
+    reduce_ints((int64_t *)values + maxima, (const int64_t *)others + maxima,
+                count - maxima, &(snow_reduction){SNOW_SUM});
+}
+
 static void reduce_doubles(void *values, const void *others, size_t count,
-                           snow_reduction by) {
+                           const void *how) {
     double *a = values;
     const double *b = others;
+    const snow_reduction by = *(const snow_reduction *)how;
     for (size_t i = 0; i < count; i++) {
         if (by == SNOW_SUM)
             a[i] += b[i];
@@ -76,7 +87,7 @@ static void reduce_doubles(void *values, const void *others, size_t count,
  *          0 ----- 2, 1 ----- 3   bit 1
  *          0 ------------> 4                                             */
 static snow_status reduce_some(snow_comm *comm, void *values, size_t count,
-                               snow_reduction by, reduce_fn *reduce) {
+                               reduce_fn *reduce, const void *how) {
     const size_t bytes = count * sizeof comm->scratch[0];
     int power = 1;
     while (power <= comm->ranks / 2)
@@ -88,12 +99,12 @@ static snow_status reduce_some(snow_comm *comm, void *values, size_t count,
     const bool helps = comm->rank + power < comm->ranks;
     if (helps) {
         SNOW_TRY(receive_one(comm, comm->scratch, bytes, comm->rank + power));
-        reduce(values, comm->scratch, count, by);
+        reduce(values, comm->scratch, count, how);
     }
     for (int bit = 1; bit < power; bit *= 2) {
         int other = comm->rank ^ bit;
         SNOW_TRY(swap(comm, values, bytes, other, comm->scratch, bytes, other));
-        reduce(values, comm->scratch, count, by);
+        reduce(values, comm->scratch, count, how);
     }
     return helps ? send_one(comm, values, bytes, comm->rank + power) : SNOW_OK;
 }
@@ -104,7 +115,7 @@ static snow_status reduce_all(snow_comm *comm, void *values, size_t count,
     unsigned char *bytes = values;
     while (count && comm->ranks > 1) {
         size_t some = count < SNOW_COMM_SCRATCH ? count : SNOW_COMM_SCRATCH;
-        SNOW_TRY(reduce_some(comm, bytes, some, by, reduce));
+        SNOW_TRY(reduce_some(comm, bytes, some, reduce, &by));
         bytes += some * sizeof comm->scratch[0];
         count -= some;
     }
@@ -114,6 +125,14 @@ static snow_status reduce_all(snow_comm *comm, void *values, size_t count,
 snow_status snow_comm_reduce_ints(snow_comm *comm, int64_t *values,
                                   size_t count, snow_reduction by) {
     return reduce_all(comm, values, count, by, reduce_ints);
+}
+
+snow_status snow_comm_reduce_both(snow_comm *comm, int64_t *values,
+                                  size_t maxima, size_t sums) {
+    if (comm->ranks > 1)
+        SNOW_TRY(
+            reduce_some(comm, values, maxima + sums, reduce_both, &maxima));
+    return comm->broken;
 }
 
 snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,

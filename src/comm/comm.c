@@ -122,3 +122,8 @@ void snow_comm_occupy(snow_comm *comm, snow_meanwhile_fn *work, void *user) {
     if (comm->ops.occupy)
         comm->ops.occupy(comm->self, work, user);
 }
+
+void snow_comm_progress(snow_comm *comm) {
+    if (comm->ops.progress && !comm->broken)
+        comm->ops.progress(comm->self);
+}

@@ -59,12 +59,20 @@ void snow_comm_work(snow_comm *comm, double seconds);
  * NULL: nothing, as in the beginning. */
 void snow_comm_occupy(snow_comm *comm, snow_meanwhile_fn *work, void *user);
 
+/* Between pieces of work while messages are under way: lets them move on. */
+void snow_comm_progress(snow_comm *comm);
+
 /* Collective, as are broadcast and share (snowglass/comm.h): element by element
  * over all ranks; the result replaces `values` on every rank, and has the same
  * bits there. */
 typedef enum snow_reduction { SNOW_SUM, SNOW_MIN, SNOW_MAX } snow_reduction;
 snow_status snow_comm_reduce_ints(snow_comm *comm, int64_t *values,
                                   size_t count, snow_reduction by);
+
+/* The same of some by SNOW_MAX and of those behind them by SNOW_SUM, at the
+ * price of one; together at most SNOW_COMM_SCRATCH. */
+snow_status snow_comm_reduce_both(snow_comm *comm, int64_t *values,
+                                  size_t maxima, size_t sums);
 snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,
                                      size_t count, snow_reduction by);
 

@@ -331,6 +331,14 @@ static void occupy(void *self, snow_meanwhile_fn *meanwhile, void *user) {
     side->meanwhile = meanwhile;
     side->meanwhile_user = user;
 }
+
+/* Messages move while any call looks for some. */
+static void progress(void *self) {
+    mpi_side *side = self;
+    int there = 0;
+    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, side->group, &there,
+               MPI_STATUS_IGNORE);
+}
 #endif
 
 #ifdef SMPI_H
@@ -440,6 +448,7 @@ static snow_status equip(snow_context *context, MPI_Comm ours,
 #else
                                       .timeout = limit_waits,
                                       .occupy = occupy,
+                                      .progress = progress,
 #endif
                                       .end = end};
     int rank = 0, ranks = 1;
