@@ -212,6 +212,11 @@ snow_status reduce_ints(snow_comm *comm, void *user) {
             CHECK(values[i] == right[kind]);
         }
     }
+    int64_t both[5] = {rank, -rank, rank, rank, 1}; /* two maxima, three sums */
+    SNOW_TRY(snow_comm_reduce_both(comm, both, 2, 3));
+    CHECK(both[0] == ranks - 1 && both[1] == 0 && both[4] == ranks);
+    CHECK(both[2] == ranks * (ranks - 1) / 2 && both[3] == both[2]);
+    snow_comm_progress(comm);
     return SNOW_OK;
 }
 
