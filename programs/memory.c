@@ -18,12 +18,16 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#define PIXEL_BYTES 16 /* four floats */
-#define PLACE_SHARE 7  /* EA: one byte for so many voxels */
+#define PIXEL_BYTES 16  /* four floats */
+#define PLACE_SHARE 7   /* EA: one byte for so many voxels */
+#define BOUND_BYTES 0.5 /* 16 bits for four voxels */
 
 static double sheared_bytes(const options *asked, double value_bytes) {
     double code = value_bytes > 1 ? 2 : 1;
     double normal = strcmp(asked->shade, "none") ? 2 : 0;
+    /* Bounds of largest values, which have no normals. */
+    if (strcmp(asked->mode, "mip") == 0 || strcmp(asked->mode, "minip") == 0)
+        normal = normal > BOUND_BYTES ? normal : BOUND_BYTES;
     /* Slices between slices are encoded as well. */
     double times = strcmp(asked->quality, "high") ? 1 : 2;
     return times * (code + normal + 1.0 / PLACE_SHARE);

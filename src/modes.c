@@ -179,40 +179,47 @@ static void fill_colors(const snow_job *job, const snow_ramp *ramp,
     }
 }
 
-/* The colour of a number 0 to 1. */
+/* The first `count` parts of the colour of a number 0 to 1; 1, the end of the
+ * last cell, is as common as 0. */
 static inline void find_color(const snow_transfer *transfer,
                               const snow_mode_colors *colors, float number,
-                              float rgb[3]) {
+                              int count, float *rgb) {
     float place = number * SNOW_MODE_COLORS;
-    int cell = (int)place;
-    if (cell >= 0 && cell < SNOW_MODE_COLORS && !colors->bent[cell]) {
+    int cell =
+        (int)place < SNOW_MODE_COLORS ? (int)place : SNOW_MODE_COLORS - 1;
+    if (!colors->bent[cell]) {
         const float *a = colors->rgb[cell], *b = colors->rgb[cell + 1];
         float part = place - (float)cell;
-        for (int c = 0; c < 3; c++)
-            rgb[c] = a[c] + part * (b[c] - a[c]);
+        for (int c = 0; c < count; c++)
+            rgb[c] = part < 1 ? a[c] + part * (b[c] - a[c]) : b[c];
         return;
     }
     double exact[3];
     snow_transfer_color(transfer, colors->from + (double)number * colors->range,
                         exact);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < count; c++)
         rgb[c] = (float)exact[c];
 }
 
 /* (value of 0 to 1, hit) to a colour, opaque; where nothing was hit the picture
  * stays transparent. */
-static void color_line(const finish_job *f, const float *pairs, int count,
-                       float *pixels) {
-    size_t channels = (size_t)f->image->channels;
+static inline void color_pixels(const finish_job *f, const float *pairs,
+                                int count, int channels, float *pixels) {
     for (int x = 0; x < count; x++, pairs += 2, pixels += channels) {
-        float rgb[3];
         if (!(pairs[1] >= SNOW_WEIGHT_ENOUGH))
             continue;
-        find_color(f->job->transfer, f->colors, pairs[0] / pairs[1], rgb);
-        for (size_t c = 0; c + 1 < channels; c++)
-            pixels[c] = rgb[c];
+        find_color(f->job->transfer, f->colors, pairs[0] / pairs[1],
+                   channels - 1, pixels);
         pixels[channels - 1] = 1;
     }
+}
+
+static void color_line(const finish_job *f, const float *pairs, int count,
+                       float *pixels) {
+    if (f->image->channels == 2)
+        color_pixels(f, pairs, count, 2, pixels);
+    else
+        color_pixels(f, pairs, count, 4, pixels);
 }
 
 /* (sum of weighted values, of weights) to the mean or the sum in data units. */

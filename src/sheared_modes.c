@@ -324,8 +324,7 @@ static void add_weights(const snow_cover *cover, const int own[2], double found,
     rise[out] -= found;
 }
 
-/* How the weights of all slices rise along a line of the picture: their sum, or
- * how many slices find enough. */
+/* How the weights of all slices rise along a line of the picture. */
 static void weigh_slices(const snow_modes_pass *pass, int cell, int down,
                          double *rise) {
     size_t row = (size_t)pass->pixels[0] + 1;
@@ -333,37 +332,25 @@ static void weigh_slices(const snow_modes_pass *pass, int cell, int down,
     for (int64_t k = 0; k < pass->slices; k++) {
         const snow_slice_place *place = &pass->places[k];
         float found = snow_cover_at(&place->down[down], cell);
-        if (!(found > 0) || (pass->largest && found < SNOW_WEIGHT_ENOUGH) ||
-            cell < place->own[1][down][0] || cell >= place->own[1][down][1])
+        if (!(found > 0) || cell < place->own[1][down][0] ||
+            cell >= place->own[1][down][1])
             continue;
-        for (int phase = 0; phase < pass->shear.u.phases; phase++) {
-            double *rises = rise + (size_t)phase * row;
-            int range[2] = {place->range[phase][0], place->range[phase][1]};
-            if (!pass->largest) {
-                add_weights(&place->across[phase], place->own[0][phase],
-                            (double)found, rises);
-                continue;
-            }
-            if (found < 1)
-                snow_modes_range(place, phase, found, range);
-            if (range[0] >= range[1])
-                continue;
-            rises[range[0]] += 1;
-            rises[range[1]] -= 1;
-        }
+        for (int phase = 0; phase < pass->shear.u.phases; phase++)
+            add_weights(&place->across[phase], place->own[0][phase],
+                        (double)found, rise + (size_t)phase * row);
     }
 }
 
 /* Out of the rises. */
-void snow_modes_weigh(const snow_modes_pass *pass, int cell, int down,
-                      double *rise, float *weights) {
+static void weigh(const snow_modes_pass *pass, int cell, int down, double *rise,
+                  float *weights) {
     double share = 1 / (double)pass->order->placement->slices;
     weigh_slices(pass, cell, down, rise);
     for (int phase = 0; phase < pass->shear.u.phases; phase++) {
         double sum = 0;
         for (int n = 0; n < pass->pixels[0]; n++) {
             sum += rise[n];
-            weights[n] = (float)(pass->largest ? sum > 0.5 : share * sum);
+            weights[n] = (float)(share * sum);
         }
         rise += pass->pixels[0] + 1;
         weights += pass->row;
@@ -376,9 +363,8 @@ static const float *weights_of(modes_stroke *stroke, int cell, int down) {
     const snow_modes_pass *pass = stroke->pass;
     bool within = cell >= pass->within[down][0] && cell < pass->within[down][1];
     if (!within || !stroke->weighed) {
-        snow_modes_weigh(pass, cell, down, stroke->scratch.rise,
-                         within ? stroke->scratch.usual
-                                : stroke->scratch.weights);
+        weigh(pass, cell, down, stroke->scratch.rise,
+              within ? stroke->scratch.usual : stroke->scratch.weights);
         stroke->weighed |= within;
     }
     return within ? stroke->scratch.usual : stroke->scratch.weights;

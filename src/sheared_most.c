@@ -1,28 +1,23 @@
 /* sheared_most.c - largest values on the slices' lattice: mip and minip.
  *
- * A sheet's value is a mean of voxels, and so not above the largest of them:
- * where that is not above what the picture holds already, the sheet cannot
- * change it.  For every row of voxels the largest of each 16 is kept
- * (splat/rows.h), and the smallest pixel of every cell of a tile; cells that a
- * slice cannot change are passed over, and rows that no other needs with them.
+ * Where no sheet of a slice can be above what the picture holds already, the
+ * slice changes nothing there.  What sheets may reach is known for every four
+ * places of a row (sheared_blocks.c), and for every patch of the picture, four
+ * columns of a cell, its smallest pixel is kept:
  *
- *   voxels of the rows    12  3 |  5  7     largest: 12 |  7
- *   cells of the tile     picture holds 8 or more:  draw | pass
+ *   blocks of the rows    12  3  5  7
+ *   patches               10  8  8  8    the first one is drawn, and with it
+ *                                        the cell; others are passed over
+ *
+ * So are rows that no cell needs, which are not even decoded.
  *
  * Order does not matter, so slices are taken in one that comes from all of the
- * volume from the start.  A thread takes a band of lines through all slices,
- * some at once: a tile stays in the first-level cache while they pass. */
+ * volume from the start.  A thread takes a band of lines through all slices. */
 #include "sheared_reduce.h"
-
-#include "base/parallel.h"
 
 #include <string.h>
 
-#define SLICES_AT_ONCE 8
 #define LINES_MOST (2 * SNOW_MOST_CELLS)
-
-/* What is above all values: of pixels that no slice reaches. */
-#define NO_PIXEL 2.0f
 
 /* A slice of a band, decoded. */
 typedef struct most_slice {
@@ -30,158 +25,75 @@ typedef struct most_slice {
     const snow_slice_place *place;
     int64_t number, first; /* of row 0 of the masks, encoded */
     uint64_t cells, whole; /* that find enough; all, in both lines */
+    uint64_t *found;       /* [tile]: those that it may change */
 } most_slice;
 
 /* A worker's own memory, laid out in snow_sheared.scratch. */
 typedef struct most_scratch {
-    most_slice *slices;
-    uint64_t *bits; /* of the rows of the slices */
+    most_slice *slice;
+    uint64_t *bits; /* of its rows */
     uint32_t *rank;
     uint64_t *any;
     snow_span *spans;
-    float *samples, *ring, *zero, *factors;
-    float *lines; /* [tile][line][phase][pixel] */
-    float *least; /* [tile][cell] */
-    double *rise;
-    float *weights, *usual; /* of a line: [phase][pixel] */
+    float *samples, *ring, *zero;
+    float *lines;               /* [tile][line][phase][pixel] */
+    uint16_t *least;            /* [cell][patch of all tiles] */
+    uint64_t *found;            /* of the slice */
+    struct most_reach *reaches; /* [slice][phase along v] */
+    float *pixels, *usual;      /* of a line: [phase][pixel] */
 } most_scratch;
 
 typedef struct most_stroke {
     const snow_modes_pass *pass;
     most_scratch scratch;
     int first_cell, cells;
-    bool weighed; /* usual weights are there */
+    bool found_usual; /* pixels of usual lines are there */
 } most_stroke;
 
-/* --- blocks ----------------------------------------------------------------
- */
-
-static size_t block_columns(const snow_bands *bands) {
-    return (size_t)bands->columns / SNOW_BLOCK_COLUMNS + 1;
+/* Patches of a tile; and of a row of tiles: as many more are read at most. */
+static int tile_patches(const snow_modes_pass *pass) {
+    return pass->columns / SNOW_PATCH_COLUMNS;
 }
 
-typedef struct blocks_job {
-    const snow_modes_pass *pass;
-    char *scratch;
-    size_t scratch_bytes;
-} blocks_job;
-
-static size_t blocks_scratch(const snow_bands *bands) {
-    size_t words = snow_window_words(bands->columns);
-    size_t bytes =
-        words * SNOW_WINDOW_ROWS * (sizeof(uint64_t) + sizeof(uint32_t)) +
-        words * (sizeof(uint64_t) + 64 * sizeof(float)) +
-        ((size_t)bands->columns / 2 + 1) * sizeof(snow_span);
-    return (bytes + 63) / 64 * 64;
-}
-
-/* The blocks of a slice: of all rows that hold a voxel. */
-static void find_blocks(void *of, int64_t slice, int worker) {
-    const blocks_job *job = of;
-    const snow_modes_pass *pass = job->pass;
-    const snow_bands *bands = &pass->sheared->bands;
-    size_t words = snow_window_words(bands->columns), rows = words - 2;
-    snow_mask_rows masks = {.words = words};
-    char *at = job->scratch + (size_t)worker * job->scratch_bytes;
-    masks.bits = (uint64_t *)(void *)at;
-    masks.any = masks.bits + words * SNOW_WINDOW_ROWS;
-    masks.rank = (uint32_t *)(void *)(masks.any + words);
-    float *row = (float *)(void *)(masks.rank + words * SNOW_WINDOW_ROWS);
-    snow_span *spans = (snow_span *)(void *)(row + 64 * words);
-    uint16_t *blocks = pass->sheared->blocks + (size_t)slice *
-                                                   block_columns(bands) *
-                                                   (size_t)bands->rows;
-    for (int64_t first = 0; first < bands->rows; first += SNOW_WINDOW_ROWS) {
-        pass->windows->read(bands, slice, first, ~UINT64_C(0), spans, &masks);
-        for (uint64_t held = masks.held; held; held &= held - 1) {
-            int n = __builtin_ctzll(held);
-            (pass->code_bytes == 1 ? pass->fns->spread8 : pass->fns->spread16)(
-                masks.bits + n + SNOW_WINDOW_ROWS, SNOW_WINDOW_ROWS, rows,
-                masks.codes[n], pass->scale, pass->start, row);
-            pass->fns->block(row, bands->columns, (size_t)bands->rows,
-                             blocks + first + n);
-        }
-    }
-}
-
-snow_status snow_most_prepare(snow_modes_pass *pass,
-                              const snow_value_scale *scale) {
-    snow_sheared *s = pass->sheared;
-    const snow_bands *bands = &s->bands;
-    uint64_t count;
-    if (s->blocks_of == s->encodings && s->blocks_scale.from == scale->from &&
-        s->blocks_scale.step == scale->step)
-        return SNOW_OK;
-    if (!snow_mul_u64((uint64_t)block_columns(bands), (uint64_t)bands->rows,
-                      &count) ||
-        !snow_mul_u64(count, (uint64_t)bands->slices, &count) ||
-        !snow_mul_u64(count, sizeof *s->blocks, &count) || count >= SIZE_MAX)
-        return snow_fail(s->context, SNOW_NO_MEMORY,
-                         "no memory for the largest values of rows");
-    s->blocks_of = 0;
-    SNOW_TRY(snow_reserve(s->context, &s->blocks, &s->blocks_capacity, 0,
-                          (size_t)count + 1));
-    memset(s->blocks, 0, (size_t)count);
-    blocks_job job = {pass, NULL, blocks_scratch(bands)};
-    int threads = pass->order->settings->threads;
-    job.scratch =
-        snow_allocate_array(s->context, (uint64_t)threads, job.scratch_bytes);
-    if (!job.scratch)
-        return SNOW_NO_MEMORY;
-    snow_parallel(s->context, threads, bands->slices, find_blocks, &job);
-    snow_release(s->context, job.scratch);
-    s->blocks_of = s->encodings;
-    s->blocks_scale = *scale;
-    return SNOW_OK;
+static size_t row_patches(const snow_modes_pass *pass) {
+    return (size_t)pass->tiles * (size_t)tile_patches(pass) + 32;
 }
 
 /* --- a tile of a slice -----------------------------------------------------
  */
 
-/* The cells of a tile that a slice may change; `column` is the first encoded
- * one of its window. */
-static uint64_t look(const most_stroke *stroke, const most_slice *slice,
-                     int64_t column, int window, const float *least) {
-    const snow_modes_pass *pass = stroke->pass;
-    const snow_bands *bands = &pass->sheared->bands;
-    const uint16_t *columns[SNOW_WINDOW_MOST / SNOW_BLOCK_COLUMNS + 2];
-    int64_t end =
-        column + window < bands->columns ? column + window : bands->columns;
-    int64_t block = (column > 0 ? column : 0) / SNOW_BLOCK_COLUMNS;
-    const uint16_t *blocks = pass->sheared->blocks + (size_t)slice->number *
-                                                         block_columns(bands) *
-                                                         (size_t)bands->rows;
-    snow_most_look look = {.blocks = columns,
-                           .cells = stroke->cells,
-                           .stride = pass->shear.v.stride,
-                           .reach = slice->place->v->lead[1] + pass->taps[1],
-                           .least = least};
-    int64_t last = bands->rows - slice->first;
-    look.first = slice->first < 0 ? (int)-slice->first : 0;
-    look.end = last < SNOW_MOST_ROWS ? (int)last : SNOW_MOST_ROWS;
-    for (; block * SNOW_BLOCK_COLUMNS < end; block++)
-        columns[look.block_count++] =
-            blocks + block * bands->rows + slice->first;
-    return pass->fns->look(&look);
+/* The first column of a tile's window, as it is encoded. */
+static int64_t first_column(const snow_modes_pass *pass,
+                            const snow_slice_place *place, int64_t tile) {
+    return place->across[0].start - pass->stored[0] +
+           tile * pass->columns * pass->shear.u.stride;
+}
+
+/* What the pixels of a tile find of their weights along u, 0 to 1; 0 of those
+ * that are another part's. */
+static void find_shares(const most_stroke *stroke,
+                        const snow_slice_place *place, int64_t tile,
+                        float *shares) {
+    int columns = stroke->pass->columns;
+    for (int phase = 0; phase < stroke->pass->shear.u.phases; phase++) {
+        const snow_cover *cover = &place->across[phase];
+        const int *own = place->own[0][phase];
+        int from = cover->from > own[0] ? cover->from : own[0];
+        int to = cover->to < own[1] ? cover->to : own[1];
+        for (int n = 0; n < columns; n++) {
+            int at = (int)tile * columns + n;
+            shares[phase * columns + n] =
+                at >= from && at < to ? snow_cover_at(cover, at) : 0;
+        }
+    }
 }
 
 /* Makes up for the weights that a line's pixels do not find; 0 where they are
- * too few, or the pixel another part's. */
-static void fill_factors(const most_stroke *stroke, const most_slice *slice,
-                         int64_t tile, float found, float *factors) {
-    const snow_slice_place *place = slice->place;
-    for (int phase = 0; phase < stroke->pass->shear.u.phases; phase++) {
-        int range[2] = {place->range[phase][0], place->range[phase][1]};
-        if (found < 1)
-            snow_modes_range(place, phase, found, range);
-        for (int n = 0; n < stroke->pass->columns; n++) {
-            int at = (int)tile * stroke->pass->columns + n;
-            factors[phase * stroke->pass->columns + n] =
-                at >= range[0] && at < range[1]
-                    ? 1 / (found * snow_cover_at(&place->across[phase], at))
-                    : 0;
-        }
-    }
+ * too few.  The same comparison as in snow_cover_range. */
+static void fill_factors(const float *shares, float found, float *factors) {
+    float enough = SNOW_WEIGHT_ENOUGH / found;
+    for (int n = 0; n < SNOW_MOST_LINE; n++)
+        factors[n] = shares[n] >= enough ? 1 / (found * shares[n]) : 0;
 }
 
 /* Whether all pixels of a tile find all weights along u, and are the part's. */
@@ -201,42 +113,51 @@ static bool is_inner(const most_stroke *stroke, const snow_slice_place *place,
     return true;
 }
 
+/* What a line of a slice finds of its weights along v; 0 where that is too
+ * little, or the line another part's. */
+static float find_line(const snow_slice_place *place, int phase, int cell) {
+    const int *own = place->own[1][phase];
+    float found = snow_cover_at(&place->down[phase], cell);
+    return found >= SNOW_WEIGHT_ENOUGH && cell >= own[0] && cell < own[1]
+               ? found
+               : 0;
+}
+
 /* One cell at an end of the slice: each line has its own factors. */
 static void draw_end(const most_stroke *stroke, const most_slice *slice,
-                     int64_t tile, int cell, snow_most_tile *t) {
-    const snow_slice_place *place = slice->place;
-    float *factors = stroke->scratch.factors;
-    int at = stroke->first_cell + cell;
-    memset(factors, 0, 2 * SNOW_MOST_LINE * sizeof *factors);
+                     const float *shares, int cell, snow_most_tile *t) {
+    float factors[2 * SNOW_MOST_LINE] = {0};
     for (int phase = 0; phase < t->phases[1]; phase++) {
-        const int *own = place->own[1][phase];
-        float found = snow_cover_at(&place->down[phase], at);
-        if (found >= SNOW_WEIGHT_ENOUGH && at >= own[0] && at < own[1])
-            fill_factors(stroke, slice, tile, found,
-                         factors + phase * SNOW_MOST_LINE);
+        float found = find_line(slice->place, phase, stroke->first_cell + cell);
+        if (found > 0)
+            fill_factors(shares, found, factors + phase * SNOW_MOST_LINE);
     }
     t->factors = factors;
     t->cells = UINT64_C(1) << cell;
     stroke->pass->fns->most(t);
+    t->factors = NULL;
 }
 
 /* Lines 08 to 13 for the cells of a tile, whose rows are combed. */
 static void draw_cells(const most_stroke *stroke, const most_slice *slice,
                        int64_t tile, uint64_t cells, snow_most_tile *t) {
-    float *factors = stroke->scratch.factors;
-    for (uint64_t left = cells & ~slice->whole; left; left &= left - 1)
-        draw_end(stroke, slice, tile, __builtin_ctzll(left), t);
+    float shares[SNOW_MOST_LINE] = {0}, factors[2 * SNOW_MOST_LINE];
+    bool inner = is_inner(stroke, slice->place, tile);
+    uint64_t ends = cells & ~slice->whole;
+    if (!inner || ends)
+        find_shares(stroke, slice->place, tile, shares);
+    for (; ends; ends &= ends - 1)
+        draw_end(stroke, slice, shares, __builtin_ctzll(ends), t);
     t->cells = cells & slice->whole;
-    t->factors = NULL;
-    if (!t->cells)
-        return;
-    if (!is_inner(stroke, slice->place, tile)) {
-        fill_factors(stroke, slice, tile, 1, factors);
-        for (int i = 0; i < SNOW_MOST_LINE; i++)
-            factors[SNOW_MOST_LINE + i] = factors[i];
+    if (!inner) {
+        fill_factors(shares, 1, factors);
+        memcpy(factors + SNOW_MOST_LINE, factors,
+               SNOW_MOST_LINE * sizeof *factors);
         t->factors = factors;
     }
-    stroke->pass->fns->most(t);
+    if (t->cells)
+        stroke->pass->fns->most(t);
+    t->factors = NULL;
 }
 
 static void draw_tile(const most_stroke *stroke, const most_slice *slice,
@@ -246,15 +167,11 @@ static void draw_tile(const most_stroke *stroke, const most_slice *slice,
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     uint64_t bits[SNOW_WINDOW_ROWS], held;
     uint32_t before[SNOW_WINDOW_ROWS];
-    float *least = stroke->scratch.least + tile * SNOW_MOST_CELLS;
-    int64_t column = place->across[0].start - pass->stored[0] +
-                     tile * pass->columns * u->stride;
+    int64_t column = first_column(pass, place, tile);
     int window =
         (pass->columns - 1) * u->stride + pass->taps[0] + place->u->lead[1];
     int reach = place->v->lead[1] + pass->taps[1];
-    if (column <= -window || column >= pass->sheared->bands.columns)
-        return;
-    uint64_t cells = look(stroke, slice, column, window, least) & slice->cells;
+    uint64_t cells = slice->found[tile];
     if (!cells)
         return;
     held = pass->windows->windows(&slice->rows,
@@ -282,7 +199,8 @@ static void draw_tile(const most_stroke *stroke, const most_slice *slice,
         .ring = stroke->scratch.ring,
         .zero = stroke->scratch.zero,
         .lines = stroke->scratch.lines + tile * LINES_MOST * SNOW_MOST_LINE,
-        .least = least,
+        .least = stroke->scratch.least + tile * tile_patches(pass),
+        .patches = row_patches(pass),
     };
     pass->fns->comb(&t);
     draw_cells(stroke, slice, tile, cells, &t);
@@ -312,22 +230,89 @@ static void find_cells(const most_stroke *stroke, most_slice *slice) {
         slice->cells |= is_own & cells_between(stroke, down->from, down->to);
         slice->whole &= is_own & cells_between(stroke, down->in, down->out);
     }
+    for (uint64_t left = slice->cells & ~slice->whole; left; left &= left - 1) {
+        int cell = __builtin_ctzll(left);
+        float found = 0;
+        for (int phase = 0; phase < stroke->pass->shear.v.phases; phase++)
+            found += find_line(place, phase, stroke->first_cell + cell);
+        slice->cells &= ~((uint64_t) !(found > 0) << cell);
+    }
 }
 
+/* Where the blocks of patches lie along an axis: of patch 0, and how many. */
+static int64_t place_blocks(int64_t first, int count, int *across) {
+    int64_t block =
+        first >= 0 ? first / SNOW_BLOCK_COLUMNS
+                   : -((SNOW_BLOCK_COLUMNS - 1 - first) / SNOW_BLOCK_COLUMNS);
+    int beside = (int)(first - block * SNOW_BLOCK_COLUMNS);
+    *across = (beside + count - 1) / SNOW_BLOCK_COLUMNS + 1;
+    return block;
+}
+
+/* The cells that a slice may change, of each tile; returns those of any.  Of
+ * splines the places between all voxels but the first and the last count. */
+static uint64_t look(const most_stroke *stroke, const most_slice *slice) {
+    const snow_modes_pass *pass = stroke->pass;
+    const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
+    const snow_slice_place *place = slice->place;
+    int ends = pass->hull ? 3 : 0, middle = pass->hull ? 2 : 0;
+    int64_t column = first_column(pass, place, 0);
+    int reach = (SNOW_PATCH_COLUMNS - 1) * u->stride + place->u->lead[1] +
+                pass->taps[0] - ends;
+    snow_most_look look = {
+        .blocks = snow_most_blocks(pass, slice->number),
+        .columns = snow_block_columns(&pass->sheared->bands),
+        .row = slice->first + middle,
+        .least = stroke->scratch.least,
+        .patches = row_patches(pass),
+        .step = u->stride,
+        .stride = v->stride,
+        .reach = place->v->lead[1] + pass->taps[1] - ends,
+        .cells = slice->cells,
+        .fours = tile_patches(pass) / 4,
+        .found = slice->found,
+    };
+    look.column = place_blocks(column + middle, reach, &look.across);
+    look.end = (int)pass->tiles;
+    int window = pass->columns * u->stride + pass->taps[0];
+    while (look.first < look.end &&
+           first_column(pass, place, look.first) <= -window)
+        look.first++;
+    while (look.first < look.end && first_column(pass, place, look.end - 1) >=
+                                        pass->sheared->bands.columns)
+        look.end--;
+    memset(slice->found, 0, (size_t)pass->tiles * sizeof *slice->found);
+    pass->fns->look(&look);
+    uint64_t any = 0;
+    for (int tile = look.first; tile < look.end; tile++)
+        any |= slice->found[tile];
+    memset(slice->found + look.end, 0,
+           (size_t)(pass->tiles - look.end) * sizeof *slice->found);
+    return any;
+}
+
+/* The row of a slice that a band's masks begin with, as it is encoded. */
+static int64_t first_row(const most_stroke *stroke, int64_t slice) {
+    const snow_modes_pass *pass = stroke->pass;
+    return pass->places[slice].first_row - pass->stored[1] +
+           (int64_t)stroke->first_cell * pass->shear.v.stride;
+}
+
+/* Rows that no tile needs are not decoded. */
 static void read_slice(const most_stroke *stroke, int64_t number,
                        most_slice *slice) {
     const snow_modes_pass *pass = stroke->pass;
     int stride = pass->shear.v.stride;
     slice->number = number;
     slice->place = &pass->places[number];
-    slice->first = slice->place->first_row - pass->stored[1] +
-                   (int64_t)stroke->first_cell * stride;
+    slice->first = first_row(stroke, number);
     slice->rows.held = 0;
     find_cells(stroke, slice);
-    if (slice->cells)
+    uint64_t cells = slice->cells ? look(stroke, slice) : 0;
+    if (cells)
         pass->windows->read(
             &pass->sheared->bands, number, slice->first,
-            snow_rows_of_cells(slice->cells, stride,
+            snow_rows_of_cells(cells, stride,
                                slice->place->v->lead[1] + pass->taps[1]),
             stroke->scratch.spans, &slice->rows);
 }
@@ -351,62 +336,140 @@ static int64_t spread_step(int64_t count) {
 
 static void draw_slices(const most_stroke *stroke) {
     const snow_modes_pass *pass = stroke->pass;
-    most_slice *slices = stroke->scratch.slices;
+    most_slice *slice = stroke->scratch.slice;
     int64_t count = pass->slices, step = spread_step(count), number = 0;
-    for (int64_t done = 0; done < count;) {
-        int here = 0;
-        for (; here < SLICES_AT_ONCE && done < count; done++) {
-            read_slice(stroke, number, &slices[here]);
-            here += slices[here].rows.held != 0;
-            number = (number + step) % count;
-        }
-        for (int64_t tile = 0; tile < pass->tiles; tile++)
-            for (int n = 0; n < here; n++)
-                draw_tile(stroke, &slices[n], tile);
+    for (int64_t done = 0; done < count; done++) {
+        read_slice(stroke, number, slice);
+        for (int64_t tile = 0; slice->rows.held && tile < pass->tiles; tile++)
+            draw_tile(stroke, slice, tile);
+        number = (number + step) % count;
     }
 }
 
-/* The weights of a line; most lines lie within all slices, and have the same.
- */
-static const float *weights_of(most_stroke *stroke, int cell, int down) {
+/* Which pixels of a line a slice reaches: those of some range on lines from ..
+ * to - 1, of which in .. out - 1 find all weights along v. */
+typedef struct most_reach {
+    int from, in, out, to;
+    int range[2][2]; /* per phase along u, where all are found */
+} most_reach;
+
+static void find_reaches(const most_stroke *stroke) {
+    const snow_modes_pass *pass = stroke->pass;
+    int phases = pass->shear.v.phases;
+    for (int64_t n = 0; n < phases * pass->slices; n++) {
+        const snow_slice_place *place = &pass->places[n / phases];
+        const snow_cover *cover = &place->down[n % phases];
+        const int *own = place->own[1][n % phases];
+        most_reach *reach = &stroke->scratch.reaches[n];
+        reach->from = cover->from > own[0] ? cover->from : own[0];
+        reach->to = cover->to < own[1] ? cover->to : own[1];
+        reach->in = cover->in;
+        reach->out = cover->out;
+        memcpy(reach->range, place->range, sizeof reach->range);
+    }
+}
+
+/* Pixels of a phase, one after the other, that are reached. */
+typedef struct most_run {
+    int first, end;
+    float *pixels;
+} most_run;
+
+static void end_run(most_run *run) {
+    for (int n = run->first; n < run->end; n++)
+        run->pixels[n] = 0;
+}
+
+static void add_range(most_run *run, const int range[2]) {
+    if (range[0] >= range[1])
+        return;
+    if (range[0] > run->end || range[1] < run->first) {
+        end_run(run);
+        run->first = range[0];
+        run->end = range[1];
+    }
+    run->first = range[0] < run->first ? range[0] : run->first;
+    run->end = range[1] > run->end ? range[1] : run->end;
+}
+
+/* Adds the pixels that a slice reaches on a line at one of its ends. */
+static void add_end(const most_stroke *stroke, int64_t slice, int cell,
+                    int down, most_run *runs) {
+    const snow_modes_pass *pass = stroke->pass;
+    const snow_slice_place *place = &pass->places[slice];
+    float found = find_line(place, down, cell);
+    if (!(found > 0))
+        return;
+    for (int phase = 0; phase < pass->shear.u.phases; phase++) {
+        int range[2];
+        snow_modes_range(place, phase, found, range);
+        add_range(&runs[phase], range);
+    }
+}
+
+/* A line's pixels as they begin: those that a slice reaches as the smallest
+ * value. */
+static void find_pixels(const most_stroke *stroke, int cell, int down,
+                        float *pixels) {
+    const snow_modes_pass *pass = stroke->pass;
+    const int phases = pass->shear.u.phases;
+    for (size_t n = 0; n < (size_t)phases * pass->row; n++)
+        pixels[n] = SNOW_MOST_NONE;
+    most_run runs[2] = {{0, 0, pixels}, {0, 0, pixels + pass->row}};
+    const most_reach *reach = stroke->scratch.reaches + down;
+    for (int64_t k = 0; k < pass->slices; k++, reach += pass->shear.v.phases) {
+        if (cell < reach->from || cell >= reach->to)
+            continue;
+        if (cell < reach->in || cell >= reach->out) {
+            add_end(stroke, k, cell, down, runs);
+            continue;
+        }
+        for (int phase = 0; phase < phases; phase++)
+            add_range(&runs[phase], reach->range[phase]);
+    }
+    for (int phase = 0; phase < phases; phase++)
+        end_run(&runs[phase]);
+}
+
+/* The same; most lines lie within all slices, and are alike. */
+static const float *pixels_of(most_stroke *stroke, int cell, int down) {
     const snow_modes_pass *pass = stroke->pass;
     bool within = cell >= pass->within[down][0] && cell < pass->within[down][1];
-    float *weights = within ? stroke->scratch.usual : stroke->scratch.weights;
-    if (!within || !stroke->weighed)
-        snow_modes_weigh(pass, cell, down, stroke->scratch.rise, weights);
-    stroke->weighed |= within;
-    return weights;
+    float *pixels = within ? stroke->scratch.usual : stroke->scratch.pixels;
+    if (!within || !stroke->found_usual)
+        find_pixels(stroke, cell, down, pixels);
+    stroke->found_usual |= within;
+    return pixels;
 }
 
-/* Pixels that a slice reaches begin as the smallest value; returns whether
- * there is one. */
-static bool clear_pixels(const float *weights, int count, int columns,
-                         float *pixels) {
-    int there = 0;
-    for (int n = 0; n < count; n++) {
-        pixels[n] = weights[n] > 0 ? 0 : NO_PIXEL;
-        there |= weights[n] > 0;
+/* Patches that have a pixel. */
+static void clear_patches(const most_stroke *stroke, const float *pixels,
+                          int cell) {
+    const snow_modes_pass *pass = stroke->pass;
+    uint16_t *least = stroke->scratch.least + (size_t)cell * row_patches(pass);
+    for (int phase = 0; phase < pass->shear.u.phases; phase++) {
+        const float *four = pixels + (size_t)phase * pass->row;
+        for (int64_t n = 0; n < pass->tiles * tile_patches(pass);
+             n++, four += 4)
+            if (!(four[0] > 0 && four[1] > 0 && four[2] > 0 && four[3] > 0))
+                least[n] = 0;
     }
-    for (int n = count; n < columns; n++)
-        pixels[n] = NO_PIXEL;
-    return there;
 }
 
 static void clear_line(most_stroke *stroke, int n) {
     const snow_modes_pass *pass = stroke->pass;
     int phases = pass->shear.v.phases, cell = n / phases;
-    const float *weights =
-        weights_of(stroke, stroke->first_cell + cell, n % phases);
-    for (int64_t tile = 0; tile < pass->tiles; tile++) {
-        float *line =
-            stroke->scratch.lines + (tile * LINES_MOST + n) * SNOW_MOST_LINE;
-        int left = pass->pixels[0] - (int)tile * pass->columns;
+    size_t columns = (size_t)pass->columns;
+    const float *pixels =
+        pixels_of(stroke, stroke->first_cell + cell, n % phases);
+    clear_patches(stroke, pixels, cell);
+    for (size_t tile = 0; tile < (size_t)pass->tiles; tile++) {
+        float *line = stroke->scratch.lines +
+                      (tile * LINES_MOST + (size_t)n) * SNOW_MOST_LINE;
         for (int phase = 0; phase < pass->shear.u.phases; phase++)
-            if (clear_pixels(weights + (size_t)phase * pass->row +
-                                 (size_t)(tile * pass->columns),
-                             left < pass->columns ? left : pass->columns,
-                             pass->columns, line + phase * pass->columns))
-                stroke->scratch.least[tile * SNOW_MOST_CELLS + cell] = 0;
+            memcpy(line + (size_t)phase * columns,
+                   pixels + (size_t)phase * pass->row + tile * columns,
+                   columns * sizeof *line);
     }
 }
 
@@ -421,16 +484,9 @@ static void finish_line(const most_stroke *stroke, int n) {
     for (int64_t tile = 0; tile < pass->tiles; tile++) {
         float *line =
             stroke->scratch.lines + (tile * LINES_MOST + n) * SNOW_MOST_LINE;
-        float there[SNOW_MOST_LINE];
         int left = pass->pixels[0] - (int)tile * pass->columns;
-        for (int i = 0; i < phases * pass->columns; i++) {
-            there[i] = line[i] < NO_PIXEL ? 1 : 0;
-            line[i] = there[i] * snow_most_step(line[i]) / SNOW_MOST_STEPS;
-        }
-        const float *values[2] = {line, line + pass->columns};
-        const float *found[2] = {there, there + pass->columns};
-        pass->fns->weave(values, found, phases,
-                         left < pass->columns ? left : pass->columns, out);
+        pass->fns->settle(line, phases, pass->columns,
+                          left < pass->columns ? left : pass->columns, out);
         out += 2 * phases * pass->columns;
     }
 }
@@ -439,28 +495,27 @@ static void lay_out(const snow_modes_pass *pass, char *base, size_t *bytes,
                     most_scratch *s) {
     int64_t columns = pass->sheared->bands.columns;
     size_t words = snow_window_words(columns), at = 0;
-    size_t all = SLICES_AT_ONCE * words * SNOW_WINDOW_ROWS;
+    size_t all = words * SNOW_WINDOW_ROWS;
     size_t phases = (size_t)pass->shear.u.phases, tiles = (size_t)pass->tiles;
     size_t line = SNOW_MOST_LINE * sizeof(float);
-    s->slices = snow_modes_part(base, &at, SLICES_AT_ONCE * sizeof *s->slices);
+    s->slice = snow_modes_part(base, &at, sizeof *s->slice);
     s->bits = snow_modes_part(base, &at, all * sizeof *s->bits);
     s->rank = snow_modes_part(base, &at, all * sizeof *s->rank);
-    s->any =
-        snow_modes_part(base, &at, SLICES_AT_ONCE * words * sizeof *s->any);
+    s->any = snow_modes_part(base, &at, words * sizeof *s->any);
     s->spans = snow_modes_part(base, &at,
                                ((size_t)columns / 2 + 1) * sizeof *s->spans);
     s->samples = snow_modes_part(
         base, &at, SNOW_MOST_ROWS * SNOW_MOST_WINDOW * sizeof(float));
     s->ring = snow_modes_part(base, &at, SNOW_MOST_ROWS * line);
     s->zero = snow_modes_part(base, &at, line);
-    s->factors = snow_modes_part(base, &at, 2 * line);
     s->lines = snow_modes_part(base, &at, tiles * LINES_MOST * line);
-    /* A vector more is read. */
-    s->least = snow_modes_part(base, &at,
-                               (tiles * SNOW_MOST_CELLS + 16) * sizeof(float));
-    s->rise = snow_modes_part(
-        base, &at, phases * ((size_t)pass->pixels[0] + 1) * sizeof *s->rise);
-    s->weights = snow_modes_part(base, &at, phases * pass->row * sizeof(float));
+    s->least = snow_modes_part(
+        base, &at, SNOW_MOST_CELLS * row_patches(pass) * sizeof *s->least);
+    s->found = snow_modes_part(base, &at, (tiles + 8) * sizeof *s->found);
+    s->reaches = snow_modes_part(base, &at,
+                                 (size_t)(pass->slices * pass->shear.v.phases) *
+                                     sizeof *s->reaches);
+    s->pixels = snow_modes_part(base, &at, phases * pass->row * sizeof(float));
     s->usual = snow_modes_part(base, &at, phases * pass->row * sizeof(float));
     *bytes = at;
 }
@@ -479,20 +534,20 @@ void snow_most_band(void *of, int64_t band, int worker) {
     size_t bytes, words = snow_window_words(pass->sheared->bands.columns);
     lay_out(pass, pass->sheared->scratch + (size_t)worker * pass->scratch_bytes,
             &bytes, s);
-    for (size_t n = 0; n < SLICES_AT_ONCE; n++) {
-        snow_mask_rows *rows = &s->slices[n].rows;
-        rows->bits = s->bits + n * words * SNOW_WINDOW_ROWS;
-        rows->rank = s->rank + n * words * SNOW_WINDOW_ROWS;
-        rows->any = s->any + n * words;
-        rows->words = words;
-        rows->fetch = true;
-    }
+    snow_mask_rows *rows = &s->slice->rows;
+    rows->bits = s->bits;
+    rows->rank = s->rank;
+    rows->any = s->any;
+    rows->words = words;
+    rows->fetch = true;
+    s->slice->found = s->found;
     stroke.first_cell = (int)band * pass->cells;
     int left = pass->pixels[1] - stroke.first_cell;
     stroke.cells = left < pass->cells ? left : pass->cells;
     memset(s->zero, 0, SNOW_MOST_LINE * sizeof *s->zero);
-    for (int64_t n = 0; n < pass->tiles * SNOW_MOST_CELLS; n++)
-        s->least[n] = NO_PIXEL * SNOW_MOST_STEPS;
+    memset(s->least, 255,
+           SNOW_MOST_CELLS * row_patches(pass) * sizeof *s->least);
+    find_reaches(&stroke);
     for (int n = 0; n < stroke.cells * pass->shear.v.phases; n++)
         clear_line(&stroke, n);
     draw_slices(&stroke);

@@ -74,10 +74,11 @@ struct snow_sheared {
     snow_reuse reuse; /* of the bands */
     snow_encoded_key key;
     uint64_t encodings; /* how often the bands were made */
-    /* Largest values of the bands' rows (sheared_most.c), and of which. */
-    uint16_t *blocks;       /* [slice][column of blocks][row] */
+    /* Bounds of the bands' rows (sheared_blocks.c), and of which. */
+    uint16_t *blocks;       /* [slice][row][column of blocks] */
     size_t blocks_capacity; /* bytes */
     uint64_t blocks_of;     /* `encodings`; 0: of none */
+    bool blocks_hull;       /* for cubic B-splines */
     snow_value_scale blocks_scale;
     snow_opacity_point *fade_key; /* of the bands: the curve of the gradient
                                      opacity, and with a threshold the opacity

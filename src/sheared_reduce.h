@@ -27,6 +27,7 @@ typedef struct snow_modes_pass {
     const snow_sheared_order *order;
     snow_sheared *sheared;
     bool largest;
+    bool hull; /* largest values have the bounds of splines */
     snow_shear shear;
     snow_taper taper[2]; /* along u and v */
     int taps[2];
@@ -64,17 +65,16 @@ static inline void *snow_modes_part(char *base, size_t *at, size_t bytes) {
 void snow_modes_range(const snow_slice_place *place, int phase, float found,
                       int range[2]);
 
-/* The weights of a line's pixels, [phase][pixel]: of largest values 1 where a
- * slice finds enough, else 0.  `rise` has room for (pixels + 1) of each phase.
- */
-void snow_modes_weigh(const snow_modes_pass *pass, int cell, int down,
-                      double *rise, float *weights);
-
-/* Largest values: the bytes of a worker's memory; one band; and what is kept of
- * the encoded voxels to tell which slices may change a tile. */
+/* Largest values: the bytes of a worker's memory; one band. */
 size_t snow_most_scratch(const snow_modes_pass *pass);
 void snow_most_band(void *pass, int64_t band, int worker);
+
+/* Bounds of the encoded voxels (sheared_blocks.c), which are kept: whether they
+ * are those of splines; columns and rows of a slice, and its first. */
 snow_status snow_most_prepare(snow_modes_pass *pass,
                               const snow_value_scale *scale);
+int64_t snow_block_columns(const snow_bands *bands);
+int64_t snow_block_rows(const snow_bands *bands);
+uint16_t *snow_most_blocks(const snow_modes_pass *pass, int64_t slice);
 
 #endif

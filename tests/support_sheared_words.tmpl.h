@@ -48,4 +48,10 @@ TARGET static void NAME(words)(const word_input *in, word_output *out) {
         V(store)(out->right4 + at, right);
     }
     out->popcount = V(popcount)(in->mask);
+    for (int at = 0; at < 16; at += LANES) {
+        uint64_t least = V(least4)(V(load)(in->whole + at));
+        memcpy(out->least + at / 4, &least, LANES / 4 * sizeof *out->least);
+    }
+    out->above = V(above32)(in->shorts, in->others);
+    V(turn64)(in->many, out->turned);
 }

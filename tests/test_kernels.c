@@ -9,6 +9,7 @@
 #include "classify/sample.h"
 #include "composite/tile.h"
 #include "encode/windows.h"
+#include "splat/rows.h"
 #include "support.h"
 #include "warp/warp.h"
 
@@ -1005,7 +1006,9 @@ typedef struct word_input {
     float table[ENTRIES * 4];
     uint32_t pairs[ENTRIES], entries[16];
     uint8_t bytes[32];
-    uint16_t shorts[32];
+    uint16_t shorts[32], others[32];
+    float whole[16]; /* 0 to 1e5 */
+    uint8_t many[64];
     uint32_t bits;
     uint64_t mask, low[8], high[8], within;
     int64_t at[16]; /* of pixels of the table */
@@ -1021,8 +1024,9 @@ typedef struct word_output {
     uint32_t expand8[16], expand16[16], widen8[16], widen16[16];
     float low[16], high[16], spread2[16 * 2 + 16], spread4[16 * 4 + 16];
     float left2[16], right2[16], left4[16], right4[16];
-    uint64_t windows[8];
-    unsigned found;
+    uint64_t windows[8], turned[8];
+    unsigned found, above;
+    uint16_t least[4];
 } word_output;
 
 #define SELECT_SCALAR
@@ -1191,6 +1195,30 @@ static void check_pixels(const word_input *in, const word_output *out,
     }
 }
 
+static void check_numbers(const word_input *in, const word_output *out,
+                          const char *name) {
+    for (int i = 0; i < 4; i++) {
+        const float *four = in->whole + 4 * i;
+        double least = fmin(fmin((double)four[0], (double)four[1]),
+                            fmin((double)four[2], (double)four[3]));
+        if (out->least[i] != (uint16_t)fmin(rint(least), 65535))
+            fail_msg("%s: the least of four is %u, not %g", name, out->least[i],
+                     least);
+    }
+    for (int i = 0; i < 8; i++) {
+        bool above = false;
+        for (int n = 4 * i; n < 4 * i + 4; n++)
+            above |= in->shorts[n] > in->others[n];
+        if ((out->above >> i & 1) != above)
+            fail_msg("%s: above32 is %x", name, out->above);
+    }
+    for (int i = 0; i < 512; i++)
+        if ((out->turned[i / 64] >> i % 64 & 1) !=
+            (in->many[i % 64] >> i / 64 & 1))
+            fail_msg("%s: turn64 loses bit %d of byte %d", name, i / 64,
+                     i % 64);
+}
+
 static float odd_value(uint64_t *random) {
     static const float odd[] = {0,      -0.0f,    1,         -1,
                                 1e-40f, INFINITY, -INFINITY, NAN};
@@ -1214,7 +1242,13 @@ static void draw_words(word_input *in, uint64_t *random) {
     for (int i = 0; i < 32; i++) {
         in->bytes[i] = (uint8_t)draw(random, 256);
         in->shorts[i] = (uint16_t)draw(random, 65536);
+        int more = in->shorts[i] + draw(random, 8) - 1;
+        in->others[i] = (uint16_t)(more < 0 ? 0 : more > 65535 ? 65535 : more);
     }
+    for (int i = 0; i < 16; i++)
+        in->whole[i] = (float)draw(random, 200000) / 2;
+    for (int i = 0; i < 64; i++)
+        in->many[i] = (uint8_t)draw(random, 256);
     in->bits = (uint32_t)draw_mask(random, 16);
     in->mask = draw_mask(random, 64);
     for (int i = 0; i < 8; i++) {
@@ -1245,6 +1279,7 @@ static void words_mean_what_they_say(void **state) {
             check_bits(&in, &out, name);
             check_windows(&in, &out);
             check_pixels(&in, &out, name);
+            check_numbers(&in, &out, name);
         }
     }
 }
@@ -1285,6 +1320,54 @@ static void combs_hold_the_kernel(void **state) {
             assert_true(fabs(sum - 1) < 1e-6);
         }
     }
+}
+
+/* A row of noise, of spikes, or smooth. */
+#define BOUND_VOXELS 96
+static void draw_voxels(float *voxels, uint64_t *random) {
+    int kind = draw(random, 3);
+    double phase = 6 * support_uniform(random);
+    for (int n = 0; n < BOUND_VOXELS; n++) {
+        double noise = support_uniform(random);
+        voxels[n] = (float)(kind == 0   ? noise
+                            : kind == 1 ? noise > 0.8
+                                        : 0.5 + 0.5 * sin(phase + 0.7 * n));
+    }
+}
+
+/* What sheets of cubic B-splines of any width may reach at most: the bounds of
+ * the places between all voxels of a pixel but the first and the last. */
+static void sheets_stay_below_their_bounds(void **state) {
+    (void)state;
+    uint64_t random = 9;
+    double nearest = 1;
+    for (int n = 0; n < 60000; n++) {
+        const snow_row_fns *fns =
+            snow_row_fns_of(snow_isa_resolve(SNOW_ISA_AUTO));
+        float voxels[BOUND_VOXELS], bounds[BOUND_VOXELS] = {0};
+        snow_lattice lattice = {.phases = 1, .stride = 1};
+        snow_comb comb;
+        lattice.slope = support_uniform(&random);
+        snow_taper taper = snow_taper_make(
+            SNOW_KERNEL_BSPLINE, 4,
+            draw(&random, 3) ? 1 + 8 * support_uniform(&random) : 1);
+        int taps = snow_comb_taps(&taper);
+        snow_comb_make(&taper, &lattice, 1, &comb);
+        draw_voxels(voxels, &random);
+        const float *rows[4] = {voxels, voxels + 1, voxels + 2, voxels + 3};
+        fns->hull(rows, BOUND_VOXELS - 3, bounds);
+        int first = draw(&random, BOUND_VOXELS - taps + 1);
+        double sheet = 0, bound = 0;
+        for (int m = 0; m < taps; m++)
+            sheet += (double)comb.weights[0][m] * (double)voxels[first + m];
+        for (int m = 0; m < taps - 3; m++)
+            bound = fmax(bound, (double)bounds[first + m]);
+        if (sheet > bound * 1.000001)
+            fail_msg("%d voxels add up to %.9g, above %.9g", taps, sheet,
+                     bound);
+        nearest = fmin(nearest, 1 - sheet / bound);
+    }
+    assert_true(nearest < 1e-6); /* no more than is needed */
 }
 
 /* --- times -----------------------------------------------------------------
@@ -1462,6 +1545,7 @@ int main(int argc, char **argv) {
         cmocka_unit_test(lines_through_every_plane),
         cmocka_unit_test(words_mean_what_they_say),
         cmocka_unit_test(combs_hold_the_kernel),
+        cmocka_unit_test(sheets_stay_below_their_bounds),
     };
     if (argc > 1 && strcmp(argv[1], "--time") == 0)
         return time_all();

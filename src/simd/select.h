@@ -18,8 +18,12 @@
  *   V(alpha2)(v), V(alpha4)(v)       the last channel of each pixel of 2 or 4
  *                                    floats, in all of its lanes
  *   V(any_less)(a, b)                whether a < b in any lane
- *   V(less)(a, b)                    a bit for each lane where a < b
- *   V(least)(v)                      the smallest lane
+ *   V(least4)(v)                     the smallest of each four lanes, rounded to
+ *                                    whole numbers, 65535 at most, as parts of
+ *                                    16 bits, lowest first; of lanes of 0 to 1e6
+ *   V(above32)(a, b)                 of 32 numbers of 16 bits at a and at b, a bit
+ *                                    for each four of which one is larger at a
+ *   V(turn64)(bytes, out)            of 64 bytes, to out[n] bit n of all
  *   V(gather4)(p, n), V(gather2)     entries n[0], n[1] ... of a table of 4 or 2
  *                                    floats each, as many as a vector holds
  *   V(pairs16)(p, n, low, high)      the lower and the upper halves of 16 entries
@@ -32,6 +36,11 @@
  *   V(numbers8)(p, bits, scale, start, out), V(numbers16)
  *                                    the same as floats: start + scale * number,
  *                                    or 0
+ *   V(window8)(p, bits, scale, start, low, high), V(window16)
+ *                                    the same of 32 places as two vectors; may
+ *                                    read 64 bytes; only avx512
+ *   V(slide)(a, b, n)                lanes n .. of a and then those of b, for a
+ *                                    constant n below LANES; only avx512
  *   V(widen8)(p, out), V(widen16)    16 numbers at p
  *   V(spread2)(p, bits, count, out), V(spread4)
  *                                    `count` places of 2 or 4 floats: the next

@@ -279,15 +279,41 @@ SNOW_AVX2_INLINE int snow_avx2_any_less(snow_avx2_vec a, snow_avx2_vec b) {
     return _mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)) != 0;
 }
 
-SNOW_AVX2_INLINE unsigned snow_avx2_less(snow_avx2_vec a, snow_avx2_vec b) {
-    return (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ));
+SNOW_AVX2_INLINE uint64_t snow_avx2_least4(snow_avx2_vec v) {
+    v = _mm256_min_ps(v, _mm256_permute_ps(v, 0xB1));
+    v = _mm256_min_ps(v, _mm256_permute_ps(v, 0x4E));
+    __m256i whole = _mm256_cvtps_epi32(v);
+    __m128i two = _mm_unpacklo_epi32(_mm256_castsi256_si128(whole),
+                                     _mm256_extracti128_si256(whole, 1));
+    return (uint32_t)_mm_cvtsi128_si32(
+        _mm_packus_epi32(two, _mm_setzero_si128()));
 }
 
-SNOW_AVX2_INLINE float snow_avx2_least(snow_avx2_vec v) {
-    __m128 half =
-        _mm_min_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
-    half = _mm_min_ps(half, _mm_movehl_ps(half, half));
-    return _mm_cvtss_f32(_mm_min_ss(half, _mm_movehdup_ps(half)));
+/* What is not above is 0 when the other is taken off. */
+SNOW_AVX2_INLINE unsigned snow_avx2_above16(const uint16_t *a,
+                                            const uint16_t *b) {
+    __m256i more =
+        _mm256_subs_epu16(_mm256_loadu_si256((const __m256i *)(const void *)a),
+                          _mm256_loadu_si256((const __m256i *)(const void *)b));
+    __m256i none = _mm256_cmpeq_epi64(more, _mm256_setzero_si256());
+    return ~(unsigned)_mm256_movemask_pd(_mm256_castsi256_pd(none)) & 15;
+}
+
+SNOW_AVX2_INLINE unsigned snow_avx2_above32(const uint16_t *a,
+                                            const uint16_t *b) {
+    return snow_avx2_above16(a, b) | snow_avx2_above16(a + 16, b + 16) << 4;
+}
+
+SNOW_AVX2_INLINE void snow_avx2_turn64(const uint8_t *bytes, uint64_t *out) {
+    __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)bytes);
+    __m256i high =
+        _mm256_loadu_si256((const __m256i *)(const void *)(bytes + 32));
+    for (int n = 7; n >= 0; n--) {
+        out[n] = (uint32_t)_mm256_movemask_epi8(low) |
+                 (uint64_t)(uint32_t)_mm256_movemask_epi8(high) << 32;
+        low = _mm256_add_epi8(low, low);
+        high = _mm256_add_epi8(high, high);
+    }
 }
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sqrt(snow_avx2_vec v) {

@@ -197,6 +197,46 @@ SNOW_AVX512_INLINE void snow_avx512_numbers16(const uint16_t *p, uint32_t bits,
     snow_avx512_scaled(here, _mm512_cvtepu16_epi32(numbers), scale, start, out);
 }
 
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_scale16(__m512i numbers,
+                                                       __mmask16 here,
+                                                       float scale,
+                                                       float start) {
+    __m512 scaled =
+        _mm512_mul_ps(_mm512_set1_ps(scale), _mm512_cvtepi32_ps(numbers));
+    return _mm512_maskz_add_ps(here, _mm512_set1_ps(start), scaled);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_window8(const uint8_t *p, uint32_t bits,
+                                            float scale, float start,
+                                            snow_avx512_vec *low,
+                                            snow_avx512_vec *high) {
+    __m256i numbers = _mm256_maskz_expand_epi8(
+        bits, _mm256_loadu_si256((const __m256i *)(const void *)p));
+    *low = snow_avx512_scale16(
+        _mm512_cvtepu8_epi32(_mm256_castsi256_si128(numbers)), (__mmask16)bits,
+        scale, start);
+    *high = snow_avx512_scale16(
+        _mm512_cvtepu8_epi32(_mm256_extracti128_si256(numbers, 1)),
+        (__mmask16)(bits >> 16), scale, start);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_window16(const uint16_t *p, uint32_t bits,
+                                             float scale, float start,
+                                             snow_avx512_vec *low,
+                                             snow_avx512_vec *high) {
+    __m512i numbers = _mm512_maskz_expand_epi16(bits, _mm512_loadu_si512(p));
+    *low = snow_avx512_scale16(
+        _mm512_cvtepu16_epi32(_mm512_castsi512_si256(numbers)), (__mmask16)bits,
+        scale, start);
+    *high = snow_avx512_scale16(
+        _mm512_cvtepu16_epi32(_mm512_extracti64x4_epi64(numbers, 1)),
+        (__mmask16)(bits >> 16), scale, start);
+}
+
+#define snow_avx512_slide(a, b, n)                                  \
+    _mm512_castsi512_ps(_mm512_alignr_epi32(_mm512_castps_si512(b), \
+                                            _mm512_castps_si512(a), n))
+
 SNOW_AVX512_INLINE unsigned snow_avx512_windows(const uint64_t *low,
                                                 const uint64_t *high,
                                                 unsigned shift, uint64_t within,
@@ -284,13 +324,27 @@ SNOW_AVX512_INLINE int snow_avx512_any_less(snow_avx512_vec a,
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) != 0;
 }
 
-SNOW_AVX512_INLINE unsigned snow_avx512_less(snow_avx512_vec a,
-                                             snow_avx512_vec b) {
-    return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ);
+SNOW_AVX512_INLINE uint64_t snow_avx512_least4(snow_avx512_vec v) {
+    v = _mm512_min_ps(v, _mm512_permute_ps(v, 0xB1));
+    v = _mm512_min_ps(v, _mm512_permute_ps(v, 0x4E));
+    const __m512i fourth = _mm512_castsi128_si512(_mm_setr_epi32(0, 4, 8, 12));
+    __m512i four = _mm512_permutexvar_epi32(fourth, _mm512_cvtps_epi32(v));
+    return (uint64_t)_mm_cvtsi128_si64(
+        _mm_packus_epi32(_mm512_castsi512_si128(four), _mm_setzero_si128()));
 }
 
-SNOW_AVX512_INLINE float snow_avx512_least(snow_avx512_vec v) {
-    return _mm512_reduce_min_ps(v);
+SNOW_AVX512_INLINE unsigned snow_avx512_above32(const uint16_t *a,
+                                                const uint16_t *b) {
+    __m512i more =
+        _mm512_subs_epu16(_mm512_loadu_si512(a), _mm512_loadu_si512(b));
+    return _mm512_test_epi64_mask(more, more);
+}
+
+SNOW_AVX512_INLINE void snow_avx512_turn64(const uint8_t *bytes,
+                                           uint64_t *out) {
+    __m512i all = _mm512_loadu_si512(bytes);
+    for (int n = 0; n < 8; n++)
+        out[n] = _mm512_test_epi8_mask(all, _mm512_set1_epi8((char)(1 << n)));
 }
 
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sqrt(snow_avx512_vec v) {

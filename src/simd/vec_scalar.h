@@ -241,15 +241,28 @@ static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {
     return (less[0] | less[1] | less[2] | less[3]) != 0;
 }
 
-static inline unsigned snow_scalar_less(snow_scalar_vec a, snow_scalar_vec b) {
-    snow_scalar_mask less = (snow_scalar_mask)(a < b);
-    return (unsigned)((less[0] & 1) | (less[1] & 2) | (less[2] & 4) |
-                      (less[3] & 8));
+/* A sum with 1.5 * 2^23 has no fraction. */
+static inline uint64_t snow_scalar_least4(snow_scalar_vec v) {
+    float a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
+    float least = a < b ? a : b;
+    return least < 65535 ? (uint64_t)(least + 12582912.0f - 12582912.0f)
+                         : 65535;
 }
 
-static inline float snow_scalar_least(snow_scalar_vec v) {
-    float a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
-    return a < b ? a : b;
+static inline unsigned snow_scalar_above32(const uint16_t *a,
+                                           const uint16_t *b) {
+    unsigned above = 0;
+    for (int n = 0; n < 32; n++)
+        above |= (unsigned)(a[n] > b[n]) << n / 4;
+    return above;
+}
+
+static inline void snow_scalar_turn64(const uint8_t *bytes, uint64_t *out) {
+    for (int n = 0; n < 8; n++) {
+        out[n] = 0;
+        for (int m = 0; m < 64; m++)
+            out[n] |= (uint64_t)(bytes[m] >> n & 1) << m;
+    }
 }
 
 static inline snow_scalar_vec snow_scalar_sqrt(snow_scalar_vec v) {

@@ -1,6 +1,8 @@
 /* splat/rows.c - the loops of splat/rows.h, for each level. */
 #include "splat/rows.h"
 
+#include <string.h>
+
 #define SELECT_SCALAR
 #include "simd/select.h"
 

@@ -48,12 +48,16 @@ typedef void snow_rows_fn(const snow_rows_job *job);
 /* The picture is rounded to steps in the end, so that what is above it by
  * rounding alone need not be looked at: pixels of one value are many. */
 #define SNOW_MOST_STEPS 65535
-static inline float snow_most_step(float value) {
-    return (float)(int32_t)(value * SNOW_MOST_STEPS + 0.5f);
-}
 
-/* For each 16 voxels of a row: the step that no sheet made of them is above. */
-#define SNOW_BLOCK_COLUMNS 16
+/* What is above all values: of pixels that no slice reaches. */
+#define SNOW_MOST_NONE 2.0f
+
+/* A patch: four columns of a cell, of all phases. */
+#define SNOW_PATCH_COLUMNS 4
+
+/* For so many places of a row a block has the step that no sheet there is
+ * above (sheared_blocks.c). */
+#define SNOW_BLOCK_COLUMNS 4
 
 typedef struct snow_most_tile {
     int columns; /* 16, or 32 of one phase */
@@ -75,18 +79,26 @@ typedef struct snow_most_tile {
     uint64_t cells;
     /* What a cell's pixels are multiplied with, line by line, NULL: nothing. */
     const float *factors;
-    float *lines; /* of cell 0 */
-    float *least; /* the step of each cell's smallest pixel, kept up */
+    float *lines;    /* of cell 0 */
+    uint16_t *least; /* the step of each patch's smallest pixel, kept up: of the
+                        first of cell 0 */
+    size_t patches;  /* from those of a cell to those of the next */
 } snow_most_tile;
 
-/* Which cells a slice may change. */
+/* Which tiles of a band's cells a slice may change: those with a patch that is
+ * below one of its blocks.  Patch p of cell n lies on columns p * step to p *
+ * step + across - 1 of blocks, rows n * stride to n * stride + reach - 1. */
 typedef struct snow_most_look {
-    const uint16_t *const *blocks; /* columns of blocks, by row */
-    int block_count;
-    int first, end;  /* rows of the window that exist */
-    int rows, cells; /* up to cells; rows that they need */
-    int stride, reach;
-    const float *least;
+    const uint16_t *blocks; /* of the slice */
+    int64_t columns;        /* of blocks, in all */
+    int64_t row, column;    /* of patch 0 of cell 0, perhaps below 0 */
+    const uint16_t *least;
+    size_t patches; /* from those of a cell to those of the next */
+    int step, across, stride, reach;
+    uint64_t cells;
+    int fours;       /* of patches of a tile, 1 or 2 */
+    int first, end;  /* tiles that are looked at */
+    uint64_t *found; /* [tile]: its cells; up to 8 beyond the end are set too */
 } snow_most_look;
 
 typedef struct snow_row_fns {
@@ -101,17 +113,25 @@ typedef struct snow_row_fns {
                      float *row);
     snow_rows_fn *set; /* the sum */
     snow_rows_fn *add; /* the line and the sum */
-    uint64_t (*look)(const snow_most_look *look);
+    void (*look)(const snow_most_look *look);
     void (*comb)(const snow_most_tile *tile); /* the held rows, along u */
     void (*most)(const snow_most_tile *tile); /* the cells: the larger of what
                                                  they hold and the sums */
-    /* The numbers of `count` voxels as blocks, which lie `step` apart. */
-    void (*block)(const float *row, int64_t count, size_t step,
-                  uint16_t *blocks);
+    /* Of rows of `count` numbers, the highest that a cubic B-spline through any
+     * four, rows[0][n] to rows[3][n], gets between the two in the middle. */
+    void (*hull)(const float *const *rows, int64_t count, float *highest);
+    /* The largest of each four of 4 * count numbers. */
+    void (*fours)(const float *numbers, int64_t count, float *largest);
+    /* The steps of numbers, 0 to 1, and of what rounding may add to a sum. */
+    void (*blocks)(const float *numbers, int64_t count, uint16_t *blocks);
     /* Pairs (value, weight) of `count` pixels of one or two phases, in turns.
      */
     void (*weave)(const float *const *values, const float *const *weights,
                   int phases, int count, float *pairs);
+    /* The same of `count` pixels of a line of a tile, rounded to steps; 0 and 0
+     * where there is none. */
+    void (*settle)(const float *line, int phases, int columns, int count,
+                   float *pairs);
 } snow_row_fns;
 
 /* `isa` is resolved. */

@@ -93,56 +93,117 @@ ROWS(add)
 /* --- largest values --------------------------------------------------------
  */
 
+/* The coefficients of a segment of the spline as a Bezier curve, which does not
+ * leave their hull (Farin, Curves and Surfaces for CAGD). */
+TARGET static void NAME(hull)(const float *const *rows, int64_t count,
+                              float *restrict highest) {
+    const float *restrict a = rows[0], *restrict b = rows[1];
+    const float *restrict c = rows[2], *restrict d = rows[3];
+    for (int64_t n = 0; n < count; n++) {
+        float first = a[n] + 4 * b[n] + c[n], last = b[n] + 4 * c[n] + d[n];
+        float high = b[n] > c[n] ? b[n] : c[n], low = b[n] > c[n] ? c[n] : b[n];
+        float inner = 4 * high + 2 * low, end = first > last ? first : last;
+        highest[n] = (inner > end ? inner : end) * (1.0f / 6);
+    }
+}
+
+TARGET static void NAME(fours)(const float *restrict numbers, int64_t count,
+                               float *restrict largest) {
+    for (int64_t n = 0; n < count; n++) {
+        const float *at = numbers + 4 * n;
+        float a = at[0] > at[1] ? at[0] : at[1];
+        float b = at[2] > at[3] ? at[2] : at[3];
+        largest[n] = a > b ? a : b;
+    }
+}
+
 /* Weights add up to 1, and factors make up for those that are not found, but
  * for rounding, by which a sheet may be above all of its voxels. */
 #define MOST_MARGIN 1.000004f
 
-TARGET static void NAME(block)(const float *row, int64_t count, size_t step,
-                               uint16_t *blocks) {
-    for (int64_t at = 0; at < count; at += SNOW_BLOCK_COLUMNS, row += 16) {
-        int64_t here = count - at < 16 ? count - at : 16;
-        float most = 0;
-        for (int64_t n = 0; n < here; n++)
-            most = row[n] > most ? row[n] : most;
-        most = snow_most_step(most * MOST_MARGIN);
-        *blocks = (uint16_t)(most < SNOW_MOST_STEPS ? most : SNOW_MOST_STEPS);
-        blocks += step;
+/* Sums with it have no fractions: numbers are rounded as V(least4) does. */
+#define MOST_WHOLE 12582912.0f /* 1.5 * 2^23 */
+
+TARGET static void NAME(blocks)(const float *restrict numbers, int64_t count,
+                                uint16_t *restrict blocks) {
+    for (int64_t n = 0; n < count; n++) {
+        float step = numbers[n] * MOST_MARGIN * SNOW_MOST_STEPS + MOST_WHOLE -
+                     MOST_WHOLE;
+        blocks[n] =
+            (uint16_t)(int)(step < SNOW_MOST_STEPS ? step : SNOW_MOST_STEPS);
     }
 }
 #undef MOST_MARGIN
 
-TARGET static uint64_t NAME(look)(const snow_most_look *look) {
-    uint16_t most[SNOW_MOST_ROWS] = {0};
-    float bound[SNOW_MOST_ROWS + 16], reached[SNOW_MOST_CELLS + 16];
-    uint64_t cells = 0;
-    for (int n = 0; n < look->block_count; n++) {
-        const uint16_t *blocks = look->blocks[n];
-        for (int row = look->first; row < look->end; row++)
-            most[row] = blocks[row] > most[row] ? blocks[row] : most[row];
-    }
-    for (int row = 0; row < SNOW_MOST_ROWS; row++)
-        bound[row] = most[row];
-    for (int cell = 0; cell < look->cells; cell += LANES) {
-        const float *rows = bound + cell;
-        V(vec) high;
-        if (look->stride == 1) {
-            high = V(load)(rows);
-            for (int m = 1; m < look->reach; m++)
-                high = V(max)(high, V(load)(rows + m));
-        } else {
-            for (int i = 0; i < LANES && cell + i < look->cells; i++) {
-                float here = 0;
-                for (int m = 0; m < look->reach; m++) {
-                    float next = bound[(cell + i) * look->stride + m];
-                    here = next > here ? next : here;
-                }
-                reached[i] = here;
+/* The largest blocks of 32 patches, for `rows` rows of them. */
+static inline __attribute__((always_inline)) TARGET void
+NAME(along)(const uint16_t *restrict blocks, int64_t columns, int rows,
+            int step, int across, uint16_t (*restrict most)[32]) {
+    for (int row = 0; row < rows; row++, blocks += columns) {
+        uint16_t here[32];
+        for (int n = 0; n < 32; n++)
+            here[n] = blocks[n * step];
+        for (int a = 1; a < across; a++)
+            for (int n = 0; n < 32; n++) {
+                uint16_t next = blocks[n * step + a];
+                here[n] = next > here[n] ? next : here[n];
             }
-            high = V(load)(reached);
-        }
-        cells |= (uint64_t)V(less)(V(load)(look->least + cell), high) << cell;
+        memcpy(most[row], here, sizeof here);
     }
-    return cells & (~UINT64_C(0) >> (64 - look->cells));
+}
+
+/* Each row becomes the largest of those from it to the one `apart` from it. */
+static inline __attribute__((always_inline)) TARGET void
+NAME(pair)(uint16_t (*most)[32], int rows, int apart) {
+    for (int row = 0; row + apart < rows; row++) {
+        uint16_t here[32];
+        for (int n = 0; n < 32; n++)
+            here[n] = most[row][n] > most[row + apart][n]
+                          ? most[row][n]
+                          : most[row + apart][n];
+        memcpy(most[row], here, sizeof here);
+    }
+}
+
+/* Eight fours of patches from patch `first` on: a byte for each cell. */
+TARGET static void NAME(look_at)(const snow_most_look *look, int first,
+                                 uint8_t *found) {
+    uint16_t most[SNOW_MOST_ROWS + SNOW_TAPS_MOST][32];
+    int begin = __builtin_ctzll(look->cells);
+    int last = 63 - __builtin_clzll(look->cells), step = look->step;
+    int rows = (last - begin) * look->stride + look->reach, done = 1;
+    const uint16_t *blocks =
+        look->blocks + ((look->row + begin * look->stride) * look->columns +
+                        look->column + first * step);
+    if (step == 1 && look->across == 1)
+        NAME(along)(blocks, look->columns, rows, 1, 1, most);
+    else if (step == 1 && look->across == 2)
+        NAME(along)(blocks, look->columns, rows, 1, 2, most);
+    else if (step == 1)
+        NAME(along)(blocks, look->columns, rows, 1, look->across, most);
+    else
+        NAME(along)(blocks, look->columns, rows, step, look->across, most);
+    for (; done * 2 <= look->reach; done *= 2)
+        NAME(pair)(most, rows, done);
+    if (done < look->reach)
+        NAME(pair)(most, rows, look->reach - done);
+    const uint16_t *least = look->least + (size_t)begin * look->patches + first;
+    for (int cell = begin; cell <= last; cell++, least += look->patches)
+        found[cell] =
+            (uint8_t)V(above32)(most[(cell - begin) * look->stride], least);
+}
+
+TARGET static void NAME(look)(const snow_most_look *look) {
+    int fours = look->fours, tiles = 8 / fours;
+    for (int tile = look->first; tile < look->end; tile += tiles) {
+        uint8_t found[64] = {0};
+        uint64_t cells[8];
+        NAME(look_at)(look, tile * 4 * fours, found);
+        V(turn64)(found, cells);
+        for (int n = 0; n < tiles; n++)
+            look->found[tile + n] =
+                (cells[n * fours] | cells[n * fours + fours - 1]) & look->cells;
+    }
 }
 
 /* Windows as floats. */
@@ -168,12 +229,20 @@ WINDOWS(16, uint16_t)
 #undef WINDOWS
 
 static inline __attribute__((always_inline)) TARGET void
+NAME(take_weights)(const snow_most_tile *t, int axis, int taps, int phases,
+                   V(vec) (*weights)[SNOW_TAPS_MOST]) {
+    for (int phase = 0; phase < phases; phase++) {
+        weights[phase][0] = V(set1)(t->weights[axis][phase][0]);
+        for (int m = 1; m < taps; m++)
+            weights[phase][m] = V(set1)(t->weights[axis][phase][m]);
+    }
+}
+
+static inline __attribute__((always_inline)) TARGET void
 NAME(comb_rows)(const snow_most_tile *t, int taps, int lead, int phases,
                 int columns) {
     V(vec) weights[2][SNOW_TAPS_MOST];
-    for (int phase = 0; phase < phases; phase++)
-        for (int m = 0; m < taps; m++)
-            weights[phase][m] = V(set1)(t->weights[0][phase][m]);
+    NAME(take_weights)(t, 0, taps, phases, weights);
     for (uint64_t held = t->held; held; held &= held - 1) {
         int row = __builtin_ctzll(held);
         const float *samples = t->samples + row * SNOW_MOST_WINDOW;
@@ -204,8 +273,80 @@ TARGET static void NAME(comb_strided)(const snow_most_tile *t) {
     }
 }
 
+#if LANES == 16
+/* The same of rows whose window fits two vectors, which it does not leave. */
+#define TAP(m)                     \
+    (m) == 0   ? a                 \
+    : (m) == 1 ? V(slide)(a, b, 1) \
+    : (m) == 2 ? V(slide)(a, b, 2) \
+    : (m) == 3 ? V(slide)(a, b, 3) \
+    : (m) == 4 ? V(slide)(a, b, 4) \
+    : (m) == 5 ? V(slide)(a, b, 5) \
+               : V(slide)(a, b, 6)
+
+static inline __attribute__((always_inline)) TARGET void
+NAME(comb_windows)(const snow_most_tile *t, int bytes, int taps, int lead) {
+    V(vec) weights[2][SNOW_TAPS_MOST];
+    NAME(take_weights)(t, 0, taps, 2, weights);
+    const float scale = t->scale, start = t->start;
+    for (uint64_t held = t->held; held; held &= held - 1) {
+        int row = __builtin_ctzll(held);
+        const unsigned char *code =
+            t->codes[row] + (size_t)t->before[row] * (size_t)bytes;
+        float *pixels = t->ring + row * SNOW_MOST_LINE;
+        V(vec) a, b, sums[2];
+        if (bytes == 1)
+            V(window8)(code, (uint32_t)t->bits[row], scale, start, &a, &b);
+        else
+            V(window16)
+        ((const uint16_t *)(const void *)code, (uint32_t)t->bits[row], scale,
+         start, &a, &b);
+        sums[0] = V(mul)(weights[0][0], a);
+        sums[1] = V(mul)(weights[1][0], TAP(lead));
+        for (int m = 1; m < taps; m++) {
+            sums[0] = V(fma)(weights[0][m], TAP(m), sums[0]);
+            sums[1] = V(fma)(weights[1][m], TAP(m + lead), sums[1]);
+        }
+        V(store)(pixels, sums[0]);
+        V(store)(pixels + 16, sums[1]);
+    }
+}
+#undef TAP
+
+/* Whether that was all. */
+TARGET static bool NAME(comb_fits)(const snow_most_tile *t) {
+    int taps = t->taps[0], lead = t->lead[0];
+    if (t->phases[0] != 2 || (taps != 4 && taps != 6))
+        return false;
+    if (t->code_bytes == 1 && taps == 4 && lead)
+        NAME(comb_windows)(t, 1, 4, 1);
+    else if (t->code_bytes == 1 && taps == 4)
+        NAME(comb_windows)(t, 1, 4, 0);
+    else if (t->code_bytes == 1 && lead)
+        NAME(comb_windows)(t, 1, 6, 1);
+    else if (t->code_bytes == 1)
+        NAME(comb_windows)(t, 1, 6, 0);
+    else if (taps == 4 && lead)
+        NAME(comb_windows)(t, 2, 4, 1);
+    else if (taps == 4)
+        NAME(comb_windows)(t, 2, 4, 0);
+    else if (lead)
+        NAME(comb_windows)(t, 2, 6, 1);
+    else
+        NAME(comb_windows)(t, 2, 6, 0);
+    return true;
+}
+#else
+TARGET static bool NAME(comb_fits)(const snow_most_tile *t) {
+    (void)t;
+    return false;
+}
+#endif
+
 TARGET static void NAME(comb)(const snow_most_tile *t) {
     int lead = t->lead[0];
+    if (NAME(comb_fits)(t))
+        return;
     (t->code_bytes == 1 ? NAME(windows8) : NAME(windows16))(t);
     if (t->stride[0] > 1)
         NAME(comb_strided)(t);
@@ -217,48 +358,62 @@ TARGET static void NAME(comb)(const snow_most_tile *t) {
         NAME(comb_rows)(t, t->taps[0], 0, 1, t->columns);
     else if (t->taps[0] == 4)
         NAME(comb_rows)(t, 4, lead, 2, 16);
+    else if (t->taps[0] == 6)
+        NAME(comb_rows)(t, 6, lead, 2, 16);
     else
         NAME(comb_rows)(t, t->taps[0], lead, 2, 16);
 }
 
 /* Both lines of a cell share their rows, but for the lead. */
+static inline __attribute__((always_inline)) TARGET V(vec)
+    NAME(most_pixels)(const snow_most_tile *t, const float *const *rows,
+                      float *line, int at, int taps, int lead, int phases,
+                      const V(vec) (*weights)[SNOW_TAPS_MOST]) {
+    V(vec) sums[2], least = V(set1)(SNOW_MOST_NONE);
+    for (int phase = 0; phase < phases; phase++) {
+        const float *const *first = rows + phase * lead;
+        sums[phase] = V(mul)(weights[phase][0], V(load)(first[0] + at));
+        for (int m = 1; m < taps; m++)
+            sums[phase] =
+                V(fma)(weights[phase][m], V(load)(first[m] + at), sums[phase]);
+    }
+    for (int phase = 0; phase < phases; phase++) {
+        float *pixels = line + phase * SNOW_MOST_LINE + at;
+        if (t->factors)
+            sums[phase] = V(mul)(
+                sums[phase], V(load)(t->factors + phase * SNOW_MOST_LINE + at));
+        sums[phase] = V(max)(sums[phase], V(load)(pixels));
+        V(store)(pixels, sums[phase]);
+        least = V(min)(least, sums[phase]);
+    }
+    return least;
+}
+
 static inline __attribute__((always_inline)) TARGET void
 NAME(most_cell)(const snow_most_tile *t, const float *const *rows, int cell,
-                int taps, int lead, int phases, int width,
+                int taps, int lead, int phases, int width, int columns,
                 const V(vec) (*weights)[SNOW_TAPS_MOST]) {
     float *line = t->lines + cell * phases * SNOW_MOST_LINE;
-    V(vec) least = V(set1)(2);
-    for (int at = 0; at < width; at += LANES) {
-        V(vec) sums[2];
-        for (int phase = 0; phase < phases; phase++) {
-            const float *const *first = rows + phase * lead;
-            sums[phase] = V(mul)(weights[phase][0], V(load)(first[0] + at));
-            for (int m = 1; m < taps; m++)
-                sums[phase] = V(fma)(weights[phase][m], V(load)(first[m] + at),
-                                     sums[phase]);
-        }
-        for (int phase = 0; phase < phases; phase++) {
-            float *pixels = line + phase * SNOW_MOST_LINE + at;
-            if (t->factors)
-                sums[phase] =
-                    V(mul)(sums[phase],
-                           V(load)(t->factors + phase * SNOW_MOST_LINE + at));
-            sums[phase] = V(max)(sums[phase], V(load)(pixels));
-            V(store)(pixels, sums[phase]);
-            least = V(min)(least, sums[phase]);
-        }
+    uint16_t *least = t->least + (size_t)cell * t->patches;
+    for (int at = 0; at < columns; at += LANES) {
+        V(vec)
+        pixels =
+            NAME(most_pixels)(t, rows, line, at, taps, lead, phases, weights);
+        if (width > columns)
+            pixels =
+                V(min)(pixels, NAME(most_pixels)(t, rows, line, at + columns,
+                                                 taps, lead, phases, weights));
+        uint64_t steps = V(least4)(V(mul)(pixels, V(set1)(SNOW_MOST_STEPS)));
+        memcpy(least + at / 4, &steps, LANES / 4 * sizeof *least);
     }
-    t->least[cell] = snow_most_step(V(least)(least));
 }
 
 static inline __attribute__((always_inline)) TARGET void
 NAME(most_cells)(const snow_most_tile *t, int taps, int lead, int phases,
-                 int width) {
+                 int width, int columns) {
     V(vec) weights[2][SNOW_TAPS_MOST];
     const float *rows[SNOW_TAPS_MOST + 1];
-    for (int phase = 0; phase < phases; phase++)
-        for (int m = 0; m < taps; m++)
-            weights[phase][m] = V(set1)(t->weights[1][phase][m]);
+    NAME(take_weights)(t, 1, taps, phases, weights);
     for (uint64_t left = t->cells; left; left &= left - 1) {
         int cell = __builtin_ctzll(left), row = cell * t->stride[1];
         for (int m = 0; m < taps + lead; m++)
@@ -266,7 +421,7 @@ NAME(most_cells)(const snow_most_tile *t, int taps, int lead, int phases,
                           ? t->ring + (row + m) * SNOW_MOST_LINE
                           : t->zero;
         NAME(most_cell)
-        (t, rows, cell, taps, lead, phases, width,
+        (t, rows, cell, taps, lead, phases, width, columns,
          (const V(vec)(*)[SNOW_TAPS_MOST])weights);
     }
 }
@@ -274,16 +429,20 @@ NAME(most_cells)(const snow_most_tile *t, int taps, int lead, int phases,
 TARGET static void NAME(most)(const snow_most_tile *t) {
     int taps = t->taps[1], lead = t->lead[1], phases = t->phases[1];
     if (t->phases[0] == 2 && phases == 2 && taps == 4 && lead)
-        NAME(most_cells)(t, 4, 1, 2, SNOW_MOST_LINE);
+        NAME(most_cells)(t, 4, 1, 2, 32, 16);
     else if (t->phases[0] == 2 && phases == 2 && taps == 4)
-        NAME(most_cells)(t, 4, 0, 2, SNOW_MOST_LINE);
+        NAME(most_cells)(t, 4, 0, 2, 32, 16);
+    else if (t->phases[0] == 2 && phases == 2 && taps == 6 && lead)
+        NAME(most_cells)(t, 6, 1, 2, 32, 16);
+    else if (t->phases[0] == 2 && phases == 2 && taps == 6)
+        NAME(most_cells)(t, 6, 0, 2, 32, 16);
     else if (t->columns == 32 && phases == 1 && taps == 6)
-        NAME(most_cells)(t, 6, 0, 1, 32);
+        NAME(most_cells)(t, 6, 0, 1, 32, 32);
     else if (t->columns == 32 && phases == 1 && taps == 5)
-        NAME(most_cells)(t, 5, 0, 1, 32);
+        NAME(most_cells)(t, 5, 0, 1, 32, 32);
     else
         NAME(most_cells)
-    (t, taps, lead, phases, t->phases[0] * t->columns);
+    (t, taps, lead, phases, t->phases[0] * t->columns, t->columns);
 }
 
 /* --- weaving ---------------------------------------------------------------
@@ -309,6 +468,29 @@ TARGET static void NAME(weave)(const float *const *values,
     }
 }
 
+static inline __attribute__((always_inline)) TARGET void
+NAME(settle_pixels)(const float *restrict line, int phases, int columns,
+                    int count, float *restrict pairs) {
+    for (int n = 0; n < count; n++)
+        for (int phase = 0; phase < phases; phase++) {
+            float value = line[phase * columns + n];
+            float step = value * SNOW_MOST_STEPS + MOST_WHOLE - MOST_WHOLE;
+            bool there = value < SNOW_MOST_NONE;
+            pairs[2 * (n * phases + phase)] =
+                there ? step * (1.0f / SNOW_MOST_STEPS) : 0;
+            pairs[2 * (n * phases + phase) + 1] = there ? 1 : 0;
+        }
+}
+
+TARGET static void NAME(settle)(const float *line, int phases, int columns,
+                                int count, float *pairs) {
+    if (phases == 2 && columns == 16 && count == 16)
+        NAME(settle_pixels)(line, 2, 16, 16, pairs);
+    else
+        NAME(settle_pixels)(line, phases, columns, count, pairs);
+}
+
 static const snow_row_fns NAME(row_fns) = {
-    NAME(spread8), NAME(spread16), NAME(set),   NAME(add),  NAME(look),
-    NAME(comb),    NAME(most),     NAME(block), NAME(weave)};
+    NAME(spread8), NAME(spread16), NAME(set),   NAME(add),
+    NAME(look),    NAME(comb),     NAME(most),  NAME(hull),
+    NAME(fours),   NAME(blocks),   NAME(weave), NAME(settle)};

@@ -29,6 +29,20 @@ WARP_NAME(_place)(const snow_plane *plane, const int64_t *x, const int64_t *y,
         group->at[n] = group->at[0];
 }
 
+/* Asks the cache for what the pixels of a group read: lines of the picture may
+ * run across those of the plane, where no run of addresses is to be guessed. */
+TARGET static inline __attribute__((always_inline)) void
+WARP_NAME(_fetch)(const snow_plane *plane, const int64_t *x, const int64_t *y) {
+    const int32_t stride = (int32_t)plane->stride;
+    for (int n = 0; n < GROUP; n++) {
+        const float *at = plane->pixels +
+                          (int64_t)(int32_t)(y[n] >> 32) * stride +
+                          (x[n] >> 32) * WARP_CHANNELS;
+        for (int m = -WARP_BEFORE; m < WARP_BEFORE + 2; m++)
+            __builtin_prefetch(at + m * stride);
+    }
+}
+
 /* A group's pixels, of which `count` are written, held to the laws of
  * premultiplied ones. */
 TARGET static inline __attribute__((always_inline)) void
@@ -55,6 +69,7 @@ TARGET static void WARP_NAME()(const snow_plane *plane,
                                const snow_warp_line *line, int first, int count,
                                float *pixels) {
     int64_t x[GROUP], y[GROUP], steps[2][GROUP];
+    bool across = line->step[1] > ACROSS || line->step[1] < -ACROSS;
     for (int i = 0; i < GROUP; i++) {
         steps[0][i] = i * line->step[0];
         steps[1][i] = i * line->step[1];
@@ -62,6 +77,12 @@ TARGET static void WARP_NAME()(const snow_plane *plane,
     for (int n = 0; n < count; n += GROUP) {
         int64_t left = line->start[0] + (first + n) * line->step[0];
         int64_t top = line->start[1] + (first + n) * line->step[1];
+        for (int i = 0; i < GROUP; i++) {
+            x[i] = left + GROUP * line->step[0] + steps[0][i];
+            y[i] = top + GROUP * line->step[1] + steps[1][i];
+        }
+        if (across && count - n >= 2 * GROUP)
+            WARP_NAME(_fetch)(plane, x, y);
         for (int i = 0; i < GROUP; i++) {
             x[i] = left + steps[0][i];
             y[i] = top + steps[1][i];

@@ -25,6 +25,10 @@ static inline float fraction_of(int64_t place) {
 
 #define GROUP 16
 
+/* A line of the picture that crosses more lines of the plane than this a pixel
+ * (1/4) is not read ahead of by the processor itself. */
+#define ACROSS (INT64_C(1) << 30)
+
 /* Where the pixels of a group lie. */
 typedef struct warp_group {
     int64_t at[GROUP];       /* the first one that is read, in floats from the
