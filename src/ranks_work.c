@@ -12,6 +12,9 @@
 /* Less is noise. */
 #define LEAST_IMBALANCE 1.04
 
+/* What a slab costs at least: clocks may tell of nothing. */
+#define LEAST_SECONDS 1e-6
+
 /* Of the time that a cut should save, so much is hoped for; and no cut is made
  * for less than a share of a picture's. */
 #define HOPE 0.5
@@ -105,10 +108,12 @@ void snow_work_learn(const snow_work_word *words, int ranks, double *costs) {
     for (int rank = 0; rank < ranks; rank++) {
         const snow_work_word *word = &words[rank];
         double *own = costs + word->first, sum = 0;
+        /* Not 0, which no later picture could make more of. */
+        double seconds = fmax(word->seconds, LEAST_SECONDS);
         for (int64_t n = 0; n < word->count; n++)
             sum += own[n];
         for (int64_t n = 0; n < word->count && sum > 0; n++)
-            own[n] *= word->seconds / sum;
+            own[n] *= seconds / sum;
     }
 }
 
@@ -169,9 +174,16 @@ static snow_status know_costs(balancing *b, double **out) {
         if (!*costs)
             *costs = snow_allocate_array(b->context, (uint64_t)slices,
                                          sizeof **costs);
-        SNOW_TRY(snow_comm_agree(b->comm, *costs ? SNOW_OK : SNOW_NO_MEMORY));
-        SNOW_TRY(snow_cut_count(b->comm, &b->order, *b->volume, b->transfer,
-                                *costs));
+        snow_status status =
+            snow_comm_agree(b->comm, *costs ? SNOW_OK : SNOW_NO_MEMORY);
+        if (status == SNOW_OK)
+            status = snow_cut_count(b->comm, &b->order, *b->volume, b->transfer,
+                                    *costs);
+        if (status != SNOW_OK) { /* of all ranks: nobody knows any */
+            snow_release(b->context, *costs);
+            *costs = NULL;
+            return status;
+        }
     }
     *out = *costs;
     return SNOW_OK;

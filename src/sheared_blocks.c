@@ -26,6 +26,11 @@
 #define BLOCKS_BEYOND 128
 #define BLOCKS_BETWEEN 4
 
+/* Bytes of bounds that a byte of the encoding may cost, and what is little
+ * anyhow. */
+#define BYTES_FOR_ONE 4
+#define SMALL (1 << 20)
+
 /* Zeros around a row of voxels. */
 #define PAD 16
 
@@ -161,18 +166,23 @@ static size_t blocks_beyond(const snow_bands *bands) {
     return (size_t)snow_block_columns(bands) * ROWS_BEYOND + BLOCKS_BEYOND;
 }
 
-static snow_status make_room(snow_modes_pass *pass) {
-    snow_sheared *s = pass->sheared;
-    const snow_bands *bands = &s->bands;
-    uint64_t bytes;
-    if (!snow_mul_u64((uint64_t)snow_block_columns(bands),
-                      (uint64_t)snow_block_rows(bands), &bytes) ||
-        !snow_mul_u64(bytes, (uint64_t)bands->slices, &bytes) ||
-        !snow_mul_u64(bytes + 2 * blocks_beyond(bands), sizeof *s->blocks,
-                      &bytes) ||
-        bytes > SIZE_MAX)
-        return snow_fail(s->context, SNOW_NO_MEMORY,
-                         "no memory for the largest values of rows");
+/* Whether bounds are worth their *bytes: not where they would take far more
+ * than the voxels, which are so few then that no bounds are needed, nor where
+ * memory is what is short. */
+static bool are_worth(const snow_modes_pass *pass, uint64_t *bytes) {
+    const snow_bands *bands = &pass->sheared->bands;
+    return !pass->order->volume->stream &&
+           snow_mul_u64((uint64_t)snow_block_columns(bands),
+                        (uint64_t)snow_block_rows(bands), bytes) &&
+           snow_mul_u64(*bytes, (uint64_t)bands->slices, bytes) &&
+           snow_mul_u64(*bytes + 2 * blocks_beyond(bands), sizeof(uint16_t),
+                        bytes) &&
+           *bytes <= SIZE_MAX &&
+           *bytes / BYTES_FOR_ONE <=
+               bands->ea_bytes + bands->ia_bytes + bands->pa_bytes + SMALL;
+}
+
+static snow_status make_room(snow_sheared *s, uint64_t bytes) {
     s->blocks_of = 0;
     SNOW_TRY(snow_reserve(s->context, &s->blocks, &s->blocks_capacity, 0,
                           (size_t)bytes));
@@ -193,13 +203,18 @@ snow_status snow_most_prepare(snow_modes_pass *pass,
     const snow_bands *bands = &s->bands;
     const snow_settings *settings = pass->order->settings;
     int threads = settings->threads;
+    uint64_t bytes = 0;
+    pass->bounded = true;
     pass->hull =
         settings->kernel == SNOW_KERNEL_BSPLINE && settings->footprint == 4;
     if (s->blocks_of == s->encodings && s->blocks_hull == pass->hull &&
         s->blocks_scale.from == scale->from &&
         s->blocks_scale.step == scale->step)
         return SNOW_OK;
-    SNOW_TRY(make_room(pass));
+    pass->bounded = are_worth(pass, &bytes);
+    if (!pass->bounded)
+        return SNOW_OK;
+    SNOW_TRY(make_room(s, bytes));
     blocks_scratch unused;
     blocks_job job = {pass, NULL, lay_out(bands, NULL, &unused)};
     job.scratch =

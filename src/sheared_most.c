@@ -260,7 +260,7 @@ static uint64_t look(const most_stroke *stroke, const most_slice *slice) {
     int reach = (SNOW_PATCH_COLUMNS - 1) * u->stride + place->u->lead[1] +
                 pass->taps[0] - ends;
     snow_most_look look = {
-        .blocks = snow_most_blocks(pass, slice->number),
+        .blocks = pass->bounded ? snow_most_blocks(pass, slice->number) : NULL,
         .columns = snow_block_columns(&pass->sheared->bands),
         .row = slice->first + middle,
         .least = stroke->scratch.least,
@@ -282,7 +282,11 @@ static uint64_t look(const most_stroke *stroke, const most_slice *slice) {
                                         pass->sheared->bands.columns)
         look.end--;
     memset(slice->found, 0, (size_t)pass->tiles * sizeof *slice->found);
-    pass->fns->look(&look);
+    if (pass->bounded)
+        pass->fns->look(&look);
+    else
+        for (int tile = look.first; tile < look.end; tile++)
+            slice->found[tile] = slice->cells;
     uint64_t any = 0;
     for (int tile = look.first; tile < look.end; tile++)
         any |= slice->found[tile];

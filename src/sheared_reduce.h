@@ -27,7 +27,8 @@ typedef struct snow_modes_pass {
     const snow_sheared_order *order;
     snow_sheared *sheared;
     bool largest;
-    bool hull; /* largest values have the bounds of splines */
+    bool hull;    /* largest values have the bounds of splines */
+    bool bounded; /* and have bounds at all */
     snow_shear shear;
     snow_taper taper[2]; /* along u and v */
     int taps[2];
@@ -69,8 +70,9 @@ void snow_modes_range(const snow_slice_place *place, int phase, float found,
 size_t snow_most_scratch(const snow_modes_pass *pass);
 void snow_most_band(void *pass, int64_t band, int worker);
 
-/* Bounds of the encoded voxels (sheared_blocks.c), which are kept: whether they
- * are those of splines; columns and rows of a slice, and its first. */
+/* Bounds of the encoded voxels (sheared_blocks.c), which are kept: whether
+ * there are any, and they are those of splines; columns and rows of a slice,
+ * and its first. */
 snow_status snow_most_prepare(snow_modes_pass *pass,
                               const snow_value_scale *scale);
 int64_t snow_block_columns(const snow_bands *bands);

@@ -370,7 +370,7 @@ static snow_status check_colors(snow_context *context,
     if (image->samples == 1 && has_palette(image))
         snow_notify(context, "its values are numbers of a palette's colours; "
                              "the brightness of these is taken, 0 to 255");
-    if (ybr)
+    if (ybr && image->samples > 1)
         snow_notify(context, "its colours are YBR_FULL, of which channel 0 is "
                              "brightness");
     return SNOW_OK;

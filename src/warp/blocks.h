@@ -6,9 +6,13 @@
 
 #include "warp/warp.h"
 
+/* Pixels of a block's side for which the inverse serves. */
+#define SNOW_BLOCK_SIDE_MOST 2048
+
 typedef struct snow_blocks {
     const snow_plane *plane;
     uint64_t inverse[2]; /* 2^32 over width and height of a block, upwards */
+    bool huge;           /* a block is too large for that */
 } snow_blocks;
 
 static inline snow_blocks snow_blocks_of(const snow_plane *plane) {
@@ -16,13 +20,15 @@ static inline snow_blocks snow_blocks_of(const snow_plane *plane) {
                               (uint64_t)plane->block_height};
     const uint64_t one = UINT64_C(1) << 32;
     return (snow_blocks){
-        plane, {(one + size[0] - 1) / size[0], (one + size[1] - 1) / size[1]}};
+        plane,
+        {(one + size[0] - 1) / size[0], (one + size[1] - 1) / size[1]},
+        size[0] > SNOW_BLOCK_SIDE_MOST || size[1] > SNOW_BLOCK_SIDE_MOST};
 }
 
 /* Blocks that are read between two places, which are in 2^-32 pixels; along a
  * line a place only rises or only falls.  `inverse` * size is off from 2^32 by
  * less than the size, so that the quotient is that of the division for places
- * below 2^32 / size. */
+ * below 2^32 / size: for all of a plane's, whose sides are below 2^21. */
 static inline void snow_blocks_between(uint64_t inverse, int64_t a, int64_t b,
                                        int most, size_t range[2]) {
     int64_t low = ((a < b ? a : b) >> 32) - 1,
@@ -34,12 +40,15 @@ static inline void snow_blocks_between(uint64_t inverse, int64_t a, int64_t b,
 }
 
 /* Whether anything was drawn in what is read for the pixels between two places,
- * which lie within the plane. */
+ * which lie within the plane.  Of blocks that are nearly the plane nothing is
+ * asked. */
 static inline bool snow_blocks_drawn(const snow_blocks *blocks,
                                      const int64_t first[2],
                                      const int64_t last[2]) {
     const snow_plane *plane = blocks->plane;
     size_t x[2], y[2];
+    if (blocks->huge)
+        return true;
     snow_blocks_between(blocks->inverse[0], first[0], last[0], plane->width - 1,
                         x);
     snow_blocks_between(blocks->inverse[1], first[1], last[1],
