@@ -6,7 +6,7 @@
  * each (of 1 - a, the product, the sum), and hands the errors of both colours
  * on no larger, but for that of the front's alpha, which it adds once.  A pixel
  * of n layers is thus off by less than 6 n 2^-25, in any order of laying. */
-#include "support.h"
+#include "support_comm.h"
 
 #include "combine/exchange.h"
 #include "combine/rounds.h"
@@ -14,13 +14,6 @@
 #include <math.h>
 
 #define RANKS_MOST 33
-
-#define CHECK(condition)                                           \
-    do {                                                           \
-        if (!(condition))                                          \
-            return snow_fail(snow_comm_context(comm), SNOW_FAILED, \
-                             "line %d: %s", __LINE__, #condition); \
-    } while (0)
 
 static double bound(int layers) {
     return 6.0 * layers / (1 << 25);

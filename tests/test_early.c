@@ -1,7 +1,7 @@
 /* tests/test_early.c - local images that are exchanged while they are drawn:
  * the picture has the bits of one whose local images were there, nothing is
  * read before it is drawn, and parts do travel early. */
-#include "support.h"
+#include "support_comm.h"
 
 #include "combine/exchange.h"
 
@@ -10,13 +10,6 @@
 #define RANKS_MOST 33
 #define BAND 3 /* lines that are drawn together */
 #define HEIGHT_MOST 70
-
-#define CHECK(condition)                                           \
-    do {                                                           \
-        if (!(condition))                                          \
-            return snow_fail(snow_comm_context(comm), SNOW_FAILED, \
-                             "line %d: %s", __LINE__, #condition); \
-    } while (0)
 
 /* --- local images --------------------------------------------------------- */
 

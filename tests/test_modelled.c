@@ -1,18 +1,11 @@
 /* test_modelled - ranks on a modelled cluster: messages arrive as ever, and
  * take the time that the network's figures say. */
-#include "support.h"
+#include "support_comm.h"
 
 #include "comm/comm.h"
 
 #include <math.h>
 #include <string.h>
-
-#define CHECK(condition)                                           \
-    do {                                                           \
-        if (!(condition))                                          \
-            return snow_fail(snow_comm_context(comm), SNOW_FAILED, \
-                             "line %d: %s", __LINE__, #condition); \
-    } while (0)
 
 /* So slow that the processor's own time is nothing beside it. */
 static const snow_network slow = {
