@@ -18,9 +18,8 @@
 /* Vectors of so many floats that are summed side by side. */
 #define TILE_ABREAST(floats) ((floats) / LANES < 4 ? (floats) / LANES : 4)
 
-/* Pixels of a vector; taps that are no constant are more than TILE_TAPS. */
+/* Pixels of a vector. */
 #define TILE_VECTOR (LANES / TILE_CHANNELS)
-#define TILE_TAPS 6
 
 /* Returns a function of (tile, width, taps, phases, lead), with constants in
  * the cases that pictures are made of. */
@@ -41,24 +40,11 @@
         return call(t, width, taps, (lattice)->phases, (comb)->lead[1]); \
     }
 
-/* Along u, one pixel a lattice column: pixel n sums voxels n + m. */
+/* Along u, one pixel a lattice column: pixel n sums voxels n + m.  Vectors are
+ * summed side by side, since each sum waits for itself at every tap. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_single)(const float *samples, const V(vec) * weights, const int taps,
                    float *pixels) {
-    for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS; at += LANES) {
-        V(vec) sum = V(mul)(weights[0], V(load)(samples + at));
-        for (int m = 1; m < taps; m++)
-            sum = V(fma)(weights[m], V(load)(samples + at + m * TILE_CHANNELS),
-                         sum);
-        V(store)(pixels + at, sum);
-    }
-}
-
-/* The same for kernels so wide that their taps are no constant: vectors side by
- * side, since each sum waits for itself at every tap. */
-TARGET static inline __attribute__((always_inline)) void
-TILE_NAME(_single_wide)(const float *samples, const V(vec) * weights,
-                        const int taps, float *pixels) {
     const int abreast = TILE_ABREAST(SNOW_TILE_COLUMNS * TILE_CHANNELS);
     for (int at = 0; at < SNOW_TILE_COLUMNS * TILE_CHANNELS;
          at += abreast * LANES) {
@@ -122,27 +108,6 @@ TILE_NAME(_halved)(const float *samples, const V(vec) * weights, const int taps,
 TARGET static inline __attribute__((always_inline)) bool
 TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
                  const int taps, const int width) {
-    const float *row[SNOW_TAPS_MOST] = {rows[0]};
-    V(vec) least = V(set1)(0);
-    for (int m = 1; m < taps; m++)
-        row[m] = rows[m];
-    for (int at = 0; at < width; at += LANES) {
-        V(vec) front = V(load)(line + at);
-        V(vec) sum = V(mul)(weights[0], V(load)(row[0] + at));
-        for (int m = 1; m < taps; m++)
-            sum = V(fma)(weights[m], V(load)(row[m] + at), sum);
-        front = V(fnma)(TILE_ALPHA(front), sum, front);
-        V(store)(line + at, front);
-        least = V(min)(least, front);
-    }
-    /* Colours are never below 0, so that only alpha - 1 counts. */
-    return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
-}
-
-/* The same for kernels so wide that their taps are no constant. */
-TARGET static inline __attribute__((always_inline)) bool
-TILE_NAME(_line_wide)(float *line, const float *const *rows,
-                      const V(vec) * weights, const int taps, const int width) {
     const int abreast = TILE_ABREAST(width);
     V(vec) least = V(set1)(0);
     for (int at = 0; at < width; at += abreast * LANES) {
@@ -160,6 +125,7 @@ TILE_NAME(_line_wide)(float *line, const float *const *rows,
             least = V(min)(least, front);
         }
     }
+    /* Colours are never below 0, so that only alpha - 1 counts. */
     return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
 }
 
@@ -220,8 +186,6 @@ TILE_NAME(_along_u)(const snow_tile *t, const int width, const int taps,
             TILE_NAME(_double)(samples, weights, taps, lead, pixels);
         else if (stride == 2)
             TILE_NAME(_halved)(samples, weights, taps, pixels);
-        else if (taps > TILE_TAPS)
-            TILE_NAME(_single_wide)(samples, weights, taps, pixels);
         else
             TILE_NAME(_single)(samples, weights, taps, pixels);
     }
@@ -244,12 +208,10 @@ TILE_NAME(_along_v)(const snow_tile *t, const int width, const int taps,
             rows[row] = t->held >> row & 1 ? t->ring + row * TILE_ROW : t->zero;
         const float *const *first = rows + cell * stride;
         float *line = t->pixels + (size_t)(cell * phases) * t->line;
-        bool seen =
-            phases == 2 ? TILE_NAME(_lines)(line, line + t->line, first,
+        bool seen = phases == 2
+                        ? TILE_NAME(_lines)(line, line + t->line, first,
                                             weights, taps, lead, width)
-            : taps > TILE_TAPS
-                ? TILE_NAME(_line_wide)(line, first, weights, taps, width)
-                : TILE_NAME(_line)(line, first, weights, taps, width);
+                        : TILE_NAME(_line)(line, first, weights, taps, width);
         finished |= seen ? 0 : left & -left;
     }
     return finished;
@@ -274,7 +236,6 @@ TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
 #undef TILE_ROW
 #undef TILE_ABREAST
 #undef TILE_VECTOR
-#undef TILE_TAPS
 #undef TILE_CASE
 #undef TILE_CASES
 #undef TILE_CHANNELS
