@@ -23,9 +23,10 @@
 
 #include <string.h>
 
-#define GROUP_SLICES 8           /* of one sparse matrix */
-#define GATHER_ROWS 8            /* image rows of a band where pixels gather */
-#define BANDS_PER_THREAD 4       /* where footprints are thrown */
+#define GROUP_SLICES 8     /* of one sparse matrix */
+#define GATHER_ROWS 8      /* image rows of a band where pixels gather */
+#define CLOSE_SLICES 4     /* after so many, opaque pixels are looked for */
+#define BANDS_PER_THREAD 4 /* where footprints are thrown */
 #define SPREAD_BYTES (32u << 20) /* that slices spread out at once may take */
 
 typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
@@ -54,8 +55,10 @@ struct snow_exact {
     snow_over_fn *over;
     snow_sparse *groups; /* EA, IA, PA of GROUP_SLICES slices each */
     snow_dense *dense;   /* gathering: slices spread out */
+    uint16_t *open;      /* gathering: pixels that are not opaque, row by row */
     worker *workers;
-    size_t groups_capacity, dense_capacity, workers_capacity; /* bytes */
+    size_t groups_capacity, dense_capacity, open_capacity,
+        workers_capacity;                           /* bytes */
     int64_t group_count, dense_count, worker_count; /* that were ever made */
     int64_t groups_used, dense_used;                /* by this picture */
     int threads, bands;
@@ -97,6 +100,7 @@ void snow_exact_free(snow_exact *exact) {
     }
     snow_release(context, exact->groups);
     snow_release(context, exact->dense);
+    snow_release(context, exact->open);
     snow_release(context, exact->workers);
     snow_gatherer_fini(context, &exact->gatherer);
     snow_classifier_fini(context, &exact->classifier);
@@ -180,6 +184,20 @@ static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
                         GATHER_ROWS * runs * sizeof *w->runs);
 }
 
+static size_t open_row(const snow_job *job) {
+    return (size_t)parts_of(job->stored.width, SNOW_GATHER_CHUNK);
+}
+
+/* All pixels are open. */
+static snow_status open_pixels(snow_exact *exact, const snow_job *job) {
+    size_t bytes =
+        (size_t)job->stored.height * open_row(job) * sizeof *exact->open;
+    SNOW_TRY(snow_reserve(exact->context, &exact->open, &exact->open_capacity,
+                          0, bytes));
+    memset(exact->open, 0xff, bytes);
+    return SNOW_OK;
+}
+
 /* Loops for gathering exist for this picture, and it is the method that may
  * use them: original and tested stay what they are compared as. */
 static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
@@ -230,7 +248,7 @@ static snow_status prepare(snow_exact *exact, const snow_job *job) {
     for (int64_t n = 0; n < exact->dense_used; n++)
         SNOW_TRY(
             snow_dense_make(context, &exact->gatherer.shape, &exact->dense[n]));
-    return SNOW_OK;
+    return exact->gathers ? open_pixels(exact, job) : SNOW_OK;
 }
 
 /* --- work and time ---------------------------------------------------------
@@ -474,6 +492,37 @@ static void spread_item(void *data, int64_t item, int number) {
     lap(&mark, &w->seconds[SPLAT]);
 }
 
+/* Opaque pixels gather no more: looked for every few slices, the same ones
+ * however many are spread at once.  Not where something else than over is laid,
+ * to which opacity is nothing. */
+static bool closes(const pass *work, int64_t n) {
+    return !work->job->lay &&
+           (work->first + n) % CLOSE_SLICES == CLOSE_SLICES - 1;
+}
+
+/* Line 13 for one row of slice n: a run of what it has gathered goes into the
+ * local image. */
+static void lay_run(const pass *work, int64_t n, int y, float *gathered,
+                    snow_run run) {
+    const snow_exact *exact = work->exact;
+    const snow_job *job = work->job;
+    int64_t slice = nth_slice(job, work->first + n);
+    int count = run.end - run.first;
+    size_t channels = (size_t)job->channels;
+    float *row = job->pixels + (size_t)y * (size_t)job->stored.width * channels;
+    float *back = gathered + (size_t)run.first * channels;
+    if (job->clip.cuts)
+        snow_clip_pixels(&job->clip, &job->placement,
+                         slice + job->clip.stored[2], run.first, y, count,
+                         job->channels, back);
+    if (job->depths)
+        snow_depth_note(job, slice, run.first, y, count, back);
+    exact->over(row + (size_t)run.first * channels, back, (size_t)count);
+    if (closes(work, n))
+        snow_gather_close(row, run, job->channels,
+                          exact->open + (size_t)y * open_row(job));
+}
+
 /* Second half and line 13, for one slice and band: pixels gather, row by row,
  * and each row goes into the local image. */
 static void gather_slice(const pass *work, worker *w, int64_t n, int top,
@@ -482,9 +531,8 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
     const snow_job *job = work->job;
     const snow_dense *dense = &exact->dense[n];
     int64_t slice = nth_slice(job, work->first + n);
-    size_t channels = (size_t)job->channels,
-           room = w->runs_capacity / sizeof *w->runs / GATHER_ROWS;
-    size_t stride = (size_t)job->stored.width * channels;
+    size_t room = w->runs_capacity / sizeof *w->runs / GATHER_ROWS;
+    size_t stride = (size_t)job->stored.width * (size_t)job->channels;
     int first, end, counts[GATHER_ROWS];
     snow_gather_rows(&exact->gatherer, dense, slice, &first, &end);
     first = first > top ? first : top;
@@ -495,28 +543,16 @@ static void gather_slice(const pass *work, worker *w, int64_t n, int top,
     for (int y = first; y < end; y++) {
         size_t line = (size_t)(y - top);
         counts[line] = snow_gather_row(
-            &exact->gatherer, dense, slice, y, &w->places,
+            &exact->gatherer, dense, slice, y,
+            exact->open + (size_t)y * open_row(job), &w->places,
             w->sheet.pixels + line * stride, w->runs + line * room);
     }
     lap(&mark, &w->seconds[SPLAT]);
     for (int y = first; y < end; y++) {
         size_t line = (size_t)(y - top);
-        const snow_run *runs = w->runs + line * room;
-        for (int i = 0; i < counts[line]; i++) {
-            size_t at = (size_t)runs[i].first * channels;
-            if (job->clip.cuts)
-                snow_clip_pixels(&job->clip, &job->placement,
-                                 slice + job->clip.stored[2], runs[i].first, y,
-                                 runs[i].end - runs[i].first, job->channels,
-                                 w->sheet.pixels + line * stride + at);
-            if (job->depths)
-                snow_depth_note(job, slice, runs[i].first, y,
-                                runs[i].end - runs[i].first,
-                                w->sheet.pixels + line * stride + at);
-            exact->over(job->pixels + (size_t)y * stride + at,
-                        w->sheet.pixels + line * stride + at,
-                        (size_t)(runs[i].end - runs[i].first));
-        }
+        for (int i = 0; i < counts[line]; i++)
+            lay_run(work, n, y, w->sheet.pixels + line * stride,
+                    w->runs[line * room + (size_t)i]);
     }
     lap(&mark, &w->seconds[COMPOSITE]);
 }

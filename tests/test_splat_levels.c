@@ -29,7 +29,9 @@ static reference_scene random_scene(uint64_t *random, bool grey) {
     int64_t dims[3];
     for (int n = 0; n < 3; n++)
         dims[n] = 1 + (int64_t)(support_uniform(random) * 22);
-    reference_scene scene = model_blank(dims, 0.35);
+    /* Every other one is opaque behind a few slices. */
+    reference_scene scene =
+        model_blank(dims, support_uniform(random) < 0.5 ? 0.35 : 0.97);
     scene.colors = grey ? ramp : rainbow;
     scene.color_count = grey ? COUNT(ramp) : COUNT(rainbow);
     scene.settings.method = SNOW_METHOD_FOOTPRINT;

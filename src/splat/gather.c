@@ -8,7 +8,10 @@
  * loses nothing; the map of reached windows decides. */
 #define SLACK 1e-3
 
-#define CHUNK 16 /* pixels whose places are found at once */
+#define CHUNK SNOW_GATHER_CHUNK /* pixels whose places are found at once */
+
+/* The alpha of an opaque pixel. */
+#define OPAQUE (1 - 0x1p-22f)
 
 #if SNOW_HAS_AVX
 /* Runs of set bits, from pixel `begin` on (a multiple of 16) and before `end`
@@ -204,8 +207,8 @@ static void narrow(double at, double step, double low, double high,
 }
 
 int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
-                    int y, const snow_places *places, float *pixels,
-                    snow_run *runs) {
+                    int y, const uint16_t *open, const snow_places *places,
+                    float *pixels, snow_run *runs) {
     const snow_placement *p = g->placement;
     double origin[2], first = 0, end = p->width;
     slice_origin(p, slice, origin);
@@ -217,6 +220,7 @@ int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
              g->shape.taps_v,
         .du = p->inverse[0][0],
         .dv = p->inverse[1][0],
+        .open = open,
     };
     narrow(line.u, line.du, (double)d->c0 + 1, (double)d->c1 + g->shape.taps_u,
            &first, &end);
@@ -227,4 +231,28 @@ int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
     line.first = (int)first;
     line.end = (int)ceil(end);
     return g->gather(g, d, &line, places, pixels, runs);
+}
+
+/* Whether any of so many floats is that of an opaque pixel's alpha; without a
+ * branch, for the compiler to make vectors of. */
+static bool any_opaque(const float *floats, int count) {
+    int any = 0;
+    for (int n = 0; n < count; n++)
+        any |= floats[n] >= OPAQUE;
+    return any;
+}
+
+void snow_gather_close(const float *pixels, snow_run run, int channels,
+                       uint16_t *open) {
+    for (int x = run.first, end; x < run.end; x = end) {
+        const float *chunk = pixels + (size_t)x * (size_t)channels;
+        uint16_t *bits = &open[x / CHUNK];
+        end = (x / CHUNK + 1) * CHUNK;
+        end = end < run.end ? end : run.end;
+        if (!*bits || !any_opaque(chunk, (end - x) * channels))
+            continue;
+        for (int n = 0; n < end - x; n++)
+            if (chunk[(n + 1) * channels - 1] >= OPAQUE)
+                *bits &= (uint16_t) ~(1u << ((x + n) % CHUNK));
+    }
 }

@@ -22,11 +22,15 @@ typedef struct snow_run {
 
 typedef struct snow_gatherer snow_gatherer;
 
+/* Pixels that are told as bits of one number, the first one lowest. */
+#define SNOW_GATHER_CHUNK 16
+
 /* A row of the image as a line through the slice, in places of windows: at
  * pixel x, (u + x du, v + x dv); and the pixels that can be reached at all. */
 typedef struct snow_line {
     double u, v, du, dv;
     int first, end;
+    const uint16_t *open; /* pixels that are wanted, chunk by chunk */
 } snow_line;
 
 /* Where the pixels of a row look, in the memory of one thread: arrays of
@@ -36,7 +40,7 @@ typedef struct snow_places {
     int32_t *row_u, *row_v; /* first floats of rows of the phase tables */
     float *rest_u, *rest_v; /* from there to the next row, 0 to 1 */
     float *u, *v; /* or, where these are cubics, four weights for each pixel */
-    uint16_t *reached; /* 16 pixels each, the first one lowest */
+    uint16_t *reached; /* chunk by chunk */
     size_t capacity;   /* of the memory, which begins at `window` */
 } snow_places;
 
@@ -76,10 +80,16 @@ void snow_gatherer_fini(snow_context *context, snow_gatherer *gatherer);
 void snow_gather_rows(const snow_gatherer *gatherer, const snow_dense *dense,
                       int64_t slice, int *top, int *bottom);
 
-/* One row of the image before one slice; as snow_gather_fn.  `runs` has room
- * for width / 2 + 1. */
+/* One row of the image before one slice; as snow_gather_fn, less the pixels
+ * whose bits in `open` are 0.  `runs` has room for width / 2 + 1. */
 int snow_gather_row(const snow_gatherer *gatherer, const snow_dense *dense,
-                    int64_t slice, int y, const snow_places *places,
-                    float *pixels, snow_run *runs);
+                    int64_t slice, int y, const uint16_t *open,
+                    const snow_places *places, float *pixels, snow_run *runs);
+
+/* Takes the opaque ones of a row's pixels first .. end - 1 out of `open`: what
+ * lies behind them would change them by less than 2^-22, which is within the
+ * rounding of their sums.  `pixels` are those of the row. */
+void snow_gather_close(const float *pixels, snow_run run, int channels,
+                       uint16_t *open);
 
 #endif

@@ -197,18 +197,26 @@ LOCAL(locate)(const snow_gatherer *g, const snow_dense *d,
     return reached;
 }
 
+/* The same of the pixels that are open. */
+static inline __attribute__((always_inline)) TARGET uint16_t
+LOCAL(wanted)(const snow_gatherer *g, const snow_dense *d,
+              const snow_line *line, int x, const snow_places *p, bool cubic) {
+    unsigned open = line->open[x / CHUNK];
+    if (open)
+        open &= LOCAL(locate)(g, d, line, x, p, cubic);
+    return (uint16_t)open;
+}
+
 static TARGET int LOCAL(row)(const snow_gatherer *g, const snow_dense *d,
                              const snow_line *line, const snow_places *p,
                              float *pixels, snow_run *runs) {
     int begin = line->first & -CHUNK;
     if (g->cubic)
         for (int x = begin; x < line->end; x += CHUNK)
-            p->reached[x / CHUNK] =
-                (uint16_t)LOCAL(locate)(g, d, line, x, p, true);
+            p->reached[x / CHUNK] = LOCAL(wanted)(g, d, line, x, p, true);
     else
         for (int x = begin; x < line->end; x += CHUNK)
-            p->reached[x / CHUNK] =
-                (uint16_t)LOCAL(locate)(g, d, line, x, p, false);
+            p->reached[x / CHUNK] = LOCAL(wanted)(g, d, line, x, p, false);
     int count =
         find_runs(p->reached, begin, line->end, g->placement->width, runs);
     for (int n = 0; n < count; n++)
