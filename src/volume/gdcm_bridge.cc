@@ -39,14 +39,22 @@ gdcm::DataElement wrap(const void *packed, size_t size) {
     return element;
 }
 
+/* GDCM counts on a known one, by assertion. */
+gdcm::PhotometricInterpretation photometric_of(const gdcm_frame &frame) {
+    typedef gdcm::PhotometricInterpretation kind;
+    kind::PIType type = kind::GetPIType(frame.photometric);
+    if (type == kind::PI_END)
+        type = frame.samples == 3 ? kind::RGB : kind::MONOCHROME2;
+    return kind(type);
+}
+
 /* A codec takes the image's description, and may change it by what it finds. */
 void describe(const gdcm_frame &frame, gdcm::ImageCodec &codec) {
     typedef unsigned short word;
     const unsigned sizes[3] = {frame.columns, frame.rows, 1};
     codec.SetNumberOfDimensions(2);
     codec.SetDimensions(sizes);
-    codec.SetPhotometricInterpretation(
-        gdcm::PhotometricInterpretation::GetPIType(frame.photometric));
+    codec.SetPhotometricInterpretation(photometric_of(frame));
     codec.SetPixelFormat(gdcm::PixelFormat(
         static_cast<word>(frame.samples), static_cast<word>(frame.allocated),
         static_cast<word>(frame.stored), static_cast<word>(frame.high),
