@@ -244,11 +244,11 @@ snow_status snow_dicom_palette_read(dicom_reader *reader,
  */
 
 /* Whether the packed bytes of a frame are what the image is, by their own
- * head, and what their words are like.
+ * head, and begin in a way that codecs stand; narrows them to the code stream.
  * Errors: SNOW_BAD_INPUT. */
 snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
-                                    const unsigned char *bytes, size_t size);
+                                    const unsigned char **bytes, size_t *size);
 
 /* Run lengths (PS3.5, annex G), as planes of bytes; false when they are not
  * those of the image. */

@@ -54,8 +54,19 @@ static bool read_jpeg(const unsigned char *bytes, size_t size,
     return false;
 }
 
+/* A segment of which libjpeg warns: JFIF of another version than 1, or Adobe's
+ * with a transform that there is not.  `length` counts what follows it. */
+static bool is_odd(int marker, const unsigned char *data, size_t length) {
+    if (marker == 0xe0 && length >= 14 && !memcmp(data, "JFIF", 5))
+        return data[5] != 1;
+    if (marker == 0xee && length >= 12 && !memcmp(data, "Adobe", 5))
+        return data[11] > 1;
+    return false;
+}
+
 /* Whether segment follows segment up to the start of the scan, Huffman tables
- * among them where the frame needs such: at others GDCM ends the process. */
+ * among them where the frame needs such, and none that is odd: at others GDCM
+ * ends the process. */
 static bool has_scan(const unsigned char *bytes, size_t size) {
     bool tables = false;
     for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
@@ -64,28 +75,49 @@ static bool has_scan(const unsigned char *bytes, size_t size) {
             at++;
             continue;
         }
+        size_t length = (size_t)big(bytes + at + 2, 2);
+        if (length < 2 || length > size - at - 2 ||
+            is_odd(marker, bytes + at + 4, length - 2))
+            return false;
         tables |= marker == 0xc4 || marker == 0xf7; /* JPEG-LS needs none */
         if (marker == 0xda)
             return tables;
-        at += 2 + (size_t)big(bytes + at + 2, 2);
+        at += 2 + length;
     }
     return false;
 }
 
-/* A bare code stream, or one in the boxes of a file: SIZ follows its start. */
-static bool read_jpeg2000(const unsigned char *bytes, size_t size,
+/* Components of one depth that are not subsampled, as what takes them expects.
+ * `siz` is the marker's segment at its length; `room` counts from there. */
+static bool are_alike(const unsigned char *siz, size_t room, uint32_t samples) {
+    if (samples > (room - 38) / 3)
+        return false;
+    for (uint32_t n = 0; n < samples; n++) {
+        const unsigned char *of = siz + 38 + 3 * (size_t)n;
+        if (of[0] != siz[38] || of[1] != 1 || of[2] != 1)
+            return false;
+    }
+    return true;
+}
+
+/* A bare code stream, or one in the boxes of a file, which are passed over: SIZ
+ * follows its start. */
+static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
                           packed_head *out) {
     static const unsigned char start[4] = {0xff, 0x4f, 0xff, 0x51};
-    for (size_t at = 0; at + 43 <= size && at < 4096; at++)
-        if (!memcmp(bytes + at, start, 4)) {
-            const unsigned char *siz = bytes + at + 4; /* at its length */
+    for (size_t at = 0; at + 45 <= *size && at < 4096; at++)
+        if (!memcmp(*bytes + at, start, 4)) {
+            const unsigned char *siz = *bytes + at + 4;
             uint32_t x1 = big(siz + 4, 4), y1 = big(siz + 8, 4);
             uint32_t x0 = big(siz + 12, 4), y0 = big(siz + 16, 4);
             *out = (packed_head){.columns = x1 - x0,
                                  .rows = y1 - y0,
                                  .samples = big(siz + 36, 2),
                                  .bits = (siz[38] & 0x7f) + 1};
-            return x1 > x0 && y1 > y0;
+            *bytes += at;
+            *size -= at;
+            return x1 > x0 && y1 > y0 &&
+                   are_alike(siz, *size - 4, out->samples);
         }
     return false;
 }
@@ -96,16 +128,16 @@ static bool is_jpeg2000(const char *syntax) {
 
 snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                                     const dicom_image *image,
-                                    const unsigned char *bytes, size_t size) {
+                                    const unsigned char **bytes, size_t *size) {
     packed_head head;
     bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
-                                     : read_jpeg(bytes, size, &head);
+                                     : read_jpeg(*bytes, *size, &head);
     bool same = known && head.columns == (uint32_t)image->columns &&
                 head.rows == (uint32_t)image->rows &&
                 head.samples == (uint32_t)image->samples &&
                 head.bits <= image->allocated &&
                 (head.bits > 8) == (image->allocated > 8);
-    if (same && (is_jpeg2000(syntax) || has_scan(bytes, size)))
+    if (same && (is_jpeg2000(syntax) || has_scan(*bytes, *size)))
         return SNOW_OK;
     if (known && !same)
         return snow_fail(context, SNOW_BAD_INPUT,

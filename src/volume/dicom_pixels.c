@@ -198,7 +198,7 @@ static snow_status unpack(dicom_reader *reader, const dicom_image *image,
                          "gdcmconv say",
                          image->photometric, reader->syntax);
     SNOW_TRY(snow_dicom_check_packed(reader->context, reader->syntax, image,
-                                     bytes, size));
+                                     &bytes, &size));
     SNOW_TRY(find_codec(reader->context, &codec));
     gdcm_frame frame = {.syntax = reader->syntax,
                         .photometric = image->photometric,

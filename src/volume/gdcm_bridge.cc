@@ -48,17 +48,19 @@ gdcm::PhotometricInterpretation photometric_of(const gdcm_frame &frame) {
     return kind(type);
 }
 
-/* A codec takes the image's description, and may change it by what it finds. */
+/* A codec takes the image's description, and may change it by what it finds.
+ * Of words of 8 bits all have to be stored: others end the process. */
 void describe(const gdcm_frame &frame, gdcm::ImageCodec &codec) {
     typedef unsigned short word;
     const unsigned sizes[3] = {frame.columns, frame.rows, 1};
     codec.SetNumberOfDimensions(2);
     codec.SetDimensions(sizes);
     codec.SetPhotometricInterpretation(photometric_of(frame));
+    const bool byte = frame.allocated == 8;
     codec.SetPixelFormat(gdcm::PixelFormat(
         static_cast<word>(frame.samples), static_cast<word>(frame.allocated),
-        static_cast<word>(frame.stored), static_cast<word>(frame.high),
-        frame.is_signed ? 1 : 0));
+        static_cast<word>(byte ? 8 : frame.stored),
+        static_cast<word>(byte ? 7 : frame.high), frame.is_signed ? 1 : 0));
     codec.SetPlanarConfiguration(frame.samples > 1 && frame.planes ? 1 : 0);
     codec.SetNeedOverlayCleanup(false);
 }
@@ -77,8 +79,10 @@ bool decode(gdcm_frame &frame, const gdcm::DataElement &packed, char *out,
         format.GetBitsAllocated() != frame.allocated)
         return false;
     std::memcpy(out, value->GetPointer(), room);
-    frame.stored = format.GetBitsStored();
-    frame.high = format.GetHighBit();
+    if (frame.allocated != 8 || format.GetBitsStored() != 8) {
+        frame.stored = format.GetBitsStored();
+        frame.high = format.GetHighBit();
+    }
     frame.is_signed = format.GetPixelRepresentation() != 0;
     if (frame.samples > 1)
         frame.planes = codec.GetPlanarConfiguration() == 1;
