@@ -116,17 +116,20 @@ int open_context(const options *asked, snow_context **out) {
     snow_status status = snow_context_new(NULL, out);
     if (status != SNOW_OK)
         return fail_status(NULL, status);
-    if (asked->verbosity >= 0)
-        snow_context_set_notice(*out, hear_notice, NULL);
+    hear_notices(asked, *out, true);
     return GO_ON;
+}
+
+void hear_notices(const options *asked, snow_context *context, bool hear) {
+    hear = hear && asked->verbosity >= 0 && launch_talks();
+    snow_context_set_notice(context, hear ? hear_notice : NULL, NULL);
 }
 
 int open_render_context(const options *asked, snow_context **out) {
     if (launch_ranks() == 1)
         return open_context(asked, out);
     *out = snow_comm_context(launch_comm());
-    if (asked->verbosity >= 0 && launch_talks())
-        snow_context_set_notice(*out, hear_notice, NULL);
+    hear_notices(asked, *out, true);
     return GO_ON;
 }
 

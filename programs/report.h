@@ -30,6 +30,10 @@ int fail_volume(const snow_context *context, snow_status status,
  * Answers GO_ON or an exit code. */
 int open_context(const options *asked, snow_context **out);
 
+/* Whether a context's remarks are heard; never when quiet, and on rank 0 only.
+ */
+void hear_notices(const options *asked, snow_context *context, bool hear);
+
 /* The context of what is rendered: that of the communicator, where there is
  * one, and else as above.  Answers GO_ON or an exit code. */
 int open_render_context(const options *asked, snow_context **out);

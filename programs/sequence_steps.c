@@ -486,6 +486,12 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     value_pool pool = {.quota = POOL_VALUES / list->count};
     if (pool.quota < STEP_VALUES)
         pool.quota = STEP_VALUES;
+    /* All steps will be opened once more, and say the same again: it is told
+     * now, but where ranks have looked at steps of which rank 0 knows nothing.
+     */
+    snow_context *context = shots->scene.context;
+    const bool later = launch_ranks() > 1;
+    hear_notices(shots->scene.asked, context, !later);
     int64_t room = pool.quota + 2;
     pool.values =
         malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
@@ -495,7 +501,6 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
         done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
-    /* All steps will be opened once more, and say the same again. */
-    snow_context_set_notice(shots->scene.context, NULL, NULL);
+    hear_notices(shots->scene.asked, context, later);
     return done;
 }

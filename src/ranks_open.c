@@ -17,8 +17,10 @@
 #include "classify/look.h"
 #include "decompose/slab.h"
 #include "decompose/voxels.h"
+#include "volume/mask.h"
 #include "volume/volume.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A rank's box, and with its ghosts. */
@@ -280,6 +282,30 @@ static snow_status read_share(const opening *o, bool stream,
     return snow_comm_agree(o->comm, status);
 }
 
+/* Collective.  An empty picture must not pass for one of an empty volume: rank
+ * 0 tells that a mask or planes have left nothing of all that was read.  As of
+ * a volume in memory, nothing is said of one that is cropped. */
+static snow_status tell_empty(const opening *o, const snow_volume *read) {
+    static const int64_t none[3][2];
+    enum { LEFT, MINUS_LEAST, MOST, COUNT };
+    double ends[COUNT] = {0, -INFINITY, -INFINITY};
+    snow_part part;
+    if (!snow_mask_asked(&o->options) ||
+        memcmp(o->options.crop, none, sizeof none) != 0)
+        return SNOW_OK;
+    snow_volume_get_part(read, &part);
+    if (read->emptied) {
+        ends[MINUS_LEAST] = -read->mask_range[0];
+        ends[MOST] = read->mask_range[1];
+    } else
+        ends[LEFT] = part.count[0] && part.count[1] && part.count[2];
+    SNOW_TRY(snow_comm_reduce_doubles(o->comm, ends, COUNT, SNOW_MAX));
+    const double range[2] = {-ends[MINUS_LEAST], ends[MOST]};
+    if (!ends[LEFT] && snow_comm_rank(o->comm) == 0)
+        snow_mask_remark(o->context, &o->options, range);
+    return SNOW_OK;
+}
+
 /* Collective.  Equal slabs are known before anything is read. */
 static snow_status open_equal(const opening *o, const snow_cut_order *order,
                               const snow_look *look, snow_volume **volume,
@@ -297,6 +323,7 @@ static snow_status open_equal(const opening *o, const snow_cut_order *order,
     }
     snow_release(o->context, boxes);
     SNOW_TRY(snow_comm_agree(o->comm, status));
+    SNOW_TRY(tell_empty(o, *volume));
     return snow_transfer_make_among(o->comm, *volume, look, transfer);
 }
 
@@ -306,6 +333,8 @@ static snow_status open_shares(const opening *o, const snow_cut_order *order,
                                snow_volume **share, snow_volume **volume,
                                snow_transfer **transfer) {
     SNOW_TRY(read_share(o, stream, share));
+    if (!stream) /* of which rank 0 has read, and told, all */
+        SNOW_TRY(tell_empty(o, *share));
     SNOW_TRY(snow_transfer_make_among(o->comm, *share, look, transfer));
     if (order->ranks == 1) { /* the share is the whole */
         *volume = *share;

@@ -155,6 +155,25 @@ done
 refused 3 "a mask of another grid" 'the mask has 40x36x44 voxels' \
     "$MPI_TOOL" phantom:head --dims 40x36x40 --mask mask.nrrd -o x.png
 
+# That it leaves nothing is told once, whoever has read what.
+for way in "render mask.nrrd -o x.png" "render mask.nrrd -o x.png --cut equal" \
+    "turntable mask.nrrd -o x_%d.png --frames 2" \
+    "movie step0.nrrd step1.nrrd -o x_%d.png" \
+    "movie step0.nrrd step1.nrrd step2.nrrd -o x_%d.png"; do
+    for ranks in 2 "$MOST"; do
+        # shellcheck disable=SC2086
+        run 0 "$way by $ranks" launch "$ranks" "$MPI_TOOL" $way -y -s 32x32 \
+            --clip 0,0,1,-1000
+        check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
+    done
+done
+run 0 "a mask of nothing" launch 3 "$MPI_TOOL" phantom:head --dims 40x36x44 \
+    -s 32x32 --mask mask.nrrd --labels 300 -y -o x.png
+says 'mask.nrrd: no voxel is left inside this mask, whose values are 0 to 220'
+run 0 "a mask of something" launch 3 "$MPI_TOOL" mask.nrrd -y -o x.png \
+    --clip 0,0,1,-20
+check "of which nothing is told" test "$(grep -c 'no voxel' "$ERR")" = 0
+
 # What is for one process, one rank does.
 run 0 "info" launch 2 "$MPI_TOOL" info v.nrrd --json
 check "info is told once" [ "$(wc -l <"$OUT")" -eq 1 ]

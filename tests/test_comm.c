@@ -135,7 +135,7 @@ static void all_ranks_agree_on_the_lowest_that_failed(void **state) {
     (void)state;
     for (size_t i = 3; i < sizeof sizes / sizeof sizes[0]; i++)
         run_failing(sizes[i], agree_on_failure, SNOW_FAILED,
-                    "rank 3: rank 2: file 2 is broken");
+                    "rank 2: file 2 is broken");
 }
 
 static snow_status fail_alone(snow_comm *comm, void *user) {

@@ -97,8 +97,9 @@ typedef struct snow_palette {
 
 /* Makes the palette of a view: opacities are corrected for the path length as
  * a' = 1 - (1 - a)^exponent (model, point 6).  Codes of 8- and 16-bit types
- * that are not interesting get zeros, for bands may hold more than is shown.  `threads` as in base/parallel.h.  Errors: SNOW_NO_MEMORY;
- * the palette is then good for nothing but another making. */
+ * that are not interesting get zeros, for bands may hold more than is shown.
+ * `threads` as in base/parallel.h.  Errors: SNOW_NO_MEMORY; the palette is then
+ * good for nothing but another making. */
 snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
                               const snow_transfer *transfer, double exponent,
                               bool premultiply, int threads, snow_palette *out);

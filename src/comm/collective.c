@@ -6,6 +6,7 @@
  * ring for a share.  Nothing is allocated, see comm.h. */
 #include "comm/comm.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* Sends to one rank while it receives from another, or the same. */
@@ -212,6 +213,13 @@ snow_status snow_comm_share(snow_comm *comm, const void *mine, size_t count,
 
 /* --- agreement ------------------------------------------------------------ */
 
+/* Whether a message tells a rank already, as one does that all have agreed on
+ * before. */
+static bool tells_rank(const char *message) {
+    int rank, length = 0;
+    return sscanf(message, "rank %d: %n", &rank, &length) == 1 && length > 0;
+}
+
 /* Brings the first failure and its message to everybody. */
 static snow_status spread_failure(snow_comm *comm, snow_status status,
                                   int first) {
@@ -224,6 +232,9 @@ static snow_status spread_failure(snow_comm *comm, snow_status status,
     SNOW_TRY(snow_comm_broadcast(comm, &failure, sizeof failure, first));
     failure.message[sizeof failure.message - 1] = 0;
     comm->agreed = true;
+    if (tells_rank(failure.message))
+        return snow_fail(comm->context, (snow_status)failure.status, "%s",
+                         failure.message);
     return snow_fail(comm->context, (snow_status)failure.status, "rank %d: %s",
                      first, failure.message);
 }
