@@ -301,7 +301,7 @@ static snow_status tell_empty(const opening *o, const snow_volume *read) {
         ends[LEFT] = part.count[0] && part.count[1] && part.count[2];
     SNOW_TRY(snow_comm_reduce_doubles(o->comm, ends, COUNT, SNOW_MAX));
     const double range[2] = {-ends[MINUS_LEAST], ends[MOST]};
-    if (!ends[LEFT] && snow_comm_rank(o->comm) == 0)
+    if (ends[LEFT] == 0 && snow_comm_rank(o->comm) == 0)
         snow_mask_remark(o->context, &o->options, range);
     return SNOW_OK;
 }
