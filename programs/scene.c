@@ -221,6 +221,7 @@ static int open_part(scene *s, const options *step) {
     snow_look look = look_options(step);
     snow_ranks_options how = how_of(s);
     snow_transfer *transfer = NULL;
+    how.transfer = s->transfer;
     int done = launch_agree(inspect(s, &data));
     if (done != GO_ON)
         return done;
@@ -229,9 +230,7 @@ static int open_part(scene *s, const options *step) {
                         &s->settings, &how, &s->volume, &transfer);
     if (status != SNOW_OK)
         return fail_status(s->context, status);
-    if (s->transfer)
-        snow_transfer_free(transfer);
-    else
+    if (!s->transfer)
         s->transfer = transfer;
     choose_shade(s);
     s->times.read += seconds_now() - begin;

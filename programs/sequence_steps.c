@@ -476,6 +476,7 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
         tell_step(shots->scene.asked, i, list->count);
         done = pool_round(list, i, shots, pool);
     }
+    hear_notices(shots->scene.asked, shots->scene.context, true);
     return done == GO_ON ? launch_agree(look_at_pool(&shots->scene, pool))
                          : done;
 }
@@ -487,11 +488,9 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
     if (pool.quota < STEP_VALUES)
         pool.quota = STEP_VALUES;
     /* All steps will be opened once more, and say the same again: it is told
-     * now, but where ranks have looked at steps of which rank 0 knows nothing.
-     */
-    snow_context *context = shots->scene.context;
+     * now, but where ranks look at steps of which rank 0 knows nothing. */
     const bool later = launch_ranks() > 1;
-    hear_notices(shots->scene.asked, context, !later);
+    hear_notices(shots->scene.asked, shots->scene.context, !later);
     int64_t room = pool.quota + 2;
     pool.values =
         malloc((size_t)(room * (list->count + 1)) * sizeof *pool.values);
@@ -501,6 +500,6 @@ int steps_look(const shot_list *list, shot_renderer *shots) {
         done = pool_steps(list, shots, &pool);
     }
     free(pool.values);
-    hear_notices(shots->scene.asked, context, later);
+    hear_notices(shots->scene.asked, shots->scene.context, later);
     return done;
 }

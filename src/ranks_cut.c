@@ -11,7 +11,7 @@
 /* Slabs of fewer slices on the average are too coarse to be made equal. */
 #define LEAST_SLICES 5
 
-static snow_ranks_options known_options(const snow_ranks_options *how) {
+snow_ranks_options snow_ranks_options_known(const snow_ranks_options *how) {
     snow_ranks_options known = {0};
     size_t size = how ? how->size : 0;
     if (size > 0)
@@ -50,7 +50,7 @@ snow_status snow_cut_order_make(snow_context *context,
                                 const snow_settings *settings,
                                 const snow_ranks_options *asked, bool fades,
                                 int ranks, snow_cut_order *out) {
-    snow_ranks_options how = known_options(asked);
+    snow_ranks_options how = snow_ranks_options_known(asked);
     snow_settings resolved = snow_settings_known(settings);
     snow_placement placement;
     bool chooses = how.cut == SNOW_CUT_AUTO || how.cut == SNOW_CUT_MEASURED;

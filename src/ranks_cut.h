@@ -22,6 +22,10 @@ typedef struct snow_cut_order {
     snow_isa isa;
 } snow_cut_order;
 
+/* The options that are told, NULL for none; zeros for what a caller's record,
+ * of an older version, lacks. */
+snow_ranks_options snow_ranks_options_known(const snow_ranks_options *how);
+
 /* What picture and ranks ask for; `fades` as in ghosts.h.  Not to be copied,
  * for its borders. Errors: SNOW_BAD_USAGE (view, settings, options),
  * SNOW_BAD_INPUT. */

@@ -15,6 +15,7 @@
  * that is late holds the others up only when they are a picture ahead.  Which
  * rank does what when changes no bit: bands share nothing, and messages are the
  * same in the same order. */
+#include "ranks_cut.h"
 #include "ranks_parts.h"
 
 #include "image/image.h"
@@ -171,14 +172,6 @@ void snow_ranks_settle(snow_ranks *r) {
 /* --- pictures -------------------------------------------------------------
  */
 
-static snow_ranks_options options_known(const snow_ranks_options *how) {
-    snow_ranks_options known = {0};
-    if (how)
-        memcpy(&known, how,
-               how->size < sizeof known ? how->size : sizeof known);
-    return known;
-}
-
 /* As bytes would have travelled. */
 static void round_pixels(snow_image *image) {
     size_t count =
@@ -289,7 +282,7 @@ snow_ranks_begin(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
     p->frame = frame;
     p->ranks = r;
     p->view = *view;
-    p->how = options_known(how);
+    p->how = snow_ranks_options_known(how);
     if (r->ranks == 1)
         render_alone(p, volume, transfer, settings);
     else

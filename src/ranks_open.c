@@ -35,6 +35,8 @@ typedef struct opening {
     const char *path;
     snow_volume_options options;
     snow_volume_info whole; /* of what the options ask for */
+    const snow_look *look;
+    const snow_transfer *transfer; /* in the place of the look's, or NULL */
 } opening;
 
 static snow_box whole_box(const snow_volume_info *whole) {
@@ -295,21 +297,30 @@ static snow_status tell_empty(const opening *o, const snow_volume *read) {
         return SNOW_OK;
     snow_volume_get_part(read, &part);
     if (read->emptied) {
-        ends[MINUS_LEAST] = -read->mask_range[0];
-        ends[MOST] = read->mask_range[1];
+        ends[MINUS_LEAST] = fmax(ends[MINUS_LEAST], -read->mask_range[0]);
+        ends[MOST] = fmax(ends[MOST], read->mask_range[1]);
     } else
         ends[LEFT] = part.count[0] && part.count[1] && part.count[2];
     SNOW_TRY(snow_comm_reduce_doubles(o->comm, ends, COUNT, SNOW_MAX));
-    const double range[2] = {-ends[MINUS_LEAST], ends[MOST]};
+    const bool known = ends[MOST] >= -ends[MINUS_LEAST];
+    const double range[2] = {known ? -ends[MINUS_LEAST] : NAN,
+                             known ? ends[MOST] : NAN};
     if (ends[LEFT] == 0 && snow_comm_rank(o->comm) == 0)
         snow_mask_remark(o->context, &o->options, range);
     return SNOW_OK;
 }
 
+/* Collective.  By what all ranks have read. */
+static snow_status make_transfer(const opening *o, const snow_volume *read,
+                                 snow_transfer **out) {
+    if (o->transfer)
+        return SNOW_OK;
+    return snow_transfer_make_among(o->comm, read, o->look, out);
+}
+
 /* Collective.  Equal slabs are known before anything is read. */
 static snow_status open_equal(const opening *o, const snow_cut_order *order,
-                              const snow_look *look, snow_volume **volume,
-                              snow_transfer **transfer) {
+                              snow_volume **volume, snow_transfer **transfer) {
     snow_box *boxes =
         snow_allocate_array(o->context, (uint64_t)order->ranks, sizeof *boxes);
     snow_status status = SNOW_NO_MEMORY;
@@ -324,29 +335,28 @@ static snow_status open_equal(const opening *o, const snow_cut_order *order,
     snow_release(o->context, boxes);
     SNOW_TRY(snow_comm_agree(o->comm, status));
     SNOW_TRY(tell_empty(o, *volume));
-    return snow_transfer_make_among(o->comm, *volume, look, transfer);
+    return make_transfer(o, *volume, transfer);
 }
 
 /* Collective.  By way of shares. */
 static snow_status open_shares(const opening *o, const snow_cut_order *order,
-                               const snow_look *look, bool stream,
-                               snow_volume **share, snow_volume **volume,
-                               snow_transfer **transfer) {
+                               bool stream, snow_volume **share,
+                               snow_volume **volume, snow_transfer **transfer) {
     SNOW_TRY(read_share(o, stream, share));
     if (!stream) /* of which rank 0 has read, and told, all */
         SNOW_TRY(tell_empty(o, *share));
-    SNOW_TRY(snow_transfer_make_among(o->comm, *share, look, transfer));
+    SNOW_TRY(make_transfer(o, *share, transfer));
     if (order->ranks == 1) { /* the share is the whole */
         *volume = *share;
         *share = NULL;
         return SNOW_OK;
     }
-    return deal_out(o->comm, &o->whole, order, *share, *transfer, volume);
+    return deal_out(o->comm, &o->whole, order, *share,
+                    o->transfer ? o->transfer : *transfer, volume);
 }
 
 /* What is there when it fails is freed by the caller. */
-static snow_status open_file(opening *o, const snow_look *look,
-                             const snow_view *view,
+static snow_status open_file(opening *o, const snow_view *view,
                              const snow_settings *settings,
                              const snow_ranks_options *how, snow_volume **share,
                              snow_volume **volume, snow_transfer **transfer) {
@@ -355,11 +365,13 @@ static snow_status open_file(opening *o, const snow_look *look,
     SNOW_TRY(begin(o, &stream, share));
     snow_status status = snow_cut_order_make(
         o->context, &o->whole, view, settings, how,
-        look && look->gradient_opacities, snow_comm_ranks(o->comm), &order);
+        o->transfer ? snow_transfer_fades(o->transfer)
+                    : o->look && o->look->gradient_opacities,
+        snow_comm_ranks(o->comm), &order);
     SNOW_TRY(snow_comm_agree(o->comm, status));
     if (order.cut == SNOW_CUT_EQUAL && !stream)
-        return open_equal(o, &order, look, volume, transfer);
-    return open_shares(o, &order, look, stream, share, volume, transfer);
+        return open_equal(o, &order, volume, transfer);
+    return open_shares(o, &order, stream, share, volume, transfer);
 }
 
 snow_status snow_ranks_open(snow_comm *comm, const char *path,
@@ -368,14 +380,17 @@ snow_status snow_ranks_open(snow_comm *comm, const char *path,
                             const snow_settings *settings,
                             const snow_ranks_options *how, snow_volume **volume,
                             snow_transfer **transfer) {
-    opening o = {
-        .comm = comm, .context = snow_comm_context(comm), .path = path};
+    opening o = {.comm = comm,
+                 .context = snow_comm_context(comm),
+                 .path = path,
+                 .look = look,
+                 .transfer = snow_ranks_options_known(how).transfer};
     snow_volume *share = NULL, *part = NULL;
     snow_transfer *function = NULL;
     if (options)
         o.options = *options;
     snow_status status =
-        open_file(&o, look, view, settings, how, &share, &part, &function);
+        open_file(&o, view, settings, how, &share, &part, &function);
     snow_volume_close(share);
     if (status != SNOW_OK) {
         snow_volume_close(part);

@@ -252,9 +252,8 @@ static snow_status settle(balancing *b, snow_status status, int64_t left) {
 
 static bool is_measured(const snow_ranks_options *how,
                         const snow_settings *settings) {
-    snow_settings known = snow_settings_known(settings);
-    return how && how->size >= offsetof(snow_ranks_options, combining) &&
-           how->cut == SNOW_CUT_MEASURED && !known.deterministic;
+    return snow_ranks_options_known(how).cut == SNOW_CUT_MEASURED &&
+           !snow_settings_known(settings).deterministic;
 }
 
 snow_status snow_ranks_balance(snow_frame *frame, snow_comm *comm,

@@ -174,6 +174,21 @@ run 0 "a mask of something" launch 3 "$MPI_TOOL" mask.nrrd -y -o x.png \
     --clip 0,0,1,-20
 check "of which nothing is told" test "$(grep -c 'no voxel' "$ERR")" = 0
 
+# What is said of the look is said of the one that all steps share: each of
+# these alone has one value only.
+for value in 000 100 200; do
+    printf '%s\n' NRRD0004 "type: uint8" "dimension: 3" "sizes: 16 16 16" \
+        "encoding: raw" "" >flat$value.nrrd
+    head -c 4096 /dev/zero | tr '\0' "\\$value" >>flat$value.nrrd
+done
+flat="movie flat000.nrrd flat100.nrrd flat200.nrrd --range p10,p50 -y -s 32x32"
+# shellcheck disable=SC2086
+run 0 "one value a step" "$TOOL" $flat -o x_%d.png
+check "of which nothing is told" test "$(grep -c 'note: ' "$ERR")" = 0
+# shellcheck disable=SC2086
+run 0 "the same by 3" launch 3 "$MPI_TOOL" $flat -o x_%d.png
+check "nor by ranks" test "$(grep -c 'note: ' "$ERR")" = 0
+
 # What is for one process, one rank does.
 run 0 "info" launch 2 "$MPI_TOOL" info v.nrrd --json
 check "info is told once" [ "$(wc -l <"$OUT")" -eq 1 ]

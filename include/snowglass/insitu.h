@@ -205,8 +205,8 @@ SNOW_API snow_status snow_insitu_update(snow_insitu *insitu);
 SNOW_API snow_status snow_insitu_draw(snow_insitu *insitu, snow_image **image);
 
 /* Update, draw, and write the picture on rank 0.  Means and sums (modes of
- * those names) become colours where the file holds colours: the look's, over the
- * values that it is spread over; for sums these must have been told. */
+ * those names) become colours where the file holds colours: the look's, over
+ * the values that it is spread over; for sums these must have been told. */
 SNOW_API snow_status snow_insitu_step(snow_insitu *insitu, int64_t step);
 
 /* The least, the mean and the most of a figure over the ranks. */

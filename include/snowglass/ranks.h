@@ -46,6 +46,10 @@ typedef struct snow_ranks_options {
     int scattered;  /* not 0: the picture stays where it is made: each rank's
                        image has the pixels that are its own, and the others
                        transparent; together they are the picture */
+    const snow_transfer *transfer; /* for snow_ranks_open: what pictures will be
+                       drawn by, the same on all ranks, as with a look that all
+                       steps of a movie share; it counts voxels by it and makes
+                       none.  NULL: it makes the one that the look asks for */
 } snow_ranks_options;
 
 /* Opens this rank's part of a volume (snow_volume_get_part), with the ghost
@@ -60,9 +64,10 @@ typedef struct snow_ranks_options {
  * input is read by rank 0, which then needs the memory for all.
  *
  * The transfer function is the one that `look` asks for on the whole volume, to
- * the bit, on all ranks.  All results are new, and the caller's.  Errors, on
- * all ranks: those of snow_volume_open, snow_transfer_make and
- * snow_frame_render; SNOW_BAD_INPUT where ranks see different files. */
+ * the bit, on all ranks; NULL where `how` has one.  All results are new, and
+ * the caller's.  Errors, on all ranks: those of snow_volume_open,
+ * snow_transfer_make and snow_frame_render; SNOW_BAD_INPUT where ranks see
+ * different files. */
 SNOW_API snow_status snow_ranks_open(
     snow_comm *comm, const char *path, const snow_volume_options *options,
     const snow_look *look, const snow_view *view, const snow_settings *settings,

@@ -13,6 +13,7 @@
 typedef struct packed_head {
     uint32_t columns, rows, samples;
     int bits;
+    bool unlike; /* components of other sizes or depths */
 } packed_head;
 
 static uint32_t big(const unsigned char *at, int bytes) {
@@ -54,21 +55,34 @@ static bool read_jpeg(const unsigned char *bytes, size_t size,
     return false;
 }
 
-/* A segment of which libjpeg warns: JFIF of another version than 1, or Adobe's
- * with a transform that there is not.  `length` counts what follows it. */
-static bool is_odd(int marker, const unsigned char *data, size_t length) {
-    if (marker == 0xe0 && length >= 14 && !memcmp(data, "JFIF", 5))
-        return data[5] != 1;
-    if (marker == 0xee && length >= 12 && !memcmp(data, "Adobe", 5))
-        return data[11] > 1;
-    return false;
+/* What libjpeg may warn of, whereupon GDCM ends the process. */
+typedef struct jpeg_signs {
+    bool jfif, version; /* JFIF's segment; of another version than 1 */
+    bool transform;     /* Adobe's, with a transform that there is not */
+} jpeg_signs;
+
+static void read_sign(int marker, const unsigned char *data, size_t length,
+                      jpeg_signs *signs) {
+    if (marker == 0xe0 && length >= 14 && !memcmp(data, "JFIF", 5)) {
+        signs->jfif = true;
+        signs->version |= data[5] != 1;
+    } else if (marker == 0xee && length >= 12 && !memcmp(data, "Adobe", 5))
+        signs->transform = data[11] > 1;
+}
+
+/* Adobe's transform is looked at where there are three components, and no JFIF
+ * that says what they are. */
+static bool warns(const jpeg_signs *signs, uint32_t samples) {
+    return signs->version || (signs->transform && samples == 3 && !signs->jfif);
 }
 
 /* Whether segment follows segment up to the start of the scan, Huffman tables
- * among them where the frame needs such, and none that is odd: at others GDCM
- * ends the process. */
-static bool has_scan(const unsigned char *bytes, size_t size) {
-    bool tables = false;
+ * among them where the frame needs such: at others GDCM ends the process.
+ * JPEG-LS needs no tables, and has no libjpeg to warn. */
+static bool has_scan(const unsigned char *bytes, size_t size,
+                     uint32_t samples) {
+    bool tables = false, is_ls = false;
+    jpeg_signs signs = {false, false, false};
     for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
         int marker = bytes[at + 1];
         if (marker == 0xff) {
@@ -76,12 +90,14 @@ static bool has_scan(const unsigned char *bytes, size_t size) {
             continue;
         }
         size_t length = (size_t)big(bytes + at + 2, 2);
-        if (length < 2 || length > size - at - 2 ||
-            is_odd(marker, bytes + at + 4, length - 2))
+        bool bare = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd9);
+        if (bare || length < 2 || length > size - at - 2)
             return false;
-        tables |= marker == 0xc4 || marker == 0xf7; /* JPEG-LS needs none */
+        read_sign(marker, bytes + at + 4, length - 2, &signs);
+        tables |= marker == 0xc4;
+        is_ls |= marker == 0xf7;
         if (marker == 0xda)
-            return tables;
+            return is_ls || (tables && !warns(&signs, samples));
         at += 2 + length;
     }
     return false;
@@ -116,8 +132,8 @@ static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
                                  .bits = (siz[38] & 0x7f) + 1};
             *bytes += at;
             *size -= at;
-            return x1 > x0 && y1 > y0 &&
-                   are_alike(siz, *size - 4, out->samples);
+            out->unlike = !are_alike(siz, *size - 4, out->samples);
+            return x1 > x0 && y1 > y0;
         }
     return false;
 }
@@ -137,7 +153,11 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
                 head.samples == (uint32_t)image->samples &&
                 head.bits <= image->allocated &&
                 (head.bits > 8) == (image->allocated > 8);
-    if (same && (is_jpeg2000(syntax) || has_scan(*bytes, *size)))
+    if (same && head.unlike)
+        return snow_fail(context, SNOW_BAD_INPUT,
+                         "its packed colours have other sizes or depths, which "
+                         "is not read; unpack it, with gdcmconv --raw say");
+    if (same && (is_jpeg2000(syntax) || has_scan(*bytes, *size, head.samples)))
         return SNOW_OK;
     if (known && !same)
         return snow_fail(context, SNOW_BAD_INPUT,

@@ -39,11 +39,12 @@ gdcm::DataElement wrap(const void *packed, size_t size) {
     return element;
 }
 
-/* GDCM counts on a known one, by assertion. */
+/* GDCM counts on a known one, of as many samples, by assertion. */
 gdcm::PhotometricInterpretation photometric_of(const gdcm_frame &frame) {
     typedef gdcm::PhotometricInterpretation kind;
     kind::PIType type = kind::GetPIType(frame.photometric);
-    if (type == kind::PI_END)
+    if (type == kind::PI_END ||
+        kind(type).GetSamplesPerPixel() != frame.samples)
         type = frame.samples == 3 ? kind::RGB : kind::MONOCHROME2;
     return kind(type);
 }
@@ -79,11 +80,13 @@ bool decode(gdcm_frame &frame, const gdcm::DataElement &packed, char *out,
         format.GetBitsAllocated() != frame.allocated)
         return false;
     std::memcpy(out, value->GetPointer(), room);
-    if (frame.allocated != 8 || format.GetBitsStored() != 8) {
+    const bool is_signed = format.GetPixelRepresentation() != 0;
+    if (frame.allocated != 8 || format.GetBitsStored() != 8 ||
+        is_signed != frame.is_signed) {
         frame.stored = format.GetBitsStored();
         frame.high = format.GetHighBit();
+        frame.is_signed = is_signed;
     }
-    frame.is_signed = format.GetPixelRepresentation() != 0;
     if (frame.samples > 1)
         frame.planes = codec.GetPlanarConfiguration() == 1;
     return true;
