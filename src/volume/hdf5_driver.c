@@ -19,6 +19,9 @@
 /* The one name that the driver opens. */
 #define NAME "source"
 
+/* Bytes that may be missing of what is no voxel. */
+#define BEHIND_MOST ((size_t)1 << 20)
+
 struct hdf5_file {
     snow_context *context;
     snow_random *bytes;
@@ -91,13 +94,14 @@ static haddr_t get_size(const H5FD_t *base, H5FD_mem_t type) {
 }
 
 /* Space behind the end of the file is zeros, as with libhdf5's own drivers, but
- * never voxels: those are missing. */
+ * never voxels: those are missing.  Nor is it more than a structure of the
+ * format takes: a damaged length may be 4 GB, which need not be filled. */
 static herr_t read_bytes(H5FD_t *base, H5FD_mem_t type, hid_t transfer,
                          haddr_t from, size_t size, void *bytes) {
     const hdf5_handle *handle = (const hdf5_handle *)base;
     (void)transfer;
     size_t got = snow_random_read(handle->bytes, from, bytes, size);
-    if (got < size && type == H5FD_MEM_DRAW)
+    if (got < size && (type == H5FD_MEM_DRAW || size - got > BEHIND_MOST))
         return -1;
     memset((unsigned char *)bytes + got, 0, size - got);
     return 0;
