@@ -138,6 +138,30 @@ static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
     return false;
 }
 
+/* Markers of JPEG 2000 without a segment (T.800, A.1.2). */
+static bool is_bare_marker(int marker) {
+    return (marker >= 0xff30 && marker <= 0xff3f) || marker == 0xff4f ||
+           marker == 0xff92 || marker == 0xff93 || marker == 0xffd9;
+}
+
+/* Whether segment follows segment up to the data of the first tile, that of the
+ * coding style (COD) as long as it has to be: GDCM walks them unchecked. */
+static bool has_tile(const unsigned char *bytes, size_t size) {
+    for (size_t at = 0; at + 4 <= size;) {
+        int marker = (int)big(bytes + at, 2);
+        size_t length = (size_t)big(bytes + at + 2, 2);
+        at += 2;
+        if (marker == 0xff93)
+            return true;
+        if (is_bare_marker(marker))
+            continue;
+        if (length < (marker == 0xff52 ? 12 : 2) || length > size - at)
+            return false;
+        at += length;
+    }
+    return false;
+}
+
 static bool is_jpeg2000(const char *syntax) {
     return !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
 }
@@ -157,7 +181,8 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
         return snow_fail(context, SNOW_BAD_INPUT,
                          "its packed colours have other sizes or depths, which "
                          "is not read; unpack it, with gdcmconv --raw say");
-    if (same && (is_jpeg2000(syntax) || has_scan(*bytes, *size, head.samples)))
+    if (same && (is_jpeg2000(syntax) ? has_tile(*bytes, *size)
+                                     : has_scan(*bytes, *size, head.samples)))
         return SNOW_OK;
     if (known && !same)
         return snow_fail(context, SNOW_BAD_INPUT,
