@@ -202,7 +202,8 @@ static snow_ranks_options how_of(const scene *s) {
         .combining = (snow_combining)option_choice("combine", asked->combine),
         .radix = (int)asked->radix,
         .pixel_bits = coarse ? 8 : 0,
-        .turns = s->turns};
+        .turns = s->turns,
+        .transfer = s->transfer};
 }
 
 /* The camera comes first: the volume is cut to suit it. */
@@ -221,7 +222,6 @@ static int open_part(scene *s, const options *step) {
     snow_look look = look_options(step);
     snow_ranks_options how = how_of(s);
     snow_transfer *transfer = NULL;
-    how.transfer = s->transfer;
     int done = launch_agree(inspect(s, &data));
     if (done != GO_ON)
         return done;
