@@ -9,9 +9,10 @@
  * A movie is many files, each whole: the first signal ends it after the frame
  * in hand, with 130, and --resume goes on from there.
  *
- * A second signal ends even the writing at once, with 130; then the hidden
- * file .NAME.snow-XXXXXX beside the output may be left.  Its name is the
- * library's secret, so the handler cannot remove it. */
+ * A second signal ends even the writing at once, with 130; then, where files
+ * cannot be without a name (src/base/writer.c), the hidden file
+ * .NAME.snow-XXXXXX beside the output may be left.  Its name is the library's
+ * secret, so the handler cannot remove it. */
 #ifndef INTERRUPT_H
 #define INTERRUPT_H
 

@@ -1,7 +1,9 @@
 /* mpi_comm - the messages and collective calls of test_comm, over MPI; run
  * under mpirun by mpi_comm.sh.  Exit status 1 and a line where one fails. */
+#define _XOPEN_SOURCE 700 /* kill */
 #include "support_comm.h"
 
+#include <signal.h>
 #include <snowglass/mpi.h>
 
 #define BODY(name) \
@@ -131,6 +133,23 @@ static int send_large(snow_comm *comm) {
     return wrong ? complain("a large message") : 0;
 }
 
+/* The last rank is stopped, and the others, of which rank 0 waits for one, work
+ * on and answer nothing; asked for by "stopped".  Rank 0 prints whom it holds
+ * for the reason, and ends all. */
+static int wait_beside_stopped(snow_comm *comm) {
+    char byte;
+    snow_message message = {0};
+    if (snow_comm_rank(comm) == snow_comm_ranks(comm) - 1)
+        raise(SIGSTOP);
+    while (snow_comm_rank(comm) != 0)
+        continue;
+    snow_comm_set_timeout(comm, 1);
+    if (snow_comm_receive(comm, &byte, 1, 1, 1, &message) != SNOW_OK ||
+        snow_comm_wait_all(comm, &message, 1) == SNOW_OK)
+        return complain("a message that nobody sent");
+    return complain(snow_context_message(snow_comm_context(comm)));
+}
+
 static int refuse(snow_context *context) {
     snow_comm *comm = NULL;
     return snow_comm_mpi(context, MPI_COMM_NULL, &comm) == SNOW_BAD_USAGE &&
@@ -152,10 +171,12 @@ int main(int argc, char **argv) {
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
     if (snow_comm_mpi(context, MPI_COMM_WORLD, &comm) != SNOW_OK)
         return complain(snow_context_message(context));
-    wrong = argc > 1 ? send_large(comm)
-                     : run_bodies(comm) || compare_sums(comm) || agree(comm) ||
-                           run_half(context) || send_too_much(context) ||
-                           refuse(context);
+    if (argc > 1)
+        wrong = strcmp(argv[1], "stopped") == 0 ? wait_beside_stopped(comm)
+                                                : send_large(comm);
+    else
+        wrong = run_bodies(comm) || compare_sums(comm) || agree(comm) ||
+                run_half(context) || send_too_much(context) || refuse(context);
     snow_comm_free(comm);
     if (snow_context_bytes(context))
         wrong = complain("memory is kept");

@@ -1,6 +1,7 @@
 #!/bin/bash
 # mpi_comm.sh - messages and collective calls over MPI, with messages as they
-# are, and with a thousand bytes as the limit for large ones.
+# are, and with a thousand bytes as the limit for large ones; who is named when
+# one rank is stopped and another is silent.
 . "$(dirname "$0")/support_mpi.sh"
 
 for ranks in $COUNTS; do
@@ -8,4 +9,9 @@ for ranks in $COUNTS; do
     run 0 "large messages between $ranks ranks" \
         launch "$ranks" "$TESTS/mpi_comm_chunks"
 done
+
+NAME="a silent rank beside one that is stopped"
+launch 3 "$TESTS/mpi_comm" stopped >"$OUT" 2>"$ERR" </dev/null
+check "$NAME: the job fails" [ $? -ne 0 ]
+says '^mpi_comm: rank 2 \(process .*rank 0 has waited 1 s.* it is stopped'
 finish

@@ -1,11 +1,16 @@
-/* tests/test_writer.c - files come into being whole or not at all. */
+/* tests/test_writer.c - files come into being whole or not at all.  Built
+ * twice: with SNOW_NAMELESS=0 as on a file system where files have names from
+ * their first byte. */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "base/writer.h"
 #include "support.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 typedef struct fixture {
@@ -164,6 +169,51 @@ static void a_file_that_appears_meanwhile_is_kept(void **state) {
     assert_int_equal(count_files(f->folder, false), 1);
 }
 
+static void a_file_that_appears_meanwhile_is_replaced_if_told(void **state) {
+    fixture *f = *state;
+    snow_writer *writer = NULL;
+    assert_int_equal(snow_writer_open(f->context, f->path, true, &writer),
+                     SNOW_OK);
+    assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_OK);
+    put_text(f->path, "theirs");
+    assert_int_equal(snow_writer_commit(writer), SNOW_OK);
+    assert_text(f->path, "mine");
+    assert_int_equal(count_files(f->folder, false), 1);
+}
+
+/* Whether files of the folder have names while they are written. */
+static bool are_named(const char *folder) {
+#ifdef SNOW_NAMELESS
+    (void)folder;
+    return true;
+#else
+    int file = open(folder, O_WRONLY | O_TMPFILE, 0600);
+    if (file >= 0)
+        close(file);
+    return file < 0;
+#endif
+}
+
+/* Nothing can be removed by one who is killed. */
+static void a_writer_that_is_killed_leaves_nothing(void **state) {
+    fixture *f = *state;
+    static const char many[100000];
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (!child) {
+        snow_writer *writer = NULL;
+        if (snow_writer_open(f->context, f->path, false, &writer) == SNOW_OK &&
+            snow_writer_write(writer, many, sizeof many) == SNOW_OK)
+            raise(SIGKILL);
+        _exit(1);
+    }
+    int end = 0;
+    assert_int_equal(waitpid(child, &end, 0), child);
+    assert_true(WIFSIGNALED(end) && WTERMSIG(end) == SIGKILL);
+    assert_int_not_equal(access(f->path, F_OK), 0);
+    assert_int_equal(count_files(f->folder, false), are_named(f->folder));
+}
+
 static void an_abandoned_file_leaves_nothing(void **state) {
     fixture *f = *state;
     put_text(f->path, "old");
@@ -320,6 +370,8 @@ int main(void) {
         UNIT(a_replaced_file_keeps_its_permissions),
         UNIT(an_existing_file_is_kept_unless_overwriting),
         UNIT(a_file_that_appears_meanwhile_is_kept),
+        UNIT(a_file_that_appears_meanwhile_is_replaced_if_told),
+        UNIT(a_writer_that_is_killed_leaves_nothing),
         UNIT(an_abandoned_file_leaves_nothing),
         UNIT(a_link_stays_a_link_and_its_target_is_replaced),
         UNIT(folders_and_missing_folders_are_refused),

@@ -1,16 +1,20 @@
 /* base/writer.c - files that are whole or absent.
  *
- * Bytes go to a hidden file beside the final one:
+ * Bytes go to a file of the same folder that has no name yet (Linux's
+ * O_TMPFILE), so that a crash, a full disk or a signal, even SIGKILL, leaves
+ * nothing:
  *
- *   folder/.NAME.snow-XXXXXX  --write, fsync-->  --link or rename-->
- *   folder/NAME               --fsync of the folder
+ *   no name      --write, fsync-->  --link-->  folder/NAME
+ *                                              --fsync of the folder
  *
- * so that a crash, a full disk or a signal leaves at most the hidden file,
- * never half of NAME.  Without `overwrite` the last step is link(2), which
- * fails when NAME has come into being meanwhile; rename(2) would destroy it.
- * Standard output, devices and pipes cannot be renamed: they are written
- * through. */
-#define _XOPEN_SOURCE 700 /* realpath */
+ * What replaces a file takes a hidden name, .NAME.snow-XXXXXX, for the moment
+ * between link and rename.  Where the file system knows no nameless files (that
+ * of a network, say) the hidden name is there from the first byte, and is what
+ * a crash may leave; never half of NAME.  Without `overwrite` the last step is
+ * link(2), which fails when NAME has come into being meanwhile; rename(2) would
+ * destroy it.  Standard output, devices and pipes cannot be renamed: they are
+ * written through. */
+#define _GNU_SOURCE /* O_TMPFILE, realpath */
 #include "base/writer.h"
 
 #include <errno.h>
@@ -30,10 +34,20 @@
  * file, 255 bytes, less the dots, "snow-" and letters around it. */
 #define NAME_PART 200
 
+/* 0: none are wanted, or the system has none. */
+#ifndef SNOW_NAMELESS
+#ifdef O_TMPFILE
+#define SNOW_NAMELESS O_TMPFILE
+#else
+#define SNOW_NAMELESS 0
+#endif
+#endif
+
 struct snow_writer {
     snow_context *context;
     char *path;         /* the final name, its links resolved */
-    char *temporary;    /* NULL: written through */
+    char *temporary;    /* the hidden name; NULL: there is none */
+    bool nameless;      /* the file has no name yet */
     const char *told;   /* the name that the caller knows, in `path`'s block */
     int file;           /* -1: closed */
     bool overwrite;     /* may NAME be replaced? */
@@ -94,9 +108,14 @@ static void fill_letters(char *letters, const void *salt, int attempt) {
         letters[i] = (char)('a' + mixed % 26);
 }
 
-/* Makes and opens the hidden file.  Mode 0666 less the process' umask, as any
- * file that a program makes. */
-static snow_status open_temporary(snow_writer *writer) {
+/* Mode 0666 less the process' umask, as any file that a program makes. */
+static const mode_t new_mode =
+    S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH;
+
+/* Makes something, by `make`, under a hidden name that is free, which it leaves
+ * in `temporary`. */
+static snow_status take_hidden_name(snow_writer *writer,
+                                    int (*make)(snow_writer *writer)) {
     const char *name = writer->path + folder_length(writer->path);
     size_t folder = (size_t)(name - writer->path);
     size_t room = folder + NAME_PART + 16;
@@ -108,10 +127,7 @@ static snow_status open_temporary(snow_writer *writer) {
         fill_letters(letters, writer, attempt);
         snprintf(writer->temporary, room, "%.*s.%.*s.snow-%s", (int)folder,
                  writer->path, NAME_PART, name, letters);
-        writer->file =
-            open(writer->temporary, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC,
-                 S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH);
-        if (writer->file >= 0)
+        if (make(writer) >= 0)
             return SNOW_OK;
         if (errno != EEXIST)
             break;
@@ -120,6 +136,42 @@ static snow_status open_temporary(snow_writer *writer) {
     snow_release(writer->context, writer->temporary);
     writer->temporary = NULL; /* it is not ours to remove */
     return fail_by_number(writer->context, writer->told, "be written", number);
+}
+
+static int open_hidden(snow_writer *writer) {
+    writer->file = open(writer->temporary,
+                        O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_mode);
+    return writer->file;
+}
+
+/* The name by which the kernel knows what is open here. */
+static void name_descriptor(int file, char *out, size_t size) {
+    snprintf(out, size, "/proc/self/fd/%d", file);
+}
+
+/* A file without a name, if there are such here and they can be given one
+ * later. */
+static bool open_nameless(snow_writer *writer) {
+    char descriptor[32], folder[PATH_MAX];
+    size_t length = folder_length(writer->path);
+    if (!SNOW_NAMELESS || length >= sizeof folder)
+        return false;
+    snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1,
+             length ? writer->path : ".");
+    writer->file = open(folder, O_WRONLY | SNOW_NAMELESS | O_CLOEXEC, new_mode);
+    if (writer->file < 0)
+        return false;
+    name_descriptor(writer->file, descriptor, sizeof descriptor);
+    writer->nameless = access(descriptor, F_OK) == 0;
+    if (!writer->nameless)
+        close(writer->file);
+    return writer->nameless;
+}
+
+/* Makes and opens the file that will be NAME. */
+static snow_status open_temporary(snow_writer *writer) {
+    return open_nameless(writer) ? SNOW_OK
+                                 : take_hidden_name(writer, open_hidden);
 }
 
 static snow_status fail_existing(const snow_writer *writer) {
@@ -187,6 +239,7 @@ snow_status snow_writer_open(snow_context *context, const char *path,
         return SNOW_NO_MEMORY;
     writer->context = context;
     writer->path = writer->temporary = NULL;
+    writer->nameless = false;
     writer->packer = NULL;
     writer->told = "standard output";
     writer->file = STDOUT_FILENO;
@@ -315,8 +368,36 @@ static int close_file(snow_writer *writer) {
     return close(file) ? errno : 0;
 }
 
-/* Gives the finished file its name; the error number or 0. */
-static int place_file(snow_writer *writer) {
+static snow_status fail_to_name(const snow_writer *writer, int number) {
+    return number == EEXIST ? fail_existing(writer)
+                            : fail_by_number(writer->context, writer->told,
+                                             "be named", number);
+}
+
+static int link_nameless(const snow_writer *writer, const char *path) {
+    char descriptor[32];
+    name_descriptor(writer->file, descriptor, sizeof descriptor);
+    return linkat(AT_FDCWD, descriptor, AT_FDCWD, path, AT_SYMLINK_FOLLOW);
+}
+
+static int link_hidden(snow_writer *writer) {
+    return link_nameless(writer, writer->temporary);
+}
+
+/* Gives a file without a name, which is open, its own, or a hidden one where it
+ * replaces what bears its own. */
+static snow_status name_file(snow_writer *writer) {
+    if (link_nameless(writer, writer->path) == 0) {
+        writer->nameless = false;
+        return SNOW_OK;
+    }
+    if (errno == EEXIST && writer->overwrite)
+        return take_hidden_name(writer, link_hidden);
+    return fail_to_name(writer, errno);
+}
+
+/* Gives the finished file of a hidden name its own; the error number or 0. */
+static int place_file(const snow_writer *writer) {
     if (!writer->overwrite) {
         if (link(writer->temporary, writer->path) == 0) {
             unlink(writer->temporary);
@@ -344,28 +425,29 @@ static void sync_folder(snow_writer *writer) {
     close(folder);
 }
 
-/* Syncs, closes, renames. */
+/* Syncs, closes, names. */
 static snow_status finish_file(snow_writer *writer) {
+    const bool through = !writer->nameless && !writer->temporary;
     int number = 0;
-    if (writer->temporary && fsync(writer->file) && errno != EINVAL)
+    if (!through && fsync(writer->file) && errno != EINVAL)
         number = errno;
+    else if (writer->nameless)
+        SNOW_TRY(name_file(writer));
     int closing = close_file(writer);
     if (!number)
         number = closing;
     if (number)
         return fail_by_number(writer->context, writer->told, "be written",
                               number);
-    if (!writer->temporary)
-        return SNOW_OK;
-    number = place_file(writer);
-    if (number == EEXIST)
-        return fail_existing(writer);
-    if (number)
-        return fail_by_number(writer->context, writer->told, "be named",
-                              number);
-    snow_release(writer->context, writer->temporary);
-    writer->temporary = NULL; /* it bears its final name */
-    sync_folder(writer);
+    if (writer->temporary) {
+        number = place_file(writer);
+        if (number)
+            return fail_to_name(writer, number);
+        snow_release(writer->context, writer->temporary);
+        writer->temporary = NULL; /* it bears its final name */
+    }
+    if (!through)
+        sync_folder(writer);
     return SNOW_OK;
 }
 

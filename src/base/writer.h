@@ -1,9 +1,9 @@
 /* base/writer.h - bytes out: the one way in which files come into being.
  *
- * A writer fills a file of a temporary name beside the final one; commit
- * syncs it and renames it into place.  A file that is replaced hands on its
- * permissions.  Whatever happens before, nothing stands
- * under the final name that is not whole. */
+ * A writer fills a file without a name, or of a hidden one, beside the final
+ * one; commit syncs it and names it.  A file that is replaced hands on its
+ * permissions.  Whatever happens before, nothing stands under the final name
+ * that is not whole. */
 #ifndef SNOW_WRITER_H
 #define SNOW_WRITER_H
 
@@ -27,12 +27,11 @@ snow_status snow_writer_write(snow_writer *writer, const void *bytes,
  * before the first write. */
 snow_status snow_writer_pack(snow_writer *writer);
 
-/* Ends the file: flushes, syncs, renames, frees the writer.  On failure the
- * temporary file is removed, and the writer freed as well. */
+/* Ends the file: flushes, syncs, names it, frees the writer.  On failure nothing
+ * is left, and the writer is freed as well. */
 snow_status snow_writer_commit(snow_writer *writer);
 
-/* Gives up: removes the temporary file and frees the writer; NULL is
- * accepted. */
+/* Gives up: leaves nothing and frees the writer; NULL is accepted. */
 void snow_writer_abandon(snow_writer *writer);
 
 #endif

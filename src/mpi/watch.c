@@ -211,6 +211,38 @@ static const char *guess(char state) {
     return "it is stopped, hangs or works; if it works, allow a longer timeout";
 }
 
+static bool is_stopped(const mpi_watch *watch, int rank) {
+    const char state = state_of(watch, rank);
+    return state == 'T' || state == 't';
+}
+
+/* A rank of this machine that is stopped is the reason though another one is
+ * silent: where it was stopped while it wrote into memory that they share, that
+ * one gets no notes, and so cannot answer. */
+static int find_reason(const mpi_watch *watch, int silent) {
+    if (is_stopped(watch, silent))
+        return silent;
+    for (int rank = 0; rank < watch->ranks; rank++)
+        if (is_stopped(watch, rank))
+            return rank;
+    return silent;
+}
+
+/* What is told of `silent` ranks, of which the first is given. */
+static void set_verdict(mpi_watch *watch, int first, int silent) {
+    const int reason = find_reason(watch, first);
+    const place *there = &watch->places[reason];
+    char others[48] = "";
+    if (silent > 1 && reason == first)
+        snprintf(others, sizeof others, " and %d more %s", silent - 1,
+                 silent > 2 ? "ranks" : "rank");
+    snprintf(watch->verdict, sizeof watch->verdict,
+             "rank %d (process %d on %s)%s: rank %d has waited %.3g s, and got "
+             "no answer: %s",
+             reason, there->process, there->host, others, watch->rank,
+             watch->limit, guess(state_of(watch, reason)));
+}
+
 /* Names those of `peers` that have not answered, each once; how many, and the
  * lowest rank that is none of them. */
 static int name_silent(mpi_watch *watch, const int *peers, int count,
@@ -228,18 +260,8 @@ static int name_silent(mpi_watch *watch, const int *peers, int count,
         if (rank == *speaker)
             (*speaker)++;
     }
-    if (!silent)
-        return 0;
-    const place *there = &watch->places[first];
-    char others[48] = "";
-    if (silent > 1)
-        snprintf(others, sizeof others, " and %d more %s", silent - 1,
-                 silent > 2 ? "ranks" : "rank");
-    snprintf(watch->verdict, sizeof watch->verdict,
-             "rank %d (process %d on %s)%s: rank %d has waited %.3g s, and got "
-             "no answer: %s",
-             first, there->process, there->host, others, watch->rank,
-             watch->limit, guess(state_of(watch, first)));
+    if (silent)
+        set_verdict(watch, first, silent);
     return silent;
 }
 
