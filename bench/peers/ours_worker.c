@@ -3,7 +3,7 @@
  * What is timed is what a user of the library would write: through the public
  * headers, from the voxels in memory to a picture in memory.
  *
- *   ours_worker RAW X Y Z SIZE THREADS SHADED METHOD QUALITY */
+ *   ours_worker RAW X Y Z SIZE THREADS SHADED METHOD QUALITY KERNEL */
 #include "pipe.h"
 
 #include <snowglass/snowglass.h>
@@ -97,8 +97,9 @@ static void set_up(char **argv) {
     snow_settings *settings = &worker.settings;
     int method = snow_method_named(argv[8]);
     int quality = snow_quality_named(argv[9]);
-    if (method < 0 || quality < 0)
-        pipe_fail(&face, "no such method or quality");
+    int kernel = snow_kernel_named(argv[10]);
+    if (method < 0 || quality < 0 || kernel < 0)
+        pipe_fail(&face, "no such method, quality or kernel");
     if (snow_context_new(NULL, &worker.context) != SNOW_OK)
         pipe_fail(&face, "no memory");
     worker.raw = argv[1];
@@ -111,11 +112,13 @@ static void set_up(char **argv) {
     settings->shade = atoi(argv[7]) ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
     settings->method = (snow_method)method;
     settings->quality = (snow_quality)quality;
+    settings->kernel = (snow_kernel)kernel;
 }
 
 int main(int argc, char **argv) {
-    if (argc != 10)
-        pipe_fail(&face, "wants RAW X Y Z SIZE THREADS SHADED METHOD QUALITY");
+    if (argc != 11)
+        pipe_fail(&face,
+                  "wants RAW X Y Z SIZE THREADS SHADED METHOD QUALITY KERNEL");
     set_up(argv);
     pipe_serve(&face);
     snow_image_free(worker.image);

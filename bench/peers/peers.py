@@ -252,9 +252,8 @@ def figures(runner, reference):
                turns=len(runner.turning), megabytes=runner.megabytes,
                idle_megabytes=runner.idle)
     if reference and reference is not runner.picture:
-        decibel = pictures.psnr(runner.picture, reference)
-        # JSON has no infinity: equal pictures have null.
-        row["psnr"] = decibel if math.isfinite(decibel) else None
+        row["psnr"], row["psnr_scaled"] = pictures.psnr(runner.picture,
+                                                        reference)
     return row
 
 

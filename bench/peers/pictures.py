@@ -56,16 +56,31 @@ def write_png(path, picture):
                    chunk(b"IDAT", zlib.compress(rows, 6)) + chunk(b"IEND", b""))
 
 
+def greys(picture):
+    """Red plus green plus blue of every pixel."""
+    pixels = picture[2]
+    return [r + g + b for r, g, b in
+            zip(pixels[0::3], pixels[1::3], pixels[2::3])]
+
+
+def decibels(squares, count):
+    """Of the sum of squares over that many greys; None for equal pictures,
+    since JSON has no infinity."""
+    return (10 * math.log10((3 * 255) ** 2 * count / squares) if squares > 0
+            else None)
+
+
 def psnr(a, b):
-    """Of the grey pictures (the mean of red, green, blue), peak 255, in dB."""
+    """Of the grey pictures (the mean of red, green, blue), peak 255, in dB: as
+    they are, and with `a` scaled to the brightness of `b`, by the factor of
+    least squares."""
     if a[:2] != b[:2]:
         raise ValueError("pictures of two sizes")
-    a, b = a[2], b[2]
-    squares = sum((r + g + b_ - s - t - u) ** 2 for r, g, b_, s, t, u in
-                  zip(a[0::3], a[1::3], a[2::3], b[0::3], b[1::3], b[2::3]))
-    if squares == 0:
-        return math.inf
-    return 10 * math.log10(255 ** 2 * 9 * len(a) / 3 / squares)
+    a, b = greys(a), greys(b)
+    aa, ab, bb = (sum(x * y for x, y in zip(*pair))
+                  for pair in ((a, a), (a, b), (b, b)))
+    return (decibels(aa - 2 * ab + bb, len(a)),
+            decibels(bb - ab * ab / aa if aa else bb, len(a)))
 
 
 def letters(text, width):

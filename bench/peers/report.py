@@ -1,7 +1,8 @@
 """bench/peers/report.py - the tables of peers.py, as text and as Markdown."""
 import os
 
-LABELS = {"snowglass-draft": "Snowglass, draft", "snowglass": "Snowglass",
+LABELS = {"snowglass-draft": "Snowglass, draft",
+          "snowglass-tent": "Snowglass, tent kernel", "snowglass": "Snowglass",
           "volpack": "VolPack", "vtk-cpu": "VTK, fixed-point ray caster",
           "vtk-gl": "VTK, GPU mapper on llvmpipe", "teem": "Teem, miter"}
 
@@ -55,6 +56,12 @@ def ratio(row, rows, key):
     return f"{row[key] / ours[key]:.1f}x"
 
 
+def decibels(row, key):
+    if key not in row:
+        return ""
+    return "equal" if row[key] is None else f"{row[key]:.1f}"
+
+
 def text_of(case):
     """A case's table; "of ours" is how many times our normal quality's."""
     lines = [
@@ -63,22 +70,21 @@ def text_of(case):
         f"{case['source']}; ms a picture, medians",
         f"{'':28}{'thr':>4}{'first':>8}{'turning':>9}{'least':>8}{'cpu':>8}"
         f"{'of ours':>9}{'TF new':>8}{'cpu':>8}{'of ours':>9}{'MB':>7}"
-        f"{'dB':>7}"]
+        f"{'dB':>7}{'scaled':>8}"]
     for row in case["rows"]:
         head = f"{LABELS.get(row['program'], row['program']):28}" \
                f"{row['threads']:>4}"
         if "failed" in row:
             lines.append(f"{head}  failed: {row['failed']}")
             continue
-        db = "" if "psnr" not in row else \
-             "equal" if row["psnr"] is None else f"{row['psnr']:.1f}"
         lines.append(
             f"{head}{number(row['first']):>8}{number(row['frame']):>9}"
             f"{number(row['frame_least']):>8}{number(row['frame_cpu']):>8}"
             f"{ratio(row, case['rows'], 'frame'):>9}"
             f"{number(row['change']):>8}{number(row['change_cpu']):>8}"
             f"{ratio(row, case['rows'], 'change'):>9}"
-            f"{row['megabytes']:>7.0f}{db:>7}")
+            f"{row['megabytes']:>7.0f}{decibels(row, 'psnr'):>7}"
+            f"{decibels(row, 'psnr_scaled'):>8}")
     return "\n".join(lines)
 
 
@@ -169,6 +175,7 @@ def markdown(result, command):
               "one thread", 0),
         memory(cases),
         other(cases, "psnr", "dB (grey) from VTK's fixed-point picture", 1),
+        other(cases, "psnr_scaled", "the same, scaled to its brightness", 1),
         "    " + command]
     parts += [f"{name}: skipped, {why}."
               for name, why in result["skipped"].items()
