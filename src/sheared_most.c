@@ -179,6 +179,8 @@ static void draw_tile(const most_stroke *stroke, const most_slice *slice,
                                   column, window, bits, before);
     if (!held)
         return;
+    /* Sheets of rows without voxels are 0, the smallest value. */
+    cells = snow_cells_of_rows(held, cells, v->stride, reach);
     snow_most_tile t = {
         .columns = pass->columns,
         .phases = {u->phases, v->phases},

@@ -35,6 +35,21 @@ static inline uint64_t snow_rows_of_cells(uint64_t cells, int stride,
     return rows;
 }
 
+/* Those of `cells` that need any of the rows. */
+static inline uint64_t snow_cells_of_rows(uint64_t rows, uint64_t cells,
+                                          int stride, int reach) {
+    uint64_t any = 0, some = 0;
+    for (int m = 0; m < reach; m++)
+        any |= rows >> m;
+    if (stride == 1)
+        return cells & any;
+    for (; cells; cells &= cells - 1) {
+        int cell = __builtin_ctzll(cells);
+        some |= (any >> cell * stride & 1) << cell;
+    }
+    return some;
+}
+
 /* How the image of a picture is warped. */
 typedef struct snow_sheared_warping {
     snow_plane plane;
