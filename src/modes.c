@@ -114,13 +114,6 @@ snow_status snow_ramp_above(snow_job *job, snow_ramp *ramp) {
  * footprints. */
 static snow_status choose_ramp(snow_job *job, snow_ramp *ramp) {
     bool holes = job->settings.method == SNOW_METHOD_SHEARED && !ramp->whole;
-    if (holes && job->volume->stream)
-        return snow_fail(job->context, SNOW_NO_MEMORY,
-                         "%s: some voxels are no finite numbers, and mode %s "
-                         "of such a volume needs them all in memory at once; "
-                         "allow more of it, or give --crop",
-                         snow_stream_path(job->volume),
-                         snow_mode_name(job->settings.mode));
     if (holes)
         job->settings.method = SNOW_METHOD_FOOTPRINT;
     const snow_ramp wanted = {.falls = job->settings.mode == SNOW_MODE_MINIP,
@@ -375,6 +368,8 @@ static snow_status render_pairs(snow_frame *frame, snow_job *pairs,
     snow_placement placement;
     SNOW_TRY(reserve_pairs(frame, pairs, !sheared));
     pairs->pixels = frame->layer;
+    if (!sheared && pairs->volume->stream)
+        return snow_slabs_pairs(frame, pairs);
     SNOW_TRY(sheared ? snow_modes_reduce(frame, pairs, &placement, drawn)
                      : snow_job_render_exact(frame, pairs));
     return snow_job_finish(frame, pairs);

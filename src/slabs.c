@@ -17,6 +17,7 @@
 #include "frame.h"
 #include "ghosts.h"
 #include "image/image.h"
+#include "modes.h"
 #include "volume/stream.h"
 
 #include <math.h>
@@ -88,6 +89,12 @@ static void add_stats(slabs *s) {
     all->seconds_composite += here->seconds_composite;
 }
 
+/* How many times a slab's bytes its samples take: floats of all voxels. */
+static int64_t thinness(const snow_job *job, int channels) {
+    return channels * (int64_t)sizeof(float) /
+           (int64_t)snow_type_size(job->volume->info.type);
+}
+
 static snow_status begin_slab(slabs *s, const snow_volume *slab,
                               snow_job *job) {
     return snow_job_begin(s->frame, slab, s->job->transfer, s->job->view,
@@ -136,7 +143,7 @@ static snow_status make_surfaces(slabs *s) {
     return visit(s, find_surfaces);
 }
 
-/* As iso.c; slabs have counted. */
+/* Slabs have counted, and no voxels are here. */
 static snow_status fill_figures(snow_frame *frame, const snow_job *job) {
     snow_job whole = *job;
     whole.settings.method = SNOW_METHOD_SHEARED;
@@ -206,8 +213,7 @@ snow_status snow_slabs_depth(snow_frame *frame, const snow_job *job) {
     snow_stats told = frame->stats;
     s.settings.method = SNOW_METHOD_FOOTPRINT;
     s.settings.shade = SNOW_SHADE_NONE;
-    s.thin = job->channels * (int64_t)sizeof(float) /
-             (int64_t)snow_type_size(job->volume->info.type);
+    s.thin = thinness(job, job->channels);
     s.settings.deterministic = 0;
     snow_status status = make_depths(&s);
     frame->stats = told;
@@ -219,4 +225,33 @@ snow_status snow_slabs_depth(snow_frame *frame, const snow_job *job) {
     snow_image_free(frame->depth);
     frame->depth = s.depth;
     return SNOW_OK;
+}
+
+/* --- pairs of modes -------------------------------------------------------
+ */
+
+/* Largest values and sums do not ask for order. */
+static snow_status add_pairs(const snow_volume *slab, void *user) {
+    slabs *s = user;
+    snow_job job, pairs;
+    SNOW_TRY(begin_slab(s, slab, &job));
+    SNOW_TRY(snow_modes_pairs(s->frame, &job, &pairs));
+    pairs.pixels = s->frame->layer;
+    SNOW_TRY(snow_job_render_exact(s->frame, &pairs));
+    SNOW_TRY(snow_job_finish(s->frame, &pairs));
+    add_stats(s);
+    return SNOW_OK;
+}
+
+snow_status snow_slabs_pairs(snow_frame *frame, const snow_job *job) {
+    slabs s = {.frame = frame,
+               .job = job,
+               .settings = job->settings,
+               .stats = frame->stats,
+               .thin = thinness(job, 2)};
+    s.settings.method = SNOW_METHOD_FOOTPRINT;
+    s.settings.deterministic = 0;
+    snow_status status = visit(&s, add_pairs);
+    frame->stats = s.stats;
+    return status == SNOW_OK ? fill_figures(frame, job) : status;
 }
