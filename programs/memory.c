@@ -170,14 +170,11 @@ static const char *print_bytes(uint64_t bytes, char text[32]) {
 /* --- in slabs ------------------------------------------------------------- */
 
 /* Why a picture cannot be made of slabs; NULL: it can. */
-static const char *why_whole(const options *asked, const char *path) {
+static const char *why_whole(const char *path) {
     if (launch_ranks() > 1 || strcmp(path, "-") == 0)
         return "it";
     if (strncmp(path, "phantom:", 8) == 0)
         return "a phantom";
-    if (strcmp(asked->method, "auto") != 0 &&
-        strcmp(asked->method, "sheared") != 0)
-        return "its method";
     return NULL;
 }
 
@@ -297,7 +294,7 @@ static int refuse(const sizes *s, const char *path, uint64_t limit, bool own,
 int memory_plan_for(const options *asked, const char *path,
                     const snow_volume_options *data, bool tell,
                     memory_plan *out) {
-    const char *why = why_whole(asked, path);
+    const char *why = why_whole(path);
     bool own = true;
     uint64_t limit = asked->memory;
     sizes s;

@@ -27,7 +27,9 @@
 #define GATHER_ROWS 8      /* image rows of a band where pixels gather */
 #define CLOSE_SLICES 4     /* after so many, opaque pixels are looked for */
 #define BANDS_PER_THREAD 4 /* where footprints are thrown */
-#define SPREAD_BYTES (32u << 20) /* that slices spread out at once may take */
+/* That slices spread out at once may take; and the part of a limit. */
+#define SPREAD_BYTES ((uint64_t)32 << 20)
+#define SPREAD_PART 8
 
 typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
 
@@ -133,6 +135,11 @@ static int64_t parts_of(int64_t whole, int64_t part) {
     return (whole + part - 1) / part;
 }
 
+static uint64_t spread_bytes(const snow_context *context) {
+    uint64_t part = context->limit / SPREAD_PART;
+    return context->limit && part < SPREAD_BYTES ? part : SPREAD_BYTES;
+}
+
 /* How the picture is cut for threads. */
 static void cut(snow_exact *exact, const snow_job *job) {
     const snow_placement *p = &job->stored;
@@ -142,7 +149,8 @@ static void cut(snow_exact *exact, const snow_job *job) {
     exact->dense_used = 0;
     if (exact->gathers) {
         exact->bands = (int)parts_of(p->height, GATHER_ROWS);
-        uint64_t fit = SPREAD_BYTES / snow_dense_bytes(&exact->gatherer.shape);
+        uint64_t fit = spread_bytes(exact->context) /
+                       snow_dense_bytes(&exact->gatherer.shape);
         /* Threads wait for each other between spreading and gathering: seldom
          * where slices are spread by the dozen.  One thread has no one to wait
          * for, and finds a single slice in its cache. */

@@ -86,28 +86,13 @@ static snow_status check_part(const snow_job *job) {
 }
 
 /* Of a volume whose voxels stay in their file, bands are made, or pictures of
- * parts (slabs.h), and nothing else sees voxels; `wide`: no lattice has such
- * pixels. */
-static snow_status check_stream(const snow_job *job, int parts, bool wide) {
-    const snow_settings *settings = &job->settings;
-    if (!job->volume->stream)
+ * parts (slabs.h), and nothing else sees voxels. */
+static snow_status check_stream(const snow_job *job, int parts) {
+    if (!job->volume->stream || parts == 1)
         return SNOW_OK;
-    if (wide)
-        return snow_fail(job->context, SNOW_NO_MEMORY,
-                         "%s: pixels are more than about 15 voxels wide, which "
-                         "needs all voxels in memory at once; allow more of "
-                         "it, or take a larger --size",
-                         snow_stream_path(job->volume));
-    const char *what = settings->method != SNOW_METHOD_SHEARED
-                           ? snow_method_name(settings->method)
-                           : NULL;
-    if (!what && parts == 1)
-        return SNOW_OK;
-    return snow_fail(
-        job->context, SNOW_BAD_USAGE,
-        "%s: a volume whose voxels stay in their file is rendered as a whole "
-        "by the method sheared; open it with snow_volume_open",
-        what ? what : "slabs");
+    return snow_fail(job->context, SNOW_BAD_USAGE,
+                     "slabs: a volume whose voxels stay in their file is "
+                     "rendered as a whole; open it with snow_volume_open");
 }
 
 /* What the kernel has to know of a level. */
@@ -126,11 +111,10 @@ static snow_status place(snow_job *job, int parts, int part) {
     SNOW_TRY(
         snow_placement_make(job->context, &whole, job->view, &job->placement));
     tell_level(job->volume, &job->placement);
-    bool wide = job->settings.method == SNOW_METHOD_SHEARED &&
-                !snow_sheared_fits(&job->placement, &job->settings);
-    if (wide)
+    if (job->settings.method == SNOW_METHOD_SHEARED &&
+        !snow_sheared_fits(&job->placement, &job->settings))
         job->settings.method = SNOW_METHOD_FOOTPRINT;
-    SNOW_TRY(check_stream(job, parts, wide));
+    SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
     return check_part(job);
 }
@@ -348,8 +332,10 @@ static snow_status render_groups(snow_frame *frame, snow_job *job) {
 /* Lines 03 to 13, by the picture's method. */
 static snow_status render_slab(snow_frame *frame, snow_job *job) {
     if (job->settings.method != SNOW_METHOD_SHEARED)
-        return job->settings.deterministic ? render_groups(frame, job)
-                                           : snow_job_render_exact(frame, job);
+        return job->volume->stream ? snow_slabs_exact(frame, job)
+               : job->settings.deterministic
+                   ? render_groups(frame, job)
+                   : snow_job_render_exact(frame, job);
     if (job->settings.quality == SNOW_QUALITY_HIGH && job->all)
         return render_blended(frame, job);
     return render_sheared(job, job->placement.slice_axis, &frame->sheared[0],
@@ -386,8 +372,9 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     stats->kernel = job->settings.kernel;
     stats->voxels = job->stored.columns * job->stored.rows * job->slab.count;
     if (stats->method == SNOW_METHOD_FOOTPRINT)
-        stats->encoded = 1;                       /* for every picture */
-    if (!sheared && !job->settings.deterministic) /* groups have counted */
+        stats->encoded = 1; /* for every picture */
+    /* Else groups have counted, or slabs. */
+    if (!sheared && !job->settings.deterministic && !job->volume->stream)
         SNOW_TRY(count_exact(frame, job));
     if (has_ghosts(&job->clip) && job->all)
         SNOW_TRY(count_own(frame, job));

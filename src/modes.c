@@ -368,10 +368,9 @@ static snow_status render_pairs(snow_frame *frame, snow_job *pairs,
     snow_placement placement;
     SNOW_TRY(reserve_pairs(frame, pairs, !sheared));
     pairs->pixels = frame->layer;
-    if (!sheared && pairs->volume->stream)
-        return snow_slabs_pairs(frame, pairs);
     SNOW_TRY(sheared ? snow_modes_reduce(frame, pairs, &placement, drawn)
-                     : snow_job_render_exact(frame, pairs));
+             : pairs->volume->stream ? snow_slabs_exact(frame, pairs)
+                                     : snow_job_render_exact(frame, pairs));
     return snow_job_finish(frame, pairs);
 }
 

@@ -119,14 +119,6 @@ static double encoded_bytes(const reading *r) {
 
 #define MIB 0x1p20
 
-/* " under the limit of 300.0 MiB", where there is one. */
-static void print_limit(const snow_context *context, char text[64]) {
-    *text = 0;
-    if (context->limit)
-        snprintf(text, 64, " under the limit of %.1f MiB",
-                 (double)context->limit / MIB);
-}
-
 /* A failure's message made one of numbers; it stays as it is where even
  * counting fails. */
 static snow_status tell_count(reading *r) {
@@ -141,7 +133,7 @@ static snow_status tell_count(reading *r) {
     snow_bands_fini(&r->sheared->bands);
     if (snow_slabs_visit(volume, &counted, count_slab, r) != SNOW_OK)
         return snow_fail(context, SNOW_NO_MEMORY, "%s", before);
-    print_limit(context, limit);
+    snow_print_limit(context, limit);
     return snow_fail(
         context, SNOW_NO_MEMORY,
         "%s: %lld of %.0f voxels are interesting (%.3g %%) and take about %.1f "

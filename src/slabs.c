@@ -17,7 +17,6 @@
 #include "frame.h"
 #include "ghosts.h"
 #include "image/image.h"
-#include "modes.h"
 #include "volume/stream.h"
 
 #include <math.h>
@@ -29,7 +28,7 @@ typedef struct slabs {
     const snow_job *job; /* of the whole */
     snow_settings settings;
     snow_stats stats;  /* of the slabs so far */
-    int64_t thin;      /* as in snow_slab_cut */
+    int64_t made;      /* as in snow_slab_cut */
     snow_image *image; /* of surfaces */
     snow_image *depth; /* of what is nearest so far, NaN where nothing is */
     float *alphas;     /* of over */
@@ -59,6 +58,21 @@ static int64_t nearest_slice(const snow_job *job) {
     return level > 0 ? (int64_t)fmin(floor(level + 0.5), (double)last) : 0;
 }
 
+/* Instead of bytes that nobody knows. */
+static snow_status fail_room(const slabs *s, const snow_slab_cut *cut) {
+    const snow_job *job = s->job;
+    char limit[64];
+    snow_print_limit(job->context, limit);
+    return snow_fail(
+        job->context, SNOW_NO_MEMORY,
+        "%s: slabs of %.1f MiB, %lld slices of which belong to their "
+        "neighbours, and what is made of them have no place%s; allow more "
+        "memory, or take a larger --size",
+        snow_stream_path(job->volume),
+        (double)snow_slab_bytes(job->volume, cut) / 0x1p20,
+        (long long)(2 * cut->ghosts), limit);
+}
+
 static snow_status visit(slabs *s, snow_slab_fn *render) {
     const snow_job *job = s->job;
     int64_t layers[3];
@@ -67,9 +81,10 @@ static snow_status visit(slabs *s, snow_slab_fn *render) {
         snow_transfer_fades(job->transfer), false, layers));
     const snow_slab_cut cut = {.step = 1,
                                .ghosts = layers[2],
-                               .thin = s->thin,
+                               .made = s->made,
                                .from = nearest_slice(job)};
-    return snow_slabs_visit(job->volume, &cut, render, s);
+    snow_status status = snow_slabs_visit(job->volume, &cut, render, s);
+    return status == SNOW_NO_MEMORY ? fail_room(s, &cut) : status;
 }
 
 /* What was counted of a slab, for the whole. */
@@ -90,9 +105,10 @@ static void add_stats(slabs *s) {
 }
 
 /* How many times a slab's bytes its samples take: floats of all voxels. */
-static int64_t thinness(const snow_job *job, int channels) {
-    return channels * (int64_t)sizeof(float) /
-           (int64_t)snow_type_size(job->volume->info.type);
+static int64_t made_of(const snow_job *job) {
+    int64_t sample = job->channels * (int64_t)sizeof(float);
+    int64_t voxel = (int64_t)snow_type_size(job->volume->info.type);
+    return sample > voxel ? sample / voxel : 1;
 }
 
 static snow_status begin_slab(slabs *s, const snow_volume *slab,
@@ -143,7 +159,7 @@ static snow_status make_surfaces(slabs *s) {
     return visit(s, find_surfaces);
 }
 
-/* Slabs have counted, and no voxels are here. */
+/* As iso.c; slabs have counted. */
 static snow_status fill_figures(snow_frame *frame, const snow_job *job) {
     snow_job whole = *job;
     whole.settings.method = SNOW_METHOD_SHEARED;
@@ -213,7 +229,7 @@ snow_status snow_slabs_depth(snow_frame *frame, const snow_job *job) {
     snow_stats told = frame->stats;
     s.settings.method = SNOW_METHOD_FOOTPRINT;
     s.settings.shade = SNOW_SHADE_NONE;
-    s.thin = thinness(job, job->channels);
+    s.made = made_of(job);
     s.settings.deterministic = 0;
     snow_status status = make_depths(&s);
     frame->stats = told;
@@ -227,31 +243,39 @@ snow_status snow_slabs_depth(snow_frame *frame, const snow_job *job) {
     return SNOW_OK;
 }
 
-/* --- pairs of modes -------------------------------------------------------
+/* --- the exact methods ----------------------------------------------------
  */
 
-/* Largest values and sums do not ask for order. */
-static snow_status add_pairs(const snow_volume *slab, void *user) {
+/* On top of what slabs in front of it have laid. */
+static snow_status lay_slab(const snow_volume *slab, void *user) {
     slabs *s = user;
-    snow_job job, pairs;
+    snow_job job;
     SNOW_TRY(begin_slab(s, slab, &job));
-    SNOW_TRY(snow_modes_pairs(s->frame, &job, &pairs));
-    pairs.pixels = s->frame->layer;
-    SNOW_TRY(snow_job_render_exact(s->frame, &pairs));
-    SNOW_TRY(snow_job_finish(s->frame, &pairs));
+    job.channels = s->job->channels;
+    job.lay = s->job->lay;
+    job.pixels = s->job->pixels;
+    SNOW_TRY(snow_job_render_exact(s->frame, &job));
+    SNOW_TRY(snow_job_finish(s->frame, &job));
     add_stats(s);
     return SNOW_OK;
 }
 
-snow_status snow_slabs_pairs(snow_frame *frame, const snow_job *job) {
+snow_status snow_slabs_exact(snow_frame *frame, const snow_job *job) {
     slabs s = {.frame = frame,
                .job = job,
                .settings = job->settings,
                .stats = frame->stats,
-               .thin = thinness(job, 2)};
-    s.settings.method = SNOW_METHOD_FOOTPRINT;
-    s.settings.deterministic = 0;
-    snow_status status = visit(&s, add_pairs);
+               .made = job->settings.method == SNOW_METHOD_FOOTPRINT
+                           ? made_of(job)
+                           : 0};
+    if (job->settings.deterministic)
+        return snow_fail(job->context, SNOW_NO_MEMORY,
+                         "%s: a deterministic picture by the method %s needs "
+                         "all voxels in memory at once; allow more of it, or "
+                         "let it not be deterministic",
+                         snow_stream_path(job->volume),
+                         snow_method_name(job->settings.method));
+    snow_status status = visit(&s, lay_slab);
     frame->stats = s.stats;
-    return status == SNOW_OK ? fill_figures(frame, job) : status;
+    return status;
 }

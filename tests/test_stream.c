@@ -120,7 +120,8 @@ static void close_pair(pair *p) {
 static bool is_seen(snow_image *image) {
     const float *pixels = snow_image_pixels(image);
     size_t channels = (size_t)snow_image_channels(image);
-    size_t count = WIDTH * HEIGHT * channels;
+    size_t count = (size_t)snow_image_width(image) *
+                   (size_t)snow_image_height(image) * channels;
     for (size_t n = channels - 1; n < count; n += channels)
         if (channels == 1 ? !isnan(pixels[n]) : pixels[n] > 0.05F)
             return true;
@@ -169,12 +170,12 @@ static void same_pictures(pair *p, const snow_view *view,
 /* The same to a few units of the last place of the largest number: samples of
  * slabs are added up from another voxel on. */
 static void near_pictures(pair *p, const snow_view *view,
-                          const snow_settings *settings) {
+                          const snow_settings *settings, snow_method method) {
     snow_image *a, *b;
     float largest = 0, apart = 0;
     draw_both(p, view, settings, &a, &b);
-    same_figures(p, SNOW_METHOD_FOOTPRINT);
-    for (int n = 0; n < WIDTH * HEIGHT * snow_image_channels(a); n++) {
+    same_figures(p, method);
+    for (int n = 0; n < a->width * a->height * a->channels; n++) {
         assert_int_equal(isnan(a->pixels[n]), isnan(b->pixels[n]));
         largest = fmaxf(largest, fabsf(a->pixels[n]));
         apart = fmaxf(apart, fabsf(a->pixels[n] - b->pixels[n]));
@@ -308,7 +309,7 @@ static void modes_of_a_volume_with_holes_are_near(void **state) {
             snow_settings_init(&settings);
             settings.mode = (snow_mode)(1 + (n + s) % SNOW_MODE_SUM);
             settings.threads = 1 + (int)(n % 3);
-            near_pictures(&p, &view, &settings);
+            near_pictures(&p, &view, &settings, SNOW_METHOD_FOOTPRINT);
         }
         snow_view view = stand_at(place, 1);
         snow_settings settings;
@@ -318,6 +319,44 @@ static void modes_of_a_volume_with_holes_are_near(void **state) {
         same_pictures(&p, &view, &settings);
         close_pair(&p);
     }
+}
+
+static void exact_pictures_are_near(void **state) {
+    static const snow_method methods[] = {
+        SNOW_METHOD_FOOTPRINT, SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED};
+    support_place *place = *state;
+    for (size_t t = 0; t < COUNT(types); t++) {
+        const char *path = write_head(place, types[t], "head.nrrd");
+        pair p = open_pair(place, path, NULL,
+                           slices_of(types[t], 30 + 90 * (int)t), NULL);
+        for (size_t n = 0; n < COUNT(stands); n++) {
+            snow_view view = stand_at(place, n);
+            snow_settings settings;
+            snow_settings_init(&settings);
+            settings.method = methods[n % COUNT(methods)];
+            settings.shade = n % 4 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+            settings.encoding = (snow_encoding)(n / 2 % 4);
+            settings.threads = 1 + (int)((n + t) % 3);
+            near_pictures(&p, &view, &settings, settings.method);
+        }
+        close_pair(&p);
+    }
+}
+
+/* What no lattice has pixels for is left to footprints. */
+static void pictures_of_wide_pixels_are_near(void **state) {
+    support_place *place = *state;
+    pair p = open_pair(place, write_head(place, SNOW_UINT8, "head.nrrd"), NULL,
+                       slices_of(SNOW_UINT8, 40), NULL);
+    for (size_t n = 0; n < COUNT(stands); n += 3) {
+        snow_view view = stand_at(place, n);
+        snow_settings settings;
+        snow_settings_init(&settings);
+        settings.mode = n % 2 ? SNOW_MODE_MIP : SNOW_MODE_OVER;
+        view.width = view.height = 7;
+        near_pictures(&p, &view, &settings, SNOW_METHOD_FOOTPRINT);
+    }
+    close_pair(&p);
 }
 
 static void depths_of_over_are_those_of_the_volume_in_memory(void **state) {
@@ -649,13 +688,16 @@ static void pictures_that_look_at_voxels_are_refused(void **state) {
     refuse(&p, "mode mip has no depth", &view, &settings, SNOW_BAD_USAGE);
     settings.mode = SNOW_MODE_OVER;
     settings.depth = 0;
+    settings.deterministic = 1;
     settings.method = SNOW_METHOD_FOOTPRINT;
-    refuse(&p, "footprint: a volume", &view, &settings, SNOW_BAD_USAGE);
-    settings.method = SNOW_METHOD_ORIGINAL;
-    refuse(&p, "original: a volume", &view, &settings, SNOW_BAD_USAGE);
-    settings.method = SNOW_METHOD_AUTO;
-    view.zoom = 0.01; /* wide pixels are the exact method's */
-    refuse(&p, "15 voxels wide", &view, &settings, SNOW_NO_MEMORY);
+    refuse(&p, "a deterministic picture by the method footprint", &view,
+           &settings, SNOW_NO_MEMORY);
+    settings.deterministic = 0;
+    snow_context_set_limit(place->context,
+                           snow_context_bytes(place->context) + (1 << 18));
+    refuse(&p, "slices of which belong to their neighbours", &view, &settings,
+           SNOW_NO_MEMORY);
+    snow_context_set_limit(place->context, 0);
     close_pair(&p);
 }
 
@@ -751,6 +793,8 @@ int main(void) {
         TEST(pictures_are_those_of_the_volume_in_memory),
         TEST(other_modes_are_those_of_the_volume_in_memory),
         TEST(modes_of_a_volume_with_holes_are_near),
+        TEST(exact_pictures_are_near),
+        TEST(pictures_of_wide_pixels_are_near),
         TEST(depths_of_over_are_those_of_the_volume_in_memory),
         TEST(opacity_by_gradients_sees_beyond_a_slabs_border),
         TEST(a_box_a_spacing_a_mask_and_a_plane_are_heeded),

@@ -140,13 +140,14 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
  *   snow_frame_render    reads it where a volume in memory is encoded, and
  *                        keeps the interesting voxels: for the first picture,
  *                        another opacity function or threshold, and another
- *                        slice axis; for each picture of mode iso, and for each
- *                        depth, which may differ by rounding.  By the sheared
- *                        method alone; encoding AUTO is the bit-map
+ *                        slice axis; encoding AUTO is the bit-map.  And for
+ *                        each depth, and each picture of mode iso or by
+ *                        another method than sheared, asked for or left to
+ *                        footprint: depths and the latter may differ by
+ *                        rounding, their slabs are sized by the context's
+ *                        limit, and deterministic ones are SNOW_NO_MEMORY
  *
- * All else that looks at voxels refuses it (SNOW_BAD_USAGE; SNOW_NO_MEMORY
- * where the sheared method cannot make the picture: pixels are too wide, or
- * some voxels no finite numbers in modes other than over and iso),
+ * All else that looks at voxels refuses it (SNOW_BAD_USAGE),
  * snow_volume_voxels is NULL, and snow_volume_measure finds no finite value.
  * Path and options are copied; the file must stay as it is and where it is.
  * Errors: as snow_volume_inspect; SNOW_BAD_USAGE (standard input, a pipe); of

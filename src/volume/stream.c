@@ -9,6 +9,7 @@
 #include "volume/mask.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #define REMARKS_MOST 64
@@ -161,14 +162,35 @@ snow_status snow_volume_need_voxels(const snow_volume *volume) {
  */
 
 /* Slices of a slab, without its ghosts. */
+void snow_print_limit(const snow_context *context, char text[64]) {
+    *text = 0;
+    if (context->limit)
+        snprintf(text, 64, " under the limit of %.1f MiB",
+                 (double)context->limit / 0x1p20);
+}
+
+/* Bytes of voxels that a slab may have where `made` times as many are made of
+ * them: with those half of what a limit leaves, but no more than usual. */
+static uint64_t slab_room(const snow_volume *volume, int64_t made) {
+    const snow_context *context = volume->context;
+    uint64_t usual = volume->stream->slab_bytes;
+    if (made <= 0)
+        return usual;
+    if (!context->limit)
+        return usual / (uint64_t)made;
+    uint64_t left =
+        context->limit > context->bytes ? context->limit - context->bytes : 0;
+    uint64_t most = usual > SLAB_BYTES ? usual : SLAB_BYTES;
+    uint64_t room = left / 2 / (uint64_t)(1 + made);
+    return room < most ? room : most;
+}
+
 static int64_t slab_slices(const snow_volume *volume,
                            const snow_slab_cut *cut) {
     const int64_t *dims = volume->info.dims;
     uint64_t slice = (uint64_t)(dims[0] * dims[1]) *
                      (uint64_t)snow_type_size(volume->info.type);
-    uint64_t room = volume->stream->slab_bytes / slice;
-    if (cut->thin > 1)
-        room /= (uint64_t)cut->thin;
+    uint64_t room = slab_room(volume, cut->made) / slice;
     uint64_t around = 2 * (uint64_t)cut->ghosts, step = (uint64_t)cut->step;
     if (room < around + step)
         return cut->step;

@@ -19,8 +19,8 @@ typedef struct snow_slab_cut {
     int64_t step;   /* slices of a slab are a multiple of it, but for the last
                        ones; at least 1 */
     int64_t ghosts; /* layers on either side, but beyond the grid */
-    int64_t thin;   /* so many times thinner than usual, where what is made of a
-                       slab takes as many times its bytes; 0: as usual */
+    int64_t made;   /* so many times a slab's bytes are taken by what is made of
+                       it; 0: few */
     int64_t from;   /* a slice: its slab comes first, then those above it,
                        rising, then those below it, falling */
 } snow_slab_cut;
@@ -37,6 +37,9 @@ snow_status snow_slabs_visit(const snow_volume *volume,
 
 /* The most bytes that one of them has, ghosts included. */
 uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut);
+
+/* " under the limit of 300.0 MiB", where there is one. */
+void snow_print_limit(const snow_context *context, char text[64]);
 
 /* All of snow_volume_measure but the sums.  Of a volume in its file slabs are
  * read, unless the range is known; of a part it is that of the part.  Errors:
