@@ -45,7 +45,8 @@ struct sequence {
     frame_queue *queue;
     movie_encoder encoder;
     bool encoding; /* there is an ffmpeg to feed */
-    bool begun;    /* the record is written */
+    bool claimed;  /* the record is this run's */
+    bool begun;    /* and written */
     bool made_folder;
     snow_image_options form; /* of the frames' files */
     picture_marks marks;     /* of the frames, from the first picture on */
@@ -156,13 +157,6 @@ static snow_status prepare(void *user, frame_slot *slot) {
 static snow_status begin_record(sequence *s, frame_slot *slot) {
     int number = record_begin(&s->record, &s->place, s->list->count);
     s->begun = number == 0;
-    if (number == EEXIST || number == EAGAIN) {
-        snprintf(slot->fault, sizeof slot->fault,
-                 "%s: another run has begun these frames; wait for it, or "
-                 "choose another name",
-                 s->place.output);
-        return SNOW_BAD_OUTPUT;
-    }
     return number == 0 ? SNOW_OK : fault(slot, s->place.record, number);
 }
 
@@ -289,12 +283,28 @@ static int start_encoder(sequence *s) {
                                      s->place.output, strerror(number));
 }
 
-/* The frames' folder, what was left over in it, ffmpeg, the queue. */
+/* What lies there is this run's from here on. */
+static int claim(sequence *s) {
+    int number = record_claim(&s->record, &s->place);
+    s->claimed = number == 0;
+    if (number == EEXIST || number == EAGAIN)
+        return fail_output("%s: another run has begun these frames; wait for "
+                           "it, or choose another name",
+                           s->place.output);
+    return number == 0 ? GO_ON
+                       : fail_output("%s: %s; choose a place that can be "
+                                     "written",
+                                     s->place.record, strerror(number));
+}
+
+/* The frames' folder, the record, what was left over, ffmpeg, the queue. */
 static int begin_parts(sequence *s) {
     const frame_sink sink = {s, prepare, commit, release};
     struct stat what;
     s->made_folder = s->place.format && stat(s->place.folder, &what) != 0;
     int done = place_make_folder(&s->place);
+    if (done == GO_ON)
+        done = claim(s);
     if (done != GO_ON)
         return done;
     place_sweep(&s->place);
@@ -482,13 +492,14 @@ static int tell_queue(sequence *s, snow_status status) {
  * nothing at all. */
 static void clean_up(sequence *s) {
     encoder_stop(&s->encoder);
+    if (!s->claimed)
+        return;
     place_sweep(&s->place);
     if (s->place.format)
         unlink(s->place.log);
     if (place_first(&s->place, 0) >= 0)
         return;
-    if (s->begun)
-        unlink(s->place.record);
+    unlink(s->place.record);
     if (s->made_folder || s->begun)
         place_remove_folder(&s->place);
 }

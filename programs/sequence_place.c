@@ -159,17 +159,11 @@ int64_t place_first(const sequence_place *place, int64_t from) {
     return first;
 }
 
-void place_remove_frames(const sequence_place *place, int64_t count) {
-    char path[PATH_MAX];
-    for (int64_t i = 0; i < count; i++) {
-        if (place_frame(place, i, path, sizeof path))
-            unlink(path);
-    }
-}
-
 /* ".unfinished-NAME", or "..unfinished-NAME.snow-abcdef" where the library was
  * at it, with a NAME of ours. */
-static bool is_unfinished(const sequence_place *place, const char *file) {
+static bool is_unfinished(const sequence_place *place, const char *file,
+                          int64_t unused) {
+    (void)unused;
     char name[NAME_MAX + 1];
     size_t length = strlen(file), mark = strlen(ASIDE);
     size_t tail = strlen(LIBRARY_MARK) + LIBRARY_LETTERS;
@@ -187,12 +181,14 @@ static bool is_unfinished(const sequence_place *place, const char *file) {
 
 /* Removes the files of the folder that are `wanted`. */
 static void remove_those(const sequence_place *place,
-                         bool (*wanted)(const sequence_place *, const char *)) {
+                         bool (*wanted)(const sequence_place *, const char *,
+                                        int64_t below),
+                         int64_t below) {
     char path[PATH_MAX];
     const struct dirent *entry;
     DIR *folder = opendir(names_folder(&place->names));
     while (folder && (entry = readdir(folder))) {
-        if (wanted(place, entry->d_name) &&
+        if (wanted(place, entry->d_name, below) &&
             join(path, sizeof path, place->names.folder, entry->d_name))
             unlink(path);
     }
@@ -200,12 +196,18 @@ static void remove_those(const sequence_place *place,
         closedir(folder);
 }
 
-static bool is_frame(const sequence_place *place, const char *file) {
-    return names_index(&place->names, file) >= 0;
+static bool is_frame(const sequence_place *place, const char *file,
+                     int64_t below) {
+    int64_t index = names_index(&place->names, file);
+    return index >= 0 && index < below;
+}
+
+void place_remove_frames(const sequence_place *place, int64_t count) {
+    remove_those(place, is_frame, count);
 }
 
 void place_sweep(const sequence_place *place) {
-    remove_those(place, is_unfinished);
+    remove_those(place, is_unfinished, 0);
     if (place->format)
         unlink(place->movie);
 }
@@ -221,7 +223,7 @@ int place_make_folder(const sequence_place *place) {
 void place_remove_folder(const sequence_place *place) {
     if (!place->format)
         return;
-    remove_those(place, is_frame);
+    place_remove_frames(place, INT64_MAX);
     place_sweep(place);
     unlink(place->log);
     unlink(place->record);

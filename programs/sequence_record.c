@@ -188,7 +188,7 @@ static void mark_kept(const char *done, const sequence_place *place,
                   &end) == 3 &&
            end == '\n') {
         done += line_length(done);
-        if (index < 0)
+        if (index < 0 || index == INT64_MAX)
             continue;
         if (index >= out->done)
             out->done = index + 1;
@@ -302,6 +302,7 @@ int record_open(const options *asked, const shot_list *list,
     int done = open_file(place, out);
     if (done != GO_ON)
         return done;
+    out->replaces = asked->overwrite || out->file >= 0;
     char *old = out->file >= 0 ? read_text_of(out->file) : NULL;
     done = old ? compare(asked, list, place, old, out)
                : check_strangers(asked, place);
@@ -345,10 +346,9 @@ static int write_kept(const frame_record *record, const sequence_place *place,
     return 0;
 }
 
-/* Made with O_EXCL: two runs that begin together meet here. */
-static int make_file(frame_record *record, const sequence_place *place) {
+int record_claim(frame_record *record, const sequence_place *place) {
     if (record->file >= 0)
-        return ftruncate(record->file, 0) == 0 ? 0 : errno;
+        return 0;
     record->file =
         open(place->record, O_RDWR | O_APPEND | O_CREAT | O_EXCL | O_CLOEXEC,
              S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP | S_IROTH | S_IWOTH);
@@ -358,14 +358,15 @@ static int make_file(frame_record *record, const sequence_place *place) {
 }
 
 /* Old frames go before the record that tells of them: should the end come in
- * between, nothing is left that it would not tell of. */
+ * between, nothing is left that it would not tell of.  Frames that nobody may
+ * replace were not there when the run began, and are somebody's. */
 int record_begin(frame_record *record, const sequence_place *place,
                  int64_t count) {
     if (!record->anew)
         return 0;
-    if (!record->keeps)
+    if (!record->keeps && record->replaces)
         place_remove_frames(place, record->done > count ? record->done : count);
-    int number = make_file(record, place);
+    int number = ftruncate(record->file, 0) == 0 ? 0 : errno;
     if (number == 0)
         number = write_all(record->file, record->text, strlen(record->text));
     if (number == 0)

@@ -28,6 +28,7 @@ typedef struct frame_record {
     int64_t keeps; /* how many */
     int64_t done;  /* frames that an earlier record tells of, beyond ours too */
     bool anew;     /* the record is to be written from its beginning */
+    bool replaces; /* and frames that lie there may go */
 } frame_record;
 
 /* Reads what lies there, and compares.  Nothing is written.  Answers GO_ON or
@@ -35,6 +36,11 @@ typedef struct frame_record {
  * replaced, or --resume was given for other settings. */
 int record_open(const options *asked, const shot_list *list,
                 const sequence_place *place, frame_record *out);
+
+/* Makes the record, empty, where there is none yet, before anything else is
+ * written: of two runs that begin together one goes on.  Answers 0 or an error
+ * number: EEXIST or EAGAIN where another run was first. */
+int record_claim(frame_record *record, const sequence_place *place);
 
 /* Begins the record, before the first new frame; frames that do not count any
  * more are removed.  Answers 0 or an error number. */

@@ -207,6 +207,39 @@ kill -9 $job
 wait $job 2>/dev/null
 rm -rf killed
 
+# Two that begin together: one is whole, the other takes nothing from it.
+lost=0
+for _ in 1 2 3 4 5; do
+    rm -rf both && mkdir both
+    turn --frames 6 -o 'both/%d.png' 2>/dev/null &
+    turn --frames 6 -o 'both/%d.png' --azimuth 5 2>/dev/null
+    first=$?
+    wait $!
+    [ "$((first + $?)) $(ls both | wc -l)" = "4 6" ] || lost=1
+done
+check "of two runs that begin together one makes all frames" [ $lost -eq 0 ]
+rm -rf both
+
+# Frames that come while a run begins are somebody's, and stay.
+mkdir late
+turn --frames 2 -s 2000x2000 --quality high -o 'late/%d.png' 2>log &
+job=$!
+started 1 'late/.*.frames'
+echo mine >late/1.png
+wait $job
+check "a frame that came meanwhile ends the run" [ $? -eq 4 ]
+check "and is kept" grep -qx mine late/1.png
+rm -rf late
+
+# A record that is damaged.
+mkdir odd
+printf 'snowglass frames 1\ndone 400000000000 5\ndone %s 5\n' \
+    9223372036854775807 >'odd/.%d.png.frames'
+run 0 "beside a record that tells of too many frames" timeout 60 \
+    "$TOOL" turntable phantom:cube --dims 8x8x8 -s 9x9 --frames 2 -q -y \
+    -o 'odd/%d.png'
+rm -rf odd
+
 # A disk that is full.
 mkdir disk
 if mount -t tmpfs -o size=200k none disk 2>/dev/null; then

@@ -247,7 +247,7 @@ static void folders_and_missing_folders_are_refused(void **state) {
     assert_message(f, "folder");
     assert_int_equal(write_text(f, "/tmp/no/such/folder/a", false, "x"),
                      SNOW_BAD_OUTPUT);
-    assert_message(f, "make the folder first");
+    assert_message(f, "No such file or directory; make the folder first");
     assert_int_equal(write_text(f, "", false, "x"), SNOW_BAD_OUTPUT);
     assert_message(f, "names no file");
     char slash[160];
@@ -264,6 +264,17 @@ static void a_name_of_the_greatest_length_can_be_written(void **state) {
     snprintf(path, sizeof path, "%s/%s", f->folder, name);
     assert_int_equal(write_text(f, path, false, "x"), SNOW_OK);
     assert_text(path, "x");
+}
+
+static void a_name_that_is_too_long_is_refused_at_once(void **state) {
+    fixture *f = *state;
+    char path[500];
+    snow_writer *writer = NULL;
+    snprintf(path, sizeof path, "%s/%0300d", f->folder, 0);
+    assert_int_equal(snow_writer_open(f->context, path, false, &writer),
+                     SNOW_BAD_OUTPUT);
+    assert_message(f, "choose a shorter name");
+    assert_int_equal(count_files(f->folder, false), 0);
 }
 
 static void devices_are_written_through(void **state) {
@@ -376,6 +387,7 @@ int main(void) {
         UNIT(a_link_stays_a_link_and_its_target_is_replaced),
         UNIT(folders_and_missing_folders_are_refused),
         UNIT(a_name_of_the_greatest_length_can_be_written),
+        UNIT(a_name_that_is_too_long_is_refused_at_once),
         UNIT(devices_are_written_through),
         UNIT(a_full_device_is_reported),
         UNIT(a_file_over_the_size_limit_leaves_nothing),

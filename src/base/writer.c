@@ -14,8 +14,9 @@
  * link(2), which fails when NAME has come into being meanwhile; rename(2) would
  * destroy it.  Standard output, devices and pipes cannot be renamed: they are
  * written through. */
-#define _GNU_SOURCE /* O_TMPFILE, realpath */
+#define _XOPEN_SOURCE 700 /* realpath */
 #include "base/writer.h"
+#include "base/nameless.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -33,15 +34,6 @@
 /* As much of the final name as a temporary one repeats: the longest name of a
  * file, 255 bytes, less the dots, "snow-" and letters around it. */
 #define NAME_PART 200
-
-/* 0: none are wanted, or the system has none. */
-#ifndef SNOW_NAMELESS
-#ifdef O_TMPFILE
-#define SNOW_NAMELESS O_TMPFILE
-#else
-#define SNOW_NAMELESS 0
-#endif
-#endif
 
 struct snow_writer {
     snow_context *context;
@@ -144,27 +136,16 @@ static int open_hidden(snow_writer *writer) {
     return writer->file;
 }
 
-/* The name by which the kernel knows what is open here. */
-static void name_descriptor(int file, char *out, size_t size) {
-    snprintf(out, size, "/proc/self/fd/%d", file);
-}
-
-/* A file without a name, if there are such here and they can be given one
- * later. */
+/* A file without a name, if there are such here. */
 static bool open_nameless(snow_writer *writer) {
-    char descriptor[32], folder[PATH_MAX];
+    char folder[PATH_MAX];
     size_t length = folder_length(writer->path);
-    if (!SNOW_NAMELESS || length >= sizeof folder)
+    if (length >= sizeof folder)
         return false;
     snprintf(folder, sizeof folder, "%.*s", length ? (int)length : 1,
              length ? writer->path : ".");
-    writer->file = open(folder, O_WRONLY | SNOW_NAMELESS | O_CLOEXEC, new_mode);
-    if (writer->file < 0)
-        return false;
-    name_descriptor(writer->file, descriptor, sizeof descriptor);
-    writer->nameless = access(descriptor, F_OK) == 0;
-    if (!writer->nameless)
-        close(writer->file);
+    writer->file = snow_nameless_open(folder, new_mode);
+    writer->nameless = writer->file >= 0;
     return writer->nameless;
 }
 
@@ -200,6 +181,8 @@ static snow_status open_target(snow_writer *writer) {
                          "\"%s\" names no file; give a file name", path);
     struct stat here;
     if (stat(path, &here)) {
+        if (errno != ENOENT)
+            return fail_by_number(context, writer->told, "be written", errno);
         /* A link to nowhere is not followed: it counts as a file. */
         if (!writer->overwrite && lstat(path, &here) == 0)
             return fail_existing(writer);
@@ -374,20 +357,14 @@ static snow_status fail_to_name(const snow_writer *writer, int number) {
                                              "be named", number);
 }
 
-static int link_nameless(const snow_writer *writer, const char *path) {
-    char descriptor[32];
-    name_descriptor(writer->file, descriptor, sizeof descriptor);
-    return linkat(AT_FDCWD, descriptor, AT_FDCWD, path, AT_SYMLINK_FOLLOW);
-}
-
 static int link_hidden(snow_writer *writer) {
-    return link_nameless(writer, writer->temporary);
+    return snow_nameless_link(writer->file, writer->temporary);
 }
 
 /* Gives a file without a name, which is open, its own, or a hidden one where it
  * replaces what bears its own. */
 static snow_status name_file(snow_writer *writer) {
-    if (link_nameless(writer, writer->path) == 0) {
+    if (snow_nameless_link(writer->file, writer->path) == 0) {
         writer->nameless = false;
         return SNOW_OK;
     }
@@ -433,9 +410,12 @@ static snow_status finish_file(snow_writer *writer) {
         number = errno;
     else if (writer->nameless)
         SNOW_TRY(name_file(writer));
+    const bool named = !through && !writer->nameless && !writer->temporary;
     int closing = close_file(writer);
     if (!number)
         number = closing;
+    if (number && named)
+        unlink(writer->path);
     if (number)
         return fail_by_number(writer->context, writer->told, "be written",
                               number);
