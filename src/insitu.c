@@ -57,6 +57,12 @@ void snow_insitu_forget(snow_insitu *insitu) {
     insitu->layout.planned = insitu->taken = false;
 }
 
+static void free_look(snow_context *context, snow_own_look *look) {
+    snow_release(context, look->opacities);
+    snow_release(context, look->gradients);
+    snow_release(context, look->point_block);
+}
+
 void snow_insitu_free(snow_insitu *insitu) {
     if (!insitu)
         return;
@@ -72,9 +78,7 @@ void snow_insitu_free(snow_insitu *insitu) {
     snow_release(context, insitu->held);
     snow_release(context, insitu->moved);
     snow_release(context, insitu->bricks);
-    snow_release(context, insitu->look.opacities);
-    snow_release(context, insitu->look.gradients);
-    snow_release(context, insitu->look.point_block);
+    free_look(context, &insitu->look);
     snow_release(context, insitu->pattern);
     snow_release(context, insitu);
     if (owns_comm)
@@ -293,17 +297,17 @@ static const char *keep_name(const char *name, char out[64]) {
     return out;
 }
 
-/* Points and where they are kept; none stay none. */
+/* A copy in memory of its own; NULL of none. */
 static snow_status keep_points(snow_insitu *insitu,
                                const snow_opacity_point *points, size_t count,
-                               snow_opacity_point **room, size_t *capacity,
-                               const snow_opacity_point **out) {
+                               snow_opacity_point **out) {
     size_t bytes = points ? count * sizeof *points : 0;
-    SNOW_TRY(answer(insitu,
-                    snow_reserve(insitu->context, room, capacity, 0, bytes)));
-    if (bytes)
-        memcpy(*room, points, bytes);
-    *out = bytes ? *room : NULL;
+    if (!bytes)
+        return SNOW_OK;
+    *out = snow_allocate(insitu->context, bytes);
+    if (!*out)
+        return answer(insitu, SNOW_NO_MEMORY);
+    memcpy(*out, points, bytes);
     return SNOW_OK;
 }
 
@@ -313,12 +317,12 @@ static snow_status keep_form(snow_insitu *insitu, const snow_points *points,
     size_t colors = points->color_count * sizeof *points->colors;
     size_t opacities = points->opacity_count * sizeof *points->opacities;
     size_t gradients = points->gradient_count * sizeof *points->gradients;
-    SNOW_TRY(answer(insitu, snow_reserve(insitu->context, &own->point_block,
-                                         &own->point_bytes, 0,
-                                         colors + opacities + gradients)));
-    char *block = own->point_block;
+    char *block =
+        snow_allocate(insitu->context, colors + opacities + gradients + 1);
+    if (!block)
+        return answer(insitu, SNOW_NO_MEMORY);
+    own->point_block = block;
     own->points = *points;
-    own->points.name = keep_name(points->name, own->name);
     own->points.colors = (void *)block;
     own->points.opacities = (void *)(block + colors);
     own->points.gradients = (void *)(block + colors + opacities);
@@ -331,8 +335,19 @@ static snow_status keep_form(snow_insitu *insitu, const snow_points *points,
     return SNOW_OK;
 }
 
+/* All that a look holds. */
+static snow_status keep_look(snow_insitu *insitu, const snow_look *look,
+                             snow_own_look *own) {
+    SNOW_TRY(keep_points(insitu, look->opacities, look->opacity_count,
+                         &own->opacities));
+    SNOW_TRY(keep_points(insitu, look->gradient_opacities,
+                         look->gradient_opacity_count, &own->gradients));
+    return look->points ? keep_form(insitu, look->points, own) : SNOW_OK;
+}
+
+/* The old one stays where there is no memory for the new one. */
 snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
-    snow_own_look *own = &insitu->look;
+    snow_own_look *own = &insitu->look, next = {.look = *look};
     if ((look->preset && snow_preset_named(look->preset) < 0) ||
         (look->colormap && snow_colormap_named(look->colormap) < 0))
         return refuse(insitu,
@@ -340,20 +355,20 @@ snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
                       "leave out what is not known",
                       look->preset ? look->preset : "",
                       look->colormap ? look->colormap : "");
-    const snow_opacity_point *opacities, *gradients;
-    SNOW_TRY(keep_points(insitu, look->opacities, look->opacity_count,
-                         &own->opacities, &own->opacity_bytes, &opacities));
-    SNOW_TRY(keep_points(insitu, look->gradient_opacities,
-                         look->gradient_opacity_count, &own->gradients,
-                         &own->gradient_bytes, &gradients));
-    if (look->points)
-        SNOW_TRY(keep_form(insitu, look->points, own));
-    own->look = *look;
+    snow_status status = keep_look(insitu, look, &next);
+    if (status != SNOW_OK) {
+        free_look(insitu->context, &next);
+        return status;
+    }
+    free_look(insitu->context, own);
+    *own = next;
     own->look.points = look->points ? &own->points : NULL;
+    if (look->points)
+        own->points.name = keep_name(look->points->name, own->name);
     own->look.preset = keep_name(look->preset, own->preset);
     own->look.colormap = keep_name(look->colormap, own->colormap);
-    own->look.opacities = opacities;
-    own->look.gradient_opacities = gradients;
+    own->look.opacities = own->opacities;
+    own->look.gradient_opacities = own->gradients;
     snow_transfer_free(insitu->transfer);
     insitu->transfer = NULL;
     return SNOW_OK;

@@ -12,6 +12,7 @@
  *
  * All ranks decide alike, from one reduction of a few numbers; only whether a
  * brick is shared or copied is a rank's own affair. */
+#include "classify/look.h"
 #include "decompose/part.h"
 #include "frame.h"
 #include "ghosts.h"
@@ -30,6 +31,7 @@ enum {
     FACT_UNCHANGED,  /* 1: what was planned still holds */
     FACT_UNITED,     /* 1: the bricks are one box together, or none */
     FACT_HALOS,      /* 1: halos are as wide as the layers */
+    FACT_BOXES,      /* 1: every rank's bricks united are known */
     FACTS
 };
 
@@ -241,6 +243,7 @@ static snow_status share_facts(snow_insitu *insitu, const snow_view *view,
                                int64_t facts[FACTS]) {
     bool same = insitu->layout.planned && !insitu->changed &&
                 memcmp(layers, insitu->layout.layers, 3 * sizeof *layers) == 0;
+    insitu->boxes_known &= !insitu->changed;
     int64_t type = (int64_t)insitu->type;
     facts[FACT_TYPE] = type ? type : INT64_MAX;
     facts[FACT_TYPE_MOST] = -type;
@@ -249,6 +252,7 @@ static snow_status share_facts(snow_insitu *insitu, const snow_view *view,
     facts[FACT_UNCHANGED] = same;
     facts[FACT_UNITED] = united;
     facts[FACT_HALOS] = halos_suffice(insitu, layers);
+    facts[FACT_BOXES] = insitu->boxes_known;
     SNOW_TRY(snow_comm_reduce_ints(insitu->comm, facts, FACTS, SNOW_MIN));
     SNOW_TRY(check_facts(insitu, facts));
     insitu->type = (snow_type)facts[FACT_TYPE];
@@ -386,18 +390,21 @@ static snow_status look_around(snow_insitu *insitu, snow_placement *placement,
     SNOW_TRY(
         snow_placement_make(insitu->context, &insitu->whole, &view, placement));
     return snow_ghosts_needed(insitu->context, &insitu->whole, &view, &settings,
-                              insitu->look.look.gradient_opacities != NULL,
-                              true, layers);
+                              snow_look_fades(&insitu->look.look), true,
+                              layers);
 }
 
-/* Collective.  Every rank's united bricks, when they have changed. */
+/* Collective.  Every rank's united bricks, when they are not known. */
 static snow_status share_boxes(snow_insitu *insitu, const snow_box *united) {
     size_t ranks = (size_t)snow_comm_ranks(insitu->comm);
     SNOW_TRY(snow_comm_agree(insitu->comm,
                              snow_reserve(insitu->context, &insitu->boxes,
                                           &insitu->boxes_bytes, 0,
                                           ranks * sizeof *insitu->boxes)));
-    return snow_comm_share(insitu->comm, united, sizeof *united, insitu->boxes);
+    SNOW_TRY(
+        snow_comm_share(insitu->comm, united, sizeof *united, insitu->boxes));
+    insitu->boxes_known = true;
+    return SNOW_OK;
 }
 
 /* Collective.  Whether the work is done where the voxels are not. */
@@ -410,7 +417,7 @@ static snow_status decide_recut(snow_insitu *insitu,
     if (insitu->balance == SNOW_BALANCE_RECUT || !facts[FACT_UNITED] ||
         slab_axis(insitu, placement) >= 0)
         return SNOW_OK;
-    if (!facts[FACT_UNCHANGED])
+    if (!facts[FACT_BOXES])
         SNOW_TRY(share_boxes(insitu, united));
     SNOW_TRY(
         snow_comm_agree(insitu->comm, have_order(insitu, placement, &ordered)));

@@ -145,10 +145,18 @@ static void leave_out(snow_insitu *insitu) {
     insitu->last_lowering = SNOW_LOWERED_SKIPPED;
 }
 
+/* The context's own limit holds as well. */
+static void begin_limit(snow_insitu *insitu) {
+    uint64_t own = insitu->limit_bytes, outer = insitu->context->limit;
+    insitu->outer_bytes = outer;
+    if (own && (!outer || own < outer))
+        snow_context_set_limit(insitu->context, own);
+}
+
 /* What became of a piece of work under the limit of bytes: where that did not
  * suffice, no error but a picture that is left out. */
 static snow_status settle(snow_insitu *insitu, snow_status status) {
-    snow_context_set_limit(insitu->context, 0);
+    snow_context_set_limit(insitu->context, insitu->outer_bytes);
     if (status != SNOW_NO_MEMORY || !insitu->limit_bytes ||
         snow_comm_broken(insitu->comm))
         return status;
@@ -179,7 +187,7 @@ static snow_status update(snow_insitu *insitu) {
         leave_out(insitu);
         return SNOW_OK;
     }
-    snow_context_set_limit(insitu->context, insitu->limit_bytes);
+    begin_limit(insitu);
     snow_status status = settle(insitu, snow_insitu_take(insitu));
     insitu->seconds.update = snow_comm_seconds(insitu->comm) - start;
     return status;
@@ -248,7 +256,7 @@ static snow_status draw(snow_insitu *insitu, snow_image **out) {
                          "snow_insitu_update first");
     SNOW_TRY(snow_insitu_check(insitu));
     insitu->last_lowering = insitu->layout.lowering;
-    snow_context_set_limit(insitu->context, insitu->limit_bytes);
+    begin_limit(insitu);
     SNOW_TRY(settle(insitu, make_picture(insitu, &image)));
     if (!insitu->left_out) {
         insitu->pictures++;

@@ -25,10 +25,8 @@ typedef struct snow_own_look {
     snow_look look;
     snow_points points; /* of the look, over the block */
     void *point_block;
-    size_t point_bytes;
     char preset[64], colormap[64], name[64];
     snow_opacity_point *opacities, *gradients;
-    size_t opacity_bytes, gradient_bytes;
 } snow_own_look;
 
 /* Of the last picture. */
@@ -73,15 +71,16 @@ struct snow_insitu {
     snow_image_options form;
     bool legend, step_label; /* drawn over them */
     double limit_seconds;
-    uint64_t limit_bytes;
+    uint64_t limit_bytes, outer_bytes; /* the latter the context's own */
 
     /* The voxels taken last. */
     snow_insitu_layout layout;
     bool changed; /* bricks or sharing, since they were planned with */
     snow_type type;
     snow_voxels *voxels;
-    snow_box *boxes; /* every rank's bricks united, where they are boxes */
-    snow_box *held;  /* the bricks' boxes, and the bricks, in one order */
+    snow_box *boxes;  /* every rank's bricks united, where they are boxes */
+    bool boxes_known; /* these are there, of the bricks as they are */
+    snow_box *held;   /* the bricks' boxes, and the bricks, in one order */
     snow_brick *moved;
     size_t boxes_bytes, held_bytes, moved_bytes;
     int held_count;

@@ -363,11 +363,11 @@ static snow_status open_file(opening *o, const snow_view *view,
     snow_cut_order order;
     int64_t stream;
     SNOW_TRY(begin(o, &stream, share));
-    snow_status status = snow_cut_order_make(
-        o->context, &o->whole, view, settings, how,
-        o->transfer ? snow_transfer_fades(o->transfer)
-                    : o->look && o->look->gradient_opacities,
-        snow_comm_ranks(o->comm), &order);
+    snow_status status =
+        snow_cut_order_make(o->context, &o->whole, view, settings, how,
+                            o->transfer ? snow_transfer_fades(o->transfer)
+                                        : snow_look_fades(o->look),
+                            snow_comm_ranks(o->comm), &order);
     SNOW_TRY(snow_comm_agree(o->comm, status));
     if (order.cut == SNOW_CUT_EQUAL && !stream)
         return open_equal(o, &order, volume, transfer);

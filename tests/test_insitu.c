@@ -20,6 +20,9 @@
 
 /* --- scenes --------------------------------------------------------------- */
 
+/* Of a context, beside those of in situ pictures. */
+#define OUTER_LIMIT (UINT64_C(1) << 40)
+
 /* A grid of bricks, who holds them, and how they lie in memory. */
 typedef struct scene {
     int64_t dims[3];
@@ -33,7 +36,9 @@ typedef struct scene {
     snow_settings settings;
     snow_balance balance;
     snow_ghosts ghosts;
-    bool fades; /* by gradients */
+    bool fades;               /* by gradients */
+    bool preset;              /* by those of a preset */
+    bool first_deterministic; /* the picture before */
     /* What the ranks found. */
     double difference; /* from the serial picture */
     snow_insitu_figures figures;
@@ -106,6 +111,10 @@ static snow_look look_of(const scene *s, snow_opacity_point scaled[5]) {
         scaled[i] = points[i];
         scaled[i].value *= scale_of(type);
     }
+    if (s->preset)
+        return (snow_look){.preset = "ct-cardiac",
+                           .range = SNOW_RANGE_VALUES,
+                           .high = 200 * scale_of(type)};
     return (snow_look){.preset = "linear",
                        .colormap = "viridis",
                        .range = SNOW_RANGE_VALUES,
@@ -310,17 +319,35 @@ static snow_status draw_twice(snow_insitu *insitu, scene *s, int rank) {
     return SNOW_OK;
 }
 
+/* One that is made otherwise, before the others. */
+static snow_status draw_deterministic(snow_insitu *insitu, const scene *s) {
+    snow_settings settings = s->settings;
+    snow_image *image = NULL;
+    settings.deterministic = 1;
+    SNOW_TRY(snow_insitu_set_settings(insitu, &settings));
+    SNOW_TRY(snow_insitu_update(insitu));
+    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    snow_image_free(image);
+    return snow_insitu_set_settings(insitu, &s->settings);
+}
+
 static snow_status run_rank(snow_comm *comm, void *user) {
     scene *s = user;
     rank_memory m = {.count = 0};
     snow_insitu *insitu = NULL;
     int rank = snow_comm_rank(comm);
     SNOW_TRY(snow_insitu_new(comm, &insitu));
+    snow_context_set_limit(insitu->context, OUTER_LIMIT);
     snow_status status = tell_picture(insitu, s);
     if (status == SNOW_OK)
         status = tell_bricks(insitu, s, rank, 0, &m);
+    if (status == SNOW_OK && s->first_deterministic)
+        status = draw_deterministic(insitu, s);
     if (status == SNOW_OK)
         status = draw_twice(insitu, s, rank);
+    if (status == SNOW_OK && insitu->context->limit != OUTER_LIMIT)
+        status = snow_fail(insitu->context, SNOW_FAILED,
+                           "the context's own limit is lost");
     snow_insitu_free(insitu);
     free_memory(&m);
     return status;
@@ -434,6 +461,9 @@ static void a_gradient_opacity_does(void **state) {
         s.settings.quality = n / 3 % 2 ? SNOW_QUALITY_HIGH : s.settings.quality;
         s.settings.shade = n / 6 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
         expect_serial(&s, "gradient opacity");
+        s.fades = false;
+        s.preset = true;
+        expect_serial(&s, "a preset's gradient opacity");
     }
 }
 
@@ -588,6 +618,16 @@ static void a_deterministic_picture_is_the_same_bit_for_bit(void **state) {
         assert_true(s.difference == 0);
         assert_true(s.figures.recut);
     }
+}
+
+/* Whose boxes nobody has told, and others have come meanwhile. */
+static void
+a_picture_after_a_deterministic_one_is_drawn_in_place(void **state) {
+    (void)state;
+    scene s = make_scene(4, 2, 2, 1);
+    s.first_deterministic = true;
+    expect_serial(&s, "after a deterministic picture");
+    assert_false(s.figures.recut);
 }
 
 /* Three bars, each before the next, and a cube in what they leave: boxes that
@@ -1326,6 +1366,7 @@ int main(void) {
         cmocka_unit_test(the_exact_methods_do_too),
         cmocka_unit_test(parts_of_a_scattered_picture_add_up_to_it),
         cmocka_unit_test(a_deterministic_picture_is_the_same_bit_for_bit),
+        cmocka_unit_test(a_picture_after_a_deterministic_one_is_drawn_in_place),
         cmocka_unit_test(bars_in_a_ring_are_recut),
         cmocka_unit_test(another_picture_of_the_same_voxels_encodes_nothing),
         cmocka_unit_test(bricks_in_the_world_find_their_grid),

@@ -104,6 +104,10 @@ snow_status snow_transfer_make_among(snow_comm *comm, const snow_volume *volume,
                                      const snow_look *look,
                                      snow_transfer **out);
 
+/* Whether what it asks for, NULL included, has a gradient opacity; of a preset
+ * that there is not, or none. */
+bool snow_look_fades(const snow_look *look);
+
 /* Replaces a draft's colours by a map over low..high. */
 void snow_draft_colormap(snow_draft *draft, int colormap, double low,
                          double high);

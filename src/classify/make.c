@@ -273,6 +273,15 @@ static snow_status build(const snow_volume *volume, const snow_draft *draft,
     return SNOW_OK;
 }
 
+bool snow_look_fades(const snow_look *look) {
+    if (!look || look->gradient_opacities)
+        return look != NULL;
+    if (look->preset && snow_preset_named(look->preset) < 0)
+        return false;
+    const snow_points *points = points_of(look);
+    return points && points->gradient_count > 0;
+}
+
 snow_status snow_transfer_make_among(snow_comm *comm, const snow_volume *volume,
                                      const snow_look *look,
                                      snow_transfer **out) {
