@@ -218,6 +218,8 @@ static void fill_look(const options *asked, snow_recipe *out) {
     memcpy(out->gradient_opacities, asked->gradient_opacities.points,
            asked->gradient_opacities.count * sizeof *out->gradient_opacities);
     out->opacity_per_mm = strcmp(asked->opacity_unit, "mm") == 0;
+    out->opacity_per_voxel =
+        !out->opacity_per_mm && options_told(asked, "opacity-unit");
 }
 
 static void fill_place(const place_value *place, double out[3]) {

@@ -27,6 +27,18 @@ run 4 "its own output is kept" render --config all.json
 says 'a.png'
 run 0 "and replaced where that is asked" render --config all.json -y
 
+# A unit that is told beside a transfer function of another one.
+echo '{"snowglass-tf": 1, "opacity-unit": "mm",
+    "opacities": [[0, 0], [255, 0.5]]}' >mm.json
+run 0 "opacities of a voxel" render phantom:cube --dims 20x20x20 \
+    --spacing 4x4x4 --tf mm.json --opacity-unit voxel -o voxel.png \
+    --save-config voxel.json
+run 0 "and again" render --config voxel.json -o again.png
+check "are the same" cmp -s voxel.png again.png
+run 0 "and not those of a millimetre" render phantom:cube --dims 20x20x20 \
+    --spacing 4x4x4 --tf mm.json -o mm.png
+check "which differ" [ -z "$(cmp -s voxel.png mm.png && echo same)" ]
+
 run 0 "nothing is asked" render phantom:cube -o d.png --save-config d.json
 run 0 "and nothing saved but defaults" render --config d.json -o e.png
 check "the same picture" cmp -s d.png e.png

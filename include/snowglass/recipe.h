@@ -37,6 +37,7 @@ typedef struct snow_recipe {
     snow_opacity_point opacities[SNOW_RECIPE_POINTS];
     bool opacity_per_mm; /* opacities are those of a millimetre, instead of the
                             smallest voxel spacing */
+    bool opacity_per_voxel; /* they are not, whatever the file of `tf` says */
     const char *view;    /* name; NULL: the volume's own */
     int width, height;   /* (512, 512) */
     double azimuth, elevation, roll;

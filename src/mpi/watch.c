@@ -89,8 +89,12 @@ snow_status snow_watch_new(snow_context *context, MPI_Comm group,
         watch->answered = snow_context_allocate(context, (size_t)ranks);
     }
     *out = watch;
-    if (!all_have(group, watch && watch->places && watch->answered))
-        return SNOW_NO_MEMORY;
+    const bool mine = watch && watch->places && watch->answered;
+    if (!all_have(group, mine))
+        return mine ? snow_context_fail(context, SNOW_NO_MEMORY,
+                                        "another rank: %s",
+                                        snow_status_text(SNOW_NO_MEMORY))
+                    : SNOW_NO_MEMORY;
     if (MPI_Comm_dup(group, &watch->group) != MPI_SUCCESS)
         return snow_context_fail(context, SNOW_FAILED,
                                  "MPI cannot duplicate the group");
@@ -265,13 +269,18 @@ static int name_silent(mpi_watch *watch, const int *peers, int count,
     return silent;
 }
 
+/* All are well. */
+static void ask_anew(mpi_watch *watch, double now) {
+    watch->round = now;
+    watch->asked = watch->told = 0;
+}
+
 /* The timeout is over. */
 static void judge(mpi_watch *watch, const int *peers, int count, double now) {
     int speaker = 0;
     note what = {.kind = VERDICT};
     if (!name_silent(watch, peers, count, &speaker)) {
-        watch->round = now; /* all are well: ask again */
-        watch->asked = 0;
+        ask_anew(watch, now);
         return;
     }
     watch->told = now;
@@ -317,8 +326,9 @@ snow_status snow_watch_turn(mpi_watch *watch, const int *peers, int count) {
     if (now - watch->looked > (limit < 6.4 ? limit / 64 : 0.1))
         read_notes(watch, now);
     if (watch->told > 0) {
-        if (now - watch->told > limit)
-            name_silent(watch, peers, count, &(int){0});
+        if (now - watch->told > limit &&
+            !name_silent(watch, peers, count, &(int){0}))
+            ask_anew(watch, now);
     } else if (now - watch->round > limit) {
         judge(watch, peers, count, now);
     } else if (now - watch->round > limit / 2 &&

@@ -395,7 +395,10 @@ static int endian_named(const char *name) {
     return find(endian_name, name);
 }
 
-/* In a bool: is it millimetres? */
+typedef struct unit_fields {
+    bool mm, voxel;
+} unit_fields;
+
 static bool read_unit(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
     (void)key;
@@ -403,13 +406,16 @@ static bool read_unit(const recipe_key *key, const json_t *value, void *field,
     bool mm = text && strcmp(text, "mm") == 0;
     if (!mm && (!text || strcmp(text, "voxel") != 0))
         return refuse(wrong, "\"voxel\" or \"mm\"");
-    *(bool *)field = mm;
+    *(unit_fields *)field = (unit_fields){mm, !mm};
     return true;
 }
 
 static json_t *write_unit(const recipe_key *key, const void *field) {
     (void)key;
-    return *(const bool *)field ? json_string("mm") : NULL;
+    const unit_fields *unit = field;
+    return unit->mm      ? json_string("mm")
+           : unit->voxel ? json_string("voxel")
+                         : NULL;
 }
 
 /* The value of mode iso follows the mode, and is told beside it alone. */

@@ -254,7 +254,8 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
         status = snow_recipe_view(context, recipe, &usual, &view);
     if (status == SNOW_OK)
         status = snow_recipe_settings(context, recipe, "", &settings);
-    if (status == SNOW_OK && tf && look.points->per_mm)
+    if (status == SNOW_OK && tf && look.points->per_mm &&
+        !recipe->opacity_per_voxel)
         settings.opacity_length = length_of_mm("");
     if (status == SNOW_OK)
         status = snow_insitu_set_look(insitu, &look);
