@@ -223,10 +223,11 @@ static snow_status check_brick(snow_insitu *insitu, int id,
                           id, (long long)first[i],
                           (long long)(first[i] + count[i] - 1), i,
                           (long long)(dims[i] - 1));
-        if (halo->low[i] < 0 || halo->high[i] < 0)
+        if (halo->low[i] < 0 || halo->high[i] < 0 || halo->low[i] > INT32_MAX ||
+            halo->high[i] > INT32_MAX)
             return refuse(insitu,
-                          "brick %d has a halo below 0; give the "
-                          "ghost voxels that lie around it",
+                          "brick %d has a halo below 0, or of billions; give "
+                          "the ghost voxels that lie around it",
                           id);
     }
     return SNOW_OK;

@@ -107,7 +107,8 @@ static snow_status share_borders(snow_insitu *insitu, const int64_t dims[3],
     for (int n = 0; n < count; n++)
         held += snow_box_voxels(&bricks[n].box);
     SNOW_TRY(snow_comm_reduce_ints(insitu->comm, &held, 1, SNOW_SUM));
-    for (int n = 0; n < count && held > dims[0] * dims[1] * dims[2]; n++)
+    double all = (double)dims[0] * (double)dims[1] * (double)dims[2];
+    for (int n = 0; n < count && (double)held > all; n++)
         if (snow_box_voxels(&bricks[n].box))
             trim(dims, &bricks[n]);
     return SNOW_OK;

@@ -139,7 +139,8 @@ SNOW_API snow_status snow_comm_share(snow_comm *comm, const void *mine,
 
 /* Whether the transport itself has failed on this rank (a peer is gone, say).
  * All further calls on the communicator fail with the same status, and the
- * other ranks may not know: a program of several processes ends them all. */
+ * other ranks may not know: a program of several processes ends them all, and
+ * frees nothing before that a late message may come into (frames, movies). */
 SNOW_API bool snow_comm_broken(const snow_comm *comm);
 
 /* Alike on all ranks: the longest that a rank is waited for that neither sends

@@ -377,19 +377,28 @@ static void drop_group(MPI_Comm *ours) {
 #endif
 }
 
-/* Messages that nobody waited for are given up.  A group that has failed is
- * left to MPI's end: to free it is collective, and peers may be gone. */
+/* Messages that nobody waited for are given up: nothing comes into a buffer that
+ * the caller is about to free. */
+static void give_up(mpi_slot *slot) {
+    if (slot->request == MPI_REQUEST_NULL)
+        return;
+    if (!slot->receives) {
+        MPI_Request_free(&slot->request);
+        return;
+    }
+    MPI_Cancel(&slot->request);
+    MPI_Wait(&slot->request, MPI_STATUS_IGNORE);
+}
+
+/* A group that has failed is left to MPI's end: to free it is collective, peers
+ * may be gone, and which of its requests there still are is not known. */
 static void end(void *self) {
     mpi_side *side = self;
     int finalized = 0;
     MPI_Finalized(&finalized);
     if (!finalized && !side->failed) {
         for (int i = 0; i < side->slot_count; i++)
-            if (side->slots[i].request != MPI_REQUEST_NULL) {
-                if (side->slots[i].receives)
-                    MPI_Cancel(&side->slots[i].request);
-                MPI_Request_free(&side->slots[i].request);
-            }
+            give_up(&side->slots[i]);
         drop_group(&side->group);
     }
 #ifndef SMPI_H

@@ -78,10 +78,10 @@ static bool warns(const jpeg_signs *signs, uint32_t samples) {
 
 /* Whether segment follows segment up to the start of the scan, Huffman tables
  * among them where the frame needs such: at others GDCM ends the process.
- * JPEG-LS needs no tables, and has no libjpeg to warn. */
-static bool has_scan(const unsigned char *bytes, size_t size,
+ * JPEG-LS, where `ls`, needs no tables, and has no libjpeg to warn. */
+static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
                      uint32_t samples) {
-    bool tables = false, is_ls = false;
+    bool tables = false;
     jpeg_signs signs = {false, false, false};
     for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
         int marker = bytes[at + 1];
@@ -95,9 +95,10 @@ static bool has_scan(const unsigned char *bytes, size_t size,
             return false;
         read_sign(marker, bytes + at + 4, length - 2, &signs);
         tables |= marker == 0xc4;
-        is_ls |= marker == 0xf7;
+        if (marker == 0xf7 && !ls)
+            return false;
         if (marker == 0xda)
-            return is_ls || (tables && !warns(&signs, samples));
+            return ls || (tables && !warns(&signs, samples));
         at += 2 + length;
     }
     return false;
@@ -162,6 +163,10 @@ static bool has_tile(const unsigned char *bytes, size_t size) {
     return false;
 }
 
+static bool is_jpeg_ls(const char *syntax) {
+    return !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21);
+}
+
 static bool is_jpeg2000(const char *syntax) {
     return !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
 }
@@ -181,8 +186,10 @@ snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
         return snow_fail(context, SNOW_BAD_INPUT,
                          "its packed colours have other sizes or depths, which "
                          "is not read; unpack it, with gdcmconv --raw say");
-    if (same && (is_jpeg2000(syntax) ? has_tile(*bytes, *size)
-                                     : has_scan(*bytes, *size, head.samples)))
+    if (same &&
+        (is_jpeg2000(syntax)
+             ? has_tile(*bytes, *size)
+             : has_scan(*bytes, *size, is_jpeg_ls(syntax), head.samples)))
         return SNOW_OK;
     if (known && !same)
         return snow_fail(context, SNOW_BAD_INPUT,
