@@ -319,9 +319,21 @@ static void pool_slab(value_pool *pool, const snow_volume_info *whole,
             info->intercept;
 }
 
-/* The look of a volume that consists of the pool. */
-static int look_at_pool(scene *s, const value_pool *pool) {
-    snow_volume_info info = {.dims = {pool->count, 1, 1}, .type = SNOW_FLOAT64};
+/* The look of a volume that consists of the pool, and is a block, a slice or a
+ * row as `step` is: that counts for a look.  What lacks is no number; there is
+ * room for it where steps were read. */
+static int look_at_pool(scene *s, const snow_volume_info *step,
+                        value_pool *pool) {
+    snow_volume_info info = {.dims = {1, 1, 1}, .type = SNOW_FLOAT64};
+    int axes = 0;
+    for (int i = 0; i < 3; i++)
+        axes += step->dims[i] > 1;
+    for (int i = 1; i < axes; i++)
+        info.dims[i] = 2;
+    int64_t across = info.dims[1] * info.dims[2];
+    while (pool->count % across)
+        pool->values[pool->count++] = NAN;
+    info.dims[0] = pool->count / across;
     snow_volume *volume = NULL;
     snow_status status =
         snow_volume_share(s->context, &info, pool->values, &volume);
@@ -477,8 +489,9 @@ static int pool_steps(const shot_list *list, shot_renderer *shots,
         done = pool_round(list, i, shots, pool);
     }
     hear_notices(shots->scene.asked, shots->scene.context, true);
-    return done == GO_ON ? launch_agree(look_at_pool(&shots->scene, pool))
-                         : done;
+    return done == GO_ON
+               ? launch_agree(look_at_pool(&shots->scene, &first, pool))
+               : done;
 }
 
 int steps_look(const shot_list *list, shot_renderer *shots) {

@@ -114,4 +114,17 @@ touch -d '2001-01-01' run/s_0010.nrrd
 # shellcheck disable=SC2086
 refused 4 "nor where a step has changed" "frame 1 .*s_0010" \
     movie run/s_%04d.nrrd -o 'y%d.png' $look --resume
+# The look of several steps is that of one where they are alike, shaded or not.
+for name in block slice; do
+    crop=$([ $name = slice ] && echo :,:,30:31 || echo :,:,:)
+    run 0 "a $name" "$TOOL" convert phantom:head --dims 60x60x50 --crop "$crop" \
+        -o ${name}_0.nrrd
+    cp ${name}_0.nrrd ${name}_1.nrrd
+    run 0 "a movie of two" "$TOOL" movie "${name}_%d.nrrd" -q -s 64x64 \
+        --view superior -o "${name}_%d.png"
+    run 0 "the picture of one" "$TOOL" render ${name}_0.nrrd -q -s 64x64 \
+        --view superior -o $name.png
+    run 0 "is the same" "$TOOL" compare ${name}_0.png $name.png
+done
+
 finish

@@ -195,13 +195,25 @@ oracle.expect("mixed", small, wanted, unit="mm", name="names in any order")
 oracle.expect("mixed/IM*", small, wanted, name="a pattern")
 with open("mixed/notes.txt", "w") as file:
     file.write("not a slice")
-directory = image(small[0])
+directory = image(small[0], SOPClassUID="1.2.840.10008.1.3.10")
 for name in ("Rows", "Columns", "PixelData"):
     delattr(directory, name)
 write("mixed/DICOMDIR", directory)
 os.mkdir("mixed/below")
 oracle.expect("mixed", small, wanted, name="other files beside it")
 oracle.refuse("mixed/DICOMDIR", "without an image")
+# One that was to be a slice.
+shutil.copytree("mixed", "lacking")
+cut = image(small[0])
+for name in ("Rows", "Columns", "PixelData"):
+    delattr(cut, name)
+write("lacking/IMcut", cut)
+oracle.refuse("lacking", "lacking/IMcut: is cut or damaged: it says that it is")
+for size in (0, 50, 131):
+    os.rename("lacking/IMcut" if not size else "lacking/cut.dcm",
+              "lacking/cut.dcm")
+    os.truncate("lacking/cut.dcm", size)
+    oracle.refuse("lacking", "lacking/cut.dcm: is named as DICOM is, and is")
 for name in ("s10", "s9", ".s1"):
     os.makedirs(f"above/{name}")
 oracle.refuse("above", "has no slices itself, but folders such as s9; name one "
@@ -555,7 +567,7 @@ for size in (len(whole) - 10, 300):
         file.write(whole[:size])
     oracle.refuse("broken", "s_4.dcm: is cut or damaged")
     says("a slice beside one that is cut", "broken/s_0.dcm",
-         "1 file beside it cannot be read; the volume may lack slices")
+         "1 file beside it cannot be read (s_4.dcm); the volume may lack slices")
 with open("broken/s_3.dcm", "wb") as file:
     file.write(whole[:300])
 says("a slice beside two that are cut", "broken/s_0.dcm",

@@ -92,6 +92,7 @@ typedef struct dicom_reader {
     dicom_element *elements;
     size_t count, room;
     char syntax[65];
+    char class_told[65]; /* of what the file holds, as its beginning says */
     bool big_endian;
     bool packed;          /* the pixels are fragments */
     bool has_pixels;      /* where they were not asked for: they follow */

@@ -2,8 +2,8 @@
  * of its series beside it, or all of a folder, of which one series is chosen.
  *
  * A folder is one level deep.  Files that are no DICOM, and those without an
- * image (reports, indices), are passed by; one that is damaged is not, as it
- * may be a slice. */
+ * image (reports, indices), are passed by; one that is damaged, or is named as
+ * DICOM is, is not, as it may be a slice. */
 #include "volume/dicom.h"
 
 #include <stdio.h>
@@ -23,6 +23,17 @@ static bool is_dicom(snow_context *context, const char *path) {
               snow_dicom_probe(bytes, got);
     snow_source_close(source);
     return is;
+}
+
+/* For one that is no DICOM, whatever is left of it. */
+static snow_status check_name(snow_context *context, const char *path) {
+    if (snow_format_of_name(path) != &snow_format_dicom)
+        return SNOW_OK;
+    snow_fail(context, SNOW_BAD_INPUT,
+              "is named as DICOM is, and is none; it may be a slice that was "
+              "cut: fetch it again, or take it out of the folder");
+    snow_fail_in_file(context, SNOW_BAD_INPUT, path);
+    return SNOW_BAD_INPUT;
 }
 
 bool snow_dicom_among(snow_context *context, const snow_folder *files) {
@@ -226,8 +237,9 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
     collection c = {.context = context};
     snow_status status = SNOW_OK;
     for (size_t i = 0; i < files->count && status == SNOW_OK; i++)
-        if (is_dicom(context, files->paths[i]))
-            status = add_path(&c, files->paths[i], NULL);
+        status = is_dicom(context, files->paths[i])
+                     ? add_path(&c, files->paths[i], NULL)
+                     : check_name(context, files->paths[i]);
     if (status == SNOW_OK && !c.frame_count)
         status = snow_fail(context, SNOW_BAD_INPUT,
                            "its DICOM files have no images; folders in it are "
@@ -273,17 +285,24 @@ static const char *name_of(const char *path) {
  * is told. */
 static void add_siblings(collection *c, const char *path, snow_folder *files) {
     const char *series = c->images[0]->series;
+    const char *first = NULL;
     size_t unread = 0;
-    for (size_t i = 0; i < files->count; i++)
-        if (strcmp(name_of(files->paths[i]), name_of(path)) != 0 &&
-            is_dicom(c->context, files->paths[i]) &&
-            add_path(c, files->paths[i], series) != SNOW_OK)
-            unread++;
+    for (size_t i = 0; i < files->count; i++) {
+        char *file = files->paths[i];
+        if (strcmp(name_of(file), name_of(path)) == 0)
+            continue;
+        snow_status status = is_dicom(c->context, file)
+                                 ? add_path(c, file, series)
+                                 : check_name(c->context, file);
+        if (status != SNOW_OK && !unread++)
+            first = name_of(file);
+    }
     if (unread)
         snow_notify(c->context,
-                    "%zu file%s beside it cannot be read; the volume may lack "
-                    "slices",
-                    unread, unread > 1 ? "s" : "");
+                    "%zu file%s beside it cannot be read (%.60s%s); the volume "
+                    "may lack slices",
+                    unread, unread > 1 ? "s" : "", first,
+                    unread > 1 ? ", ..." : "");
 }
 
 /* Of a stack of several times the one that the given file is in; false where it

@@ -223,12 +223,38 @@ static snow_status check_sizes(snow_context *context,
     return SNOW_OK;
 }
 
+/* Whether a file says that it holds an image, by the class of its contents
+ * (PS3.4, B.5): the common ones. */
+static bool says_image(const dicom_reader *reader) {
+    static const char root[] = "1.2.840.10008.5.1.4.1.1.";
+    static const char *const images[] = {
+        "1",   "1.1", "1.2", "2",   "2.1", "3.1",  "4",    "4.1", "6.1", "7",
+        "7.1", "7.2", "7.3", "7.4", "8",   "12.1", "12.2", "20",  "128", "130"};
+    const char *told = reader->class_told;
+    size_t length = strlen(told);
+    if (strncmp(told, root, sizeof root - 1) != 0)
+        return false;
+    while (length && told[length - 1] == ' ')
+        length--;
+    for (size_t i = 0; i < sizeof images / sizeof *images; i++)
+        if (strlen(images[i]) == length - (sizeof root - 1) &&
+            !strncmp(told + sizeof root - 1, images[i],
+                     length - (sizeof root - 1)))
+            return true;
+    return false;
+}
+
 snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
                                   dicom_image *out) {
     dicom_image image = {0};
     image.columns = (int64_t)number(reader, 0x00280011, SHORTS, 0);
     image.rows = (int64_t)number(reader, 0x00280010, SHORTS, 0);
     if (!image.columns || !image.rows) {
+        if (says_image(reader))
+            return snow_fail(context, SNOW_BAD_INPUT,
+                             "is cut or damaged: it says that it is an image, "
+                             "and has none; fetch it again, or take it out of "
+                             "the folder");
         image.rows = 0;
         *out = image;
         return SNOW_OK;

@@ -23,6 +23,7 @@
 #define UNDEFINED 0xffffffffu /* length: up to a delimiter */
 #define META_GROUP 2
 
+#define TAG_CLASS 0x00020002u
 #define TAG_SYNTAX 0x00020010u
 #define TAG_ITEM_END 0xfffee00du
 #define TAG_SEQUENCE_END 0xfffee0ddu
@@ -330,6 +331,9 @@ static snow_status walk_meta(walk *w) {
             for (size_t i = strlen(syntax); i && syntax[i - 1] == ' ';)
                 syntax[--i] = 0;
         }
+        if (h.tag == TAG_CLASS && h.length < sizeof w->reader->class_told)
+            snow_random_read(w->reader->store, w->at, w->reader->class_told,
+                             h.length);
         w->at += h.length;
     }
 }
