@@ -248,7 +248,6 @@ static void fill_recipe(const options *asked, snow_recipe *out) {
         out->input = asked->operands[0];
     out->output = asked->output;
     out->depth = asked->depth;
-    out->image.overwrite = asked->overwrite;
     out->image.flatten = asked->background.given;
     memcpy(out->image.background, asked->background.rgb,
            sizeof out->image.background);

@@ -27,6 +27,11 @@ run 4 "its own output is kept" render --config all.json
 says 'a.png'
 run 0 "and replaced where that is asked" render --config all.json -y
 
+# The permission to replace files is for one run.
+run 0 "saved with -y" render phantom:cube -s 9x9 -o once.png -y \
+    --save-config once.json
+run 4 "nothing is replaced without it" render --config once.json
+
 # A unit that is told beside a transfer function of another one.
 echo '{"snowglass-tf": 1, "opacity-unit": "mm",
     "opacities": [[0, 0], [255, 0.5]]}' >mm.json

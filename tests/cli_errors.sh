@@ -167,4 +167,14 @@ run 4 "a reader that went away" gone \
     "$TOOL" -q phantom:cube --dims 16x16x16 -s 2048x2048 --background white \
     --bits 16 -o -
 check "nothing is left aside" [ -z "$(ls -A | grep -E 'snow-|XXXX')" ]
+# Sizes that a file cannot hold are its fault, whatever memory there is.
+printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 90000 90000 90000\nencoding: raw\n\n12345678' \
+    >large.nrrd
+printf 'ObjectType = Image\nNDims = 3\nDimSize = 90000 90000 90000\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n12345678' \
+    >large.mha
+for file in large.nrrd large.mha; do
+    run 3 "sizes that $file cannot hold" "$TOOL" render $file -o large.png
+    says "$file: has 8 bytes left where the voxels need 729000000000000"
+done
+
 finish

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/support_shell.sh"
 
 # Every phantom gives a picture that differs from an empty one.
-for name in cube head engine shells marschner-lobb; do
+for name in cube head engine shells marschner-lobb turbulence; do
     small="phantom:$name --dims 24x24x20 -s 40x30"
     # shellcheck disable=SC2086
     run 0 "phantom:$name" "$TOOL" $small -o $name.png

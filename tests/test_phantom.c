@@ -98,6 +98,7 @@ static void default_sizes_types_and_places_are_told(void **state) {
         {"engine", {256, 256, 110}, SNOW_UINT8, false},
         {"shells", {128, 128, 128}, SNOW_UINT8, false},
         {"marschner-lobb", {40, 40, 40}, SNOW_FLOAT32, false},
+        {"turbulence", {128, 128, 128}, SNOW_FLOAT32, false},
     };
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
@@ -118,8 +119,8 @@ static void default_sizes_types_and_places_are_told(void **state) {
         }
         snow_volume_close(volume);
     }
-    assert_null(snow_phantom_name(5));
-    assert_null(snow_phantom_text(5));
+    assert_null(snow_phantom_name(6));
+    assert_null(snow_phantom_text(6));
     snow_context_free(context);
 }
 
@@ -134,6 +135,7 @@ static void bytes_are_the_same_on_every_machine(void **state) {
         {"engine", UINT64_C(0x64e1d69df6f67415)},
         {"shells", UINT64_C(0x0d80409e00eaaf46)},
         {"marschner-lobb", UINT64_C(0x9fb15d84083c946d)},
+        {"turbulence", UINT64_C(0x758403cf827ecb71)},
     };
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {

@@ -251,11 +251,16 @@ static bool is_word(const char *text, const char *word, const char *also) {
            strcmp(text, also) == 0;
 }
 
+static bool is_local(const metaimage_header *header) {
+    return is_word(header->data, "LOCAL", "Local") ||
+           is_word(header->data, "local", "local");
+}
+
 /* ElementDataFile's special words, which stand before any file of that
  * name ("./LOCAL" still reaches one). */
 static snow_status read_data(const reading *r, snow_volume **out) {
     const char *data = r->header->data;
-    if (is_word(data, "LOCAL", "Local") || is_word(data, "local", "local"))
+    if (is_local(r->header))
         return read_whole(r->source, r, out);
     if (is_word(data, "LIST", "List"))
         return read_list(r, out);
@@ -276,7 +281,8 @@ static snow_status read_metaimage(snow_source *source,
     SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
     SNOW_TRY(snow_window_lay(context, options, info, &r.window));
     if (!out)
-        return SNOW_OK;
+        return is_local(&header) ? begin_part(source, &header, r.window.all)
+                                 : SNOW_OK;
     snow_volume *volume = NULL;
     snow_status status = read_data(&r, &volume);
     if (status != SNOW_OK) {

@@ -37,6 +37,16 @@ static size_t print_header(const snow_volume_info *info, char *text,
     return all;
 }
 
+/* Whether axes are turned or mirrored, or a patient's. */
+static bool is_oriented(const snow_volume_info *info) {
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 3; column++)
+            if (row == column ? !(info->matrix[row][column] > 0)
+                              : info->matrix[row][column] != 0)
+                return true;
+    return info->medical;
+}
+
 snow_status snow_npy_write(const snow_volume *volume, const char *path,
                            snow_writer *writer) {
     const snow_volume_info *info = &volume->info;
@@ -49,10 +59,15 @@ snow_status snow_npy_write(const snow_volume *volume, const char *path,
     size_t used = print_header(info, text, sizeof text);
     SNOW_TRY(snow_writer_write(writer, text, used));
     SNOW_TRY(snow_write_voxels(volume, writer));
-    if (info->spacing[0] != 1 || info->spacing[1] != 1 || info->spacing[2] != 1)
+    const double *spacing = info->spacing;
+    bool oriented = is_oriented(info);
+    if (oriented || spacing[0] != 1 || spacing[1] != 1 || spacing[2] != 1)
         snow_notify(volume->context,
                     "%s: NumPy arrays keep no geometry; open it with --spacing "
-                    "%gx%gx%g",
-                    path, info->spacing[0], info->spacing[1], info->spacing[2]);
+                    "%gx%gx%g%s",
+                    path, spacing[0], spacing[1], spacing[2],
+                    oriented ? ", and which way its axes run is lost: write "
+                               ".nrrd or .nii to keep that"
+                             : "");
     return SNOW_OK;
 }

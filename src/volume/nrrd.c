@@ -24,7 +24,7 @@ static snow_status read_parsed(snow_source *source, const nrrd_text *text,
     SNOW_TRY(snow_nrrd_lay_out(context, &header, options, info, &window));
     SNOW_TRY(snow_nrrd_find_files(context, text, &header, &files));
     if (!out)
-        return SNOW_OK;
+        return snow_nrrd_check_data(source, &header, &files, &window);
     return snow_nrrd_read_data(source, &header, &files, info, &window, out);
 }
 

@@ -148,6 +148,12 @@ snow_status snow_nrrd_file_name(snow_context *context, const nrrd_files *files,
                                 uint64_t index, const char **at, char *name,
                                 size_t size);
 
+/* Whether data behind the header can be all there; `source` stands there.  Of
+ * files beside it nothing is looked at. */
+snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
+                                 const nrrd_files *files,
+                                 const snow_window *window);
+
 /* Makes the volume; `source` stands behind the header. */
 snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,

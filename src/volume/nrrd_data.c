@@ -220,6 +220,15 @@ static snow_status read_sibling(snow_source *source, const nrrd_header *header,
 }
 
 /* Bytes are swapped once at the end, however many files they came from. */
+snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
+                                 const nrrd_files *files,
+                                 const snow_window *window) {
+    bool at_end;
+    if (files->place != NRRD_ATTACHED)
+        return SNOW_OK;
+    return go_to_data(source, header, true, window->all, &at_end);
+}
+
 snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,

@@ -10,7 +10,7 @@
 
 static const snow_phantom *const phantoms[] = {
     &snow_phantom_cube,   &snow_phantom_head,   &snow_phantom_engine,
-    &snow_phantom_shells, &snow_phantom_signal,
+    &snow_phantom_shells, &snow_phantom_signal, &snow_phantom_turbulence,
 };
 
 static const size_t phantom_count = sizeof phantoms / sizeof *phantoms;

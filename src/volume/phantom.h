@@ -38,6 +38,7 @@ extern const snow_phantom snow_phantom_head;
 extern const snow_phantom snow_phantom_engine;
 extern const snow_phantom snow_phantom_shells;
 extern const snow_phantom snow_phantom_signal;
+extern const snow_phantom snow_phantom_turbulence;
 
 /* snow_volume_phantom, with the box of the options; where `out` is NULL only
  * the info, whose matrix is that of the whole, as with snow_format.read. */
