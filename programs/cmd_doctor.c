@@ -129,7 +129,7 @@ static int tell_json(void) {
     json_object_set_new(o, "libraries", libraries_json());
     json_object_set_new(o, "isa_found", words_json(snow_isa_found()));
     json_object_set_new(o, "isa", json_string(snow_isa_used()));
-    json_object_set_new(o, "threads", json_integer(snow_processors()));
+    json_object_set_new(o, "threads", json_integer(launch_processors()));
     json_object_set_new(
         o, "mpi", launch_mpi() ? json_string(launch_mpi()) : json_false());
     json_object_set_new(o, "ranks", json_integer(launch_ranks()));
@@ -174,7 +174,7 @@ static int tell_text(void) {
     print_libraries();
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
-    printf("%-16s%d\n", "threads", snow_processors());
+    printf("%-16s%d\n", "threads", launch_processors());
     if (launch_mpi())
         printf("%-16s%s, %d rank%s\n", "mpi", launch_mpi(), launch_ranks(),
                launch_ranks() > 1 ? "s" : "");

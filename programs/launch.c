@@ -3,10 +3,33 @@
 #include "interrupt.h"
 #include "report.h"
 
+#include <limits.h>
+#include <snowglass/snowglass.h>
+#include <stdlib.h>
+
 static launch now;
+
+/* 0: it is not told, or makes no sense. */
+static int number_told(const char *name) {
+    const char *text = getenv(name);
+    char *end = NULL;
+    long number = text ? strtol(text, &end, 10) : 0;
+    return end && !*end && number > 0 && number < INT_MAX ? (int)number : 0;
+}
+
+/* What Slurm has given to a task, or to a job on this machine, holds where it
+ * binds no processes as well. */
+static void heed_slurm(void) {
+    int limit = number_told("SLURM_CPUS_PER_TASK");
+    if (!limit && !now.comm)
+        limit = number_told("SLURM_CPUS_ON_NODE");
+    if (limit && limit < launch_processors())
+        now.threads = limit;
+}
 
 void launch_begin(const launch *how) {
     now = *how;
+    heed_slurm();
     if (!launch_talks())
         interrupt_mute();
 }
@@ -25,6 +48,10 @@ snow_comm *launch_comm(void) {
 
 int launch_threads(void) {
     return now.threads;
+}
+
+int launch_processors(void) {
+    return now.threads ? now.threads : snow_processors();
 }
 
 const char *launch_mpi(void) {

@@ -28,6 +28,11 @@ int launch_rank(void);  /* from 0 */
 int launch_ranks(void); /* at least 1 */
 snow_comm *launch_comm(void);
 int launch_threads(void);
+
+/* How many threads a process has where nobody says: those, or all processors
+ * that it may use (snow_processors, and what Slurm says). */
+int launch_processors(void);
+
 const char *launch_mpi(void);
 
 /* Whether this rank talks: the first one. */

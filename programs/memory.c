@@ -252,8 +252,7 @@ static bool is_small_folder(const char *path) {
 }
 
 static int threads_of(const options *asked) {
-    int threads = asked->threads ? (int)asked->threads : launch_threads();
-    return threads ? threads : snow_processors();
+    return asked->threads ? (int)asked->threads : launch_processors();
 }
 
 static void tell_need(const sizes *s) {

@@ -71,8 +71,7 @@ static void name_library(char out[MPI_MAX_LIBRARY_VERSION_STRING]) {
 }
 
 /* Threads for each rank where nobody tells how many: the processors of a
- * machine by its ranks, if they are not bound to some each already, or have
- * some from Slurm. */
+ * machine by its ranks, if they are not bound to some each already. */
 static int share_processors(void) {
     MPI_Comm machine;
     cpu_set_t mine, all;
@@ -85,9 +84,7 @@ static int share_processors(void) {
     MPI_Allreduce(&mine, &all, (int)sizeof mine, MPI_BYTE, MPI_BOR, machine);
     MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_INT, MPI_SUM, machine);
     MPI_Comm_free(&machine);
-    threads = snow_processors();
-    if (!getenv("SLURM_CPUS_PER_TASK"))
-        threads = (int)((int64_t)threads * CPU_COUNT(&all) / sum);
+    threads = (int)((int64_t)snow_processors() * CPU_COUNT(&all) / sum);
     return threads > 1 ? threads : 1;
 }
 

@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "frames.h"
 #include "interrupt.h"
+#include "launch.h"
 #include "outputs.h"
 #include "paint.h"
 #include "report.h"
@@ -258,7 +259,7 @@ void sequence_close(sequence *s) {
 /* Half of the processors compress, at most FRAME_WORKERS_MOST; fewer where
  * pictures are huge. */
 static int count_workers(const options *asked) {
-    int64_t threads = asked->threads ? asked->threads : snow_processors();
+    int64_t threads = asked->threads ? asked->threads : launch_processors();
     int64_t frame = asked->size[0] * asked->size[1] * PIXEL_BYTES;
     int64_t workers = threads / 2;
     if (workers > QUEUE_BYTES / frame - 2)

@@ -258,4 +258,11 @@ done
 check "interrupted at 11 moments, $early of them early: whole or absent" \
     [ "$broken" -eq 0 ]
 check "and nothing is left aside" [ -z "$(ls -A | grep snow-)" ]
+# What Slurm has given, where it binds no processes.
+for given in SLURM_CPUS_PER_TASK=1 SLURM_CPUS_ON_NODE=1; do
+    run 0 "$given" env "$given" "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 -q -y \
+        -o slurm.png --stats -
+    prints '"threads": 1,'
+done
+
 finish

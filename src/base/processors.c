@@ -1,7 +1,6 @@
 /* base/processors.c - how many processors this process may use: those of its
  * affinity, and no more than the quotas of its control groups (cgroup v2 and
- * v1), rounded up, and than what Slurm has given to a task of a job, or to the
- * job on this machine, where it binds no processes. */
+ * v1), rounded up. */
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "base/base.h"
 
@@ -9,7 +8,6 @@
 #include <sched.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -87,21 +85,7 @@ static int affinity(void) {
     return online > 0 && online < INT_MAX ? (int)online : 1;
 }
 
-/* 0: it is not told, or makes no sense. */
-static int number_told(const char *name) {
-    const char *text = getenv(name);
-    char *end = NULL;
-    long number = text ? strtol(text, &end, 10) : 0;
-    return end && !*end && number > 0 && number < INT_MAX ? (int)number : 0;
-}
-
-static int slurm_limit(void) {
-    int task = number_told("SLURM_CPUS_PER_TASK");
-    return task ? task : number_told("SLURM_CPUS_ON_NODE");
-}
-
 int snow_processors(void) {
-    int processors = affinity();
-    int limit = lesser_limit(cgroup_limit(), slurm_limit());
+    int processors = affinity(), limit = cgroup_limit();
     return limit > 0 && limit < processors ? limit : processors;
 }
