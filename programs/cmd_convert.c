@@ -80,8 +80,10 @@ static int change_type(snow_context *context, const options *asked,
         return done;
     snow_status status =
         snow_volume_convert(*volume, type, spread ? range : NULL, &made);
-    if (status != SNOW_OK)
-        return fail_status(context, status);
+    if (status != SNOW_OK) {
+        say("%s: %s", asked->operands[0], snow_context_message(context));
+        return (int)status;
+    }
     snow_volume_close(*volume);
     *volume = made;
     return GO_ON;

@@ -66,7 +66,7 @@ check "stays one" grep -aq "ElementToIntensityFunctionOffset = -1024" ct.mha
 refused 2 "no output" "no output is named" "$TOOL" convert a.nrrd
 refused 2 "an unknown ending" "volumes are written as" \
     "$TOOL" convert a.nrrd -o a.xyz
-refused 2 "values that do not fit" "do not fit int8; convert to float32" \
+refused 2 "values that do not fit" "nrrd: .* do not fit int8; convert to float32" \
     "$TOOL" convert j.nrrd -o k.nrrd --as int8
 refused 2 "a range without a type" "add --as uint8" \
     "$TOOL" convert a.nrrd -o k.nrrd --range 0,5
