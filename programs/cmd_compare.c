@@ -26,6 +26,34 @@ static int tell_json(const snow_image_difference *d, double tolerance,
     return print_json(object);
 }
 
+static json_t *size_json(const snow_image *image) {
+    const int64_t size[2] = {snow_image_width(image), snow_image_height(image)};
+    return json_sizes(size, 2);
+}
+
+/* Of two sizes there is no difference to measure, yet an answer. */
+static int judge_sizes(const options *asked, snow_image *const images[2]) {
+    int done = SNOW_OK;
+    const snow_image *a = images[0], *b = images[1];
+    if (snow_image_width(a) == snow_image_width(b) &&
+        snow_image_height(a) == snow_image_height(b))
+        return GO_ON;
+    say("%s and %s: %d x %d and %d x %d pixels; only pictures of one size can "
+        "be compared",
+        name_of_input(asked->operands[0]), name_of_input(asked->operands[1]),
+        snow_image_width(a), snow_image_height(a), snow_image_width(b),
+        snow_image_height(b));
+    if (asked->json) {
+        json_t *object = json_object();
+        json_object_set_new(object, "within", json_false());
+        json_object_set_new(object, "tolerance", json_number(asked->tolerance));
+        json_object_set_new(object, "sizes",
+                            json_pack("[oo]", size_json(a), size_json(b)));
+        done = print_json(object);
+    }
+    return done == SNOW_OK ? SNOW_DIFFERENT : done;
+}
+
 /* Nine digits tell any two floats apart. */
 static int tell_text(const snow_image_difference *d, double tolerance,
                      bool within) {
@@ -61,6 +89,8 @@ int cmd_compare(const options *asked) {
         done = load(context, asked->operands[0], &images[0]);
     if (done == GO_ON)
         done = load(context, asked->operands[1], &images[1]);
+    if (done == GO_ON)
+        done = judge_sizes(asked, images);
     if (done == GO_ON) {
         snow_status status =
             snow_image_compare(images[0], images[1], &difference);

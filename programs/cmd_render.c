@@ -8,6 +8,7 @@
 #include "marks.h"
 #include "outputs.h"
 #include "paint.h"
+#include "remarks.h"
 #include "render_stats.h"
 #include "report.h"
 #include "scene.h"
@@ -277,7 +278,7 @@ static void tell_choices(const work *w) {
     scene_choices(&w->scene, text, sizeof text);
     if (w->scene.asked->verbosity >= 0)
         say("%s%s", text, w->painted.words);
-    scene_tell_method(&w->scene);
+    remark_picture(&w->scene, w->image);
 }
 
 /* What can be refused before anything is read; outputs by the rank that

@@ -13,6 +13,7 @@ snow_volume_options data_options(const options *asked) {
     snow_volume_options data = {.type = asked->type,
                                 .offset = asked->offset,
                                 .time = asked->time,
+                                .each_time = asked->each_time,
                                 .channel = asked->channel,
                                 .dataset = asked->dataset,
                                 .series = asked->series,

@@ -216,11 +216,17 @@ bool options_told(const options *asked, const char *name) {
     return asked->told[row_named(name) - option_table] != NULL;
 }
 
+bool options_typed(const options *asked, const char *name) {
+    return options_told(asked, name) &&
+           !asked->configured[row_named(name) - option_table];
+}
+
 int options_take(options *out, const verb_row *verb, const char *name,
                  const char *text) {
     const option_row *row = row_named(name);
     if (!row->name || !(row->verbs & verb->bit) || options_told(out, name))
         return GO_ON;
+    out->configured[row - option_table] = true;
     return take(out, row, verb, text);
 }
 

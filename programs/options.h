@@ -99,6 +99,8 @@ typedef struct options {
     const char *mask, *labels;       /* NULL: not told */
     uint64_t seed;
 
+    bool each_time; /* `time` is one of all, which are opened in turn */
+
     int64_t frames; /* of a turn */
     double fps;
     bool resume;
@@ -128,6 +130,7 @@ typedef struct options {
     int operand_count;
     const char *told[OPTION_ROWS_MOST]; /* the text of each row of the table as
                                            it was given, NULL: not told */
+    bool configured[OPTION_ROWS_MOST];  /* told by --config */
 } options;
 
 typedef struct option_row option_row;
@@ -202,6 +205,9 @@ int options_take(options *out, const verb_row *verb, const char *name,
 
 /* Whether an option stands on the command line. */
 bool options_told(const options *asked, const char *name);
+
+/* The same, and by the command line itself, not by --config. */
+bool options_typed(const options *asked, const char *name);
 
 /* Writes the help that was asked for to standard output: `word` names a topic
  * or a verb, NULL means that of `verb`, or the overview when that is NULL too.

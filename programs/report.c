@@ -96,7 +96,8 @@ int fail_status(const snow_context *context, snow_status status) {
 int fail_volume(const snow_context *context, snow_status status,
                 const char *input) {
     const char *message = snow_context_message(context);
-    if (status != SNOW_BAD_INPUT || strncmp(message, input, strlen(input)) == 0)
+    bool of_input = status == SNOW_BAD_INPUT || status == SNOW_NO_MEMORY;
+    if (!of_input || strncmp(message, input, strlen(input)) == 0)
         return fail_status(context, status);
     say("%s: %s", input, message);
     return (int)status;

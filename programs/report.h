@@ -21,8 +21,8 @@ int fail_output(const char *format, ...) SNOW_PRINTF(1, 2);
 int fail_status(const snow_context *context, snow_status status);
 
 /* The same for a stage that was given a volume in memory: it can find fault
- * with the input, but not say which file that came from, unless it was read
- * meanwhile. */
+ * with the input, or have no room for it, but not say which file that came
+ * from, unless it was read meanwhile. */
 int fail_volume(const snow_context *context, snow_status status,
                 const char *input);
 

@@ -3,6 +3,7 @@
 #include "scene.h"
 #include "commands.h"
 #include "launch.h"
+#include "remarks.h"
 #include "report.h"
 
 #include <stdio.h>
@@ -18,41 +19,8 @@ typedef struct rank_figures {
     uint64_t peak;
 } rank_figures;
 
-/* Of what is asked for by its name. */
-void scene_tell_method(const scene *s) {
-    const options *asked = s->asked;
-    snow_mode mode = s->settings.mode;
-    if (strcmp(asked->method, "sheared") != 0 || mode == SNOW_MODE_ISO ||
-        s->stats.method == SNOW_METHOD_SHEARED || asked->verbosity < 0)
-        return;
-    say("note: method footprint in place of sheared: pixels are too many "
-        "voxels wide, the eye is too near%s",
-        mode == SNOW_MODE_OVER ? "" : ", or a voxel is no finite number");
-}
-
-/* Options that a mode makes no use of are named rather than passed over. */
-static void tell_unused(const options *asked) {
-    static const char *const of_opacity[] = {"opacity", "gradient-opacity"};
-    static const char *const of_light[] = {"light",   "shade",    "ambient",
-                                           "diffuse", "specular", "shininess"};
-    bool lit = strcmp(asked->mode, "iso") == 0;
-    if (strcmp(asked->mode, "over") == 0 || asked->verbosity < 0 ||
-        !launch_talks())
-        return;
-    for (size_t i = 0; i < sizeof of_opacity / sizeof *of_opacity; i++)
-        if (options_told(asked, of_opacity[i]))
-            say("note: --%s has no part in mode %s", of_opacity[i],
-                asked->mode);
-    for (size_t i = 0; i < sizeof of_light / sizeof *of_light && !lit; i++)
-        if (options_told(asked, of_light[i]))
-            say("note: --%s has no part in mode %s", of_light[i], asked->mode);
-    if (lit && strcmp(asked->method, "sheared") == 0)
-        say("note: --method sheared has no part in mode iso: rays find the "
-            "surface among the encoded voxels");
-}
-
 int scene_check(const options *asked) {
-    tell_unused(asked);
+    remark_unused(asked);
     if (launch_ranks() > 1 && strcmp(asked->operands[0], "-") == 0)
         return fail_usage("-: many ranks read a file, each its part; name one");
     return GO_ON;
@@ -183,7 +151,7 @@ static int open_alone(scene *s, const options *step) {
         status = done == GO_ON ? make_look(s, step) : SNOW_OK;
     }
     if (status != SNOW_OK)
-        return fail_status(s->context, status);
+        return fail_volume(s->context, status, name_of_input(s->path));
     if (done == GO_ON)
         done = place_camera(s);
     choose_shade(s);
@@ -237,10 +205,16 @@ static int open_part(scene *s, const options *step) {
     return GO_ON;
 }
 
-/* The old volume goes first: there is never room for two. */
-int scene_open(scene *s, const char *path, int64_t time) {
+options scene_step(const scene *s, int64_t time) {
     options step = *s->asked;
     step.time = time;
+    step.each_time = s->each_time;
+    return step;
+}
+
+/* The old volume goes first: there is never room for two. */
+int scene_open(scene *s, const char *path, int64_t time) {
+    options step = scene_step(s, time);
     s->path = path;
     snow_volume_close(s->volume);
     s->volume = NULL;
@@ -350,8 +324,7 @@ int scene_begin(scene *s, double azimuth) {
     s->view.azimuth = azimuth;
     status = launch_ranks() > 1 ? begin_part(s) : draw_alone(s);
     if (may_leave(s, status)) {
-        options step = *s->asked;
-        step.time = s->whole.time;
+        options step = scene_step(s, s->whole.time);
         done = leave_in_file(s, &step);
         if (done == GO_ON)
             done = make_frame(s);

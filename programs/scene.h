@@ -19,6 +19,7 @@ typedef struct scene_shot {
 typedef struct scene {
     const options *asked;
     const char *path; /* of the volume */
+    bool each_time;   /* all time steps of the file are opened in turn */
     bool turns;       /* pictures from several sides are asked for */
     int64_t left;     /* then: how many are to come, the next one with them */
     memory_plan plan; /* for it, where this process is alone */
@@ -51,6 +52,9 @@ int scene_check(const options *asked);
 int scene_new(const options *asked, scene *out);
 void scene_free(scene *s);
 
+/* What is asked for, of one time step. */
+options scene_step(const scene *s, int64_t time);
+
 /* Opens a time step of a volume in place of the present one, with the look that
  * is asked for, unless the scene has a transfer function already. */
 int scene_open(scene *s, const char *path, int64_t time);
@@ -70,8 +74,5 @@ render_report scene_report(const scene *s);
 /* The one line that says what was chosen where nothing was told, but for its
  * end. */
 void scene_choices(const scene *s, char *out, size_t size);
-
-/* A note where --method sheared was asked for and cannot make the picture. */
-void scene_tell_method(const scene *s);
 
 #endif

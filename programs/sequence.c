@@ -162,15 +162,15 @@ static snow_status begin_record(sequence *s, frame_slot *slot) {
 }
 
 /* Gives a frame its name.  One that lies there without being recorded is from
- * a run that was killed in between. */
+ * a run that was killed in between, where a record tells of such a run, or came
+ * meanwhile, and stays. */
 static snow_status name_frame(sequence *s, frame_slot *slot) {
     char aside[PATH_MAX], path[PATH_MAX];
     struct stat what;
-    bool overwrite = s->asked->overwrite || s->asked->resume;
     place_aside(&s->place, slot->index, aside, sizeof aside);
     place_frame(&s->place, slot->index, path, sizeof path);
     int64_t bytes = stat(aside, &what) == 0 ? (int64_t)what.st_size : 0;
-    int number = name_output(aside, path, overwrite);
+    int number = name_output(aside, path, s->record.replaces);
     if (number == 0)
         number = record_add(&s->record, slot->index, bytes);
     return number == 0 ? SNOW_OK : fault(slot, path, number);
@@ -256,10 +256,14 @@ void sequence_close(sequence *s) {
     free(s);
 }
 
+static int64_t count_threads(const options *asked) {
+    return asked->threads ? asked->threads : launch_processors();
+}
+
 /* Half of the processors compress, at most FRAME_WORKERS_MOST; fewer where
  * pictures are huge. */
 static int count_workers(const options *asked) {
-    int64_t threads = asked->threads ? asked->threads : launch_processors();
+    int64_t threads = count_threads(asked);
     int64_t frame = asked->size[0] * asked->size[1] * PIXEL_BYTES;
     int64_t workers = threads / 2;
     if (workers > QUEUE_BYTES / frame - 2)
@@ -274,7 +278,7 @@ static int start_encoder(sequence *s) {
                        .width = (int)s->asked->size[0],
                        .height = (int)s->asked->size[1],
                        .rate = s->asked->fps,
-                       .threads = (int)s->asked->threads,
+                       .threads = (int)count_threads(s->asked),
                        .path = s->place.movie,
                        .log = s->place.log};
     int number = encoder_start(&job, &s->encoder);
@@ -287,7 +291,10 @@ static int start_encoder(sequence *s) {
 /* What lies there is this run's from here on. */
 static int claim(sequence *s) {
     int number = record_claim(&s->record, &s->place);
+    struct stat what;
     s->claimed = number == 0;
+    if (number == EEXIST && stat(s->place.record, &what) != 0)
+        number = errno; /* a link to nowhere */
     if (number == EEXIST || number == EAGAIN)
         return fail_output("%s: another run has begun these frames; wait for "
                            "it, or choose another name",
@@ -493,8 +500,11 @@ static int tell_queue(sequence *s, snow_status status) {
  * nothing at all. */
 static void clean_up(sequence *s) {
     encoder_stop(&s->encoder);
-    if (!s->claimed)
+    if (!s->claimed) {
+        if (s->made_folder) /* and nobody else has put anything there */
+            rmdir(s->place.folder);
         return;
+    }
     place_sweep(&s->place);
     if (s->place.format)
         unlink(s->place.log);

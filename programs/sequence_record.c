@@ -218,8 +218,9 @@ static int fail_other(const sequence_place *place, const char *old,
         *now ? now : "nothing");
 }
 
-/* Of frames without a record of ours, or of one that shall not be resumed. */
-static int check_strangers(const options *asked, const sequence_place *place) {
+/* Of frames without a record of ours, or with one that shall not be resumed. */
+static int check_strangers(const options *asked, const sequence_place *place,
+                           bool recorded) {
     char path[PATH_MAX];
     int64_t first = place_first(place, 0);
     if (first < 0 || asked->overwrite ||
@@ -230,9 +231,9 @@ static int check_strangers(const options *asked, const sequence_place *place) {
                            "made with; give --overwrite without --resume to "
                            "begin anew, or another name",
                            path);
-    return fail_output("%s: exists; give --resume to go on, --overwrite to "
-                       "begin anew, or another name",
-                       path);
+    return fail_output("%s: exists; give %s--overwrite to begin anew, or "
+                       "another name",
+                       path, recorded ? "--resume to go on, " : "");
 }
 
 /* Whether what lies there can be gone on with; then marks the frames that are
@@ -271,7 +272,7 @@ static int compare(const options *asked, const shot_list *list,
         return fail_output("%s: an unfinished movie is in %s; give --resume to "
                            "go on or --overwrite to begin anew",
                            place->output, place->folder);
-    return check_strangers(asked, place);
+    return check_strangers(asked, place, true);
 }
 
 /* The record that lies there, opened and locked; -1 with GO_ON: none. */
@@ -302,10 +303,11 @@ int record_open(const options *asked, const shot_list *list,
     int done = open_file(place, out);
     if (done != GO_ON)
         return done;
-    out->replaces = asked->overwrite || out->file >= 0;
     char *old = out->file >= 0 ? read_text_of(out->file) : NULL;
-    done = old ? compare(asked, list, place, old, out)
-               : check_strangers(asked, place);
+    bool tells = old && *old; /* not of a run that was killed before it did */
+    out->replaces = asked->overwrite || tells;
+    done = tells ? compare(asked, list, place, old, out)
+                 : check_strangers(asked, place, false);
     free(old);
     return done;
 }

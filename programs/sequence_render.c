@@ -4,6 +4,7 @@
 #include "sequence_render.h"
 #include "commands.h"
 #include "launch.h"
+#include "remarks.h"
 #include "report.h"
 
 #include <inttypes.h>
@@ -64,7 +65,7 @@ int shots_volume(shot_renderer *shots, const movie_shot *shot) {
 }
 
 /* What was chosen where nothing was told: as render says it, of all frames. */
-static void tell_choices(const shot_renderer *shots) {
+static void tell_choices(const shot_renderer *shots, snow_image *image) {
     const options *asked = shots->scene.asked;
     char text[1024];
     scene_choices(&shots->scene, text, sizeof text);
@@ -72,7 +73,7 @@ static void tell_choices(const shot_renderer *shots) {
         say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
             shots->painted.words, shots->count, (long long)asked->size[0],
             (long long)asked->size[1], asked->output);
-    scene_tell_method(&shots->scene);
+    remark_picture(&shots->scene, image);
     marks_tell(asked);
 }
 
@@ -93,7 +94,7 @@ static int finish(void *self, snow_image **image) {
     if (done != GO_ON)
         return done;
     if (!shots->drawn)
-        tell_choices(shots);
+        tell_choices(shots, *image);
     shots->drawn = true;
     return GO_ON;
 }

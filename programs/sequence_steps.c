@@ -163,13 +163,6 @@ int steps_find(const options *asked, step_files *out) {
     return done;
 }
 
-static bool was_told(const options *asked, const char *name) {
-    size_t row = 0;
-    while (option_table[row].name && strcmp(option_table[row].name, name) != 0)
-        row++;
-    return asked->told[row] != NULL;
-}
-
 /* Whether the transfer function follows from the options alone: a preset in
  * units of its own, or one that is spread over given values. */
 static bool look_is_fixed(const options *asked) {
@@ -187,8 +180,7 @@ static bool look_is_fixed(const options *asked) {
 /* What is known of a shot's volume without reading it. */
 static int inspect(const shot_renderer *shots, const movie_shot *shot,
                    snow_volume_info *out) {
-    options step = *shots->scene.asked;
-    step.time = shot->time;
+    options step = scene_step(&shots->scene, shot->time);
     snow_volume_options data = data_options(&step);
     snow_status status =
         snow_volume_inspect(shots->scene.context, shot->path, &data, out);
@@ -216,14 +208,16 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     const options *asked = shots->scene.asked;
     movie_shot first = {files->paths[0], asked->time, asked->azimuth, 0};
     out->count = files->count;
-    if (files->count == 1 && !was_told(asked, "time")) {
+    const bool told = options_told(asked, "time");
+    shots->scene.each_time = files->count == 1 && !told;
+    shots->whole_files = files->count > 1 && !told;
+    if (shots->scene.each_time) {
         snow_volume_info info;
         int done = inspect(shots, &first, &info);
         if (done != GO_ON)
             return done;
         out->count = info.times;
     }
-    shots->whole_files = files->count > 1 && !was_told(asked, "time");
     out->together = out->count > 1 && !look_is_fixed(asked);
     out->shots = calloc((size_t)out->count, sizeof *out->shots);
     if (!out->shots)
@@ -235,7 +229,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
             shot->path = files->paths[i];
             shot->step = number_in(shot->path, i);
         } else {
-            shot->time = was_told(asked, "time") ? first.time : i;
+            shot->time = told ? first.time : i;
             shot->step = shot->time;
         }
     }
@@ -366,8 +360,7 @@ static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
     snow_volume *volume = NULL;
     snow_volume_info whole;
     int64_t slab[2];
-    options step = *s->asked;
-    step.time = shot->time;
+    options step = scene_step(s, shot->time);
     snow_volume_options data = data_options(&step);
     int done = inspect(shots, shot, &whole);
     if (done == GO_ON)
@@ -393,8 +386,7 @@ static int read_step(shot_renderer *shots, const movie_shot *shot,
                      value_pool *pool) {
     scene *s = &shots->scene;
     snow_volume *volume = NULL;
-    options step = *s->asked;
-    step.time = shot->time;
+    options step = scene_step(s, shot->time);
     snow_volume_options data = data_options(&step);
     int done = memory_check(&step, shot->path, &data);
     if (done == GO_ON)

@@ -127,7 +127,8 @@ SNOW_API snow_status snow_image_load_memory(snow_context *context,
                                             const char *name, const void *bytes,
                                             size_t size, snow_image **out);
 
-/* How far two pictures differ, over all four premultiplied channels. */
+/* How far two pictures differ, over all four premultiplied channels; the three
+ * of colour where one was read from a PFM file, which has no alpha. */
 typedef struct snow_image_difference {
     double largest; /* largest absolute difference; 0 when equal */
     double mean;    /* mean absolute difference */

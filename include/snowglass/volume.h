@@ -111,6 +111,8 @@ typedef struct snow_volume_options {
     /* Planes a, b, c, d of the world: voxels where a x + b y + c z > d have no
      * value (snow_volume_clip); one whose a, b, c are 0 is none. */
     double clip[SNOW_CLIPS_MOST][4];
+    bool each_time; /* all time steps are opened in turn: no remark tells that
+                       this is one of several */
 } snow_volume_options;
 
 /* Opens a volume file.  The format is found from the first bytes, then from

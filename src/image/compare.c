@@ -1,7 +1,8 @@
 /* image/compare.c - how far two pictures differ.
  *
  * Absolute differences and the peak signal-to-noise ratio are taken over all
- * four premultiplied channels; structural similarity after Wang, Bovik, Sheikh
+ * four premultiplied channels, without alpha where a file left it out;
+ * structural similarity after Wang, Bovik, Sheikh
  * and Simoncelli, "Image quality assessment: from error visibility to
  * structural similarity" (2004), equation 13, over every 8 x 8 window (smaller
  * where the picture is) of the luma over black, with equal weights, K1 = 0.01,
@@ -18,6 +19,7 @@
 
 /* Differences while they are added up, in row order. */
 typedef struct difference_sums {
+    int channels; /* that count */
     double largest, absolute, squared;
     int x, y;
 } difference_sums;
@@ -43,7 +45,7 @@ static void add_row(const snow_image *a, const snow_image *b, int y,
         float p[4], q[4];
         snow_image_rgba(a, first + (size_t)x, p);
         snow_image_rgba(b, first + (size_t)x, q);
-        for (int c = 0; c < 4; c++) {
+        for (int c = 0; c < sums->channels; c++) {
             double difference = absolute_difference(p[c], q[c]);
             absolute += difference;
             squared += difference * difference;
@@ -186,10 +188,11 @@ snow_status snow_image_compare(const snow_image *a, const snow_image *b,
                          a->width, a->height, b->width, b->height);
     double ssim = 0;
     SNOW_TRY(measure_similarity(a, b, &ssim));
-    difference_sums sums = {0};
+    difference_sums sums = {.channels =
+                                a->alpha_unknown || b->alpha_unknown ? 3 : 4};
     for (int y = 0; y < a->height; y++)
         add_row(a, b, y, &sums);
-    double samples = 4.0 * a->width * a->height;
+    double samples = (double)sums.channels * a->width * a->height;
     *out = (snow_image_difference){
         .largest = sums.largest,
         .mean = sums.absolute / samples,

@@ -26,7 +26,7 @@ snow_status snow_image_make(snow_context *context, int width, int height,
     if (!image)
         return SNOW_NO_MEMORY;
     uint64_t samples = (uint64_t)width * (uint64_t)height * (uint64_t)channels;
-    *image = (snow_image){context, width, height, channels, NULL};
+    *image = (snow_image){context, width, height, channels, false, NULL};
     image->pixels = snow_allocate_array(context, samples, sizeof(float));
     if (!image->pixels) {
         snow_release(context, image);

@@ -14,7 +14,8 @@
 struct snow_image {
     snow_context *context;
     int width, height, channels;
-    float *pixels; /* [(y * width + x) * channels] */
+    bool alpha_unknown; /* its file had none, yet the picture may have had */
+    float *pixels;      /* [(y * width + x) * channels] */
 };
 
 /* As snow_image_new, but the pixels are undefined.  For readers, which fill

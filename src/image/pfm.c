@@ -92,7 +92,9 @@ static snow_status read_pfm(snow_source *source, snow_image **out) {
     int64_t width, height;
     snow_float_layout layout;
     SNOW_TRY(read_header(source, &width, &height, &layout));
-    return snow_image_read_floats(source, width, height, &layout, out);
+    SNOW_TRY(snow_image_read_floats(source, width, height, &layout, out));
+    (*out)->alpha_unknown = true;
+    return SNOW_OK;
 }
 
 const snow_image_format snow_image_pfm = {

@@ -12,28 +12,28 @@
 /* Enough to tell DICOM by. */
 #define PROBE_BYTES 4096
 
-/* Opens a file and looks at its first bytes; no file and no DICOM are one. */
-static bool is_dicom(snow_context *context, const char *path) {
+/* The shortest DICOM: what is before its mark, and the mark. */
+#define HEAD_BYTES 132
+
+/* Opens a file and looks at its first bytes; *got is 0 where there are none. */
+static snow_status probe(snow_context *context, const char *path, bool *is,
+                         size_t *got) {
     unsigned char bytes[PROBE_BYTES];
-    size_t got = 0;
     snow_source *source;
-    if (snow_source_open(context, path, &source) != SNOW_OK)
-        return false;
-    bool is = snow_source_peek(source, bytes, sizeof bytes, &got) == SNOW_OK &&
-              snow_dicom_probe(bytes, got);
+    *is = false;
+    *got = 0;
+    SNOW_TRY(snow_source_open(context, path, &source));
+    snow_status status = snow_source_peek(source, bytes, sizeof bytes, got);
+    *is = status == SNOW_OK && snow_dicom_probe(bytes, *got);
     snow_source_close(source);
-    return is;
+    return status;
 }
 
-/* For one that is no DICOM, whatever is left of it. */
-static snow_status check_name(snow_context *context, const char *path) {
-    if (snow_format_of_name(path) != &snow_format_dicom)
-        return SNOW_OK;
-    snow_fail(context, SNOW_BAD_INPUT,
-              "is named as DICOM is, and is none; it may be a slice that was "
-              "cut: fetch it again, or take it out of the folder");
-    snow_fail_in_file(context, SNOW_BAD_INPUT, path);
-    return SNOW_BAD_INPUT;
+/* What cannot be read is none. */
+static bool is_dicom(snow_context *context, const char *path) {
+    bool is;
+    size_t got;
+    return probe(context, path, &is, &got) == SNOW_OK && is;
 }
 
 bool snow_dicom_among(snow_context *context, const snow_folder *files) {
@@ -55,7 +55,9 @@ typedef struct collection {
     size_t image_count, image_room;
     dicom_frame *frames;
     size_t frame_count, frame_room;
-    size_t copies; /* files with an image that another has too */
+    size_t copies;     /* files with an image that another has too */
+    size_t scraps;     /* files too short for DICOM that may have been slices */
+    const char *scrap; /* the first of them */
 } collection;
 
 static void free_collection(collection *c) {
@@ -127,6 +129,55 @@ static snow_status add_path(collection *c, char *path, const char *series) {
     snow_random_close(store);
     snow_source_close(source);
     return status;
+}
+
+static const char *name_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Whether a file may be a slice by its name: "IM_0004", "1.2.840.4", "4.dcm".
+ */
+static bool may_be_slice(const char *path) {
+    const char *dot = strrchr(name_of(path), '.');
+    return !dot || (dot[1] >= '0' && dot[1] <= '9') ||
+           snow_format_of_name(path) == &snow_format_dicom;
+}
+
+/* A file that is no DICOM, whatever is left of it, or that cannot be read. */
+static snow_status add_scrap(collection *c, const char *path,
+                             snow_status status, size_t bytes) {
+    bool named = snow_format_of_name(path) == &snow_format_dicom;
+    if (status == SNOW_OK && named)
+        status = snow_fail(c->context, SNOW_BAD_INPUT,
+                           "is named as DICOM is, and is none; it may be a "
+                           "slice that was cut: fetch it again, or take it out "
+                           "of the folder");
+    if (status == SNOW_NO_MEMORY || named) {
+        snow_fail_in_file(c->context, status, path);
+        return status;
+    }
+    if ((status != SNOW_OK || bytes < HEAD_BYTES) && may_be_slice(path) &&
+        !c->scraps++)
+        c->scrap = name_of(path);
+    return SNOW_OK;
+}
+
+/* Adds a file's images, where it has any. */
+static snow_status add_file(collection *c, char *path, const char *series) {
+    bool is;
+    size_t bytes;
+    snow_status status = probe(c->context, path, &is, &bytes);
+    return is ? add_path(c, path, series) : add_scrap(c, path, status, bytes);
+}
+
+static void tell_scraps(const collection *c) {
+    if (c->scraps)
+        snow_notify(c->context,
+                    "%zu file%s beside the images (%.60s%s) cannot be read or "
+                    "%s too short to be DICOM; the volume may lack slices",
+                    c->scraps, c->scraps > 1 ? "s" : "", c->scrap,
+                    c->scraps > 1 ? ", ..." : "", c->scraps > 1 ? "are" : "is");
 }
 
 /* --- choice ----------------------------------------------------------------
@@ -237,9 +288,9 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
     collection c = {.context = context};
     snow_status status = SNOW_OK;
     for (size_t i = 0; i < files->count && status == SNOW_OK; i++)
-        status = is_dicom(context, files->paths[i])
-                     ? add_path(&c, files->paths[i], NULL)
-                     : check_name(context, files->paths[i]);
+        status = add_file(&c, files->paths[i], NULL);
+    if (status == SNOW_OK)
+        tell_scraps(&c);
     if (status == SNOW_OK && !c.frame_count)
         status = snow_fail(context, SNOW_BAD_INPUT,
                            "its DICOM files have no images; folders in it are "
@@ -275,11 +326,6 @@ static void list_siblings(snow_context *context, const char *path,
     snow_release(context, folder);
 }
 
-static const char *name_of(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Adds the images of the same series in the folder, but for the given file,
  * which is there already.  One that cannot be read may be a slice or not: that
  * is told. */
@@ -291,9 +337,7 @@ static void add_siblings(collection *c, const char *path, snow_folder *files) {
         char *file = files->paths[i];
         if (strcmp(name_of(file), name_of(path)) == 0)
             continue;
-        snow_status status = is_dicom(c->context, file)
-                                 ? add_path(c, file, series)
-                                 : check_name(c->context, file);
+        snow_status status = add_file(c, file, series);
         if (status != SNOW_OK && !unread++)
             first = name_of(file);
     }
@@ -303,6 +347,7 @@ static void add_siblings(collection *c, const char *path, snow_folder *files) {
                     "may lack slices",
                     unread, unread > 1 ? "s" : "", first,
                     unread > 1 ? ", ..." : "");
+    tell_scraps(c);
 }
 
 /* Of a stack of several times the one that the given file is in; false where it

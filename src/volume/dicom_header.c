@@ -224,24 +224,25 @@ static snow_status check_sizes(snow_context *context,
 }
 
 /* Whether a file says that it holds an image, by the class of its contents
- * (PS3.4, B.5): the common ones. */
+ * (PS3.4, B.5): all but those that hold spectra, waveforms, states of
+ * presentation, registrations, measurements, documents, protocols and plans. */
 static bool says_image(const dicom_reader *reader) {
     static const char root[] = "1.2.840.10008.5.1.4.1.1.";
-    static const char *const images[] = {
-        "1",   "1.1", "1.2", "2",   "2.1", "3.1",  "4",    "4.1", "6.1", "7",
-        "7.1", "7.2", "7.3", "7.4", "8",   "12.1", "12.2", "20",  "128", "130"};
+    static const char *const others[] = {
+        "4.2", "9",     "11",    "66",    "67",    "68",  "77.1.5.3", "78",
+        "79",  "80",    "88",    "104",   "129",   "131", "200",      "201",
+        "481", "501.3", "501.4", "501.5", "501.6", "601"};
     const char *told = reader->class_told;
-    size_t length = strlen(told);
     if (strncmp(told, root, sizeof root - 1) != 0)
         return false;
-    while (length && told[length - 1] == ' ')
-        length--;
-    for (size_t i = 0; i < sizeof images / sizeof *images; i++)
-        if (strlen(images[i]) == length - (sizeof root - 1) &&
-            !strncmp(told + sizeof root - 1, images[i],
-                     length - (sizeof root - 1)))
-            return true;
-    return false;
+    told += sizeof root - 1;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        size_t length = strlen(others[i]);
+        if (!strncmp(told, others[i], length) &&
+            strchr(". ", told[length])) /* or its end */
+            return false;
+    }
+    return true;
 }
 
 snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,

@@ -285,7 +285,7 @@ void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
 }
 
 /* Told even for step 0: a picture of one of many steps must not pass for all
- * there is. */
+ * there is, unless the others come too. */
 snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info) {
@@ -296,7 +296,7 @@ snow_status snow_volume_pick_time(snow_context *context, const char *what,
                          what, (long long)options->time,
                          (long long)info->times);
     info->time = options->time;
-    if (info->times > 1)
+    if (info->times > 1 && !options->each_time)
         snow_notify(context,
                     "%s %lld of %lld (counted from 0) is taken; --time N takes "
                     "another",
