@@ -88,7 +88,7 @@ static int open_as_planned(scene *s, const options *step) {
     if (status != SNOW_OK)
         return fail_status(s->context, status);
     if (step->verbosity > 0)
-        say("%s: stays in its file, of which slabs of %.1f MiB, or of 34 "
+        say("%s: stays in its file, of which slabs of %.1f MiB, or more "
             "slices where less will not do, are read at a time",
             s->path, (double)s->plan.slab_bytes / 0x1p20);
     if (step->verbosity >= 0 && s->plan.packed)

@@ -90,6 +90,7 @@ void snow_settings_init_sized(snow_settings *settings, size_t size) {
 
 snow_settings snow_settings_known(const snow_settings *asked) {
     snow_settings known = defaults;
+    known.size = sizeof known;
     if (!asked)
         return known;
     memcpy(&known, asked,

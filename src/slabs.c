@@ -67,7 +67,8 @@ static snow_status fail_room(const slabs *s, const snow_slab_cut *cut) {
         job->context, SNOW_NO_MEMORY,
         "%s: slabs of %.1f MiB, %lld slices of which belong to their "
         "neighbours, and what is made of them have no place%s; allow more "
-        "memory, or take a larger --size",
+        "memory, give --crop or, where a pixel is several voxels wide, a "
+        "larger --size",
         snow_stream_path(job->volume),
         (double)snow_slab_bytes(job->volume, cut) / 0x1p20,
         (long long)(2 * cut->ghosts), limit);

@@ -28,10 +28,21 @@ prints '^\{"within": false, "tolerance": 0.0, "largest": 0.5, "x": 0, "y": 0, "m
 run 0 "equal pictures as JSON" "$TOOL" compare half.pfm half.pfm --json
 prints '"largest": 0.0, .*"psnr": null, "ssim": 1.0'
 run 6 "pictures of two sizes" "$TOOL" compare black.pfm wide.pfm
-says '1 ?x ?1 .*2 ?x ?1 '
+says 'black.pfm and wide.pfm: 1 x 1 and 2 x 1 pixels'
 plain_error
+run 6 "which are told as JSON, too" "$TOOL" compare black.pfm wide.pfm --json
+prints '^\{"within": false, "tolerance": 0.0, "sizes": \[\[1, 1\], \[2, 1\]\]\}$'
 run 6 "NaN and a number" "$TOOL" compare nan.pfm half.pfm --tolerance 1
 run 0 "NaN and NaN" "$TOOL" compare nan.pfm nan.pfm
+# A PFM has no alpha, whatever the picture had.
+for type in png pfm npy; do
+    run 0 "a picture with transparent pixels as $type" "$TOOL" phantom:cube \
+        --dims 9x9x9 -s 20x20 -q -o "cube.$type"
+done
+run 0 "PNG and PFM" "$TOOL" compare cube.png cube.pfm --tolerance 0.005
+run 0 "PFM and NPY" "$TOOL" compare cube.pfm cube.npy
+run 6 "black, of different alpha" "$TOOL" compare --json cube.npy \
+    <("$TOOL" phantom:cube --dims 9x9x9 -s 20x20 -q -o - --background '#000000')
 check "standard input" bash -c \
     "'$TOOL' compare - half.pfm <half.pfm | grep -q '^within'"
 head -c 15 half.pfm >cut.pfm

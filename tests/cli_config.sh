@@ -27,6 +27,13 @@ run 4 "its own output is kept" render --config all.json
 says 'a.png'
 run 0 "and replaced where that is asked" render --config all.json -y
 
+# What is meant for one mode may stand beside another.
+run 0 "another mode" "$TOOL" render --config all.json -m mip -y -o mip.png
+check "no word on what it does not use" bash -c "! grep -q 'no part' '$ERR'"
+run 0 "but what is told" "$TOOL" render --config all.json -m mip -y \
+    --light 3,4 -o mip.png
+says '^snowglass: note: --light has no part in mode mip$'
+
 # The permission to replace files is for one run.
 run 0 "saved with -y" render phantom:cube -s 9x9 -o once.png -y \
     --save-config once.json

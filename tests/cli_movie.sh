@@ -63,6 +63,14 @@ run 0 "a look by percentiles" movie run/s_%04d.nrrd -o 'p%d.png' --range p5,p95
     for i in 0 2 4; do tail -c 512 run/s_00${i}0.nrrd; done
 } >times.nrrd
 # shellcheck disable=SC2086
+run 0 "the steps in one file, aloud" "$TOOL" movie -s 40x30 times.nrrd \
+    -o 'aloud%d.png' $look
+check "no word on which of them is taken" bash -c "! grep -q 'is taken' '$ERR'"
+# shellcheck disable=SC2086
+run 0 "one of the steps" "$TOOL" movie -s 40x30 times.nrrd --time 1 \
+    -o 'single%d.png' $look
+says 'note: time step 1 of 3 '
+# shellcheck disable=SC2086
 run 0 "the steps in one file" movie times.nrrd -o 't%d.png' $look
 check "are frames" cmp <(cat t*.png) <(cat f_00.png f_02.png f_04.png)
 # shellcheck disable=SC2086

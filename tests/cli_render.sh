@@ -28,6 +28,20 @@ check "-q is silent: no word" [ ! -s "$ERR" ]
 run 0 "one line without -q" render -o said.png
 check "it is one line" [ "$(wc -l <"$ERR")" -eq 1 ]
 says "view \+z; method sheared, encoding (crs|bitmap|rle)"
+run 0 "nothing is visible" render -y -o void.png --opacity 900:0,901:1
+says '^snowglass: note: nothing is to be seen: no voxel has an opacity'
+run 0 "all is beside the picture" render -y -o void.png --target 5000,0,0
+says '^snowglass: note: nothing is to be seen: no visible voxel is in view'
+run 0 "a surface of no value" render -y -o void.png -m iso --iso 900
+says '^snowglass: note: nothing is to be seen: no surface of value 900 '
+run 0 "quietly" render -q -y -o void.png --opacity 900:0,901:1
+check "nothing is said" [ ! -s "$ERR" ]
+run 0 "a slice" "$TOOL" phantom cube --dims 1x9x9 -q -o slice.nrrd
+run 0 "from its edge" "$TOOL" render slice.nrrd -s 20x20 -y -o void.png
+says '^snowglass: note: the volume is a single slice, seen from its edge; --view \+x shows its face$'
+run 0 "not where the view is chosen" "$TOOL" render slice.nrrd -s 20x20 -y \
+    -o void.png --view +z
+check "no remark" bash -c "! grep -q edge '$ERR'"
 run 0 "-v tells more" render -v -o more.png
 says "^snowglass: seconds: read"
 says "^snowglass: bytes: volume"

@@ -133,6 +133,18 @@ mkdir b && cp f_000.png b/7.png
 refused 4 "a frame of a stranger" "b/7.png: exists" turn -o 'b/%d.png'
 refused 4 "is not resumed" "nothing beside it says" turn -o 'b/%d.png' --resume
 check "and stays" cmp b/7.png f_000.png
+# Killed before its first frame, a run leaves a record that tells nothing.
+: >b/.%d.png.frames
+refused 4 "nor beside an empty record" "nothing beside it says" \
+    turn -o 'b/%d.png' --resume
+refused 4 "nor without --resume" "b/7.png: exists; give --overwrite" \
+    turn -o 'b/%d.png'
+check "and stays still" cmp b/7.png f_000.png
+mkdir meanwhile && : >meanwhile/.%d.png.frames
+run 0 "an empty record alone" turn --frames 3 -o 'meanwhile/%d.png' --resume
+ln -s nowhere .g%d.png.frames
+refused 4 "a record that cannot be made" ".g%d.png.frames: No such file" \
+    turn --frames 3 -o 'g%d.png'
 run 0 "--resume where nothing is" turn --frames 3 -o 'c%d.png' --resume
 # The input is known by its path, size and time.
 "$TOOL" phantom engine --dims 16x16x16 -o v.nrrd -q

@@ -214,6 +214,29 @@ for size in (0, 50, 131):
               "lacking/cut.dcm")
     os.truncate("lacking/cut.dcm", size)
     oracle.refuse("lacking", "lacking/cut.dcm: is named as DICOM is, and is")
+os.remove("lacking/cut.dcm")
+legacy = "1.2.840.10008.5.1.4.1.1.2.2"
+for name, sop, refused in (("CT", legacy, True),
+                           ("dose", "1.2.840.10008.5.1.4.1.1.481.2", False),
+                           ("report", "1.2.840.10008.5.1.4.1.1.88.11", False)):
+    cut.SOPClassUID = sop
+    write("lacking/" + name, cut)
+    if refused:
+        oracle.refuse("lacking", f"lacking/{name}: is cut or damaged: it says")
+    else:
+        oracle.expect("lacking", small, wanted, name=f"a {name} beside it")
+    os.remove("lacking/" + name)
+for name in ("IM77", "1.2.840.77"):
+    for size in (0, 131):
+        with open("lacking/" + name, "wb") as file:
+            file.write(bytes(size))
+        says(f"a short file {name} beside slices", "lacking",
+             f"1 file beside the images ({name}) cannot be read or is too "
+             "short to be DICOM; the volume may lack slices")
+    os.remove("lacking/" + name)
+with open("lacking/VERSION.txt", "wb") as file:
+    file.write(b"1")
+oracle.expect("lacking", small, wanted, name="a text beside it")
 for name in ("s10", "s9", ".s1"):
     os.makedirs(f"above/{name}")
 oracle.refuse("above", "has no slices itself, but folders such as s9; name one "

@@ -578,6 +578,25 @@ static void refusals(void **state) {
     model_close(&stage);
 }
 
+static void no_settings_are_the_usual_ones(void **state) {
+    (void)state;
+    snow_context *context = NULL;
+    snow_frame *frame = NULL;
+    snow_settings usual;
+    snow_settings_init(&usual);
+    assert_int_equal(snow_context_new(NULL, &context), SNOW_OK);
+    assert_int_equal(snow_frame_new(context, &frame), SNOW_OK);
+    snow_volume *volume = open_phantom(context, SNOW_UINT8);
+    snow_image *a = engine_picture(context, frame, volume, &usual, 0);
+    snow_image *b = engine_picture(context, frame, volume, NULL, 0);
+    assert_true(snow_image_checksum(a) == snow_image_checksum(b));
+    snow_image_free(a);
+    snow_image_free(b);
+    snow_volume_close(volume);
+    snow_frame_free(frame);
+    snow_context_free(context);
+}
+
 #define UNIT(name) cmocka_unit_test(name)
 
 int main(void) {
@@ -596,6 +615,7 @@ int main(void) {
         UNIT(means_become_colours_over_a_range),
         UNIT(odd_volumes),
         UNIT(refusals),
+        UNIT(no_settings_are_the_usual_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -219,7 +219,6 @@ static snow_status read_sibling(snow_source *source, const nrrd_header *header,
     return status;
 }
 
-/* Bytes are swapped once at the end, however many files they came from. */
 snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
                                  const nrrd_files *files,
                                  const snow_window *window) {
@@ -229,6 +228,7 @@ snow_status snow_nrrd_check_data(snow_source *source, const nrrd_header *header,
     return go_to_data(source, header, true, window->all, &at_end);
 }
 
+/* Bytes are swapped once at the end, however many files they came from. */
 snow_status snow_nrrd_read_data(snow_source *source, const nrrd_header *header,
                                 const nrrd_files *files,
                                 const snow_volume_info *info,

@@ -161,7 +161,6 @@ snow_status snow_volume_need_voxels(const snow_volume *volume) {
 /* --- slabs ----------------------------------------------------------------
  */
 
-/* Slices of a slab, without its ghosts. */
 void snow_print_limit(const snow_context *context, char text[64]) {
     *text = 0;
     if (context->limit)
@@ -185,6 +184,7 @@ static uint64_t slab_room(const snow_volume *volume, int64_t made) {
     return room < most ? room : most;
 }
 
+/* Slices of a slab, without its ghosts. */
 static int64_t slab_slices(const snow_volume *volume,
                            const snow_slab_cut *cut) {
     const int64_t *dims = volume->info.dims;
