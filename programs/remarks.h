@@ -10,7 +10,7 @@ void remark_unused(const options *asked);
 
 /* Of the picture that was made last, before anything is drawn on it: a method
  * other than the one that was asked for, a slice that is seen from its edge,
- * and that nothing is to be seen.  `image` may be NULL. */
+ * and that nothing is to be seen, unless `image` is NULL. */
 void remark_picture(const scene *s, snow_image *image);
 
 #endif

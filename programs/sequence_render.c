@@ -73,7 +73,8 @@ static void tell_choices(const shot_renderer *shots, snow_image *image) {
         say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
             shots->painted.words, shots->count, (long long)asked->size[0],
             (long long)asked->size[1], asked->output);
-    remark_picture(&shots->scene, image);
+    /* A first step without anything says nothing of those to come. */
+    remark_picture(&shots->scene, shots->scene.turns ? image : NULL);
     marks_tell(asked);
 }
 

@@ -133,6 +133,10 @@ mkdir b && cp f_000.png b/7.png
 refused 4 "a frame of a stranger" "b/7.png: exists" turn -o 'b/%d.png'
 refused 4 "is not resumed" "nothing beside it says" turn -o 'b/%d.png' --resume
 check "and stays" cmp b/7.png f_000.png
+# shellcheck disable=SC2086
+run 0 "a turn of nothing" "$TOOL" turntable $small --frames 2 -o 'void%d.png' \
+    --opacity 900:0,901:1
+says 'note: nothing is to be seen: no voxel has an opacity'
 # Killed before its first frame, a run leaves a record that tells nothing.
 : >b/.%d.png.frames
 refused 4 "nor beside an empty record" "nothing beside it says" \
