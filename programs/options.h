@@ -203,10 +203,10 @@ int options_parse(options *out, const verb_row *verb, int argc, char **argv);
 int options_take(options *out, const verb_row *verb, const char *name,
                  const char *text);
 
-/* Whether an option stands on the command line. */
+/* Whether an option stands on the command line, or in the file of --config. */
 bool options_told(const options *asked, const char *name);
 
-/* The same, and by the command line itself, not by --config. */
+/* Whether it stands on the command line itself. */
 bool options_typed(const options *asked, const char *name);
 
 /* Writes the help that was asked for to standard output: `word` names a topic

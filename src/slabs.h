@@ -1,7 +1,7 @@
 /* slabs.h - what is made of a volume that stays in its file (volume/stream.h)
  * slab by slab, each of which is rendered as a part of the volume: surfaces,
- * depths of over, and the pictures of the exact methods.  Nothing of it is kept, so
- * that each picture reads the file. */
+ * depths of over, and the pictures of the exact methods.  Nothing of it is
+ * kept, so that each picture reads the file. */
 #ifndef SNOW_SLABS_H
 #define SNOW_SLABS_H
 

@@ -38,8 +38,8 @@ typedef struct snow_recipe {
     bool opacity_per_mm; /* opacities are those of a millimetre, instead of the
                             smallest voxel spacing */
     bool opacity_per_voxel; /* they are not, whatever the file of `tf` says */
-    const char *view;    /* name; NULL: the volume's own */
-    int width, height;   /* (512, 512) */
+    const char *view;       /* name; NULL: the volume's own */
+    int width, height;      /* (512, 512) */
     double azimuth, elevation, roll;
     double zoom;              /* (1) */
     double fov;               /* 0: parallel */

@@ -181,9 +181,9 @@ SNOW_API void snow_frame_free(snow_frame *frame);
 
 /* Renders one picture: figure 8 of the paper on one processor.  `*image` is
  * made anew and owned by the caller.  volume, transfer and frame must come from
- * one context; `settings` NULL are those of snow_settings_init.  Errors: SNOW_BAD_USAGE (a setting out of range, with its
- * name), SNOW_BAD_INPUT (a geometry beyond all measure), SNOW_NO_MEMORY; then
- * no image is made. */
+ * one context; `settings` NULL are those of snow_settings_init.  Errors:
+ * SNOW_BAD_USAGE (a setting out of range, with its name), SNOW_BAD_INPUT (a
+ * geometry beyond all measure), SNOW_NO_MEMORY; then no image is made. */
 SNOW_API snow_status snow_frame_render(
     snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);

@@ -27,8 +27,8 @@ snow_status snow_writer_write(snow_writer *writer, const void *bytes,
  * before the first write. */
 snow_status snow_writer_pack(snow_writer *writer);
 
-/* Ends the file: flushes, syncs, names it, frees the writer.  On failure nothing
- * is left, and the writer is freed as well. */
+/* Ends the file: flushes, syncs, names it, frees the writer.  On failure
+ * nothing is left, and the writer is freed as well. */
 snow_status snow_writer_commit(snow_writer *writer);
 
 /* Gives up: leaves nothing and frees the writer; NULL is accepted. */

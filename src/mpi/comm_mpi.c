@@ -377,8 +377,8 @@ static void drop_group(MPI_Comm *ours) {
 #endif
 }
 
-/* Messages that nobody waited for are given up: nothing comes into a buffer that
- * the caller is about to free. */
+/* Messages that nobody waited for are given up: nothing comes into a buffer
+ * that the caller is about to free. */
 static void give_up(mpi_slot *slot) {
     if (slot->request == MPI_REQUEST_NULL)
         return;
