@@ -10,6 +10,8 @@
  * its items one by one, and none while a call has some. */
 #include "base/parallel.h"
 
+#include "base/apart.h"
+
 #include <string.h>
 #include <unistd.h>
 
@@ -20,6 +22,7 @@ typedef struct pool_thread {
     snow_pool *pool;
     pthread_t id;
     int worker;
+    int avoided; /* a processor, or SNOW_APART_NONE */
 } pool_thread;
 
 /* Batches change under the lock but for `next`, and stay as they are while
@@ -130,7 +133,9 @@ static void grow(snow_context *context, snow_pool *pool, int count) {
     }
     for (; pool->count < count; pool->count++) {
         pool_thread *thread = &pool->threads[pool->count];
-        *thread = (pool_thread){.pool = pool, .worker = pool->count + 1};
+        *thread = (pool_thread){.pool = pool,
+                                .worker = pool->count + 1,
+                                .avoided = SNOW_APART_NONE};
         if (pthread_create(&thread->id, NULL, live, thread))
             return;
     }
@@ -153,6 +158,15 @@ static void fill_batch(snow_batch *batch, int threads, int64_t items,
     batch->items = items;
     batch->wanted = threads;
     atomic_store(&batch->next, 0);
+}
+
+/* Wakes the threads that the batch wants (under the lock). */
+static void wake(snow_pool *pool, const snow_batch *batch) {
+    for (int n = 0; n < pool->count && n < batch->wanted - 1; n++) {
+        pool_thread *thread = &pool->threads[n];
+        snow_apart(thread->id, thread->worker, &thread->avoided);
+    }
+    pthread_cond_broadcast(&pool->wake);
 }
 
 /* The caller is worker 0. */
@@ -180,7 +194,7 @@ void snow_parallel(snow_context *context, int threads, int64_t items,
     }
     pthread_mutex_lock(&pool->lock);
     fill_batch(&pool->call, threads, items, work, job);
-    pthread_cond_broadcast(&pool->wake);
+    wake(pool, &pool->call);
     pthread_mutex_unlock(&pool->lock);
     take_all(&pool->call);
     pthread_mutex_lock(&pool->lock);
@@ -199,7 +213,7 @@ void snow_parallel_begin(snow_context *context, int threads, int64_t items,
         return;
     pthread_mutex_lock(&pool->lock);
     pool->open = batch;
-    pthread_cond_broadcast(&pool->wake);
+    wake(pool, batch);
     pthread_mutex_unlock(&pool->lock);
 }
 
