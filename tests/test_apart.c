@@ -1,5 +1,6 @@
-/* tests/test_apart.c - helpers keep off the processor of whom they help, and
- * off no other; where there is one processor only, they have it. */
+/* tests/test_apart.c - helpers that wake after a rest keep off the processor of
+ * whom they help until they are awake, and off no other; where there is one
+ * processor only, they have it. */
 #define _GNU_SOURCE /* pthread_setaffinity_np */
 #include "support.h"
 
@@ -80,28 +81,35 @@ static void end(pthread_t sleeper) {
 static void a_helper_keeps_off_the_processor_where_its_caller_is(void **state) {
     (void)state;
     want_two();
-    int avoided = SNOW_APART_NONE;
     pthread_t sleeper = asleep();
     go_to(only(here));
-    for (int n = 0; n < 2; n++) {
-        snow_apart(sleeper, 1, &avoided);
-        assert_int_equal(avoided, here);
-        assert_on(sleeper, all_but(here));
-    }
+    int avoided = snow_apart_keep(sleeper, 1, SNOW_APART_NONE);
+    assert_int_equal(avoided, here);
+    assert_on(sleeper, all_but(here));
+    /* It sleeps on while its caller has gone elsewhere. */
     go_to(only(there));
-    snow_apart(sleeper, 1, &avoided);
-    assert_int_equal(avoided, there);
-    assert_on(sleeper, all_but(there));
+    assert_int_equal(snow_apart_keep(sleeper, 1, avoided), here);
+    assert_on(sleeper, all_but(here));
     end(sleeper);
+}
+
+static void a_helper_that_is_awake_may_be_anywhere(void **state) {
+    (void)state;
+    want_two();
+    go_to(all_but(here));
+    snow_apart_release(SNOW_APART_NONE);
+    assert_on(pthread_self(), all_but(here));
+    snow_apart_release(here);
+    assert_on(pthread_self(), all);
+    go_to(all);
 }
 
 static void helpers_that_are_too_many_are_left_alone(void **state) {
     (void)state;
     want_two();
-    int avoided = SNOW_APART_NONE;
     pthread_t sleeper = asleep();
-    snow_apart(sleeper, CPU_COUNT(&all), &avoided);
-    assert_int_equal(avoided, SNOW_APART_NONE);
+    assert_int_equal(snow_apart_keep(sleeper, CPU_COUNT(&all), SNOW_APART_NONE),
+                     SNOW_APART_NONE);
     assert_on(sleeper, all);
     end(sleeper);
 }
@@ -109,13 +117,31 @@ static void helpers_that_are_too_many_are_left_alone(void **state) {
 static void the_only_processor_is_shared(void **state) {
     (void)state;
     want_two();
-    int avoided = SNOW_APART_NONE;
     go_to(only(here));
     pthread_t sleeper = asleep();
-    snow_apart(sleeper, 1, &avoided);
-    assert_int_equal(avoided, SNOW_APART_NONE);
+    assert_int_equal(snow_apart_keep(sleeper, 1, SNOW_APART_NONE),
+                     SNOW_APART_NONE);
     assert_on(sleeper, only(here));
     end(sleeper);
+}
+
+/* --- when ----------------------------------------------------------------- */
+
+static void a_rest_is_a_time_without_work(void **state) {
+    (void)state;
+    double now = snow_seconds(), cpu = snow_cpu_seconds();
+    snow_apart never = {0}, rested = {now - 1, cpu, 0};
+    snow_apart worked = {now - 1, cpu - 1, 0}, called = {now + 1, cpu, 0};
+    assert_true(snow_apart_begin(&never));
+    assert_true(snow_apart_begin(&rested));
+    assert_false(snow_apart_begin(&worked));
+    assert_false(snow_apart_begin(&called));
+    /* The pauses between the parts of a picture come soon after a rest. */
+    rested.until = now + 100;
+    snow_apart_end(&rested);
+    assert_true(snow_apart_begin(&rested));
+    rested.until = now;
+    assert_false(snow_apart_begin(&rested));
 }
 
 /* --- the pool ------------------------------------------------------------- */
@@ -136,34 +162,28 @@ static void meet(void *job, int64_t item, int worker) {
         usleep(1000);
 }
 
-static void threads_of_a_pool_are_woken_apart(void **state) {
+static void threads_of_a_pool_work_anywhere_after_a_rest(void **state) {
     (void)state;
     want_two();
     snow_context *context = support_context();
-    for (int n = 0; n < 4; n++) {
+    for (int n = 0; n < 6; n++) {
         meeting m = {0};
-        int mine = n % 2 ? there : here;
-        go_to(only(mine));
-        /* The pool's thread has the processors of whom makes it. */
-        if (n == 0)
-            go_to(all);
         snow_parallel(context, 2, 2, meet, &m);
-        cpu_set_t expected = all_but(mine);
         assert_int_equal(atomic_load(&m.present), 2);
-        assert_int_equal(CPU_COUNT(&m.helper), CPU_COUNT(&all) - 1);
-        if (n > 0)
-            assert_true(CPU_EQUAL(&m.helper, &expected));
+        assert_true(CPU_EQUAL(&m.helper, &all));
+        usleep(n % 2 ? 5000 : 0);
     }
-    go_to(all);
     snow_context_free(context);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_helper_keeps_off_the_processor_where_its_caller_is),
+        cmocka_unit_test(a_helper_that_is_awake_may_be_anywhere),
         cmocka_unit_test(helpers_that_are_too_many_are_left_alone),
         cmocka_unit_test(the_only_processor_is_shared),
-        cmocka_unit_test(threads_of_a_pool_are_woken_apart),
+        cmocka_unit_test(a_rest_is_a_time_without_work),
+        cmocka_unit_test(threads_of_a_pool_work_anywhere_after_a_rest),
     };
     return cmocka_run_group_tests(tests, look_around, NULL);
 }

@@ -22,7 +22,7 @@ typedef struct pool_thread {
     snow_pool *pool;
     pthread_t id;
     int worker;
-    int avoided; /* a processor, or SNOW_APART_NONE */
+    int avoided; /* a processor, from its waking on until it is awake */
 } pool_thread;
 
 /* Batches change under the lock but for `next`, and stay as they are while
@@ -34,6 +34,7 @@ struct snow_pool {
     pool_thread *threads; /* worker n is threads[n - 1] */
     int count, room;
     bool quit;
+    snow_apart apart;
     snow_batch call;  /* of snow_parallel */
     snow_batch *open; /* of snow_parallel_begin, or NULL */
 };
@@ -76,6 +77,8 @@ static void *live(void *argument) {
     snow_pool *pool = self->pool;
     pthread_mutex_lock(&pool->lock);
     while (!pool->quit) {
+        snow_apart_release(self->avoided);
+        self->avoided = SNOW_APART_NONE;
         snow_batch *batch = batch_for(pool, self->worker);
         if (!batch) {
             pthread_cond_wait(&pool->wake, &pool->lock);
@@ -162,9 +165,11 @@ static void fill_batch(snow_batch *batch, int threads, int64_t items,
 
 /* Wakes the threads that the batch wants (under the lock). */
 static void wake(snow_pool *pool, const snow_batch *batch) {
-    for (int n = 0; n < pool->count && n < batch->wanted - 1; n++) {
+    bool apart = snow_apart_begin(&pool->apart);
+    for (int n = 0; apart && n < pool->count && n < batch->wanted - 1; n++) {
         pool_thread *thread = &pool->threads[n];
-        snow_apart(thread->id, thread->worker, &thread->avoided);
+        thread->avoided =
+            snow_apart_keep(thread->id, thread->worker, thread->avoided);
     }
     pthread_cond_broadcast(&pool->wake);
 }
@@ -180,6 +185,7 @@ static void close_batch(snow_pool *pool, snow_batch *batch) {
     while (batch->busy)
         pthread_cond_wait(&pool->rest, &pool->lock);
     batch->items = 0;
+    snow_apart_end(&pool->apart);
 }
 
 void snow_parallel(snow_context *context, int threads, int64_t items,
