@@ -216,12 +216,13 @@ def missing(build, display):
 # Our rows: name, quality, kernel.
 OURS = {"snowglass-draft": ("draft", "bspline"),
         "snowglass-tent": ("normal", "tent"),
-        "snowglass": ("normal", "bspline")}
+        "snowglass": ("normal", "bspline"),
+        "snowglass-high": ("high", "bspline")}
 
 # In the order of the tables; for each the numbers of threads it can use.
 # VolPack's octree is a second worker: see README.md.
 THREADS = {"snowglass-draft": (1, 2), "snowglass-tent": (1, 2),
-           "snowglass": (1, 2), "volpack": (1,),
+           "snowglass": (1, 2), "snowglass-high": (1, 2), "volpack": (1,),
            "volpack-octree": (1,), "vtk-cpu": (1, 2), "vtk-gl": (1, 2),
            "teem": (1, 2)}
 
