@@ -1,12 +1,13 @@
-/* tests/test_apart.c - helpers that wake after a rest keep off the processor of
- * whom they help until they are awake, and off no other; where there is one
- * processor only, they have it. */
-#define _GNU_SOURCE /* pthread_setaffinity_np */
+/* tests/test_apart.c - helpers that wake after a rest are kept off the
+ * processor of whom they help until they are awake, and off no other; where
+ * there are no more processors than helpers, they have all. */
+#define _GNU_SOURCE /* pthread_setaffinity_np, RTLD_NEXT */
 #include "support.h"
 
 #include "base/apart.h"
 #include "base/parallel.h"
 
+#include <dlfcn.h>
 #include <sched.h>
 #include <unistd.h>
 
@@ -55,9 +56,24 @@ static void assert_on(pthread_t thread, cpu_set_t expected) {
     assert_true(CPU_EQUAL(&set, &expected));
 }
 
+/* What others are told, in place of the system's function. */
+static atomic_int told;
+
+int pthread_setaffinity_np(pthread_t thread, size_t bytes,
+                           const cpu_set_t *set) {
+    int (*real)(pthread_t, size_t, const cpu_set_t *);
+    void *found = dlsym(RTLD_NEXT, "pthread_setaffinity_np");
+    memcpy(&real, &found, sizeof real);
+    if (!pthread_equal(thread, pthread_self()))
+        atomic_fetch_add(&told, 1);
+    return real(thread, bytes, set);
+}
+
 /* --- a sleeper ------------------------------------------------------------ */
 
 static pthread_mutex_t until = PTHREAD_MUTEX_INITIALIZER;
+static pthread_t sleeper;
+static bool is_asleep;
 
 static void *sleep_until(void *argument) {
     pthread_mutex_lock(&until);
@@ -65,83 +81,88 @@ static void *sleep_until(void *argument) {
     return argument;
 }
 
-static pthread_t asleep(void) {
-    pthread_t sleeper;
+static void fall_asleep(void) {
     pthread_mutex_lock(&until);
+    is_asleep = true;
     assert_int_equal(pthread_create(&sleeper, NULL, sleep_until, NULL), 0);
-    return sleeper;
 }
 
-static void end(pthread_t sleeper) {
-    pthread_mutex_unlock(&until);
-    pthread_join(sleeper, NULL);
-    go_to(all);
+/* After each test, also one that failed. */
+static int clean_up(void **state) {
+    (void)state;
+    if (is_asleep) {
+        pthread_mutex_unlock(&until);
+        pthread_join(sleeper, NULL);
+    }
+    is_asleep = false;
+    return pthread_setaffinity_np(pthread_self(), sizeof all, &all);
 }
 
-static void a_helper_keeps_off_the_processor_where_its_caller_is(void **state) {
+static void a_helper_is_kept_off_the_processor_of_its_caller(void **state) {
     (void)state;
     want_two();
-    pthread_t sleeper = asleep();
+    fall_asleep();
+    snow_apart apart = {0};
+    assert_true(snow_apart_begin(&apart));
     go_to(only(here));
-    int avoided = snow_apart_keep(sleeper, 1, SNOW_APART_NONE);
-    assert_int_equal(avoided, here);
+    assert_true(snow_apart_keep(&apart, sleeper, 1));
     assert_on(sleeper, all_but(here));
     /* It sleeps on while its caller has gone elsewhere. */
     go_to(only(there));
-    assert_int_equal(snow_apart_keep(sleeper, 1, avoided), here);
-    assert_on(sleeper, all_but(here));
-    end(sleeper);
+    assert_true(snow_apart_keep(&apart, sleeper, 1));
+    assert_on(sleeper, all_but(there));
 }
 
-static void a_helper_that_is_awake_may_be_anywhere(void **state) {
+static void a_helper_that_is_awake_runs_where_its_caller_may(void **state) {
     (void)state;
     want_two();
-    go_to(all_but(here));
-    snow_apart_release(SNOW_APART_NONE);
-    assert_on(pthread_self(), all_but(here));
-    snow_apart_release(here);
+    snow_apart apart = {0};
+    assert_true(snow_apart_begin(&apart));
+    go_to(only(here));
+    assert_true(snow_apart_release(&apart));
     assert_on(pthread_self(), all);
-    go_to(all);
 }
 
 static void helpers_that_are_too_many_are_left_alone(void **state) {
     (void)state;
     want_two();
-    pthread_t sleeper = asleep();
-    assert_int_equal(snow_apart_keep(sleeper, CPU_COUNT(&all), SNOW_APART_NONE),
-                     SNOW_APART_NONE);
+    fall_asleep();
+    snow_apart apart = {0};
+    assert_true(snow_apart_begin(&apart));
+    assert_false(snow_apart_keep(&apart, sleeper, CPU_COUNT(&all)));
     assert_on(sleeper, all);
-    end(sleeper);
 }
 
 static void the_only_processor_is_shared(void **state) {
     (void)state;
     want_two();
     go_to(only(here));
-    pthread_t sleeper = asleep();
-    assert_int_equal(snow_apart_keep(sleeper, 1, SNOW_APART_NONE),
-                     SNOW_APART_NONE);
+    fall_asleep();
+    snow_apart apart = {0};
+    assert_true(snow_apart_begin(&apart));
+    assert_false(snow_apart_keep(&apart, sleeper, 1));
     assert_on(sleeper, only(here));
-    end(sleeper);
 }
 
 /* --- when ----------------------------------------------------------------- */
 
+/* Times are far apart, for this machine may be busy. */
 static void a_rest_is_a_time_without_work(void **state) {
     (void)state;
-    double now = snow_seconds(), cpu = snow_cpu_seconds();
-    snow_apart never = {0}, rested = {now - 1, cpu, 0};
-    snow_apart worked = {now - 1, cpu - 1, 0}, called = {now + 1, cpu, 0};
+    const double now = snow_seconds(), cpu = snow_cpu_seconds();
+    snow_apart never = {0}, rested = {.ended = now - 100, .ended_cpu = cpu};
+    snow_apart worked = {.ended = now - 100, .ended_cpu = cpu - 100};
+    snow_apart called = {.ended = now + 100, .ended_cpu = cpu};
     assert_true(snow_apart_begin(&never));
     assert_true(snow_apart_begin(&rested));
     assert_false(snow_apart_begin(&worked));
     assert_false(snow_apart_begin(&called));
     /* The pauses between the parts of a picture come soon after a rest. */
-    rested.until = now + 100;
-    snow_apart_end(&rested);
-    assert_true(snow_apart_begin(&rested));
-    rested.until = now;
-    assert_false(snow_apart_begin(&rested));
+    called.until = now + 100;
+    assert_true(snow_apart_begin(&called));
+    snow_apart_end(&called);
+    assert_true(called.ended >= now && called.ended < now + 100);
+    assert_true(called.ended_cpu >= cpu);
 }
 
 /* --- the pool ------------------------------------------------------------- */
@@ -162,28 +183,33 @@ static void meet(void *job, int64_t item, int worker) {
         usleep(1000);
 }
 
-static void threads_of_a_pool_work_anywhere_after_a_rest(void **state) {
+static void threads_of_a_pool_are_kept_apart_and_work_anywhere(void **state) {
     (void)state;
     want_two();
     snow_context *context = support_context();
     for (int n = 0; n < 6; n++) {
         meeting m = {0};
+        atomic_store(&told, 0);
         snow_parallel(context, 2, 2, meet, &m);
         assert_int_equal(atomic_load(&m.present), 2);
         assert_true(CPU_EQUAL(&m.helper, &all));
-        usleep(n % 2 ? 5000 : 0);
+        if (n > 0) /* the first time it may not have slept yet */
+            assert_int_equal(atomic_load(&told), 1);
+        usleep(100000); /* for the helper to fall asleep: a rest */
     }
     snow_context_free(context);
 }
 
+#define TEST(function) cmocka_unit_test_teardown(function, clean_up)
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_helper_keeps_off_the_processor_where_its_caller_is),
-        cmocka_unit_test(a_helper_that_is_awake_may_be_anywhere),
-        cmocka_unit_test(helpers_that_are_too_many_are_left_alone),
-        cmocka_unit_test(the_only_processor_is_shared),
-        cmocka_unit_test(a_rest_is_a_time_without_work),
-        cmocka_unit_test(threads_of_a_pool_work_anywhere_after_a_rest),
+        TEST(a_helper_is_kept_off_the_processor_of_its_caller),
+        TEST(a_helper_that_is_awake_runs_where_its_caller_may),
+        TEST(helpers_that_are_too_many_are_left_alone),
+        TEST(the_only_processor_is_shared),
+        TEST(a_rest_is_a_time_without_work),
+        TEST(threads_of_a_pool_are_kept_apart_and_work_anywhere),
     };
     return cmocka_run_group_tests(tests, look_around, NULL);
 }

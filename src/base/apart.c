@@ -1,11 +1,12 @@
-/* base/apart.c - helpers begin on other processors than whom they help.  Calls
- * that the system refuses change nothing. */
+/* base/apart.c - helpers begin on other processors than whom they help. */
 #define _GNU_SOURCE /* pthread_setaffinity_np, sched_getcpu */
 #include "base/apart.h"
 
 #include "base/base.h"
 
+#include <assert.h>
 #include <sched.h>
+#include <string.h>
 
 /* Seconds: of a rest that counts, and how long it counts for.  A process that
  * works for a quarter of the time does not rest. */
@@ -18,31 +19,33 @@ void snow_apart_end(snow_apart *apart) {
     apart->ended_cpu = snow_cpu_seconds();
 }
 
+static_assert(sizeof(cpu_set_t) <= sizeof((snow_apart){0}.everywhere),
+              "the record has room for a set of processors");
+
 bool snow_apart_begin(snow_apart *apart) {
     double now = snow_seconds(), rest = now - apart->ended;
+    cpu_set_t all;
     if (rest > REST && snow_cpu_seconds() - apart->ended_cpu < WORK * rest)
         apart->until = now + AFTER;
-    return now < apart->until;
+    if (now >= apart->until ||
+        pthread_getaffinity_np(pthread_self(), sizeof all, &all))
+        return false;
+    memcpy(apart->everywhere, &all, sizeof all);
+    return true;
 }
 
-int snow_apart_keep(pthread_t helper, int nth, int avoided) {
+bool snow_apart_keep(const snow_apart *apart, pthread_t helper, int nth) {
     int here = sched_getcpu();
-    cpu_set_t allowed;
-    if (avoided != SNOW_APART_NONE || here < 0 || here >= CPU_SETSIZE ||
-        pthread_getaffinity_np(helper, sizeof allowed, &allowed) ||
-        !CPU_ISSET((size_t)here, &allowed) || CPU_COUNT(&allowed) <= nth)
-        return avoided;
-    CPU_CLR((size_t)here, &allowed);
-    return pthread_setaffinity_np(helper, sizeof allowed, &allowed)
-               ? SNOW_APART_NONE
-               : here;
+    cpu_set_t all;
+    memcpy(&all, apart->everywhere, sizeof all);
+    if (here < 0 || here >= CPU_SETSIZE || CPU_COUNT(&all) <= nth)
+        return false;
+    CPU_CLR((size_t)here, &all);
+    return pthread_setaffinity_np(helper, sizeof all, &all) == 0;
 }
 
-void snow_apart_release(int avoided) {
-    cpu_set_t allowed;
-    if (avoided == SNOW_APART_NONE ||
-        pthread_getaffinity_np(pthread_self(), sizeof allowed, &allowed))
-        return;
-    CPU_SET((size_t)avoided, &allowed);
-    pthread_setaffinity_np(pthread_self(), sizeof allowed, &allowed);
+bool snow_apart_release(const snow_apart *apart) {
+    cpu_set_t all;
+    memcpy(&all, apart->everywhere, sizeof all);
+    return pthread_setaffinity_np(pthread_self(), sizeof all, &all) == 0;
 }

@@ -5,37 +5,37 @@
  * virtual machine it does not believe it of one that has rested, since the host
  * may have given its time to others: the thread is left behind its waker, for
  * some milliseconds.  A picture that is made after a pause then takes as long
- * with two threads as with one.  So after a pause of the whole process a helper
- * is kept off its waker's processor until it is awake.  While the process works
- * without a pause nothing is done: then processors are known to be idle, or are
- * not. */
+ * with two threads as with one.  So after a pause of the whole process a
+ * sleeping helper is kept off its waker's processor until it is awake.  While
+ * the process works without a pause nothing is done: then processors are known
+ * to be idle, or are not. */
 #ifndef SNOW_APART_H
 #define SNOW_APART_H
 
 #include <pthread.h>
 #include <stdbool.h>
 
-/* When helpers were needed last; zeros: never. */
 typedef struct snow_apart {
-    double ended, ended_cpu; /* snow_seconds() and snow_cpu_seconds() */
-    double until;            /* helpers are kept apart; snow_seconds() */
+    double ended, ended_cpu; /* when helpers were needed last; zeros: never */
+    double until;            /* helpers are kept apart */
+    unsigned char everywhere[128]; /* a cpu_set_t: where the caller may run */
 } snow_apart;
 
-/* Helpers are needed no more; whether they are to be kept apart, now that they
- * are needed again: for a short time after a rest, since the processors' next
- * rests, between the parts of a picture, are taken for the same. */
+/* Helpers are needed no more. */
 void snow_apart_end(snow_apart *apart);
+
+/* Helpers are needed again; returns whether they are to be kept apart: for a
+ * short time after a rest, since the processors' next rests, between the parts
+ * of a picture, are taken for the same.  They may run where the caller may, so
+ * that a change to that counts for them from the next rest on. */
 bool snow_apart_begin(snow_apart *apart);
 
-/* No processor. */
-#define SNOW_APART_NONE (-1)
+/* Keeps the sleeping `helper`, the caller's nth (from 1 on), off the caller's
+ * processor; returns whether.  Not where there are no more than n processors,
+ * and not where the system refuses. */
+bool snow_apart_keep(const snow_apart *apart, pthread_t helper, int nth);
 
-/* Keeps the caller's nth helper (from 1 on) off the caller's processor; not
- * where the helper may use no more than n processors.  Returns the processor,
- * or what it was kept off already, `avoided`. */
-int snow_apart_keep(pthread_t helper, int nth, int avoided);
-
-/* The calling helper may use `avoided`, if any, again. */
-void snow_apart_release(int avoided);
+/* Lets the calling helper run everywhere; returns whether. */
+bool snow_apart_release(const snow_apart *apart);
 
 #endif

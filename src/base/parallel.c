@@ -22,7 +22,8 @@ typedef struct pool_thread {
     snow_pool *pool;
     pthread_t id;
     int worker;
-    int avoided; /* a processor, from its waking on until it is awake */
+    bool asleep;
+    bool apart; /* kept off a processor, until it has work */
 } pool_thread;
 
 /* Batches change under the lock but for `next`, and stay as they are while
@@ -71,26 +72,37 @@ static snow_batch *batch_for(snow_pool *pool, int worker) {
     return NULL;
 }
 
+/* A thread's share of a batch (under the lock, which it leaves meanwhile). */
+static void work_along(pool_thread *self, snow_batch *batch) {
+    snow_pool *pool = self->pool;
+    const snow_apart apart = pool->apart;
+    bool still_apart = self->apart;
+    batch->busy++;
+    pthread_mutex_unlock(&pool->lock);
+    if (still_apart)
+        still_apart = !snow_apart_release(&apart);
+    while (take_item(batch, self->worker) && batch == &pool->call)
+        continue;
+    pthread_mutex_lock(&pool->lock);
+    self->apart = still_apart;
+    if (--batch->busy == 0)
+        pthread_cond_signal(&pool->rest);
+}
+
 /* The life of a thread: asleep until there is a batch that wants it. */
 static void *live(void *argument) {
     pool_thread *self = argument;
     snow_pool *pool = self->pool;
     pthread_mutex_lock(&pool->lock);
     while (!pool->quit) {
-        snow_apart_release(self->avoided);
-        self->avoided = SNOW_APART_NONE;
         snow_batch *batch = batch_for(pool, self->worker);
-        if (!batch) {
-            pthread_cond_wait(&pool->wake, &pool->lock);
+        if (batch) {
+            work_along(self, batch);
             continue;
         }
-        batch->busy++;
-        pthread_mutex_unlock(&pool->lock);
-        while (take_item(batch, self->worker) && batch == &pool->call)
-            continue;
-        pthread_mutex_lock(&pool->lock);
-        if (--batch->busy == 0)
-            pthread_cond_signal(&pool->rest);
+        self->asleep = true;
+        pthread_cond_wait(&pool->wake, &pool->lock);
+        self->asleep = false;
     }
     pthread_mutex_unlock(&pool->lock);
     return NULL;
@@ -136,9 +148,7 @@ static void grow(snow_context *context, snow_pool *pool, int count) {
     }
     for (; pool->count < count; pool->count++) {
         pool_thread *thread = &pool->threads[pool->count];
-        *thread = (pool_thread){.pool = pool,
-                                .worker = pool->count + 1,
-                                .avoided = SNOW_APART_NONE};
+        *thread = (pool_thread){.pool = pool, .worker = pool->count + 1};
         if (pthread_create(&thread->id, NULL, live, thread))
             return;
     }
@@ -168,8 +178,9 @@ static void wake(snow_pool *pool, const snow_batch *batch) {
     bool apart = snow_apart_begin(&pool->apart);
     for (int n = 0; apart && n < pool->count && n < batch->wanted - 1; n++) {
         pool_thread *thread = &pool->threads[n];
-        thread->avoided =
-            snow_apart_keep(thread->id, thread->worker, thread->avoided);
+        if (thread->asleep &&
+            snow_apart_keep(&pool->apart, thread->id, thread->worker))
+            thread->apart = true;
     }
     pthread_cond_broadcast(&pool->wake);
 }
