@@ -151,8 +151,7 @@ static void draw_cells(const most_stroke *stroke, const most_slice *slice,
     t->cells = cells & slice->whole;
     if (!inner) {
         fill_factors(shares, 1, factors);
-        memcpy(factors + SNOW_MOST_LINE, factors,
-               SNOW_MOST_LINE * sizeof *factors);
+        fill_factors(shares, 1, factors + SNOW_MOST_LINE);
         t->factors = factors;
     }
     if (t->cells)
