@@ -15,6 +15,7 @@
 #include <pthread.h>
 #include <stdbool.h>
 
+/* What a caller and its helpers share; they change and read it under a lock. */
 typedef struct snow_apart {
     double ended, ended_cpu; /* when helpers were needed last; zeros: never */
     double until;            /* helpers are kept apart */
@@ -35,7 +36,7 @@ bool snow_apart_begin(snow_apart *apart);
  * and not where the system refuses. */
 bool snow_apart_keep(const snow_apart *apart, pthread_t helper, int nth);
 
-/* Lets the calling helper run everywhere; returns whether. */
+/* Lets the calling helper run everywhere; returns whether.  A copy will do. */
 bool snow_apart_release(const snow_apart *apart);
 
 #endif
