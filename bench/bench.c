@@ -5,7 +5,7 @@
 #include "bench.h"
 #include "combine.h"
 #include "frame.h"
-#include "launch.h"
+#include "start.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -79,7 +79,7 @@ static const char help[] =
     "  --sizes LIST     sides of the square picture in pixels (512)\n"
     "  --threads LIST   (1 and all processors)\n"
     "  --only LIST      of translucent, opaque, grey, rgba, unshaded, phong,\n"
-    "                   original, tested, footprint, sheared, auto, crs, "
+    "                   original, tested, footprint, shear-warp, auto, crs, "
     "bitmap,\n"
     "                   rle, draft, normal, high, bspline, tent: words of one "
     "kind\n"
@@ -120,7 +120,7 @@ int bench_fail(snow_context *context, snow_status status) {
 static int usage_error(const char *what, const char *value) {
     fprintf(stderr, "snowglass: bench: %s '%s'; see snowglass bench --help\n",
             what, value);
-    return SNOW_BAD_USAGE;
+    return SNOW_STATUS_BAD_USAGE;
 }
 
 /* A finite number in range, the whole of the text.  NaN is in no range. */
@@ -199,7 +199,7 @@ static bool take_option(int option, const char *value, bench_options *out) {
         out->runs = (int)number;
         return true;
     case 'k':
-        if ((kernel = snow_kernel_named(value)) < 0)
+        if ((kernel = snow_kernel_from_name(value)) < 0)
             return false;
         out->kernel = (snow_kernel)kernel;
         return true;
@@ -326,7 +326,7 @@ static int parse(int argc, char **argv, bench_options *options,
                                option_word(argv));
         if (option == 'h') {
             fputs(help, stdout);
-            return SNOW_OK;
+            return SNOW_STATUS_OK;
         }
         if (!take_option(option, optarg, options))
             return usage_error("this value is not possible:", optarg);
@@ -377,10 +377,10 @@ int bench_main(int argc, char **argv) {
         options.runs = options.quick ? 1 : 7;
     const struct bench_entry *entry = find_entry(command.name);
     if (entry->needs_data && !bench_data_found(&options))
-        return SNOW_BAD_INPUT;
+        return SNOW_STATUS_BAD_INPUT;
     snow_context *context;
-    if (snow_context_new(NULL, &context) != SNOW_OK)
-        return SNOW_NO_MEMORY;
+    if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
+        return SNOW_STATUS_NO_MEMORY;
     code = entry->run(context, &options);
     snow_context_free(context);
     return code;

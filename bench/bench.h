@@ -83,8 +83,8 @@ snow_status bench_source_open(snow_context *context, const bench_source *source,
                               const bench_options *options, bench_volume *out);
 
 /* Reads 8-bit voxels out of VTK's ImageData; *voxels, which the volume shares,
- * is to be freed after it.  Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY, told on
- * stderr. */
+ * is to be freed after it.  Errors: SNOW_STATUS_BAD_INPUT,
+ * SNOW_STATUS_NO_MEMORY, told on stderr. */
 snow_status bench_vti_open(snow_context *context, const char *path,
                            unsigned char **voxels, snow_volume **out);
 
@@ -115,8 +115,8 @@ typedef struct bench_row {
     bench_time times[BENCH_WAYS];
 } bench_row;
 
-/* Verifies, then times one row.  Errors: those of the library; SNOW_DIFFERENT
- * when pictures differ that must not. */
+/* Verifies, then times one row.  Errors: those of the library;
+ * SNOW_STATUS_DIFFERENT when pictures differ that must not. */
 snow_status bench_measure(snow_context *context, const bench_volume *volume,
                           const bench_options *options, double threshold,
                           int footprint, bench_row *out);

@@ -242,7 +242,7 @@ static void put_chart(FILE *file, const chart_plot *chart) {
 
 static snow_status fail_output(const char *path, const char *why) {
     fprintf(stderr, "snowglass: bench: %s: %s\n", path, why);
-    return SNOW_BAD_OUTPUT;
+    return SNOW_STATUS_BAD_OUTPUT;
 }
 
 snow_status chart_check(const char *path) {
@@ -255,7 +255,7 @@ snow_status chart_check(const char *path) {
              slash ? path : ".");
     if (access(folder, W_OK | X_OK) != 0)
         return fail_output(path, strerror(errno));
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* link fails where a file has come into being meanwhile, which is kept. */
@@ -271,7 +271,8 @@ snow_status chart_write(const chart_plot *chart, const char *path) {
     put_chart(file, chart);
     bool good = !ferror(file) && fchmod(handle, 0644) == 0;
     good = fclose(file) == 0 && good && link(aside, path) == 0;
-    snow_status status = good ? SNOW_OK : fail_output(path, strerror(errno));
+    snow_status status =
+        good ? SNOW_STATUS_OK : fail_output(path, strerror(errno));
     unlink(aside);
     return status;
 }

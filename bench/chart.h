@@ -37,10 +37,11 @@ typedef struct chart_plot {
 } chart_plot;
 
 /* Whether a chart can be written to this path: nothing is there, and its
- * folder can be written.  If not, stderr was told; SNOW_BAD_OUTPUT. */
+ * folder can be written.  If not, stderr was told; SNOW_STATUS_BAD_OUTPUT. */
 snow_status chart_check(const char *path);
 
-/* Writes it aside and renames it.  Errors: SNOW_BAD_OUTPUT, told on stderr. */
+/* Writes it aside and renames it.  Errors: SNOW_STATUS_BAD_OUTPUT, told on
+ * stderr. */
 snow_status chart_write(const chart_plot *chart, const char *path);
 
 #endif

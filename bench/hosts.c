@@ -24,14 +24,15 @@ static void count(const host_name *names, int ranks, bench_hosts *out) {
 }
 
 snow_status bench_hosts_count(snow_comm *comm, bench_hosts *out) {
-    const int ranks = snow_comm_ranks(comm);
+    const int ranks = snow_comm_size(comm);
     host_name mine = {""};
     host_name *all = calloc((size_t)ranks, sizeof *all);
     gethostname(mine.text, sizeof mine.text - 1);
-    snow_status status = snow_comm_agree(comm, all ? SNOW_OK : SNOW_NO_MEMORY);
-    if (status == SNOW_OK)
-        status = snow_comm_share(comm, &mine, sizeof mine, all);
-    if (status == SNOW_OK)
+    snow_status status = snow_comm_agree_status(
+        comm, all ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
+    if (status == SNOW_STATUS_OK)
+        status = snow_comm_allgather(comm, &mine, sizeof mine, all);
+    if (status == SNOW_STATUS_OK)
         count(all, ranks, out);
     free(all);
     return status;

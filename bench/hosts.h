@@ -9,7 +9,8 @@ typedef struct bench_hosts {
     int node_ranks; /* the most that one has */
 } bench_hosts;
 
-/* Collective.  Errors: those of the transport, and SNOW_NO_MEMORY, agreed on.
+/* Collective.  Errors: those of the transport, and SNOW_STATUS_NO_MEMORY,
+ * agreed on.
  */
 snow_status bench_hosts_count(snow_comm *comm, bench_hosts *out);
 

@@ -52,7 +52,7 @@ int bench_words_fail(const bench_words *table, FILE *said, const char *what,
                 "snowglass: bench %s: %s '%s'; see snowglass bench %s "
                 "--help\n",
                 table->verb, what, word, table->verb);
-    return SNOW_BAD_USAGE;
+    return SNOW_STATUS_BAD_USAGE;
 }
 
 static const bench_word *find(const bench_words *table, const char *name) {

@@ -47,7 +47,7 @@ if "$out/program" "$out/third.tif" 2>"$out/said"; then
     echo "there is no module, and it is loaded"
     exit 1
 fi
-grep -q "is not in $(realpath "$(dirname "$module")"); install" "$out/said"
+grep -q "is not in $(realpath "$(dirname "$module")"); reinstall" "$out/said"
 [ ! -e "$out/third.tif" ]
 LD_LIBRARY_PATH='' "$out/static" "$out/third.tif"
 cmp "$out/first.tif" "$out/third.tif"

@@ -43,9 +43,9 @@ static inline snow_context *capped_context(size_t *held) {
     snow_allocator allocator = {capped_allocate, capped_release, held};
     snow_context *context;
     *held = 0;
-    if (snow_context_new(&allocator, &context) != SNOW_OK)
+    if (snow_context_new(&allocator, &context) != SNOW_STATUS_OK)
         abort();
-    snow_context_set_notice(context, ignore_notice, NULL);
+    snow_context_set_warning(context, ignore_notice, NULL);
     return context;
 }
 
@@ -66,10 +66,10 @@ static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
     snow_volume *volume = NULL;
     snow_status status =
         snow_volume_open_memory(context, name, bytes, size, options, &volume);
-    if (status == SNOW_OK) {
-        snow_volume_measures measures;
+    if (status == SNOW_STATUS_OK) {
+        snow_volume_statistics measures;
         uint64_t counts[16];
-        snow_volume_measure(volume, &measures);
+        snow_volume_get_statistics(volume, &measures);
         snow_volume_histogram(volume, -10, 1000, 16, counts);
         if (measures.finite > measures.voxels)
             abort();

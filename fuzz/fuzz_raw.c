@@ -15,14 +15,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
         memcpy(name, bytes, length);
     if (length < size)
         length++;
-    const snow_volume_options told = {
+    const snow_volume_options given = {
         .dims = {4, 3, 2},
-        .type = SNOW_UINT16,
+        .type = SNOW_TYPE_UINT16,
         .endian = SNOW_ENDIAN_BIG,
         .spacing = {1, 2, 0.5},
         .offset = 1,
     };
     look_at(name, bytes + length, size - length, NULL);
-    look_at(name, bytes + length, size - length, &told);
+    look_at(name, bytes + length, size - length, &given);
     return 0;
 }

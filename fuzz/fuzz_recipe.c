@@ -11,11 +11,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 /* A recipe's text; ends the run where it cannot be made. */
 static char *write_text(snow_context *context, const snow_recipe *recipe) {
     size_t length = 0;
-    if (snow_recipe_write(context, recipe, NULL, 0, &length) != SNOW_OK)
+    if (snow_recipe_write(context, recipe, NULL, 0, &length) != SNOW_STATUS_OK)
         abort();
     char *text = malloc(length + 1);
     if (!text || snow_recipe_write(context, recipe, text, length + 1,
-                                   &length) != SNOW_OK)
+                                   &length) != SNOW_STATUS_OK)
         abort();
     return text;
 }
@@ -23,13 +23,13 @@ static char *write_text(snow_context *context, const snow_recipe *recipe) {
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     snow_context *context = NULL;
     snow_recipe recipe, again;
-    if (snow_context_new(NULL, &context) != SNOW_OK)
+    if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return 0;
     if (snow_recipe_parse(context, "text", (const char *)bytes, size,
-                          &recipe) == SNOW_OK) {
+                          &recipe) == SNOW_STATUS_OK) {
         char *text = write_text(context, &recipe);
         if (snow_recipe_parse(context, "again", text, strlen(text), &again) !=
-            SNOW_OK)
+            SNOW_STATUS_OK)
             abort();
         char *second = write_text(context, &again);
         if (strcmp(text, second) != 0)

@@ -27,15 +27,17 @@ static void round_trip(snow_context *context, const snow_tf *tf) {
     const snow_points *points = snow_tf_points(tf);
     snow_tf *again = NULL;
     size_t length = 0;
-    if (snow_tf_write_json(context, points, NULL, 0, &length) != SNOW_OK)
+    if (snow_look_write_json(context, points, NULL, 0, &length) !=
+        SNOW_STATUS_OK)
         abort();
     char *text = malloc(length + 1);
-    if (!text || snow_tf_write_json(context, points, text, length + 1,
-                                    &length) != SNOW_OK)
+    if (!text || snow_look_write_json(context, points, text, length + 1,
+                                      &length) != SNOW_STATUS_OK)
         abort();
-    if (snow_tf_parse(context, "again", text, length, NULL, &again) == SNOW_OK)
+    if (snow_look_parse(context, "again", text, length, NULL, &again) ==
+        SNOW_STATUS_OK)
         check_same(points, snow_tf_points(again));
-    else if (length < SNOW_TF_BYTES &&
+    else if (length < SNOW_LOOK_BYTES_MAX &&
              !strstr(snow_context_message(context), "memory"))
         abort();
     snow_tf_free(again);
@@ -49,11 +51,11 @@ static void use(snow_context *context, const snow_points *p) {
         snow_status status =
             snow_transfer_new(context, p->colors, p->color_count, p->opacities,
                               p->opacity_count, &transfer);
-        if (status != SNOW_OK && status != SNOW_NO_MEMORY)
+        if (status != SNOW_STATUS_OK && status != SNOW_STATUS_NO_MEMORY)
             abort();
         snow_transfer_free(transfer);
     }
-    snow_tf_write_csv(context, p, NULL, 0, &length);
+    snow_look_write_csv(context, p, NULL, 0, &length);
 }
 
 /* The suffix decides some formats; a byte more than the input says which. */
@@ -63,9 +65,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
         size_t held;
         snow_context *context = capped_context(&held);
         snow_tf *tf = NULL;
-        snow_status status = snow_tf_parse(context, names[i], bytes, size,
-                                           i == 3 ? "CT-Bone" : NULL, &tf);
-        if (status == SNOW_OK) {
+        snow_status status = snow_look_parse(context, names[i], bytes, size,
+                                             i == 3 ? "CT-Bone" : NULL, &tf);
+        if (status == SNOW_STATUS_OK) {
             round_trip(context, tf);
             use(context, snow_tf_points(tf));
         } else if (tf || !*snow_context_message(context))

@@ -1,7 +1,8 @@
-/* fuzz/fuzz_zarr.c - an input is a folder of files as records (zarr.h): the
- * first array or image in it, a level by its number, and a box. */
+/* fuzz/fuzz_zarr.c - an input is a folder of files as records
+ * (formats/zarr/zarr.h): the first array or image in it, a level by its number,
+ * and a box. */
 #include "capped.h"
-#include "volume/zarr.h"
+#include "formats/zarr/zarr.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,9 +19,9 @@ static void look_inside(const uint8_t *bytes, size_t size, const char *path,
     snow_volume_info info;
     snow_status status =
         snow_zarr_read_store(&store, path, options, &info, &volume);
-    if (status == SNOW_OK) {
-        snow_volume_measures measures;
-        snow_volume_measure(volume, &measures);
+    if (status == SNOW_STATUS_OK) {
+        snow_volume_statistics measures;
+        snow_volume_get_statistics(volume, &measures);
         if (measures.finite > measures.voxels)
             abort();
         snow_volume_close(volume);

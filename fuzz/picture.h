@@ -14,7 +14,7 @@ static void check_picture(snow_image *image) {
     if (width < 1 || height < 1 || snow_image_channels(image) != 4)
         abort();
     snow_image_checksum(image); /* touches every pixel */
-    if (snow_image_compare(image, image, &difference) == SNOW_OK &&
+    if (snow_image_compare(image, image, &difference) == SNOW_STATUS_OK &&
         (difference.largest != 0 || difference.ssim != 1))
         abort();
 }
@@ -27,11 +27,12 @@ static void look_at_picture(const uint8_t *bytes, size_t size) {
     snow_image *image = NULL;
     snow_status status =
         snow_image_load_memory(context, "input", bytes, size, &image);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         check_picture(image);
     else if (image || !*snow_context_message(context) ||
              strchr(snow_context_message(context), '\n') ||
-             (status != SNOW_BAD_INPUT && status != SNOW_NO_MEMORY))
+             (status != SNOW_STATUS_BAD_INPUT &&
+              status != SNOW_STATUS_NO_MEMORY))
         abort();
     snow_image_free(image);
     capped_end(context, &held);

@@ -1,14 +1,15 @@
-/* cmd_convert.c - a volume into another format, whole or a box of it. */
+/* cmd_convert.c - the verb convert: writes a volume, or a box of it, in another
+ * format. */
 #include "commands.h"
 #include "interrupt.h"
+#include "log.h"
 #include "outputs.h"
-#include "report.h"
 
 #include <string.h>
 #include <strings.h>
 
-/* The name decides the format; a pipe may block, so there an interruption does
- * not wait for the write to end. */
+/* The file name decides the format.  Writing to a pipe may block, so an
+ * interruption there does not wait for the write to end. */
 int save_volume(snow_context *context, const options *asked,
                 const snow_volume *volume) {
     char text[256];
@@ -16,16 +17,16 @@ int save_volume(snow_context *context, const options *asked,
         interrupt_hold();
     snow_status status =
         snow_volume_save(volume, asked->output, asked->overwrite);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
-    describe_volume(snow_volume_describe(volume), text, sizeof text);
-    if (asked->verbosity >= 0) /* without the format that it came from */
+    describe_volume(snow_volume_get_info(volume), text, sizeof text);
+    if (asked->verbosity >= 0) /* without the input's format */
         say("%s: %s", asked->output, strchr(text, ' ') + 1);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Raw data are told by --dims and --type; the type of any other input is known,
- * so that --type says what to make of it. */
+/* --dims and --type describe raw input.  Any other input states its own type,
+ * so for it --type is the type to convert to. */
 static snow_type wanted_type(const options *asked, snow_volume_options *data) {
     snow_type type = asked->as;
     if (!type && data->type && !data->dims[0]) {
@@ -35,7 +36,7 @@ static snow_type wanted_type(const options *asked, snow_volume_options *data) {
     return type;
 }
 
-/* Whether files of this name say slope and intercept. */
+/* Whether the format that this file name selects stores slope and intercept. */
 static bool keeps_scaling(const char *path) {
     static const char *const suffixes[] = {".nii", ".nii.gz", ".mha"};
     for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
@@ -46,47 +47,49 @@ static bool keeps_scaling(const char *path) {
     return false;
 }
 
-/* The range that --range means.  Answers GO_ON or an exit code. */
+/* The data values that --range stands for.  Returns CONTINUE or an exit
+ * code. */
 static int find_range(const options *asked, const snow_volume *volume,
                       double range[2]) {
-    snow_volume_measures m;
+    snow_volume_statistics m;
     switch (asked->range.kind) {
     case SNOW_RANGE_PERCENTILES:
-        return fail_usage("--range: convert takes two data values or full");
+        return fail_usage("--range: percentiles cannot be converted; give two "
+                          "data values or full");
     case SNOW_RANGE_FULL:
-        snow_volume_measure(volume, &m);
+        snow_volume_get_statistics(volume, &m);
         range[0] = m.min;
         range[1] = m.max;
-        return GO_ON;
+        return CONTINUE;
     default:
         range[0] = asked->range.low;
         range[1] = asked->range.high;
-        return GO_ON;
+        return CONTINUE;
     }
 }
 
-/* Takes the volume's place where another type is needed. */
+/* Replaces the volume if another type is needed. */
 static int change_type(snow_context *context, const options *asked,
                        snow_type type, snow_volume **volume) {
-    const snow_volume_info *info = snow_volume_describe(*volume);
+    const snow_volume_info *info = snow_volume_get_info(*volume);
     bool scaled = info->slope != 1 || info->intercept != 0;
     bool spread = asked->range.kind != SNOW_RANGE_AUTO;
     double range[2];
     snow_volume *made;
     if (!type && !spread && (!scaled || keeps_scaling(asked->output)))
-        return GO_ON;
-    int done = spread ? find_range(asked, *volume, range) : GO_ON;
-    if (done != GO_ON)
+        return CONTINUE;
+    int done = spread ? find_range(asked, *volume, range) : CONTINUE;
+    if (done != CONTINUE)
         return done;
     snow_status status =
         snow_volume_convert(*volume, type, spread ? range : NULL, &made);
-    if (status != SNOW_OK) {
+    if (status != SNOW_STATUS_OK) {
         say("%s: %s", asked->operands[0], snow_context_message(context));
         return (int)status;
     }
     snow_volume_close(*volume);
     *volume = made;
-    return GO_ON;
+    return CONTINUE;
 }
 
 static int convert(snow_context *context, const options *asked) {
@@ -95,10 +98,10 @@ static int convert(snow_context *context, const options *asked) {
     snow_volume *volume = NULL;
     snow_status status =
         snow_volume_open(context, asked->operands[0], &data, &volume);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     int done = change_type(context, asked, type, &volume);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = save_volume(context, asked, volume);
     snow_volume_close(volume);
     return done;
@@ -107,12 +110,12 @@ static int convert(snow_context *context, const options *asked) {
 int cmd_convert(const options *asked) {
     snow_context *context = NULL;
     if (!asked->output)
-        return fail_usage("no output is named; add -o OUT.nrrd");
+        return fail_usage("no output file given; add -o OUT.nrrd");
     if (asked->range.kind != SNOW_RANGE_AUTO && !asked->as && !asked->type)
-        return fail_usage("--range: spreads values over a type; add --as "
-                          "uint8, say");
+        return fail_usage("--range: needs a type to spread the values over; "
+                          "add --as uint8, for example");
     int done = open_context(asked, &context);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = convert(context, asked);
     snow_context_free(context);
     return done;

@@ -1,9 +1,9 @@
-/* cmd_doctor.c - what this build and this machine can do.  The names come from
- * the library's own lists, so that the answer cannot grow old. */
+/* cmd_doctor.c - the verb doctor: what this build and this machine can do.  The
+ * names come from the library's own lists, so the answer stays up to date. */
 #include "commands.h"
-#include "launch.h"
-#include "report.h"
-#include "sequence_encoder.h"
+#include "log.h"
+#include "movie_encoder.h"
+#include "start.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -20,10 +20,11 @@ static const char *kernel_at(size_t i) {
                  : NULL;
 }
 
-/* The methods that --method takes; "tested" serves the paper's tables. */
+/* The methods that --method accepts; "tested" is for the benchmark of the
+ * paper's tables. */
 static const char *method_at(size_t i) {
     static const snow_method methods[] = {
-        SNOW_METHOD_ORIGINAL, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_SHEARED};
+        SNOW_METHOD_ORIGINAL, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_SHEAR_WARP};
     return i < 3 ? snow_method_name(methods[i]) : NULL;
 }
 
@@ -31,11 +32,11 @@ static const char *mode_at(size_t i) {
     return snow_mode_name((snow_mode)i);
 }
 
-/* Of pictures, those that this build writes. */
+/* The picture formats that this build can write. */
 static const char *picture_suffix_at(size_t i) {
     const char *suffix;
     bool built;
-    for (size_t n = 0; (suffix = snow_image_suffix(n, &built)); n++)
+    for (size_t n = 0; (suffix = snow_image_format_suffix(n, &built)); n++)
         if (built && i-- == 0)
             return suffix;
     return NULL;
@@ -49,7 +50,7 @@ static bool writes_webp(void) {
     return false;
 }
 
-/* Keys of JSON and first words of lines alike. */
+/* Each key is a key of the JSON object and the first word of a line. */
 static const struct {
     const char *key;
     const char *(*at)(size_t index);
@@ -63,14 +64,14 @@ static const struct {
     {"encodings", encoding_at},
     {"methods", method_at},
     {"modes", mode_at},
-    {"volume_outputs", snow_volume_suffix},
+    {"volume_outputs", snow_volume_format_suffix},
     {"picture_outputs", picture_suffix_at},
 };
 
 #define LISTS (sizeof lists / sizeof *lists)
 
-/* Bytes that the machine has, and those that the control group allows: the
- * smaller one, or 0 when neither is known. */
+/* The memory of the machine or the limit of the control group, in bytes,
+ * whichever is smaller; 0 if neither is known. */
 static uint64_t memory_bytes(void) {
     uint64_t limit = 0;
     long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
@@ -89,7 +90,7 @@ static uint64_t memory_bytes(void) {
     return limit;
 }
 
-/* "a b c" as a list. */
+/* Turns "a b c" into a list. */
 static json_t *words_json(const char *words) {
     json_t *list = json_array();
     while (*words) {
@@ -100,7 +101,7 @@ static json_t *words_json(const char *words) {
     return list;
 }
 
-/* Asks for names until there is none: the end is the library's to know. */
+/* Lists names until the library returns NULL. */
 static json_t *list_json(const char *(*at)(size_t)) {
     json_t *list = json_array();
     for (size_t i = 0; at(i); i++)
@@ -108,7 +109,8 @@ static json_t *list_json(const char *(*at)(size_t)) {
     return list;
 }
 
-/* Optional libraries: the build's version, or null. */
+/* The versions of the optional libraries; null for a library that is
+ * missing. */
 static json_t *libraries_json(void) {
     json_t *object = json_object();
     const char *name, *version, *formats;
@@ -118,9 +120,9 @@ static json_t *libraries_json(void) {
     return object;
 }
 
-/* What is not built is told too, as false or 1, so that a script that asks need
- * not change when it is. */
-static int tell_json(void) {
+/* Features that are missing are listed too, as false or 1, so that a script
+ * need not change when they arrive. */
+static int report_json(void) {
     json_t *o = json_object();
     json_object_set_new(o, "version", json_string(snow_version()));
     for (size_t i = 0; i < LISTS; i++)
@@ -144,7 +146,7 @@ static void print_row(const char *key, const char *text) {
     printf("%-16s%s\n", key, text);
 }
 
-/* A key of JSON is made of words here. */
+/* The key of the JSON object, with its underscores as spaces. */
 static void print_list(const char *key, const char *(*at)(size_t)) {
     char words[17] = "";
     for (size_t i = 0; i < sizeof words - 1 && key[i]; i++)
@@ -162,15 +164,16 @@ static void print_libraries(void) {
                version ? version : "is missing", formats);
 }
 
-static int tell_text(void) {
+static int report_text(void) {
     print_row("version", snow_version());
     for (size_t i = 0; i < LISTS; i++)
         print_list(lists[i].key, lists[i].at);
     printf("%-16s%s%s%s\n", "movie outputs", writes_webp() ? ".webp" : "",
-           encoder_is_there() && writes_webp() ? ", " : "",
-           encoder_is_there() ? ".mp4 .webm .gif by ffmpeg"
-           : writes_webp()    ? "; of others frames only: there is no ffmpeg"
-                              : "frames only: there is no ffmpeg");
+           encoder_is_there() && writes_webp() ? " " : "",
+           encoder_is_there() ? ".mp4 .webm .gif (with ffmpeg)"
+           : writes_webp()
+               ? "; other movies as frames only: ffmpeg was not found"
+               : "frames only: ffmpeg was not found");
     print_libraries();
     printf("%-16sfound %s; used %s\n", "isa", snow_isa_found(),
            snow_isa_used());
@@ -179,7 +182,7 @@ static int tell_text(void) {
         printf("%-16s%s, %d rank%s\n", "mpi", launch_mpi(), launch_ranks(),
                launch_ranks() > 1 ? "s" : "");
     else
-        print_row("mpi", "no; snowglass-mpi has it");
+        print_row("mpi", "no; use snowglass-mpi");
     print_row("display", "not needed");
     printf("%-16s%.1f GiB\n", "memory",
            (double)memory_bytes() / (double)(1 << 30));
@@ -187,8 +190,8 @@ static int tell_text(void) {
     return finish_stdout();
 }
 
-/* Needs no context, no memory to speak of and no file: it answers where nothing
+/* Needs no context, no file and hardly any memory, so it works where nothing
  * else does. */
 int cmd_doctor(const options *asked) {
-    return asked->json ? tell_json() : tell_text();
+    return asked->json ? report_json() : report_text();
 }

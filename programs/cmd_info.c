@@ -1,44 +1,44 @@
-/* cmd_info.c - what is in a volume: geometry, type, figures, histogram, and
- * how much of it a threshold would leave out. */
+/* cmd_info.c - the verb info: geometry, type, statistics and histogram of a
+ * volume, and the share of voxels that a threshold leaves out. */
 #include "commands.h"
-#include "report.h"
+#include "log.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-#define ROWS 16  /* of the histogram as text: half a screen */
-#define BINS 256 /* of the one in JSON */
+#define ROWS 16  /* bins of the histogram as text: half a screen */
+#define BINS 256 /* bins of the histogram as JSON */
 #define BAR 40   /* columns of the longest bar */
 
-/* The paper's thresholds, asked of any look; --threshold asks for one. */
+/* The thresholds of the paper; --threshold replaces them by one. */
 static const double paper_thresholds[] = {0, 10, 30};
 
-/* A volume with all that is told of it. */
+/* A volume and all that is printed about it. */
 typedef struct facts {
     const snow_volume *volume;
     const snow_volume_info *info;
     const snow_transfer *transfer;
-    snow_volume_measures measures;
+    snow_volume_statistics measures;
     double thresholds[3], ratios[3];
     size_t threshold_count;
-    const char *patient; /* NULL: not asked for, or not told */
+    const char *patient; /* NULL: not requested, or not in the file */
 } facts;
 
-/* Every figure is taken before the first one is printed, so that a failure
+/* Everything is computed before the first line is printed, so that a failure
  * prints nothing. */
-static snow_status gather(const options *asked, facts *f) {
-    f->info = snow_volume_describe(f->volume);
+static snow_status gather_facts(const options *asked, facts *f) {
+    f->info = snow_volume_get_info(f->volume);
     f->thresholds[0] = asked->threshold;
     f->threshold_count = 1;
     if (asked->threshold < 0) {
         memcpy(f->thresholds, paper_thresholds, sizeof paper_thresholds);
         f->threshold_count = 3;
     }
-    snow_volume_measure(f->volume, &f->measures);
-    snow_status status = SNOW_OK;
-    for (size_t i = 0; i < f->threshold_count && status == SNOW_OK; i++)
+    snow_volume_get_statistics(f->volume, &f->measures);
+    snow_status status = SNOW_STATUS_OK;
+    for (size_t i = 0; i < f->threshold_count && status == SNOW_STATUS_OK; i++)
         status = snow_transfer_sparse_ratio(f->transfer, f->volume,
                                             f->thresholds[i], &f->ratios[i]);
     return status;
@@ -47,15 +47,15 @@ static snow_status gather(const options *asked, facts *f) {
 /* --- orientation -----------------------------------------------------------
  */
 
-/* The matrix maps indices to the world, so its column is the direction of an
- * index axis, as long as the spacing.  The cosine between index axis `axis` and
- * world axis `row`. */
+/* The cosine between index axis `axis` and world axis `row`.  The matrix maps
+ * indices to the world, so its column is the direction of an index axis, and as
+ * long as the spacing. */
 static double cosine(const snow_volume_info *info, int row, int axis) {
     return info->matrix[row][axis] / info->spacing[axis];
 }
 
-/* The letter of the side that each index axis grows towards: each world axis
- * is given to one index axis, the best pair first, so that an oblique volume
+/* The letter of the side that each index axis points to.  Each world axis is
+ * assigned to one index axis, the best pair first, so that an oblique volume
  * has three different letters too. */
 static void axis_letters(const snow_volume_info *info, char letters[4]) {
     static const char sides[3][2] = {{'L', 'R'}, {'P', 'A'}, {'I', 'S'}};
@@ -82,7 +82,7 @@ static void axis_letters(const snow_volume_info *info, char letters[4]) {
 /* --- text ------------------------------------------------------------------
  */
 
-/* What the file says of its place; scale and times only when they matter. */
+/* The geometry of the file; scale and time steps only if they matter. */
 static void print_geometry(const facts *f) {
     const snow_volume_info *info = f->info;
     char letters[4];
@@ -97,7 +97,7 @@ static void print_geometry(const facts *f) {
            info->unit);
     if (info->medical) {
         axis_letters(info, letters);
-        printf("%-14s%s (the sides that x, y and z grow towards)\n", "axes",
+        printf("%-14s%s (the sides that x, y and z point to)\n", "axes",
                letters);
     }
     for (int i = 0; i < 3; i++)
@@ -105,7 +105,7 @@ static void print_geometry(const facts *f) {
                info->matrix[i][0], info->matrix[i][1], info->matrix[i][2],
                info->matrix[i][3]);
     if (info->times > 1)
-        printf("%-14s%" PRId64 " (time %" PRId64 " is shown)\n", "times",
+        printf("%-14s%" PRId64 " (these values: step %" PRId64 ")\n", "times",
                info->times, info->time);
     if (info->slope < 1 || info->slope > 1 || info->intercept < 0 ||
         info->intercept > 0)
@@ -117,29 +117,30 @@ static void print_geometry(const facts *f) {
         printf("%-14s%s\n", "patient", f->patient);
 }
 
-/* The look and the sparse ratios are those that render would have with the same
- * options: info answers whether that will do. */
+/* The look and the sparse ratios are those that render would use with the same
+ * options, so that info can be tried first. */
 static void print_values(const facts *f) {
-    const snow_volume_measures *m = &f->measures;
+    const snow_volume_statistics *m = &f->measures;
     printf("%-14s%" PRId64 " of %" PRId64 " voxels\n", "finite", m->finite,
            m->voxels);
     if (m->finite > 0)
         printf("%-14s%g .. %g, mean %g\n", "values", m->min, m->max,
                m->sum / (double)m->finite);
-    printf("%-14s%s\n", "look", snow_transfer_text(f->transfer));
+    printf("%-14s%s\n", "look", snow_transfer_description(f->transfer));
     for (size_t i = 0; i < f->threshold_count; i++)
         printf("%-14s%5.1f %% at threshold %g\n", i ? "" : "sparse ratio",
                100 * f->ratios[i], f->thresholds[i]);
 }
 
-/* False when there is nothing to spread over bins. */
+/* Returns false if there are no values to count. */
 static bool count_values(const facts *f, size_t bins, uint64_t *counts) {
     return f->measures.finite > 0 && f->measures.min < f->measures.max &&
            snow_volume_histogram(f->volume, f->measures.min, f->measures.max,
-                                 bins, counts) == SNOW_OK;
+                                 bins, counts) == SNOW_STATUS_OK;
 }
 
-/* Bars grow with the logarithm: air outnumbers all else a hundredfold. */
+/* Bars grow with the logarithm: there may be a hundred times more air than
+ * anything else. */
 static void print_histogram(const facts *f) {
     uint64_t counts[ROWS], most = 1;
     if (!count_values(f, ROWS, counts))
@@ -147,7 +148,7 @@ static void print_histogram(const facts *f) {
     for (size_t i = 0; i < ROWS; i++)
         most = counts[i] > most ? counts[i] : most;
     double step = (f->measures.max - f->measures.min) / ROWS;
-    printf("histogram     from         voxels  (bars: logarithm)\n");
+    printf("histogram     from         voxels  (bars: logarithmic)\n");
     for (size_t i = 0; i < ROWS; i++) {
         char bar[BAR + 1];
         double share = log1p((double)counts[i]) / log1p((double)most);
@@ -162,7 +163,7 @@ static void print_histogram(const facts *f) {
 /* --- JSON ------------------------------------------------------------------
  */
 
-/* Keys are a promise to scripts: dims x first, matrix from index to world, row
+/* Scripts rely on the keys: dims has x first, matrix maps index to world, row
  * by row. */
 static void set_geometry(json_t *object, const snow_volume_info *info) {
     json_t *matrix = json_array();
@@ -189,8 +190,8 @@ static void set_geometry(json_t *object, const snow_volume_info *info) {
         json_object_set_new(object, "storage", json_string(info->storage));
 }
 
-/* min and max are null when no voxel is finite. */
-static void set_values(json_t *object, const snow_volume_measures *m) {
+/* min and max are null if no voxel is finite. */
+static void set_values(json_t *object, const snow_volume_statistics *m) {
     json_object_set_new(object, "voxels", json_integer(m->voxels));
     json_object_set_new(object, "finite", json_integer(m->finite));
     json_object_set_new(object, "min", json_number(m->min));
@@ -199,7 +200,8 @@ static void set_values(json_t *object, const snow_volume_measures *m) {
     json_object_set_new(object, "wsum", json_number(m->wsum));
 }
 
-/* Null for one value or none: there is no width to divide. */
+/* Null if all values are equal or none is finite: the bins would have no
+ * width. */
 static json_t *histogram_json(const facts *f) {
     uint64_t counts[BINS];
     if (!count_values(f, BINS, counts))
@@ -214,7 +216,7 @@ static json_t *histogram_json(const facts *f) {
     return object;
 }
 
-/* Ratios are of 0 to 1 here, percent in the text. */
+/* Ratios are 0 to 1 here and percent in the text. */
 static json_t *sparse_json(const facts *f) {
     json_t *list = json_array();
     for (size_t i = 0; i < f->threshold_count; i++) {
@@ -226,47 +228,47 @@ static json_t *sparse_json(const facts *f) {
     return list;
 }
 
-static int tell_json(const facts *f) {
+static int report_json(const facts *f) {
     json_t *object = json_object();
     set_geometry(object, f->info);
     if (f->patient)
         json_object_set_new(object, "patient", json_string(f->patient));
     set_values(object, &f->measures);
     json_object_set_new(object, "look",
-                        json_string(snow_transfer_text(f->transfer)));
+                        json_string(snow_transfer_description(f->transfer)));
     json_object_set_new(object, "sparse_ratio", sparse_json(f));
     json_object_set_new(object, "histogram", histogram_json(f));
     return print_json(object);
 }
 
-static int tell_text(const facts *f) {
+static int report_text(const facts *f) {
     print_geometry(f);
     print_values(f);
     print_histogram(f);
     return finish_stdout();
 }
 
-/* The look is made although no picture is: the sparse ratio depends on it. */
+/* No picture is made, but the sparse ratio needs the transfer function. */
 int cmd_info(const options *asked) {
     snow_context *context = NULL;
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     int done = check_look(asked);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = open_context(asked, &context);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = open_input(context, asked, asked->operands[0], &volume);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = open_look(context, asked, volume, &transfer);
-    if (done == GO_ON) {
+    if (done == CONTINUE) {
         facts f = {.volume = volume, .transfer = transfer};
         if (asked->patient && *snow_volume_patient(volume))
             f.patient = snow_volume_patient(volume);
-        snow_status status = gather(asked, &f);
-        if (status != SNOW_OK)
+        snow_status status = gather_facts(asked, &f);
+        if (status != SNOW_STATUS_OK)
             done = fail_status(context, status);
         else
-            done = asked->json ? tell_json(&f) : tell_text(&f);
+            done = asked->json ? report_json(&f) : report_text(&f);
     }
     snow_transfer_free(transfer);
     snow_volume_close(volume);

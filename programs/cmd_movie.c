@@ -1,52 +1,53 @@
-/* cmd_movie.c - a movie over time steps, each from the same camera and with the
- * same transfer function.
+/* cmd_movie.c - the verb movie: one frame for each time step, all with the same
+ * camera and the same transfer function.
  *
- * Were the look chosen for each step anew, brightness would flicker and nothing
- * could be compared; were it chosen by the first, what grows later would be cut
- * off.  So all steps are read twice: first for their values, then to be drawn.
- */
+ * A transfer function chosen for each step would make the brightness flicker,
+ * and steps could not be compared.  One chosen by the first step would cut off
+ * values that appear later.  So all steps are read twice: first for their
+ * values, then to be rendered. */
 #include "commands.h"
-#include "launch.h"
-#include "report.h"
-#include "sequence_steps.h"
+#include "log.h"
+#include "movie_steps.h"
+#include "start.h"
 
 #include <stdlib.h>
 
-static int check(const options *asked) {
+static int check_movie(const options *asked) {
     if (asked->operand_count == 0)
-        return fail_usage("movie: something is missing; give snowglass movie "
-                          "INPUT... -o OUT");
-    return sequence_check(asked);
+        return fail_usage(
+            "movie: no input given; give snowglass movie INPUT... -o OUT");
+    return movie_check(asked);
 }
 
-/* Lists the steps, and looks at the output, by the rank that writes it. */
-static int prepare(const options *asked, shot_renderer *shots,
-                   step_files *files, shot_list *list, sequence **s) {
-    int done = check(asked);
-    if (done == GO_ON)
+/* Lists the steps.  The rank that writes also checks the output. */
+static int prepare_movie(const options *asked, shot_renderer *shots,
+                         step_files *files, shot_list *list, sequence **s) {
+    int done = check_movie(asked);
+    if (done == CONTINUE)
         done = steps_find(asked, files);
     done = launch_agree(done);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = shots_open(asked, shots);
-    if (done != GO_ON)
+    if (done != CONTINUE)
         return done;
     done = steps_list(files, shots, list);
-    if (done == GO_ON && launch_talks())
-        done = sequence_open(asked, list, s);
+    if (done == CONTINUE && launch_talks())
+        done = movie_open(asked, list, s);
     return launch_agree(done);
 }
 
-/* Then chooses the look, and makes the frames. */
-static int run(const options *asked, shot_renderer *shots, step_files *files,
-               shot_list *list, sequence **s, double begin) {
-    int done = prepare(asked, shots, files, list, s);
-    if (done == GO_ON)
+/* Chooses the transfer function, then makes the frames. */
+static int run_movie(const options *asked, shot_renderer *shots,
+                     step_files *files, shot_list *list, sequence **s,
+                     double begin) {
+    int done = prepare_movie(asked, shots, files, list, s);
+    if (done == CONTINUE)
         done = steps_look(list, shots);
-    if (done != GO_ON)
+    if (done != CONTINUE)
         return done;
     shots->count = list->count;
-    sequence_renderer renderer = shots_renderer(shots);
-    return sequence_run(*s, asked, list, &renderer, begin);
+    movie_renderer renderer = shots_renderer(shots);
+    return movie_run(*s, asked, list, &renderer, begin);
 }
 
 int cmd_movie(const options *asked) {
@@ -55,9 +56,9 @@ int cmd_movie(const options *asked) {
     step_files files = {NULL, 0, 0};
     shot_list list = {.shots = NULL};
     sequence *s = NULL;
-    int done = run(asked, &shots, &files, &list, &s, begin);
+    int done = run_movie(asked, &shots, &files, &list, &s, begin);
     progress(asked, NULL);
-    sequence_close(s);
+    movie_close(s);
     shots_close(&shots);
     free(list.shots);
     steps_free(&files);

@@ -1,24 +1,25 @@
-/* cmd_render.c - one picture: open, look, view, render, write, tell.
+/* cmd_render.c - the verb render: opens a volume, makes the transfer function
+ * and the view, renders and writes one picture, and reports.
  *
- * Everything that can be refused is refused before the volume is read:
- * options that contradict each other, and outputs that cannot be written. */
+ * Bad options are refused before the volume is read: options that contradict
+ * each other and outputs that cannot be written. */
 #include "commands.h"
 #include "interrupt.h"
-#include "launch.h"
+#include "log.h"
 #include "marks.h"
 #include "outputs.h"
 #include "paint.h"
-#include "remarks.h"
+#include "render_state.h"
 #include "render_stats.h"
-#include "report.h"
-#include "scene.h"
+#include "start.h"
+#include "warnings.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
-/* "-" as in most tools; a file of that name is ./-. */
+/* "-" is standard output, as in most tools; a file of that name is ./-. */
 static bool is_stream(const char *path) {
     return path && strcmp(path, "-") == 0;
 }
@@ -26,25 +27,25 @@ static bool is_stream(const char *path) {
 int check_settings(const options *asked) {
     if (strcmp(asked->method, "original") == 0 &&
         strcmp(asked->encoding, "auto") != 0)
-        return fail_usage("--encoding: method original encodes nothing; leave "
-                          "one of the two out");
+        return fail_usage("--encoding: method original uses no encoding; "
+                          "remove --encoding or --method");
     bool iso = strcmp(asked->mode, "iso") == 0;
     if (iso != !isnan(asked->iso))
-        return fail_usage("--%s: needs --%s beside it",
+        return fail_usage("--%s: needs --%s too; add it",
                           iso ? "mode iso" : "iso",
                           iso ? "iso VALUE" : "mode iso");
     if (asked->view && asked->position.given)
-        return fail_usage("--position: --view says where the camera is as "
-                          "well; leave one of the two out");
+        return fail_usage("--position: conflicts with --view, which also "
+                          "places the camera; give only one of them");
     int done = marks_check(asked);
-    return done == GO_ON ? check_look(asked) : done;
+    return done == CONTINUE ? check_look(asked) : done;
 }
 
 static bool same_output(const char *a, const char *b) {
     return a && b && (strcmp(a, b) == 0 || same_place(a, b));
 }
 
-/* Whether the depth is channel Z of the picture's own file. */
+/* Whether the depths become channel Z of the picture's own file. */
 static bool is_beside(const options *asked) {
     return asked->depth && same_output(asked->depth, asked->output);
 }
@@ -52,49 +53,52 @@ static bool is_beside(const options *asked) {
 int check_depth_mode(const options *asked) {
     if (!asked->depth || strcmp(asked->mode, "over") == 0 ||
         strcmp(asked->mode, "iso") == 0)
-        return GO_ON;
-    return fail_usage("--depth: mode %s has none; take over or iso",
+        return CONTINUE;
+    return fail_usage("--depth: mode %s has no depth; use mode over or iso",
                       asked->mode);
 }
 
-/* Depths are of one picture, numbers, and go to a place of their own, or to the
- * picture's where its format has channels for both. */
+/* Depths need a single picture and a format that holds numbers.  They get a
+ * file of their own, or the picture's file if its format has a depth
+ * channel. */
 static int check_depth(const options *asked) {
     const char *path = asked->depth;
     int done = check_depth_mode(asked);
-    if (!path || done != GO_ON)
+    if (!path || done != CONTINUE)
         return done;
-    if (snow_image_bits(path) != 0)
-        return fail_usage("--depth: %s: depths are numbers; let the name end "
-                          "with .npy, .pfm, .exr or .tif",
+    if (snow_image_format_bits(path) != 0)
+        return fail_usage("--depth: %s cannot hold depths; use a name that "
+                          "ends in .npy, .pfm, .exr or .tif",
                           path);
     if (same_output(path, asked->stats))
-        return fail_usage("--depth: goes where --stats goes; name two places");
-    if (is_beside(asked) && !snow_image_takes_depth(asked->output))
-        return fail_usage("--depth: goes where --output goes; let both be one "
-                          ".exr, or name two places");
-    return GO_ON;
+        return fail_usage(
+            "--depth: is the same file as --stats; name two files");
+    if (is_beside(asked) && !snow_image_format_has_depth(asked->output))
+        return fail_usage("--depth: is the same file as --output; name two "
+                          "files, or use one .exr for both");
+    return CONTINUE;
 }
 
-/* Needs no file, so it comes before everything else. */
+/* These checks need no file, so they come before everything else. */
 static int check_combination(const options *asked) {
     if (!asked->output)
-        return fail_usage("no output is named; add -o OUT.png");
-    if (snow_image_bits(asked->output) == 0 &&
+        return fail_usage("no output file given; add -o OUT.png");
+    if (snow_image_format_bits(asked->output) == 0 &&
         (asked->background.given || asked->bits))
-        return fail_usage("%s: --background and --bits are for PNG and WebP "
-                          "files; leave them out or name a .png",
+        return fail_usage("%s: --background and --bits work only for PNG and "
+                          "WebP; remove them or name a .png",
                           asked->output);
     if (asked->stats && (strcmp(asked->stats, asked->output) == 0 ||
                          same_place(asked->stats, asked->output)))
-        return fail_usage("--stats: goes where --output goes; name two places");
+        return fail_usage(
+            "--stats: is the same file as --output; name two files");
     if (is_stream(asked->output) && isatty(STDOUT_FILENO))
-        return fail_usage("--output: '-' is a terminal; send it to a pipe or a "
-                          "file");
+        return fail_usage("--output: standard output is a terminal; send it to "
+                          "a pipe or a file");
     int done = scene_check(asked);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = check_depth(asked);
-    return done == GO_ON ? check_settings(asked) : done;
+    return done == CONTINUE ? check_settings(asked) : done;
 }
 
 snow_image_options picture_form(const options *asked) {
@@ -106,29 +110,30 @@ snow_image_options picture_form(const options *asked) {
     return form;
 }
 
-/* A long rendering must not end in an output that could have been refused at
- * once. */
+/* A long rendering must not end at an output that could have been refused at
+ * the start. */
 static int check_paths(snow_context *context, const options *asked) {
     snow_image_options form = picture_form(asked);
     snow_status status =
         snow_image_check(context, asked->output, (int)asked->size[0],
                          (int)asked->size[1], &form);
-    if (status == SNOW_OK && asked->depth && !is_beside(asked))
+    if (status == SNOW_STATUS_OK && asked->depth && !is_beside(asked))
         status = snow_image_check_path(context, asked->depth, asked->overwrite);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     return asked->stats ? check_stats_path(asked->stats, asked->overwrite)
-                        : GO_ON;
+                        : CONTINUE;
 }
 
-/* A file may say of what its opacities are; the command line counts more. */
+/* Whether opacities are per millimetre: a file of a transfer function may say
+ * so, but the command line has priority. */
 static bool is_per_mm(const options *asked) {
-    if (asked->loaded && !options_told(asked, "opacity-unit"))
+    if (asked->loaded && !options_given(asked, "opacity-unit"))
         return snow_tf_points(asked->loaded)->per_mm;
     return strcmp(asked->opacity_unit, "mm") == 0;
 }
 
-/* A millimetre in the units of the volume's world. */
+/* The length of a millimetre in the unit of the volume's world. */
 static int opacity_length(const options *asked, const snow_volume_info *info,
                           double *out) {
     static const struct {
@@ -138,26 +143,25 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
                  {"nm", 1e6}, {"m", 1e-3}, {"angstrom", 1e7}};
     *out = 0;
     if (!is_per_mm(asked))
-        return GO_ON;
+        return CONTINUE;
     for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
         if (strcmp(units[i].unit, info->unit) == 0)
             *out = units[i].length;
     }
     if (*out > 0)
-        return GO_ON;
-    return fail_usage("--opacity-unit: the volume's unit '%s' is no length; "
-                      "give voxel",
+        return CONTINUE;
+    return fail_usage("--opacity-unit mm: the volume's unit '%s' is not a "
+                      "length; use --opacity-unit voxel",
                       info->unit);
 }
 
-/* The texts were checked against the choices of the table, so that every name
- * is known to the library. */
+/* The option table has checked the words, so the library knows every name. */
 void fill_settings(const options *asked, snow_settings *out) {
     snow_settings_init(out);
     out->threshold = asked->threshold < 0 ? 0 : asked->threshold;
-    out->method = (snow_method)snow_method_named(asked->method);
-    out->encoding = (snow_encoding)snow_encoding_named(asked->encoding);
-    out->kernel = (snow_kernel)snow_kernel_named(asked->kernel);
+    out->method = (snow_method)snow_method_from_name(asked->method);
+    out->encoding = (snow_encoding)snow_encoding_from_name(asked->encoding);
+    out->kernel = (snow_kernel)snow_kernel_from_name(asked->kernel);
     out->footprint = (int)asked->footprint;
     out->shade =
         strcmp(asked->shade, "none") == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
@@ -167,11 +171,11 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->shininess = asked->shininess;
     out->light_azimuth = asked->light[0];
     out->light_elevation = asked->light[1];
-    out->quality = (snow_quality)snow_quality_named(asked->quality);
-    out->isa = (snow_isa)snow_isa_named(asked->isa);
+    out->quality = (snow_quality)snow_quality_from_name(asked->quality);
+    out->isa = (snow_isa)snow_isa_from_name(asked->isa);
     out->threads = (int)asked->threads;
     out->deterministic = asked->deterministic;
-    out->mode = (snow_mode)snow_mode_named(asked->mode);
+    out->mode = (snow_mode)snow_mode_from_name(asked->mode);
     out->iso = isnan(asked->iso) ? 0 : asked->iso;
     out->depth = asked->depth != NULL;
 }
@@ -193,13 +197,13 @@ static void place_camera(const options *asked, snow_view *out) {
     memcpy(out->upward, asked->up.at, sizeof out->upward);
 }
 
-/* A named view sets size and angles too, hence it comes before them. */
+/* A named view also sets size and angles, so it comes before them. */
 int make_view(snow_context *context, const options *asked,
               const snow_volume_info *info, snow_view *out) {
     const char *usual = info->medical ? "anterior" : "+z";
     snow_status status =
-        snow_view_named(context, asked->view ? asked->view : usual, out);
-    if (status != SNOW_OK)
+        snow_view_from_name(context, asked->view ? asked->view : usual, out);
+    if (status != SNOW_STATUS_OK)
         return fail_status(context, status);
     out->width = (int)asked->size[0];
     out->height = (int)asked->size[1];
@@ -209,15 +213,15 @@ int make_view(snow_context *context, const options *asked,
     out->zoom = asked->zoom;
     out->fov = asked->fov;
     place_camera(asked, out);
-    return GO_ON;
+    return CONTINUE;
 }
 
-/* One picture, and what it took. */
+/* One picture and its timings. */
 typedef struct work {
     scene scene;
     snow_image *image; /* NULL on ranks that do not write */
     double begin;
-    paint_told painted; /* what was made of values */
+    paint_given painted; /* how a picture of values was painted */
 } work;
 
 static snow_status make_marks(const work *w, snow_overlay **out) {
@@ -227,20 +231,21 @@ static snow_status make_marks(const work *w, snow_overlay **out) {
                                  s->view,
                                  s->transfer,
                                  {w->painted.range[0], w->painted.range[1]}};
-    marks_tell(s->asked);
+    marks_report(s->asked);
     return marks_make(&marks, s->asked->azimuth, -1, s->context, out);
 }
 
-/* A pipe is written through and may block, so there an interruption does not
+/* A pipe is written directly and may block, so an interruption there does not
  * wait. */
 static int write_picture(work *w, const options *asked) {
     snow_image_options form = picture_form(asked);
     snow_overlay *overlay = NULL;
     double begin = seconds_now();
     if (!is_special(asked->output))
-        interrupt_hold(); /* before the word, so that who reads it may rely */
+        interrupt_hold(); /* before the message, so that its reader can rely on
+                             it */
     if (!launch_talks())
-        return GO_ON;
+        return CONTINUE;
     const snow_image_options plain = {.overwrite = asked->overwrite};
     const snow_image *depth = snow_frame_depth(w->scene.frame);
     bool beside = is_beside(asked);
@@ -248,78 +253,87 @@ static int write_picture(work *w, const options *asked) {
     progress_begin(asked, "writing");
     form.overlay = overlay;
     form.depth = beside ? depth : NULL;
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_image_save(w->image, asked->output, &form);
-    if (status == SNOW_OK && asked->depth && !beside)
+    if (status == SNOW_STATUS_OK && asked->depth && !beside)
         status = snow_image_save(depth, asked->depth, &plain);
     snow_overlay_free(overlay);
     w->scene.times.write = seconds_now() - begin;
-    return status == SNOW_OK ? GO_ON : fail_status(w->scene.context, status);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(w->scene.context, status);
 }
 
-/* After the picture is safe: its writing is part of the figures. */
-static int tell_figures(work *w, const options *asked) {
+/* Comes after the picture is written, since the figures include the writing. */
+static int report_figures(work *w, const options *asked) {
     if (!launch_talks())
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     w->scene.times.total = seconds_now() - w->begin;
     render_report report = scene_report(&w->scene);
     report.image = w->image;
     if (asked->verbosity > 0)
-        tell_stats(&report);
+        log_stats(&report);
     if (!asked->stats)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     if (!is_special(asked->stats))
         interrupt_hold();
     return write_json(stats_json(&report), asked->stats, asked->overwrite);
 }
 
-static void tell_choices(const work *w) {
+static void report_choices(const work *w) {
     char text[1024];
     scene_choices(&w->scene, text, sizeof text);
     if (w->scene.asked->verbosity >= 0)
         say("%s%s", text, w->painted.words);
-    remark_picture(&w->scene, w->image);
+    warn_picture(&w->scene, w->image);
 }
 
-/* What can be refused before anything is read; outputs by the rank that
- * writes them. */
-static int check(work *w, const options *asked) {
+/* Refuses what can be refused before anything is read; the rank that writes
+ * checks the outputs. */
+static int check_request(work *w, const options *asked) {
     int done = launch_agree(check_combination(asked));
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = scene_new(asked, &w->scene);
-    if (done != GO_ON || !launch_talks())
+    if (done != CONTINUE || !launch_talks())
         return done;
     return check_paths(w->scene.context, asked);
 }
 
-/* The stages in their order; the first fault ends them. */
-static int run(work *w, const options *asked) {
-    int done = launch_agree(check(w, asked));
-    if (done != GO_ON)
-        return done;
+/* Up to the picture in memory. */
+static int make_picture(work *w, const options *asked) {
     progress_begin(asked, "reading");
-    done = scene_open(&w->scene, asked->operands[0], asked->time);
+    int done = scene_open(&w->scene, asked->operands[0], asked->time);
     progress_end(asked);
-    if (done != GO_ON)
+    if (done != CONTINUE)
         return done;
     progress_begin(asked, "rendering");
     done = scene_draw(&w->scene, asked->azimuth, &w->image);
-    if (done == GO_ON)
+    if (done == CONTINUE)
         done = paint_values(asked, w->scene.context, w->scene.transfer, false,
                             &w->image, &w->painted);
     progress_end(asked);
-    if (done != GO_ON)
-        return done;
-    tell_choices(w);
-    done = launch_agree(write_picture(w, asked));
-    progress_end(asked);
-    return done == GO_ON ? tell_figures(w, asked) : done;
+    return done;
 }
 
-/* One way out, so that whatever was made is freed at every fault. */
+/* The stages in their order; the first fault ends them. */
+static int run_stages(work *w, const options *asked) {
+    int done = launch_agree(check_request(w, asked));
+    if (done != CONTINUE)
+        return done;
+    interrupt_guard();
+    done = make_picture(w, asked);
+    done = launch_agree(interrupt_unguard() ? EXIT_INTERRUPTED : done);
+    if (done != CONTINUE)
+        return done;
+    report_choices(w);
+    done = launch_agree(write_picture(w, asked));
+    progress_end(asked);
+    return done == CONTINUE ? report_figures(w, asked) : done;
+}
+
+/* The only way out, so that everything is freed after every failure. */
 int cmd_render(const options *asked) {
     work w = {.begin = seconds_now()};
-    int done = run(&w, asked);
+    int done = run_stages(&w, asked);
     snow_image_free(w.image);
     scene_free(&w.scene);
     return done;

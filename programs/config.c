@@ -1,13 +1,13 @@
-/* config.c - between recipes and options.
+/* config.c - converts between recipe files and options.
  *
- * A recipe is checked as a recipe first, and then turned into the texts that
- * would stand on the command line: every option is read by its one reader, and
- * an interrupted movie knows what it was asked for. */
+ * A recipe is validated first and then turned into the texts that would stand
+ * on the command line.  So each option has one reader, and the record of an
+ * interrupted movie covers the options of a recipe too. */
 #include "config.h"
 #include "commands.h"
-#include "launch.h"
+#include "log.h"
 #include "outputs.h"
-#include "report.h"
+#include "start.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -19,7 +19,7 @@
 
 /* --- reading -------------------------------------------------------------- */
 
-/* Appends to the texts of the configuration; false where they are full. */
+/* Appends to the texts of the configuration; returns false if they are full. */
 static bool add_text(options *out, const char *text) {
     size_t length = strlen(text);
     if (length >= CONFIG_TEXTS_BYTES - out->text_bytes)
@@ -31,8 +31,9 @@ static bool add_text(options *out, const char *text) {
 
 static bool add_value(options *out, const char *key, const json_t *value);
 
-/* "640x480", "0,1", "10:0,20:0.5": numbers of a list in a list have a colon
- * between them, but for planes.  The end of an axis of a crop is nothing. */
+/* Writes a list as text: "640x480", "0,1", "10:0,20:0.5".  A colon separates
+ * the numbers of a list within a list, except for clip planes.  An empty end of
+ * a crop axis is an empty text. */
 static bool add_list(options *out, const char *key, const json_t *list) {
     bool crop = strcmp(key, "crop") == 0, inner = strcmp(key, "clip") != 0;
     const char *between =
@@ -69,31 +70,31 @@ static bool add_value(options *out, const char *key, const json_t *value) {
     return add_text(out, number);
 }
 
-/* A value's text, NULL where there is no more room. */
+/* The text of a value; NULL if there is no more room. */
 static char *text_of(options *out, const char *key, const json_t *value) {
     char *text = out->texts + out->text_bytes;
     if (!add_value(out, key, value))
         return NULL;
-    out->text_bytes++; /* its end */
+    out->text_bytes++; /* the terminating zero */
     return text;
 }
 
-/* What is another way to say what stands on the command line gives way to it.
- */
+/* Whether a key gives way to another option on the command line that means the
+ * same. */
 static bool gives_way(const options *out, const char *key) {
-    bool window = options_told(out, "window") || options_told(out, "level");
+    bool window = options_given(out, "window") || options_given(out, "level");
     if (strcmp(key, "range") == 0)
         return window;
     if (strcmp(key, "tf") == 0)
-        return options_told(out, "preset");
+        return options_given(out, "preset");
     if (strcmp(key, "preset") == 0)
-        return options_told(out, "tf");
+        return options_given(out, "tf");
     if (strcmp(key, "view") == 0)
-        return options_told(out, "position");
+        return options_given(out, "position");
     if (strcmp(key, "position") == 0)
-        return options_told(out, "view");
+        return options_given(out, "view");
     return (strcmp(key, "window") == 0 || strcmp(key, "level") == 0) &&
-           options_told(out, "range");
+           options_given(out, "range");
 }
 
 static int take_key(options *out, const verb_row *verb, const char *key,
@@ -101,12 +102,12 @@ static int take_key(options *out, const verb_row *verb, const char *key,
     bool nothing = json_is_false(value) || (strcmp(key, "perspective") == 0 &&
                                             json_number_value(value) == 0);
     if (nothing || gives_way(out, key))
-        return GO_ON;
+        return CONTINUE;
     if (json_is_true(value))
         return options_take(out, verb, key, NULL);
     char *text = text_of(out, key, value);
     if (!text)
-        return fail_usage("--config: %s is too long; take fewer points",
+        return fail_usage("--config: %s is too long; use fewer points",
                           out->config);
     if (strcmp(key, "input") != 0)
         return options_take(out, verb, key, text);
@@ -115,19 +116,19 @@ static int take_key(options *out, const verb_row *verb, const char *key,
         out->operands = &out->config_input;
         out->operand_count = 1;
     }
-    return GO_ON;
+    return CONTINUE;
 }
 
-/* Whether the file is a recipe at all. */
+/* Whether the file is a recipe. */
 static int check_recipe(const char *path) {
     snow_context *context = NULL;
     snow_recipe recipe;
     snow_status status = snow_context_new(NULL, &context);
-    if (status != SNOW_OK)
-        return fail_usage("no memory for a context; close other programs");
+    if (status != SNOW_STATUS_OK)
+        return fail_usage("out of memory for a context; close other programs");
     status = snow_recipe_load(context, path, &recipe);
-    int done = GO_ON;
-    if (status == SNOW_OK)
+    int done = CONTINUE;
+    if (status == SNOW_STATUS_OK)
         snow_recipe_clear(&recipe);
     else
         done = fail_status(context, status);
@@ -135,46 +136,46 @@ static int check_recipe(const char *path) {
     return done;
 }
 
-/* A depth of the file follows what stands on the command line: to the picture
- * that it was a channel of, if that can have one; another mode has none, and
- * frames none in a file of its own. */
+/* The depth of the recipe follows the options of the command line.  It moves to
+ * the new picture file if that can hold depths.  It is dropped for modes
+ * without depth, and for frames, which have no depth file. */
 static void fit_depth(const options *out, const verb_row *verb, json_t *tree) {
     const char *depth = json_string_value(json_object_get(tree, "depth"));
     const char *output = json_string_value(json_object_get(tree, "output"));
-    bool moves = options_told(out, "output") && depth && output &&
+    bool moves = options_given(out, "output") && depth && output &&
                  strcmp(depth, output) == 0;
-    if (moves && snow_image_takes_depth(out->output))
+    if (moves && snow_image_format_has_depth(out->output))
         json_object_set_new(tree, "depth", json_string(out->output));
     else if (moves ||
              (depth && verb->bit != VERB_RENDER &&
               (!output || strcmp(depth, output) != 0)) ||
-             (options_told(out, "mode") && strcmp(out->mode, "over") &&
+             (options_given(out, "mode") && strcmp(out->mode, "over") &&
               strcmp(out->mode, "iso")))
         json_object_del(tree, "depth");
 }
 
-/* Keys in the order of the file. */
+/* Takes the keys in the order of the file. */
 static int take_file(options *out, const verb_row *verb) {
     json_error_t error;
     const char *key;
     json_t *value;
     int done = check_recipe(out->config);
-    if (done != GO_ON)
+    if (done != CONTINUE)
         return done;
     json_t *tree = json_load_file(out->config, 0, &error);
     fit_depth(out, verb, tree);
     json_object_foreach(tree, key, value) {
         done = take_key(out, verb, key, value);
-        if (done != GO_ON)
+        if (done != CONTINUE)
             break;
     }
     json_decref(tree);
     return done;
 }
 
-/* All ranks read the file; what one of them cannot read none does. */
+/* All ranks read the file; if one of them cannot, all return an error. */
 int config_take(options *out, const verb_row *verb) {
-    return out->config ? launch_agree(take_file(out, verb)) : GO_ON;
+    return out->config ? launch_agree(take_file(out, verb)) : CONTINUE;
 }
 
 /* --- writing -------------------------------------------------------------- */
@@ -219,7 +220,7 @@ static void fill_look(const options *asked, snow_recipe *out) {
            asked->gradient_opacities.count * sizeof *out->gradient_opacities);
     out->opacity_per_mm = strcmp(asked->opacity_unit, "mm") == 0;
     out->opacity_per_voxel =
-        !out->opacity_per_mm && options_told(asked, "opacity-unit");
+        !out->opacity_per_mm && options_given(asked, "opacity-unit");
 }
 
 static void fill_place(const place_value *place, double out[3]) {
@@ -241,7 +242,7 @@ static void fill_view(const options *asked, snow_recipe *out) {
     fill_place(&asked->up, out->up);
 }
 
-/* A movie of many files has no one input. */
+/* A movie of many files has no single input. */
 static void fill_recipe(const options *asked, snow_recipe *out) {
     snow_recipe_init(out);
     if (asked->operand_count == 1 && strcmp(asked->operands[0], "-") != 0)
@@ -268,28 +269,28 @@ static int check_place(const options *asked) {
     for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
         if (paths[i] && (strcmp(asked->save_config, paths[i]) == 0 ||
                          same_place(asked->save_config, paths[i])))
-            return fail_usage("--save-config: goes where --%s goes; name two "
-                              "places",
-                              names[i]);
+            return fail_usage(
+                "--save-config: is the same file as --%s; name two files",
+                names[i]);
     return check_stats_path(asked->save_config, asked->overwrite);
 }
 
 int config_check(const options *asked) {
     if (!asked->save_config)
-        return GO_ON;
-    return launch_agree(launch_talks() ? check_place(asked) : GO_ON);
+        return CONTINUE;
+    return launch_agree(launch_talks() ? check_place(asked) : CONTINUE);
 }
 
-/* The recipe as a tree: the library writes a text. */
+/* The recipe as a JSON tree; the library writes it as text. */
 static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
     size_t length = 0;
     json_error_t error;
     json_t *tree = NULL;
-    if (snow_recipe_write(context, recipe, NULL, 0, &length) != SNOW_OK)
+    if (snow_recipe_write(context, recipe, NULL, 0, &length) != SNOW_STATUS_OK)
         return NULL;
     char *text = malloc(length + 1);
     if (text && snow_recipe_write(context, recipe, text, length + 1, &length) ==
-                    SNOW_OK)
+                    SNOW_STATUS_OK)
         tree = json_loadb(text, length, 0, &error);
     free(text);
     return tree;
@@ -300,15 +301,16 @@ int config_save(const options *asked) {
     snow_recipe recipe;
     json_t *tree = NULL;
     if (!asked->save_config || !launch_talks())
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     fill_recipe(asked, &recipe);
-    if (snow_context_new(NULL, &context) == SNOW_OK)
+    if (snow_context_new(NULL, &context) == SNOW_STATUS_OK)
         tree = recipe_tree(context, &recipe);
     snow_context_free(context);
     if (!tree)
-        return fail_output("%s: no memory for its text; close other programs",
-                           asked->save_config);
-    if (!options_told(asked, "shade")) /* then the look may say */
+        return fail_output(
+            "%s: out of memory for its text; close other programs",
+            asked->save_config);
+    if (!options_given(asked, "shade")) /* otherwise the look decides */
         json_object_del(tree, "shade");
     return write_json(tree, asked->save_config, asked->overwrite);
 }

@@ -1,20 +1,19 @@
-/* config.h - options from a file and into one: recipes (snowglass/recipe.h),
- * which simulations take for their pictures too. */
+/* config.h - reads options from a file and writes them to one.  The files are
+ * recipes (snowglass/recipe.h), which in situ rendering uses too. */
 #ifndef CONFIG_H
 #define CONFIG_H
 
 #include "options.h"
 
-/* Takes the options of --config, if that is there, but for those that stand on
- * the command line.  Answers GO_ON or an exit code. */
+/* Applies the options of the --config file, if one is given, except those that
+ * stand on the command line.  Returns CONTINUE or an exit code. */
 int config_take(options *out, const verb_row *verb);
 
-/* Refuses a place that --save-config cannot write: asked before rendering.
- * Answers GO_ON or an exit code. */
+/* Refuses a --save-config file that cannot be written, before rendering.
+ * Returns CONTINUE or an exit code. */
 int config_check(const options *asked);
 
-/* Writes what --save-config asks for, if that is there.  Answers an exit code.
- */
+/* Writes the --save-config file, if one is given.  Returns an exit code. */
 int config_save(const options *asked);
 
 #endif

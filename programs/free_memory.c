@@ -1,9 +1,9 @@
-/* free_memory.c - what Linux tells of memory: /proc/meminfo, the files of
+/* free_memory.c - reads the free memory from Linux: /proc/meminfo, the files of
  * control groups (Documentation/admin-guide/cgroup-v2.rst), and the limit of
  * the process.
  *
- * Files in the cache count as free: the system drops them when asked for
- * memory.  Other systems tell nothing here. */
+ * Files in the cache count as free, since the system drops them when memory is
+ * needed.  On other systems nothing is known. */
 #include "free_memory.h"
 
 #include <limits.h>
@@ -19,8 +19,9 @@ static uint64_t lesser(uint64_t a, uint64_t b) {
     return a < b ? a : b;
 }
 
-/* The number behind a key at the beginning of a line; the only number of the
- * file where the key is "".  False where there is none, as for "max". */
+/* Reads the number after a key at the beginning of a line, or the only number
+ * of the file if the key is "".  Returns false if there is none, as for
+ * "max". */
 static bool number_of(const char *path, const char *key, uint64_t *out) {
     char line[256];
     bool found = false;
@@ -45,7 +46,7 @@ static uint64_t free_of_machine(void) {
                : UINT64_MAX;
 }
 
-/* What a group's limit leaves, of the files called so. */
+/* What the limit of a group leaves, from the group's files of these names. */
 static uint64_t free_of_group(const char *folder, const char *group,
                               const char *limit_name, const char *used_name,
                               const char *cached_key) {
@@ -70,7 +71,7 @@ static uint64_t free_of_either(const char *group) {
                       "memory.usage_in_bytes", "total_inactive_file"));
 }
 
-/* A group is held by the limits of those above it too. */
+/* The limits of all parent groups apply too. */
 static uint64_t free_along(char *group) {
     uint64_t most = free_of_either("");
     group[strcspn(group, "\n")] = 0;

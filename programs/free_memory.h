@@ -4,9 +4,9 @@
 
 #include <stdint.h>
 
-/* Bytes that the machine, the control groups (v2 and v1) and the limit of
- * addresses (ulimit -v) leave, whichever leaves least; UINT64_MAX where nothing
- * is known. */
+/* The bytes that the machine, the control groups (v2 and v1) and the address
+ * limit (ulimit -v) leave, whichever leaves least; UINT64_MAX if nothing is
+ * known. */
 uint64_t free_memory(void);
 
 #endif

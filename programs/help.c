@@ -1,15 +1,15 @@
 /* help.c - the help, written from the tables of option_table.c and from the
  * library's lists of names; lines are at most 80 characters wide. */
-#include "bench.h"
+#include "log.h"
 #include "options.h"
-#include "report.h"
+#include "sibling.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #define WIDTH 80
-#define COLUMN 29 /* where the texts of options begin */
-#define NAMES 20  /* and those of names in a list */
+#define COLUMN 29 /* column of the options' texts */
+#define NAMES 20  /* column of the texts in a list of names */
 
 static const char overview[] =
     "snowglass - volume rendering by sparse splatting\n"
@@ -30,7 +30,7 @@ static const char examples[] =
     "unreadable or unsupported; 4 output not writable; 5 not enough memory;\n"
     "6 the comparison differs; 130 interrupted.\n";
 
-/* Words of `text` from column `at`, wrapped to `indent`. */
+/* Prints words, beginning at column `at` and wrapped to `indent`. */
 static void print_wrapped(const char *text, int at, int indent) {
     for (bool first = true; *text; first = false) {
         int length = (int)strcspn(text, " ");
@@ -48,8 +48,8 @@ static void print_wrapped(const char *text, int at, int indent) {
     printf("\n");
 }
 
-/* One option: names on the left, text on the right, on its own line when the
- * names are long. */
+/* Prints one option: names on the left, text on the right, or on the next line
+ * if the names are long. */
 static void print_option(const option_row *row) {
     char left[WIDTH];
     char letter[5] = "    ";
@@ -67,7 +67,7 @@ static void print_option(const option_row *row) {
     print_wrapped(row->text, COLUMN, COLUMN);
 }
 
-/* A row stands under one topic and may serve several verbs. */
+/* A row belongs to one topic and may serve several verbs. */
 static bool belongs(const option_row *row, topic which, unsigned verbs) {
     return row->topic == which && (row->verbs & verbs) != 0;
 }
@@ -76,7 +76,7 @@ static void print_heading(topic which) {
     printf("%s: %s\n", topic_table[which].name, topic_table[which].text);
 }
 
-/* Of a verb's page, which leaves out the topics that are empty for it. */
+/* Whether a verb has options of a topic: its page omits the others. */
 static bool has_options(topic which, unsigned verbs) {
     const option_row *row = option_table;
     while (row->name && !(row->read && belongs(row, which, verbs)))
@@ -84,7 +84,7 @@ static bool has_options(topic which, unsigned verbs) {
     return row->name != NULL;
 }
 
-/* What is not built has no reader, and is left out of every list of options. */
+/* An option that is not built yet has no reader and is not listed. */
 static void print_options(topic which, unsigned verbs) {
     for (const option_row *row = option_table; row->name; row++) {
         if (row->read && belongs(row, which, verbs))
@@ -92,7 +92,7 @@ static void print_options(topic which, unsigned verbs) {
     }
 }
 
-/* Told on the topic's page, so that nobody looks for them in vain. */
+/* Names the options that are planned, so that nobody searches for them. */
 static void print_later(topic which) {
     char line[512] = "";
     size_t used = 0;
@@ -107,13 +107,15 @@ static void print_later(topic which) {
     }
 }
 
-/* A list of the library's names under a topic. */
+/* Prints one of the library's lists of names. */
 static void print_names(const char *title, const char *(*name)(size_t),
                         const char *(*text)(size_t)) {
     printf("\n%s:%s", title, text ? "\n" : "");
     for (size_t i = 0; name(i); i++) {
         if (text) {
-            printf("  %-18s", name(i));
+            int used = printf("  %-18s", name(i));
+            if (used > NAMES)
+                printf("\n%*s", NAMES, "");
             print_wrapped(text(i), NAMES, NAMES);
         } else {
             printf(" %s", name(i));
@@ -126,31 +128,28 @@ static void print_names(const char *title, const char *(*name)(size_t),
 /* The options of all verbs, then the names that they take. */
 static int print_topic_page(topic which) {
     print_heading(which);
-    if (topic_table[which].built)
-        printf("  built: %s\n", topic_table[which].built);
     print_options(which, ~0U);
     print_later(which);
     if (which == TOPIC_LOOK) {
-        print_names("presets", snow_preset_name, snow_preset_text);
+        print_names("presets", snow_preset_name, snow_preset_description);
         print_names("colour maps", snow_colormap_name, NULL);
     } else if (which == TOPIC_CAMERA) {
         print_names("views", snow_view_name, NULL);
     } else if (which == TOPIC_DATA) {
-        print_names("formats", snow_format_name, snow_format_text);
+        print_names("formats", snow_format_name, snow_format_description);
         print_names("phantoms (as phantom:NAME)", snow_phantom_name,
-                    snow_phantom_text);
+                    snow_phantom_description);
     }
     return finish_stdout();
 }
 
-/* Only what the verb takes. */
+/* The page of a verb lists only the options that it takes. */
 static int print_verb_page(const verb_row *row) {
     if (!row->bit)
         return fail_usage("%s is not built yet; %s", row->name, row->text);
     if (row->bit == VERB_BENCH) { /* it reads and tells its own options */
-        char *words[] = {"bench", "--help", NULL};
-        bench_main(2, words);
-        return finish_stdout();
+        char *words[] = {NULL, "--help", NULL};
+        return sibling_run("snowglass-bench", words);
     }
     printf("snowglass %s %s\n%s\n", row->name, row->usage, row->text);
     for (int i = 0; topic_table[i].name; i++) {
@@ -161,12 +160,11 @@ static int print_verb_page(const verb_row *row) {
         }
     }
     if (row->bit == VERB_PHANTOM)
-        print_names("phantoms", snow_phantom_name, snow_phantom_text);
+        print_names("phantoms", snow_phantom_name, snow_phantom_description);
     return finish_stdout();
 }
 
-/* Verbs that are not built are left out: the overview is an offer.  help VERB
- * names them. */
+/* The overview omits verbs that are not built yet; help VERB names them. */
 static int print_overview(void) {
     printf("%s\nverbs:\n", overview);
     for (const verb_row *row = verb_table; row->name; row++) {
@@ -181,7 +179,7 @@ static int print_overview(void) {
     return finish_stdout();
 }
 
-/* Lists the topics, since who mistypes one does not know them by heart. */
+/* Lists the topics, since whoever mistypes one does not know them. */
 static int refuse_word(const char *word) {
     char names[256] = "";
     size_t used = 0;
@@ -189,10 +187,11 @@ static int refuse_word(const char *word) {
         if (topic_is_here((topic)i))
             used += (size_t)snprintf(names + used, sizeof names - used, " %s",
                                      topic_table[i].name);
-    return fail_usage("%s: no topic and no verb; topics are:%s", word, names);
+    return fail_usage("%s: is not a topic or a verb; topics:%s", word, names);
 }
 
-/* No topic has a verb's name, so the order of the two searches is free. */
+/* No topic has the name of a verb, so the order of the searches does not
+ * matter. */
 int help_print(const char *word, const verb_row *verb) {
     if (!word)
         return verb ? print_verb_page(verb) : print_overview();
@@ -204,8 +203,8 @@ int help_print(const char *word, const verb_row *verb) {
     return named ? print_verb_page(named) : refuse_word(word);
 }
 
-/* To standard error: a call without arguments is a mistake, and what it prints
- * must not be taken for data. */
+/* Prints to standard error: a call without arguments is a mistake, and its
+ * output must not be taken for data. */
 void help_hint(void) {
     fputs("usage: snowglass INPUT -o OUT.png [OPTIONS]\n"
           "       snowglass VERB ... [OPTIONS]\n"

@@ -1,14 +1,14 @@
-/* input.c - from the data and look options to a volume and its transfer
- * function. */
+/* input.c - opens the volume and makes the transfer function from the
+ * options. */
 #include "commands.h"
-#include "report.h"
+#include "log.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* What was not told stays 0: the library refuses what does not fit a format,
- * and must see the difference between told and default. */
+/* Values that were not given stay 0.  The library refuses options that do not
+ * fit a format, so it must be able to see whether they were given. */
 snow_volume_options data_options(const options *asked) {
     snow_volume_options data = {.type = asked->type,
                                 .offset = asked->offset,
@@ -32,7 +32,7 @@ snow_volume_options data_options(const options *asked) {
     return data;
 }
 
-/* As the library names it in its own messages. */
+/* The same words as in the library's messages. */
 const char *name_of_input(const char *path) {
     return strcmp(path, "-") == 0 ? "standard input" : path;
 }
@@ -41,20 +41,20 @@ int open_input(snow_context *context, const options *asked, const char *path,
                snow_volume **out) {
     snow_volume_options data = data_options(asked);
     snow_status status = snow_volume_open(context, path, &data, out);
-    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
 }
 
-/* --window and --level are the radiologists' way to give a range, and mean
- * nothing alone. */
+/* --window and --level are the radiologists' way to give a range; neither means
+ * anything alone. */
 int look_load(options *asked) {
     if (!asked->tf)
-        return GO_ON;
+        return CONTINUE;
     int done = open_context(asked, &asked->tf_context);
-    if (done != GO_ON)
+    if (done != CONTINUE)
         return done;
     snow_status status =
-        snow_tf_load(asked->tf_context, asked->tf, &asked->loaded);
-    if (status != SNOW_OK)
+        snow_look_load(asked->tf_context, asked->tf, &asked->loaded);
+    if (status != SNOW_STATUS_OK)
         done = fail_status(asked->tf_context, status);
     return done;
 }
@@ -69,16 +69,16 @@ void look_unload(options *asked) {
 int check_look(const options *asked) {
     bool window = !isnan(asked->window), level = !isnan(asked->level);
     if (window != level)
-        return fail_usage("--%s: needs --%s beside it",
+        return fail_usage("--%s: needs --%s too; add it",
                           window ? "window" : "level",
                           window ? "level" : "window");
     if (asked->tf && asked->preset)
-        return fail_usage("--tf: stands in the place of --preset; give one of "
-                          "them");
+        return fail_usage(
+            "--tf: conflicts with --preset; give only one of them");
     if (window && asked->range.kind != SNOW_RANGE_AUTO)
-        return fail_usage("--window: does not go with --range; give one of "
-                          "them");
-    return GO_ON;
+        return fail_usage(
+            "--window: conflicts with --range; give only one of them");
+    return CONTINUE;
 }
 
 snow_look look_options(const options *asked) {
@@ -90,11 +90,11 @@ snow_look look_options(const options *asked) {
                       .log = asked->log,
                       .points =
                           asked->loaded ? snow_tf_points(asked->loaded) : NULL};
-    /* Grey over all values, as people know such pictures. */
+    /* The projections are grey over the full range by default, as usual. */
     if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0 &&
         !look.preset && !look.points)
         look.preset = "linear";
-    if (!isnan(asked->window)) { /* another way to write a range */
+    if (!isnan(asked->window)) { /* --window and --level give the range */
         look.range = SNOW_RANGE_VALUES;
         look.low = asked->level - asked->window / 2;
         look.high = asked->level + asked->window / 2;
@@ -113,11 +113,11 @@ snow_look look_options(const options *asked) {
 int open_look(snow_context *context, const options *asked,
               const snow_volume *volume, snow_transfer **out) {
     snow_look look = look_options(asked);
-    snow_status status = snow_transfer_make(volume, &look, out);
-    return status == SNOW_OK ? GO_ON : fail_status(context, status);
+    snow_status status = snow_transfer_new_for_volume(volume, &look, out);
+    return status == SNOW_STATUS_OK ? CONTINUE : fail_status(context, status);
 }
 
-/* Short enough for the one line that render prints. */
+/* Short enough for the single line that render prints. */
 void describe_volume(const snow_volume_info *info, char *out, size_t size) {
     snprintf(out, size, "%s %lldx%lldx%lld %s, spacing %gx%gx%g%s%s",
              info->format, (long long)info->dims[0], (long long)info->dims[1],

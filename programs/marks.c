@@ -1,55 +1,55 @@
-/* marks.c - from options to overlays.  Pictures of 8 and 16 bits get them as
- * they are written; a picture in memory, its check sum and files of floats
- * never do. */
+/* marks.c - makes overlays from the options.  Pictures of 8 and 16 bits get
+ * them when they are written.  A picture in memory, its checksum and files of
+ * floats never do. */
 #include "marks.h"
-#include "report.h"
-#include "sequence_encoder.h"
+#include "log.h"
+#include "movie_encoder.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Whether an output has levels, and so shows marks: all movies do. */
+/* Whether an output can show marks: a picture of 8 or 16 bits, or a movie. */
 static bool shows_marks(const char *path) {
-    return movie_format_of(path) || snow_image_bits(path) > 0;
+    return movie_format_of(path) || snow_image_format_bits(path) > 0;
 }
 
 int marks_check(const options *asked) {
     if (asked->output && (asked->legend || asked->time_label) &&
         !shows_marks(asked->output))
-        return fail_usage("%s: --%s is for pictures of 8 and 16 bits and "
-                          "movies, a file of floats has the volume alone; "
-                          "leave it out or name a .png",
+        return fail_usage("%s: --%s cannot be drawn into a file of floats; "
+                          "remove it or name a .png",
                           asked->output,
                           asked->legend ? "legend" : "time-label");
-    return GO_ON;
+    return CONTINUE;
 }
 
-void marks_tell(const options *asked) {
+void marks_report(const options *asked) {
     if (asked->legend && asked->fov > 0 && asked->verbosity >= 0)
-        say("--legend: no scale bar: in perspective a length has no one size");
+        say("--legend: the scale bar is left out: in perspective no single "
+            "length is valid");
 }
 
-/* Presets of CT are told in Hounsfield units, where no range spreads them over
- * other values. */
+/* Presets for CT use Hounsfield units, unless a range spreads them over other
+ * values. */
 static const char *unit_of_values(const options *asked) {
-    int preset = asked->preset ? snow_preset_named(asked->preset) : -1;
+    int preset = asked->preset ? snow_preset_from_name(asked->preset) : -1;
     bool spread = asked->range.kind != SNOW_RANGE_AUTO || !isnan(asked->window);
     bool ct =
         preset >= 0 && strncmp(snow_preset_name((size_t)preset), "ct-", 3) == 0;
     return ct && !spread ? "HU" : NULL;
 }
 
-/* Pictures without opacity show values by colours alone: those of the look, or
- * those that were painted. */
+/* Projections show values by colour alone: the colours of the look, or those
+ * that the values were painted with. */
 static snow_status add_colors(const picture_marks *marks,
                               snow_overlay *overlay) {
     const options *asked = marks->asked;
     double range[2] = {marks->range[0], marks->range[1]};
     bool over = strcmp(asked->mode, "over") == 0;
     if (range[0] == 0 && range[1] == 0)
-        snow_transfer_span(marks->transfer, &range[0], &range[1]);
+        snow_transfer_domain(marks->transfer, &range[0], &range[1]);
     return snow_overlay_color_bar(overlay, marks->transfer,
                                   unit_of_values(asked), over ? NULL : range);
 }
@@ -57,17 +57,17 @@ static snow_status add_colors(const picture_marks *marks,
 static snow_status add_marks(const picture_marks *marks, const snow_view *view,
                              int64_t step, snow_overlay *overlay) {
     const options *asked = marks->asked;
-    snow_status status = SNOW_OK;
+    snow_status status = SNOW_STATUS_OK;
     if (!asked->no_labels)
-        status = snow_overlay_letters(overlay, &marks->info, view);
-    if (status == SNOW_OK && asked->legend)
+        status = snow_overlay_orientation(overlay, &marks->info, view);
+    if (status == SNOW_STATUS_OK && asked->legend)
         status = add_colors(marks, overlay);
-    if (status == SNOW_OK && asked->legend)
+    if (status == SNOW_STATUS_OK && asked->legend)
         status = snow_overlay_scale_bar(overlay, &marks->info, view);
-    if (status == SNOW_OK && asked->time_label && step >= 0) {
+    if (status == SNOW_STATUS_OK && asked->time_label && step >= 0) {
         char text[40];
         snprintf(text, sizeof text, "step %" PRId64, step);
-        status = snow_overlay_note(overlay, text);
+        status = snow_overlay_title(overlay, text);
     }
     return status;
 }
@@ -80,15 +80,15 @@ snow_status marks_make(const picture_marks *marks, double azimuth, int64_t step,
     snow_overlay *overlay = NULL;
     *out = NULL;
     if (!shows_marks(asked->output) && strcmp(asked->output, "-") != 0)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     if (!letters && !asked->legend && !asked->time_label)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     view.azimuth = azimuth;
     snow_status status =
         snow_overlay_new(context, view.width, view.height, &overlay);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = add_marks(marks, &view, step, overlay);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         *out = overlay;
     else
         snow_overlay_free(overlay);

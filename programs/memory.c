@@ -1,16 +1,17 @@
-/* memory.c - the need is computed from sizes alone, before voxels are read.
+/* memory.c - computes the memory that is needed from sizes alone, before voxels
+ * are read.
  *
  *   limit    0 ........ smallest slab ........ voxels and picture ........
  *                refused      |     in slabs           |    in memory
  *
  * Bytes of an interesting voxel are those of the encodings: its value as a code
- * of 8 or 16 bits and a normal of 16 bits where it is shaded, or four floats
- * for the exact methods; its place takes a bit and a little more. */
+ * of 8 or 16 bits and a normal of 16 bits if it is shaded, or four floats for
+ * the exact methods.  Its position takes little more than one bit. */
 #include "memory.h"
 #include "commands.h"
 #include "free_memory.h"
-#include "launch.h"
-#include "report.h"
+#include "log.h"
+#include "start.h"
 
 #include <dirent.h>
 #include <limits.h>
@@ -19,21 +20,21 @@
 #include <sys/stat.h>
 
 #define PIXEL_BYTES 16  /* four floats */
-#define PLACE_SHARE 7   /* EA: one byte for so many voxels */
+#define PLACE_SHARE 7   /* EA: one byte for this many voxels */
 #define BOUND_BYTES 0.5 /* 16 bits for four voxels */
 
-static double sheared_bytes(const options *asked, double value_bytes) {
+static double shear_warp_bytes(const options *asked, double value_bytes) {
     double code = value_bytes > 1 ? 2 : 1;
     double normal = strcmp(asked->shade, "none") ? 2 : 0;
-    /* Bounds of largest values, which have no normals. */
+    /* Bounds of the largest values; they have no normals. */
     if (strcmp(asked->mode, "mip") == 0 || strcmp(asked->mode, "minip") == 0)
         normal = normal > BOUND_BYTES ? normal : BOUND_BYTES;
-    /* Slices between slices are encoded as well. */
+    /* Interpolated slices are encoded as well. */
     double times = strcmp(asked->quality, "high") ? 1 : 2;
     return times * (code + normal + 1.0 / PLACE_SHARE);
 }
 
-/* Of an interesting voxel, when all else is there. */
+/* Bytes of an interesting voxel, without the arrays that all voxels share. */
 static double encoded_bytes(const options *asked,
                             const snow_volume_info *info) {
     if (strcmp(asked->method, "original") == 0)
@@ -41,16 +42,16 @@ static double encoded_bytes(const options *asked,
     if (strcmp(asked->method, "footprint") == 0)
         return PIXEL_BYTES + 1.0 / PLACE_SHARE;
     double value = (double)snow_type_size(info->type);
-    double bytes = sheared_bytes(asked, value);
-    /* A draft of few pixels: a level of half the voxels or fewer, which are
-     * encoded in place of the volume's. */
+    double bytes = shear_warp_bytes(asked, value);
+    /* A draft with few pixels encodes a level of half the voxels or fewer in
+     * place of the volume. */
     double level = (value + bytes) / 2;
     bool draft = strcmp(asked->quality, "draft") == 0;
     return draft && level > bytes ? level : bytes;
 }
 
-/* Of the largest intermediate image: two slice sides, each longer by what the
- * slices are moved. */
+/* Bytes of the largest intermediate image: the two sides of a slice, each
+ * extended by the largest shift of the slices. */
 static double image_bytes(const options *asked, const snow_volume_info *info) {
     const int64_t *dims = info->dims;
     double scale = strcmp(asked->quality, "draft") ? 2 : 1, most = 0;
@@ -78,28 +79,29 @@ memory_need memory_needed(const options *asked, const snow_volume_info *info) {
     return (memory_need){(uint64_t)least, (uint64_t)most};
 }
 
-/* What is known of a volume before it is opened. */
+/* The sizes that are known before a volume is opened. */
 typedef struct sizes {
     snow_volume_info info;
     uint64_t voxels, picture; /* bytes */
-    uint64_t masking;         /* bytes beside the voxels while they are read */
-    bool packed;              /* perhaps: the file is shorter than they */
+    uint64_t masking; /* bytes needed beside the voxels while they are read */
+    bool packed;      /* the file is shorter than the voxels, so it is probably
+                         compressed */
     memory_need need;
 } sizes;
 
-/* Bytes of voxels as they are read; 0 of what cannot be looked at, which the
- * reading tells. */
+/* Bytes of the voxels in their native type; 0 for a file that cannot be
+ * inspected, which reading will report. */
 static uint64_t native_bytes(snow_context *context, const char *path,
                              const snow_volume_options *data) {
     snow_volume_info info;
-    if (snow_volume_inspect(context, path, data, &info) != SNOW_OK)
+    if (snow_volume_inspect(context, path, data, &info) != SNOW_STATUS_OK)
         return 0;
     return (uint64_t)(info.dims[0] * info.dims[1] * info.dims[2]) *
            snow_type_size(info.type);
 }
 
-/* The mask, and the volume before it was masked or clipped, are there together
- * with what comes of both. */
+/* The mask, and the volume before masking or clipping, are in memory together
+ * with the result. */
 static uint64_t masking_bytes(snow_context *context, const char *path,
                               const snow_volume_options *data) {
     snow_volume_options plain = *data, mask = {.type = SNOW_TYPE_NONE};
@@ -114,7 +116,7 @@ static uint64_t masking_bytes(snow_context *context, const char *path,
            (data->mask ? native_bytes(context, data->mask, &mask) : 0);
 }
 
-/* A file of a few kilobytes is a header. */
+/* A file of a few kilobytes is only a header. */
 static bool is_packed(const char *path, uint64_t voxels) {
     struct stat about;
     if (stat(path, &about) != 0 || !S_ISREG(about.st_mode))
@@ -123,7 +125,7 @@ static bool is_packed(const char *path, uint64_t voxels) {
     return bytes > 65536 && bytes < voxels / 10 * 9;
 }
 
-/* A pipe, which only the reading may read. */
+/* Whether the input is a pipe, which can be read only once. */
 static bool is_read_once(const char *path) {
     struct stat about;
     return strcmp(path, "-") == 0 ||
@@ -131,16 +133,17 @@ static bool is_read_once(const char *path) {
             !S_ISDIR(about.st_mode));
 }
 
-/* Looks at the headers in a context of its own, whose remarks nobody hears: the
- * opening makes them too, and tells what is wrong with the file.  False where
- * something is. */
+/* Inspects the headers in a context of its own, without warnings: opening the
+ * file repeats them and reports its errors.  Returns false on error. */
 static bool measure(const options *asked, const char *path,
                     const snow_volume_options *data, sizes *out) {
     sizes s = {.picture = picture_bytes(asked)};
     snow_context *context;
-    if (is_read_once(path) || snow_context_new(NULL, &context) != SNOW_OK)
+    if (is_read_once(path) ||
+        snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return false;
-    bool fine = snow_volume_inspect(context, path, data, &s.info) == SNOW_OK;
+    bool fine =
+        snow_volume_inspect(context, path, data, &s.info) == SNOW_STATUS_OK;
     if (fine) {
         s.masking = masking_bytes(context, path, data);
         s.need = memory_needed(asked, &s.info);
@@ -169,23 +172,23 @@ static const char *print_bytes(uint64_t bytes, char text[32]) {
 
 /* --- in slabs ------------------------------------------------------------- */
 
-/* Why a picture cannot be made of slabs; NULL: it can. */
+/* Why a picture cannot be made from slabs; NULL if it can. */
 static const char *why_whole(const char *path) {
     if (launch_ranks() > 1 || strcmp(path, "-") == 0)
-        return "it";
+        return "this input";
     if (strncmp(path, "phantom:", 8) == 0)
         return "a phantom";
     return NULL;
 }
 
-/* Slices of the smallest slab: one, and those beside it. */
+/* Slices of the smallest slab: one and its neighbours. */
 #define SLICES_LEAST 3
 
-/* Tables of colours and counts, for 256 codes and for 65,536. */
+/* Bytes of the tables of colours and counts, for 256 codes and for 65,536. */
 #define TABLES_SMALL ((uint64_t)1 << 20)
 #define TABLES_LARGE ((uint64_t)4 << 20)
 
-/* Slices that a thread encodes where slices lie along x and y: a band. */
+/* Slices that a thread encodes if slices lie along x and y: a band. */
 #define BAND_SLICES 32
 
 /* Longer slabs are not read faster. */
@@ -199,9 +202,10 @@ static uint64_t slab_bytes(const sizes *s, int64_t slices) {
     return (s->voxels + s->masking) / (uint64_t)all * (uint64_t)slices;
 }
 
-/* Small, for most of the room is the interesting voxels'; but a band for each
- * thread where an eighth of it makes room for them, and of a packed file, all
- * of which is unpacked for each slab, a third.  In bytes of voxels alone. */
+/* Chooses the bytes of a slab's voxels.  Slabs are small, since most of the
+ * memory is for interesting voxels.  But there is a band for each thread if it
+ * fits into an eighth of the limit.  A compressed file is decompressed again
+ * for each slab, so its slabs may take a third. */
 static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
     uint64_t room = limit > s->picture ? limit - s->picture : 0;
     uint64_t eighth = room / 8;
@@ -219,8 +223,8 @@ static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
 
 /* --- plans ---------------------------------------------------------------- */
 
-/* What this machine has, but for what others may want while it works; and what
- * --memory allows. */
+/* The limit: what this machine has free, less a reserve for other programs, or
+ * what --memory allows. */
 static uint64_t limit_of(const options *asked, bool *own) {
     uint64_t there = free_memory();
     *own = there == UINT64_MAX || (asked->memory && asked->memory <= there);
@@ -229,8 +233,8 @@ static uint64_t limit_of(const options *asked, bool *own) {
     return there / 10 * 9;
 }
 
-/* Whether the files of a folder are so small that their voxels fit for certain:
- * looking into all of them twice would take time.  Slices are packed to a
+/* Whether the files of a folder are so small that their voxels certainly fit:
+ * inspecting all of them twice would take time.  Slices are compressed to a
  * quarter at best. */
 static bool is_small_folder(const char *path) {
     char name[PATH_MAX];
@@ -255,70 +259,71 @@ static int threads_of(const options *asked) {
     return asked->threads ? (int)asked->threads : launch_processors();
 }
 
-static void tell_need(const sizes *s) {
+static void report_need(const sizes *s) {
     char least[32], most[32];
     say("memory: at least %s, about %s if all voxels are interesting",
         print_bytes(s->need.least, least), print_bytes(s->need.most, most));
 }
 
-/* The smallest slab, the tables of a look and the picture. */
+/* Bytes of the smallest slab, the tables of the look and the picture. */
 static uint64_t slabs_least(const sizes *s) {
     bool small = snow_type_size(s->info.type) == 1;
     return slab_bytes(s, SLICES_LEAST) + s->picture +
            (small ? TABLES_SMALL : TABLES_LARGE);
 }
 
-/* `why` the voxels have to be there at once: NULL where they need not, and
- * nothing would fit even so. */
-static int refuse(const sizes *s, const char *path, uint64_t limit, bool own,
-                  const char *why) {
+/* Refuses the volume.  `why` says why all voxels must be in memory at once;
+ * NULL if slabs would do but do not fit either. */
+static int refuse_volume(const sizes *s, const char *path, uint64_t limit,
+                         bool own, const char *why) {
     char need[32], room[32];
     const char *of = own ? "--memory" : "free memory";
+    const char *advice = own ? "raise it, " : "";
     bool slabs = !why && slabs_least(s) < s->need.least;
     print_bytes(slabs ? slabs_least(s) : s->need.least, need);
     print_bytes(limit, room);
     if (slabs)
-        say("%s: a slab of slices, tables and the picture alone need %s, over "
-            "the %s of %s; raise it, give --crop or a smaller --size",
-            path, need, of, room);
+        say("%s: one slab, tables and the picture need %s, over the %s of %s; "
+            "%suse --crop or a smaller --size",
+            path, need, of, room, advice);
     else
-        say("%s: voxels and picture need %s, over the %s of %s%s%s%s; raise "
-            "it, give --crop, or let several machines share the volume "
+        say("%s: voxels and picture need %s, over the %s of %s%s%s%s; %suse "
+            "--crop, or share the volume among several machines "
             "(snowglass-mpi)",
             path, need, of, room, why ? ", and " : "", why ? why : "",
-            why ? " needs all of them at once" : "");
-    return SNOW_NO_MEMORY;
+            why ? " needs all voxels at once" : "", advice);
+    return SNOW_STATUS_NO_MEMORY;
 }
 
 int memory_plan_for(const options *asked, const char *path,
-                    const snow_volume_options *data, bool tell,
+                    const snow_volume_options *data, bool report,
                     memory_plan *out) {
     const char *why = why_whole(path);
     bool own = true;
     uint64_t limit = asked->memory;
     sizes s;
     *out = (memory_plan){.may_stream = !why, .limit = asked->memory};
-    if (!asked->memory && !tell && is_small_folder(path))
-        return GO_ON;
+    if (!asked->memory && !report && is_small_folder(path))
+        return CONTINUE;
     if (!measure(asked, path, data, &s)) {
         out->may_stream = false;
-        return GO_ON;
+        return CONTINUE;
     }
-    if (tell)
-        tell_need(&s);
+    if (report)
+        report_need(&s);
     limit = limit_of(asked, &own);
     if (limit)
         out->slab_bytes = choose_slab(&s, limit, threads_of(asked));
     out->packed = s.packed;
     if (!limit || s.need.least <= limit)
-        return GO_ON;
+        return CONTINUE;
     if (why && (!asked->memory || s.need.least <= asked->memory))
-        return GO_ON; /* the system may know better what it has */
+        return CONTINUE; /* the system may know better what is free */
     out->limit = limit;
     if (why || slabs_least(&s) > limit || slabs_least(&s) >= s.need.least)
-        return refuse(&s, path, limit, own, why);
+        return refuse_volume(&s, path, limit, own, why);
     out->streams = true;
-    return GO_ON;
+    return CONTINUE;
 }
 
 int memory_check(const options *asked, const char *path,
@@ -326,6 +331,7 @@ int memory_check(const options *asked, const char *path,
     sizes s;
     if (!asked->memory || !measure(asked, path, data, &s) ||
         s.need.least <= asked->memory)
-        return GO_ON;
-    return refuse(&s, path, asked->memory, true, "the range of all steps");
+        return CONTINUE;
+    return refuse_volume(&s, path, asked->memory, true,
+                         "the range of all steps");
 }

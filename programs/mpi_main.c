@@ -1,11 +1,12 @@
-/* mpi_main.c - the tool as ranks of an MPI job: snowglass-mpi.
+/* mpi_main.c - the tool with MPI: snowglass-mpi.
  *
- * MPI is started and ended here and nowhere else.  Rank 0 writes and talks; a
- * rank whose connection to the others has failed says so itself, and ends the
- * job, since the others may wait for it. */
+ * MPI is started and ended only here.  Rank 0 writes and prints.  A rank whose
+ * connection to the others has failed prints an error itself, and ends the job,
+ * since the others may wait for it. */
 #define _GNU_SOURCE /* sched_getaffinity */
-#include "launch.h"
-#include "report.h"
+#include "log.h"
+#include "sibling.h"
+#include "start.h"
 
 #include <sched.h>
 #include <signal.h>
@@ -15,13 +16,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* More than thousands of processes take to start. */
+/* More than thousands of processes need to start. */
 #ifndef MPI_SECONDS
 #define MPI_SECONDS 300
 #endif
 
-/* Where launchers tell how many processes they started, and which one this is.
- */
+/* The variables in which launchers pass the number of processes and the
+ * rank. */
 static const struct {
     const char *name, *ranks, *rank;
 } launchers[] = {
@@ -34,33 +35,33 @@ static long number_of(const char *name) {
     return text ? strtol(text, NULL, 10) : 0;
 }
 
-/* A program of one MPI under the launcher of another is as many programs of one
- * rank, all of which would write the one output. */
+/* If a program of one MPI runs under the launcher of another, each process is a
+ * job of one rank, and all would write the same output. */
 static int check_launcher(const char *library) {
     int ranks = 1;
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (ranks > 1)
-        return GO_ON;
+        return CONTINUE;
     for (size_t i = 0; i < sizeof launchers / sizeof *launchers; i++) {
-        long told = number_of(launchers[i].ranks);
-        if (told <= 1)
+        long given = number_of(launchers[i].ranks);
+        if (given <= 1)
             continue;
-        /* The others wait until it was told: the launcher may end all with
-         * the first one that fails. */
+        /* The others wait until rank 0 has printed: the launcher may end all
+         * with the first one that fails. */
         if (number_of(launchers[i].rank) != 0)
             sleep(1);
         else
             fprintf(stderr,
-                    "snowglass: started as one of %ld processes by %s, but "
-                    "alone for %s; use the mpirun of the MPI that "
-                    "snowglass-mpi was built with\n",
-                    told, launchers[i].name, library);
-        return SNOW_BAD_USAGE;
+                    "snowglass: %ld processes were started by %s, but %s sees "
+                    "only one; use the mpirun of the MPI that snowglass-mpi "
+                    "was built with\n",
+                    given, launchers[i].name, library);
+        return SNOW_STATUS_BAD_USAGE;
     }
-    return GO_ON;
+    return CONTINUE;
 }
 
-/* Its name and version end with the first comma or line. */
+/* The name and version end at the first comma or line end. */
 static void name_library(char out[MPI_MAX_LIBRARY_VERSION_STRING]) {
     int length = 0;
     MPI_Get_library_version(out, &length);
@@ -70,8 +71,8 @@ static void name_library(char out[MPI_MAX_LIBRARY_VERSION_STRING]) {
             *at = ' ';
 }
 
-/* Threads for each rank where nobody tells how many: the processors of a
- * machine by its ranks, if they are not bound to some each already. */
+/* Threads for each rank by default: the processors of a machine divided by its
+ * ranks, unless they are bound to different processors already. */
 static int share_processors(void) {
     MPI_Comm machine;
     cpu_set_t mine, all;
@@ -88,28 +89,29 @@ static int share_processors(void) {
     return threads > 1 ? threads : 1;
 }
 
-/* A broken communicator leaves nobody to agree with.  The rank that talks has
- * said why already. */
+/* A broken communicator cannot agree on an exit code.  The rank that prints has
+ * given the reason already. */
 static void end_job(const launch *how, int code) {
     if (!launch_talks())
         fprintf(stderr, "snowglass: rank %d: %s\n", launch_rank(),
                 snow_context_message(snow_comm_context(how->comm)));
-    MPI_Abort(MPI_COMM_WORLD, code ? code : SNOW_FAILED);
+    MPI_Abort(MPI_COMM_WORLD, code ? code : SNOW_STATUS_FAILED);
 }
 
-/* Where MPI itself begins and ends, all ranks wait in it for one that is
- * stopped, and nothing but a signal comes between. */
+/* While MPI starts or ends, all ranks wait in it for one that is stopped; only
+ * a signal can interrupt this. */
 static void give_up(int number) {
     static const char text[] =
-        "snowglass: another rank does not come to MPI's start or end; look "
-        "whether all processes still run\n";
+        "snowglass: another rank does not take part in MPI's start or end; "
+        "check that all processes still run\n";
     (void)number;
-    ssize_t told = write(STDERR_FILENO, text, sizeof text - 1);
-    (void)told;
-    _exit(SNOW_FAILED);
+    ssize_t given = write(STDERR_FILENO, text, sizeof text - 1);
+    (void)given;
+    _exit(SNOW_STATUS_FAILED);
 }
 
-/* The first that gives up ends the job: not all at the same time. */
+/* The first rank that gives up ends the job, so the limits differ between
+ * ranks. */
 static void limit_seconds(unsigned seconds) {
     long rank = 0;
     for (size_t i = 0; i < sizeof launchers / sizeof *launchers && !rank; i++)
@@ -117,20 +119,20 @@ static void limit_seconds(unsigned seconds) {
     alarm(seconds + (unsigned)(rank < 30 ? rank : 30));
 }
 
-static int run(int argc, char **argv) {
+static int run_tool(int argc, char **argv) {
     char library[MPI_MAX_LIBRARY_VERSION_STRING];
     snow_context *context = NULL;
     launch how = {.mpi = library};
     name_library(library);
     int done = check_launcher(library);
-    if (done != GO_ON)
+    if (done != CONTINUE)
         return done;
     how.threads = share_processors();
-    if (snow_context_new(NULL, &context) != SNOW_OK)
-        MPI_Abort(MPI_COMM_WORLD, SNOW_NO_MEMORY);
-    snow_status status = snow_comm_mpi(context, MPI_COMM_WORLD, &how.comm);
+    if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
+        MPI_Abort(MPI_COMM_WORLD, SNOW_STATUS_NO_MEMORY);
+    snow_status status = snow_comm_new_mpi(context, MPI_COMM_WORLD, &how.comm);
     alarm(0);
-    if (status == SNOW_OK) {
+    if (status == SNOW_STATUS_OK) {
         done = tool_run(argc, argv, &how);
         if (snow_comm_broken(how.comm))
             end_job(&how, done);
@@ -145,14 +147,16 @@ static int run(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     int level;
+    if (argc > 1 && strcmp(argv[1], "bench") == 0) /* before MPI is begun */
+        return sibling_become("snowglass-bench-mpi", argv + 1);
     signal(SIGALRM, give_up);
     limit_seconds(MPI_SECONDS);
     if (MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level) !=
         MPI_SUCCESS)
-        return SNOW_FAILED;
+        return SNOW_STATUS_FAILED;
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
     MPI_Comm_set_errhandler(MPI_COMM_SELF, MPI_ERRORS_RETURN);
-    int done = run(argc, argv);
+    int done = run_tool(argc, argv);
     MPI_Finalize();
     alarm(0);
     return done;

@@ -1,13 +1,13 @@
-/* outputs.c - the rules for files that are written: nothing is replaced without
- * being asked, and what stands under its name is whole.
+/* outputs.c - the rules for writing files: no file is replaced unless
+ * requested, and a file under its final name is complete.
  *
- * Pictures and volumes are written by the library.  Figures come into being
- * after them and are the tool's own, so the library's rules (src/base/writer.c)
- * are kept here for one small text: a hidden .NAME.snow-XXXXXX beside the final
- * file, fsync, then link or rename. */
+ * The library writes pictures and volumes.  The figures are written after them
+ * by the tool itself, which follows the library's rules (src/io/writer.c) for
+ * this small text: a hidden .NAME.snow-XXXXXX beside the final file, fsync,
+ * then link or rename. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "outputs.h"
-#include "report.h"
+#include "log.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -18,8 +18,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* As much of the final name as the hidden one repeats: names end at 255 bytes,
- * and ".", ".snow-" and six letters come around it. */
+/* The part of the final name that the hidden name repeats: names have at most
+ * 255 bytes, and ".", ".snow-" and six letters are added. */
 #define NAME_PART 200
 
 bool is_special(const char *path) {
@@ -35,15 +35,15 @@ size_t folder_length(const char *path) {
     return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* The folder of a path, "." when it has none. */
+/* The folder of a path, "." if it has none. */
 static void folder_of(const char *path, char *out, size_t size) {
     size_t length = folder_length(path);
     snprintf(out, size, "%.*s", length ? (int)length : 1, length ? path : ".");
 }
 
-/* Files that exist are compared by what they are, so that links and "./" do not
- * deceive; of one that will come into being the folder and the name count.  A
- * device may well take two streams. */
+/* Existing files are compared by device and inode, so that links and "./" do
+ * not hide that they are equal.  For new files the folder and the name are
+ * compared.  A device may take two streams. */
 bool same_place(const char *a, const char *b) {
     struct stat of_a, of_b;
     if (stat(a, &of_a) == 0 && stat(b, &of_b) == 0)
@@ -59,15 +59,15 @@ bool same_place(const char *a, const char *b) {
 }
 
 static int fail_existing(const char *path) {
-    return fail_output("%s: exists; give --overwrite or another name", path);
+    return fail_output("%s: exists; use --overwrite or another name", path);
 }
 
-/* The same rules as for pictures: figures of an earlier run are results too.
- * lstat sees a link to nowhere, which counts as a file. */
+/* The rules are those of pictures: figures of an earlier run are results too.
+ * lstat also finds a dangling link, which counts as a file. */
 int check_stats_path(const char *path, bool overwrite) {
     struct stat what;
     if (is_special(path))
-        return GO_ON;
+        return CONTINUE;
     if (stat(path, &what) == 0 && S_ISDIR(what.st_mode))
         return fail_output("%s: is a folder; name a file", path);
     if (!overwrite && lstat(path, &what) == 0)
@@ -77,10 +77,10 @@ int check_stats_path(const char *path, bool overwrite) {
     if (access(folder, W_OK | X_OK) != 0)
         return fail_output("%s: %s; choose a folder that can be written", path,
                            strerror(errno));
-    return GO_ON;
+    return CONTINUE;
 }
 
-/* A text and where it ends. */
+/* A text and its end. */
 typedef struct text_bytes {
     const char *bytes;
     size_t count;
@@ -93,9 +93,9 @@ static int dump_text(text_bytes text, FILE *file) {
                : -1;
 }
 
-/* Opens a new file beside `path`, where a rename stays within one file system,
- * and leaves its name in `aside`.  mkstemp's mode 0600 is for secrets: it gets
- * the mode of the file that it will replace, or that of any new file. */
+/* Opens a new file beside `path`, on the same file system, and stores its name
+ * in `aside`.  mkstemp's mode 0600 is for secrets, so the file gets the mode of
+ * the file that it will replace, or that of a new file. */
 static FILE *open_aside(const char *path, char *aside, size_t size) {
     size_t folder = folder_length(path);
     int length = snprintf(aside, size, "%.*s.%.*s.snow-XXXXXX", (int)folder,
@@ -108,7 +108,7 @@ static FILE *open_aside(const char *path, char *aside, size_t size) {
     if (handle < 0)
         return NULL;
     struct stat old;
-    mode_t mask = umask(0); /* the only way to ask for it */
+    mode_t mask = umask(0); /* the only way to read it */
     umask(mask);
     fchmod(handle, stat(path, &old) == 0 ? old.st_mode & 0777 : 0666 & ~mask);
     FILE *file = fdopen(handle, "w");
@@ -119,16 +119,16 @@ static FILE *open_aside(const char *path, char *aside, size_t size) {
     return file;
 }
 
-/* Gives the finished file its name.  link fails where a file has come into
- * being since it was looked for, rename would destroy it. */
-static int place(const char *aside, const char *path, bool overwrite) {
+/* Gives the finished file its name.  link fails if a file has appeared since
+ * the check; rename would destroy it. */
+static int rename_aside(const char *aside, const char *path, bool overwrite) {
     struct stat here;
     if (!overwrite) {
         if (link(aside, path) == 0)
             return unlink(aside);
         if (errno == EEXIST)
             return -1;
-        if (lstat(path, &here) == 0) { /* no hard links here: look instead */
+        if (lstat(path, &here) == 0) { /* no hard links here: check instead */
             errno = EEXIST;
             return -1;
         }
@@ -136,7 +136,7 @@ static int place(const char *aside, const char *path, bool overwrite) {
     return rename(aside, path);
 }
 
-/* Makes the new name last through a power cut, where the file system can. */
+/* Makes the new name survive a power failure, if the file system can. */
 static void sync_folder(const char *path) {
     char name[PATH_MAX];
     folder_of(path, name, sizeof name);
@@ -148,7 +148,7 @@ static void sync_folder(const char *path) {
 }
 
 int name_output(const char *aside, const char *path, bool overwrite) {
-    return place(aside, path, overwrite) == 0 ? 0 : errno;
+    return rename_aside(aside, path, overwrite) == 0 ? 0 : errno;
 }
 
 int place_output(const char *aside, const char *path, bool overwrite) {
@@ -157,24 +157,25 @@ int place_output(const char *aside, const char *path, bool overwrite) {
         return errno;
     int number = fsync(file) != 0 && errno != EINVAL ? errno : 0;
     close(file);
-    if (number == 0 && place(aside, path, overwrite) != 0)
+    if (number == 0 && rename_aside(aside, path, overwrite) != 0)
         number = errno;
     if (number == 0)
         sync_folder(path);
     return number;
 }
 
-/* A link stays one: what it points to is replaced. */
-static int write_aside(text_bytes text, const char *told, bool overwrite) {
+/* A symbolic link is kept, and the file that it points to is replaced. */
+static int write_aside(text_bytes text, const char *given, bool overwrite) {
     char resolved[PATH_MAX], aside[PATH_MAX];
-    const char *path = realpath(told, resolved) ? resolved : told;
+    const char *path = realpath(given, resolved) ? resolved : given;
     FILE *file = open_aside(path, aside, sizeof aside);
     if (!file)
         return -1;
     int done = dump_text(text, file);
     if (done == 0 && fsync(fileno(file)) != 0 && errno != EINVAL)
         done = -1;
-    if (fclose(file) != 0 || done != 0 || place(aside, path, overwrite) != 0) {
+    if (fclose(file) != 0 || done != 0 ||
+        rename_aside(aside, path, overwrite) != 0) {
         int reason = errno;
         unlink(aside);
         errno = reason;
@@ -184,7 +185,7 @@ static int write_aside(text_bytes text, const char *told, bool overwrite) {
     return 0;
 }
 
-/* For pipes and devices, which a rename would replace by a plain file. */
+/* For pipes and devices, which a rename would replace by a regular file. */
 static int write_through(text_bytes text, const char *path) {
     FILE *file = fopen(path, "w");
     if (!file)
@@ -208,7 +209,7 @@ int write_text(const char *bytes, size_t count, const char *path,
     int done = is_special(path) ? write_through(text, path)
                                 : write_aside(text, path, overwrite);
     if (done == 0)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     if (errno == EEXIST)
         return fail_existing(path);
     return fail_output("%s: %s; choose a place that can be written", path,
@@ -224,8 +225,8 @@ int write_json(json_t *object, const char *path, bool overwrite) {
         json_dumpb(object, text, room, JSON_FORM);
     json_decref(object);
     if (!text)
-        return fail_output("%s: no memory for its text; close other programs",
-                           path);
+        return fail_output(
+            "%s: out of memory for its text; close other programs", path);
     text[room] = '\n';
     int done = write_text(text, room + 1, path, overwrite);
     free(text);

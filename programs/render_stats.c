@@ -1,19 +1,19 @@
-/* render_stats.c - seconds, bytes and the checksum of one picture. */
+/* render_stats.c - reports seconds, bytes and the checksum of one picture. */
 #include "render_stats.h"
-#include "launch.h"
-#include "report.h"
+#include "log.h"
+#include "start.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 
-/* As stored in memory, in the native type: what the encodings are compared
- * with. */
+/* The size in memory, in the native type: the encodings are compared with
+ * it. */
 static uint64_t volume_bytes(const snow_volume_info *info) {
     return (uint64_t)(info->dims[0] * info->dims[1] * info->dims[2]) *
            snow_type_size(info->type);
 }
 
-/* "none" where no encoding was used. */
+/* "none" if no encoding was used. */
 static const char *encoding_text(const snow_stats *stats) {
     return stats->encoding == SNOW_ENCODING_AUTO
                ? "none"
@@ -34,7 +34,7 @@ static void set_bytes(json_t *object, const char *key, uint64_t bytes) {
 }
 
 /* EA, IA and PA are the paper's three arrays (section 3.1); 0 for methods
- * without. */
+ * without them. */
 static json_t *bytes_json(const render_report *report) {
     const snow_stats *stats = report->stats;
     json_t *object = json_object();
@@ -46,16 +46,15 @@ static json_t *bytes_json(const render_report *report) {
     return object;
 }
 
-/* Finding the transfer function is the first half of classification (paper,
- * section 2), but comes before the frame: with it in `classify` the stages add
- * up to the total, and `frame` stays what one more picture of the same look
- * takes. */
+/* Making the transfer function is the first half of classification (paper,
+ * section 2), but happens before the frame.  It is counted in `classify`, so
+ * that the stages add up to the total, while `frame` is the time of one more
+ * picture of the same look. */
 static double classify_seconds(const render_report *report) {
     return report->times->look + report->stats->seconds_classify;
 }
 
-/* combine and gather are stages of several processors; their time is 0 for
- * one. */
+/* combine and gather are stages of several ranks; their time is 0 for one. */
 static json_t *seconds_json(const render_report *report) {
     const snow_stats *stats = report->stats;
     const struct {
@@ -79,7 +78,7 @@ static json_t *seconds_json(const render_report *report) {
     return object;
 }
 
-/* The check sum is text, since JSON readers may keep numbers as doubles, which
+/* The checksum is text, since JSON readers may keep numbers as doubles, which
  * cannot hold 64 bits. */
 static json_t *image_json(const snow_image *image) {
     char checksum[17];
@@ -93,7 +92,7 @@ static json_t *image_json(const snow_image *image) {
     return object;
 }
 
-/* Along x, y and z: of the level that the picture is made of. */
+/* Along x, y and z, for the level that the picture is made from. */
 static json_t *halvings_json(const snow_stats *stats) {
     const int64_t halvings[3] = {stats->halvings[0], stats->halvings[1],
                                  stats->halvings[2]};
@@ -127,7 +126,7 @@ json_t *stats_json(const render_report *report) {
     return o;
 }
 
-void tell_stats(const render_report *report) {
+void log_stats(const render_report *report) {
     const snow_stats *stats = report->stats;
     const render_times *times = report->times;
     say("seconds: read %.3f, classify %.3f (look %.3f), shade %.3f, encode "
@@ -143,8 +142,8 @@ void tell_stats(const render_report *report) {
     say("interesting voxels: %" PRId64 " of %" PRId64 ", sparse ratio %.1f %%",
         stats->interesting, stats->voxels, 100 * stats->sparse_ratio);
     if (stats->halvings[0] || stats->halvings[1] || stats->halvings[2])
-        say("level: the volume halved %d, %d and %d times along x, y and z; "
-            "voxels are counted there",
+        say("level: the volume is halved %d, %d and %d times along x, y and z; "
+            "voxels are counted at this level",
             stats->halvings[0], stats->halvings[1], stats->halvings[2]);
     if (launch_ranks() > 1)
         say("ranks: %d, load of the largest part %.2f; combine %.3f s, gather "

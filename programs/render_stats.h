@@ -5,9 +5,9 @@
 #include <jansson.h>
 #include <snowglass/snowglass.h>
 
-/* Seconds that the tool itself measures, beside those of the frame: `begin` of
- * the steady clock, `look` for making the transfer function, which the figures
- * count as classification. */
+/* Seconds that the tool measures itself, besides those of the frame: `begin` on
+ * the monotonic clock, `look` for making the transfer function, which counts as
+ * classification. */
 typedef struct render_times {
     double begin;
     double read, look, write, total;
@@ -16,17 +16,17 @@ typedef struct render_times {
 typedef struct render_report {
     const snow_volume_info *volume;
     const snow_stats *stats;
-    uint64_t peak; /* bytes; of ranks the most that one had */
-    double load;   /* of ranks: most interesting voxels by their mean */
+    uint64_t peak; /* bytes; for ranks the maximum */
+    double load;   /* ranks: most interesting voxels, divided by the mean */
     const snow_settings *settings;
     const snow_image *image;
     const render_times *times;
 } render_report;
 
-/* The object of --stats; its keys are a promise to scripts. */
+/* The object of --stats; scripts rely on its keys. */
 json_t *stats_json(const render_report *report);
 
-/* The same in three lines on standard error. */
-void tell_stats(const render_report *report);
+/* Prints the same in a few lines on standard error. */
+void log_stats(const render_report *report);
 
 #endif

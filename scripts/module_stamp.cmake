@@ -2,8 +2,8 @@
 # one build (src/base/module.h): cmake -D SOURCE=... -D VERSION=... -D OUT=...
 # -P this.  Structures that both sides know lie in any of these files.
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/include/*.h
-     ${SOURCE}/src/base/* ${SOURCE}/src/simd/* ${SOURCE}/src/volume/*
-     ${SOURCE}/src/image/*)
+     ${SOURCE}/src/base/* ${SOURCE}/src/io/* ${SOURCE}/src/simd/*
+     ${SOURCE}/src/volume/* ${SOURCE}/src/formats/* ${SOURCE}/src/image/*)
 list(SORT files)
 set(all "")
 foreach(name ${files})

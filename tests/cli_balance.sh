@@ -5,7 +5,7 @@
 
 # Python is a tool of the tests, not of Snowglass.
 command -v python3 >/dev/null || {
-    echo "python3 is absent: skipped"
+    skipped all "there is no python3"
     exit 77
 }
 

@@ -5,7 +5,7 @@
 
 # Python is a tool of the tests, not of Snowglass.
 command -v python3 >/dev/null || {
-    echo "python3 is absent: skipped"
+    skipped all "there is no python3"
     exit 77
 }
 
@@ -50,9 +50,9 @@ for look in ("translucent", "opaque"):
             case = pick(look=look, colors=colors, shade=shade)
             ways = {(r["way"], r["threads"]) for r in case}
             for way in ("footprint crs", "footprint bitmap", "footprint rle",
-                        "sheared draft", "sheared normal", "sheared high",
-                        "sheared normal crs", "sheared normal bitmap",
-                        "sheared normal rle"):
+                        "shear-warp draft", "shear-warp normal", "shear-warp high",
+                        "shear-warp normal crs", "shear-warp normal bitmap",
+                        "shear-warp normal rle"):
                 assert {(way, 1), (way, 2)} <= ways, (way, ways)
             for way in ("original", "tested"):
                 # one for each kernel, on one thread
@@ -70,19 +70,19 @@ for row in case:
 
 # What is drawn while the view turns keeps its encoding; a new threshold does
 # not, and its time is told.
-for row in pick(method="sheared"):
+for row in pick(method="shear-warp"):
     assert row["frames_encoded"] == 0, row
     assert row["encode_ms"] > 0 and row["encode_gb_per_s"] > 0, row
     assert row["new_threshold_ms"] > row["encode_ms"], row
     assert row["bytes_per_interesting_voxel"] > 1, row
 END
 
-run 0 "a table of text" speed --only rgba,unshaded,translucent,normal,sheared
+run 0 "a table of text" speed --only rgba,unshaded,translucent,normal,shear-warp
 prints '^machine: .*processors; (gcc|.*[Cc]lang)'
 prints '^flags: .* isa .* load average [0-9.]+$'
 prints '^1 thread: reads [0-9.]+ GB/s, [0-9]+ GFLOP/s'
 prints '^Engine 40x40x32 \(phantom:engine\), translucent rgba unshaded, 64x64, threshold 10: sparse'
-prints '^sheared normal  *bspline 4   1 '
+prints '^shear-warp normal  *bspline 4   1 '
 check "only what was asked for" \
     [ -z "$(grep -E 'original|tested|footprint|draft|opaque|phong' "$OUT" |
         grep -v '^times faster\|^rates;\|^way ')" ]
@@ -114,7 +114,7 @@ END
 }
 run 0 "a chart against size" speed --sweep size --chart size.svg --threads 1
 check "it is whole" well_formed size.svg 14 phantom:engine phantom:head 24 40 \
-    "sheared, draft (tent)" "sheared, normal" original tested "footprint, RLE" \
+    "shear-warp, draft (tent)" "shear-warp, normal" original tested "footprint, RLE" \
     "milliseconds per frame (median)"
 run 0 "a chart, of sparse ratios unless told" speed --chart sparse.svg \
     --threads 1 --json

@@ -46,11 +46,11 @@ check "is that of render" cmp -s t_1.npy u.npy
 refused 2 "an eye within" 'beside or behind the camera' \
     "$TOOL" render phantom:head --dims 20x20x20 -o x.png --position 0,5,0 \
     --target 0,0,0 --perspective
-refused 2 "a position and a view" 'leave one of the two out' \
+refused 2 "a position and a view" 'conflicts with --view' \
     "$TOOL" render phantom:head -o x.png --position 1,2,3 --view left
-refused 2 "an up along the line of sight" 'up is 0,3,0' \
+refused 2 "an up along the line of sight" 'invalid up vector 0,3,0' \
     "$TOOL" render phantom:head --dims 20x20x20 -o x.png --up 0,3,0
-refused 2 "a position on the target" 'is its target; move one' \
+refused 2 "a position on the target" 'is its target: they must differ' \
     "$TOOL" render phantom:head --dims 20x20x20 -o x.png --position 1,2,3 \
     --target 1,2,3
 check "nothing is written then" absent x.png

@@ -47,7 +47,7 @@ run 3 "pictures of two sizes" "$TOOL" bench combine --ranks 4 \
 says "slab_%02d.png: local images are of different sizes, 40 to 40 columns and 30 to 31 lines"
 echo "no picture" >words.png
 run 3 "a file that is no picture" "$TOOL" bench combine --pattern words.png
-says "words.png: is no picture of a known format"
+says "words.png: is not a picture of a known format"
 head -c 100 slab_00.png >cut.png
 run 3 "a picture that is cut off" "$TOOL" bench combine --pattern cut.png
 says "cut.png: "

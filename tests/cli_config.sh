@@ -21,8 +21,8 @@ run 0 "bit for bit" "$TOOL" compare a.png b.png
 check "byte for byte" cmp -s a.png b.png
 run 0 "saved again, it is the same" render --config all.json -o c.png \
     --save-config again.json
-check "but for the output" bash -c \
-    'diff <(sed s/a.png/X/ all.json) <(sed s/c.png/X/ again.json)'
+check "but for the output" bash -c 'sed s/a.png/X/ all.json >one &&
+    sed s/c.png/X/ again.json >other && diff one other'
 run 4 "its own output is kept" render --config all.json
 says 'a.png'
 run 0 "and replaced where that is asked" render --config all.json -y
@@ -32,7 +32,7 @@ run 0 "another mode" "$TOOL" render --config all.json -m mip -y -o mip.png
 check "no word on what it does not use" bash -c "! grep -q 'no part' '$ERR'"
 run 0 "but what is told" "$TOOL" render --config all.json -m mip -y \
     --light 3,4 -o mip.png
-says '^snowglass: note: --light has no part in mode mip$'
+says '^snowglass: note: --light has no effect in mode mip$'
 
 # The permission to replace files is for one run.
 run 0 "saved with -y" render phantom:cube -s 9x9 -o once.png -y \
@@ -91,9 +91,9 @@ if "$TOOL" doctor --json | grep -q '".exr"'; then
     run 0 "a picture that takes none" render --config z.json -o y.png -y
     check "has none, and the first is as it was" cmp -s z.exr before.exr
 fi
-refused 2 "a configuration in the depth's place" '--depth goes; name two' \
+refused 2 "a configuration in the depth's place" 'same file as --depth; name two' \
     "$TOOL" render phantom:cube -o w.png --depth w.npy --save-config w.npy
-refused 2 "and in the figures'" '--stats goes; name two' \
+refused 2 "and in the figures'" 'same file as --stats; name two' \
     "$TOOL" render phantom:cube -o w.png --stats q.json --save-config q.json
 
 # --- the command line counts more ---------------------------------------------
@@ -134,19 +134,19 @@ check "with target and up" cmp -s pc.png pd.png
 refused 3 "a file that is not there" 'none.json: cannot be opened' \
     "$TOOL" render --config none.json phantom:cube -o x.png
 echo '{"colour": "red"}' >bad.json
-refused 3 "an unknown key" '"colour" is no key of a recipe' \
+refused 3 "an unknown key" '"colour" is not a key of a recipe' \
     "$TOOL" render --config bad.json phantom:cube -o x.png
 echo '{"size": "big"}' >bad.json
 refused 3 "a wrong value" '"size" must be \[width, height\]' \
     "$TOOL" render --config bad.json phantom:cube -o x.png
 printf '{"size": [1, 2],\n"azimuth": }' >bad.json
-refused 3 "no JSON" 'bad.json: line 2 is no JSON' \
+refused 3 "no JSON" 'bad.json: line 2 is not valid JSON' \
     "$TOOL" render --config bad.json phantom:cube -o x.png
-refused 2 "no input anywhere" 'something is missing' \
+refused 2 "no input anywhere" 'an operand is missing' \
     "$TOOL" render --config w.json -o x.png
 refused 4 "a configuration that exists" 'd.json: exists' \
     "$TOOL" render phantom:cube -o x.png --save-config d.json
-refused 2 "the picture's own place" 'name two places' \
+refused 2 "the picture's own place" 'name two files' \
     "$TOOL" render phantom:cube -o x.png --save-config x.png
 check "nothing is written then" absent x.png
 

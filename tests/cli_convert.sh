@@ -63,7 +63,7 @@ check "is in the values" test "$(sums ct.nrrd | cut -d' ' -f1-6)" = \
 run 0 "an intercept to MetaImage" "$TOOL" convert -q ct.nii -o ct.mha
 check "stays one" grep -aq "ElementToIntensityFunctionOffset = -1024" ct.mha
 
-refused 2 "no output" "no output is named" "$TOOL" convert a.nrrd
+refused 2 "no output" "no output file given" "$TOOL" convert a.nrrd
 refused 2 "an unknown ending" "volumes are written as" \
     "$TOOL" convert a.nrrd -o a.xyz
 refused 2 "values that do not fit" "nrrd: .* do not fit int8; convert to float32" \
@@ -74,6 +74,6 @@ refused 2 "percentiles" "two data values or full" \
     "$TOOL" convert a.nrrd -o k.nrrd --as uint8 --range p1,p99
 refused 4 "a file that exists" "exists" "$TOOL" convert a.nrrd -o b.nii
 refused 3 "no such file" "none.nrrd" "$TOOL" convert none.nrrd -o k.nrrd
-refused 2 "a look" "no option of convert" "$TOOL" convert a.nrrd -o k.nrrd --preset linear
+refused 2 "a look" "is not an option of convert" "$TOOL" convert a.nrrd -o k.nrrd --preset linear
 check "nothing was left" test ! -e k.nrrd
 finish

@@ -27,7 +27,7 @@ raw_cube eight.raw 8
 raw="--dims 8x8x8 --type uint8"
 # shellcheck disable=SC2086
 refused 3 "voxels that no picture can show" \
-    "^snowglass: eight.raw: voxels of .* cannot be seen at zoom" "$TOOL" \
+    "^snowglass: eight.raw: voxels of .* cannot be shown at zoom" "$TOOL" \
     eight.raw $raw --spacing 1e-30x1e30x1e30 -o z.png
 given() {
     local file=$1

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/support_shell.sh"
 
 command -v python3 >/dev/null || {
-    echo "python3 is absent: skipped"
+    skipped all "there is no python3"
     exit 77
 }
 

@@ -34,7 +34,7 @@ check "info --help is help info" cmp -s "$HERE/cli/help_info.txt" "$OUT"
 run 0 "info INPUT --help" "$TOOL" info missing.nrrd --help
 check "--help counts after an operand" cmp -s "$HERE/cli/help_info.txt" "$OUT"
 
-refused 2 "a topic that is none" "no topic and no verb" "$TOOL" help weather
+refused 2 "a topic that is none" "is not a topic or a verb" "$TOOL" help weather
 refused 2 "help on two topics" "one word too many" "$TOOL" help look camera
 run 2 "snowglass alone" "$TOOL"
 says "usage: snowglass INPUT -o OUT.png"
@@ -48,7 +48,7 @@ for key in version formats phantoms presets colormaps kernels encodings \
     methods modes isa threads mpi memory; do
     prints "^$key +[^ ]"
 done
-prints '^methods .* sheared'
+prints '^methods .* shear-warp'
 prints '^volume outputs .*\.npy'
 prints '^picture outputs +\.png'
 # Processors that the process may not use are not counted.

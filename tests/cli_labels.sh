@@ -29,12 +29,12 @@ run 0 "without" head_of render -q -o h.png -c viridis --stats h.json
 run 6 "is drawn" "$TOOL" compare g.png h.png
 check "of the same check sum" [ "$(checksum g.json)" = "$(checksum h.json)" ]
 run 0 "in perspective" head_of render -o i.png --legend --perspective
-says 'no scale bar'
-refused 2 "a legend in floats" 'leave it out or name a .png' \
+says 'the scale bar is left out'
+refused 2 "a legend in floats" 'remove it or name a .png' \
     head_of render -o x.npy --legend
-refused 2 "in frames of floats" 'leave it out or name a .png' \
+refused 2 "in frames of floats" 'remove it or name a .png' \
     head_of turntable -o 'x_%d.pfm' --legend
-refused 2 "a time label of one picture" 'it belongs to movie' \
+refused 2 "a time label of one picture" 'but of movie' \
     head_of render -o x.png --time-label
 check "nothing is written then" absent x.npy
 

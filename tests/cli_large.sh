@@ -4,10 +4,10 @@
 . "$(dirname "$0")/support_shell.sh"
 
 skip() {
-    echo "$1 - skipped"
+    skipped all "$1"
     exit 77
 }
-[ "$(awk '/MemAvailable/ { print int($2 / 1048576) }' /proc/meminfo)" -ge 6 ] ||
+[ "$(free_gigabytes)" -ge 6 ] ||
     skip "less than 6 GB of free memory"
 grep -aq __asan_init "$TOOL" && skip "the sanitizer needs more memory"
 

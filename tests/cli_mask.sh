@@ -3,7 +3,7 @@
 # pictures, figures, movies and conversions; what does not fit is refused.
 . "$(dirname "$0")/support_shell.sh"
 command -v python3 >/dev/null || {
-    echo "python3 is absent: skipped"
+    skipped all "there is no python3"
     exit 77
 }
 

@@ -22,18 +22,18 @@ near() {
 row() {
     local name="$1 $2" mode=$1 method made encoding
     shift 2
-    for method in original footprint sheared; do
+    for method in original footprint shear-warp; do
         run 0 "$name by $method as colours" render -q "$@" --method $method \
             -o $method.png
     done
     near "$name: footprint is exact" footprint 1e-5
-    near "$name: sheared is near" sheared 0.007
+    near "$name: shear-warp is near" shear-warp 0.007
     run 0 "$name by original" render -q "$@" --method original -o original.npy \
         --stats original.json
     check "is by original" grep -q '"method": "original"' original.json
-    for method in footprint sheared auto; do
+    for method in footprint shear-warp auto; do
         made=$method
-        [ $method = auto ] && made=sheared
+        [ $method = auto ] && made=shear-warp
         [ "$mode" = iso ] && made=footprint
         run 0 "$name by $method" render -q "$@" --method $method \
             -o $method.npy --stats made.json
@@ -48,7 +48,7 @@ row() {
             check "with the same bits" cmp -s $method.npy coded.npy
         done
     done
-    check "$name: auto is sheared" cmp -s auto.npy sheared.npy
+    check "$name: auto is shear-warp" cmp -s auto.npy shear-warp.npy
 }
 
 for projection in parallel perspective; do
@@ -62,7 +62,7 @@ for projection in parallel perspective; do
     row iso $projection -m iso --iso 60 "${eye[@]}"
     # Depths are made by footprints, and are those of every method's picture.
     first=
-    for method in original footprint sheared auto; do
+    for method in original footprint shear-warp auto; do
         for mode in over iso; do
             iso=()
             [ $mode = iso ] && iso=(--iso 60)
@@ -75,17 +75,17 @@ for projection in parallel perspective; do
         first=1
     done
     for mode in mip minip mean sum; do
-        refused 2 "depth of $mode $projection" "mode $mode has none" \
+        refused 2 "depth of $mode $projection" "mode $mode has no depth" \
             render -m $mode "${eye[@]}" -o d.npy --depth none.npy
     done
 done
 
-# --- what sheared does not make is told of ------------------------------------
-run 0 "sheared of wide pixels" render -m mip --method sheared -o w.npy -s 2x2 \
+# --- what shear-warp does not make is told of ------------------------------------
+run 0 "shear-warp of wide pixels" render -m mip --method shear-warp -o w.npy -s 2x2 \
     --zoom 0.3
-says 'note: method footprint in place of sheared: pixels are too many'
+says 'note: method footprint is used in place of shear-warp: pixels are too many'
 run 0 "auto of wide pixels" render -m mip -o w.npy -s 2x2 --zoom 0.3
 check "is not remarked on" bash -c "! grep -q 'note: method' '$ERR'"
-run 0 "sheared and iso" render -m iso --iso 60 --method sheared -o w.npy
-says 'note: --method sheared has no part in mode iso'
+run 0 "shear-warp and iso" render -m iso --iso 60 --method shear-warp -o w.npy
+says 'note: --method shear-warp has no effect in mode iso'
 finish

@@ -55,7 +55,7 @@ for suffix in exr tif; do
     run 0 "are the same" "$TOOL" compare depth.$suffix depth.$suffix.npy
 done
 run 2 "depths are no picture" render -q -m iso --iso 40 -o no.png --depth no.webp
-says "--depth: no.webp: depths are numbers"
+says "--depth: no.webp cannot hold depths"
 
 run 0 "a PNG of means tells its range" render -m mean -o told.png
 says "means of [-0-9.e]+\.\.[-0-9.e]+ in the look's colours"
@@ -97,7 +97,7 @@ run 0 "the same surface" "$TOOL" compare iso.npy again.npy
 
 run 2 "a movie of sums has one range" "$TOOL" turntable phantom:head \
     --dims 12x12x12 -m sum -o "sum_%02d.png" --frames 2
-says "--mode sum: frames of a movie share one range"
+says "--mode sum: all frames of a movie need the same range"
 run 0 "a movie of sums" "$TOOL" turntable phantom:head --dims 12x12x12 -m sum \
     --range 0,1000 -o "sum_%02d.png" --frames 2 -s 20x20
 run 0 "a movie of maxima" "$TOOL" turntable phantom:head --dims 12x12x12 \
@@ -108,6 +108,6 @@ run 0 "and gives it again" "$TOOL" render --config keep.json -q -y -o again.npy
 run 0 "the same" "$TOOL" compare keep.npy again.npy
 run 0 "what mip makes no use of" render -m mip --opacity 0:0,200:1 \
     --light 10,10 -y -o unused.png
-says '^snowglass: note: --opacity has no part in mode mip$'
-says '^snowglass: note: --light has no part in mode mip$'
+says '^snowglass: note: --opacity has no effect in mode mip$'
+says '^snowglass: note: --light has no effect in mode mip$'
 finish

@@ -2,7 +2,7 @@
 # Real volumes: known figures, pairs that must hold the same voxels, pictures.
 . "$(dirname "$0")/support_shell.sh"
 [ -d "$DATA/classic" ] || {
-    echo "the real volumes are absent: skipped"
+    skipped all "the real volumes are absent"
     exit 77
 }
 

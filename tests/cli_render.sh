@@ -27,18 +27,18 @@ run 0 "-q is silent" render -q -o quiet.png
 check "-q is silent: no word" [ ! -s "$ERR" ] 
 run 0 "one line without -q" render -o said.png
 check "it is one line" [ "$(wc -l <"$ERR")" -eq 1 ]
-says "view \+z; method sheared, encoding (crs|bitmap|rle)"
+says "view \+z; method shear-warp, encoding (crs|bitmap|rle)"
 run 0 "nothing is visible" render -y -o void.png --opacity 900:0,901:1
-says '^snowglass: note: nothing is to be seen: no voxel has an opacity'
+says '^snowglass: note: the picture is empty: no voxel has an opacity'
 run 0 "all is beside the picture" render -y -o void.png --target 5000,0,0
-says '^snowglass: note: nothing is to be seen: no visible voxel is in view'
+says '^snowglass: note: the picture is empty: no visible voxel is in view'
 run 0 "a surface of no value" render -y -o void.png -m iso --iso 900
-says '^snowglass: note: nothing is to be seen: no surface of value 900 '
+says '^snowglass: note: the picture is empty: no surface of value 900 '
 run 0 "quietly" render -q -y -o void.png --opacity 900:0,901:1
 check "nothing is said" [ ! -s "$ERR" ]
 run 0 "a slice" "$TOOL" phantom cube --dims 1x9x9 -q -o slice.nrrd
 run 0 "from its edge" "$TOOL" render slice.nrrd -s 20x20 -y -o void.png
-says '^snowglass: note: the volume is a single slice, seen from its edge; --view \+x shows its face$'
+says '^snowglass: note: the volume is a single slice, seen from its edge; use --view \+x to see its face$'
 run 0 "not where the view is chosen" "$TOOL" render slice.nrrd -s 20x20 -y \
     -o void.png --view +z
 check "no remark" bash -c "! grep -q edge '$ERR'"
@@ -190,8 +190,13 @@ run 0 "gives the same picture" "$TOOL" compare raw.npy gz.npy
 run 0 "figures to standard output" render -q -o f.png --threshold 10 \
     --encoding rle --stats -
 check "are one line" [ "$(wc -l <"$OUT")" -eq 1 ]
-prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "sheared", "kernel": "bspline", "footprint": 4, "threads": [0-9]+, "ranks": 1, "load": 1.0, "isa": "[a-z0-9]+", "quality": "normal", "halvings": \[0, 0, 0\], "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": [-0-9.e]+, "combine": 0.0, "gather": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
+prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "shear-warp", "kernel": "bspline", "footprint": 4, "threads": [0-9]+, "ranks": 1, "load": 1.0, "isa": "[a-z0-9]+", "quality": "normal", "halvings": \[0, 0, 0\], "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": [-0-9.e]+, "combine": 0.0, "gather": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
 check "interesting voxels take bytes" [ "$(number ia)" -gt 0 ]
+run 0 "sheared is another name of shear-warp" \
+    render -q -o alias.npy --method sheared --stats -
+prints '"method": "shear-warp"'
+run 0 "shear-warp by its name" render -q -o name.npy --method shear-warp
+run 0 "is the same picture" "$TOOL" compare alias.npy name.npy
 run 0 "figures in words and as JSON" "$TOOL" -v phantom:shells \
     --dims 96x96x96 -s 40x30 -o w.png --stats -
 check "no level is made for normal quality" [ -z "$(grep level: "$ERR")" ]
@@ -203,7 +208,7 @@ run 0 "a draft of few pixels" "$TOOL" -v phantom:shells --dims 96x96x96 \
     -s 40x30 -o w2.png --quality draft --stats -
 prints '"quality": "draft", "halvings": \[1, 1, 1\], '
 check "tells of its level" grep -q \
-    "level: the volume halved 1, 1 and 1 times along x, y and z" "$ERR"
+    "level: the volume is halved 1, 1 and 1 times along x, y and z" "$ERR"
 run 0 "a draft of categories" "$TOOL" phantom:shells --dims 96x96x96 \
     -s 40x30 -o w3.png --quality draft --colormap tab10 --stats -
 prints '"halvings": \[0, 0, 0\], '

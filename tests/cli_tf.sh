@@ -38,16 +38,16 @@ run 0 "as a preset" small -q --preset ct-bone -o a.png -y
 run 0 "and as a table" small -q --tf bone.csv -o b.png -y
 check "one picture" cmp -s a.png b.png
 run 0 "a table loses gradients" "$TOOL" tf convert ct-cardiac -o heart.csv
-says 'heart.csv: a table has no place for the gradient opacity'
+says 'heart.csv: a table cannot hold the gradient opacity'
 run 0 "to standard output" "$TOOL" tf convert ct-bone -o -
 prints '"snowglass-tf": 1'
 
 refused 2 "tf alone" 'tf list, tf show' "$TOOL" tf
 refused 2 "tf of an unknown word" 'tf list, tf show' "$TOOL" tf paint x
-refused 2 "no output" 'no output is named' "$TOOL" tf convert ct-bone
-refused 2 "another suffix" 'x.vp: is written as' "$TOOL" tf convert ct-bone \
+refused 2 "no output" 'no output file given' "$TOOL" tf convert ct-bone
+refused 2 "another suffix" 'x.vp: transfer functions are written as' "$TOOL" tf convert ct-bone \
     -o x.vp
-refused 3 "no such name" 'nothing: no preset, no colour map' "$TOOL" tf show \
+refused 3 "no such name" 'nothing: is not a file, a preset or a colour map' "$TOOL" tf show \
     nothing
 refused 3 "no such file" 'none.vp: cannot be opened' "$TOOL" tf show none.vp
 refused 3 "no such preset in a file" "no preset 'x'" "$TOOL" tf show \
@@ -69,13 +69,13 @@ run 0 "kept in a configuration" small -q --tf "$SEEDS/points.csv" --log \
 run 0 "and taken from it" "$TOOL" render -q --config c.json -o d.png
 check "the same picture" cmp -s c.png d.png
 run 0 "info reads it too" "$TOOL" info phantom:shells --tf "$SEEDS/ct.vp"
-says 'light is not taken over'
+says 'light is ignored'
 refused 3 "a cut file" 'cut.vp: the list of opacities ends early' \
     small --tf "$SEEDS/cut.vp" -o x.png
 refused 3 "a file that is none" 'none.json: cannot be opened' \
     small --tf none.json -o x.png
 refused 3 "a folder" 'cannot be opened' small --tf . -o x.png
-refused 2 "with a preset" 'in the place of --preset' \
+refused 2 "with a preset" 'conflicts with --preset' \
     small --tf "$SEEDS/ct.vp" --preset linear -o x.png
 check "nothing is written then" absent x.png
 
@@ -86,7 +86,7 @@ run 0 "from the histogram" small --log -o m.png
 says 'logarithmic'
 run 0 "every method" small -q --log --preset linear --method footprint \
     --shade none -o f.png
-refused 2 "a point at 0" 'logarithmic scale a control point at 0' \
+refused 2 "a point at 0" 'control point at 0 has no logarithm' \
     small --log --opacity 0:0,9:1 -o x.png
 refused 2 "Hounsfield units" 'give a range too' small --log --preset ct-soft \
     -o x.png

@@ -11,7 +11,9 @@ render() { "$TOOL" $small -q "$@"; }
 left() { find . -name '.*unfinished*' -o -name '*.snow-*' | head -3; }
 clean() { [ -z "$(left)" ]; }
 same_frames() { # same_frames A B: the numbered PNG files of two folders
-    diff <(cd "$1" && sha256sum ./*.png) <(cd "$2" && sha256sum ./*.png)
+    (cd "$1" && sha256sum ./*.png) >.sums_one &&
+        (cd "$2" && sha256sum ./*.png) >.sums_other &&
+        diff .sums_one .sums_other
 }
 started() { # started COUNT FILES...: waits until so many of them are there
     local count=$1 i
@@ -72,28 +74,28 @@ check "has its frames" [ -f folder/f1.png ]
 while IFS='|' read -r name pattern; do
     refused 2 "-o $name" "$pattern" "$TOOL" turntable phantom:cube -o "$name"
 done <<'END'
-x.png|one file for all frames
-%s.png|a % that is no number
-%n.png|a % that is no number
-%4d.png|a % that is no number
-%-4d.png|a % that is no number
-%04ld.png|a % that is no number
-%0d.png|a % that is no number
+x.png|cannot hold many frames
+%s.png|a % without a number
+%n.png|a % without a number
+%4d.png|a % without a number
+%-4d.png|a % without a number
+%04ld.png|a % without a number
+%0d.png|a % without a number
 %04d%04d.png|two numbers
-%.png|a % that is no number
+%.png|a % without a number
 %%.png|has no number
 %d/f.png|a folder's name
 f_%04d.jpg|f_0000.jpg
 f_%04d.mp4|a movie is one file
-x.avi|one file for all frames
--|one file for all frames
+x.avi|cannot hold many frames
+-|cannot hold many frames
 END
-refused 2 "no output" "no output is named" "$TOOL" turntable phantom:cube
+refused 2 "no output" "no output given" "$TOOL" turntable phantom:cube
 refused 2 "no frames" "whole number" turn --frames 0 -o 'x%d.png'
-refused 2 "a background of floats" "are for PNG" turn -o 'x%d.npy' \
+refused 2 "a background of floats" "work only for PNG" turn -o 'x%d.npy' \
     --background red
-refused 2 "bits of a movie" "bits is for PNG" turn -o x.mp4 --bits 16
-refused 2 "--frames of render" "belongs to turntable" render --frames 3 -o x.png
+refused 2 "bits of a movie" "bits works only for PNG" turn -o x.mp4 --bits 16
+refused 2 "--frames of render" "but of turntable" render --frames 3 -o x.png
 refused 2 "standard input cannot be resumed" "standard input" \
     "$TOOL" turntable - -o 'x%d.png' --resume
 refused 4 "a folder that is missing" "nowhere" turn -o 'nowhere/x%d.png'
@@ -109,7 +111,7 @@ check "leaves nothing either" [ -z "$(ls -A | grep '^\.*x')" ]
 mkdir a
 run 0 "a turn" turn --frames 6 -o 'a/%d.png'
 sum=$(cat a/*.png | sha256sum)
-refused 4 "the same once more" "a/0.png: exists; give --resume" \
+refused 4 "the same once more" "a/0.png: exists; use --resume" \
     turn --frames 6 -o 'a/%d.png'
 run 0 "the same with --resume" turn --frames 6 -o 'a/%d.png' --resume --stats -
 prints '"frames": \{"rendered": 0, "kept": 6\}'
@@ -131,17 +133,17 @@ check "and takes the frames beyond it away" [ "$(ls a | wc -l)" -eq 4 ]
 check "its frames are new" [ "$(cat a/*.png | sha256sum)" != "$sum" ]
 mkdir b && cp f_000.png b/7.png
 refused 4 "a frame of a stranger" "b/7.png: exists" turn -o 'b/%d.png'
-refused 4 "is not resumed" "nothing beside it says" turn -o 'b/%d.png' --resume
+refused 4 "is not resumed" "without a record" turn -o 'b/%d.png' --resume
 check "and stays" cmp b/7.png f_000.png
 # shellcheck disable=SC2086
 run 0 "a turn of nothing" "$TOOL" turntable $small --frames 2 -o 'void%d.png' \
     --opacity 900:0,901:1
-says 'note: nothing is to be seen: no voxel has an opacity'
+says 'note: the picture is empty: no voxel has an opacity'
 # Killed before its first frame, a run leaves a record that tells nothing.
 : >b/.%d.png.frames
-refused 4 "nor beside an empty record" "nothing beside it says" \
+refused 4 "nor beside an empty record" "without a record" \
     turn -o 'b/%d.png' --resume
-refused 4 "nor without --resume" "b/7.png: exists; give --overwrite" \
+refused 4 "nor without --resume" "b/7.png: exists; use --overwrite" \
     turn -o 'b/%d.png'
 check "and stays still" cmp b/7.png f_000.png
 mkdir meanwhile && : >meanwhile/.%d.png.frames
@@ -303,7 +305,7 @@ prints '"ranks": 1'
 list=$(sed 's/.*"frames": \[\([^]]*\)\].*/\1/' "$OUT" | tr -d , |
     tr ' ' '\n' | sort -g | sed -n 4p)
 check "seconds.frame is their median" awk "BEGIN { exit !($list == $(number frame)) }"
-refused 2 "figures in the output's place" "two places" turn -o x.mp4 \
+refused 2 "figures in the output's place" "two files" turn -o x.mp4 \
     --stats x.mp4
 run 0 "the line of choices" "$TOOL" turntable phantom:engine --dims 16x16x16 \
     -s 9x9 --frames 2 -o 't%d.png'
@@ -344,7 +346,7 @@ film="$TOOL turntable $small -q --frames 9"
     check "is not there" absent i.mp4
     check "and nothing half in its folder" [ -z "$(find i.mp4.frames \
         ! -name '[0-9]*.png' ! -name record -type f)" ]
-    refused 4 "without ffmpeg" "no ffmpeg is on the PATH" \
+    refused 4 "without ffmpeg" "ffmpeg was not found on the PATH" \
         env PATH=/nonexistent $film -o p.webm
     check "there are frames" [ "$(ls p.webm.frames/*.png | wc -l)" -eq 9 ]
     run 0 "from which the movie is made" fake "" $film -o p.webm --resume \

@@ -13,17 +13,17 @@ done <<'END'
 --thresold=3 x|did you mean --threshold\?
 --flurb x|--flurb: unknown option; see snowglass help render
 -Z x|-Z: unknown option
---s 3 x|begins several options
+--s 3 x|matches several options
 --overwrite=3 x|--overwrite takes no value
-info --roll 3 x|--roll: no option of info; it belongs to render
-x --json|--json: no option of render; it belongs to info
--q info x|info: the verb comes first; give snowglass info
-rendr x -o y.png|rendr: no verb; did you mean render\?
+info --roll 3 x|--roll: is not an option of info but of render
+x --json|--json: is not an option of render but of info
+-q info x|info: the verb must come first; give snowglass info
+rendr x -o y.png|rendr: is not a verb; did you mean render\?
 x y -o z.png|one word too many for render
 render -o z.png|give snowglass render INPUT -o OUT
 compare a.png|give snowglass compare A B
-phantom:cube|no output is named; add -o OUT.png
-phantom cube|no output is named
+phantom:cube|no output file given; add -o OUT.png
+phantom cube|no output file given
 phantom:cube -o x.jpg|x.jpg
 phantom snowman -o x.nrrd|snowman
 phantom cube -o x.txt|x.txt
@@ -35,46 +35,46 @@ help serve|serve is not built yet
 --perspective=wide x -o y.png|--perspective: 'wide' is out of range; give a decimal number from 0.001 to 120
 --perspective=150 x -o y.png|--perspective: '150' is out of range
 --perspective 0 x -o y.png|--perspective: '0' is out of range
---perspective= x -o y.png|--perspective: its value is missing
+--perspective= x -o y.png|--perspective: needs a value
 --perspective x y -o y.png|one word too many
 --persp x -o y.png|did you mean --perspective
-info --perspective x|no option of info
---memory lots x -o y.png|--memory: 'lots' is no amount of memory
---memory 0 x -o y.png|--memory: '0' is no amount
---memory 1.5Q x -o y.png|is no amount of memory
+info --perspective x|is not an option of info
+--memory lots x -o y.png|--memory: 'lots' is not an amount of memory
+--memory 0 x -o y.png|--memory: '0' is not an amount
+--memory 1.5Q x -o y.png|is not an amount of memory
 --labels 1 x -o y.png|--labels: these are of a mask; give --mask FILE beside it
 convert x -o y.nrrd --labels 1|--labels: these are of a mask
 info x --labels 1|--labels: these are of a mask
---labels 1,b x -o y.png|--labels: '1,b' is no list of labels
---labels 7-4 x -o y.png|--labels: '7-4' is no list of labels
+--labels 1,b x -o y.png|--labels: '1,b' is not a list of labels
+--labels 7-4 x -o y.png|--labels: '7-4' is not a list of labels
 --labels= x -o y.png|--labels
 --mask= x -o y.png|--mask
---clip 1,0,0 x -o y.png|--clip: '1,0,0' are no planes; give A,B,C,D
---clip 0,0,0,1 x -o y.png|--clip: '0,0,0,1' are no planes
---clip 1,0,0,1,2 x -o y.png|--clip: '1,0,0,1,2' are no planes
---clip 1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1 x|are no planes
---clip 1,0,0,nan x -o y.png|are no planes
-phantom --mask m cube -o y.nrrd|--mask: no option of phantom
+--clip 1,0,0 x -o y.png|--clip: '1,0,0' are not planes; give A,B,C,D
+--clip 0,0,0,1 x -o y.png|--clip: '0,0,0,1' are not planes
+--clip 1,0,0,1,2 x -o y.png|--clip: '1,0,0,1,2' are not planes
+--clip 1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1 x|are not planes
+--clip 1,0,0,nan x -o y.png|are not planes
+phantom --mask m cube -o y.nrrd|--mask: is not an option of phantom
 --azim 10 x|--azim: unknown option; did you mean --azimuth
 --foo x|--foo: unknown option; did you mean --footprint
 --crop 0:1,0:1 x|--crop: 
 --series= x|--series
---patient x|--patient: no option of render; it belongs to info
+--patient x|--patient: is not an option of render but of info
 --quality best x|'best' is unknown
---frames 3 x|--frames: no option of render; it belongs to turntable
-movie --frames 3 x -o y.mp4|--frames: no option of movie
---resume x|--resume: no option of render; it belongs to turntable
+--frames 3 x|--frames: is not an option of render but of turntable
+movie --frames 3 x -o y.mp4|--frames: is not an option of movie
+--resume x|--resume: is not an option of render but of turntable
 turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
---mode iso x -o y.png|--mode iso: needs --iso VALUE beside it
---iso 3 x -o y.png|--iso: needs --mode iso beside it
+--mode iso x -o y.png|--mode iso: needs --iso VALUE too
+--iso 3 x -o y.png|--iso: needs --mode iso too
 --iso high x -o y.png|--iso: 'high' is not a finite number
---depth d.png x -o y.png|--depth: d.png: depths are numbers
---depth d.npy -m mip x -o y.png|--depth: mode mip has none; take over or iso
---depth y.npy x -o y.npy|--depth: goes where --output goes; let both be one .exr
-turntable --depth d.npy x -o y.mp4|--depth: frames have theirs in their own
-turntable --depth y_%d.exr x -o z_%d.exr|--depth: frames have theirs in their own
-turntable --depth y_%d.png x -o y_%d.png|--depth: frames have theirs in their own
-movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has none
+--depth d.png x -o y.png|--depth: d.png cannot hold depths
+--depth d.npy -m mip x -o y.png|--depth: mode mip has no depth; use mode over or iso
+--depth y.npy x -o y.npy|--depth: is the same file as --output; name two files, or use one .exr
+turntable --depth d.npy x -o y.mp4|--depth: frames hold depths in their own files
+turntable --depth y_%d.exr x -o z_%d.exr|--depth: frames hold depths in their own files
+turntable --depth y_%d.png x -o y_%d.png|--depth: frames hold depths in their own files
+movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
 --mode best x|'best' is unknown
 --method ray x|'ray' is unknown
 --method tested x|'tested' is unknown
@@ -88,12 +88,12 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has none
 -s 8x8x8 x|is not a picture size
 -s ' 8x8' x|is not a picture size
 -s 8.5x8 x|is not a picture size
---size|--size: its value is missing
--s|--size: its value is missing
+--size|--size: needs a value
+-s|--size: needs a value
 --bits 12 x|choose from: 8, 16
---background brick x|is no colour
---background '#12' x|is no colour
---background 1,2,3 x|is no colour
+--background brick x|is not a colour
+--background '#12' x|is not a colour
+--background 1,2,3 x|is not a colour
 --threshold 256 x|from 0 to 255
 --threshold -1 x|from 0 to 255
 --threshold nan x|from 0 to 255
@@ -109,9 +109,9 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has none
 --azimuth 0x10 x|is not a finite number
 --azimuth 3deg x|is not a finite number
 --azimuth '' x|is not a finite number
---position 1,2 x|is no place
---target 1,2,nan x|is no place
---up up x|is no place
+--position 1,2 x|is not a position
+--target 1,2,nan x|is not a position
+--up up x|is not a position
 --zoom 0 x|out of range
 --zoom -2 x|out of range
 --opacity 80 x|VALUE:OPACITY
@@ -121,14 +121,14 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has none
 --gradient-opacity 80 x|MAGNITUDE:FACTOR
 --gradient-opacity 0:0,20:2 x|MAGNITUDE:FACTOR
 --gradient-opacity 9:0,8:1 x|MAGNITUDE:FACTOR
---range 3,2 x|is no range
---range 3,nan x|is no range
---range p99,p1 x|is no range
---range p1,99 x|is no range
---range p1,p101 x|is no range
+--range 3,2 x|is not a range
+--range 3,nan x|is not a range
+--range p99,p1 x|is not a range
+--range p1,99 x|is not a range
+--range p1,p101 x|is not a range
 --window 0 x|out of range
 --shade flat x|choose from: phong, none
---light 30 x|is no direction
+--light 30 x|is not a direction
 --ambient 2 x|from 0 to 1
 --shininess -1 x|out of range
 --dims 8x8 x|are not dimensions
@@ -139,8 +139,8 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has none
 --spacing 1x1x0 x|is not a spacing
 --spacing 1x1xinf x|is not a spacing
 --endian middle x|choose from: little, big
---offset -1 x|whole number from 0
---offset 99999999999999999999 x|whole number from 0
+--offset -1 x|whole number of 0 or more
+--offset 99999999999999999999 x|whole number of 0 or more
 --time -1 x|whole number
 --preset toast x|--preset: 'toast' is unknown; choose from: linear, ct-aaa
 --colormap beige x|--colormap: 'beige' is unknown; choose from: grey, viridis
@@ -148,12 +148,12 @@ movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has none
 --view '' x|--view: '' is unknown
 info nope.nii --preset foo|--preset: 'foo' is unknown
 --progress some x|choose from: auto, always, never
---stats x.png phantom:cube -o x.png|name two places
-phantom --seed -1 cube|whole number from 0
+--stats x.png phantom:cube -o x.png|name two files
+phantom --seed -1 cube|whole number of 0 or more
 compare --tolerance 2 a b|is not a difference
 compare --tolerance 1/0 a b|is not a difference
-x -o y.npy --background white|are for PNG and WebP
-x -o y.pfm --bits 16|are for PNG and WebP
+x -o y.npy --background white|work only for PNG and WebP
+x -o y.pfm --bits 16|work only for PNG and WebP
 END
 
 # These need a volume to be found wrong.
@@ -163,9 +163,9 @@ while IFS='|' read -r arguments pattern; do
     refused 2 "phantom:cube $arguments" "$pattern" \
         "$TOOL" phantom:cube --dims 8x8x8 -o z.png "$@"
 done <<'END'
---window 3|needs --level beside it
---level 3|needs --window beside it
---window 3 --level 3 --range 1,2|does not go with --range
+--window 3|needs --level too
+--level 3|needs --window too
+--window 3 --level 3 --range 1,2|conflicts with --range
 --type uint8|type
 END
 # The bench reads its own options.

@@ -5,7 +5,7 @@
 
 info() { "$TOOL" info "$@"; }
 
-# array FOLDER SHAPE CHUNKS: of bytes, not packed.
+# array FOLDER SHAPE CHUNKS: of bytes, not compressed.
 array() {
     mkdir -p "$1"
     printf '{"zarr_format": 2, "shape": [%s], "chunks": [%s], "dtype": "|u1",
@@ -35,10 +35,10 @@ run 0 "a bare array" info a.zarr
 prints '^format +zarr$'
 prints '^dims +2 x 2 x 2'
 prints '^values +1 .. 8, mean 4.5$'
-prints '^storage +version 2, axes z y x, chunks 2x2x1, not packed$'
+prints '^storage +version 2, axes z y x, chunks 2x2x1, not compressed$'
 run 0 "as JSON" info a.zarr --json
 prints '"sum": 36.0, "wsum": 204.0'
-prints '"storage": "version 2, axes z y x, chunks 2x2x1, not packed"'
+prints '"storage": "version 2, axes z y x, chunks 2x2x1, not compressed"'
 run 0 "a crop" info a.zarr --crop 1:,:,1: --json
 prints '"dims": \[1, 2, 1\]'
 prints '"min": 6.0, "max": 8.0'
@@ -65,9 +65,9 @@ printf '\1\1\1\1\1\1\1\1' >b.zarr/0/0.0.0.0
 printf '\2\2\2\2\2\2\2\2' >b.zarr/0/1.0.0.0
 printf '\3\4' >b.zarr/1/0.0.0.0
 run 0 "an image" info b.zarr --json --time 1
-says 'level 0 of 2 \(0\) is taken.*of 0 \(2, 2, 2, 2\), 1 \(2, 1, 1, 1\)$'
+says 'level 0 of 2 \(0\) is used.*of 0 \(2, 2, 2, 2\), 1 \(2, 1, 1, 1\)$'
 prints '"spacing": \[0.5, 0.5, 0.5\], "unit": "um"'
-prints '"times": 2, "time": 1, "storage": "version 2, level 0 of 2 \(0\), axes t z y x, chunks 1x2x2x2, not packed"'
+prints '"times": 2, "time": 1, "storage": "version 2, level 0 of 2 \(0\), axes t z y x, chunks 1x2x2x2, not compressed"'
 prints '"min": 2.0, "max": 2.0'
 for way in "b.zarr --dataset 1" b.zarr/1 b.zarr:/1 b.zarr/1/; do
     # shellcheck disable=SC2086
@@ -75,17 +75,17 @@ for way in "b.zarr --dataset 1" b.zarr/1 b.zarr:/1 b.zarr/1/; do
     prints '"spacing": \[1.0, 1.0, 1.0\], "unit": "um"'
     prints '"min": 3.0, "max": 3.0'
 done
-refused 2 "named twice" 'leave one of them out' info b.zarr:/1 --dataset 1
+refused 2 "named twice" 'give only one of them' info b.zarr:/1 --dataset 1
 refused 2 "no such level" 'has no array or group "7"' info b.zarr --dataset 7
-refused 2 "a path that climbs" 'no path within' info b.zarr --dataset ../a.zarr
+refused 2 "a path that climbs" 'not a path within' info b.zarr --dataset ../a.zarr
 refused 2 "no such time" 'time step' info b.zarr --time 2
 refused 2 "no such channel" 'channel' info b.zarr --channel 1
 refused 2 "a series" '--series' info b.zarr --series 1
 refused 2 "a size" '--dims' info b.zarr --dims 1x1x1 --type uint8
 rm -r b.zarr/0
-run 0 "the finest that is there" info b.zarr
-says 'level 1 of 2 \(1\) is taken, the finest that is there'
-refused 2 "one that is not" 'level 0 \(0\) is not there.*1 \(2, 1, 1, 1\)' \
+run 0 "the finest that exists" info b.zarr
+says 'level 1 of 2 \(1\) is used, the finest that exists'
+refused 2 "one that is not" 'level 0 \(0\) is missing.*1 \(2, 1, 1, 1\)' \
     info b.zarr --dataset 0
 rm -r b.zarr/1
 refused 3 "none that is there" 'none of the 2 levels' info b.zarr
@@ -107,7 +107,7 @@ refused 3 "no JSON" '.zarray: line' info c.zarr
 array c.zarr 9999999,9999999,9999999 64,64,64
 refused 3 "sizes without bytes" 'c.zarr: ' info c.zarr
 mkdir d.zarr
-refused 3 "an empty folder" 'none in it' info d.zarr
+refused 3 "an empty folder" 'contains none' info d.zarr
 refused 3 "no folder" 'cannot be opened' info e.zarr
 run 5 "a limit of memory" "$TOOL" render a.zarr -s 9x9 -o m.png --memory 100
 run 0 "doctor" "$TOOL" doctor
@@ -120,7 +120,7 @@ if [ -d "$DATA/formats/zarr" ]; then
         refused 3 "without Blosc" 'install libblosc-dev' info "$brain"
     else
         run 0 "a real image" info "$brain" --json
-        says 'level 3 of 5 \(scale3/.*the finest that is there'
+        says 'level 3 of 5 \(scale3/.*the finest that exists'
         prints '"dims": \[25, 32, 26\]'
         prints 'axes x y z, chunks 25x32x26, blosc lz4"'
         run 0 "rendered" "$TOOL" render -q "$brain" -s 64x64 -o b.png

@@ -26,9 +26,9 @@ static void *open_file(void *user) {
     snow_volume *volume = NULL;
     snow_status status = snow_context_new(NULL, &context);
     pthread_barrier_wait(&barrier);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_volume_open(context, j->path, NULL, &volume);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         snprintf(j->message, sizeof j->message, "%s",
                  context ? snow_context_message(context) : "no context");
     snow_volume_close(volume);

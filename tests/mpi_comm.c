@@ -19,7 +19,7 @@ static int run_bodies(snow_comm *comm) {
                   BODY(reduce_ints),       BODY(broadcast),
                   BODY(one_after_another), BODY(share)};
     for (size_t i = 0; i < sizeof bodies / sizeof bodies[0]; i++)
-        if (bodies[i].body(comm, NULL) != SNOW_OK) {
+        if (bodies[i].body(comm, NULL) != SNOW_STATUS_OK) {
             fprintf(stderr, "mpi_comm: rank %d: %s: %s\n", snow_comm_rank(comm),
                     bodies[i].name,
                     snow_context_message(snow_comm_context(comm)));
@@ -37,10 +37,11 @@ static int complain(const char *what) {
 static int compare_sums(snow_comm *comm) {
     rank_sums sums;
     const int rank = snow_comm_rank(comm);
-    if (reduce_doubles(comm, &sums) != SNOW_OK)
+    if (reduce_doubles(comm, &sums) != SNOW_STATUS_OK)
         return complain("reduce_doubles");
     double first = sums.sums[rank];
-    return snow_comm_broadcast(comm, &first, sizeof first, 0) != SNOW_OK ||
+    return snow_comm_broadcast(comm, &first, sizeof first, 0) !=
+                       SNOW_STATUS_OK ||
                    memcmp(&first, &sums.sums[rank], sizeof first)
                ? complain("sums have other bits on other ranks")
                : 0;
@@ -48,17 +49,19 @@ static int compare_sums(snow_comm *comm) {
 
 /* A failure is everybody's; and the group lives on. */
 static int agree(snow_comm *comm) {
-    const int last = snow_comm_ranks(comm) - 1;
+    const int last = snow_comm_size(comm) - 1;
     snow_context *context = snow_comm_context(comm);
-    snow_status status = SNOW_OK;
+    snow_status status = SNOW_STATUS_OK;
     char text[64];
     snprintf(text, sizeof text, "rank %d: it is so", last);
     if (snow_comm_rank(comm) == last)
-        status = snow_fail(context, SNOW_BAD_INPUT, "it is so");
-    if (snow_comm_agree(comm, status) != SNOW_BAD_INPUT ||
+        status = snow_fail(context, SNOW_STATUS_BAD_INPUT, "it is so");
+    if (snow_comm_agree_status(comm, status) != SNOW_STATUS_BAD_INPUT ||
         strcmp(snow_context_message(context), last ? text : text + 8))
         return complain(snow_context_message(context));
-    return snow_comm_agree(comm, SNOW_OK) == SNOW_OK ? 0 : complain("no peace");
+    return snow_comm_agree_status(comm, SNOW_STATUS_OK) == SNOW_STATUS_OK
+               ? 0
+               : complain("no peace");
 }
 
 /* Half of the ranks, in reverse order, by the handle that Fortran has: a group
@@ -72,9 +75,10 @@ static int run_half(snow_context *context) {
     MPI_Comm_split(MPI_COMM_WORLD, rank % 2 ? 0 : MPI_UNDEFINED, -rank, &half);
     if (half == MPI_COMM_NULL)
         return 0;
-    if (snow_comm_mpi_fortran(context, MPI_Comm_c2f(half), &comm) != SNOW_OK)
+    if (snow_comm_new_mpi_fortran(context, MPI_Comm_c2f(half), &comm) !=
+        SNOW_STATUS_OK)
         return complain(snow_context_message(context));
-    wrong = snow_comm_ranks(comm) != ranks / 2 ||
+    wrong = snow_comm_size(comm) != ranks / 2 ||
             snow_comm_rank(comm) != (ranks - 1 - rank) / 2;
     if (wrong)
         complain("another order of ranks");
@@ -94,17 +98,20 @@ static int send_too_much(snow_context *context) {
     MPI_Comm_size(MPI_COMM_WORLD, &ranks);
     if (ranks == 1)
         return 0;
-    if (snow_comm_mpi(context, MPI_COMM_WORLD, &comm) != SNOW_OK)
+    if (snow_comm_new_mpi(context, MPI_COMM_WORLD, &comm) != SNOW_STATUS_OK)
         return complain(snow_context_message(context));
     if (snow_comm_rank(comm) == 0)
-        wrong = snow_comm_receive(comm, bytes, 9, 1, 1, &message) != SNOW_OK ||
-                snow_comm_wait_all(comm, &message, 1) != SNOW_FAILED ||
-                !strstr(snow_context_message(context), "longer than") ||
-                !snow_comm_broken(comm) ||
-                snow_comm_agree(comm, SNOW_OK) != SNOW_FAILED;
+        wrong =
+            snow_comm_receive(comm, bytes, 9, 1, 1, &message) !=
+                SNOW_STATUS_OK ||
+            snow_comm_wait_all(comm, &message, 1) != SNOW_STATUS_FAILED ||
+            !strstr(snow_context_message(context), "exceeds its buffer") ||
+            !snow_comm_broken(comm) ||
+            snow_comm_agree_status(comm, SNOW_STATUS_OK) != SNOW_STATUS_FAILED;
     if (snow_comm_rank(comm) == 1)
-        wrong = snow_comm_send(comm, bytes, 10, 0, 1, &message) != SNOW_OK ||
-                snow_comm_wait_all(comm, &message, 1) != SNOW_OK;
+        wrong =
+            snow_comm_send(comm, bytes, 10, 0, 1, &message) != SNOW_STATUS_OK ||
+            snow_comm_wait_all(comm, &message, 1) != SNOW_STATUS_OK;
     MPI_Barrier(MPI_COMM_WORLD);
     snow_comm_free(comm);
     return wrong ? complain("a message that is too long") : 0;
@@ -122,11 +129,11 @@ static int send_large(snow_comm *comm) {
     snow_message messages[2] = {{0}};
     snow_status status =
         snow_comm_receive(comm, in, bytes + 1, 0, 1, &messages[0]);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_comm_send(comm, out, bytes, 0, 1, &messages[1]);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_comm_wait_all(comm, messages, 2);
-    int wrong = status != SNOW_OK || messages[0].bytes != bytes ||
+    int wrong = status != SNOW_STATUS_OK || messages[0].bytes != bytes ||
                 memcmp(in, out, bytes) || in[bytes];
     snow_release(context, in);
     snow_release(context, out);
@@ -139,20 +146,21 @@ static int send_large(snow_comm *comm) {
 static int wait_beside_stopped(snow_comm *comm) {
     char byte;
     snow_message message = {0};
-    if (snow_comm_rank(comm) == snow_comm_ranks(comm) - 1)
+    if (snow_comm_rank(comm) == snow_comm_size(comm) - 1)
         raise(SIGSTOP);
     while (snow_comm_rank(comm) != 0)
         continue;
     snow_comm_set_timeout(comm, 1);
-    if (snow_comm_receive(comm, &byte, 1, 1, 1, &message) != SNOW_OK ||
-        snow_comm_wait_all(comm, &message, 1) == SNOW_OK)
+    if (snow_comm_receive(comm, &byte, 1, 1, 1, &message) != SNOW_STATUS_OK ||
+        snow_comm_wait_all(comm, &message, 1) == SNOW_STATUS_OK)
         return complain("a message that nobody sent");
     return complain(snow_context_message(snow_comm_context(comm)));
 }
 
 static int refuse(snow_context *context) {
     snow_comm *comm = NULL;
-    return snow_comm_mpi(context, MPI_COMM_NULL, &comm) == SNOW_BAD_USAGE &&
+    return snow_comm_new_mpi(context, MPI_COMM_NULL, &comm) ==
+                       SNOW_STATUS_BAD_USAGE &&
                    !comm
                ? 0
                : complain("MPI_COMM_NULL is taken");
@@ -162,14 +170,15 @@ int main(int argc, char **argv) {
     int level, wrong;
     snow_context *context;
     snow_comm *comm = NULL;
-    if (snow_context_new(NULL, &context) != SNOW_OK)
+    if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return complain("no context");
-    if (snow_comm_mpi(context, MPI_COMM_WORLD, &comm) != SNOW_BAD_USAGE)
+    if (snow_comm_new_mpi(context, MPI_COMM_WORLD, &comm) !=
+        SNOW_STATUS_BAD_USAGE)
         return complain("MPI is not running, and that was not seen");
     MPI_Init_thread(&argc, &argv, MPI_THREAD_FUNNELED, &level);
     /* Whom MPICH asks about errors of waits. */
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);
-    if (snow_comm_mpi(context, MPI_COMM_WORLD, &comm) != SNOW_OK)
+    if (snow_comm_new_mpi(context, MPI_COMM_WORLD, &comm) != SNOW_STATUS_OK)
         return complain(snow_context_message(context));
     if (argc > 1)
         wrong = strcmp(argv[1], "stopped") == 0 ? wait_beside_stopped(comm)

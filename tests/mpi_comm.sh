@@ -10,6 +10,10 @@ for ranks in $COUNTS; do
         launch "$ranks" "$TESTS/mpi_comm_chunks"
 done
 
+[ -r /proc/self/environ ] || {
+    skipped "a silent rank" "there is no /proc"
+    finish
+}
 NAME="a silent rank beside one that is stopped"
 launch 3 "$TESTS/mpi_comm" stopped >"$OUT" 2>"$ERR" </dev/null
 check "$NAME: the job fails" [ $? -ne 0 ]

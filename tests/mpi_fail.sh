@@ -52,7 +52,7 @@ little() {
         bash -c "ulimit -v 500000 && exec \"\$0\" $zeros" "$MPI_TOOL"
 }
 if [ -z "${ASAN_OPTIONS:-}" ] && is_open_mpi; then # whose own needs are known
-    fails 5 "little memory on one machine" '^snowglass: rank 1: .*no memory' \
+    fails 5 "little memory on one machine" '^snowglass: rank 1: .*out of memory' \
         little
 fi
 finish

@@ -8,6 +8,8 @@ for needed in ip unshare; do
     command -v $needed >/dev/null || skip "there is no $needed"
 done
 
+[ -e /sys/class/net ] || skip "there is no /sys"
+
 name=snow$$
 clear_up() {
     for host in 0 1 2 3; do

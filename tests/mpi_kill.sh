@@ -2,6 +2,7 @@
 # mpi_kill.sh - one rank of four is killed, while it draws and in the middle of
 # a movie: the job ends at once, tells which, and leaves nothing unfinished.
 . "$(dirname "$0")/support_mpi.sh"
+need_proc
 LIMIT=60
 
 # killed NAME WHEN COMMAND...: kills rank 2 once WHEN is true, and looks how

@@ -66,7 +66,7 @@ run 0 "are those of one" "$TOOL" compare one.png many.png --tolerance 0
 # shellcheck disable=SC2086
 run 2 "a mip has no depth" launch 3 "$MPI_TOOL" $head -m mip -o deep.png \
     --depth deep.npy
-says "mode mip has none; take over or iso"
+says "mode mip has no depth; use mode over or iso"
 # shellcheck disable=SC2086
 run 2 "a deterministic mean" launch 3 "$MPI_TOOL" $head -m mean -o d.npy \
     --deterministic

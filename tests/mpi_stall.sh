@@ -3,7 +3,8 @@
 # over, with one message that names the rank, and leaves nothing unfinished. A
 # rank that goes on in time is waited for.
 . "$(dirname "$0")/support_mpi.sh"
-LIMIT=60
+need_proc
+LIMIT=180
 
 # begin WHEN COMMAND...: starts four ranks, and stops rank $RANK once WHEN is
 # true.

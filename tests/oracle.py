@@ -17,8 +17,14 @@ checked = wrong = 0
 
 
 def skip(why):
-    print(why, "- skipped")
+    print("skip  ", why)
     sys.exit(77)
+
+
+def need_modules():
+    """Readers of modules are found by /proc/self/maps (src/base/module.c)."""
+    if not os.access("/proc/self/maps", os.R_OK):
+        skip("there is no /proc, and modules are not loaded without")
 
 
 def fail(name, what):

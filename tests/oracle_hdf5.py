@@ -4,12 +4,15 @@ import sys
 try:
     import h5py
     import numpy as np
-except ImportError:
+except ImportError as missing:
+    print("skip  ", missing)
     sys.exit(77)
 import gzip
 import os
 
 import oracle
+
+oracle.need_modules()
 
 place = oracle.folder()
 TYPES = ["i1", "u1", "<i2", ">i2", "<u2", "<i4", ">u4", "<i8", ">u8", "<f2",
@@ -122,13 +125,13 @@ for name in ("virtual", "outside"):
     oracle.refuse(f"h.h5:/{name}", "in other files")
 oracle.refuse("h.h5:/link", "no such data set", status=2)
 for name in ("text", "pairs", "six"):
-    oracle.refuse(f"h.h5:/{name}", "no array of numbers")
+    oracle.refuse(f"h.h5:/{name}", "not a numeric array")
 with open("b.h5", "rb") as file:
     whole = file.read()
 for size in (20, 600, len(whole) // 2, len(whole) - 1):
     with open("i.h5", "wb") as file:
         file.write(whole[:size])
-    oracle.refuse("i.h5", "fetch or write it again")
+    oracle.refuse("i.h5", "get or write it again")
 with h5py.File("k.h5", "w") as file:
     file.create_dataset("only", data=a, compression="lzf")
 oracle.refuse("k.h5", "filter 32000")

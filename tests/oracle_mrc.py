@@ -4,7 +4,8 @@ import sys
 try:
     import mrcfile
     import numpy as np
-except ImportError:
+except ImportError as missing:
+    print("skip  ", missing)
     sys.exit(77)
 import warnings
 

@@ -4,11 +4,14 @@ import sys
 try:
     import netCDF4
     import numpy as np
-except ImportError:
+except ImportError as missing:
+    print("skip  ", missing)
     sys.exit(77)
 import gzip
 
 import oracle
+
+oracle.need_modules()
 
 place = oracle.folder()
 CLASSIC = ["i1", "i2", "i4", "f4", "f8"]
@@ -31,7 +34,7 @@ for form, types in FORMATS.items():
                       options=["--dataset", f"v{kind}"],
                       name=f"{form} {kind}")
     oracle.refuse("a.nc", "vi1", status=2)
-    oracle.refuse("a.nc", "no array of numbers", ["--dataset", "text"])
+    oracle.refuse("a.nc", "not a numeric array", ["--dataset", "text"])
     oracle.refuse("a.nc", "there is no such", ["--dataset", "w"], 2)
 
 # Records: one variable of odd bytes, then several, and a fixed one.
@@ -107,7 +110,7 @@ with open("c.nc", "rb") as file:
 for size in (3, 30, 100, len(whole) - 9):
     with open("d.nc", "wb") as file:
         file.write(whole[:size])
-    oracle.refuse("d.nc", "cut")
+    oracle.refuse("d.nc", "truncated")
 
 path = oracle.data("formats/netcdf/tos_O1_2001-2002.nc.gz")
 if path:

@@ -3,7 +3,8 @@ import sys
 
 try:
     import numpy as np
-except ImportError:
+except ImportError as missing:
+    print("skip  ", missing)
     sys.exit(77)
 import oracle
 
@@ -37,7 +38,7 @@ for order in "CF":
             oracle.expect("b.npy", b[time, channel],
                           options=["--time", time, "--channel", channel])
 oracle.refuse("a.npy", "no time step 3", ["--time", 3], 2)
-oracle.refuse("b.npy", "no channel 2", ["--channel", 2], 2)
+oracle.refuse("b.npy", "channel 2 does not exist", ["--channel", 2], 2)
 np.savez("c.npz", a)
 oracle.refuse("c.npz", "unzip")
 np.save("d.npy", a.astype(complex))

@@ -5,7 +5,8 @@ try:
     import numpy as np
     import tifffile
     from PIL import Image, features
-except ImportError:
+except ImportError as missing:
+    print("skip  ", missing)
     sys.exit(77)
 import json
 import shutil

@@ -4,7 +4,8 @@ import sys
 try:
     import numpy as np
     import tifffile
-except ImportError:
+except ImportError as missing:
+    print("skip  ", missing)
     sys.exit(77)
 import gzip
 import os
@@ -13,6 +14,8 @@ import subprocess
 import tarfile
 
 import oracle
+
+oracle.need_modules()
 
 place = oracle.folder()
 TYPES = ["u1", "i1", "u2", "i2", "u4", "i4", "u8", "i8", "f4", "f8", "f2"]
@@ -60,7 +63,7 @@ for planar in ("contig", "separate"):
     for channel in range(3):
         oracle.expect("e.tif", rgb[..., channel],
                       options=["--channel", channel], name=planar)
-oracle.refuse("e.tif", "no channel 3", ["--channel", 3], 2)
+oracle.refuse("e.tif", "channel 3 does not exist", ["--channel", 3], 2)
 
 # ImageJ: (t, z, c, y, x), a unit and a spacing.
 h = oracle.sample("u2", (2, 4, 3, 6, 5))
@@ -142,7 +145,7 @@ with open("i.tif", "rb") as file:
 for size in (9, 100, len(whole) // 2):
     with open("k.tif", "wb") as file:
         file.write(whole[:size])
-    oracle.refuse("k.tif", "cut")
+    oracle.refuse("k.tif", "truncated")
 
 try:
     from PIL import Image

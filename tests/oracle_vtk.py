@@ -5,7 +5,8 @@ try:
     import numpy as np
     import vtk
     from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-except ImportError:
+except ImportError as missing:
+    print("skip  ", missing)
     sys.exit(77)
 import gzip
 

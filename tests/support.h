@@ -28,4 +28,26 @@ const char *support_data(const char *relative);
 uint64_t support_random(uint64_t *state);
 double support_uniform(uint64_t *state);
 
+/* --- tiers ------------------------------------------------------------------
+ *
+ * The environment variable SNOW_TIER says how long sweeps over many scenes are:
+ * short (also where it is not set), long or release.  One program serves all.
+ */
+
+/* The step of a loop over scenes: `stride` in the short tier, else 1.  It
+ * should have no divisor in common with the cycles that the loop's number
+ * drives, so that each of their values still comes up. */
+size_t support_stride(size_t stride);
+
+/* Where the inner loop of two begins, so that with a stride the passes of the
+ * outer one see different scenes: `outer` modulo the stride of this tier. */
+size_t support_start(size_t outer, size_t stride);
+
+/* `full`, or `brief` in the short tier: a count of repetitions, or a size. */
+int64_t support_sweep(int64_t full, int64_t brief);
+
+/* Added to the seeds of scenes: the environment variable SNOW_SEED, 0 where it
+ * is not set.  The release tier runs sweeps with several. */
+uint64_t support_seed(void);
+
 #endif

@@ -23,7 +23,7 @@ snow_status receive_number(snow_comm *comm, int64_t *number, int from,
 
 snow_status send_all_to_all(snow_comm *comm, void *user) {
     (void)user;
-    const int ranks = snow_comm_ranks(comm), rank = snow_comm_rank(comm);
+    const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     snow_message messages[66] = {{0}};
     int64_t in[33], out[33];
     for (int other = 0; other < ranks; other++) {
@@ -43,13 +43,13 @@ snow_status send_all_to_all(snow_comm *comm, void *user) {
     uint64_t count, bytes;
     snow_comm_sent(comm, &count, &bytes);
     CHECK(count == (uint64_t)ranks && bytes == count * 8);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status mix_tags(snow_comm *comm, void *user) {
     (void)user;
     enum { TAGS = 200 };
-    const int ranks = snow_comm_ranks(comm), rank = snow_comm_rank(comm);
+    const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     const int to = (rank + 1) % ranks, from = (rank + ranks - 1) % ranks;
     snow_message sent[2 * TAGS] = {{0}};
     int64_t out[2 * TAGS];
@@ -74,7 +74,7 @@ snow_status mix_tags(snow_comm *comm, void *user) {
 
 snow_status receive_first(snow_comm *comm, void *user) {
     (void)user;
-    const int ranks = snow_comm_ranks(comm), rank = snow_comm_rank(comm);
+    const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     snow_message messages[99] = {{0}};
     int64_t in[99];
     int got[33] = {0};
@@ -93,14 +93,14 @@ snow_status receive_first(snow_comm *comm, void *user) {
     }
     for (int other = 0; other < ranks; other++)
         CHECK(got[other] == 3);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status send_sizes(snow_comm *comm, void *user) {
     (void)user;
     enum { LARGE = 3000000 };
     const size_t counts[] = {0, 1, LARGE};
-    const int ranks = snow_comm_ranks(comm), rank = snow_comm_rank(comm);
+    const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     snow_context *context = snow_comm_context(comm);
     unsigned char *out = snow_allocate(context, LARGE);
     unsigned char *in = snow_allocate_clear(context, LARGE + 1);
@@ -123,7 +123,7 @@ snow_status send_sizes(snow_comm *comm, void *user) {
     snow_release(context, in);
     snow_release(context, out);
     CHECK(wrong == 0);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* Pieces of work: so many, or for ever. */
@@ -143,10 +143,10 @@ static bool do_piece(void *user) {
 
 snow_status work_while_waiting(snow_comm *comm, void *user) {
     (void)user;
-    const int rank = snow_comm_rank(comm), ranks = snow_comm_ranks(comm);
+    const int rank = snow_comm_rank(comm), ranks = snow_comm_size(comm);
     int64_t number = -1;
     if (ranks == 1)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     for (int left = -1; left < 8; left += 3) {
         pieces some = {left, 0};
         if (rank == 1) {
@@ -161,10 +161,10 @@ snow_status work_while_waiting(snow_comm *comm, void *user) {
             rest(50000);
             SNOW_TRY(send_number(comm, 42, 1, 6));
         }
-        SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
+        SNOW_TRY(snow_comm_agree_status(comm, SNOW_STATUS_OK));
         CHECK(rank != 1 || left >= 0 || some.done < 1000);
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status wait_for_none(snow_comm *comm, void *user) {
@@ -186,7 +186,7 @@ snow_status leave_much_undone(snow_comm *comm, void *user) {
         SNOW_TRY(snow_comm_receive(comm, &nowhere[rank], 8, rank, 1 + i,
                                    &messages[2 * i + 1]));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* More numbers than go in one piece. */
@@ -195,7 +195,7 @@ enum { MANY = SNOW_COMM_SCRATCH * 2 + 3 };
 snow_status reduce_ints(snow_comm *comm, void *user) {
     (void)user;
     static const snow_reduction kinds[] = {SNOW_SUM, SNOW_MIN, SNOW_MAX};
-    const int64_t ranks = snow_comm_ranks(comm), rank = snow_comm_rank(comm);
+    const int64_t ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     int64_t values[MANY];
     for (int kind = 0; kind < 3; kind++) {
         for (int64_t i = 0; i < MANY; i++)
@@ -217,7 +217,7 @@ snow_status reduce_ints(snow_comm *comm, void *user) {
     CHECK(both[0] == ranks - 1 && both[1] == 0 && both[4] == ranks);
     CHECK(both[2] == ranks * (ranks - 1) / 2 && both[3] == both[2]);
     snow_comm_progress(comm);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status reduce_doubles(snow_comm *comm, void *user) {
@@ -227,20 +227,20 @@ snow_status reduce_doubles(snow_comm *comm, void *user) {
     SNOW_TRY(snow_comm_reduce_doubles(comm, values, 1, SNOW_SUM));
     SNOW_TRY(snow_comm_reduce_doubles(comm, values + 1, 1, SNOW_MIN));
     SNOW_TRY(snow_comm_reduce_doubles(comm, values + 2, 1, SNOW_MAX));
-    CHECK(values[1] == 1.0 / snow_comm_ranks(comm) && values[2] == 1);
+    CHECK(values[1] == 1.0 / snow_comm_size(comm) && values[2] == 1);
     rounding->sums[rank] = values[0];
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status broadcast(snow_comm *comm, void *user) {
     (void)user;
-    for (int root = 0; root < snow_comm_ranks(comm); root++) {
+    for (int root = 0; root < snow_comm_size(comm); root++) {
         int64_t value = snow_comm_rank(comm) == root ? root + 5 : -1;
         SNOW_TRY(snow_comm_broadcast(comm, &value, sizeof value, root));
         CHECK(value == root + 5);
         SNOW_TRY(snow_comm_broadcast(comm, NULL, 0, root));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status share(snow_comm *comm, void *user) {
@@ -250,50 +250,52 @@ snow_status share(snow_comm *comm, void *user) {
     } mine, all[34];
     memset(all, 99, sizeof all);
     memset(&mine, snow_comm_rank(comm), sizeof mine);
-    SNOW_TRY(snow_comm_share(comm, &mine, sizeof mine, all));
-    for (int rank = 0; rank < snow_comm_ranks(comm); rank++)
+    SNOW_TRY(snow_comm_allgather(comm, &mine, sizeof mine, all));
+    for (int rank = 0; rank < snow_comm_size(comm); rank++)
         for (int i = 0; i < 3; i++)
             CHECK(all[rank].bytes[i] == rank);
-    CHECK(all[snow_comm_ranks(comm)].bytes[0] == 99);
+    CHECK(all[snow_comm_size(comm)].bytes[0] == 99);
     /* One's own may stand in its place already. */
-    SNOW_TRY(snow_comm_share(comm, &all[snow_comm_rank(comm)], 3, all));
-    SNOW_TRY(snow_comm_share(comm, NULL, 0, NULL));
+    SNOW_TRY(snow_comm_allgather(comm, &all[snow_comm_rank(comm)], 3, all));
+    SNOW_TRY(snow_comm_allgather(comm, NULL, 0, NULL));
     CHECK(all[0].bytes[0] == 0);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status one_after_another(snow_comm *comm, void *user) {
     (void)user;
-    const int ranks = snow_comm_ranks(comm), rank = snow_comm_rank(comm);
+    const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
     uint64_t seed = (uint64_t)rank + 1;
     for (int round = 0; round < 30; round++) {
         if (support_uniform(&seed) < 0.1)
             rest(200);
         int64_t value = rank + round, all[33];
-        SNOW_TRY(snow_comm_share(comm, &value, sizeof value, all));
+        SNOW_TRY(snow_comm_allgather(comm, &value, sizeof value, all));
         CHECK(all[ranks - 1] == ranks - 1 + round);
         SNOW_TRY(
             snow_comm_broadcast(comm, &value, sizeof value, round % ranks));
         CHECK(value == round % ranks + round);
         SNOW_TRY(snow_comm_reduce_ints(comm, &value, 1, SNOW_SUM));
         CHECK(value == (round % ranks + round) * ranks);
-        SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
+        SNOW_TRY(snow_comm_agree_status(comm, SNOW_STATUS_OK));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status agree_on_failure(snow_comm *comm, void *user) {
     (void)user;
     const int rank = snow_comm_rank(comm);
     snow_context *context = snow_comm_context(comm);
-    snow_status status = SNOW_OK;
+    snow_status status = SNOW_STATUS_OK;
     if (rank == 2 || rank == 3)
-        status = snow_fail(context, rank == 2 ? SNOW_BAD_INPUT : SNOW_NO_MEMORY,
-                           "file %d is broken", rank);
-    status = snow_comm_agree(comm, status);
-    CHECK(status == SNOW_BAD_INPUT);
+        status = snow_fail(
+            context, rank == 2 ? SNOW_STATUS_BAD_INPUT : SNOW_STATUS_NO_MEMORY,
+            "file %d is broken", rank);
+    status = snow_comm_agree_status(comm, status);
+    CHECK(status == SNOW_STATUS_BAD_INPUT);
     CHECK(!strcmp(snow_context_message(context), "rank 2: file 2 is broken"));
     CHECK(!snow_comm_broken(comm));
-    SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
-    return snow_comm_agree(comm, rank == 3 ? SNOW_FAILED : SNOW_OK);
+    SNOW_TRY(snow_comm_agree_status(comm, SNOW_STATUS_OK));
+    return snow_comm_agree_status(comm, rank == 3 ? SNOW_STATUS_FAILED
+                                                  : SNOW_STATUS_OK);
 }

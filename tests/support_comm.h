@@ -8,11 +8,11 @@
 #include "comm/comm.h"
 
 /* A body's assertion: it fails the rank, and with it the test. */
-#define CHECK(condition)                                           \
-    do {                                                           \
-        if (!(condition))                                          \
-            return snow_fail(snow_comm_context(comm), SNOW_FAILED, \
-                             "line %d: %s", __LINE__, #condition); \
+#define CHECK(condition)                                                  \
+    do {                                                                  \
+        if (!(condition))                                                 \
+            return snow_fail(snow_comm_context(comm), SNOW_STATUS_FAILED, \
+                             "line %d: %s", __LINE__, #condition);        \
     } while (0)
 
 /* One number to or from a rank, waited for. */

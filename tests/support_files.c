@@ -25,8 +25,9 @@ static void note(void *user, const char *text) {
 void support_files_begin(support_files *files) {
     *files = (support_files){0};
     snow_allocator allocator = {noting_allocate, noting_release, files};
-    assert_int_equal(snow_context_new(&allocator, &files->context), SNOW_OK);
-    snow_context_set_notice(files->context, note, files);
+    assert_int_equal(snow_context_new(&allocator, &files->context),
+                     SNOW_STATUS_OK);
+    snow_context_set_warning(files->context, note, files);
     support_folder_make(files->folder);
 }
 
@@ -70,7 +71,8 @@ size_t support_gzip(const void *bytes, size_t size, void *out, size_t room) {
 snow_volume *support_opened(support_files *files, const char *path,
                             const snow_volume_options *options) {
     snow_volume *volume = NULL;
-    if (snow_volume_open(files->context, path, options, &volume) != SNOW_OK)
+    if (snow_volume_open(files->context, path, options, &volume) !=
+        SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(files->context));
     return volume;
 }

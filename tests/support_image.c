@@ -12,7 +12,7 @@ static void hear_notice(void *user, const char *text) {
 int support_image_setup(void **state) {
     image_fixture *fixture = calloc(1, sizeof *fixture);
     fixture->context = support_context();
-    snow_context_set_notice(fixture->context, hear_notice, fixture);
+    snow_context_set_warning(fixture->context, hear_notice, fixture);
     support_folder_make(fixture->folder);
     *state = fixture;
     return 0;
@@ -63,7 +63,7 @@ snow_image *support_picture(snow_context *context, int width, int height,
                             int channels, uint64_t seed) {
     snow_image *image = NULL;
     assert_int_equal(snow_image_new(context, width, height, channels, &image),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     float *pixel = snow_image_pixels(image);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, pixel += channels) {
@@ -81,7 +81,7 @@ void support_assert_refused(snow_context *context, const void *bytes,
     snow_image *image = NULL;
     assert_int_equal(
         snow_image_load_memory(context, "pic.bin", bytes, size, &image),
-        SNOW_BAD_INPUT);
+        SNOW_STATUS_BAD_INPUT);
     assert_null(image);
     const char *message = snow_context_message(context);
     assert_int_equal(strncmp(message, "pic.bin: ", 9), 0);
@@ -94,7 +94,7 @@ snow_image *support_load(snow_context *context, const void *bytes,
                          size_t size) {
     snow_image *image = NULL;
     if (snow_image_load_memory(context, "pic.bin", bytes, size, &image) !=
-        SNOW_OK)
+        SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
     assert_int_equal(snow_image_channels(image), 4);
     return image;
@@ -116,6 +116,6 @@ snow_context *support_failing_context(support_memory *memory) {
     snow_allocator allocator = {allocate_some, release_some, memory};
     snow_context *context = NULL;
     memory->left = INT64_MAX;
-    assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
     return context;
 }

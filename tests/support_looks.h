@@ -4,7 +4,7 @@
 
 #include "support.h"
 
-#include "classify/look.h"
+#include "transfer/look.h"
 
 /* A volume over n values, along x, which have to outlive it. */
 snow_volume *support_row(snow_context *context, snow_type type,

@@ -6,7 +6,7 @@
 
 model_stage model_open(void) {
     model_stage stage = {.context = support_context()};
-    if (snow_frame_new(stage.context, &stage.frame) != SNOW_OK)
+    if (snow_frame_new(stage.context, &stage.frame) != SNOW_STATUS_OK)
         fail_msg("no frame");
     return stage;
 }
@@ -23,12 +23,12 @@ snow_transfer *model_transfer(snow_context *context,
     snow_status status =
         snow_transfer_new(context, scene->colors, scene->color_count,
                           scene->opacities, scene->opacity_count, &transfer);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_transfer_set_gradient_opacity(transfer, scene->gradients,
                                                     scene->gradient_count);
-    if (status == SNOW_OK && scene->log)
+    if (status == SNOW_STATUS_OK && scene->log)
         status = snow_transfer_set_log(transfer);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         fail_msg("%s: %s", model_words(scene), snow_context_message(context));
     return transfer;
 }
@@ -40,13 +40,13 @@ snow_image *model_image(const model_stage *stage,
     snow_transfer *transfer = model_transfer(context, scene);
     snow_image *image = NULL;
     snow_status status =
-        snow_volume_share(context, &scene->info, scene->voxels, &volume);
-    if (status == SNOW_OK)
+        snow_volume_wrap(context, &scene->info, scene->voxels, &volume);
+    if (status == SNOW_STATUS_OK)
         status = snow_frame_render(stage->frame, volume, transfer, &scene->view,
                                    &scene->settings, &image);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         fail_msg("%s: %s", model_words(scene), snow_context_message(context));
     return image;
 }

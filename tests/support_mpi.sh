@@ -28,6 +28,11 @@ launch() {
     timeout -k 5 "${LIMIT:-120}" "$MPIEXEC" -n "$ranks" "$@"
 }
 
+# Processes of a job are found in /proc, and its messages name them by it.
+need_proc() {
+    [ -r /proc/self/environ ] || skip "there is no /proc"
+}
+
 # process_of_rank N: of the tool, in a job that this test has started; nothing
 # where there is none yet.
 process_of_rank() {

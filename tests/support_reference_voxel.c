@@ -15,7 +15,7 @@ double reference_native(const reference_scene *scene, int64_t i, int64_t j,
     int64_t at = (k * dims[1] + j) * dims[0] + i;
     switch (scene->info.type) {
 #define NATIVE(name, type, text) \
-    case SNOW_##name:            \
+    case SNOW_TYPE_##name:       \
         return (double)((const type *)scene->voxels)[at];
         SNOW_TYPE_MAP(NATIVE)
 #undef NATIVE

@@ -50,23 +50,23 @@ static const snow_opacity_point ramp[] = {
  * two, so that no rounding decides on which side of a step a voxel falls. */
 static void scale_type(snow_volume_info *info) {
     switch (info->type) {
-    case SNOW_INT8:
+    case SNOW_TYPE_INT8:
         info->slope = 1;
         info->intercept = 50;
         break;
-    case SNOW_UINT8:
+    case SNOW_TYPE_UINT8:
         info->slope = 0.5;
         break;
-    case SNOW_INT16:
+    case SNOW_TYPE_INT16:
         info->slope = -0.0078125;
         info->intercept = 50;
         break;
-    case SNOW_UINT16:
-    case SNOW_UINT32:
+    case SNOW_TYPE_UINT16:
+    case SNOW_TYPE_UINT32:
         info->slope = 0.0078125;
         break;
-    case SNOW_INT64:
-    case SNOW_UINT64:
+    case SNOW_TYPE_INT64:
+    case SNOW_TYPE_UINT64:
         info->slope = 0x1p-20;
         break;
     default:
@@ -89,11 +89,11 @@ static double structure(const int64_t dims[3], const int64_t at[3],
 }
 
 static void store(void *voxels, snow_type type, size_t at, double native) {
-    bool real = type == SNOW_FLOAT32 || type == SNOW_FLOAT64;
+    bool real = type == SNOW_TYPE_FLOAT32 || type == SNOW_TYPE_FLOAT64;
     double value = real ? native : rint(native);
     switch (type) {
 #define STORE(name, ctype, text)              \
-    case SNOW_##name:                         \
+    case SNOW_TYPE_##name:                    \
         ((ctype *)voxels)[at] = (ctype)value; \
         break;
         SNOW_TYPE_MAP(STORE)
@@ -113,7 +113,7 @@ static void *allocate_voxels(const int64_t dims[3], snow_type type) {
 static void fill_voxels(reference_scene *scene, uint64_t seed) {
     const snow_volume_info *info = &scene->info;
     void *voxels = allocate_voxels(info->dims, info->type);
-    uint64_t state = seed * 2 + 1;
+    uint64_t state = (seed + support_seed() * 65537) * 2 + 1;
     size_t at = 0;
     for (int64_t k = 0; k < info->dims[2]; k++)
         for (int64_t j = 0; j < info->dims[1]; j++)
@@ -173,8 +173,8 @@ void model_fade(reference_scene *scene) {
 }
 
 reference_scene model_blank(const int64_t dims[3], double opacity) {
-    reference_scene scene = plain_scene(dims, SNOW_FLOAT32);
-    scene.voxels = allocate_voxels(dims, SNOW_FLOAT32);
+    reference_scene scene = plain_scene(dims, SNOW_TYPE_FLOAT32);
+    scene.voxels = allocate_voxels(dims, SNOW_TYPE_FLOAT32);
     snow_opacity_point *points = calloc(2, sizeof *points);
     assert_non_null(points);
     points[0] = (snow_opacity_point){0.5, 0};
@@ -245,9 +245,9 @@ reference_scene model_phantom(snow_context *context, const char *name,
                               const int64_t dims[3], snow_volume **volume) {
     reference_scene scene = {
         .view = {.back = {0, 0, 1}, .up = {0, 1, 0}, .zoom = 1}};
-    assert_int_equal(snow_volume_phantom(context, name, dims, 1, volume),
-                     SNOW_OK);
-    scene.info = *snow_volume_describe(*volume);
+    assert_int_equal(snow_volume_open_phantom(context, name, dims, 1, volume),
+                     SNOW_STATUS_OK);
+    scene.info = *snow_volume_get_info(*volume);
     scene.voxels = snow_volume_voxels(*volume);
     snow_settings_init(&scene.settings);
     return scene;

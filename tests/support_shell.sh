@@ -83,8 +83,34 @@ refused() {
     says "$pattern"
 }
 
+# Whether what takes long is done too: not in the short tier (docs/testing.md).
+long_tier() { [ "${SNOW_TIER:-short}" != short ]; }
+
+# skipped WHAT WHY: a part of a script that is left out, with the reason.
+skipped() { echo "skip   $1: $2"; }
+
 is_png() {
     [ "$(head -c 8 "$1" | od -An -tx1 | tr -d ' \n')" = 89504e470d0a1a0a ]
+}
+
+# same_bytes FILES FILES: whether two lists of files, each end to end, are equal.
+# (Process substitution would need /dev/fd, which a plain chroot lacks.)
+same_bytes() {
+    # shellcheck disable=SC2086
+    cat $1 >.first && cat $2 >.second && cmp .first .second
+}
+
+# What the system has free of memory, in whole gigabytes; 0 where it says nothing.
+free_gigabytes() {
+    [ -r /proc/meminfo ] || { echo 0 && return; }
+    awk '/MemAvailable/ { print int($2 / 1048576) }' /proc/meminfo
+}
+
+# The readers of modules are found by /proc/self/maps (src/base/module.c).
+need_modules() {
+    [ -r /proc/self/maps ] && return
+    skipped all "there is no /proc, and modules are not loaded without"
+    exit 77
 }
 
 absent() { [ ! -e "$1" ]; }

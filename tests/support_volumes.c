@@ -30,8 +30,9 @@ int support_place_begin(void **state) {
     assert_non_null(place);
     const snow_allocator allocator = {allocate_recorded, release_recorded,
                                       place};
-    assert_int_equal(snow_context_new(&allocator, &place->context), SNOW_OK);
-    snow_context_set_notice(place->context, hear, place);
+    assert_int_equal(snow_context_new(&allocator, &place->context),
+                     SNOW_STATUS_OK);
+    snow_context_set_warning(place->context, hear, place);
     support_folder_make(place->folder);
     *state = place;
     return 0;
@@ -59,7 +60,7 @@ const char *support_place_put(const support_place *place, const char *name,
 
 snow_volume *support_place_open(support_place *place, const char *path) {
     snow_volume *volume = NULL;
-    if (snow_volume_open(place->context, path, NULL, &volume) != SNOW_OK)
+    if (snow_volume_open(place->context, path, NULL, &volume) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
     return volume;
 }
@@ -72,7 +73,7 @@ void support_place_refuse(support_place *place, const char *name,
     snow_status status = snow_volume_open_memory(place->context, name, bytes,
                                                  size, NULL, &volume);
     const char *message = snow_context_message(place->context);
-    assert_int_equal(status, SNOW_BAD_INPUT);
+    assert_int_equal(status, SNOW_STATUS_BAD_INPUT);
     assert_null(volume);
     if (!strstr(message, part) || strchr(message, '\n') ||
         strncmp(message, name, strlen(name)) != 0)
@@ -82,8 +83,8 @@ void support_place_refuse(support_place *place, const char *name,
 }
 
 void support_same_voxels(const snow_volume *a, const snow_volume *b) {
-    const snow_volume_info *of_a = snow_volume_describe(a);
-    const snow_volume_info *of_b = snow_volume_describe(b);
+    const snow_volume_info *of_a = snow_volume_get_info(a);
+    const snow_volume_info *of_b = snow_volume_get_info(b);
     assert_memory_equal(of_a->dims, of_b->dims, sizeof of_a->dims);
     assert_int_equal(of_a->type, of_b->type);
     size_t bytes = (size_t)(of_a->dims[0] * of_a->dims[1] * of_a->dims[2]) *

@@ -31,8 +31,8 @@ const char *support_place_put(const support_place *place, const char *name,
 /* Opens a file (time step 0); the test fails when that does. */
 snow_volume *support_place_open(support_place *place, const char *path);
 
-/* Opens bytes, which must be refused as SNOW_BAD_INPUT with a message of one
- * line that contains `part`, without an allocation above `most` bytes. */
+/* Opens bytes, which must be refused as SNOW_STATUS_BAD_INPUT with a message of
+ * one line that contains `part`, without an allocation above `most` bytes. */
 void support_place_refuse(support_place *place, const char *name,
                           const void *bytes, size_t size, const char *part,
                           size_t most);

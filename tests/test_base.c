@@ -8,7 +8,7 @@ a_failed_allocation_tells_its_size_and_changes_nothing(void **state) {
     (void)state;
     snow_context *context = support_context();
     assert_null(snow_allocate(context, SIZE_MAX / 2));
-    assert_non_null(strstr(snow_context_message(context), "no memory"));
+    assert_non_null(strstr(snow_context_message(context), "out of memory"));
     assert_int_equal(snow_context_bytes(context), 0);
     snow_context_free(context);
 }
@@ -41,9 +41,11 @@ static void a_reserved_block_keeps_its_bytes(void **state) {
     snow_context *context = support_context();
     char *block = NULL;
     size_t capacity = 0;
-    assert_int_equal(snow_reserve(context, &block, &capacity, 0, 3), SNOW_OK);
+    assert_int_equal(snow_reserve(context, &block, &capacity, 0, 3),
+                     SNOW_STATUS_OK);
     memcpy(block, "abc", 3);
-    assert_int_equal(snow_reserve(context, &block, &capacity, 3, 999), SNOW_OK);
+    assert_int_equal(snow_reserve(context, &block, &capacity, 3, 999),
+                     SNOW_STATUS_OK);
     assert_memory_equal(block, "abc", 3);
     assert_true(capacity >= 999);
     snow_release(context, block);
@@ -103,7 +105,7 @@ static void a_host_with_a_comma_reads_the_same_numbers(void **state) {
 static void a_message_is_one_line_whatever_it_quotes(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_fail(context, SNOW_BAD_INPUT, "%s: no", "a\nb\x1b[2J\x7f");
+    snow_fail(context, SNOW_STATUS_BAD_INPUT, "%s: no", "a\nb\x1b[2J\x7f");
     assert_string_equal(snow_context_message(context), "a?b?[2J?: no");
     snow_context_free(context);
 }
@@ -111,9 +113,9 @@ static void a_message_is_one_line_whatever_it_quotes(void **state) {
 static void layers_add_what_they_know_to_a_message(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_fail(context, SNOW_BAD_INPUT, "line %d is empty", 3);
-    assert_int_equal(snow_fail_within(context, SNOW_BAD_INPUT, "a.nrrd"),
-                     SNOW_BAD_INPUT);
+    snow_fail(context, SNOW_STATUS_BAD_INPUT, "line %d is empty", 3);
+    assert_int_equal(snow_fail_within(context, SNOW_STATUS_BAD_INPUT, "a.nrrd"),
+                     SNOW_STATUS_BAD_INPUT);
     assert_string_equal(snow_context_message(context),
                         "a.nrrd: line 3 is empty");
     snow_context_free(context);

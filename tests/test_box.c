@@ -25,8 +25,8 @@ static const int64_t boxes[][3][2] = {
 /* Every voxel of the box is that voxel of the whole, and lies where it lay. */
 static void compare(const snow_volume *whole, const snow_volume *box,
                     const int64_t crop[3][2]) {
-    const snow_volume_info *a = snow_volume_describe(whole);
-    const snow_volume_info *b = snow_volume_describe(box);
+    const snow_volume_info *a = snow_volume_get_info(whole);
+    const snow_volume_info *b = snow_volume_get_info(box);
     size_t size = snow_type_size(a->type);
     const char *from = snow_volume_voxels(whole), *to = snow_volume_voxels(box);
     assert_int_equal(a->type, b->type);
@@ -54,17 +54,17 @@ static void compare(const snow_volume *whole, const snow_volume *box,
 
 /* All boxes of a file, at every time step, and what inspect tells of them. */
 static void check_file(support_files *files, const char *name,
-                       const snow_volume_options *told, int64_t times) {
+                       const snow_volume_options *given, int64_t times) {
     char path[256];
     snprintf(path, sizeof path, "%s",
              strchr(name, ':') ? name : support_path(files, name));
     snow_volume_options options = {0};
-    if (told)
-        options = *told;
+    if (given)
+        options = *given;
     for (options.time = 0; options.time < times; options.time++) {
         memset(options.crop, 0, sizeof options.crop);
         snow_volume *whole = support_opened(files, path, &options);
-        assert_int_equal(snow_volume_describe(whole)->times, times);
+        assert_int_equal(snow_volume_get_info(whole)->times, times);
         for (size_t i = 0; i < BOXES; i++) {
             memcpy(options.crop, boxes[i], sizeof options.crop);
             snow_volume *box = support_opened(files, path, &options);
@@ -72,8 +72,8 @@ static void check_file(support_files *files, const char *name,
             snow_volume_info info;
             assert_int_equal(
                 snow_volume_inspect(files->context, path, &options, &info),
-                SNOW_OK);
-            const snow_volume_info *own = snow_volume_describe(box);
+                SNOW_STATUS_OK);
+            const snow_volume_info *own = snow_volume_get_info(box);
             assert_memory_equal(info.dims, own->dims, sizeof info.dims);
             assert_memory_equal(info.matrix, own->matrix, sizeof info.matrix);
             assert_memory_equal(info.spacing, own->spacing,
@@ -114,19 +114,19 @@ static void put(support_files *files, const char *name, const char *header,
 
 static void check_raw(support_files *files, snow_type type, bool big) {
     size_t size = VOXELS * snow_type_size(type) + 5;
-    snow_volume_options told = {.dims = {11, 9, 7}, .type = type, .offset = 5};
-    told.endian = big ? SNOW_ENDIAN_BIG : SNOW_ENDIAN_LITTLE;
+    snow_volume_options given = {.dims = {11, 9, 7}, .type = type, .offset = 5};
+    given.endian = big ? SNOW_ENDIAN_BIG : SNOW_ENDIAN_LITTLE;
     put(files, "a.raw", "", size, false);
     put(files, "a.raw.gz", "", size, true);
-    check_file(files, "a.raw", &told, 1);
-    check_file(files, "a.raw.gz", &told, 1);
+    check_file(files, "a.raw", &given, 1);
+    check_file(files, "a.raw.gz", &given, 1);
 }
 
 static void a_box_of_raw_data_equals_that_of_the_whole(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    for (int type = SNOW_INT8; type <= SNOW_FLOAT64; type++) {
+    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
         check_raw(&files, (snow_type)type, false);
         check_raw(&files, (snow_type)type, true);
     }
@@ -155,7 +155,7 @@ static void a_box_of_a_nrrd_equals_that_of_the_whole(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    for (int type = SNOW_INT8; type <= SNOW_FLOAT64; type++) {
+    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
         check_nrrd(&files, (snow_type)type, false);
         check_nrrd(&files, (snow_type)type, true);
     }
@@ -187,7 +187,7 @@ static void a_box_of_a_metaimage_equals_that_of_the_whole(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    for (int type = SNOW_INT8; type <= SNOW_FLOAT64; type++) {
+    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
         check_metaimage(&files, (snow_type)type, false);
         check_metaimage(&files, (snow_type)type, true);
     }
@@ -213,9 +213,9 @@ static void check_nifti(support_files *files, snow_type type, bool big) {
     char path[256];
     snprintf(path, sizeof path, "%s", support_path(files, "a.nii"));
     assert_int_equal(
-        snow_volume_share(files->context, &info, noise(size), &volume),
-        SNOW_OK);
-    assert_int_equal(snow_volume_save(volume, path, true), SNOW_OK);
+        snow_volume_wrap(files->context, &info, noise(size), &volume),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
     snow_volume_close(volume);
     FILE *file = fopen(path, "rb");
     assert_non_null(file);
@@ -244,7 +244,7 @@ static void a_box_of_a_nifti_equals_that_of_the_whole(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    for (int type = SNOW_INT8; type <= SNOW_FLOAT64; type++) {
+    for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
         check_nifti(&files, (snow_type)type, false);
         check_nifti(&files, (snow_type)type, true);
     }
@@ -328,8 +328,10 @@ static void files_outside_the_box_are_not_opened(void **state) {
     snow_volume_close(support_opened(&files, nrrd, &options));
     snow_volume_close(support_opened(&files, meta, &options));
     options.crop[2][0] = 1;
-    support_refused(&files, nrrd, &options, SNOW_BAD_INPUT, "s1.raw", 300000);
-    support_refused(&files, meta, &options, SNOW_BAD_INPUT, "s1.raw", 300000);
+    support_refused(&files, nrrd, &options, SNOW_STATUS_BAD_INPUT, "s1.raw",
+                    300000);
+    support_refused(&files, meta, &options, SNOW_STATUS_BAD_INPUT, "s1.raw",
+                    300000);
     support_files_end(&files);
 }
 
@@ -337,12 +339,12 @@ static void a_box_of_a_phantom_equals_that_of_the_whole(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    const snow_volume_options told = {.dims = {11, 9, 7},
-                                      .spacing = {0.5, 0, 3}};
+    const snow_volume_options given = {.dims = {11, 9, 7},
+                                       .spacing = {0.5, 0, 3}};
     for (size_t i = 0; snow_phantom_name(i); i++) {
         char name[64];
         snprintf(name, sizeof name, "phantom:%s", snow_phantom_name(i));
-        check_file(&files, name, &told, 1);
+        check_file(&files, name, &given, 1);
     }
     support_files_end(&files);
 }
@@ -353,12 +355,12 @@ static void the_box_moves_by_the_spacing_that_was_given(void **state) {
     support_files_begin(&files);
     put(&files, "a.raw", "", VOXELS, false);
     const snow_volume_options options = {.dims = {11, 9, 7},
-                                         .type = SNOW_UINT8,
+                                         .type = SNOW_TYPE_UINT8,
                                          .spacing = {2, 3, 4},
                                          .crop = {{1, 3}, {2, 4}, {3, 5}}};
     snow_volume *volume =
         support_opened(&files, support_path(&files, "a.raw"), &options);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     assert_true(info->matrix[0][3] == 2 && info->matrix[1][3] == 6 &&
                 info->matrix[2][3] == 12);
     snow_volume_close(volume);
@@ -376,15 +378,16 @@ static void a_box_outside_the_volume_is_refused_with_its_sizes(void **state) {
         {{0, 11}, {0, 9}, {7, 0}},         {{0, 11}, {0, 9}, {0, INT64_MAX}},
         {{0, 11}, {INT64_MIN, 9}, {0, 7}}, {{0, 11}, {0, -9}, {0, 7}}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        snow_volume_options options = {.dims = {11, 9, 7}, .type = SNOW_UINT8};
+        snow_volume_options options = {.dims = {11, 9, 7},
+                                       .type = SNOW_TYPE_UINT8};
         memcpy(options.crop, bad[i], sizeof options.crop);
         support_refused(&files, support_path(&files, "a.raw"), &options,
-                        SNOW_BAD_USAGE, "11x9x7", 70000);
+                        SNOW_STATUS_BAD_USAGE, "11x9x7", 70000);
         options.type = SNOW_TYPE_NONE;
         snow_volume *volume;
         assert_int_equal(
             snow_volume_open(files.context, "phantom:cube", &options, &volume),
-            SNOW_BAD_USAGE);
+            SNOW_STATUS_BAD_USAGE);
         assert_non_null(strstr(snow_context_message(files.context), "11x9x7"));
     }
     support_files_end(&files);
@@ -412,7 +415,7 @@ static bool put_sparse(const char *path, const char *header, off_t size,
  * 20^3 the 400 rows of 40 bytes are read, and what a look at the header takes.
  */
 static void check_large(support_files *files, const char *name,
-                        const char *header, const snow_volume_options *told) {
+                        const char *header, const snow_volume_options *given) {
     const int64_t first[3] = {2970, 970, 770};
     char path[256];
     snprintf(path, sizeof path, "%s", support_path(files, name));
@@ -422,7 +425,7 @@ static void check_large(support_files *files, const char *name,
     if (!put_sparse(path, header, begin + (off_t)4800000000, at, marks,
                     sizeof marks))
         skip();
-    snow_volume_options options = *told;
+    snow_volume_options options = *given;
     for (int i = 0; i < 3; i++) {
         options.crop[i][0] = first[i];
         options.crop[i][1] = first[i] + 20;
@@ -431,8 +434,8 @@ static void check_large(support_files *files, const char *name,
     snow_volume *volume = support_opened(files, path, &options);
     uint64_t read = snow_context_bytes_read(files->context) - before;
     assert_memory_equal(snow_volume_voxels(volume), marks, sizeof marks);
-    snow_volume_measures m;
-    snow_volume_measure(volume, &m);
+    snow_volume_statistics m;
+    snow_volume_get_statistics(volume, &m);
     assert_true(m.voxels == 8000 && m.sum == 783);
     assert_in_range(read, 16000, 65536 + 16000);
     snow_volume_close(volume);
@@ -443,9 +446,9 @@ static void little_more_than_the_box_is_read_of_a_huge_file(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    const snow_volume_options told = {.dims = {3000, 1000, 800},
-                                      .type = SNOW_UINT16};
-    check_large(&files, "big.raw", "", &told);
+    const snow_volume_options given = {.dims = {3000, 1000, 800},
+                                       .type = SNOW_TYPE_UINT16};
+    check_large(&files, "big.raw", "", &given);
     check_large(&files, "big.nrrd",
                 "NRRD0004\ntype: ushort\ndimension: 3\nsizes: 3000 1000 800\n"
                 "endian: little\nencoding: raw\n\n",
@@ -463,7 +466,7 @@ static void near_rows_are_read_in_one_go_and_far_slices_are_not(void **state) {
     const char *path = support_write(&files, "a.raw", bytes, 900000);
     free(bytes);
     const snow_volume_options options = {.dims = {100, 90, 100},
-                                         .type = SNOW_UINT8,
+                                         .type = SNOW_TYPE_UINT8,
                                          .crop = {{50, 80}, {5, 25}, {80, 90}}};
     uint64_t before = snow_context_bytes_read(files.context);
     snow_volume_close(support_opened(&files, path, &options));
@@ -480,16 +483,16 @@ static void inspect_reads_the_header_alone(void **state) {
     const char *path = support_write(&files, "a.raw", bytes, 1000000);
     free(bytes);
     const snow_volume_options options = {.dims = {100, 100, 100},
-                                         .type = SNOW_UINT8};
+                                         .type = SNOW_TYPE_UINT8};
     snow_volume_info info;
     assert_int_equal(snow_volume_inspect(files.context, path, &options, &info),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_int_equal(info.dims[2], 100);
     assert_int_equal(snow_context_bytes_read(files.context), 65536);
     assert_in_range(files.largest, 1, 70000);
     info.dims[0] = -5;
     assert_int_equal(snow_volume_inspect(files.context, "none", NULL, &info),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_int_equal(info.dims[0], -5);
     support_files_end(&files);
 }
@@ -508,7 +511,7 @@ static void of_packed_data_only_the_box_is_kept(void **state) {
     size_t used = support_gzip(bytes, size, packed, size + 10000);
     const char *path = support_write(&files, "a.raw.gz", packed, used);
     const snow_volume_options options = {.dims = {160, 160, 160},
-                                         .type = SNOW_UINT8,
+                                         .type = SNOW_TYPE_UINT8,
                                          .crop = {{3, 9}, {5, 8}, {100, 110}}};
     snow_volume *volume = support_opened(&files, path, &options);
     const unsigned char *voxels = snow_volume_voxels(volume);
@@ -517,9 +520,10 @@ static void of_packed_data_only_the_box_is_kept(void **state) {
     snow_volume_close(volume);
     packed[used - 6] ^= 16;
     path = support_write(&files, "b.raw.gz", packed, used);
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "damaged", 70000);
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "damaged",
+                    70000);
     path = support_write(&files, "c.raw.gz", packed, used / 2);
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "", 70000);
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "", 70000);
     free(bytes);
     free(packed);
     support_files_end(&files);
@@ -531,10 +535,10 @@ static void a_file_cut_behind_the_box_is_refused_all_the_same(void **state) {
     support_files_begin(&files);
     put(&files, "a.raw", "", VOXELS - 1, false);
     const snow_volume_options options = {.dims = {11, 9, 7},
-                                         .type = SNOW_UINT8,
+                                         .type = SNOW_TYPE_UINT8,
                                          .crop = {{0, 2}, {0, 2}, {0, 2}}};
     support_refused(&files, support_path(&files, "a.raw"), &options,
-                    SNOW_BAD_INPUT, "692", 70000);
+                    SNOW_STATUS_BAD_INPUT, "692", 70000);
     support_files_end(&files);
 }
 

@@ -6,8 +6,8 @@ static const int sizes[] = {1, 2, 3, 4, 5, 7, 8, 11, 13, 16, 17, 31, 32, 33};
 
 static snow_status run(snow_context *context, int ranks,
                        snow_comm_body_fn *body, void *user) {
-    snow_status status = snow_comm_threads(context, ranks, body, user);
-    if (status != SNOW_OK)
+    snow_status status = snow_comm_run_threads(context, ranks, body, user);
+    if (status != SNOW_STATUS_OK)
         print_message("%d ranks: %s\n", ranks, snow_context_message(context));
     return status;
 }
@@ -16,7 +16,7 @@ static snow_status run(snow_context *context, int ranks,
 static void run_all(snow_comm_body_fn *body) {
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
-        assert_int_equal(run(context, sizes[i], body, NULL), SNOW_OK);
+        assert_int_equal(run(context, sizes[i], body, NULL), SNOW_STATUS_OK);
         assert_int_equal(snow_context_bytes(context), 0);
     }
     snow_context_free(context);
@@ -26,7 +26,7 @@ static void run_all(snow_comm_body_fn *body) {
 static void run_failing(int ranks, snow_comm_body_fn *body, snow_status status,
                         const char *message) {
     snow_context *context = support_context();
-    assert_int_equal(snow_comm_threads(context, ranks, body, NULL), status);
+    assert_int_equal(snow_comm_run_threads(context, ranks, body, NULL), status);
     assert_string_equal(snow_context_message(context), message);
     assert_int_equal(snow_context_bytes(context), 0);
     snow_context_free(context);
@@ -69,11 +69,11 @@ static void a_group_of_one_sends_to_itself(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_comm *comm;
-    assert_int_equal(snow_comm_self(context, &comm), SNOW_OK);
-    assert_int_equal(send_all_to_all(comm, NULL), SNOW_OK);
-    assert_int_equal(mix_tags(comm, NULL), SNOW_OK);
+    assert_int_equal(snow_comm_new_self(context, &comm), SNOW_STATUS_OK);
+    assert_int_equal(send_all_to_all(comm, NULL), SNOW_STATUS_OK);
+    assert_int_equal(mix_tags(comm, NULL), SNOW_STATUS_OK);
     assert_int_equal(snow_comm_rank(comm), 0);
-    assert_int_equal(snow_comm_ranks(comm), 1);
+    assert_int_equal(snow_comm_size(comm), 1);
     assert_true(snow_comm_seconds(comm) > 0);
     snow_comm_work(comm, 1);
     snow_comm_free(comm);
@@ -104,7 +104,7 @@ static void sums_have_the_same_bits_on_all_ranks_and_in_all_runs(void **state) {
         for (int run_number = 0; run_number < 10; run_number++) {
             rank_sums *into = run_number ? &again : &first;
             assert_int_equal(run(context, sizes[i], reduce_doubles, into),
-                             SNOW_OK);
+                             SNOW_STATUS_OK);
             for (int rank = 0; rank < sizes[i]; rank++)
                 assert_memory_equal(&into->sums[rank], &first.sums[0],
                                     sizeof(double));
@@ -134,49 +134,51 @@ static void collective_calls_do_not_mix(void **state) {
 static void all_ranks_agree_on_the_lowest_that_failed(void **state) {
     (void)state;
     for (size_t i = 3; i < sizeof sizes / sizeof sizes[0]; i++)
-        run_failing(sizes[i], agree_on_failure, SNOW_FAILED,
+        run_failing(sizes[i], agree_on_failure, SNOW_STATUS_FAILED,
                     "rank 2: file 2 is broken");
 }
 
 static snow_status fail_alone(snow_comm *comm, void *user) {
     (void)user;
     snow_context *context = snow_comm_context(comm);
-    CHECK(snow_comm_agree(comm, SNOW_OK) == SNOW_OK);
-    snow_fail(context, SNOW_BAD_INPUT, "this is so");
-    CHECK(snow_comm_agree(comm, SNOW_BAD_INPUT) == SNOW_BAD_INPUT);
+    CHECK(snow_comm_agree_status(comm, SNOW_STATUS_OK) == SNOW_STATUS_OK);
+    snow_fail(context, SNOW_STATUS_BAD_INPUT, "this is so");
+    CHECK(snow_comm_agree_status(comm, SNOW_STATUS_BAD_INPUT) ==
+          SNOW_STATUS_BAD_INPUT);
     CHECK(!strcmp(snow_context_message(context), "this is so"));
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void a_group_of_one_keeps_its_message(void **state) {
     (void)state;
     snow_context *context = support_context();
-    assert_int_equal(snow_comm_threads(context, 1, fail_alone, NULL), SNOW_OK);
+    assert_int_equal(snow_comm_run_threads(context, 1, fail_alone, NULL),
+                     SNOW_STATUS_OK);
     snow_context_free(context);
 }
 
 /* One rank in the middle leaves without a word while all others go on. */
 static snow_status leave_early(snow_comm *comm, void *user) {
     (void)user;
-    const int ranks = snow_comm_ranks(comm), rank = snow_comm_rank(comm);
-    SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
+    const int ranks = snow_comm_size(comm), rank = snow_comm_rank(comm);
+    SNOW_TRY(snow_comm_agree_status(comm, SNOW_STATUS_OK));
     if (rank == ranks / 2)
-        return snow_fail(snow_comm_context(comm), SNOW_NO_MEMORY,
+        return snow_fail(snow_comm_context(comm), SNOW_STATUS_NO_MEMORY,
                          "the last straw");
     for (int round = 0; round < 100; round++) {
-        snow_status status = snow_comm_agree(comm, SNOW_OK);
-        if (status != SNOW_OK) {
+        snow_status status = snow_comm_agree_status(comm, SNOW_STATUS_OK);
+        if (status != SNOW_STATUS_OK) {
             CHECK(snow_comm_broken(comm));
             /* Whoever does not heed it gets the same answer, at once. */
             int64_t number = 0;
-            CHECK(snow_comm_agree(comm, SNOW_OK) == status);
+            CHECK(snow_comm_agree_status(comm, SNOW_STATUS_OK) == status);
             CHECK(send_number(comm, 1, rank, 1) == status);
             CHECK(snow_comm_reduce_ints(comm, &number, 1, SNOW_SUM) == status);
             CHECK(snow_comm_broadcast(comm, &number, 8, 0) == status);
             return status;
         }
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void a_rank_that_leaves_releases_all_others(void **state) {
@@ -185,7 +187,7 @@ static void a_rank_that_leaves_releases_all_others(void **state) {
         char message[64];
         snprintf(message, sizeof message, "rank %d: the last straw",
                  sizes[i] / 2);
-        run_failing(sizes[i], leave_early, SNOW_NO_MEMORY, message);
+        run_failing(sizes[i], leave_early, SNOW_STATUS_NO_MEMORY, message);
     }
 }
 
@@ -205,15 +207,16 @@ static snow_status send_and_leave(snow_comm *comm, void *user) {
 
 static void letters_of_a_rank_that_left_are_read(void **state) {
     (void)state;
-    run_failing(2, send_and_leave, SNOW_FAILED, "rank 0: rank 1 has ended");
+    run_failing(2, send_and_leave, SNOW_STATUS_FAILED,
+                "rank 0: rank 1 has ended");
 }
 
 /* All in a ring wait for their neighbour. */
 static snow_status wait_in_a_ring(snow_comm *comm, void *user) {
     (void)user;
     int64_t number;
-    return receive_number(
-        comm, &number, (snow_comm_rank(comm) + 1) % snow_comm_ranks(comm), 1);
+    return receive_number(comm, &number,
+                          (snow_comm_rank(comm) + 1) % snow_comm_size(comm), 1);
 }
 
 static void ranks_that_all_wait_for_each_other_fail(void **state) {
@@ -221,13 +224,13 @@ static void ranks_that_all_wait_for_each_other_fail(void **state) {
     for (size_t i = 1; i < sizeof sizes / sizeof sizes[0]; i++) {
         snow_context *context = support_context();
         assert_int_equal(
-            snow_comm_threads(context, sizes[i], wait_in_a_ring, NULL),
-            SNOW_FAILED);
+            snow_comm_run_threads(context, sizes[i], wait_in_a_ring, NULL),
+            SNOW_STATUS_FAILED);
         snow_context_free(context);
     }
-    run_failing(1, wait_in_a_ring, SNOW_FAILED,
-                "every rank waits for another; the ranks do different "
-                "things");
+    run_failing(1, wait_in_a_ring, SNOW_STATUS_FAILED,
+                "every rank waits for another: all ranks must make the "
+                "same calls");
 }
 
 /* Two ranks that send and wait, and only then receive: it may work with MPI for
@@ -243,8 +246,8 @@ static snow_status send_before_all(snow_comm *comm, void *user) {
 static void a_wait_for_a_send_waits_for_its_receiver(void **state) {
     (void)state;
     snow_context *context = support_context();
-    assert_int_equal(snow_comm_threads(context, 2, send_before_all, NULL),
-                     SNOW_FAILED);
+    assert_int_equal(snow_comm_run_threads(context, 2, send_before_all, NULL),
+                     SNOW_STATUS_FAILED);
     snow_context_free(context);
 }
 
@@ -262,9 +265,9 @@ static snow_status send_too_much(snow_comm *comm, void *user) {
 
 static void a_message_longer_than_its_room_is_a_failure(void **state) {
     (void)state;
-    run_failing(2, send_too_much, SNOW_FAILED,
-                "rank 1: a message of 20 bytes from rank 0 where there is room "
-                "for 19; the ranks do different things");
+    run_failing(2, send_too_much, SNOW_STATUS_FAILED,
+                "rank 1: a message of 20 bytes from rank 0 exceeds its buffer "
+                "of 19 bytes: all ranks must make the same calls");
 }
 
 /* An allocator that has nothing left after `left` blocks. */
@@ -281,8 +284,8 @@ static void release(void *user, void *block) {
 static snow_status work_with_little(snow_comm *comm, void *user) {
     (void)user;
     void *block = snow_allocate(snow_comm_context(comm), 1000);
-    snow_status status =
-        snow_comm_agree(comm, block ? SNOW_OK : SNOW_NO_MEMORY);
+    snow_status status = snow_comm_agree_status(
+        comm, block ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
     snow_release(snow_comm_context(comm), block);
     SNOW_TRY(status);
     return mix_tags(comm, NULL);
@@ -295,13 +298,15 @@ static void nobody_hangs_wherever_memory_ends(void **state) {
         int left = budget;
         snow_allocator allocator = {allocate_some, release, &left};
         snow_context *context;
-        assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+        assert_int_equal(snow_context_new(&allocator, &context),
+                         SNOW_STATUS_OK);
         snow_status status =
-            snow_comm_threads(context, 3, work_with_little, NULL);
-        assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
+            snow_comm_run_threads(context, 3, work_with_little, NULL);
+        assert_true(status == SNOW_STATUS_OK ||
+                    status == SNOW_STATUS_NO_MEMORY);
         assert_int_equal(snow_context_bytes(context), 0);
         snow_context_free(context);
-        if (status == SNOW_OK)
+        if (status == SNOW_STATUS_OK)
             break;
     }
     assert_true(steps > 20);
@@ -312,23 +317,23 @@ static void wrong_arguments_are_refused(void **state) {
     snow_context *context = support_context();
     snow_comm_ops ops = {.size = sizeof ops};
     snow_comm *comm = NULL;
-    assert_int_equal(snow_comm_threads(context, 0, wait_for_none, NULL),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_comm_run_threads(context, 0, wait_for_none, NULL),
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_comm_new(context, &ops, NULL, 1, 1, &comm),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_comm_new(context, &ops, NULL, 0, 0, &comm),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     ops.size--;
     assert_int_equal(snow_comm_new(context, &ops, NULL, 0, 1, &comm),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_null(comm);
-    assert_int_equal(snow_comm_self(context, &comm), SNOW_OK);
+    assert_int_equal(snow_comm_new_self(context, &comm), SNOW_STATUS_OK);
     int64_t number = 1;
     snow_message message = {0};
     assert_int_equal(snow_comm_send(comm, &number, 8, 0, 32767, &message),
-                     SNOW_OK);
-    assert_int_equal(send_number(comm, 1, 1, 1), SNOW_BAD_USAGE);
-    assert_int_equal(send_number(comm, 1, 0, 1), SNOW_BAD_USAGE);
+                     SNOW_STATUS_OK);
+    assert_int_equal(send_number(comm, 1, 1, 1), SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(send_number(comm, 1, 0, 1), SNOW_STATUS_BAD_USAGE);
     snow_comm_free(comm);
     snow_comm_free(NULL);
     snow_context_free(context);
@@ -345,22 +350,23 @@ static void count_remark(void *user, const char *text) {
 
 static snow_status remark(snow_comm *comm, void *user) {
     (void)user;
-    snow_context_remark(snow_comm_context(comm), "from rank %d",
-                        snow_comm_rank(comm));
-    return SNOW_OK;
+    snow_context_warn(snow_comm_context(comm), "from rank %d",
+                      snow_comm_rank(comm));
+    return SNOW_STATUS_OK;
 }
 
 static void the_caller_hears_rank_0_and_counts_the_bytes_of_all(void **state) {
     (void)state;
     int heard = 0;
     snow_context *context = support_context();
-    snow_context_set_notice(context, count_remark, &heard);
-    assert_int_equal(snow_comm_threads(context, 5, remark, NULL), SNOW_OK);
+    snow_context_set_warning(context, count_remark, &heard);
+    assert_int_equal(snow_comm_run_threads(context, 5, remark, NULL),
+                     SNOW_STATUS_OK);
     assert_int_equal(heard, 1);
     assert_true(snow_context_peak_bytes(context) > 5 * 8 * SNOW_COMM_SCRATCH);
     assert_int_equal(
-        snow_context_fail(context, SNOW_BAD_INPUT, "%s: %d", "a", 1),
-        SNOW_BAD_INPUT);
+        snow_context_fail(context, SNOW_STATUS_BAD_INPUT, "%s: %d", "a", 1),
+        SNOW_STATUS_BAD_INPUT);
     assert_string_equal(snow_context_message(context), "a: 1");
     snow_context_free(context);
 }

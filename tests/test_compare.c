@@ -8,13 +8,14 @@ static snow_image *picture(image_fixture *f, int width, int height,
                            int channels) {
     snow_image *image = NULL;
     assert_int_equal(
-        snow_image_new(f->context, width, height, channels, &image), SNOW_OK);
+        snow_image_new(f->context, width, height, channels, &image),
+        SNOW_STATUS_OK);
     return image;
 }
 
 static snow_image_difference compare(snow_image *a, snow_image *b) {
     snow_image_difference d = {.x = -1};
-    assert_int_equal(snow_image_compare(a, b, &d), SNOW_OK);
+    assert_int_equal(snow_image_compare(a, b, &d), SNOW_STATUS_OK);
     return d;
 }
 
@@ -78,7 +79,7 @@ static void pictures_of_two_sizes_differ(void **state) {
     image_fixture *f = *state;
     snow_image *a = picture(f, 3, 4, 4), *b = picture(f, 4, 3, 4);
     snow_image_difference d = {.x = -1};
-    assert_int_equal(snow_image_compare(a, b, &d), SNOW_DIFFERENT);
+    assert_int_equal(snow_image_compare(a, b, &d), SNOW_STATUS_DIFFERENT);
     assert_int_equal(d.x, -1);
     assert_non_null(strstr(snow_context_message(f->context), "3 x 4"));
     assert_non_null(strstr(snow_context_message(f->context), "4 x 3"));

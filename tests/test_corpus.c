@@ -14,13 +14,13 @@ static long open_failing(const char *path, const char *name, const void *bytes,
     const snow_allocator functions = support_failing_allocator(&allocator);
     snow_context *context;
     snow_volume *volume = NULL;
-    if (snow_context_new(&functions, &context) != SNOW_OK) {
+    if (snow_context_new(&functions, &context) != SNOW_STATUS_OK) {
         *failed = true;
         return allocator.allocations;
     }
     snow_status status =
         snow_volume_open_memory(context, name, bytes, size, NULL, &volume);
-    *failed = status != SNOW_OK;
+    *failed = status != SNOW_STATUS_OK;
     if (*failed && (volume || !*snow_context_message(context)))
         fail_msg("%s, allocation %ld: no message", path, failing);
     snow_volume_close(volume);

@@ -43,9 +43,9 @@ static void both_byte_orders_are_read(void **state) {
         den_file file = make(big);
         snow_volume *volume =
             support_opened(&files, put_file(&files, &file), NULL);
-        const snow_volume_info *info = snow_volume_describe(volume);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_string_equal(info->format, "den");
-        assert_int_equal(info->type, SNOW_UINT8);
+        assert_int_equal(info->type, SNOW_TYPE_UINT8);
         assert_true(info->dims[0] == 4 && info->dims[1] == 3 &&
                     info->dims[2] == 2);
         assert_memory_equal(snow_volume_voxels(volume), file.bytes + HEADER,
@@ -74,19 +74,20 @@ static void damaged_files_are_refused(void **state) {
     support_files_begin(&files);
     den_file file = make(false);
     file.size--;
-    support_refused(&files, put_file(&files, &file), NULL, SNOW_BAD_INPUT,
-                    "the file is cut", 1 << 17);
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT, "the file is truncated", 1 << 17);
     file = make(false);
     put(&file, 29, 25, false);
-    support_refused(&files, put_file(&files, &file), NULL, SNOW_BAD_INPUT,
-                    "4x3x2 voxels and another number of bytes", 1 << 17);
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT,
+                    "4x3x2 voxels but another number of bytes", 1 << 17);
     file = make(false);
     put(&file, 26, 7, false);
-    support_refused(&files, put_file(&files, &file), NULL, SNOW_BAD_INPUT,
-                    "no DEN header", 1 << 17);
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT, "not a DEN header", 1 << 17);
     file.size = 20;
-    support_refused(&files, put_file(&files, &file), NULL, SNOW_BAD_INPUT,
-                    "no DEN header", 1 << 17);
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT, "not a DEN header", 1 << 17);
     support_files_end(&files);
 }
 
@@ -96,12 +97,12 @@ static void strangers_are_known(void **state) {
     static const struct {
         size_t offset;
         const char *magic;
-        const char *told;
+        const char *given;
     } strangers[] = {
         {257, "ustar", "is a tar archive; unpack it"},
         {0, "11111\n66 66 66 8", "is an SLC volume"},
         {0, "PK\3\4", "is a zip archive"},
-        {0, "BZh9", "is packed by bzip2"},
+        {0, "BZh9", "is compressed by bzip2"},
         {0, "MATLAB 5.0 MAT-file", "save it with -v7.3"},
         {0, "\xFF\xD8\xFF\xE0", "is a JPEG picture"},
     };
@@ -113,8 +114,8 @@ static void strangers_are_known(void **state) {
                strlen(strangers[i].magic));
         const char *path =
             support_write(&files, "strange", bytes, sizeof bytes);
-        support_refused(&files, path, NULL, SNOW_BAD_INPUT, strangers[i].told,
-                        1 << 17);
+        support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                        strangers[i].given, 1 << 17);
     }
     support_files_end(&files);
 }

@@ -1,8 +1,8 @@
 /* tests/test_dicom.c - DICOM: which frames make a volume and where it lies,
  * what damaged files say, and what they may cost.  Values and places of whole
  * series are compared with pydicom in oracle_dicom.py. */
+#include "formats/dicom/dicom.h"
 #include "support_files.h"
-#include "volume/dicom.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -46,7 +46,8 @@ static void stack_up(dicom_frame *frames, const double *heights, size_t count) {
 static dicom_stack stacked(snow_context *context, dicom_frame *frames,
                            size_t count) {
     dicom_stack stack;
-    assert_int_equal(snow_dicom_stack(context, frames, count, &stack), SNOW_OK);
+    assert_int_equal(snow_dicom_stack(context, frames, count, &stack),
+                     SNOW_STATUS_OK);
     return stack;
 }
 
@@ -54,7 +55,7 @@ static void refuse_stack(dicom_frame *frames, size_t count, const char *part) {
     snow_context *context = support_context();
     dicom_stack stack;
     assert_int_equal(snow_dicom_stack(context, frames, count, &stack),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(context), part));
     assert_int_equal(snow_context_bytes(context), 0);
     snow_context_free(context);
@@ -135,12 +136,12 @@ static void slices_beside_one_another_are_refused(void **state) {
     const double heights[] = {0, 1, 2, 3}, same[] = {0, 1, 1, 2};
     stack_up(frames, heights, 4);
     frames[2].position[0] = 3;
-    refuse_stack(frames, 4, "do not lie behind one another");
+    refuse_stack(frames, 4, "are not aligned");
     stack_up(frames, same, 4);
     frames[2].position[0] = 3;
     refuse_stack(frames, 4, "beside one another in a plane");
     stack_up(frames, same, 4);
-    refuse_stack(frames, 4, "has 2 images at the place of slice");
+    refuse_stack(frames, 4, "has 2 images at the position of slice");
 }
 
 static void several_at_each_place_are_times(void **state) {
@@ -272,10 +273,10 @@ static void a_folder_is_a_volume_whatever_its_names(void **state) {
     }
     support_write_text(&files, "notes.txt", "no slice");
     snow_volume *volume = support_opened(&files, files.folder, NULL);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const uint16_t *voxels = snow_volume_voxels(volume);
     assert_true(info->dims[0] == 4 && info->dims[1] == 2 && info->dims[2] == 4);
-    assert_true(info->type == SNOW_UINT16 && info->spacing[2] == 2);
+    assert_true(info->type == SNOW_TYPE_UINT16 && info->spacing[2] == 2);
     for (int z = 0; z < 4; z++)
         assert_int_equal(voxels[8 * z + 7], 10 * z + 7);
     assert_string_equal(snow_volume_patient(volume), "Hidden^Name");
@@ -283,7 +284,7 @@ static void a_folder_is_a_volume_whatever_its_names(void **state) {
     snow_volume_close(volume);
     /* a slice stands for all, and says so */
     volume = support_opened(&files, support_path(&files, "9"), NULL);
-    assert_int_equal(snow_volume_describe(volume)->dims[2], 4);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 4);
     assert_non_null(strstr(files.notice, "one of 4 slices"));
     snow_volume_close(volume);
     support_files_end(&files);
@@ -301,7 +302,7 @@ static void a_slice_tells_that_those_beside_it_are_damaged(void **state) {
     }
     snow_volume *volume =
         support_opened(&files, support_path(&files, "1"), NULL);
-    assert_int_equal(snow_volume_describe(volume)->dims[2], 3);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 3);
     assert_int_equal(files.notices, 2);
     snow_volume_close(volume);
     support_files_end(&files);
@@ -324,7 +325,7 @@ static void a_slice_without_a_number_is_there_once(void **state) {
     }
     snow_volume *volume =
         support_opened(&files, support_path(&files, "1"), NULL);
-    assert_int_equal(snow_volume_describe(volume)->dims[2], 3);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 3);
     assert_int_equal(files.notices, 1);
     assert_non_null(strstr(files.notice, "one of 3 slices"));
     snow_volume_close(volume);
@@ -338,7 +339,8 @@ static void a_file_says_nothing_of_the_patient(void **state) {
     file f;
     slice(&f, 0, 0);
     const char *path = support_write(&files, "a.dcm", f.bytes, f.size - 1);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "is cut", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "is truncated",
+                    MOST);
     assert_null(strstr(snow_context_message(files.context), "Hidden"));
     support_files_end(&files);
 }
@@ -351,7 +353,7 @@ static void a_file_cut_anywhere_is_refused(void **state) {
     slice(&f, 0, 0);
     for (size_t size = 132; size < f.size; size++) {
         const char *path = support_write(&files, "a.dcm", f.bytes, size);
-        support_refused(&files, path, NULL, SNOW_BAD_INPUT, "", MOST);
+        support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "", MOST);
         assert_int_equal(remove(path), 0);
     }
     support_files_end(&files);
@@ -380,12 +382,14 @@ static void frames_that_lie(support_files *files) {
     text(&f, 0x00280008, "IS", "100000000");
     element(&f, 0x7fe00010, "OW", "ab", 2);
     const char *path = support_write(files, "many.dcm", f.bytes, f.size);
-    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    support_refused(files, path, NULL, SNOW_STATUS_BAD_INPUT, "cannot hold",
+                    MOST);
     begin(&f, run_lengths, 0);
     text(&f, 0x00280008, "IS", "99999");
     fragment(&f, "ab", 2);
     path = support_write(files, "packed.dcm", f.bytes, f.size);
-    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    support_refused(files, path, NULL, SNOW_STATUS_BAD_INPUT, "cannot hold",
+                    MOST);
     memset(&f, 0, sizeof f);
     f.size = 128;
     put(&f, "DICM", 4);
@@ -396,13 +400,15 @@ static void frames_that_lie(support_files *files) {
     number(&f, 0x00280100, 65535);
     element(&f, 0x7fe00010, "OW", "ab", 2);
     path = support_write(files, "bits.dcm", f.bytes, f.size);
-    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    support_refused(files, path, NULL, SNOW_STATUS_BAD_INPUT, "cannot hold",
+                    MOST);
     /* a frame too many by one */
     begin(&f, explicit_little, 0);
     text(&f, 0x00280008, "IS", "2");
     element(&f, 0x7fe00010, "OW", f.bytes, 31);
     path = support_write(files, "short.dcm", f.bytes, f.size);
-    support_refused(files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    support_refused(files, path, NULL, SNOW_STATUS_BAD_INPUT, "cannot hold",
+                    MOST);
 }
 
 static void lengths_that_lie_cost_no_memory(void **state) {
@@ -414,14 +420,14 @@ static void lengths_that_lie_cost_no_memory(void **state) {
     element(&f, 0x7fe00010, "OW", NULL, 0xfffffff0);
     put_number(&f, 0, 4);
     const char *path = support_write(&files, "a.dcm", f.bytes, f.size);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT,
-                    "says that it has 4294967280 bytes, of which 4 are there",
-                    MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                    "claims 4294967280 bytes, of which 4 exist", MOST);
     begin(&f, explicit_little, 0);
     text(&f, 0x00280008, "IS", "999999999");
     element(&f, 0x7fe00010, "OW", "", 0);
     path = support_write(&files, "b.dcm", f.bytes, f.size);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "cannot hold", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "cannot hold",
+                    MOST);
     frames_that_lie(&files);
     begin(&f, explicit_little, 0);
     for (int i = 0; i < 60; i++) {
@@ -430,8 +436,8 @@ static void lengths_that_lie_cost_no_memory(void **state) {
         put_number(&f, 0xffffffff, 4);
     }
     path = support_write(&files, "c.dcm", f.bytes, f.size);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "nests sequences",
-                    MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                    "nests sequences", MOST);
     support_files_end(&files);
 }
 
@@ -466,15 +472,16 @@ static void run_lengths_are_unpacked(void **state) {
         begin(&f, run_lengths, 0);
         fragment(&f, packed, size - short_by);
         path = support_write(&files, "b.dcm", f.bytes, f.size);
-        support_refused(&files, path, NULL, SNOW_BAD_INPUT, "be unpacked",
-                        MOST);
+        support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                        "be decompressed", MOST);
         assert_int_equal(remove(path), 0);
     }
     packed[8] = 255; /* a segment that begins behind the others */
     begin(&f, run_lengths, 0);
     fragment(&f, packed, size);
     path = support_write(&files, "c.dcm", f.bytes, f.size);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "be unpacked", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                    "be decompressed", MOST);
     support_files_end(&files);
 }
 
@@ -489,23 +496,23 @@ static void packed_pixels_must_be_what_the_header_says(void **state) {
     begin(&f, jpeg_lossless, 0);
     fragment(&f, head, sizeof head);
     const char *path = support_write(&files, "a.dcm", f.bytes, f.size);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT,
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
                     SNOW_HAVE_GDCM
-                        ? "are 4x99 of 1 values with 16 bits where its header "
+                        ? "are 4x99 of 1 values with 16 bits but its header "
                           "says 4x2"
-                        : "this build cannot read DICOM images that are packed",
+                        : "this build cannot read compressed DICOM images",
                     MOST);
     begin(&f, jpeg_lossless, 0);
     fragment(&f, "no picture", 10);
     path = support_write(&files, "b.dcm", f.bytes, f.size);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT,
-                    SNOW_HAVE_GDCM ? "do not begin as" : "libgdcm-dev and g++",
-                    MOST);
+    support_refused(
+        &files, path, NULL, SNOW_STATUS_BAD_INPUT,
+        SNOW_HAVE_GDCM ? "do not begin like" : "libgdcm-dev and g++", MOST);
     begin(&f, "1.2.840.10008.1.2.4.100", 0); /* MPEG */
     fragment(&f, "no picture", 10);
     path = support_write(&files, "c.dcm", f.bytes, f.size);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT,
-                    SNOW_HAVE_GDCM ? "packed in a way that is not read"
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                    SNOW_HAVE_GDCM ? "compressed in an unsupported way"
                                    : "1.2.840.10008.1.2.4.100",
                     MOST);
     support_files_end(&files);

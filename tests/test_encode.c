@@ -5,7 +5,7 @@
 #include "encode/encode.h"
 
 /* A strip over rows of 0 and 1: each 1 is kept, its sample is its number. */
-static void fill_strip(snow_strip *strip, const unsigned char *mask,
+static void fill_strip(snow_row_block *strip, const unsigned char *mask,
                        int64_t rows, int64_t columns, float *number) {
     strip->rows = rows;
     strip->count = 0;
@@ -28,21 +28,24 @@ static void encode(snow_context *context, const snow_scheme *scheme,
                    int64_t columns, snow_sparse *sparse) {
     snow_placement placement = {
         .columns = columns, .rows = rows, .slices = slices};
-    snow_strip strip = {0};
+    snow_row_block strip = {0};
     float number = 1;
     *sparse = (snow_sparse){.context = context};
-    assert_int_equal(snow_strip_make(context, &placement, 2, &strip), SNOW_OK);
-    assert_int_equal(snow_sparse_begin(sparse, scheme, &placement, 2), SNOW_OK);
+    assert_int_equal(snow_row_block_make(context, &placement, 2, &strip),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_sparse_begin(sparse, scheme, &placement, 2),
+                     SNOW_STATUS_OK);
     for (int64_t slice = 0; slice < slices; slice++) {
-        assert_int_equal(snow_sparse_begin_slice(sparse), SNOW_OK);
+        assert_int_equal(snow_sparse_begin_slice(sparse), SNOW_STATUS_OK);
         for (int64_t row = 0; row < rows; row++) {
             fill_strip(&strip, mask + (slice * rows + row) * columns, 1,
                        columns, &number);
-            assert_int_equal(snow_sparse_add_strip(sparse, &strip), SNOW_OK);
+            assert_int_equal(snow_sparse_add_row_block(sparse, &strip),
+                             SNOW_STATUS_OK);
         }
-        assert_int_equal(snow_sparse_end_slice(sparse), SNOW_OK);
+        assert_int_equal(snow_sparse_end_slice(sparse), SNOW_STATUS_OK);
     }
-    snow_strip_free(context, &strip);
+    snow_row_block_free(context, &strip);
 }
 
 /* Walks every slice, last first, and compares spans and samples with the mask

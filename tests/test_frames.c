@@ -38,10 +38,10 @@ static snow_status prepare_slot(void *user, frame_slot *slot) {
         slot->image ? snow_image_pixels(slot->image)[0] : -1.0f;
     s->preparing--;
     if (slot->index != s->fail_prepare)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     snprintf(slot->fault, sizeof slot->fault, "frame %d is bad",
              (int)slot->index);
-    return SNOW_FAILED;
+    return SNOW_STATUS_FAILED;
 }
 
 static snow_status commit_slot(void *user, frame_slot *slot) {
@@ -52,10 +52,10 @@ static snow_status commit_slot(void *user, frame_slot *slot) {
     s->committed[s->count] = slot->index;
     s->values[s->count++] = *(float *)slot->work;
     if (slot->index != s->fail_commit)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     snprintf(slot->fault, sizeof slot->fault, "no room for %d",
              (int)slot->index);
-    return SNOW_BAD_OUTPUT;
+    return SNOW_STATUS_BAD_OUTPUT;
 }
 
 static void release_slot(void *user, frame_slot *slot) {
@@ -72,15 +72,15 @@ static seen nothing_seen(void) {
 static frame_queue *open_queue(seen *s, int workers) {
     const frame_sink sink = {s, prepare_slot, commit_slot, release_slot};
     frame_queue *queue = NULL;
-    assert_int_equal(frames_new(&sink, workers, &queue), SNOW_OK);
+    assert_int_equal(frames_new(&sink, workers, &queue), SNOW_STATUS_OK);
     return queue;
 }
 
 /* Puts frames first..last-1, one picture written over for each. */
 static snow_status put_frames(frame_queue *queue, seen *s, snow_image *image,
                               int first, int last) {
-    snow_status status = SNOW_OK;
-    for (int i = first; i < last && status == SNOW_OK; i++) {
+    snow_status status = SNOW_STATUS_OK;
+    for (int i = first; i < last && status == SNOW_STATUS_OK; i++) {
         snow_image_pixels(image)[0] = (float)i;
         s->puts++;
         status = frames_put(queue, i, image, NULL);
@@ -91,7 +91,7 @@ static snow_status put_frames(frame_queue *queue, seen *s, snow_image *image,
 static snow_image *picture(snow_context *context, int width, int channels) {
     snow_image *image = NULL;
     assert_int_equal(snow_image_new(context, width, 3, channels, &image),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     return image;
 }
 
@@ -102,8 +102,8 @@ static void frames_are_committed_in_order_as_they_were_put(void **state) {
     for (int workers = 1; workers <= FRAME_WORKERS_MOST; workers++) {
         seen s = nothing_seen();
         frame_queue *queue = open_queue(&s, workers);
-        assert_int_equal(put_frames(queue, &s, image, 0, 150), SNOW_OK);
-        assert_int_equal(frames_drain(queue), SNOW_OK);
+        assert_int_equal(put_frames(queue, &s, image, 0, 150), SNOW_STATUS_OK);
+        assert_int_equal(frames_drain(queue), SNOW_STATUS_OK);
         assert_string_equal(frames_message(queue), "");
         assert_int_equal(s.count, 150);
         for (int i = 0; i < 150; i++) {
@@ -128,10 +128,11 @@ static void pictures_may_change_their_form(void **state) {
     frame_queue *queue = open_queue(&s, 2);
     for (int i = 0; i < 60; i++) {
         snow_image *image = picture(context, 1 + i % 7, i % 2 ? 2 : 4);
-        assert_int_equal(put_frames(queue, &s, image, i, i + 1), SNOW_OK);
+        assert_int_equal(put_frames(queue, &s, image, i, i + 1),
+                         SNOW_STATUS_OK);
         snow_image_free(image);
     }
-    assert_int_equal(frames_drain(queue), SNOW_OK);
+    assert_int_equal(frames_drain(queue), SNOW_STATUS_OK);
     for (int i = 0; i < 60; i++)
         assert_true(s.values[i] == (float)i);
     frames_free(queue);
@@ -146,11 +147,12 @@ static void frames_that_lie_in_files_keep_their_turn(void **state) {
     frame_queue *queue = open_queue(&s, 3);
     for (int i = 0; i < 40; i++) {
         if (i % 3)
-            assert_int_equal(put_frames(queue, &s, image, i, i + 1), SNOW_OK);
+            assert_int_equal(put_frames(queue, &s, image, i, i + 1),
+                             SNOW_STATUS_OK);
         else
-            assert_int_equal(frames_put(queue, i, NULL, NULL), SNOW_OK);
+            assert_int_equal(frames_put(queue, i, NULL, NULL), SNOW_STATUS_OK);
     }
-    assert_int_equal(frames_drain(queue), SNOW_OK);
+    assert_int_equal(frames_drain(queue), SNOW_STATUS_OK);
     for (int i = 0; i < 40; i++) {
         assert_int_equal(s.committed[i], i);
         assert_true(s.values[i] == (i % 3 ? (float)i : -1.0f));
@@ -168,12 +170,14 @@ static void nothing_is_committed_after_a_fault(void **state) {
         seen s = nothing_seen();
         s.fail_commit = 20;
         frame_queue *queue = open_queue(&s, workers);
-        assert_int_equal(put_frames(queue, &s, image, 0, 100), SNOW_BAD_OUTPUT);
-        assert_int_equal(frames_status(queue), SNOW_BAD_OUTPUT);
-        assert_int_equal(frames_drain(queue), SNOW_BAD_OUTPUT);
+        assert_int_equal(put_frames(queue, &s, image, 0, 100),
+                         SNOW_STATUS_BAD_OUTPUT);
+        assert_int_equal(frames_status(queue), SNOW_STATUS_BAD_OUTPUT);
+        assert_int_equal(frames_drain(queue), SNOW_STATUS_BAD_OUTPUT);
         assert_string_equal(frames_message(queue), "no room for 20");
         assert_int_equal(s.count, 21);
-        assert_int_equal(frames_put(queue, 100, image, NULL), SNOW_BAD_OUTPUT);
+        assert_int_equal(frames_put(queue, 100, image, NULL),
+                         SNOW_STATUS_BAD_OUTPUT);
         frames_free(queue);
         assert_int_equal(s.count, 21);
     }
@@ -191,14 +195,14 @@ static void a_fault_of_compression_is_told_in_its_turn(void **state) {
     s.fail_commit = 12;  /* which dawdles longest */
     frame_queue *queue = open_queue(&s, 6);
     (void)put_frames(queue, &s, image, 0, 60);
-    assert_int_equal(frames_drain(queue), SNOW_BAD_OUTPUT);
+    assert_int_equal(frames_drain(queue), SNOW_STATUS_BAD_OUTPUT);
     assert_string_equal(frames_message(queue), "no room for 12");
     frames_free(queue);
     s = nothing_seen();
     s.fail_prepare = 13;
     queue = open_queue(&s, 6);
     (void)put_frames(queue, &s, image, 0, 60);
-    assert_int_equal(frames_drain(queue), SNOW_FAILED);
+    assert_int_equal(frames_drain(queue), SNOW_STATUS_FAILED);
     assert_string_equal(frames_message(queue), "frame 13 is bad");
     assert_int_equal(s.count, 13);
     frames_free(queue);
@@ -210,7 +214,7 @@ static void a_queue_may_stay_empty(void **state) {
     (void)state;
     seen s = nothing_seen();
     frame_queue *queue = open_queue(&s, FRAME_WORKERS_MOST);
-    assert_int_equal(frames_drain(queue), SNOW_OK);
+    assert_int_equal(frames_drain(queue), SNOW_STATUS_OK);
     assert_true(frames_seconds(queue) == 0);
     frames_free(queue);
     frames_free(NULL);

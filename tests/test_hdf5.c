@@ -5,7 +5,7 @@
 
 #if SNOW_HAVE_HDF5
 
-#include <hdf5.h>
+#include <formats/hdf5/hdf5.h>
 
 /* The most memory that a refusal may ask for at once, of the context. */
 #define MOST ((size_t)200 * 1024)
@@ -34,7 +34,7 @@ static const char *write_sets(support_files *files, const char *const *names) {
 }
 
 static void expect_counting(snow_volume *volume) {
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_string_equal(info->format, "hdf5");
     assert_true(info->dims[0] == 4 && info->dims[1] == 3 && info->dims[2] == 2);
@@ -59,10 +59,11 @@ static void several_are_listed(void **state) {
     support_files files;
     support_files_begin(&files);
     const char *path = write_sets(&files, names);
-    support_refused(&files, path, NULL, SNOW_BAD_USAGE,
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_USAGE,
                     "/a (4x3x2), /b/two (4x3x2)", MOST);
     const snow_volume_options wrong = {.dataset = "c"};
-    support_refused(&files, path, &wrong, SNOW_BAD_USAGE, "/b/two", MOST);
+    support_refused(&files, path, &wrong, SNOW_STATUS_BAD_USAGE, "/b/two",
+                    MOST);
     const snow_volume_options right = {.dataset = "b/two"};
     expect_counting(support_opened(&files, path, &right));
     char inside[600];
@@ -70,7 +71,7 @@ static void several_are_listed(void **state) {
     expect_counting(support_opened(&files, inside, NULL));
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(files.context, inside, &right, &volume),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     support_files_end(&files);
 }
 
@@ -92,7 +93,7 @@ static void nothing_is_left_behind(void **state) {
     H5Eset_auto2(H5E_DEFAULT, hear, &heard);
     expect_counting(support_opened(&files, path, NULL));
     const char *bad = support_write(&files, "b.h5", "\x89HDF\r\n\x1a\n", 8);
-    support_refused(&files, bad, NULL, SNOW_BAD_INPUT, "libhdf5", MOST);
+    support_refused(&files, bad, NULL, SNOW_STATUS_BAD_INPUT, "libhdf5", MOST);
     assert_int_equal(heard, 0);
     assert_true(H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) <= 0);
     heard = 0;

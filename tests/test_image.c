@@ -11,7 +11,8 @@ static const char *const suffixes[] = {".png", ".npy", ".pfm"};
 static void a_new_picture_is_transparent(void **state) {
     image_fixture *f = *state;
     snow_image *image = NULL;
-    assert_int_equal(snow_image_new(f->context, 3, 2, 4, &image), SNOW_OK);
+    assert_int_equal(snow_image_new(f->context, 3, 2, 4, &image),
+                     SNOW_STATUS_OK);
     assert_int_equal(snow_image_width(image), 3);
     assert_int_equal(snow_image_height(image), 2);
     assert_int_equal(snow_image_channels(image), 4);
@@ -30,7 +31,7 @@ static void impossible_pictures_are_refused(void **state) {
         snow_image *image = NULL;
         assert_int_equal(
             snow_image_new(f->context, bad[i][0], bad[i][1], bad[i][2], &image),
-            SNOW_BAD_USAGE);
+            SNOW_STATUS_BAD_USAGE);
         assert_null(image);
     }
 }
@@ -38,9 +39,11 @@ static void impossible_pictures_are_refused(void **state) {
 static void the_longest_sides_are_possible(void **state) {
     image_fixture *f = *state;
     snow_image *image = NULL;
-    assert_int_equal(snow_image_new(f->context, 32768, 1, 2, &image), SNOW_OK);
+    assert_int_equal(snow_image_new(f->context, 32768, 1, 2, &image),
+                     SNOW_STATUS_OK);
     snow_image_free(image);
-    assert_int_equal(snow_image_new(f->context, 1, 32768, 4, &image), SNOW_OK);
+    assert_int_equal(snow_image_new(f->context, 1, 32768, 4, &image),
+                     SNOW_STATUS_OK);
     snow_image_free(image);
 }
 
@@ -48,12 +51,14 @@ static void the_longest_sides_are_possible(void **state) {
 static void check_sums_are_fnv_1a(void **state) {
     image_fixture *f = *state;
     snow_image *image = NULL;
-    assert_int_equal(snow_image_new(f->context, 2, 1, 2, &image), SNOW_OK);
+    assert_int_equal(snow_image_new(f->context, 2, 1, 2, &image),
+                     SNOW_STATUS_OK);
     memcpy(snow_image_pixels(image), (float[]){0.5f, 1, 0, -2.25f},
            4 * sizeof(float));
     assert_true(snow_image_checksum(image) == UINT64_C(0xab3124db87522db4));
     snow_image_free(image);
-    assert_int_equal(snow_image_new(f->context, 1, 1, 4, &image), SNOW_OK);
+    assert_int_equal(snow_image_new(f->context, 1, 1, 4, &image),
+                     SNOW_STATUS_OK);
     snow_image_pixels(image)[1] = NAN;
     assert_true(snow_image_checksum(image) == UINT64_C(0x375c5ca5bfc5f72c));
     snow_image_free(image);
@@ -80,8 +85,10 @@ static void equal_pictures_have_equal_sums(void **state) {
 static void the_shape_enters_the_check_sum(void **state) {
     image_fixture *f = *state;
     snow_image *wide = NULL, *high = NULL;
-    assert_int_equal(snow_image_new(f->context, 4, 2, 2, &wide), SNOW_OK);
-    assert_int_equal(snow_image_new(f->context, 2, 4, 2, &high), SNOW_OK);
+    assert_int_equal(snow_image_new(f->context, 4, 2, 2, &wide),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_image_new(f->context, 2, 4, 2, &high),
+                     SNOW_STATUS_OK);
     assert_true(snow_image_checksum(wide) != snow_image_checksum(high));
     snow_image_free(wide);
     snow_image_free(high);
@@ -94,7 +101,7 @@ static void the_name_decides_the_format(void **state) {
     static const char *const starts[] = {"\x89PNG", "\x93NUM", "PF\n3"};
     for (int i = 0; i < 3; i++) {
         const char *path = support_image_path(f, names[i]);
-        assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
+        assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
         support_bytes file = support_read_file(path);
         assert_memory_equal(file.bytes, starts[i], 4);
         free(file.bytes);
@@ -109,9 +116,9 @@ static void an_unknown_suffix_is_bad_usage(void **state) {
                                         "a.png.gz", "",  "-x"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         assert_int_equal(snow_image_save(image, names[i], NULL),
-                         SNOW_BAD_USAGE);
+                         SNOW_STATUS_BAD_USAGE);
         assert_int_equal(snow_image_check_path(f->context, names[i], true),
-                         SNOW_BAD_USAGE);
+                         SNOW_STATUS_BAD_USAGE);
         assert_non_null(strstr(snow_context_message(f->context), ".npy"));
     }
     snow_image_free(image);
@@ -132,13 +139,15 @@ static void options_that_cannot_be_heeded_are_refused(void **state) {
     };
     for (int i = 1; i < 3; i++) {
         const char *path = support_image_path(f, suffixes[i]);
-        assert_int_equal(snow_image_save(image, path, &flat), SNOW_BAD_USAGE);
-        assert_int_equal(snow_image_save(image, path, &deep), SNOW_BAD_USAGE);
+        assert_int_equal(snow_image_save(image, path, &flat),
+                         SNOW_STATUS_BAD_USAGE);
+        assert_int_equal(snow_image_save(image, path, &deep),
+                         SNOW_STATUS_BAD_USAGE);
     }
     const char *path = support_image_path(f, "a.png");
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         assert_int_equal(snow_image_save(image, path, &wrong[i]),
-                         SNOW_BAD_USAGE);
+                         SNOW_STATUS_BAD_USAGE);
     assert_int_equal(support_image_files(f), 0);
     snow_image_free(image);
 }
@@ -149,17 +158,18 @@ static void an_existing_file_is_kept_unless_told(void **state) {
     for (int i = 0; i < 3; i++) {
         const char *path = support_image_path(f, suffixes[i]);
         support_write_file(path, "precious", 8);
-        assert_int_equal(snow_image_save(image, path, NULL), SNOW_BAD_OUTPUT);
+        assert_int_equal(snow_image_save(image, path, NULL),
+                         SNOW_STATUS_BAD_OUTPUT);
         assert_int_equal(snow_image_check_path(f->context, path, false),
-                         SNOW_BAD_OUTPUT);
+                         SNOW_STATUS_BAD_OUTPUT);
         support_bytes file = support_read_file(path);
         assert_int_equal(file.size, 8);
         assert_memory_equal(file.bytes, "precious", 8);
         free(file.bytes);
         assert_int_equal(snow_image_check_path(f->context, path, true),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
         const snow_image_options over = {.overwrite = true};
-        assert_int_equal(snow_image_save(image, path, &over), SNOW_OK);
+        assert_int_equal(snow_image_save(image, path, &over), SNOW_STATUS_OK);
         file = support_read_file(path);
         assert_true(file.size > 8);
         free(file.bytes);
@@ -173,9 +183,10 @@ static void a_missing_folder_is_bad_output(void **state) {
     snow_image *image = support_picture(f->context, 3, 3, 4, 1);
     char path[256];
     snprintf(path, sizeof path, "%s/none/a.png", f->folder);
-    assert_int_equal(snow_image_save(image, path, NULL), SNOW_BAD_OUTPUT);
+    assert_int_equal(snow_image_save(image, path, NULL),
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_int_equal(snow_image_check_path(f->context, path, false),
-                     SNOW_BAD_OUTPUT);
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_non_null(strstr(snow_context_message(f->context), path));
     snow_image_free(image);
 }
@@ -187,17 +198,19 @@ static void a_folder_that_takes_no_files_is_bad_output(void **state) {
         skip();
     snow_image *image = support_picture(f->context, 3, 3, 4, 1);
     assert_int_equal(snow_image_save(image, "/proc/snow.png", NULL),
-                     SNOW_BAD_OUTPUT);
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_int_equal(snow_image_check_path(f->context, "/proc/snow.png", true),
-                     SNOW_BAD_OUTPUT);
+                     SNOW_STATUS_BAD_OUTPUT);
     snow_image_free(image);
 }
 
 static void checking_a_path_leaves_nothing(void **state) {
     image_fixture *f = *state;
     const char *path = support_image_path(f, "a.png");
-    assert_int_equal(snow_image_check_path(f->context, path, false), SNOW_OK);
-    assert_int_equal(snow_image_check_path(f->context, "-", false), SNOW_OK);
+    assert_int_equal(snow_image_check_path(f->context, path, false),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_image_check_path(f->context, "-", false),
+                     SNOW_STATUS_OK);
     assert_int_equal(support_image_files(f), 0);
 }
 
@@ -219,11 +232,12 @@ static void standard_output_gets_a_png(void **state) {
     image_fixture *f = *state;
     snow_image *image = support_picture(f->context, 20, 10, 4, 1);
     const char *path = support_image_path(f, "stdout");
-    assert_int_equal(save_to_stdout(image, path), SNOW_OK);
+    assert_int_equal(save_to_stdout(image, path), SNOW_STATUS_OK);
     snow_image *again = NULL;
-    assert_int_equal(snow_image_load(f->context, path, &again), SNOW_OK);
+    assert_int_equal(snow_image_load(f->context, path, &again), SNOW_STATUS_OK);
     snow_image_difference difference;
-    assert_int_equal(snow_image_compare(image, again, &difference), SNOW_OK);
+    assert_int_equal(snow_image_compare(image, again, &difference),
+                     SNOW_STATUS_OK);
     assert_true(difference.largest < 1.01 / 255);
     snow_image_free(image);
     snow_image_free(again);
@@ -236,7 +250,7 @@ static void standard_input_is_a_picture(void **state) {
     snow_image *image = support_picture(f->context, 20, 10, 4, 1);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         const char *path = support_image_path(f, names[i]);
-        assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
+        assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
         static char bytes[20000]; /* less than a pipe holds */
         FILE *file = fopen(path, "rb");
         assert_non_null(file);
@@ -252,7 +266,7 @@ static void standard_input_is_a_picture(void **state) {
         snow_status status = snow_image_load(f->context, "-", &again);
         dup2(kept, STDIN_FILENO);
         close(kept);
-        assert_int_equal(status, SNOW_OK);
+        assert_int_equal(status, SNOW_STATUS_OK);
         assert_int_equal(snow_image_width(again), 20);
         snow_image_free(again);
     }
@@ -264,7 +278,8 @@ static void a_full_disk_is_bad_output(void **state) {
     if (access("/dev/full", W_OK) != 0)
         skip();
     snow_image *image = support_picture(f->context, 700, 500, 4, 1);
-    assert_int_equal(save_to_stdout(image, "/dev/full"), SNOW_BAD_OUTPUT);
+    assert_int_equal(save_to_stdout(image, "/dev/full"),
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_non_null(strstr(snow_context_message(f->context), "space"));
     snow_image_free(image);
 }
@@ -278,9 +293,9 @@ static void what_is_no_picture_is_refused(void **state) {
     support_assert_refused(f->context, "PFx", 3);
     snow_image *image = NULL;
     assert_int_equal(snow_image_load(f->context, "/tmp", &image),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_int_equal(snow_image_load(f->context, "/none/a.png", &image),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_null(image);
 }
 
@@ -294,14 +309,14 @@ static bool survive_failure(image_fixture *f, const char *path, int64_t n,
     snow_image_difference difference;
     memory.left = n;
     snow_status status = snow_image_save(image, path, NULL);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_image_load(context, path, &again);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_image_compare(image, again, &difference);
     bool failed = memory.left <= 0;
-    if (status != SNOW_OK) {
+    if (status != SNOW_STATUS_OK) {
         assert_true(failed);
-        assert_int_equal(status, SNOW_NO_MEMORY);
+        assert_int_equal(status, SNOW_STATUS_NO_MEMORY);
         assert_non_null(strstr(snow_context_message(context), "memory"));
     }
     snow_image_free(again);

@@ -6,7 +6,7 @@
 #include "support_folder.h"
 
 #include "image/image.h"
-#include "insitu_parts.h"
+#include "insitu/internal.h"
 
 #include <math.h>
 #include <unistd.h>
@@ -41,7 +41,7 @@ typedef struct scene {
     bool first_deterministic; /* the picture before */
     /* What the ranks found. */
     double difference; /* from the serial picture */
-    snow_insitu_figures figures;
+    snow_insitu_stats figures;
     uint64_t encoded; /* of a second picture of the same voxels */
     int halvings;     /* of axis x */
 } scene;
@@ -64,16 +64,16 @@ static void put_value(snow_type type, char *at, double value) {
     int16_t small = (int16_t)(value * 100);
     float real = (float)value;
     switch (type) {
-    case SNOW_UINT8:
+    case SNOW_TYPE_UINT8:
         memcpy(at, &byte, sizeof byte);
         break;
-    case SNOW_UINT16:
+    case SNOW_TYPE_UINT16:
         memcpy(at, &word, sizeof word);
         break;
-    case SNOW_INT16:
+    case SNOW_TYPE_INT16:
         memcpy(at, &small, sizeof small);
         break;
-    case SNOW_FLOAT32:
+    case SNOW_TYPE_FLOAT32:
         memcpy(at, &real, sizeof real);
         break;
     default:
@@ -97,7 +97,7 @@ static void *whole_field(const scene *s, double t) {
 }
 
 static double scale_of(snow_type type) {
-    return type == SNOW_UINT16 || type == SNOW_INT16 ? 100 : 1;
+    return type == SNOW_TYPE_UINT16 || type == SNOW_TYPE_INT16 ? 100 : 1;
 }
 
 /* Opacities, and factors by gradients behind them. */
@@ -136,13 +136,14 @@ static snow_image *serial_picture(snow_context *context, const scene *s,
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_image *image = NULL;
-    assert_int_equal(snow_volume_share(context, &info, voxels, &volume),
-                     SNOW_OK);
-    assert_int_equal(snow_transfer_make(volume, look, &transfer), SNOW_OK);
-    assert_int_equal(snow_frame_new(context, &frame), SNOW_OK);
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(volume, look, &transfer),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
     assert_int_equal(snow_frame_render(frame, volume, transfer, &s->view,
                                        &s->settings, &image),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     snow_frame_free(frame);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
@@ -153,7 +154,7 @@ static snow_image *serial_picture(snow_context *context, const scene *s,
 /* Cuts the grid n[0] x n[1] x n[2] times, nearly equally, and deals the boxes
  * in turns. */
 static scene make_scene(int ranks, int nx, int ny, int nz) {
-    scene s = {.dims = {29, 23, 19}, .type = SNOW_FLOAT32, .ranks = ranks};
+    scene s = {.dims = {29, 23, 19}, .type = SNOW_TYPE_FLOAT32, .ranks = ranks};
     const int n[3] = {nx, ny, nz};
     snow_settings_init(&s.settings);
     s.settings.threads = 1;
@@ -168,7 +169,7 @@ static scene make_scene(int ranks, int nx, int ny, int nz) {
     }
     s.bricks = nx * ny * nz;
     snow_context *context = support_context();
-    snow_view_named(context, "iso", &s.view);
+    snow_view_from_name(context, "iso", &s.view);
     snow_context_free(context);
     s.view.width = 61;
     s.view.height = 47;
@@ -250,7 +251,7 @@ static snow_status tell_bricks(snow_insitu *insitu, const scene *s, int rank,
         SNOW_TRY(snow_insitu_set_voxels(insitu, id, s->type, first,
                                         s->layout ? stride : NULL));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* Everything but the bricks. */
@@ -258,7 +259,7 @@ static snow_status tell_picture(snow_insitu *insitu, const scene *s) {
     snow_opacity_point scaled[5];
     snow_look look = look_of(s, scaled);
     SNOW_TRY(snow_insitu_set_grid(insitu, s->dims, NULL, NULL));
-    SNOW_TRY(snow_insitu_set_sharing(insitu, s->ghosts, s->balance));
+    SNOW_TRY(snow_insitu_set_distribution(insitu, s->ghosts, s->balance));
     SNOW_TRY(snow_insitu_set_view(insitu, &s->view));
     SNOW_TRY(snow_insitu_set_settings(insitu, &s->settings));
     return snow_insitu_set_look(insitu, &look);
@@ -285,7 +286,7 @@ static double largest_difference(const snow_image *a, const snow_image *b) {
         return INFINITY;
     if (a->channels == 1 && b->channels == 1)
         return values_difference(a, b);
-    if (snow_image_compare(a, b, &d) != SNOW_OK)
+    if (snow_image_compare(a, b, &d) != SNOW_STATUS_OK)
         return INFINITY;
     return d.largest;
 }
@@ -294,29 +295,29 @@ static double largest_difference(const snow_image *a, const snow_image *b) {
 static snow_status draw_twice(snow_insitu *insitu, scene *s, int rank) {
     snow_image *image = NULL;
     SNOW_TRY(snow_insitu_update(insitu));
-    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    SNOW_TRY(snow_insitu_render(insitu, &image));
     if (rank == 0) {
         snow_opacity_point scaled[5];
         snow_look look = look_of(s, scaled);
         snow_context *context = support_context();
-        snow_image *serial = serial_picture(context, s, 0, &look);
-        s->difference = largest_difference(image, serial);
-        snow_image_free(serial);
+        snow_image *generation = serial_picture(context, s, 0, &look);
+        s->difference = largest_difference(image, generation);
+        snow_image_free(generation);
         snow_context_free(context);
     } else if (image)
         s->difference = INFINITY; /* not on the others */
     snow_image_free(image);
     image = NULL;
-    snow_insitu_figures figures;
-    SNOW_TRY(snow_insitu_measure(insitu, &figures));
-    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    snow_insitu_stats figures;
+    SNOW_TRY(snow_insitu_get_stats(insitu, &figures));
+    SNOW_TRY(snow_insitu_render(insitu, &image));
     snow_image_free(image);
     if (rank == 0) {
         s->figures = figures;
         s->encoded = (uint64_t)snow_frame_stats(insitu->frame)->encoded;
         s->halvings = snow_frame_stats(insitu->frame)->halvings[0];
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* One that is made otherwise, before the others. */
@@ -326,7 +327,7 @@ static snow_status draw_deterministic(snow_insitu *insitu, const scene *s) {
     settings.deterministic = 1;
     SNOW_TRY(snow_insitu_set_settings(insitu, &settings));
     SNOW_TRY(snow_insitu_update(insitu));
-    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    SNOW_TRY(snow_insitu_render(insitu, &image));
     snow_image_free(image);
     return snow_insitu_set_settings(insitu, &s->settings);
 }
@@ -337,16 +338,16 @@ static snow_status run_rank(snow_comm *comm, void *user) {
     snow_insitu *insitu = NULL;
     int rank = snow_comm_rank(comm);
     SNOW_TRY(snow_insitu_new(comm, &insitu));
-    snow_context_set_limit(insitu->context, OUTER_LIMIT);
+    snow_context_set_memory_limit(insitu->context, OUTER_LIMIT);
     snow_status status = tell_picture(insitu, s);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = tell_bricks(insitu, s, rank, 0, &m);
-    if (status == SNOW_OK && s->first_deterministic)
+    if (status == SNOW_STATUS_OK && s->first_deterministic)
         status = draw_deterministic(insitu, s);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = draw_twice(insitu, s, rank);
-    if (status == SNOW_OK && insitu->context->limit != OUTER_LIMIT)
-        status = snow_fail(insitu->context, SNOW_FAILED,
+    if (status == SNOW_STATUS_OK && insitu->context->limit != OUTER_LIMIT)
+        status = snow_fail(insitu->context, SNOW_STATUS_FAILED,
                            "the context's own limit is lost");
     snow_insitu_free(insitu);
     free_memory(&m);
@@ -356,10 +357,10 @@ static snow_status run_rank(snow_comm *comm, void *user) {
 static void run_scene(scene *s) {
     snow_context *context = support_context();
     s->difference = INFINITY;
-    snow_status status = snow_comm_threads(context, s->ranks, run_rank, s);
-    if (status != SNOW_OK)
+    snow_status status = snow_comm_run_threads(context, s->ranks, run_rank, s);
+    if (status != SNOW_STATUS_OK)
         print_error("%d ranks: %s\n", s->ranks, snow_context_message(context));
-    assert_int_equal(status, SNOW_OK);
+    assert_int_equal(status, SNOW_STATUS_OK);
     snow_context_free(context);
 }
 
@@ -405,14 +406,15 @@ static void drafts_of_few_pixels_do(void **state) {
     (void)state;
     static const int cuts[][4] = {
         {1, 1, 1, 1}, {2, 1, 1, 2}, {3, 1, 3, 1}, {8, 2, 2, 2}, {12, 3, 2, 2}};
-    for (size_t i = 0; i < 4 * sizeof cuts / sizeof *cuts; i++) {
+    for (size_t i = 0; i < 4 * sizeof cuts / sizeof *cuts;
+         i += support_stride(3)) {
         const int *cut = cuts[i / 4];
         scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
         s.settings.quality = SNOW_QUALITY_DRAFT;
         s.view.width = s.view.height = 15;
         s.view.azimuth = 30.0 * (double)i;
         s.fades = i % 4 == 1;
-        s.balance = i % 4 == 2 ? SNOW_BALANCE_RECUT : s.balance;
+        s.balance = i % 4 == 2 ? SNOW_BALANCE_REPARTITION : s.balance;
         s.layout = i % 4 == 3;
         expect_serial(&s, "a small draft");
         assert_int_equal(s.halvings, 1);
@@ -428,16 +430,16 @@ static void every_mode_does(void **state) {
                                       SNOW_MODE_ISO};
     static const int cuts[][4] = {{1, 1, 1, 1}, {2, 1, 1, 2}, {3, 1, 3, 1},
                                   {3, 1, 2, 3}, {8, 2, 2, 2}, {12, 3, 2, 2}};
-    static const snow_type types[] = {SNOW_FLOAT32, SNOW_UINT8, SNOW_INT16,
-                                      SNOW_FLOAT64};
-    for (int n = 0; n < 60; n++) {
+    static const snow_type types[] = {SNOW_TYPE_FLOAT32, SNOW_TYPE_UINT8,
+                                      SNOW_TYPE_INT16, SNOW_TYPE_FLOAT64};
+    for (int n = 0; n < 60; n += (int)support_stride(7)) {
         const int *cut = cuts[n / 5 % 6];
         scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
         s.settings.mode = modes[n % 5];
         s.type = types[n / 3 % 4];
         s.settings.iso = 90 * scale_of(s.type);
         s.settings.method = n / 7 % 3 ? SNOW_METHOD_AUTO : SNOW_METHOD_TESTED;
-        s.balance = n / 4 % 3 == 1 ? SNOW_BALANCE_RECUT : s.balance;
+        s.balance = n / 4 % 3 == 1 ? SNOW_BALANCE_REPARTITION : s.balance;
         s.layout = n / 2 % 3;
         s.halo = n / 11 % 2;
         s.view.azimuth = 37.0 * n;
@@ -453,11 +455,11 @@ static void every_mode_does(void **state) {
 static void a_gradient_opacity_does(void **state) {
     (void)state;
     static const int cuts[][4] = {{1, 1, 1, 1}, {3, 1, 3, 1}, {4, 2, 2, 1}};
-    for (int n = 0; n < 12; n++) {
+    for (int n = 0; n < 12; n += (int)support_stride(5)) {
         const int *cut = cuts[n % 3];
         scene s = make_scene(cut[0], cut[1], cut[2], cut[3]);
         s.fades = true;
-        s.type = n % 2 ? SNOW_INT16 : SNOW_FLOAT32;
+        s.type = n % 2 ? SNOW_TYPE_INT16 : SNOW_TYPE_FLOAT32;
         s.settings.quality = n / 3 % 2 ? SNOW_QUALITY_HIGH : s.settings.quality;
         s.settings.shade = n / 6 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
         expect_serial(&s, "gradient opacity");
@@ -469,8 +471,9 @@ static void a_gradient_opacity_does(void **state) {
 
 static void every_type_and_layout_does(void **state) {
     (void)state;
-    static const snow_type types[] = {SNOW_UINT8, SNOW_UINT16, SNOW_INT16,
-                                      SNOW_FLOAT32, SNOW_FLOAT64};
+    static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_UINT16,
+                                      SNOW_TYPE_INT16, SNOW_TYPE_FLOAT32,
+                                      SNOW_TYPE_FLOAT64};
     for (int type = 0; type < 5; type++)
         for (int layout = 0; layout < 3; layout++) {
             scene s = make_scene(3, 1, 2, 3);
@@ -536,7 +539,7 @@ static void ranks_without_bricks_help(void **state) {
     s.owner[0] = 3;
     s.owner[1] = 1;
     expect_serial(&s, "empty ranks");
-    s.balance = SNOW_BALANCE_RECUT;
+    s.balance = SNOW_BALANCE_REPARTITION;
     expect_serial(&s, "empty ranks, recut");
     assert_true(s.figures.recut);
 }
@@ -569,13 +572,13 @@ static snow_status scatter_rank(snow_comm *comm, void *user) {
     tell_picture(insitu, &all->scene);
     tell_bricks(insitu, &all->scene, rank, 0, &m);
     SNOW_TRY(snow_insitu_update(insitu));
-    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    SNOW_TRY(snow_insitu_render(insitu, &image));
     if (rank == 0)
         memcpy(all->whole, snow_image_pixels(image), sizeof all->whole);
     snow_image_free(image);
     how.scattered = 1;
     snow_insitu_set_ranks(insitu, &how);
-    SNOW_TRY(snow_insitu_draw(insitu, &image));
+    SNOW_TRY(snow_insitu_render(insitu, &image));
     /* One after the other. */
     for (int turn = 0; turn < all->scene.ranks; turn++) {
         for (size_t n = 0; turn == rank && n < floats; n++) {
@@ -583,12 +586,12 @@ static snow_status scatter_rank(snow_comm *comm, void *user) {
             all->with_pixels[rank] += value != 0;
             all->sum[n] += value;
         }
-        SNOW_TRY(snow_comm_agree(comm, SNOW_OK));
+        SNOW_TRY(snow_comm_agree_status(comm, SNOW_STATUS_OK));
     }
     snow_image_free(image);
     snow_insitu_free(insitu);
     free_memory(&m);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void parts_of_a_scattered_picture_add_up_to_it(void **state) {
@@ -596,7 +599,8 @@ static void parts_of_a_scattered_picture_add_up_to_it(void **state) {
     scattered *all = calloc(1, sizeof *all);
     all->scene = make_scene(4, 2, 1, 2);
     snow_context *context = support_context();
-    assert_int_equal(snow_comm_threads(context, 4, scatter_rank, all), SNOW_OK);
+    assert_int_equal(snow_comm_run_threads(context, 4, scatter_rank, all),
+                     SNOW_STATUS_OK);
     assert_memory_equal(all->sum, all->whole, sizeof all->sum);
     int ranks = 0;
     for (int rank = 0; rank < 4; rank++)
@@ -693,14 +697,14 @@ static snow_status place_rank(snow_comm *comm, void *user) {
     SNOW_TRY(snow_insitu_new(comm, &insitu));
     /* Twice: what is as it was stays. */
     snow_status status = snow_insitu_place_bricks(insitu, &brick, 1, spacing);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_insitu_place_bricks(insitu, &brick, 1, spacing);
     if (rank == 1) {
         w->status = status;
         snprintf(w->message, sizeof w->message, "%s",
                  snow_insitu_message(insitu));
         memcpy(w->dims, insitu->whole.dims, sizeof w->dims);
-        if (status == SNOW_OK) {
+        if (status == SNOW_STATUS_OK) {
             memcpy(w->first, insitu->bricks[0].box.first, sizeof w->first);
             memcpy(w->count, insitu->bricks[0].box.count, sizeof w->count);
             assert_true(insitu->whole.matrix[0][3] == -7);
@@ -709,7 +713,7 @@ static snow_status place_rank(snow_comm *comm, void *user) {
         }
     }
     snow_insitu_free(insitu);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static world place_world(bool shared, double shift, double spacing) {
@@ -718,7 +722,8 @@ static world place_world(bool shared, double shift, double spacing) {
                .shift = shift,
                .spacing = spacing};
     snow_context *context = support_context();
-    assert_int_equal(snow_comm_threads(context, 3, place_rank, &w), SNOW_OK);
+    assert_int_equal(snow_comm_run_threads(context, 3, place_rank, &w),
+                     SNOW_STATUS_OK);
     snow_context_free(context);
     return w;
 }
@@ -727,7 +732,7 @@ static void bricks_in_the_world_find_their_grid(void **state) {
     (void)state;
     for (int shared = 0; shared < 2; shared++) {
         world w = place_world(shared, 0, 0);
-        assert_int_equal(w.status, SNOW_OK);
+        assert_int_equal(w.status, SNOW_STATUS_OK);
         assert_memory_equal(w.dims, w.scene.dims, sizeof w.dims);
         assert_memory_equal(w.first, w.scene.box[1].first, sizeof w.first);
         assert_memory_equal(w.count, w.scene.box[1].count, sizeof w.count);
@@ -737,10 +742,10 @@ static void bricks_in_the_world_find_their_grid(void **state) {
 static void bricks_that_fit_no_grid_are_refused(void **state) {
     (void)state;
     world w = place_world(false, 0.2, 0);
-    assert_int_equal(w.status, SNOW_BAD_USAGE);
+    assert_int_equal(w.status, SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(w.message, "lies at voxel 0.4 along axis 0"));
     w = place_world(false, 0, 0.5);
-    assert_int_equal(w.status, SNOW_BAD_USAGE);
+    assert_int_equal(w.status, SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(w.message, "spacings along axis 2 are from 2"));
 }
 
@@ -756,17 +761,17 @@ typedef struct movie {
     double limit_seconds;
     uint64_t limit_bytes;
     bool automatic; /* look */
-    snow_insitu_figures figures[20];
+    snow_insitu_stats figures[20];
     int64_t most_blocks; /* of all ranks at a time */
-    char told[2048];     /* remarks of rank 0 */
+    char given[2048];    /* remarks of rank 0 */
     snow_status status;
     char message[512];
 } movie;
 
 static void hear(void *user, const char *text) {
     movie *m = user;
-    size_t used = strlen(m->told);
-    snprintf(m->told + used, sizeof m->told - used, "%s\n", text);
+    size_t used = strlen(m->given);
+    snprintf(m->given + used, sizeof m->given - used, "%s\n", text);
 }
 
 /* An allocator that counts blocks. */
@@ -789,18 +794,18 @@ static void count_release(void *user, void *block) {
 static snow_status make_movie(snow_insitu *insitu, movie *m, int rank) {
     for (int step = 0; step < m->steps; step++) {
         rank_memory memory = {.count = 0};
-        snow_insitu_figures figures;
+        snow_insitu_stats figures;
         snow_status status =
             tell_bricks(insitu, &m->scene, rank, m->speed * step, &memory);
-        if (status == SNOW_OK)
+        if (status == SNOW_STATUS_OK)
             status = snow_insitu_step(insitu, step);
         free_memory(&memory);
         SNOW_TRY(status);
-        SNOW_TRY(snow_insitu_measure(insitu, &figures));
+        SNOW_TRY(snow_insitu_get_stats(insitu, &figures));
         if (rank == 0)
             m->figures[step] = figures;
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status movie_rank(snow_comm *comm, void *user) {
@@ -808,16 +813,16 @@ static snow_status movie_rank(snow_comm *comm, void *user) {
     snow_insitu *insitu = NULL;
     const snow_look automatic = {0};
     SNOW_TRY(snow_insitu_new(comm, &insitu));
-    snow_insitu_set_notice(insitu, hear, m);
+    snow_insitu_set_warning(insitu, hear, m);
     snow_status status = tell_picture(insitu, &m->scene);
-    if (status == SNOW_OK && m->automatic)
+    if (status == SNOW_STATUS_OK && m->automatic)
         status = snow_insitu_set_look(insitu, &automatic);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_output(insitu, m->pattern, NULL);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status =
             snow_insitu_set_limits(insitu, m->limit_seconds, m->limit_bytes);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = make_movie(insitu, m, snow_comm_rank(comm));
     snow_insitu_free(insitu);
     return status;
@@ -828,13 +833,13 @@ static void run_movie(movie *m, const char *folder) {
     allocations count = {0};
     const snow_allocator allocator = {count_allocate, count_release, &count};
     snow_context *context = NULL;
-    assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
     snprintf(m->pattern, sizeof m->pattern, "%s/u_%%03d.%s", folder,
              m->suffix ? m->suffix : "png");
-    m->status = snow_comm_threads(context, m->scene.ranks, movie_rank, m);
+    m->status = snow_comm_run_threads(context, m->scene.ranks, movie_rank, m);
     snprintf(m->message, sizeof m->message, "%s",
              snow_context_message(context));
-    if (m->status != SNOW_OK)
+    if (m->status != SNOW_STATUS_OK)
         print_message("%s\n", m->message);
     snow_context_free(context);
     assert_int_equal(count.blocks, 0);
@@ -871,12 +876,12 @@ static void no_step_takes_more_memory_than_the_one_before(void **state) {
             for (int n = 0; n < m.scene.bricks; n++)
                 m.scene.owner[n] = (n + n / 3) % 3;
         run_movie(&m, folder);
-        assert_int_equal(m.status, SNOW_OK);
+        assert_int_equal(m.status, SNOW_STATUS_OK);
         int64_t most_blocks = m.most_blocks;
         assert_int_equal(count_frames(folder, 6), 6);
         m.steps = 18;
         run_movie(&m, folder);
-        assert_int_equal(m.status, SNOW_OK);
+        assert_int_equal(m.status, SNOW_STATUS_OK);
         assert_int_equal(m.figures[17].pictures, 18);
         double slack = i < 2 ? 1 : 1.05;
         const snow_spread *late = &m.figures[17].bytes_held,
@@ -896,7 +901,7 @@ static snow_image *load_frame(snow_context *context, const char *folder,
     char path[300];
     snow_image *image = NULL;
     snprintf(path, sizeof path, "%s/u_%03d.png", folder, step);
-    assert_int_equal(snow_image_load(context, path, &image), SNOW_OK);
+    assert_int_equal(snow_image_load(context, path, &image), SNOW_STATUS_OK);
     return image;
 }
 
@@ -909,14 +914,14 @@ static void colours_keep_their_meaning_through_a_movie(void **state) {
     support_folder_make(folder);
     movie m = {.scene = make_scene(3, 1, 1, 3), .steps = 4, .automatic = true};
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
     snow_context *context = support_context();
     const snow_look automatic = {0};
     snow_image *first = load_frame(context, folder, 0);
-    snow_image *serial = serial_picture(context, &m.scene, 0, &automatic);
-    assert_true(largest_difference(first, serial) < 1.01 / 255);
+    snow_image *generation = serial_picture(context, &m.scene, 0, &automatic);
+    assert_true(largest_difference(first, generation) < 1.01 / 255);
     snow_image_free(first);
-    snow_image_free(serial);
+    snow_image_free(generation);
     snow_context_free(context);
     assert_int_equal(count_frames(folder, 4), 4);
     support_folder_remove(folder);
@@ -932,7 +937,7 @@ static void values_become_colours_in_files_of_colours(void **state) {
         movie m = {.scene = make_scene(3, 1, 1, 3), .steps = 1};
         m.scene.settings.mode = n ? SNOW_MODE_SUM : SNOW_MODE_MEAN;
         run_movie(&m, folder);
-        assert_int_equal(m.status, SNOW_OK);
+        assert_int_equal(m.status, SNOW_STATUS_OK);
         snow_context *context = support_context();
         snow_opacity_point scaled[5];
         snow_look look = look_of(&m.scene, scaled);
@@ -942,10 +947,12 @@ static void values_become_colours_in_files_of_colours(void **state) {
         snow_transfer *transfer = NULL;
         snow_volume_info info = {.type = m.scene.type, .dims = {1, 1, 1}};
         double voxel = 0;
-        snow_volume_share(context, &info, &voxel, &volume);
-        assert_int_equal(snow_transfer_make(volume, &look, &transfer), SNOW_OK);
-        assert_int_equal(snow_values_paint(values, transfer, 0, 200, &painted),
-                         SNOW_OK);
+        snow_volume_wrap(context, &info, &voxel, &volume);
+        assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
+                         SNOW_STATUS_OK);
+        assert_int_equal(
+            snow_image_apply_colormap(values, transfer, 0, 200, &painted),
+            SNOW_STATUS_OK);
         assert_true(largest_difference(frame, painted) < 1.01 / 255);
         snow_image_free(painted);
         snow_image_free(values);
@@ -965,12 +972,12 @@ static void sums_without_a_range_are_for_files_of_numbers(void **state) {
     movie m = {.scene = make_scene(2, 1, 1, 2), .steps = 1, .automatic = true};
     m.scene.settings.mode = SNOW_MODE_SUM;
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_BAD_USAGE);
+    assert_int_equal(m.status, SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(m.message, "share one range of sums; give"));
     assert_int_equal(count_frames(folder, 1), 0);
     m.suffix = "npy";
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
     snprintf(path, sizeof path, "%s/u_000.npy", folder);
     assert_int_equal(unlink(path), 0);
     support_folder_remove(folder);
@@ -989,13 +996,14 @@ static void values_that_are_made_larger_keep_their_outline(void **state) {
                .suffix = "npy"};
     m.scene.settings.mode = SNOW_MODE_MEAN;
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
-    assert_int_equal(m.figures[3].lowering, SNOW_LOWERED_QUARTER);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
+    assert_int_equal(m.figures[3].lowering, SNOW_DEGRADATION_QUARTER);
     snow_context *context = support_context();
     for (int step = 0; step < 4; step++) {
         snow_image *image = NULL;
         snprintf(path, sizeof path, "%s/u_%03d.npy", folder, step);
-        assert_int_equal(snow_image_load(context, path, &image), SNOW_OK);
+        assert_int_equal(snow_image_load(context, path, &image),
+                         SNOW_STATUS_OK);
         int pixels = image->width * image->height;
         empty[step] = 0;
         for (int n = 0; n < pixels; n++)
@@ -1015,9 +1023,9 @@ static void frames_of_an_earlier_run_are_kept(void **state) {
     support_folder_make(folder);
     movie m = {.scene = make_scene(2, 1, 1, 2), .steps = 1};
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_BAD_OUTPUT);
+    assert_int_equal(m.status, SNOW_STATUS_BAD_OUTPUT);
     assert_non_null(strstr(m.message, "u_000.png"));
     assert_int_equal(count_frames(folder, 1), 1);
     support_folder_remove(folder);
@@ -1033,16 +1041,16 @@ a_limit_of_time_lowers_pictures_and_then_leaves_some_out(void **state) {
                .speed = 0.02,
                .limit_seconds = 1e-7};
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
-    assert_int_equal(m.figures[0].lowering, SNOW_LOWERED_NOT);
-    assert_int_equal(m.figures[1].lowering, SNOW_LOWERED_DRAFT);
-    assert_int_equal(m.figures[2].lowering, SNOW_LOWERED_HALF);
-    assert_int_equal(m.figures[3].lowering, SNOW_LOWERED_QUARTER);
-    assert_int_equal(m.figures[4].lowering, SNOW_LOWERED_SKIPPED);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
+    assert_int_equal(m.figures[0].lowering, SNOW_DEGRADATION_NONE);
+    assert_int_equal(m.figures[1].lowering, SNOW_DEGRADATION_DRAFT);
+    assert_int_equal(m.figures[2].lowering, SNOW_DEGRADATION_HALF);
+    assert_int_equal(m.figures[3].lowering, SNOW_DEGRADATION_QUARTER);
+    assert_int_equal(m.figures[4].lowering, SNOW_DEGRADATION_SKIPPED);
     assert_int_equal(m.figures[11].pictures, 4);
     assert_int_equal(m.figures[11].skipped, 8);
-    assert_non_null(strstr(m.told, "quarter of the size"));
-    assert_non_null(strstr(m.told, "left out"));
+    assert_non_null(strstr(m.given, "quarter of the size"));
+    assert_non_null(strstr(m.given, "left out"));
     /* All frames have the size that was asked for. */
     snow_context *context = support_context();
     snow_image *image = load_frame(context, folder, 3);
@@ -1050,11 +1058,11 @@ a_limit_of_time_lowers_pictures_and_then_leaves_some_out(void **state) {
     assert_int_equal(snow_image_height(image), m.scene.view.height);
     snow_opacity_point scaled[5];
     snow_look look = look_of(&m.scene, scaled);
-    snow_image *serial = serial_picture(context, &m.scene, 0.06, &look);
+    snow_image *generation = serial_picture(context, &m.scene, 0.06, &look);
     snow_image_difference d;
-    assert_int_equal(snow_image_compare(image, serial, &d), SNOW_OK);
+    assert_int_equal(snow_image_compare(image, generation, &d), SNOW_STATUS_OK);
     assert_true(d.psnr > 20); /* a quarter of the size, but the same */
-    snow_image_free(serial);
+    snow_image_free(generation);
     snow_image_free(image);
     snow_context_free(context);
     assert_int_equal(count_frames(folder, 12), 4);
@@ -1070,10 +1078,10 @@ static void a_limit_that_suffices_lowers_nothing(void **state) {
                .limit_seconds = 1000,
                .limit_bytes = UINT64_C(1) << 32};
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
     assert_int_equal(m.figures[3].pictures, 4);
-    assert_int_equal(m.figures[3].lowering, SNOW_LOWERED_NOT);
-    assert_string_equal(m.told, "");
+    assert_int_equal(m.figures[3].lowering, SNOW_DEGRADATION_NONE);
+    assert_string_equal(m.given, "");
     assert_int_equal(count_frames(folder, 4), 4);
     support_folder_remove(folder);
 }
@@ -1086,11 +1094,11 @@ static void a_limit_of_memory_is_kept_and_told(void **state) {
                .steps = 6,
                .limit_bytes = 40000}; /* less than the voxels of a rank */
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
     assert_int_equal(m.figures[5].pictures, 0);
     assert_int_equal(m.figures[5].skipped, 6);
     assert_true(m.figures[5].bytes_peak.most <= 40000);
-    assert_non_null(strstr(m.told, "under a limit"));
+    assert_non_null(strstr(m.given, "under a limit"));
     assert_int_equal(count_frames(folder, 6), 0);
     support_folder_remove(folder);
 }
@@ -1105,16 +1113,16 @@ static void pictures_are_smaller_where_memory_lacks(void **state) {
     m.scene.view.width = 900;
     m.scene.view.height = 700;
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
     double most = m.figures[7].bytes_peak.most;
     assert_int_equal(count_frames(folder, 8), 8);
     m.limit_bytes = (uint64_t)(0.75 * most);
     run_movie(&m, folder);
-    assert_int_equal(m.status, SNOW_OK);
+    assert_int_equal(m.status, SNOW_STATUS_OK);
     assert_true(m.figures[7].pictures > 0);
-    assert_int_equal(m.figures[0].lowering, SNOW_LOWERED_SKIPPED);
+    assert_int_equal(m.figures[0].lowering, SNOW_DEGRADATION_SKIPPED);
     assert_true(m.figures[0].bytes_held.most < 0.01 * most);
-    assert_true(m.figures[7].lowering > SNOW_LOWERED_NOT);
+    assert_true(m.figures[7].lowering > SNOW_DEGRADATION_NONE);
     assert_true(m.figures[7].bytes_peak.most <= (double)m.limit_bytes);
     assert_int_equal(count_frames(folder, 8), m.figures[7].pictures);
     support_folder_remove(folder);
@@ -1149,8 +1157,8 @@ static snow_status draw_once(snow_comm *comm, void *user) {
     tell_picture(insitu, s);
     tell_bricks(insitu, s, snow_comm_rank(comm), 0, &m);
     snow_status status = snow_insitu_update(insitu);
-    if (status == SNOW_OK)
-        status = snow_insitu_draw(insitu, &image);
+    if (status == SNOW_STATUS_OK)
+        status = snow_insitu_render(insitu, &image);
     snow_image_free(image);
     snow_insitu_free(insitu);
     free_memory(&m);
@@ -1162,25 +1170,26 @@ static snow_status draw_once(snow_comm *comm, void *user) {
 static void no_block_that_is_refused_hangs_or_leaks(void **state) {
     (void)state;
     scene s = make_scene(3, 3, 1, 2);
-    snow_status status = SNOW_NO_MEMORY;
+    snow_status status = SNOW_STATUS_NO_MEMORY;
     int64_t refused = 0;
     for (int n = 0; n < s.bricks; n++)
         s.owner[n] = n % 3 == 0 ? 2 : n / 3;
-    for (int64_t n = 1; status != SNOW_OK; n += n < 100 ? 1 : 3) {
+    for (int64_t n = 1; status != SNOW_STATUS_OK; n += n < 100 ? 1 : 3) {
         miser m = {.until = n};
         const snow_allocator allocator = {miser_allocate, miser_release, &m};
         snow_context *context = NULL;
-        assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
-        status = snow_comm_threads(context, s.ranks, draw_once, &s);
+        assert_int_equal(snow_context_new(&allocator, &context),
+                         SNOW_STATUS_OK);
+        status = snow_comm_run_threads(context, s.ranks, draw_once, &s);
         refused += m.until < 0;
-        if (status != SNOW_OK && status != SNOW_NO_MEMORY)
+        if (status != SNOW_STATUS_OK && status != SNOW_STATUS_NO_MEMORY)
             fail_msg("block %lld: %s", (long long)n,
                      snow_context_message(context));
         if (m.until >= 0) /* there were no more */
-            assert_int_equal(status, SNOW_OK);
-        else if (status != SNOW_OK)
-            assert_int_equal(status, SNOW_NO_MEMORY);
-        status = m.until >= 0 ? SNOW_OK : SNOW_NO_MEMORY;
+            assert_int_equal(status, SNOW_STATUS_OK);
+        else if (status != SNOW_STATUS_OK)
+            assert_int_equal(status, SNOW_STATUS_NO_MEMORY);
+        status = m.until >= 0 ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
         snow_context_free(context);
         if (m.blocks)
             fail_msg("block %lld: %lld are left", (long long)n,
@@ -1209,7 +1218,7 @@ static const char *const fault_words[FAULTS] = {
     "rank 1: brick 0 has no voxels",
     "voxels are float32 on one rank and float64 on another",
     "ranks were told different",
-    "held twice",
+    "belongs to two ranks",
     "no rank holds",
     "there is no grid",
     "there is no path"};
@@ -1233,7 +1242,7 @@ static void make_fault(snow_insitu *insitu, faulty *f, int rank) {
     if (f->fault == FAULT_VOXELS)
         snow_insitu_set_brick(insitu, 0, box->first, box->count, NULL);
     if (f->fault == FAULT_TYPE)
-        snow_insitu_set_voxels(insitu, 0, SNOW_FLOAT64, nothing, NULL);
+        snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_FLOAT64, nothing, NULL);
     if (f->fault == FAULT_VIEW) {
         view.azimuth++;
         snow_insitu_set_view(insitu, &view);
@@ -1244,7 +1253,7 @@ static void make_fault(snow_insitu *insitu, faulty *f, int rank) {
         count[2]--;
     if (f->fault == FAULT_OVERLAP || f->fault == FAULT_LACK) {
         snow_insitu_set_brick(insitu, 0, box->first, count, NULL);
-        snow_insitu_set_voxels(insitu, 0, SNOW_FLOAT32, nothing, NULL);
+        snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_FLOAT32, nothing, NULL);
     }
 }
 
@@ -1269,10 +1278,10 @@ static snow_status faulty_rank(snow_comm *comm, void *user) {
     m.count = 0;
     tell_picture(insitu, &f->scene);
     tell_bricks(insitu, &f->scene, rank, 0, &m);
-    f->recovers[rank] = snow_insitu_update(insitu) == SNOW_OK;
+    f->recovers[rank] = snow_insitu_update(insitu) == SNOW_STATUS_OK;
     snow_insitu_free(insitu);
     free_memory(&m);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void what_is_wrong_on_one_rank_is_told_to_all(void **state) {
@@ -1280,10 +1289,10 @@ static void what_is_wrong_on_one_rank_is_told_to_all(void **state) {
     for (int n = 0; n < FAULTS; n++) {
         snow_context *context = support_context();
         faulty f = {.scene = make_scene(3, 1, 1, 3), .fault = (fault)n};
-        assert_int_equal(snow_comm_threads(context, 3, faulty_rank, &f),
-                         SNOW_OK);
+        assert_int_equal(snow_comm_run_threads(context, 3, faulty_rank, &f),
+                         SNOW_STATUS_OK);
         for (int rank = 0; rank < 3; rank++) {
-            assert_int_equal(f.status[rank], SNOW_BAD_USAGE);
+            assert_int_equal(f.status[rank], SNOW_STATUS_BAD_USAGE);
             if (!strstr(f.message[rank], fault_words[n]))
                 fail_msg("fault %d, rank %d: %s", n, rank, f.message[rank]);
             assert_true(f.recovers[rank]);
@@ -1302,31 +1311,34 @@ static void setters_refuse_what_cannot_be(void **state) {
     const snow_halo halo = {{0, -1, 0}, {0, 0, 0}};
     const snow_look look = {.preset = "nothing"};
     char voxel = 0;
-    assert_int_equal(snow_comm_self(context, &comm), SNOW_OK);
-    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_OK);
+    assert_int_equal(snow_comm_new_self(context, &comm), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
     assert_int_equal(snow_insitu_set_brick(insitu, 0, zero, dims, NULL),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_insitu_set_grid(insitu, none, NULL, NULL),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_insitu_set_grid(insitu, dims, NULL, flat),
-                     SNOW_BAD_USAGE);
-    assert_int_equal(snow_insitu_set_grid(insitu, dims, NULL, NULL), SNOW_OK);
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_insitu_set_grid(insitu, dims, NULL, NULL),
+                     SNOW_STATUS_OK);
     assert_int_equal(snow_insitu_set_brick(insitu, -1, zero, dims, NULL),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_insitu_set_brick(insitu, 0, zero, dims, &halo),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(
-        snow_insitu_set_voxels(insitu, 0, SNOW_UINT8, &voxel, NULL),
-        SNOW_BAD_USAGE);
-    assert_int_equal(snow_insitu_set_look(insitu, &look), SNOW_BAD_USAGE);
+        snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_UINT8, &voxel, NULL),
+        SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_insitu_set_look(insitu, &look),
+                     SNOW_STATUS_BAD_USAGE);
     static const char *const patterns[] = {
         "a.png", "a_%s.png", "a_%d%d.png", "a_%04x.png", "a_%099d.png", "%"};
     for (int i = 0; i < 6; i++)
         assert_int_equal(snow_insitu_set_output(insitu, patterns[i], NULL),
-                         SNOW_BAD_USAGE);
-    assert_int_equal(snow_insitu_set_output(insitu, "a_%d.png", NULL), SNOW_OK);
+                         SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_insitu_set_output(insitu, "a_%d.png", NULL),
+                     SNOW_STATUS_OK);
     /* The first of them is what the next collective call tells. */
-    assert_int_equal(snow_insitu_update(insitu), SNOW_BAD_USAGE);
+    assert_int_equal(snow_insitu_update(insitu), SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_insitu_message(insitu), "there is no grid"));
     snow_insitu_free(insitu);
     snow_comm_free(comm);
@@ -1341,10 +1353,10 @@ static void an_adopted_communicator_goes_with_it(void **state) {
     snow_context *context = NULL;
     snow_comm *comm = NULL;
     snow_insitu *insitu = NULL;
-    assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
-    assert_int_equal(snow_comm_self(context, &comm), SNOW_OK);
-    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_OK);
-    snow_insitu_adopt_comm(insitu, true);
+    assert_int_equal(snow_context_new(&allocator, &context), SNOW_STATUS_OK);
+    assert_int_equal(snow_comm_new_self(context, &comm), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
+    snow_insitu_own_comm(insitu, true);
     snow_insitu_free(insitu);
     assert_int_equal(count.blocks, 0);
 }

@@ -15,26 +15,28 @@ static void make_steps(image_fixture *f, const char *recipe, uint64_t sums[2]) {
     snow_recipe r;
     for (int i = 0; i < 12 * 12 * 12; i++)
         field[i] = (float)(i % 12);
-    assert_int_equal(snow_comm_self(f->context, &comm), SNOW_OK);
-    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_OK);
+    assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
     assert_int_equal(
         snow_recipe_parse(f->context, "text", recipe, strlen(recipe), &r),
-        SNOW_OK);
+        SNOW_STATUS_OK);
     r.output = support_image_path(f, "s_%d.png");
     r.width = r.height = 160;
-    assert_int_equal(snow_insitu_set_grid(insitu, dims, NULL, NULL), SNOW_OK);
+    assert_int_equal(snow_insitu_set_grid(insitu, dims, NULL, NULL),
+                     SNOW_STATUS_OK);
     assert_int_equal(snow_insitu_set_brick(insitu, 0, first, dims, NULL),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_int_equal(
-        snow_insitu_set_voxels(insitu, 0, SNOW_FLOAT32, field, NULL), SNOW_OK);
-    assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_OK);
+        snow_insitu_set_voxels(insitu, 0, SNOW_TYPE_FLOAT32, field, NULL),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_STATUS_OK);
     for (int step = 0; step < 2; step++) {
         snow_image *image = NULL;
         char name[8] = {'s', '_', (char)('0' + step), '.', 'p', 'n', 'g', 0};
-        assert_int_equal(snow_insitu_step(insitu, step), SNOW_OK);
+        assert_int_equal(snow_insitu_step(insitu, step), SNOW_STATUS_OK);
         assert_int_equal(
             snow_image_load(f->context, support_image_path(f, name), &image),
-            SNOW_OK);
+            SNOW_STATUS_OK);
         sums[step] = snow_image_checksum(image);
         snow_image_free(image);
         remove(f->path);
@@ -61,11 +63,12 @@ static void a_depth_is_refused_in_situ(void **state) {
     snow_comm *comm = NULL;
     snow_insitu *insitu = NULL;
     snow_recipe r;
-    assert_int_equal(snow_comm_self(f->context, &comm), SNOW_OK);
-    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_OK);
+    assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
+    assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
     assert_int_equal(
-        snow_recipe_parse(f->context, "text", text, strlen(text), &r), SNOW_OK);
-    assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_BAD_USAGE);
+        snow_recipe_parse(f->context, "text", text, strlen(text), &r),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_recipe_apply(&r, insitu), SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(snow_comm_context(comm)),
                            "\"depth\" is for pictures of files"));
     snow_recipe_clear(&r);

@@ -6,10 +6,10 @@
  * With --time: nanoseconds per call of each kernel and level instead. */
 #include <math.h>
 
-#include "classify/sample.h"
+#include "classify/sample/sample.h"
 #include "composite/tile.h"
-#include "encode/windows.h"
-#include "splat/rows.h"
+#include "encode/decode.h"
+#include "splat/separable/rows.h"
 #include "support.h"
 #include "warp/warp.h"
 
@@ -234,7 +234,8 @@ static double lay_pixel(const tile_case *t, int cell, int phase_v, int n,
 }
 
 /* The plain loop; cells that rounding may decide about go into *unsure. */
-static uint64_t lay_tile(const tile_case *t, double *pixels, uint64_t *unsure) {
+static uint64_t composite_tile(const tile_case *t, double *pixels,
+                               uint64_t *unsure) {
     uint64_t finished = 0;
     *unsure = 0;
     for (int cell = 0; cell < t->cells; cell++) {
@@ -291,7 +292,7 @@ static void check_tile(const tile_case *t, double *most) {
     assert_true(out && avx2 && plain);
     for (size_t n = 0; n < t->pixels; n++)
         plain[n] = (double)t->before[n];
-    uint64_t unsure, finished = lay_tile(t, plain, &unsure), of_avx2 = 0;
+    uint64_t unsure, finished = composite_tile(t, plain, &unsure), of_avx2 = 0;
     for (size_t level = 0; level < COUNT(levels); level++) {
         if (!snow_isa_runs(levels[level]))
             continue;
@@ -545,49 +546,49 @@ typedef struct window_case {
     int64_t column;
     uint64_t wanted;
     snow_mask_rows rows;
-    uint64_t bits[SNOW_WINDOW_ROWS * 8];
-    uint32_t rank[SNOW_WINDOW_ROWS * 8];
+    uint64_t bits[SNOW_DECODE_ROWS * 8];
+    uint32_t rank[SNOW_DECODE_ROWS * 8];
 } window_case;
 
 static bool bit_at(const window_case *w, int row, int64_t column) {
     if (column < 0 || column >= w->columns)
         return false;
     uint64_t word =
-        w->bits[(size_t)(column + SNOW_WINDOW_PAD) / 64 * SNOW_WINDOW_ROWS +
+        w->bits[(size_t)(column + SNOW_DECODE_PAD) / 64 * SNOW_DECODE_ROWS +
                 (size_t)row];
-    return word >> (column + SNOW_WINDOW_PAD) % 64 & 1;
+    return word >> (column + SNOW_DECODE_PAD) % 64 & 1;
 }
 
 static void draw_rows(window_case *w, int columns, uint64_t *random) {
     w->columns = columns;
-    w->rows.words = snow_window_words(columns);
+    w->rows.words = snow_decode_words(columns);
     w->rows.bits = w->bits;
     w->rows.rank = w->rank;
-    w->rows.held = draw_mask(random, SNOW_WINDOW_ROWS);
+    w->rows.held = draw_mask(random, SNOW_DECODE_ROWS);
     for (size_t n = 0; n < COUNT(w->bits); n++) {
         w->bits[n] = support_random(random); /* of rows that are not held */
         w->rank[n] = 0xDEADBEEF;
     }
-    for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
+    for (int row = 0; row < SNOW_DECODE_ROWS; row++) {
         if (!(w->rows.held >> row & 1))
             continue;
         uint64_t *words = w->bits + row;
         int kind = draw(random, 5);
         for (size_t word = 0; word < w->rows.words; word++)
-            words[word * SNOW_WINDOW_ROWS] = 0;
-        for (int n = SNOW_WINDOW_PAD; n < SNOW_WINDOW_PAD + columns; n++)
+            words[word * SNOW_DECODE_ROWS] = 0;
+        for (int n = SNOW_DECODE_PAD; n < SNOW_DECODE_PAD + columns; n++)
             if (kind == 0 || (kind == 1 && draw(random, 40) == 0) ||
                 (kind > 1 && draw(random, 2)))
-                words[n / 64 * SNOW_WINDOW_ROWS] |= UINT64_C(1) << n % 64;
+                words[n / 64 * SNOW_DECODE_ROWS] |= UINT64_C(1) << n % 64;
     }
 }
 
 /* The voxels of a row before each of its words. */
 static void rank_rows(window_case *w) {
-    for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
+    for (int row = 0; row < SNOW_DECODE_ROWS; row++) {
         uint32_t rank = 0;
         for (size_t word = 0; word < w->rows.words; word++) {
-            size_t at = word * SNOW_WINDOW_ROWS + (size_t)row;
+            size_t at = word * SNOW_DECODE_ROWS + (size_t)row;
             if (w->rows.held >> row & 1)
                 w->rank[at] = rank;
             for (int n = 0; n < 64; n++)
@@ -597,13 +598,13 @@ static void rank_rows(window_case *w) {
 }
 
 static void check_window(const window_case *w, snow_isa isa) {
-    uint64_t bits[SNOW_WINDOW_ROWS], found = 0;
-    uint32_t before[SNOW_WINDOW_ROWS];
+    uint64_t bits[SNOW_DECODE_ROWS], found = 0;
+    uint32_t before[SNOW_DECODE_ROWS];
     memset(bits, GUARD_BYTE, sizeof bits);
     memset(before, GUARD_BYTE, sizeof before);
-    uint64_t got = snow_window_fns_of(isa)->windows(
+    uint64_t got = snow_decode_fns_of(isa)->windows(
         &w->rows, w->wanted, w->column, w->count, bits, before);
-    for (int row = 0; row < SNOW_WINDOW_ROWS; row++) {
+    for (int row = 0; row < SNOW_DECODE_ROWS; row++) {
         uint64_t window = 0;
         uint32_t voxels = 0;
         for (int n = 0; n < w->count; n++)
@@ -639,7 +640,7 @@ static void windows_at_every_column(void **state) {
                 w.column = draw(&random, columns + w.count - 1) - w.count + 1;
                 if (n % 4 == 0)
                     w.column = n % 8 ? columns - 1 : 1 - w.count;
-                w.wanted = draw_mask(&random, SNOW_WINDOW_ROWS);
+                w.wanted = draw_mask(&random, SNOW_DECODE_ROWS);
                 check_window(&w, levels[level]);
             }
         }
@@ -654,7 +655,7 @@ static void windows_at_every_column(void **state) {
 typedef struct band_case {
     snow_context *context;
     snow_volume *volume;
-    snow_coder coder;
+    snow_quantizer quantizer;
     snow_bands bands;
     int columns, rows;
     unsigned char voxels[SLICES * 70 * 130];
@@ -679,39 +680,41 @@ static void begin_bands(band_case *b, snow_encoding encoding,
     static const snow_color_point white[] = {{0, 1, 1, 1}};
     static const snow_opacity_point step[] = {{128, 0}, {128, 0.5}};
     snow_volume_info info = {.dims = {b->columns, b->rows, SLICES},
-                             .type = SNOW_UINT8};
+                             .type = SNOW_TYPE_UINT8};
     snow_view view;
     snow_placement placement;
     snow_transfer *transfer = NULL;
     fill_slices(b, random);
     b->context = support_context();
+    assert_int_equal(snow_volume_wrap(b->context, &info, b->voxels, &b->volume),
+                     SNOW_STATUS_OK);
     assert_int_equal(
-        snow_volume_share(b->context, &info, b->voxels, &b->volume), SNOW_OK);
+        snow_transfer_new(b->context, white, 1, step, 2, &transfer),
+        SNOW_STATUS_OK);
     assert_int_equal(
-        snow_transfer_new(b->context, white, 1, step, 2, &transfer), SNOW_OK);
-    assert_int_equal(
-        snow_coder_make(b->context, b->volume, transfer, 0, &b->coder),
-        SNOW_OK);
-    assert_int_equal(snow_view_named(b->context, "+z", &view), SNOW_OK);
+        snow_quantizer_make(b->context, b->volume, transfer, 0, &b->quantizer),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_view_from_name(b->context, "+z", &view),
+                     SNOW_STATUS_OK);
     assert_int_equal(snow_placement_make(b->context,
-                                         snow_volume_describe(b->volume), &view,
+                                         snow_volume_get_info(b->volume), &view,
                                          &placement),
-                     SNOW_OK);
-    snow_bands_order order = {.volume = b->volume,
-                              .placement = &placement,
-                              .coder = &b->coder,
-                              .encoding = encoding,
-                              .slice_count = SLICES,
-                              .isa = snow_isa_resolve(SNOW_ISA_AUTO),
-                              .threads = 1};
+                     SNOW_STATUS_OK);
+    snow_bands_params order = {.volume = b->volume,
+                               .placement = &placement,
+                               .quantizer = &b->quantizer,
+                               .encoding = encoding,
+                               .slice_count = SLICES,
+                               .isa = snow_isa_resolve(SNOW_ISA_AUTO),
+                               .threads = 1};
     b->bands = (snow_bands){.context = b->context};
-    assert_int_equal(snow_bands_encode(&b->bands, &order), SNOW_OK);
+    assert_int_equal(snow_bands_encode(&b->bands, &order), SNOW_STATUS_OK);
     snow_transfer_free(transfer);
 }
 
 static void end_bands(band_case *b) {
     snow_bands_fini(&b->bands);
-    snow_coder_fini(b->context, &b->coder);
+    snow_quantizer_fini(b->context, &b->quantizer);
     snow_volume_close(b->volume);
     assert_int_equal(snow_context_bytes(b->context), 0);
     snow_context_free(b->context);
@@ -727,9 +730,9 @@ static void check_read_row(const band_case *b, const snow_mask_rows *rows,
     const uint32_t *rank = rows->rank + n;
     uint32_t count = 0;
     for (size_t at = 0; at < 64 * rows->words; at++) {
-        size_t column = at - SNOW_WINDOW_PAD; /* far beyond, before the first */
+        size_t column = at - SNOW_DECODE_PAD; /* far beyond, before the first */
         bool kept = column < (size_t)b->columns && voxels[column] >= 128;
-        size_t word = at / 64 * SNOW_WINDOW_ROWS;
+        size_t word = at / 64 * SNOW_DECODE_ROWS;
         if (at % 64 == 0 && rank[word] != count)
             fail_msg("%s ranks word %zu of row %d of %dx%d %u, not %u", name,
                      at / 64, (int)row, b->columns, b->rows, rank[word], count);
@@ -758,27 +761,27 @@ static void check_any(const band_case *b, const snow_mask_rows *rows, int slice,
                       int64_t first) {
     for (int column = 0; column < b->columns; column++) {
         bool any = false;
-        for (int n = 0; n < SNOW_WINDOW_ROWS; n++)
+        for (int n = 0; n < SNOW_DECODE_ROWS; n++)
             any |= rows->held >> n & 1 &&
                    b->voxels[((size_t)slice * (size_t)b->rows +
                               (size_t)(first + n)) *
                                  (size_t)b->columns +
                              (size_t)column] >= 128;
-        assert_int_equal(snow_window_any(rows, column, 1), any);
+        assert_int_equal(snow_decode_any(rows, column, 1), any);
     }
-    assert_false(snow_window_any(rows, b->columns, SNOW_WINDOW_MOST));
-    assert_false(snow_window_any(rows, -SNOW_WINDOW_MOST, SNOW_WINDOW_MOST));
+    assert_false(snow_decode_any(rows, b->columns, SNOW_WINDOW_MOST));
+    assert_false(snow_decode_any(rows, -SNOW_WINDOW_MOST, SNOW_WINDOW_MOST));
     assert_int_equal(
-        snow_window_any(rows, 1 - SNOW_WINDOW_MOST, SNOW_WINDOW_MOST),
-        snow_window_any(rows, 0, 1));
+        snow_decode_any(rows, 1 - SNOW_WINDOW_MOST, SNOW_WINDOW_MOST),
+        snow_decode_any(rows, 0, 1));
 }
 
 static void check_read(const band_case *b, snow_isa isa, int slice,
                        int64_t first, uint64_t wanted) {
     int low = __builtin_ctzll(wanted), high = 63 - __builtin_clzll(wanted);
-    size_t words = snow_window_words(b->columns);
-    guarded bits = guarded_new(SNOW_WINDOW_ROWS * words * sizeof(uint64_t));
-    guarded rank = guarded_new(SNOW_WINDOW_ROWS * words * sizeof(uint32_t));
+    size_t words = snow_decode_words(b->columns);
+    guarded bits = guarded_new(SNOW_DECODE_ROWS * words * sizeof(uint64_t));
+    guarded rank = guarded_new(SNOW_DECODE_ROWS * words * sizeof(uint32_t));
     guarded spans =
         guarded_new(((size_t)b->columns / 2 + 1) * sizeof(snow_span));
     guarded any = guarded_new(words * sizeof(uint64_t));
@@ -787,9 +790,9 @@ static void check_read(const band_case *b, snow_isa isa, int slice,
                            .any = guarded_at(&any),
                            .words = words,
                            .fetch = first % 2 == 0};
-    snow_window_fns_of(isa)->read(&b->bands, slice, first, wanted,
+    snow_decode_fns_of(isa)->read(&b->bands, slice, first, wanted,
                                   guarded_at(&spans), &rows);
-    for (int n = 0; n < SNOW_WINDOW_ROWS; n++) {
+    for (int n = 0; n < SNOW_DECODE_ROWS; n++) {
         bool held = n >= low && n <= high && holds_voxels(b, slice, first + n);
         if ((rows.held >> n & 1) != held)
             fail_msg("%s: row %d of %dx%d is%s held", snow_isa_name(isa),
@@ -817,7 +820,7 @@ static void rows_of_bands_are_read_as_bits(void **state) {
             begin_bands(&b, (snow_encoding)encoding, &random);
             for (int n = 0; n < 12 * (int)COUNT(levels); n++) {
                 snow_isa isa = levels[(size_t)n % COUNT(levels)];
-                int count = 1 + draw(&random, SNOW_WINDOW_ROWS);
+                int count = 1 + draw(&random, SNOW_DECODE_ROWS);
                 int64_t first = draw(&random, b.rows + count) - count;
                 if (snow_isa_runs(isa))
                     check_read(&b, isa, draw(&random, SLICES), first,
@@ -831,7 +834,7 @@ static void rows_of_bands_are_read_as_bits(void **state) {
  */
 
 typedef struct warp_case {
-    snow_plane plane;
+    snow_intermediate_view plane;
     snow_warp_line line;
     snow_filter filter;
     fill kind;
@@ -941,7 +944,7 @@ static void check_warp(const warp_case *w, double *most) {
 /* A plane, with no numbers where a line has no pixels any more: those behind
  * the last pixel may be read, but must not count. */
 static float *make_plane(warp_case *w, uint64_t *random) {
-    snow_plane *p = &w->plane;
+    snow_intermediate_view *p = &w->plane;
     p->stride = (size_t)((p->width + 4) * p->channels);
     size_t floats = p->stride * (size_t)p->height;
     float *pixels = malloc(floats * sizeof *pixels);
@@ -1017,8 +1020,8 @@ typedef struct word_input {
 
 typedef struct word_output {
     float lanes[WORDS][16];
-    float weave2[32], weave4[32];
-    float fold2[4][4], fold4[4][4];
+    float interleave2[32], interleave4[32];
+    float hadd2[4][4], hadd4[4][4];
     bool less[4];
     int lane_count, popcount;
     uint32_t expand8[16], expand16[16], widen8[16], widen16[16];
@@ -1032,16 +1035,16 @@ typedef struct word_output {
 #define SELECT_SCALAR
 #include "simd/select.h"
 
-#include "support_sheared_words.tmpl.h"
+#include "support_shear_warp_words.tmpl.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
 
-#include "support_sheared_words.tmpl.h"
+#include "support_shear_warp_words.tmpl.h"
 #define SELECT_AVX512
 #include "simd/select.h"
 
-#include "support_sheared_words.tmpl.h"
+#include "support_shear_warp_words.tmpl.h"
 #endif
 
 typedef void words_fn(const word_input *in, word_output *out);
@@ -1111,8 +1114,8 @@ static void check_lanes(const word_input *in, const word_output *out,
     for (int i = 0; i < 32; i++) {
         const float *two = i / 2 % 2 ? in->b : in->a;
         const float *four = i / 4 % 2 ? in->b : in->a;
-        assert_true(same_float(out->weave2[i], two[i / 4 * 2 + i % 2]));
-        assert_true(same_float(out->weave4[i], four[i / 8 * 4 + i % 4]));
+        assert_true(same_float(out->interleave2[i], two[i / 4 * 2 + i % 2]));
+        assert_true(same_float(out->interleave4[i], four[i / 8 * 4 + i % 4]));
     }
 }
 
@@ -1136,8 +1139,8 @@ static void check_vectors(const word_input *in, const word_output *out,
         for (int i = 0; i < lanes; i++)
             less |= in->a[n * lanes + i] < in->b[n * lanes + i];
         for (int i = 0; i < 4; i++)
-            if (!same_float(out->fold4[n][i], four[i]) ||
-                (i < 2 && !same_float(out->fold2[n][i], two[i])))
+            if (!same_float(out->hadd4[n][i], four[i]) ||
+                (i < 2 && !same_float(out->hadd2[n][i], two[i])))
                 fail_msg("%s: a fold differs in lane %d", name, i);
         if (out->less[n] != less)
             fail_msg("%s: any_less is %d", name, out->less[n]);
@@ -1297,7 +1300,7 @@ static void combs_hold_the_kernel(void **state) {
         draw_lattice(&lattice, draw(&random, 3));
         lattice.slope = draw(&random, 4) ? 2 * support_uniform(&random) - 1
                                          : draw(&random, 3) * 0.5;
-        snow_taper taper = snow_taper_make(
+        snow_scaled_kernel taper = snow_scaled_kernel_make(
             (snow_kernel)draw(&random, 4), 2 + draw(&random, 8),
             draw(&random, 3) ? 3 * support_uniform(&random) : 1);
         int taps = snow_comb_taps(&taper);
@@ -1313,8 +1316,8 @@ static void combs_hold_the_kernel(void **state) {
             for (int m = 0; m < taps; m++) {
                 double voxel = (double)(comb.offset + comb.lead[phase] + m);
                 double weight = (double)comb.weights[phase][m];
-                assert_true(fabs(weight -
-                                 snow_taper_weight(&taper, at - voxel)) < 1e-6);
+                assert_true(fabs(weight - snow_scaled_kernel_weight(
+                                              &taper, at - voxel)) < 1e-6);
                 sum += weight;
             }
             assert_true(fabs(sum - 1) < 1e-6);
@@ -1348,7 +1351,7 @@ static void sheets_stay_below_their_bounds(void **state) {
         snow_lattice lattice = {.phases = 1, .stride = 1};
         snow_comb comb;
         lattice.slope = support_uniform(&random);
-        snow_taper taper = snow_taper_make(
+        snow_scaled_kernel taper = snow_scaled_kernel_make(
             SNOW_KERNEL_BSPLINE, 4,
             draw(&random, 3) ? 1 + 8 * support_uniform(&random) : 1);
         int taps = snow_comb_taps(&taper);
@@ -1433,9 +1436,9 @@ static void call_sample(void *user, snow_isa isa) {
 
 static void call_windows(void *user, snow_isa isa) {
     window_case *w = user;
-    uint64_t bits[SNOW_WINDOW_ROWS];
-    uint32_t before[SNOW_WINDOW_ROWS];
-    snow_window_fns_of(isa)->windows(&w->rows, w->wanted, w->column, w->count,
+    uint64_t bits[SNOW_DECODE_ROWS];
+    uint32_t before[SNOW_DECODE_ROWS];
+    snow_decode_fns_of(isa)->windows(&w->rows, w->wanted, w->column, w->count,
                                      bits, before);
 }
 
@@ -1447,7 +1450,7 @@ typedef struct timed_read {
 static void call_read(void *user, snow_isa isa) {
     timed_read *t = user;
     snow_span spans[66];
-    snow_window_fns_of(isa)->read(&t->bands.bands, 0, 16, ~UINT64_C(0) >> 28,
+    snow_decode_fns_of(isa)->read(&t->bands.bands, 0, 16, ~UINT64_C(0) >> 28,
                                   spans, &t->window.rows);
 }
 
@@ -1504,7 +1507,7 @@ static void time_warps(uint64_t *random) {
     for (int kind = 0; kind < 4; kind++) {
         char name[64];
         warp_case w = {.filter = (snow_filter)(kind % 2)};
-        w.plane = (snow_plane){.width = 40, .height = 40};
+        w.plane = (snow_intermediate_view){.width = 40, .height = 40};
         w.plane.channels = kind / 2 ? 4 : 2;
         float *pixels = make_plane(&w, random);
         draw_line(&w, random);

@@ -5,13 +5,13 @@
 
 static double opacity_at(const snow_transfer *transfer, double value) {
     double rgba[4];
-    snow_transfer_at(transfer, value, rgba);
+    snow_transfer_evaluate(transfer, value, rgba);
     return rgba[3];
 }
 
 static double red_at(const snow_transfer *transfer, double value) {
     double rgba[4];
-    snow_transfer_at(transfer, value, rgba);
+    snow_transfer_evaluate(transfer, value, rgba);
     return rgba[0];
 }
 
@@ -27,7 +27,8 @@ static const float decades[] = {0.001F, 0.01F, 0.1F, 1,    10,
 static void linear_over_decades_is_linear_in_decades(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, decades, DECADES);
+    snow_volume *volume =
+        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
     snow_look look = {.preset = "linear", .log = true};
     snow_transfer *transfer = support_look(volume, look);
     assert_true(snow_transfer_is_log(transfer));
@@ -41,7 +42,7 @@ static void linear_over_decades_is_linear_in_decades(void **state) {
     assert_true(opacity_at(transfer, -500) == 0);
     assert_true(opacity_at(transfer, (double)NAN) == 0);
     assert_true(opacity_at(transfer, (double)INFINITY) == 1);
-    assert_non_null(strstr(snow_transfer_text(transfer), "logarithmic"));
+    assert_non_null(strstr(snow_transfer_description(transfer), "logarithmic"));
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -50,7 +51,8 @@ static void linear_over_decades_is_linear_in_decades(void **state) {
 static void a_range_is_spread_by_decades(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, decades, DECADES);
+    snow_volume *volume =
+        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
     snow_look look = {.preset = "ct-bone",
                       .range = SNOW_RANGE_VALUES,
                       .low = 0.1,
@@ -78,17 +80,19 @@ static void what_has_no_logarithm_is_refused(void **state) {
     (void)state;
     static const snow_opacity_point from_0[] = {{0, 0}, {10, 1}};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, decades, DECADES);
+    snow_volume *volume =
+        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
     const snow_look looks[] = {
         {.preset = "ct-soft", .log = true},
         {.opacities = from_0, .opacity_count = 2, .log = true},
         {.range = SNOW_RANGE_VALUES, .low = 0, .high = 9, .log = true}};
     for (size_t i = 0; i < 3; i++) {
         snow_transfer *transfer = NULL;
-        assert_int_equal(snow_transfer_make(volume, &looks[i], &transfer),
-                         SNOW_BAD_USAGE);
+        assert_int_equal(
+            snow_transfer_new_for_volume(volume, &looks[i], &transfer),
+            SNOW_STATUS_BAD_USAGE);
         assert_null(transfer);
-        assert_non_null(strstr(snow_context_message(context), "logarithmic"));
+        assert_non_null(strstr(snow_context_message(context), "logarithm"));
     }
     snow_volume_close(volume);
     snow_context_free(context);
@@ -104,12 +108,13 @@ static void counted_types_give_the_same_look_by_decades(void **state) {
         wide[i] = narrow[i] =
             (int16_t)(pow(10, 4.4 * support_uniform(&seed)) - 5);
     snow_context *context = support_context();
-    snow_volume *a = support_row(context, SNOW_INT16, narrow, 400);
-    snow_volume *b = support_row(context, SNOW_FLOAT64, wide, 400);
+    snow_volume *a = support_row(context, SNOW_TYPE_INT16, narrow, 400);
+    snow_volume *b = support_row(context, SNOW_TYPE_FLOAT64, wide, 400);
     snow_look look = {.log = true};
     snow_transfer *first = support_look(a, look),
                   *second = support_look(b, look);
-    assert_string_equal(snow_transfer_text(first), snow_transfer_text(second));
+    assert_string_equal(snow_transfer_description(first),
+                        snow_transfer_description(second));
     for (int i = 0; i < 400; i++)
         assert_true(opacity_at(first, wide[i]) == opacity_at(second, wide[i]));
     snow_transfer_free(first);
@@ -126,7 +131,8 @@ static void odd_volumes_have_a_logarithmic_look_too(void **state) {
                             {0, 0, 1e-40F}, {1e-40F, 1, 3e38F}};
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
-        snow_volume *volume = support_row(context, SNOW_FLOAT32, odd[i], 3);
+        snow_volume *volume =
+            support_row(context, SNOW_TYPE_FLOAT32, odd[i], 3);
         for (size_t p = 0; p < 4; p++) {
             snow_look look = {.log = true,
                               .preset = p == 1   ? "linear"
@@ -159,13 +165,13 @@ static void points_in_data_units_stay_where_they_are(void **state) {
                                 .gradients = gradients,
                                 .gradient_count = 2};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer =
         support_look(volume, (snow_look){.points = &points});
     assert_true(near(opacity_at(transfer, 30), 0.25));
     assert_true(near(red_at(transfer, 30), 0.5));
-    assert_true(near(snow_transfer_gradient_opacity(transfer, 2), 0.5));
-    assert_non_null(strstr(snow_transfer_text(transfer), "mine 10..50"));
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.5));
+    assert_non_null(strstr(snow_transfer_description(transfer), "mine 10..50"));
     snow_transfer_free(transfer);
     /* Over twice the range gradients are half as steep. */
     transfer = support_look(volume, (snow_look){.points = &points,
@@ -174,7 +180,7 @@ static void points_in_data_units_stay_where_they_are(void **state) {
                                                 .high = 180});
     assert_true(near(opacity_at(transfer, 140), 0.25));
     assert_true(near(red_at(transfer, 120), 1));
-    assert_true(near(snow_transfer_gradient_opacity(transfer, 2), 0.25));
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.25));
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -184,7 +190,7 @@ static void points_without_values_are_spread(void **state) {
     (void)state;
     const uint8_t bytes[] = {50, 150};
     const snow_points points = {.name = "mine",
-                                .values = SNOW_VALUES_RANGE,
+                                .values = SNOW_DOMAIN_RANGE,
                                 .colors = red_blue,
                                 .color_count = 2,
                                 .opacities = half,
@@ -192,7 +198,7 @@ static void points_without_values_are_spread(void **state) {
     snow_points colors_only = points;
     colors_only.opacity_count = 0;
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer =
         support_look(volume, (snow_look){.points = &points});
     assert_true(near(opacity_at(transfer, 100), 0.25));
@@ -225,7 +231,7 @@ static void hundreds_of_points_are_taken(void **state) {
                                 .opacities = opacities,
                                 .opacity_count = 900};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
     snow_transfer *transfer =
         support_look(volume, (snow_look){.points = &points});
     assert_true(near(opacity_at(transfer, 655.25), 0.75));
@@ -237,7 +243,7 @@ static void hundreds_of_points_are_taken(void **state) {
 
 static void presets_and_colour_maps_are_data(void **state) {
     (void)state;
-    snow_color_point points[SNOW_COLORMAP_POINTS];
+    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
     for (size_t i = 0; snow_preset_name(i); i++) {
         const snow_points *preset = snow_preset_points(i);
         assert_true(preset->color_count && preset->opacity_count);
@@ -245,8 +251,9 @@ static void presets_and_colour_maps_are_data(void **state) {
     }
     assert_null(snow_preset_points(1000));
     for (size_t i = 0; snow_colormap_name(i); i++) {
-        size_t count = snow_colormap_points(i, points, SNOW_COLORMAP_POINTS);
-        assert_in_range(count, 2, SNOW_COLORMAP_POINTS);
+        size_t count =
+            snow_colormap_points(i, points, SNOW_COLORMAP_POINTS_MAX);
+        assert_in_range(count, 2, SNOW_COLORMAP_POINTS_MAX);
         assert_true(points[0].value == 0 && points[count - 1].value == 1);
     }
     assert_int_equal(snow_colormap_points(1000, points, 1), 0);
@@ -260,12 +267,12 @@ static void categories_are_not_mixed(void **state) {
                                      0xbcbd22, 0x17becf};
     const float values[] = {0, 10};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
     snow_transfer *transfer = support_look(
         volume, (snow_look){.preset = "linear", .colormap = "tab10"});
     for (int i = 0; i < 100; i++) {
         double found[4];
-        snow_transfer_at(transfer, i / 10.0 + 0.05, found);
+        snow_transfer_evaluate(transfer, i / 10.0 + 0.05, found);
         for (int c = 0; c < 3; c++)
             assert_true(
                 near(found[c], (rgb[i / 10] >> (16 - 8 * c) & 255) / 255.0));
@@ -280,10 +287,10 @@ static void categories_are_not_mixed(void **state) {
 static snow_transfer *look_at_block(snow_context *context, const float *values,
                                     const int64_t dims[3]) {
     snow_volume_info info = {.dims = {dims[0], dims[1], dims[2]},
-                             .type = SNOW_FLOAT32};
+                             .type = SNOW_TYPE_FLOAT32};
     snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_share(context, &info, values, &volume),
-                     SNOW_OK);
+    assert_int_equal(snow_volume_wrap(context, &info, values, &volume),
+                     SNOW_STATUS_OK);
     snow_transfer *transfer = support_look(volume, (snow_look){.preset = NULL});
     snow_volume_close(volume);
     return transfer;
@@ -307,25 +314,25 @@ static void one_heap_of_values_is_a_solid_block(void **state) {
     snow_context *context = support_context();
     fill_heap(values, 8000, 100, 10);
     snow_transfer *transfer = look_at_block(context, values, cube);
-    assert_true(snow_transfer_is_flat(transfer));
+    assert_true(snow_transfer_is_unshaded(transfer));
     assert_true(opacity_at(transfer, 100) > 0.3);
     assert_true(red_at(transfer, 100) > 0.3 && red_at(transfer, 100) < 0.7);
     snow_transfer_free(transfer);
     /* Densities about a mean of 0 are not. */
     fill_heap(values, 8000, 0, 10);
     transfer = look_at_block(context, values, cube);
-    assert_false(snow_transfer_is_flat(transfer));
+    assert_false(snow_transfer_is_unshaded(transfer));
     assert_true(opacity_at(transfer, -5) == 0);
     snow_transfer_free(transfer);
     /* An object in its background is not. */
     for (int i = 0; i < 8000; i++)
         values[i] = i % 3 ? 0 : 100 + (float)(i % 7);
     transfer = look_at_block(context, values, cube);
-    assert_false(snow_transfer_is_flat(transfer));
+    assert_false(snow_transfer_is_unshaded(transfer));
     snow_transfer_free(transfer);
     /* A slice is a picture, whatever its values. */
     transfer = look_at_block(context, values, slice);
-    assert_true(snow_transfer_is_flat(transfer));
+    assert_true(snow_transfer_is_unshaded(transfer));
     assert_true(opacity_at(transfer, 100) == 1);
     snow_transfer_free(transfer);
     snow_context_free(context);

@@ -13,7 +13,8 @@ static snow_volume_info info_of(snow_type type, int64_t x, int64_t y,
 static snow_volume *shared(support_place *place, const snow_volume_info *info,
                            const void *voxels) {
     snow_volume *volume = NULL;
-    if (snow_volume_share(place->context, info, voxels, &volume) != SNOW_OK)
+    if (snow_volume_wrap(place->context, info, voxels, &volume) !=
+        SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
     return volume;
 }
@@ -29,7 +30,7 @@ static snow_volume *masked(support_place *place, snow_volume *volume,
                            snow_volume *mask, const snow_label_range *labels,
                            size_t count) {
     snow_volume *out = NULL;
-    if (snow_volume_mask(volume, mask, labels, count, &out) != SNOW_OK)
+    if (snow_volume_mask(volume, mask, labels, count, &out) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
     snow_volume_close(volume);
     snow_volume_close(mask);
@@ -49,18 +50,20 @@ static unsigned kept(snow_volume *volume) {
 static void values_of_every_type_are_kept(void **state) {
     support_place *place = *state;
     static const uint8_t mask[] = {1, 0, 255, 0};
-#define TYPE_CASE(name, c_type, text)                                         \
-    {                                                                         \
-        static const c_type v[] = {(c_type)7, (c_type)1, (c_type)99,          \
-                                   (c_type)1};                                \
-        snow_volume *made = masked(place, row(place, SNOW_##name, 4, v),      \
-                                   row(place, SNOW_UINT8, 4, mask), NULL, 0); \
-        bool narrow = sizeof(c_type) <= 2 || SNOW_##name == SNOW_FLOAT32;     \
-        assert_int_equal(made->info.type,                                     \
-                         narrow ? SNOW_FLOAT32 : SNOW_FLOAT64);               \
-        assert_true(snow_volume_native(made, 0) == 7);                        \
-        assert_true(snow_volume_native(made, 2) == 99);                       \
-        assert_int_equal(kept(made), 5);                                      \
+#define TYPE_CASE(name, c_type, text)                                     \
+    {                                                                     \
+        static const c_type v[] = {(c_type)7, (c_type)1, (c_type)99,      \
+                                   (c_type)1};                            \
+        snow_volume *made =                                               \
+            masked(place, row(place, SNOW_TYPE_##name, 4, v),             \
+                   row(place, SNOW_TYPE_UINT8, 4, mask), NULL, 0);        \
+        bool narrow =                                                     \
+            sizeof(c_type) <= 2 || SNOW_TYPE_##name == SNOW_TYPE_FLOAT32; \
+        assert_int_equal(made->info.type,                                 \
+                         narrow ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_FLOAT64); \
+        assert_true(snow_volume_native(made, 0) == 7);                    \
+        assert_true(snow_volume_native(made, 2) == 99);                   \
+        assert_int_equal(kept(made), 5);                                  \
     }
     SNOW_TYPE_MAP(TYPE_CASE)
 #undef TYPE_CASE
@@ -71,13 +74,13 @@ static void the_largest_integers_are_exact(void **state) {
     static const uint8_t mask[] = {1, 1};
     static const int32_t wide[] = {INT32_MAX, INT32_MIN};
     static const uint16_t narrow[] = {UINT16_MAX, 0};
-    snow_volume *made = masked(place, row(place, SNOW_INT32, 2, wide),
-                               row(place, SNOW_UINT8, 2, mask), NULL, 0);
+    snow_volume *made = masked(place, row(place, SNOW_TYPE_INT32, 2, wide),
+                               row(place, SNOW_TYPE_UINT8, 2, mask), NULL, 0);
     assert_true(snow_volume_native(made, 0) == INT32_MAX);
     assert_true(snow_volume_native(made, 1) == INT32_MIN);
     snow_volume_close(made);
-    made = masked(place, row(place, SNOW_UINT16, 2, narrow),
-                  row(place, SNOW_UINT8, 2, mask), NULL, 0);
+    made = masked(place, row(place, SNOW_TYPE_UINT16, 2, narrow),
+                  row(place, SNOW_TYPE_UINT8, 2, mask), NULL, 0);
     assert_true(snow_volume_native(made, 0) == UINT16_MAX);
     snow_volume_close(made);
 }
@@ -86,7 +89,7 @@ static void what_is_known_of_the_volume_stays(void **state) {
     support_place *place = *state;
     static const int16_t v[] = {1, 2};
     static const uint8_t mask[] = {1, 0};
-    snow_volume_info info = info_of(SNOW_INT16, 2, 1, 1);
+    snow_volume_info info = info_of(SNOW_TYPE_INT16, 2, 1, 1);
     info.slope = 0.5;
     info.intercept = -3;
     info.medical = true;
@@ -94,17 +97,17 @@ static void what_is_known_of_the_volume_stays(void **state) {
         info.matrix[i][i] = 1;
     info.matrix[0][3] = -20;
     snow_volume *volume = shared(place, &info, v);
-    const snow_part part = {{5, 1, 1}, {3, 0, 0}, {3, 0, 0}, {2, 1, 1}};
-    assert_int_equal(snow_volume_set_part(volume, &part), SNOW_OK);
+    const snow_extent part = {{5, 1, 1}, {3, 0, 0}, {3, 0, 0}, {2, 1, 1}};
+    assert_int_equal(snow_volume_set_extent(volume, &part), SNOW_STATUS_OK);
     snow_volume *made =
-        masked(place, volume, row(place, SNOW_UINT8, 2, mask), NULL, 0);
+        masked(place, volume, row(place, SNOW_TYPE_UINT8, 2, mask), NULL, 0);
     assert_true(made->info.slope == 0.5 && made->info.intercept == -3);
     assert_true(made->info.medical && made->info.matrix[0][3] == -20);
-    snow_part now;
-    snow_volume_get_part(made, &now);
+    snow_extent now;
+    snow_volume_get_extent(made, &now);
     assert_memory_equal(&now, &part, sizeof part);
-    snow_volume_measures m;
-    snow_volume_measure(made, &m);
+    snow_volume_statistics m;
+    snow_volume_get_statistics(made, &m);
     assert_true(m.finite == 1 && m.min == -2.5 && m.max == -2.5);
     snow_volume_close(made);
 }
@@ -115,17 +118,18 @@ static void inside_is_what_is_neither_0_nor_nan(void **state) {
     static const int16_t v[6] = {0};
     const float mask[] = {0, -0.0F, NAN, 1e-30F, -1, INFINITY};
     static const uint8_t scaled[] = {0, 1, 2, 2, 4, 0};
-    assert_int_equal(kept(masked(place, row(place, SNOW_INT16, 6, v),
-                                 row(place, SNOW_FLOAT32, 6, mask), NULL, 0)),
-                     0x38);
-    snow_volume_info info = info_of(SNOW_UINT8, 6, 1, 1);
+    assert_int_equal(
+        kept(masked(place, row(place, SNOW_TYPE_INT16, 6, v),
+                    row(place, SNOW_TYPE_FLOAT32, 6, mask), NULL, 0)),
+        0x38);
+    snow_volume_info info = info_of(SNOW_TYPE_UINT8, 6, 1, 1);
     info.slope = 3;
     info.intercept = -6;
-    assert_int_equal(kept(masked(place, row(place, SNOW_INT16, 6, v),
+    assert_int_equal(kept(masked(place, row(place, SNOW_TYPE_INT16, 6, v),
                                  shared(place, &info, scaled), NULL, 0)),
                      0x33);
     static const snow_label_range six = {6, 6};
-    assert_int_equal(kept(masked(place, row(place, SNOW_INT16, 6, v),
+    assert_int_equal(kept(masked(place, row(place, SNOW_TYPE_INT16, 6, v),
                                  shared(place, &info, scaled), &six, 1)),
                      0x10);
 }
@@ -136,14 +140,15 @@ static void only_labels_are_inside(void **state) {
     const double mask[] = {0, 1, 2, 4, 5.5, 7, 8, -3, NAN, 1};
     static const snow_label_range ranges[] = {{1, 1}, {4, 7}, {-3, -3}};
     assert_int_equal(
-        kept(masked(place, row(place, SNOW_UINT8, 10, v),
-                    row(place, SNOW_FLOAT64, 10, mask), ranges, 3)),
+        kept(masked(place, row(place, SNOW_TYPE_UINT8, 10, v),
+                    row(place, SNOW_TYPE_FLOAT64, 10, mask), ranges, 3)),
         0x2aa);
     /* 0 may be asked for. */
     static const snow_label_range zero = {0, 0};
-    assert_int_equal(kept(masked(place, row(place, SNOW_UINT8, 10, v),
-                                 row(place, SNOW_FLOAT64, 10, mask), &zero, 1)),
-                     1);
+    assert_int_equal(
+        kept(masked(place, row(place, SNOW_TYPE_UINT8, 10, v),
+                    row(place, SNOW_TYPE_FLOAT64, 10, mask), &zero, 1)),
+        1);
 }
 
 /* A float that has no value stays so. */
@@ -151,9 +156,10 @@ static void nan_of_the_volume_stays(void **state) {
     support_place *place = *state;
     const float v[] = {1, NAN, 3};
     static const uint8_t mask[] = {1, 1, 0};
-    assert_int_equal(kept(masked(place, row(place, SNOW_FLOAT32, 3, v),
-                                 row(place, SNOW_UINT8, 3, mask), NULL, 0)),
-                     1);
+    assert_int_equal(
+        kept(masked(place, row(place, SNOW_TYPE_FLOAT32, 3, v),
+                    row(place, SNOW_TYPE_UINT8, 3, mask), NULL, 0)),
+        1);
 }
 
 /* Blocks of the loop end within a large volume. */
@@ -166,8 +172,9 @@ static void large_volumes_are_masked_to_their_end(void **state) {
         mask[i] = i / 700;
     }
     static const snow_label_range ranges[] = {{2, 3}, {7, 7}};
-    snow_volume *made = masked(place, row(place, SNOW_UINT16, 5000, v),
-                               row(place, SNOW_UINT32, 5000, mask), ranges, 2);
+    snow_volume *made =
+        masked(place, row(place, SNOW_TYPE_UINT16, 5000, v),
+               row(place, SNOW_TYPE_UINT32, 5000, mask), ranges, 2);
     for (int64_t i = 0; i < 5000; i++) {
         uint32_t label = mask[i];
         double value = snow_volume_native(made, i);
@@ -181,13 +188,13 @@ static void labels_are_read_as_written(void **state) {
     (void)state;
     snow_label_range r[4] = {{0, 0}};
     size_t count = 0;
-    assert_true(snow_labels_read("1,4-7,-3,-5--4", r, 4, &count));
+    assert_true(snow_labels_parse("1,4-7,-3,-5--4", r, 4, &count));
     assert_int_equal(count, 4);
     assert_true(r[0].first == 1 && r[0].last == 1);
     assert_true(r[1].first == 4 && r[1].last == 7);
     assert_true(r[2].first == -3 && r[2].last == -3);
     assert_true(r[3].first == -5 && r[3].last == -4);
-    assert_true(snow_labels_read("9007199254740991", r, 4, &count));
+    assert_true(snow_labels_parse("9007199254740991", r, 4, &count));
     assert_int_equal(count, 1);
     assert_true(r[0].last == INT64_C(9007199254740991));
 }
@@ -203,7 +210,7 @@ static void what_is_no_list_of_labels_changes_nothing(void **state) {
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         snow_label_range r[4] = {{11, 12}};
         size_t count = 9;
-        if (snow_labels_read(wrong[i], r, 4, &count))
+        if (snow_labels_parse(wrong[i], r, 4, &count))
             fail_msg("'%s' was read", wrong[i]);
         assert_true(count == 9 && r[0].first == 11 && r[0].last == 12);
     }
@@ -215,13 +222,14 @@ static void voxels_beyond_planes_are_left_out(void **state) {
     static const int16_t v[24] = {0};
     static const double planes[][4] = {
         {0.3, 0, 0.1, 4}, {0, 0, 0, -9}, {0, -2, 0, 2.6}};
-    snow_volume_info info = info_of(SNOW_INT16, 4, 3, 2);
+    snow_volume_info info = info_of(SNOW_TYPE_INT16, 4, 3, 2);
     static const double matrix[4][4] = {
         {0, 2, 0.5, 7}, {1.3, 0, 0, -2.6}, {0, 0.25, 3, 1}, {0, 0, 0, 1}};
     memcpy(info.matrix, matrix, sizeof matrix);
     snow_volume *volume = shared(place, &info, v), *made = NULL;
-    assert_int_equal(snow_volume_clip(volume, planes[0], 3, &made), SNOW_OK);
-    assert_int_equal(made->info.type, SNOW_FLOAT32);
+    assert_int_equal(snow_volume_clip(volume, planes[0], 3, &made),
+                     SNOW_STATUS_OK);
+    assert_int_equal(made->info.type, SNOW_TYPE_FLOAT32);
     int left = 0, in_plane = 0;
     for (int i = 0; i < 24; i++) {
         int x = i % 4, y = i / 4 % 3, z = i / 12;
@@ -236,8 +244,8 @@ static void voxels_beyond_planes_are_left_out(void **state) {
     assert_true(left > 4 && left < 20 && in_plane > 0);
     snow_volume_close(made);
     assert_int_equal(
-        snow_volume_clip(volume, planes[0], SNOW_CLIPS_MOST + 1, &made),
-        SNOW_BAD_USAGE);
+        snow_volume_clip(volume, planes[0], SNOW_CLIPS_MAX + 1, &made),
+        SNOW_STATUS_BAD_USAGE);
     snow_volume_close(volume);
 }
 
@@ -247,7 +255,7 @@ static void refused(support_place *place, const snow_volume_info *a,
     snow_volume *volume = shared(place, a, voxels), *out = NULL;
     snow_volume *mask = shared(place, b, voxels);
     snow_status status = snow_volume_mask(volume, mask, NULL, 0, &out);
-    assert_int_equal(status, part ? SNOW_BAD_INPUT : SNOW_OK);
+    assert_int_equal(status, part ? SNOW_STATUS_BAD_INPUT : SNOW_STATUS_OK);
     if (part && !strstr(snow_context_message(place->context), part))
         fail_msg("\"%s\" lacks \"%s\"", snow_context_message(place->context),
                  part);
@@ -258,7 +266,7 @@ static void refused(support_place *place, const snow_volume_info *a,
 }
 
 static snow_volume_info placed(double spacing, double x) {
-    snow_volume_info info = info_of(SNOW_UINT8, 4, 3, 2);
+    snow_volume_info info = info_of(SNOW_TYPE_UINT8, 4, 3, 2);
     for (int i = 0; i < 3; i++)
         info.matrix[i][i] = spacing;
     info.matrix[0][3] = x;
@@ -269,7 +277,7 @@ static snow_volume_info placed(double spacing, double x) {
 
 static void another_grid_is_refused_with_both(void **state) {
     support_place *place = *state;
-    snow_volume_info a = info_of(SNOW_UINT8, 4, 3, 2), b = a;
+    snow_volume_info a = info_of(SNOW_TYPE_UINT8, 4, 3, 2), b = a;
     b.dims[1] = 2;
     refused(place, &a, &b, "the mask has 4x2x2 voxels and the volume 4x3x2");
     a = placed(2, 10);
@@ -287,7 +295,8 @@ static void another_grid_is_refused_with_both(void **state) {
 
 static void what_tells_no_place_is_believed(void **state) {
     support_place *place = *state;
-    snow_volume_info a = placed(2, 10), none = info_of(SNOW_UINT8, 4, 3, 2);
+    snow_volume_info a = placed(2, 10),
+                     none = info_of(SNOW_TYPE_UINT8, 4, 3, 2);
     refused(place, &a, &none, NULL);
     refused(place, &none, &a, NULL);
     snow_volume_info other = placed(2, 99); /* of another world */
@@ -326,14 +335,14 @@ static void a_box_is_masked_by_the_same_box(void **state) {
     snow_volume_options options = {
         .crop = {{1, 4}, {0, 0}, {2, 3}}, .mask = b, .labels = "2"};
     snow_volume *box = NULL;
-    snow_volume_info told;
-    assert_int_equal(snow_volume_inspect(place->context, a, &options, &told),
-                     SNOW_OK);
+    snow_volume_info given;
+    assert_int_equal(snow_volume_inspect(place->context, a, &options, &given),
+                     SNOW_STATUS_OK);
     assert_int_equal(snow_volume_open(place->context, a, &options, &box),
-                     SNOW_OK);
-    assert_memory_equal(&told, &box->info, sizeof told);
-    assert_true(told.dims[0] == 3 && told.dims[1] == 4 && told.dims[2] == 1);
-    assert_int_equal(told.type, SNOW_FLOAT32);
+                     SNOW_STATUS_OK);
+    assert_memory_equal(&given, &box->info, sizeof given);
+    assert_true(given.dims[0] == 3 && given.dims[1] == 4 && given.dims[2] == 1);
+    assert_int_equal(given.type, SNOW_TYPE_FLOAT32);
     for (int64_t i = 0; i < 12; i++) {
         int64_t at = 1 + i % 3 + 4 * (i / 3) + 32;
         double value = snow_volume_native(box, i);
@@ -352,17 +361,17 @@ static void a_box_of_another_grid_is_refused(void **state) {
                                        put(place, "b.nrrd", "2 4 4", 0, v, 32)};
     snow_volume *box = NULL;
     assert_int_equal(snow_volume_open(place->context, a, &options, &box),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(
         strstr(snow_context_message(place->context),
                "b.nrrd: the mask has 2x4x4 voxels and the volume 4x4x4"));
     options.mask = NULL;
     options.labels = "1";
     assert_int_equal(snow_volume_open(place->context, a, &options, &box),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(
         snow_volume_open_memory(place->context, "x", v, 64, &options, &box),
-        SNOW_BAD_USAGE);
+        SNOW_STATUS_BAD_USAGE);
     assert_null(box);
 }
 
@@ -373,7 +382,7 @@ static void a_mask_without_voxels_is_told(void **state) {
     snow_volume_options options = {.mask = a, .labels = "1-4"};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(place->context, a, &options, &volume),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_non_null(strstr(place->notices, "no voxel is left inside this "
                                            "mask, whose values are 0 to 5"));
     snow_volume_close(volume);
@@ -390,8 +399,9 @@ static void failures_of_memory_leave_nothing(void **state) {
         place->fail_at = place->allocations + n;
         snow_status status =
             snow_volume_open(place->context, a, &options, &volume);
-        assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
-        assert_true((status == SNOW_OK) == !!volume);
+        assert_true(status == SNOW_STATUS_OK ||
+                    status == SNOW_STATUS_NO_MEMORY);
+        assert_true((status == SNOW_STATUS_OK) == !!volume);
     }
     place->fail_at = 0;
     snow_volume_close(volume);

@@ -53,7 +53,7 @@ static const char *header_with(const char *lines, const char *old,
 static snow_volume *open_file(support_place *place, const file *f) {
     snow_volume *volume = NULL;
     if (snow_volume_open_memory(place->context, "a.mha", f->bytes, f->size,
-                                NULL, &volume) != SNOW_OK)
+                                NULL, &volume) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
     return volume;
 }
@@ -83,7 +83,7 @@ static void assert_matrix(const snow_volume *volume, const double rows[12]) {
     double wanted[4][4] = {{0}};
     memcpy(wanted, rows, 12 * sizeof *rows);
     wanted[3][3] = 1;
-    support_same_matrix(snow_volume_describe(volume)->matrix,
+    support_same_matrix(snow_volume_get_info(volume)->matrix,
                         (const double(*)[4])wanted, 1e-12);
 }
 
@@ -91,10 +91,10 @@ static void a_plain_file_is_read_and_turned_from_lps(void **state) {
     support_place *place = *state;
     snow_volume *volume =
         open_header(place, header_with("Offset = 10 20 30\n", NULL, NULL));
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     assert_string_equal(info->format, "metaimage");
     assert_string_equal(info->unit, "mm");
-    assert_int_equal(info->type, SNOW_INT16);
+    assert_int_equal(info->type, SNOW_TYPE_INT16);
     assert_int_equal(info->dims[0], 3);
     assert_false(info->medical);
     assert_sample(volume);
@@ -115,7 +115,7 @@ static void directions_are_one_group_for_each_axis(void **state) {
                  "%s = 0 1 0 0 0 1 1 0 0\nPosition=1 2 3\n", synonyms[i]);
         snow_volume *volume =
             open_header(place, header_with(lines, NULL, NULL));
-        assert_true(snow_volume_describe(volume)->medical);
+        assert_true(snow_volume_get_info(volume)->medical);
         assert_matrix(volume,
                       (double[]){0, 0, -3, -1, -1, 0, 0, -2, 0, 2, 0, 3});
         snow_volume_close(volume);
@@ -139,7 +139,7 @@ static void only_what_speaks_of_a_patient_is_medical(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         snow_volume *volume =
             open_header(place, header_with(cases[i].lines, NULL, NULL));
-        assert_int_equal(snow_volume_describe(volume)->medical,
+        assert_int_equal(snow_volume_get_info(volume)->medical,
                          cases[i].medical);
         snow_volume_close(volume);
     }
@@ -150,12 +150,18 @@ static void every_element_type_has_its_size(void **state) {
     static const struct {
         const char *name;
         snow_type type;
-    } types[] = {{"MET_CHAR", SNOW_INT8},       {"MET_UCHAR", SNOW_UINT8},
-                 {"MET_SHORT", SNOW_INT16},     {"MET_USHORT", SNOW_UINT16},
-                 {"MET_INT", SNOW_INT32},       {"MET_UINT", SNOW_UINT32},
-                 {"MET_LONG", SNOW_INT32},      {"MET_ULONG", SNOW_UINT32},
-                 {"MET_LONG_LONG", SNOW_INT64}, {"MET_ULONG_LONG", SNOW_UINT64},
-                 {"MET_FLOAT", SNOW_FLOAT32},   {"MET_DOUBLE", SNOW_FLOAT64}};
+    } types[] = {{"MET_CHAR", SNOW_TYPE_INT8},
+                 {"MET_UCHAR", SNOW_TYPE_UINT8},
+                 {"MET_SHORT", SNOW_TYPE_INT16},
+                 {"MET_USHORT", SNOW_TYPE_UINT16},
+                 {"MET_INT", SNOW_TYPE_INT32},
+                 {"MET_UINT", SNOW_TYPE_UINT32},
+                 {"MET_LONG", SNOW_TYPE_INT32},
+                 {"MET_ULONG", SNOW_TYPE_UINT32},
+                 {"MET_LONG_LONG", SNOW_TYPE_INT64},
+                 {"MET_ULONG_LONG", SNOW_TYPE_UINT64},
+                 {"MET_FLOAT", SNOW_TYPE_FLOAT32},
+                 {"MET_DOUBLE", SNOW_TYPE_FLOAT64}};
     unsigned char voxels[96], turned[96];
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         size_t size = snow_type_size(types[i].type);
@@ -166,7 +172,7 @@ static void every_element_type_has_its_size(void **state) {
         const char *header = header_with("", "MET_SHORT", types[i].name);
         file f = make_file(header, voxels, 12 * size);
         snow_volume *little = open_file(place, &f);
-        assert_int_equal(snow_volume_describe(little)->type, types[i].type);
+        assert_int_equal(snow_volume_get_info(little)->type, types[i].type);
         char big_header[4096];
         const char *order = strstr(header, "MSB = False");
         snprintf(big_header, sizeof big_header, "%.*sMSB = True%s",
@@ -210,7 +216,7 @@ static void one_to_four_axes_are_read(void **state) {
     snow_volume *volume =
         open_header(place, "NDims = 1\nDimSize = 12\nElementType = MET_SHORT\n"
                            "ElementDataFile = LOCAL\n");
-    assert_int_equal(snow_volume_describe(volume)->dims[0], 12);
+    assert_int_equal(snow_volume_get_info(volume)->dims[0], 12);
     snow_volume_close(volume);
     volume = open_header(place, "NDims = 2\nDimSize = 4 3\nElementSpacing = 5 "
                                 "6\nTransformMatrix = 0 1 1 0\nElementType = "
@@ -227,8 +233,8 @@ static void one_to_four_axes_are_read(void **state) {
         assert_int_equal(snow_volume_open_memory(place->context, "a.mha",
                                                  f.bytes, f.size, &options,
                                                  &volume),
-                         SNOW_OK);
-        assert_int_equal(snow_volume_describe(volume)->times, 3);
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_volume_get_info(volume)->times, 3);
         assert_first(volume, 100 + 4 * time);
         snow_volume_close(volume);
     }
@@ -242,8 +248,8 @@ static void scaling_and_units_are_understood(void **state) {
                                        "ElementToIntensityFunctionOffset = -7\n"
                                        "DistanceUnits = um\n",
                                        NULL, NULL));
-    assert_true(snow_volume_describe(volume)->slope == 0.5);
-    assert_true(snow_volume_describe(volume)->intercept == -7);
+    assert_true(snow_volume_get_info(volume)->slope == 0.5);
+    assert_true(snow_volume_get_info(volume)->intercept == -7);
     assert_matrix(volume,
                   (double[]){-.001, 0, 0, 0, 0, -.002, 0, 0, 0, 0, .003, 0});
     snow_volume_close(volume);
@@ -386,8 +392,8 @@ static void real_numbers_in_text_are_read(void **state) {
                  types[i]);
         file f = make_file(header, text, strlen(text));
         snow_volume *volume = open_file(place, &f);
-        snow_volume_measures m;
-        snow_volume_measure(volume, &m);
+        snow_volume_statistics m;
+        snow_volume_get_statistics(volume, &m);
         assert_int_equal(m.finite, 1);
         assert_true(m.min == (i ? -1.5e-3 : (double)-1.5e-3f));
         snow_volume_close(volume);
@@ -402,7 +408,7 @@ static void cut_files_are_refused_at_every_length(void **state) {
         support_place_refuse(place, "a.mha", f.bytes, f.size, "", LITTLE);
     support_place_refuse(place, "a.mha", "", 0, "empty", LITTLE);
     const char *cut = header_with("", "LOCAL\n", "LOC");
-    support_place_refuse(place, "a.mha", cut, strlen(cut), "may be cut",
+    support_place_refuse(place, "a.mha", cut, strlen(cut), "may be truncated",
                          LITTLE);
 }
 
@@ -503,7 +509,7 @@ static void voxels_may_lie_in_another_file(void **state) {
     assert_int_equal(snow_volume_open(place->context,
                                       support_place_path(place, "a.mhd"), NULL,
                                       &volume),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(
         strstr(snow_context_message(place->context), "missing.raw"));
     refuse_header(place, header_with("", "LOCAL", "a.raw"), "another file");
@@ -559,7 +565,7 @@ static void voxels_may_lie_in_many_files(void **state) {
         put_text(place, "a.mhd", header_with("", "LOCAL", bad[i]));
         snow_volume *volume = NULL;
         if (snow_volume_open(place->context, support_place_path(place, "a.mhd"),
-                             NULL, &volume) != SNOW_BAD_INPUT)
+                             NULL, &volume) != SNOW_STATUS_BAD_INPUT)
             fail_msg("%s was not refused", bad[i]);
         assert_null(volume);
     }
@@ -582,7 +588,7 @@ static void a_series_that_lies_costs_no_memory(void **state) {
         assert_int_equal(snow_volume_open(place->context,
                                           support_place_path(place, "a.mhd"),
                                           NULL, &volume),
-                         SNOW_BAD_INPUT);
+                         SNOW_STATUS_BAD_INPUT);
         assert_true(place->largest < LITTLE);
     }
 }
@@ -605,7 +611,7 @@ static void a_time_step_is_found_among_files(void **state) {
         const snow_volume_options options = {.time = i % 3};
         snow_volume *volume = NULL;
         if (snow_volume_open(place->context, support_place_path(place, "a.mhd"),
-                             &options, &volume) != SNOW_OK)
+                             &options, &volume) != SNOW_STATUS_OK)
             fail_msg("%s", snow_context_message(place->context));
         assert_first(volume, 100 + 4 * (i % 3));
         snow_volume_close(volume);
@@ -628,7 +634,7 @@ static void long_lines_are_read_and_endless_ones_refused(void **state) {
     assert_int_equal(snow_volume_open_memory(place->context, "a.mha", text,
                                              60001 + strlen(rest) + 24, NULL,
                                              &volume),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_sample(volume);
     snow_volume_close(volume);
     free(text);
@@ -644,11 +650,25 @@ static void real_files_have_their_known_figures(void **state) {
         int64_t not_finite;
         bool medical;
     } files[] = {
-        {"HeadMRVolume.mhd", {48, 62, 42}, SNOW_UINT8, 0, 255, 4, 0, false},
-        {"LIDC2.mha", {256, 256, 133}, SNOW_UINT8, 0, 255, 1.406249, 0, true},
+        {"HeadMRVolume.mhd",
+         {48, 62, 42},
+         SNOW_TYPE_UINT8,
+         0,
+         255,
+         4,
+         0,
+         false},
+        {"LIDC2.mha",
+         {256, 256, 133},
+         SNOW_TYPE_UINT8,
+         0,
+         255,
+         1.406249,
+         0,
+         true},
         {"nan.mha.gz",
          {78, 110, 64},
-         SNOW_FLOAT32,
+         SNOW_TYPE_FLOAT32,
          -5.34101,
          3.1943e38,
          1,
@@ -661,13 +681,13 @@ static void real_files_have_their_known_figures(void **state) {
         char path[128];
         snprintf(path, sizeof path, "formats/metaimage/%s", files[i].name);
         snow_volume *volume = support_place_open(place, support_data(path));
-        const snow_volume_info *info = snow_volume_describe(volume);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_memory_equal(info->dims, files[i].dims, sizeof info->dims);
         assert_int_equal(info->type, files[i].type);
         assert_int_equal(info->medical, files[i].medical);
         assert_true(fabs(info->spacing[0] - files[i].spacing) < 1e-5);
-        snow_volume_measures m;
-        snow_volume_measure(volume, &m);
+        snow_volume_statistics m;
+        snow_volume_get_statistics(volume, &m);
         assert_true(fabs(m.min - files[i].min) <= 1e-5 * fabs(m.min));
         assert_true(fabs(m.max - files[i].max) <= 1e-5 * fabs(m.max));
         assert_int_equal(m.voxels - m.finite, files[i].not_finite);

@@ -36,8 +36,8 @@ static void each_view_stands_where_its_name_says(void **state) {
     snow_context *context = support_context();
     for (size_t n = 0; n < NAMES; n++) {
         snow_view view = {0};
-        assert_int_equal(snow_view_named(context, names[n].name, &view),
-                         SNOW_OK);
+        assert_int_equal(snow_view_from_name(context, names[n].name, &view),
+                         SNOW_STATUS_OK);
         for (int c = 0; c < 3; c++) {
             assert_near(view.back[c], names[n].back[c], 1e-15);
             assert_near(view.up[c], names[n].up[c], 1e-15);
@@ -64,7 +64,8 @@ static void an_unknown_view_is_refused(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_view view = {.width = 7};
-    assert_int_equal(snow_view_named(context, "above", &view), SNOW_BAD_USAGE);
+    assert_int_equal(snow_view_from_name(context, "above", &view),
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(view.width, 7);
     assert_non_null(strstr(snow_context_message(context), "above"));
     snow_context_free(context);
@@ -74,13 +75,13 @@ static void medical_volumes_are_seen_from_the_front(void **state) {
     (void)state;
     snow_context *context = support_context();
     const unsigned char voxel = 0;
-    snow_volume_info info = {.dims = {1, 1, 1}, .type = SNOW_UINT8};
+    snow_volume_info info = {.dims = {1, 1, 1}, .type = SNOW_TYPE_UINT8};
     for (int medical = 0; medical < 2; medical++) {
         snow_volume *volume = NULL;
         snow_view view;
         info.medical = medical;
-        assert_int_equal(snow_volume_share(context, &info, &voxel, &volume),
-                         SNOW_OK);
+        assert_int_equal(snow_volume_wrap(context, &info, &voxel, &volume),
+                         SNOW_STATUS_OK);
         snow_view_default(volume, &view);
         assert_true(view.back[1] == medical && view.back[2] == 1 - medical);
         assert_true(view.up[2] == medical && view.up[1] == 1 - medical);
@@ -145,7 +146,8 @@ static void what_is_up_is_at_the_top_and_nothing_is_mirrored(void **state) {
         for (int axis = 0; axis < 3; axis++) {
             snow_view view;
             assert_int_equal(
-                snow_view_named(stage.context, seen[n].name, &view), SNOW_OK);
+                snow_view_from_name(stage.context, seen[n].name, &view),
+                SNOW_STATUS_OK);
             reference_scene scene = cube_scene(view.back, view.up);
             double place[2], pitch = 9 * sqrt(3) / 90;
             int64_t at[3] = {4, 4, 4};
@@ -265,14 +267,14 @@ static void the_matrix_carries_voxels_to_the_world(void **state) {
 static void one_voxel_per_pixel_is_the_zoom_for_voxels(void **state) {
     (void)state;
     snow_context *context = support_context();
-    reference_scene scene = model_scene((int64_t[]){13, 7, 10}, SNOW_UINT8,
+    reference_scene scene = model_scene((int64_t[]){13, 7, 10}, SNOW_TYPE_UINT8,
                                         true, MODEL_ANISOTROPIC, 1);
     snow_volume *volume = NULL;
     scene.info.matrix[0][0] = 1.1;
     scene.info.matrix[1][1] = 0.7;
     assert_int_equal(
-        snow_volume_share(context, &scene.info, scene.voxels, &volume),
-        SNOW_OK);
+        snow_volume_wrap(context, &scene.info, scene.voxels, &volume),
+        SNOW_STATUS_OK);
     /* The smallest spacing is not the first one. */
     assert_true(scene.info.matrix[1][1] < scene.info.matrix[0][0]);
     scene.view.zoom =
@@ -298,7 +300,7 @@ static void slices_are_taken_along_the_most_parallel_normal(void **state) {
     uint64_t random = 9;
     for (int n = 0; n < 200; n++) {
         reference_scene scene =
-            model_scene((int64_t[]){5, 4, 3}, SNOW_UINT8, true,
+            model_scene((int64_t[]){5, 4, 3}, SNOW_TYPE_UINT8, true,
                         (model_matrix)(n % MODEL_MATRICES), 1);
         reference_camera camera;
         scene.view.width = scene.view.height = 4;
@@ -358,14 +360,15 @@ static void settings_and_views_out_of_range_are_refused(void **state) {
         snow_volume *volume = NULL;
         snow_transfer *transfer = NULL;
         snow_image *image = NULL;
-        assert_int_equal(snow_volume_share(stage.context, &scene.info,
-                                           scene.voxels, &volume),
-                         SNOW_OK);
-        assert_int_equal(snow_transfer_make(volume, NULL, &transfer), SNOW_OK);
+        assert_int_equal(
+            snow_volume_wrap(stage.context, &scene.info, scene.voxels, &volume),
+            SNOW_STATUS_OK);
+        assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                         SNOW_STATUS_OK);
         assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
                                            i < 14 ? &view : &blind[i - 14],
                                            i < 14 ? &bad[i] : &fine, &image),
-                         SNOW_BAD_USAGE);
+                         SNOW_STATUS_BAD_USAGE);
         assert_null(image);
         snow_transfer_free(transfer);
         snow_volume_close(volume);
@@ -392,8 +395,8 @@ static void settings_of_other_versions_are_read_as_far_as_known(void **state) {
     for (size_t i = known; i < sizeof older; i++)
         assert_int_equal(bytes[i], 7);
     model_stage stage = model_open();
-    reference_scene scene =
-        model_scene((int64_t[]){9, 8, 7}, SNOW_UINT8, true, MODEL_PLAIN, 1);
+    reference_scene scene = model_scene((int64_t[]){9, 8, 7}, SNOW_TYPE_UINT8,
+                                        true, MODEL_PLAIN, 1);
     float *plain = model_picture(&stage, &scene);
     snow_settings *versions[] = {&older, &newer.settings};
     for (int n = 0; n < 2; n++) {

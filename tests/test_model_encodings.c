@@ -134,7 +134,8 @@ static void random_voxels_of_every_density_and_width(void **state) {
     model_stage stage = model_open();
     uint64_t random = 21;
     for (size_t d = 0; d < sizeof densities / sizeof *densities; d++)
-        for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+        for (size_t w = support_start(d, 4); w < sizeof widths / sizeof *widths;
+             w += support_stride(4)) {
             reference_scene scene =
                 small_scene(d % 2 == 0 ? (int64_t[]){widths[w], 5, 3}
                                        : (int64_t[]){3, widths[w], 4},
@@ -159,7 +160,8 @@ static void runs_around_the_longest_that_a_byte_holds(void **state) {
                                       509, 510, 511, 512, 765, 766};
     model_stage stage = model_open();
     for (size_t a = 0; a < sizeof lengths / sizeof *lengths; a++)
-        for (size_t b = 0; b < sizeof lengths / sizeof *lengths; b++) {
+        for (size_t b = support_start(a, 5);
+             b < sizeof lengths / sizeof *lengths; b += support_stride(5)) {
             /* Lengths a and b take turns; every second row begins with an
              * interesting run. */
             reference_scene scene = small_scene((int64_t[]){1600, 2, 2}, false);
@@ -182,7 +184,8 @@ static void runs_around_the_longest_that_a_byte_holds(void **state) {
 static void runs_that_pass_from_row_to_row(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int64_t length = 240; length <= 520; length += 5) {
+    for (int64_t length = 240; length <= 520;
+         length += 5 * (int64_t)support_stride(3)) {
         reference_scene scene = small_scene((int64_t[]){50, 30, 2}, false);
         for (size_t n = 0; n < voxel_count(&scene); n++)
             model_voxels(&scene)[n] = (int64_t)n / length % 2 == 0;
@@ -212,7 +215,7 @@ static void one_voxel_anywhere(void **state) {
     (void)state;
     model_stage stage = model_open();
     reference_scene scene = small_scene((int64_t[]){65, 3, 3}, true);
-    for (size_t n = 0; n < voxel_count(&scene); n += 4) {
+    for (size_t n = 0; n < voxel_count(&scene); n += 4 * support_stride(7)) {
         model_voxels(&scene)[n] = 1;
         assert_true(check_sides(&stage, &scene));
         model_voxels(&scene)[n] = 0;
@@ -225,10 +228,11 @@ static void every_kernel_footprint_threshold_and_view(void **state) {
     (void)state;
     model_stage stage = model_open();
     uint64_t random = 22;
-    for (int n = 0; n < 4 * 8 * 6; n++) {
-        reference_scene scene = model_scene(
-            (int64_t[]){17, 12, 14}, n % 2 ? SNOW_INT16 : SNOW_FLOAT32,
-            n % 3 == 0, (model_matrix)(n % MODEL_MATRICES), (uint64_t)n);
+    for (int n = 0; n < 4 * 8 * 6; n += (int)support_stride(7)) {
+        reference_scene scene =
+            model_scene((int64_t[]){17, 12, 14},
+                        n % 2 ? SNOW_TYPE_INT16 : SNOW_TYPE_FLOAT32, n % 3 == 0,
+                        (model_matrix)(n % MODEL_MATRICES), (uint64_t)n);
         scene.view.width = 30;
         scene.view.height = 25;
         scene.settings.kernel = (snow_kernel)(n % 4);
@@ -248,10 +252,10 @@ static void every_kernel_footprint_threshold_and_view(void **state) {
 static void a_frame_gives_the_same_bits_again_and_a_new_one_too(void **state) {
     (void)state;
     model_stage stage = model_open();
-    reference_scene scene = model_scene((int64_t[]){17, 12, 14}, SNOW_UINT8,
-                                        false, MODEL_OBLIQUE, 5);
-    reference_scene other = model_scene((int64_t[]){30, 22, 9}, SNOW_FLOAT64,
-                                        true, MODEL_SHEARED, 6);
+    reference_scene scene = model_scene(
+        (int64_t[]){17, 12, 14}, SNOW_TYPE_UINT8, false, MODEL_OBLIQUE, 5);
+    reference_scene other = model_scene(
+        (int64_t[]){30, 22, 9}, SNOW_TYPE_FLOAT64, true, MODEL_SHEARED, 6);
     model_turn(&scene, 40, 10, 5, 1);
     float *first = model_picture(&stage, &scene);
     free(model_picture(&stage, &other));

@@ -31,8 +31,9 @@ static const model_stand stands[] = {
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
 static const snow_type types[] = {
-    SNOW_INT8,   SNOW_UINT8, SNOW_INT16,  SNOW_UINT16,  SNOW_INT32,
-    SNOW_UINT32, SNOW_INT64, SNOW_UINT64, SNOW_FLOAT32, SNOW_FLOAT64,
+    SNOW_TYPE_INT8,    SNOW_TYPE_UINT8,   SNOW_TYPE_INT16, SNOW_TYPE_UINT16,
+    SNOW_TYPE_INT32,   SNOW_TYPE_UINT32,  SNOW_TYPE_INT64, SNOW_TYPE_UINT64,
+    SNOW_TYPE_FLOAT32, SNOW_TYPE_FLOAT64,
 };
 static const snow_kernel kernels[] = {SNOW_KERNEL_BSPLINE, SNOW_KERNEL_TENT,
                                       SNOW_KERNEL_GAUSS, SNOW_KERNEL_BOX};
@@ -75,7 +76,8 @@ static void every_kernel_and_footprint_from_every_side(void **state) {
     model_tally tally = {0};
     for (size_t k = 0; k < COUNT(kernels); k++)
         for (int footprint = 2; footprint <= 9; footprint++)
-            for (size_t n = 0; n < COUNT(stands) * COUNT(zooms); n++) {
+            for (size_t n = support_start(k + (size_t)footprint, 11);
+                 n < COUNT(stands) * COUNT(zooms); n += support_stride(11)) {
                 reference_scene scene = drawn_scene(&random);
                 scene.settings.kernel = kernels[k];
                 scene.settings.footprint = footprint;
@@ -105,7 +107,7 @@ static void pixels_that_lie_on_the_grid(void **state) {
     uint64_t random = 7;
     model_tally tally = {0};
     size_t pictures = COUNT(kernels) * 8 * COUNT(lengths) * 9;
-    for (size_t n = 0; n < pictures; n++) {
+    for (size_t n = 0; n < pictures; n += support_stride(11)) {
         reference_scene scene = drawn_scene(&random);
         size_t rest = n / 9;
         /* Odd and even sizes move pixels by half a voxel. */
@@ -133,7 +135,7 @@ static void every_type_matrix_threshold_and_shading(void **state) {
     uint64_t random = 2;
     model_tally tally = {0};
     size_t n = 0;
-    for (; n < COUNT(types) * MODEL_MATRICES * 12; n++) {
+    for (; n < COUNT(types) * MODEL_MATRICES * 12; n += support_stride(7)) {
         reference_scene drawn = drawn_scene(&random);
         size_t rest = n / COUNT(types) / MODEL_MATRICES;
         reference_scene scene =
@@ -209,7 +211,7 @@ static void small_kernels_that_are_widened_a_little(void **state) {
     model_stage stage = model_open();
     model_tally tally = {0};
     uint64_t random = 5;
-    for (int n = 0; n < 600; n++) {
+    for (int n = 0; n < 600; n += (int)support_stride(7)) {
         reference_scene scene = model_blank((int64_t[]){40, 40, 1}, 1);
         for (int at = 0; at < 40 * 40; at++)
             model_voxels(&scene)[at] = support_uniform(&random) < 0.1;
@@ -237,7 +239,7 @@ static void slices_and_rows_that_are_large(void **state) {
     model_tally tally = {0};
     for (size_t n = 0; n < COUNT(large) * COUNT(oblique); n++) {
         reference_scene scene =
-            model_scene(large[n / 2], SNOW_UINT16, n == 3, MODEL_PLAIN, n);
+            model_scene(large[n / 2], SNOW_TYPE_UINT16, n == 3, MODEL_PLAIN, n);
         scene.view.width = scene.view.height = 40;
         /* From along the shortest side. */
         model_look(&scene,
@@ -263,7 +265,7 @@ static void spoil(reference_scene *scene, uint64_t *random) {
         size_t at = draw(random, 13 * 10 * 15);
         double value = odd[draw(random, 3)];
         void *voxels = (void *)(uintptr_t)scene->voxels;
-        if (scene->info.type == SNOW_FLOAT32)
+        if (scene->info.type == SNOW_TYPE_FLOAT32)
             ((float *)voxels)[at] = (float)value;
         else
             ((double *)voxels)[at] = value;
@@ -276,9 +278,9 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
     uint64_t random = 5;
     model_tally tally = {0};
     for (size_t n = 0; n < 2 * COUNT(stands); n++) {
-        reference_scene scene =
-            model_scene(dims, n % 2 == 0 ? SNOW_FLOAT32 : SNOW_FLOAT64,
-                        n % 3 == 0, MODEL_OBLIQUE, n);
+        reference_scene scene = model_scene(
+            dims, n % 2 == 0 ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_FLOAT64,
+            n % 3 == 0, MODEL_OBLIQUE, n);
         spoil(&scene, &random);
         scene.view.width = 24;
         scene.view.height = 18;
@@ -299,8 +301,9 @@ static void lights_from_all_sides_and_every_coefficient(void **state) {
     /* Real numbers with noise: no gradient is square to the line of sight, so
      * that rounding does not decide which way it is turned. */
     for (size_t n = 0; n < 60; n++) {
-        reference_scene scene = model_scene(
-            dims, SNOW_FLOAT32, false, (model_matrix)(n % MODEL_MATRICES), n);
+        reference_scene scene =
+            model_scene(dims, SNOW_TYPE_FLOAT32, false,
+                        (model_matrix)(n % MODEL_MATRICES), n);
         snow_settings *settings = &scene.settings;
         scene.view.width = 24;
         scene.view.height = 18;
@@ -325,7 +328,7 @@ static void opacities_of_other_lengths_than_a_voxel(void **state) {
     model_tally tally = {0};
     for (size_t n = 0; n < 2 * COUNT(stands); n++) {
         reference_scene scene = model_scene(
-            dims, SNOW_UINT8, true, (model_matrix)(n % MODEL_MATRICES), n);
+            dims, SNOW_TYPE_UINT8, true, (model_matrix)(n % MODEL_MATRICES), n);
         stand_at(&scene, n, 1);
         scene.view.width = 24;
         scene.view.height = 18;
@@ -345,8 +348,8 @@ static void slices_that_are_shifted_a_little(void **state) {
     model_stage stage = model_open();
     model_tally tally = {0};
     for (size_t n = 0; n < COUNT(kernels); n++) {
-        reference_scene scene = model_scene((int64_t[]){9, 8, 64}, SNOW_UINT8,
-                                            true, MODEL_PLAIN, n);
+        reference_scene scene = model_scene(
+            (int64_t[]){9, 8, 64}, SNOW_TYPE_UINT8, true, MODEL_PLAIN, n);
         scene.info.matrix[0][2] = 0.003;
         scene.settings.kernel = kernels[n];
         scene.settings.footprint = 3;
@@ -366,7 +369,7 @@ static void values_of_any_magnitude_are_shaded_alike(void **state) {
     float *first = NULL;
     for (size_t n = 0; n < COUNT(scales); n++) {
         reference_scene scene =
-            model_scene(dims, SNOW_FLOAT64, true, MODEL_OBLIQUE, 5);
+            model_scene(dims, SNOW_TYPE_FLOAT64, true, MODEL_OBLIQUE, 5);
         size_t voxels = (size_t)(dims[0] * dims[1] * dims[2]);
         double *scaled = malloc(voxels * sizeof *scaled);
         assert_non_null(scaled);

@@ -47,7 +47,7 @@ static const snow_color_point byte_colors[] = {
 static snow_image *image_of(const model_stage *stage, int width, int height) {
     snow_image *image = NULL;
     assert_int_equal(snow_image_new(stage->context, width, height, 4, &image),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     return image;
 }
 
@@ -67,7 +67,7 @@ static void keep_pair(const model_stage *stage, const subject *what,
     snprintf(path, sizeof path, "%s/%s-%s.png", folder, what->name,
              what->look->name);
     snow_image_options options = {.flatten = true, .overwrite = true};
-    assert_int_equal(snow_image_save(pair, path, &options), SNOW_OK);
+    assert_int_equal(snow_image_save(pair, path, &options), SNOW_STATUS_OK);
     snow_image_free(pair);
 }
 
@@ -84,7 +84,8 @@ static double similarity(const model_stage *stage, const subject *what,
         snow_image_pixels(cast)[n] = (float)rays[n];
     }
     snow_image_difference difference = {0};
-    assert_int_equal(snow_image_compare(splatted, cast, &difference), SNOW_OK);
+    assert_int_equal(snow_image_compare(splatted, cast, &difference),
+                     SNOW_STATUS_OK);
     print_message("             %s, %s: SSIM %.4f, PSNR %.1f dB, mean "
                   "difference %.4f\n",
                   what->name, what->look->name, difference.ssim,
@@ -100,12 +101,12 @@ static double similarity(const model_stage *stage, const subject *what,
 static void check_subject(const subject *what) {
     model_stage stage = model_open();
     snow_volume *volume = NULL;
-    assert_int_equal(
-        snow_volume_phantom(stage.context, what->name, what->dims, 0, &volume),
-        SNOW_OK);
-    bool bytes = snow_volume_describe(volume)->type == SNOW_UINT8;
+    assert_int_equal(snow_volume_open_phantom(stage.context, what->name,
+                                              what->dims, 0, &volume),
+                     SNOW_STATUS_OK);
+    bool bytes = snow_volume_get_info(volume)->type == SNOW_TYPE_UINT8;
     reference_scene scene = {
-        .info = *snow_volume_describe(volume),
+        .info = *snow_volume_get_info(volume),
         .voxels = snow_volume_voxels(volume),
         .colors = bytes ? byte_colors : signal_colors,
         .color_count = bytes ? 3 : 2,

@@ -78,8 +78,8 @@ static void a_constant_volume_has_the_opacity_of_its_slices(void **state) {
 
 static void front_to_back_equals_back_to_front(void **state) {
     (void)state;
-    reference_scene scene =
-        model_scene((int64_t[]){9, 12, 7}, SNOW_UINT8, false, MODEL_OBLIQUE, 3);
+    reference_scene scene = model_scene((int64_t[]){9, 12, 7}, SNOW_TYPE_UINT8,
+                                        false, MODEL_OBLIQUE, 3);
     model_turn(&scene, 30, 20, 10, 1);
     double *front = reference_render(&scene);
     double *back = reference_render_back_to_front(&scene);

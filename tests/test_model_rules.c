@@ -351,8 +351,8 @@ static void check_turn(const model_stage *stage, const reference_scene *scene,
 static void turning_the_camera_equals_turning_the_data(void **state) {
     (void)state;
     model_stage stage = model_open();
-    reference_scene scene = model_scene((int64_t[]){13, 10, 16}, SNOW_FLOAT32,
-                                        false, MODEL_PLAIN, 8);
+    reference_scene scene = model_scene(
+        (int64_t[]){13, 10, 16}, SNOW_TYPE_FLOAT32, false, MODEL_PLAIN, 8);
     for (int quarters = 0; quarters < 64; quarters++) {
         /* 24 different turns, most of them reached in more than one way. */
         int turns[3] = {quarters & 3, quarters >> 2 & 3, quarters >> 4};
@@ -366,8 +366,8 @@ static void turning_the_camera_equals_turning_the_data(void **state) {
 static void turning_the_matrix_equals_turning_the_camera(void **state) {
     (void)state;
     model_stage stage = model_open();
-    reference_scene scene = model_scene((int64_t[]){13, 10, 16}, SNOW_FLOAT32,
-                                        false, MODEL_PLAIN, 8);
+    reference_scene scene = model_scene(
+        (int64_t[]){13, 10, 16}, SNOW_TYPE_FLOAT32, false, MODEL_PLAIN, 8);
     for (int quarters = 0; quarters < 64; quarters++) {
         int turns[3] = {quarters & 3, quarters >> 2 & 3, quarters >> 4};
         int axes[3][3];

@@ -19,15 +19,15 @@ static void render_slabs(const model_stage *stage, const reference_scene *scene,
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     assert_int_equal(
-        snow_volume_share(stage->context, &scene->info, scene->voxels, &volume),
-        SNOW_OK);
+        snow_volume_wrap(stage->context, &scene->info, scene->voxels, &volume),
+        SNOW_STATUS_OK);
     transfer = model_transfer(stage->context, scene);
     for (int n = 0; n < parts; n++)
         assert_int_equal(
             snow_frame_render_slab(stage->frame, volume, transfer, &scene->view,
                                    &scene->settings, parts,
                                    rising ? n : parts - 1 - n, &images[n]),
-            SNOW_OK);
+            SNOW_STATUS_OK);
     snow_transfer_free(transfer);
     snow_volume_close(volume);
 }
@@ -69,9 +69,10 @@ static void slabs_combine_to_the_whole(void **state) {
     model_stage stage = model_open();
     double largest = 0;
     for (int n = 0; n < 8; n++) {
-        reference_scene scene = model_scene(
-            (int64_t[]){17, 12, 14}, n % 2 ? SNOW_UINT8 : SNOW_FLOAT32,
-            n % 3 == 0, (model_matrix)(n % MODEL_MATRICES), 4);
+        reference_scene scene =
+            model_scene((int64_t[]){17, 12, 14},
+                        n % 2 ? SNOW_TYPE_UINT8 : SNOW_TYPE_FLOAT32, n % 3 == 0,
+                        (model_matrix)(n % MODEL_MATRICES), 4);
         model_turn(&scene, turns[n][0], turns[n][1], turns[n][2], 1);
         scene.settings.encoding = (snow_encoding)(n % 4);
         scene.settings.threshold = n % 3 * 10;
@@ -92,8 +93,8 @@ static void slabs_combine_to_the_whole(void **state) {
 static void slabs_in_the_wrong_order_do_not(void **state) {
     (void)state;
     model_stage stage = model_open();
-    reference_scene scene =
-        model_scene((int64_t[]){17, 12, 14}, SNOW_UINT8, false, MODEL_PLAIN, 4);
+    reference_scene scene = model_scene((int64_t[]){17, 12, 14},
+                                        SNOW_TYPE_UINT8, false, MODEL_PLAIN, 4);
     snow_image *images[2], *whole = model_image(&stage, &scene);
     size_t count = (size_t)(scene.view.width * scene.view.height);
     render_slabs(&stage, &scene, 2, !front_is_first(&scene), images);

@@ -11,8 +11,9 @@
 static const snow_mode modes[] = {SNOW_MODE_MIP, SNOW_MODE_MINIP,
                                   SNOW_MODE_MEAN, SNOW_MODE_SUM};
 static const snow_type types[] = {
-    SNOW_INT8,   SNOW_UINT8, SNOW_INT16,  SNOW_UINT16,  SNOW_INT32,
-    SNOW_UINT32, SNOW_INT64, SNOW_UINT64, SNOW_FLOAT32, SNOW_FLOAT64,
+    SNOW_TYPE_INT8,    SNOW_TYPE_UINT8,   SNOW_TYPE_INT16, SNOW_TYPE_UINT16,
+    SNOW_TYPE_INT32,   SNOW_TYPE_UINT32,  SNOW_TYPE_INT64, SNOW_TYPE_UINT64,
+    SNOW_TYPE_FLOAT32, SNOW_TYPE_FLOAT64,
 };
 static const snow_kernel kernels[] = {SNOW_KERNEL_BSPLINE, SNOW_KERNEL_TENT,
                                       SNOW_KERNEL_GAUSS, SNOW_KERNEL_BOX};
@@ -55,7 +56,7 @@ static reference_scene mode_scene(uint64_t *state, size_t n, snow_mode mode) {
     scene.view.width = 24, scene.view.height = 18;
     model_stand_at(&scene, &stands[draw(state, COUNT(stands))],
                    zooms[draw(state, COUNT(zooms))]);
-    if (scene.info.type == SNOW_FLOAT32 && draw(state, 2)) {
+    if (scene.info.type == SNOW_TYPE_FLOAT32 && draw(state, 2)) {
         float *voxels = (float *)(uintptr_t)scene.voxels;
         for (int at = 0; at < 13 * 10 * 15; at++)
             if (draw(state, 20) == 0)
@@ -122,7 +123,8 @@ static void exact_pictures(double fov_share) {
     uint64_t random = 11;
     for (size_t m = 0; m < COUNT(modes); m++) {
         tally t = {0};
-        for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3; n++) {
+        for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
+             n += support_stride(7)) {
             reference_scene scene = mode_scene(&random, n, modes[m]);
             if (fov_share > 0)
                 scene.view.fov = fovs[draw(&random, COUNT(fovs))];
@@ -178,7 +180,8 @@ static void iso_pictures(bool seen) {
     model_stage stage = model_open();
     uint64_t random = 21;
     tally t = {0}, depths = {0};
-    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 4; n++) {
+    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 4;
+         n += support_stride(3)) {
         reference_scene scene = mode_scene(&random, n, SNOW_MODE_ISO);
         scene.settings.iso = 45 + 30 * support_uniform(&random);
         scene.settings.depth = 1;
@@ -207,11 +210,12 @@ static void depths_of_over(void **state) {
     model_stage stage = model_open();
     uint64_t random = 31;
     tally t = {0};
-    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3; n++) {
+    for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
+         n += support_stride(7)) {
         reference_scene scene = mode_scene(&random, n, SNOW_MODE_OVER);
         scene.settings.depth = 1;
         if (n % 3 == 1)
-            scene.settings.method = SNOW_METHOD_SHEARED;
+            scene.settings.method = SNOW_METHOD_SHEAR_WARP;
         if (n % 4 == 0)
             scene.view.fov = fovs[draw(&random, COUNT(fovs))];
         snow_image_free(model_image(&stage, &scene));
@@ -248,9 +252,10 @@ static void sheared_pictures(snow_quality quality, bool seen,
     uint64_t random = 12;
     for (size_t m = 0; m < COUNT(modes); m++) {
         tally t = {0};
-        for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3; n++) {
+        for (size_t n = 0; n < COUNT(types) * MODEL_MATRICES * 3;
+             n += support_stride(2)) {
             reference_scene scene = mode_scene(&random, n, modes[m]);
-            scene.settings.method = SNOW_METHOD_SHEARED;
+            scene.settings.method = SNOW_METHOD_SHEAR_WARP;
             scene.settings.quality = quality;
             if (seen)
                 scene.view.fov = fovs[draw(&random, COUNT(fovs))];
@@ -292,13 +297,14 @@ static snow_image *engine_picture(snow_context *context, snow_frame *frame,
     snow_transfer *transfer = NULL;
     snow_image *image = NULL;
     snow_view view;
-    assert_int_equal(snow_view_named(context, "+z", &view), SNOW_OK);
+    assert_int_equal(snow_view_from_name(context, "+z", &view), SNOW_STATUS_OK);
     view.width = view.height = 128;
     view.azimuth = 30, view.elevation = 20, view.fov = fov;
-    assert_int_equal(snow_transfer_make(volume, &look, &transfer), SNOW_OK);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
+                     SNOW_STATUS_OK);
     assert_int_equal(
         snow_frame_render(frame, volume, transfer, &view, settings, &image),
-        SNOW_OK);
+        SNOW_STATUS_OK);
     snow_transfer_free(transfer);
     return image;
 }
@@ -328,11 +334,11 @@ static snow_volume *open_phantom(snow_context *context, snow_type type) {
     }
     info.matrix[0][0] = info.matrix[1][1] = info.matrix[3][3] = 1;
     info.matrix[2][2] = 1.5;
-    assert_int_equal(
-        snow_volume_share(context, &info,
-                          type == SNOW_UINT8 ? (void *)bytes : (void *)voxels,
-                          &volume),
-        SNOW_OK);
+    assert_int_equal(snow_volume_wrap(context, &info,
+                                      type == SNOW_TYPE_UINT8 ? (void *)bytes
+                                                              : (void *)voxels,
+                                      &volume),
+                     SNOW_STATUS_OK);
     return volume;
 }
 
@@ -364,8 +370,8 @@ static void sheared_pictures_of_smooth_data_are_very_near(void **state) {
     static const double bounds[] = {0.0032, 0.0032, 0.00056, 0.00056};
     model_stage stage = model_open();
     for (int n = 0; n < 4; n++) {
-        snow_volume *volume =
-            open_phantom(stage.context, n % 2 ? SNOW_FLOAT32 : SNOW_UINT8);
+        snow_volume *volume = open_phantom(
+            stage.context, n % 2 ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_UINT8);
         double fov = n / 2 ? 30 : 0;
         for (size_t m = 0; m < COUNT(modes); m++) {
             snow_settings settings;
@@ -374,7 +380,7 @@ static void sheared_pictures_of_smooth_data_are_very_near(void **state) {
             snow_image *fast = engine_picture(stage.context, stage.frame,
                                               volume, &settings, fov);
             assert_int_equal(snow_frame_stats(stage.frame)->method,
-                             SNOW_METHOD_SHEARED);
+                             SNOW_METHOD_SHEAR_WARP);
             settings.method = SNOW_METHOD_FOOTPRINT;
             snow_image *exact = engine_picture(stage.context, stage.frame,
                                                volume, &settings, fov);
@@ -404,10 +410,10 @@ static uint64_t sum_of(const model_stage *stage, const snow_volume *volume,
 
 static void threads_and_encodings_change_no_bit(void **state) {
     (void)state;
-    static const snow_method methods[] = {SNOW_METHOD_SHEARED,
+    static const snow_method methods[] = {SNOW_METHOD_SHEAR_WARP,
                                           SNOW_METHOD_FOOTPRINT};
     model_stage stage = model_open();
-    snow_volume *volume = open_phantom(stage.context, SNOW_FLOAT32);
+    snow_volume *volume = open_phantom(stage.context, SNOW_TYPE_FLOAT32);
     for (int mode = SNOW_MODE_MIP; mode <= SNOW_MODE_ISO; mode++)
         for (int n = 0; n < 4; n++) { /* the last two in perspective */
             snow_settings settings;
@@ -431,7 +437,7 @@ static void threads_and_encodings_change_no_bit(void **state) {
 static void levels_make_the_same_picture(void **state) {
     (void)state;
     model_stage stage = model_open();
-    snow_volume *volume = open_phantom(stage.context, SNOW_UINT8);
+    snow_volume *volume = open_phantom(stage.context, SNOW_TYPE_UINT8);
     for (int way = 2 * SNOW_MODE_MIP; way < 2 * SNOW_MODE_ISO + 2; way++) {
         double fov = way % 2 ? 30 : 0;
         snow_settings settings;
@@ -476,24 +482,27 @@ static void means_become_colours_over_a_range(void **state) {
     double low, high;
     assert_int_equal(
         snow_transfer_new(stage.context, colors, 2, opaque, 1, &transfer),
-        SNOW_OK);
-    assert_int_equal(snow_image_new(stage.context, 4, 1, 1, &values), SNOW_OK);
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_image_new(stage.context, 4, 1, 1, &values),
+                     SNOW_STATUS_OK);
     const float numbers[4] = {-3, NAN, 1, 5};
     memcpy(snow_image_pixels(values), numbers, sizeof numbers);
-    snow_values_range(values, &low, &high);
+    snow_image_value_range(values, &low, &high);
     assert_true(low == -3 && high == 5);
-    assert_int_equal(snow_values_paint(values, transfer, low, high, &painted),
-                     SNOW_OK);
+    assert_int_equal(
+        snow_image_apply_colormap(values, transfer, low, high, &painted),
+        SNOW_STATUS_OK);
     const float wanted[16] = {0,   0,    0, 1, 0, 0,   0, 0,
                               0.5, 0.25, 0, 1, 1, 0.5, 0, 1};
     assert_memory_equal(snow_image_pixels(painted), wanted, sizeof wanted);
     snow_image *none = NULL;
-    assert_int_equal(snow_values_paint(painted, transfer, low, high, &none),
-                     SNOW_BAD_USAGE);
-    assert_int_equal(snow_values_paint(values, transfer, 2, 1, &none),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(
+        snow_image_apply_colormap(painted, transfer, low, high, &none),
+        SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_image_apply_colormap(values, transfer, 2, 1, &none),
+                     SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_image_save(values, "values.png", NULL),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(stage.context), "not values"));
     snow_image_free(values);
     snow_image_free(painted);
@@ -509,7 +518,7 @@ static void odd_volumes(void **state) {
     for (int mode = SNOW_MODE_MIP; mode <= SNOW_MODE_ISO; mode++)
         for (int method = 0; method < 2; method++) {
             scene.settings.method =
-                method ? SNOW_METHOD_SHEARED : SNOW_METHOD_FOOTPRINT;
+                method ? SNOW_METHOD_SHEAR_WARP : SNOW_METHOD_FOOTPRINT;
             scene.settings.mode = (snow_mode)mode;
             scene.settings.iso = 7;
             bool values = has_values(scene.settings.mode);
@@ -540,17 +549,18 @@ static void odd_volumes(void **state) {
 static void refusals(void **state) {
     (void)state;
     model_stage stage = model_open();
-    reference_scene scene = model_scene(dims, SNOW_UINT8, true, MODEL_PLAIN, 1);
+    reference_scene scene =
+        model_scene(dims, SNOW_TYPE_UINT8, true, MODEL_PLAIN, 1);
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     snow_image *image = NULL;
     assert_int_equal(
-        snow_volume_share(stage.context, &scene.info, scene.voxels, &volume),
-        SNOW_OK);
+        snow_volume_wrap(stage.context, &scene.info, scene.voxels, &volume),
+        SNOW_STATUS_OK);
     assert_int_equal(snow_transfer_new(stage.context, scene.colors,
                                        scene.color_count, scene.opacities,
                                        scene.opacity_count, &transfer),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     struct {
         int mode;
         double iso;
@@ -568,7 +578,7 @@ static void refusals(void **state) {
         settings.depth = wrong[n].depth;
         assert_int_equal(snow_frame_render(stage.frame, volume, transfer,
                                            &scene.view, &settings, &image),
-                         SNOW_BAD_USAGE);
+                         SNOW_STATUS_BAD_USAGE);
         if (!strstr(snow_context_message(stage.context), wrong[n].words))
             fail_msg("%s", snow_context_message(stage.context));
     }
@@ -584,9 +594,9 @@ static void no_settings_are_the_usual_ones(void **state) {
     snow_frame *frame = NULL;
     snow_settings usual;
     snow_settings_init(&usual);
-    assert_int_equal(snow_context_new(NULL, &context), SNOW_OK);
-    assert_int_equal(snow_frame_new(context, &frame), SNOW_OK);
-    snow_volume *volume = open_phantom(context, SNOW_UINT8);
+    assert_int_equal(snow_context_new(NULL, &context), SNOW_STATUS_OK);
+    assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
+    snow_volume *volume = open_phantom(context, SNOW_TYPE_UINT8);
     snow_image *a = engine_picture(context, frame, volume, &usual, 0);
     snow_image *b = engine_picture(context, frame, volume, NULL, 0);
     assert_true(snow_image_checksum(a) == snow_image_checksum(b));

@@ -62,7 +62,7 @@ static void expect_place(const map *m, const double wanted[3][4], int notices) {
     support_files_begin(&files);
     snow_volume *volume = support_opened(&files, write_map(&files, m), NULL);
     const int16_t *voxels = snow_volume_voxels(volume);
-    expect_matrix(snow_volume_describe(volume), wanted);
+    expect_matrix(snow_volume_get_info(volume), wanted);
     for (int i = 0; i < VOXELS; i++)
         assert_int_equal(voxels[i], i);
     assert_int_equal(files.notices, notices);
@@ -167,32 +167,37 @@ static void headers_that_lie_are_refused(void **state) {
         int32_t value;
         const char *part;
     } cases[] = {
-        {4, 4, "mode 4"},          {4, 101, "mode 101"},
-        {4, 7, "mode 7"},          {17, 2, "MAPC"},
-        {24, -4, "NSYMBT"},        {24, 1 << 30, "is cut"},
-        {1, 2000000000, "is cut"}, {3, 3, "is cut"},
-        {1, 0, "makes no sense"},  {2, -3, "makes no sense"},
-        {4, -2, "makes no sense"},
+        {4, 4, "mode 4"},
+        {4, 101, "mode 101"},
+        {4, 7, "mode 7"},
+        {17, 2, "MAPC"},
+        {24, -4, "NSYMBT"},
+        {24, 1 << 30, "truncated"},
+        {1, 2000000000, "truncated"},
+        {3, 3, "truncated"},
+        {1, 0, "is invalid"},
+        {2, -3, "is invalid"},
+        {4, -2, "is invalid"},
     };
     support_files files;
     support_files_begin(&files);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         map m = plain();
         put_whole(&m, cases[i].number, cases[i].value);
-        const char *part = !strcmp(cases[i].part, "makes no sense")
-                               ? "no MRC file"
+        const char *part = !strcmp(cases[i].part, "is invalid")
+                               ? "not an MRC file"
                            : cases[i].value == 1 << 30 ? "too early"
                                                        : cases[i].part;
-        support_refused(&files, write_map(&files, &m), NULL, SNOW_BAD_INPUT,
-                        part, MOST);
+        support_refused(&files, write_map(&files, &m), NULL,
+                        SNOW_STATUS_BAD_INPUT, part, MOST);
     }
     map m = plain();
     support_refused(&files, support_write(&files, "s.mrc", m.bytes, 1000), NULL,
-                    SNOW_BAD_INPUT, "too early", MOST);
+                    SNOW_STATUS_BAD_INPUT, "too early", MOST);
     for (int i = 0; i < 3; i++)
         put_whole(&m, 1 + i, INT32_MAX);
-    support_refused(&files, write_map(&files, &m), NULL, SNOW_BAD_INPUT,
-                    "larger than any file", MOST);
+    support_refused(&files, write_map(&files, &m), NULL, SNOW_STATUS_BAD_INPUT,
+                    "too large for any file", MOST);
     support_files_end(&files);
 }
 

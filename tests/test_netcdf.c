@@ -63,7 +63,7 @@ static const char *write_nc(support_files *files, const nc *f) {
 }
 
 static void expect_counting(snow_volume *volume, int64_t slices) {
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const int16_t *voxels = snow_volume_voxels(volume);
     assert_string_equal(info->format, "netcdf");
     assert_true(info->dims[0] == 3 && info->dims[1] == 2 &&
@@ -107,19 +107,19 @@ static void headers_that_lie_are_refused(void **state) {
         const char *part;
     } cases[] = {
         {0, 0x43444603, "version 1, 2 or 5"},
-        {8, 9, "makes no sense"},
+        {8, 9, "header is invalid"},
         {12, 0x7fffffff, "more than the file can hold"},
         {12, 0x80000000, "below 0"},
         {16, 300, "256 letters"},
-        {24, 0x7fffffff, "is cut"},
+        {24, 0x7fffffff, "is truncated"},
         {24, 0, "records not as its first"},
         {24, 0x80000000, "below 0"},
-        {76, 4000, "not there"},
-        {80, 3, "not there"},
-        {100, 12, "type that is not known"},
-        {100, 6, "is cut"},
-        {100, 2, "no variable of numbers"},
-        {108, 0x7fffffff, "is cut"},
+        {76, 4000, "does not exist"},
+        {80, 3, "does not exist"},
+        {100, 12, "unknown type"},
+        {100, 6, "truncated"},
+        {100, 2, "no numeric variable"},
+        {108, 0x7fffffff, "truncated"},
     };
     support_files files;
     support_files_begin(&files);
@@ -131,8 +131,8 @@ static void headers_that_lie_are_refused(void **state) {
         f.size = cases[i].at;
         put(&f, cases[i].value, 4);
         f.size = size;
-        support_refused(&files, write_nc(&files, &f), NULL, SNOW_BAD_INPUT,
-                        cases[i].part, MOST);
+        support_refused(&files, write_nc(&files, &f), NULL,
+                        SNOW_STATUS_BAD_INPUT, cases[i].part, MOST);
     }
     support_files_end(&files);
 }
@@ -146,11 +146,11 @@ static void a_cut_file_is_refused(void **state) {
     put_voxels(&f, 24);
     for (size_t size = 4; size < f.size; size++)
         support_refused(&files, support_write(&files, "b.nc", f.bytes, size),
-                        NULL, SNOW_BAD_INPUT, ";", MOST);
+                        NULL, SNOW_STATUS_BAD_INPUT, ";", MOST);
     begin(&f, 0x7fffffff, 0);
     put_voxels(&f, 30);
-    support_refused(&files, write_nc(&files, &f), NULL, SNOW_BAD_INPUT, "cut",
-                    MOST);
+    support_refused(&files, write_nc(&files, &f), NULL, SNOW_STATUS_BAD_INPUT,
+                    "truncated", MOST);
     support_files_end(&files);
 }
 
@@ -163,7 +163,7 @@ static void a_wrong_name_lists_the_right_ones(void **state) {
     put_voxels(&f, 24);
     const snow_volume_options wrong = {.dataset = "w"},
                               right = {.dataset = "v"};
-    support_refused(&files, write_nc(&files, &f), &wrong, SNOW_BAD_USAGE,
+    support_refused(&files, write_nc(&files, &f), &wrong, SNOW_STATUS_BAD_USAGE,
                     "v (3x2x4)", MOST);
     expect_counting(support_opened(&files, write_nc(&files, &f), &right), 4);
     char path[600];

@@ -100,7 +100,7 @@ static file make_file(int version, bool big) {
 static snow_volume *open_file(support_place *place, const file *f) {
     snow_volume *volume = NULL;
     if (snow_volume_open_memory(place->context, "a.nii", f->bytes, f->size,
-                                NULL, &volume) != SNOW_OK)
+                                NULL, &volume) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
     return volume;
 }
@@ -109,7 +109,7 @@ static void assert_matrix(const snow_volume *volume, const double rows[12]) {
     double wanted[4][4] = {{0}};
     memcpy(wanted, rows, 12 * sizeof *rows);
     wanted[3][3] = 1;
-    support_same_matrix(snow_volume_describe(volume)->matrix,
+    support_same_matrix(snow_volume_get_info(volume)->matrix,
                         (const double(*)[4])wanted, 1e-6);
 }
 
@@ -122,11 +122,11 @@ static void both_versions_and_byte_orders_give_one_volume(void **state) {
     for (int i = 0; i < 4; i++) {
         file f = make_file(1 + i / 2, i % 2);
         snow_volume *volume = open_file(place, &f);
-        const snow_volume_info *info = snow_volume_describe(volume);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_int_equal(info->dims[0], 3);
         assert_int_equal(info->dims[1], 2);
         assert_int_equal(info->dims[2], 2);
-        assert_int_equal(info->type, SNOW_INT16);
+        assert_int_equal(info->type, SNOW_TYPE_INT16);
         assert_string_equal(info->format, "nifti");
         assert_string_equal(info->unit, "mm");
         assert_false(info->medical);
@@ -144,10 +144,11 @@ static void every_scalar_type_is_read_in_both_byte_orders(void **state) {
     static const struct {
         int code;
         snow_type type;
-    } types[] = {{2, SNOW_UINT8},    {4, SNOW_INT16},    {8, SNOW_INT32},
-                 {16, SNOW_FLOAT32}, {64, SNOW_FLOAT64}, {256, SNOW_INT8},
-                 {512, SNOW_UINT16}, {768, SNOW_UINT32}, {1024, SNOW_INT64},
-                 {1280, SNOW_UINT64}};
+    } types[] = {{2, SNOW_TYPE_UINT8},    {4, SNOW_TYPE_INT16},
+                 {8, SNOW_TYPE_INT32},    {16, SNOW_TYPE_FLOAT32},
+                 {64, SNOW_TYPE_FLOAT64}, {256, SNOW_TYPE_INT8},
+                 {512, SNOW_TYPE_UINT16}, {768, SNOW_TYPE_UINT32},
+                 {1024, SNOW_TYPE_INT64}, {1280, SNOW_TYPE_UINT64}};
     uint64_t seed = 5;
     for (size_t i = 0; i < 4 * sizeof types / sizeof *types; i++) {
         file f = make_file(1 + (int)i % 2, i / 2 % 2);
@@ -162,7 +163,7 @@ static void every_scalar_type_is_read_in_both_byte_orders(void **state) {
             memcpy(wanted + k * size, &bits, size); /* little machines only */
         }
         snow_volume *volume = open_file(place, &f);
-        assert_int_equal(snow_volume_describe(volume)->type, types[i / 4].type);
+        assert_int_equal(snow_volume_get_info(volume)->type, types[i / 4].type);
         const uint16_t one = 1;
         if (*(const unsigned char *)&one)
             assert_memory_equal(snow_volume_voxels(volume), wanted, 12 * size);
@@ -196,8 +197,8 @@ static void slope_and_intercept_are_kept_and_zero_means_none(void **state) {
         put_real(&f, 112, 176, given[i % 4][0]);
         put_real(&f, 116, 184, given[i % 4][1]);
         snow_volume *volume = open_file(place, &f);
-        assert_true(snow_volume_describe(volume)->slope == given[i % 4][2]);
-        assert_true(snow_volume_describe(volume)->intercept == given[i % 4][3]);
+        assert_true(snow_volume_get_info(volume)->slope == given[i % 4][2]);
+        assert_true(snow_volume_get_info(volume)->intercept == given[i % 4][3]);
         snow_volume_close(volume);
     }
     file f = make_file(1, false);
@@ -212,13 +213,13 @@ static void the_matrix_is_sform_then_qform_then_spacing(void **state) {
         file f = make_file(version, version == 1);
         put_qform(&f, 0, 0, 1); /* half a turn about z */
         snow_volume *volume = open_file(place, &f);
-        assert_true(snow_volume_describe(volume)->medical);
+        assert_true(snow_volume_get_info(volume)->medical);
         assert_matrix(volume,
                       (double[]){-1, 0, 0, 10, 0, -2, 0, 20, 0, 0, 3, 30});
         snow_volume_close(volume);
         put_sform(&f, sform);
         volume = open_file(place, &f);
-        assert_true(snow_volume_describe(volume)->medical);
+        assert_true(snow_volume_get_info(volume)->medical);
         assert_matrix(volume, sform);
         snow_volume_close(volume);
     }
@@ -256,7 +257,7 @@ static void bad_geometry_falls_back_with_a_warning(void **state) {
     volume = open_file(place, &f);
     assert_matrix(volume, (double[]){1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0});
     assert_non_null(strstr(place->notices, "qform"));
-    assert_false(snow_volume_describe(volume)->medical);
+    assert_false(snow_volume_get_info(volume)->medical);
     snow_volume_close(volume);
 }
 
@@ -298,9 +299,9 @@ static void the_time_step_that_is_asked_for_is_read(void **state) {
         assert_int_equal(snow_volume_open_memory(place->context, "a.nii",
                                                  f.bytes, f.size, &options,
                                                  &volume),
-                         SNOW_OK);
-        assert_int_equal(snow_volume_describe(volume)->times, 6);
-        assert_int_equal(snow_volume_describe(volume)->time, time);
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_volume_get_info(volume)->times, 6);
+        assert_int_equal(snow_volume_get_info(volume)->time, time);
         assert_int_equal(*(const int16_t *)snow_volume_voxels(volume),
                          100 + 2 * time);
         snow_volume_close(volume);
@@ -310,7 +311,7 @@ static void the_time_step_that_is_asked_for_is_read(void **state) {
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open_memory(place->context, "a.nii", f.bytes,
                                              f.size, &beyond, &volume),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_null(volume);
 }
 
@@ -336,8 +337,8 @@ static void few_axes_and_extensions_are_read(void **state) {
     put_real(&f, 108, 0, 384);
     f.size += 32;
     snow_volume *volume = open_file(place, &f);
-    assert_int_equal(snow_volume_describe(volume)->dims[0], 12);
-    assert_int_equal(snow_volume_describe(volume)->dims[1], 1);
+    assert_int_equal(snow_volume_get_info(volume)->dims[0], 12);
+    assert_int_equal(snow_volume_get_info(volume)->dims[1], 1);
     assert_int_equal(*(const int16_t *)snow_volume_voxels(volume), 100);
     snow_volume_close(volume);
 }
@@ -356,9 +357,9 @@ static void a_cut_header_is_counted(void **state) {
     support_place *place = *state;
     file f = make_file(1, false);
     f.size = 1;
-    refuse(place, &f, "1 byte is no whole NIfTI header");
+    refuse(place, &f, "1 byte is too few for a NIfTI header");
     f.size = 347;
-    refuse(place, &f, "347 bytes are no whole NIfTI header");
+    refuse(place, &f, "347 bytes are too few for a NIfTI header");
 }
 
 static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
@@ -369,10 +370,10 @@ static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
     refuse(place, &f, "bytes left");
     for (size_t i = 0; i < 8; i++)
         put_dim(&f, i, i ? 32767 : 7);
-    refuse(place, &f, "larger than any file");
+    refuse(place, &f, "too large for any file");
     file g = make_file(2, false);
     put_dim(&g, 1, INT64_C(1) << 62);
-    refuse(place, &g, "larger than any file");
+    refuse(place, &g, "too large for any file");
     static const int64_t bad[] = {0, -1, INT16_MIN};
     for (size_t i = 0; i < 3; i++) {
         f = make_file(1, false);
@@ -388,7 +389,7 @@ static void contradictions_are_refused(void **state) {
     support_place *place = *state;
     file f = make_file(1, false);
     put_datatype(&f, 4, 4);
-    refuse(place, &f, "32 bits a voxel");
+    refuse(place, &f, "32 bits per voxel");
     static const double offsets[] = {-1,    100, 349,      351,
                                      352.5, NAN, INFINITY, 1e30};
     for (size_t i = 0; i < sizeof offsets / sizeof *offsets; i++) {
@@ -448,7 +449,7 @@ static void gzip_is_verified_to_its_last_byte(void **state) {
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open_memory(place->context, "a.nii.gz", packed,
                                              size, NULL, &volume),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_int_equal(*(const int16_t *)snow_volume_voxels(volume), 100);
     snow_volume_close(volume);
     for (size_t cut = 20; cut < size; cut++)
@@ -512,15 +513,15 @@ static void a_pair_without_its_other_file_is_refused(void **state) {
     const char *path = support_place_put(place, "a.hdr", f.bytes, 348);
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(place->context), "a.img"));
     path = support_place_put(place, "b.img", f.bytes + 352, 24);
     assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(place->context), "b.hdr"));
     path = support_place_put(place, "c.dat", f.bytes, 348);
     assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(place->context), "rename"));
     refuse(place, &f, "rename");
 }
@@ -532,54 +533,74 @@ static const struct real_file {
     snow_type type;
     double min, max; /* of the first step where there are several */
 } real_files[] = {
-    {"classic/fuel.nii.gz", {64, 33, 32}, 1, SNOW_UINT8, 0, 255},
-    {"formats/nifti/5D_zeros.nii.gz", {256, 256, 170}, 3, SNOW_UINT8, 0, 0},
-    {"formats/nifti/air.hdr.gz", {79, 67, 64}, 1, SNOW_FLOAT32, 0, 92.5539},
-    {"formats/nifti/air.img.gz", {79, 67, 64}, 1, SNOW_FLOAT32, 0, 92.5539},
-    {"formats/nifti/anatomical.nii", {33, 41, 25}, 1, SNOW_INT16, -610, 30393},
+    {"classic/fuel.nii.gz", {64, 33, 32}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"formats/nifti/5D_zeros.nii.gz",
+     {256, 256, 170},
+     3,
+     SNOW_TYPE_UINT8,
+     0,
+     0},
+    {"formats/nifti/air.hdr.gz",
+     {79, 67, 64},
+     1,
+     SNOW_TYPE_FLOAT32,
+     0,
+     92.5539},
+    {"formats/nifti/air.img.gz",
+     {79, 67, 64},
+     1,
+     SNOW_TYPE_FLOAT32,
+     0,
+     92.5539},
+    {"formats/nifti/anatomical.nii",
+     {33, 41, 25},
+     1,
+     SNOW_TYPE_INT16,
+     -610,
+     30393},
     {"formats/nifti/avf_float_32.nii.gz",
      {74, 93, 20},
      1,
-     SNOW_FLOAT32,
+     SNOW_TYPE_FLOAT32,
      0,
      2509.89},
     {"formats/nifti/avg152T1_LR_nifti.nii",
      {91, 109, 91},
      1,
-     SNOW_UINT8,
+     SNOW_TYPE_UINT8,
      0,
      255},
     {"formats/nifti/big.nii.gz",
      {64, 64, 21},
      1,
-     SNOW_FLOAT32,
+     SNOW_TYPE_FLOAT32,
      -8.71075,
      18.5825},
     {"formats/nifti/little.nii.gz",
      {64, 64, 21},
      1,
-     SNOW_FLOAT32,
+     SNOW_TYPE_FLOAT32,
      -8.71075,
      18.5825},
-    {"formats/nifti/standard.nii.gz", {4, 5, 7}, 1, SNOW_UINT8, 0, 255},
+    {"formats/nifti/standard.nii.gz", {4, 5, 7}, 1, SNOW_TYPE_UINT8, 0, 255},
     {"formats/nifti/with_extension.nii.gz",
      {161, 191, 151},
      1,
-     SNOW_UINT8,
+     SNOW_TYPE_UINT8,
      0,
      1},
     {"formats/nrrd/pynrrd/BallBinary30x30x30.nii.gz",
      {30, 30, 30},
      1,
-     SNOW_INT16,
+     SNOW_TYPE_INT16,
      0,
      257},
-    {"medical/CT_AVM.nii.gz", {256, 242, 154}, 1, SNOW_UINT8, 0, 255},
-    {"medical/CT_pitch.nii.gz", {175, 248, 58}, 1, SNOW_UINT8, 0, 255},
-    {"medical/ch2.nii.gz", {181, 217, 181}, 1, SNOW_UINT8, 0, 254},
-    {"medical/chris_MRA.nii.gz", {200, 256, 120}, 1, SNOW_UINT8, 0, 254},
-    {"medical/fmri_pitch.nii.gz", {64, 64, 35}, 1, SNOW_UINT8, 0, 255},
-    {"sim/heptane.nii.gz", {302, 302, 302}, 1, SNOW_UINT8, 0, 255},
+    {"medical/CT_AVM.nii.gz", {256, 242, 154}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"medical/CT_pitch.nii.gz", {175, 248, 58}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"medical/ch2.nii.gz", {181, 217, 181}, 1, SNOW_TYPE_UINT8, 0, 254},
+    {"medical/chris_MRA.nii.gz", {200, 256, 120}, 1, SNOW_TYPE_UINT8, 0, 254},
+    {"medical/fmri_pitch.nii.gz", {64, 64, 35}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"sim/heptane.nii.gz", {302, 302, 302}, 1, SNOW_TYPE_UINT8, 0, 255},
 };
 
 static void real_files_have_their_known_figures(void **state) {
@@ -590,13 +611,13 @@ static void real_files_have_their_known_figures(void **state) {
         const struct real_file *real = &real_files[i];
         snow_volume *volume =
             support_place_open(place, support_data(real->name));
-        const snow_volume_info *info = snow_volume_describe(volume);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_memory_equal(info->dims, real->dims, sizeof info->dims);
         assert_int_equal(info->times, real->times);
         assert_int_equal(info->type, real->type);
         assert_true(info->medical);
-        snow_volume_measures m;
-        snow_volume_measure(volume, &m);
+        snow_volume_statistics m;
+        snow_volume_get_statistics(volume, &m);
         double low = real->min * info->slope + info->intercept;
         double high = real->max * info->slope + info->intercept;
         assert_true(fabs(m.min - low) <= 1e-5 * fabs(low));
@@ -617,13 +638,13 @@ static void range_of_all_steps(support_place *place, const char *name,
         snow_volume *volume = NULL;
         assert_int_equal(snow_volume_open(place->context, support_data(name),
                                           &options, &volume),
-                         SNOW_OK);
-        const snow_volume_info *info = snow_volume_describe(volume);
+                         SNOW_STATUS_OK);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_int_equal(info->times, steps);
         assert_true(fabs(info->slope - slope) < 1e-12);
         assert_true(fabs(info->intercept - intercept) < 1e-12);
-        snow_volume_measures m;
-        snow_volume_measure(volume, &m);
+        snow_volume_statistics m;
+        snow_volume_get_statistics(volume, &m);
         range[0] = fmin(range[0], round((m.min - intercept) / slope));
         range[1] = fmax(range[1], round((m.max - intercept) / slope));
         snow_volume_close(volume);
@@ -651,8 +672,8 @@ static void same_real_pair(support_place *place, const char *first,
     snow_volume *a = support_place_open(place, support_data(first));
     snow_volume *b = support_place_open(place, support_data(second));
     support_same_voxels(a, b);
-    support_same_matrix(snow_volume_describe(a)->matrix,
-                        snow_volume_describe(b)->matrix, 1e-5);
+    support_same_matrix(snow_volume_get_info(a)->matrix,
+                        snow_volume_get_info(b)->matrix, 1e-5);
     snow_volume_close(a);
     snow_volume_close(b);
 }
@@ -678,8 +699,9 @@ static void a_real_file_of_another_kind_is_refused(void **state) {
         skip();
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
-                     SNOW_BAD_INPUT);
-    assert_non_null(strstr(snow_context_message(place->context), "no NIfTI"));
+                     SNOW_STATUS_BAD_INPUT);
+    assert_non_null(
+        strstr(snow_context_message(place->context), "not a NIfTI"));
 }
 
 #define UNIT(test)                                             \

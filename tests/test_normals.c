@@ -1,9 +1,9 @@
 /* tests/test_normals.c - 16-bit normals and the shading table, against plain
- * computations in double and against classify/shade.c. */
+ * computations in double and against classify/shading/shade.c. */
 #include "support_model.h"
 
 #include "base/vec3.h"
-#include "classify/normals.h"
+#include "classify/shading/normals.h"
 
 #include <math.h>
 
@@ -232,7 +232,7 @@ static gradient_tally check_volume(const snow_volume *volume) {
     gradient_tally tally = {0};
     uint64_t seed = 9;
     assert_int_equal(snow_normal_maker_init(volume->context, volume, &maker),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     for (int axis = 0; axis < 3; axis++) {
         snow_placement p = placement_along(volume, axis);
         for (int64_t slice = 0; slice < p.slices; slice++)
@@ -251,16 +251,16 @@ static void gradients_of_every_type_and_matrix(void **state) {
     (void)state;
     const int64_t sizes[3][3] = {{150, 7, 5}, {3, 70, 4}, {40, 33, 1}};
     snow_context *context = support_context();
-    for (snow_type type = SNOW_INT8; type <= SNOW_FLOAT64; type++)
+    for (snow_type type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++)
         for (int matrix = 0; matrix < MODEL_MATRICES; matrix++)
             for (int size = 0; size < 3; size++) {
                 reference_scene scene =
                     model_scene(sizes[size], type, true, (model_matrix)matrix,
                                 (uint64_t)type + 3);
                 snow_volume *volume;
-                assert_int_equal(snow_volume_share(context, &scene.info,
-                                                   scene.voxels, &volume),
-                                 SNOW_OK);
+                assert_int_equal(snow_volume_wrap(context, &scene.info,
+                                                  scene.voxels, &volume),
+                                 SNOW_STATUS_OK);
                 gradient_tally tally = check_volume(volume);
                 assert_true(tally.most > 0.2);
                 assert_true(tally.between > tally.voxels / 2);
@@ -276,11 +276,11 @@ static void volumes_of_one_voxel_or_line_have_borders_only(void **state) {
     snow_context *context = support_context();
     for (int size = 0; size < 4; size++) {
         reference_scene scene =
-            model_scene(sizes[size], SNOW_UINT8, true, MODEL_OBLIQUE, 4);
+            model_scene(sizes[size], SNOW_TYPE_UINT8, true, MODEL_OBLIQUE, 4);
         snow_volume *volume;
         assert_int_equal(
-            snow_volume_share(context, &scene.info, scene.voxels, &volume),
-            SNOW_OK);
+            snow_volume_wrap(context, &scene.info, scene.voxels, &volume),
+            SNOW_STATUS_OK);
         gradient_tally tally = check_volume(volume);
         assert_true(size != 0 || tally.without == tally.voxels);
         snow_volume_close(volume);
@@ -306,10 +306,10 @@ static void check_floats(snow_type type, double size,
         singles[n] = (float)doubles[n];
     }
     const void *voxels = doubles;
-    if (type == SNOW_FLOAT32)
+    if (type == SNOW_TYPE_FLOAT32)
         voxels = singles;
-    assert_int_equal(snow_volume_share(context, &info, voxels, &volume),
-                     SNOW_OK);
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
     gradient_tally tally = check_volume(volume);
     assert_true(tally.without < tally.voxels);
     snow_volume_close(volume);
@@ -355,17 +355,17 @@ static void numbers_of_any_size_and_none_make_normals(void **state) {
     (void)state;
     for (int size = -1; size <= 1; size++) {
         double voxel = pow(10, 15 * size);
-        check_floats(SNOW_FLOAT32, voxel, with_holes);
-        check_floats(SNOW_FLOAT32, voxel, tiny);
-        check_floats(SNOW_FLOAT32, voxel, single_subnormal);
-        check_floats(SNOW_FLOAT32, voxel, huge);
-        check_floats(SNOW_FLOAT32, voxel, plateaus);
-        check_floats(SNOW_FLOAT64, voxel, with_holes);
-        check_floats(SNOW_FLOAT64, voxel, tiny);
-        check_floats(SNOW_FLOAT64, voxel, subnormal);
-        check_floats(SNOW_FLOAT64, voxel, huger);
-        check_floats(SNOW_FLOAT64, voxel, mixed);
-        check_floats(SNOW_FLOAT64, voxel, plateaus);
+        check_floats(SNOW_TYPE_FLOAT32, voxel, with_holes);
+        check_floats(SNOW_TYPE_FLOAT32, voxel, tiny);
+        check_floats(SNOW_TYPE_FLOAT32, voxel, single_subnormal);
+        check_floats(SNOW_TYPE_FLOAT32, voxel, huge);
+        check_floats(SNOW_TYPE_FLOAT32, voxel, plateaus);
+        check_floats(SNOW_TYPE_FLOAT64, voxel, with_holes);
+        check_floats(SNOW_TYPE_FLOAT64, voxel, tiny);
+        check_floats(SNOW_TYPE_FLOAT64, voxel, subnormal);
+        check_floats(SNOW_TYPE_FLOAT64, voxel, huger);
+        check_floats(SNOW_TYPE_FLOAT64, voxel, mixed);
+        check_floats(SNOW_TYPE_FLOAT64, voxel, plateaus);
     }
 }
 
@@ -377,14 +377,14 @@ static void flat_and_skewed_voxels_are_carried(void **state) {
     for (int n = 0; n < 3; n++)
         for (int flat = 0; flat < 2; flat++) {
             reference_scene scene =
-                model_scene(dims, SNOW_INT16, true, MODEL_PLAIN, 8);
+                model_scene(dims, SNOW_TYPE_INT16, true, MODEL_PLAIN, 8);
             scene.info.matrix[0][1] = skews[n];
             scene.info.matrix[1][1] = sqrt(1 - skews[n] * skews[n]);
             scene.info.matrix[2][2] = flat ? 1e-5 : 1;
             snow_volume *volume;
             assert_int_equal(
-                snow_volume_share(context, &scene.info, scene.voxels, &volume),
-                SNOW_OK);
+                snow_volume_wrap(context, &scene.info, scene.voxels, &volume),
+                SNOW_STATUS_OK);
             check_volume(volume);
             snow_volume_close(volume);
             model_free(&scene);
@@ -394,8 +394,8 @@ static void flat_and_skewed_voxels_are_carried(void **state) {
 
 /* --- the shading table ---------------------------------------------------- */
 
-/* Factor and white that classify/shade.c gives a direction: two greys are
- * shaded by it in the middle of 3 x 3 x 3 voxels with that gradient. */
+/* Factor and white that classify/shading/shade.c gives a direction: two greys
+ * are shaded by it in the middle of 3 x 3 x 3 voxels with that gradient. */
 static void shade_of(snow_context *context, const snow_settings *settings,
                      const snow_placement *placement, const double n[3],
                      double *factor, double *white) {
@@ -405,26 +405,26 @@ static void shade_of(snow_context *context, const snow_settings *settings,
         voxels[13 - strides[i]] = -n[i];
         voxels[13 + strides[i]] = n[i];
     }
-    snow_volume_info info = {.dims = {3, 3, 3}, .type = SNOW_FLOAT64};
+    snow_volume_info info = {.dims = {3, 3, 3}, .type = SNOW_TYPE_FLOAT64};
     snow_volume *volume;
-    assert_int_equal(snow_volume_share(context, &info, voxels, &volume),
-                     SNOW_OK);
+    assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
     snow_shader shader;
     assert_int_equal(
         snow_shader_init(context, volume, placement, settings, &shader),
-        SNOW_OK);
+        SNOW_STATUS_OK);
     uint32_t column = 1;
     float samples[4] = {0, 1, 0.25F, 1};
     for (int grey = 0; grey < 2; grey++) {
         size_t end = 1;
-        snow_strip strip = {.slice = 1,
-                            .first_row = 1,
-                            .rows = 1,
-                            .count = 1,
-                            .row_end = &end,
-                            .columns = &column,
-                            .samples = samples + 2 * grey};
-        snow_shade_strip(&shader, 2, &strip);
+        snow_row_block strip = {.slice = 1,
+                                .first_row = 1,
+                                .rows = 1,
+                                .count = 1,
+                                .row_end = &end,
+                                .columns = &column,
+                                .samples = samples + 2 * grey};
+        snow_shade_row_block(&shader, 2, &strip);
     }
     *white = (double)samples[0];
     *factor = ((double)samples[2] - *white) / 0.25;

@@ -23,7 +23,7 @@ static const char *write_npy(support_files *files, const char *type,
 }
 
 static void refused(support_files *files, const char *path, const char *part) {
-    support_refused(files, path, NULL, SNOW_BAD_INPUT, part, MOST);
+    support_refused(files, path, NULL, SNOW_STATUS_BAD_INPUT, part, MOST);
 }
 
 static void the_last_index_is_x(void **state) {
@@ -32,7 +32,7 @@ static void the_last_index_is_x(void **state) {
     support_files_begin(&files);
     snow_volume *volume = support_opened(
         &files, write_npy(&files, "|u1", "False", "(2, 3, 4)", 24), NULL);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_string_equal(info->format, "npy");
     assert_true(info->dims[0] == 4 && info->dims[1] == 3 && info->dims[2] == 2);
@@ -49,7 +49,7 @@ static void fortran_order_is_the_same_array(void **state) {
     support_files_begin(&files);
     snow_volume *volume = support_opened(
         &files, write_npy(&files, "|u1", "True", "(2, 3, 4)", 24), NULL);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_true(info->dims[0] == 4 && info->dims[1] == 3 && info->dims[2] == 2);
     for (int z = 0; z < 2; z++)
@@ -70,7 +70,7 @@ static void time_comes_before_channel_before_z(void **state) {
         &files, write_npy(&files, "|u1", "False", "(2, 3, 1, 2, 4)", 48),
         &options);
     const uint8_t *voxels = snow_volume_voxels(volume);
-    assert_int_equal(snow_volume_describe(volume)->times, 2);
+    assert_int_equal(snow_volume_get_info(volume)->times, 2);
     assert_int_equal(voxels[0], (3 + 2) * 8);
     assert_int_equal(files.notices, 2);
     snow_volume_close(volume);
@@ -114,7 +114,7 @@ static void truth_is_one(void **state) {
     snow_volume *volume = support_opened(
         &files, write_npy(&files, "|b1", "False", "(4,)", 4), NULL);
     const uint8_t *voxels = snow_volume_voxels(volume);
-    assert_int_equal(snow_volume_describe(volume)->type, SNOW_UINT8);
+    assert_int_equal(snow_volume_get_info(volume)->type, SNOW_TYPE_UINT8);
     assert_true(voxels[0] == 0 && voxels[1] == 1 && voxels[3] == 1);
     snow_volume_close(volume);
     support_files_end(&files);
@@ -134,7 +134,7 @@ static void what_is_no_volume_is_refused(void **state) {
     refused(&files, write_npy(&files, "|u1", "False", "(2, 0, 4)", 9), "empty");
     refused(&files, support_write(&files, "a.npz", "PK\3\4....", 8), "unzip");
     refused(&files, support_write(&files, "b.npy", "not of NumPy, no", 16),
-            "no NPY file");
+            "not an NPY file");
     support_files_end(&files);
 }
 
@@ -143,14 +143,14 @@ static void sizes_that_the_file_cannot_hold_cost_nothing(void **state) {
     support_files files;
     support_files_begin(&files);
     refused(&files, write_npy(&files, "|u1", "False", "(2, 3, 4)", 23),
-            "is cut");
+            "is truncated");
     refused(&files,
             write_npy(&files, "<f8", "False", "(99999, 99999, 99999)", 23),
-            "is cut");
+            "is truncated");
     refused(&files,
             write_npy(&files, "<f8", "True",
                       "(9223372036854775807, 9223372036854775807, 9)", 23),
-            "larger than any file");
+            "too large for any file");
     support_files_end(&files);
 }
 

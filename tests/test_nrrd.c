@@ -47,7 +47,7 @@ static snow_volume *opened(support_files *files, const char *header) {
 static void refused(support_files *files, const char *header,
                     const char *part) {
     support_refused(files, write_nrrd(files, "a.nrrd", header, counting(), 48),
-                    NULL, SNOW_BAD_INPUT, part, MOST);
+                    NULL, SNOW_STATUS_BAD_INPUT, part, MOST);
 }
 
 static void expect_counting(snow_volume *volume) {
@@ -59,7 +59,7 @@ static void expect_counting(snow_volume *volume) {
 
 static void expect_matrix(const snow_volume *volume,
                           const double wanted[3][4]) {
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 4; j++)
             if (!(fabs(info->matrix[i][j] - wanted[i][j]) < 1e-12))
@@ -72,7 +72,7 @@ static void a_plain_file_is_read(void **state) {
     support_files files;
     support_files_begin(&files);
     snow_volume *volume = opened(&files, SHORTS "encoding: raw\n\n");
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     assert_string_equal(info->format, "nrrd");
     assert_true(info->dims[0] == 4 && info->dims[1] == 3 && info->dims[2] == 2);
     assert_false(info->medical);
@@ -110,23 +110,23 @@ static void every_spelling_of_a_type_is_known(void **state) {
         const char *name;
         snow_type type;
     } types[] = {
-        {"signed char", SNOW_INT8},
-        {"int8_t", SNOW_INT8},
-        {"uchar", SNOW_UINT8},
-        {"unsigned char", SNOW_UINT8},
-        {"signed short int", SNOW_INT16},
-        {"short", SNOW_INT16},
-        {"unsigned short int", SNOW_UINT16},
-        {"int", SNOW_INT32},
-        {"signed int", SNOW_INT32},
-        {"unsigned int", SNOW_UINT32},
-        {"uint32", SNOW_UINT32},
-        {"long long int", SNOW_INT64},
-        {"longlong", SNOW_INT64},
-        {"unsigned long long int", SNOW_UINT64},
-        {"uint64_t", SNOW_UINT64},
-        {"float", SNOW_FLOAT32},
-        {"double", SNOW_FLOAT64},
+        {"signed char", SNOW_TYPE_INT8},
+        {"int8_t", SNOW_TYPE_INT8},
+        {"uchar", SNOW_TYPE_UINT8},
+        {"unsigned char", SNOW_TYPE_UINT8},
+        {"signed short int", SNOW_TYPE_INT16},
+        {"short", SNOW_TYPE_INT16},
+        {"unsigned short int", SNOW_TYPE_UINT16},
+        {"int", SNOW_TYPE_INT32},
+        {"signed int", SNOW_TYPE_INT32},
+        {"unsigned int", SNOW_TYPE_UINT32},
+        {"uint32", SNOW_TYPE_UINT32},
+        {"long long int", SNOW_TYPE_INT64},
+        {"longlong", SNOW_TYPE_INT64},
+        {"unsigned long long int", SNOW_TYPE_UINT64},
+        {"uint64_t", SNOW_TYPE_UINT64},
+        {"float", SNOW_TYPE_FLOAT32},
+        {"double", SNOW_TYPE_FLOAT64},
     };
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
         char header[200];
@@ -135,7 +135,7 @@ static void every_spelling_of_a_type_is_known(void **state) {
                        "endian: little\nencoding: raw\n\n",
                  types[i].name, 48 / snow_type_size(types[i].type));
         snow_volume *volume = opened(&files, header);
-        assert_int_equal(snow_volume_describe(volume)->type, types[i].type);
+        assert_int_equal(snow_volume_get_info(volume)->type, types[i].type);
         snow_volume_close(volume);
     }
     support_files_end(&files);
@@ -166,12 +166,12 @@ static void gzip_data_are_unpacked(void **state) {
         &files, write_nrrd(&files, "a.nrrd", header, packed, size), NULL));
     support_refused(&files,
                     write_nrrd(&files, "b.nrrd", header, packed, size - 3),
-                    NULL, SNOW_BAD_INPUT, "cut", MOST);
+                    NULL, SNOW_STATUS_BAD_INPUT, "truncated", MOST);
     packed[size > 7 ? size - 7 : 0] ^= 1;
     support_refused(&files, write_nrrd(&files, "c.nrrd", header, packed, size),
-                    NULL, SNOW_BAD_INPUT, "damaged", MOST);
+                    NULL, SNOW_STATUS_BAD_INPUT, "damaged", MOST);
     support_refused(&files, write_nrrd(&files, "d.nrrd", header, "plain", 5),
-                    NULL, SNOW_BAD_INPUT, "damaged", MOST);
+                    NULL, SNOW_STATUS_BAD_INPUT, "damaged", MOST);
     support_files_end(&files);
 }
 
@@ -246,7 +246,7 @@ static void a_step_among_the_last_bytes_of_gzip_is_found(void **state) {
     snow_volume_close(volume);
     size = support_gzip(data, 47, packed, sizeof packed);
     support_refused(&files, write_nrrd(&files, "b.nrrd", header, packed, size),
-                    NULL, SNOW_BAD_INPUT, "47 bytes", MOST);
+                    NULL, SNOW_STATUS_BAD_INPUT, "47 bytes", MOST);
     support_files_end(&files);
 }
 
@@ -319,7 +319,7 @@ static void text_that_is_no_number_of_the_type_is_refused(void **state) {
                        "txt\n\n%s",
                  texts[i][0], texts[i][1]);
         support_refused(&files, support_write_text(&files, "a.nrrd", text),
-                        NULL, SNOW_BAD_INPUT, "is no", MOST);
+                        NULL, SNOW_STATUS_BAD_INPUT, "is no", MOST);
     }
     /* One number that would be two if it were cut where room ends. */
     char digits[1000] = MAGIC "type: double\ndimension: 1\nsizes: 2\n"
@@ -327,13 +327,13 @@ static void text_that_is_no_number_of_the_type_is_refused(void **state) {
     size_t used = strlen(digits);
     memset(digits + used, '3', sizeof digits - 1 - used);
     support_refused(&files, support_write_text(&files, "c.nrrd", digits), NULL,
-                    SNOW_BAD_INPUT, "is no", MOST);
+                    SNOW_STATUS_BAD_INPUT, "is no", MOST);
     support_refused(&files,
                     support_write_text(&files, "b.nrrd",
                                        MAGIC "type: int\ndimension: 1\n"
                                              "sizes: 3\nencoding: "
                                              "ascii\n\n10 20   "),
-                    NULL, SNOW_BAD_INPUT, "2 of 3", MOST);
+                    NULL, SNOW_STATUS_BAD_INPUT, "2 of 3", MOST);
     support_files_end(&files);
 }
 
@@ -361,8 +361,8 @@ static void spaces_are_turned_to_ras(void **state) {
         const double wanted[3][4] = {
             {x, 0, 0, 10 * x}, {0, 0.5 * y, -0.1 * y, 20 * y}, {0, 0.1, 2, 30}};
         expect_matrix(volume, wanted);
-        assert_true(snow_volume_describe(volume)->medical);
-        assert_string_equal(snow_volume_describe(volume)->unit, "mm");
+        assert_true(snow_volume_get_info(volume)->medical);
+        assert_string_equal(snow_volume_get_info(volume)->unit, "mm");
         expect_counting(volume);
     }
     support_files_end(&files);
@@ -379,8 +379,8 @@ static void other_worlds_are_not_medical(void **state) {
     static const double plain[3][4] = {
         {2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}};
     expect_matrix(volume, plain);
-    assert_false(snow_volume_describe(volume)->medical);
-    assert_string_equal(snow_volume_describe(volume)->unit, "um");
+    assert_false(snow_volume_get_info(volume)->medical);
+    assert_string_equal(snow_volume_get_info(volume)->unit, "um");
     snow_volume_close(volume);
     volume = opened(&files, SHORTS "encoding: raw\nspace: 3D-left-handed\n"
                                    "spacings: 1 2 3\nunits: \"\" \"nm\" \"\"\n"
@@ -388,7 +388,7 @@ static void other_worlds_are_not_medical(void **state) {
     static const double turned[3][4] = {
         {1, 0, 0, 1}, {0, 2, 0, 1}, {0, 0, -3, -1}};
     expect_matrix(volume, turned);
-    assert_string_equal(snow_volume_describe(volume)->unit, "nm");
+    assert_string_equal(snow_volume_get_info(volume)->unit, "nm");
     assert_int_equal(files.notices, 1);
     snow_volume_close(volume);
     support_files_end(&files);
@@ -406,7 +406,7 @@ static void the_users_spacing_replaces_the_files(void **state) {
     static const double wanted[3][4] = {
         {1, 0, 0, 0}, {0, -4, 0, 0}, {0, 0, 5, 0}};
     expect_matrix(volume, wanted);
-    assert_true(snow_volume_describe(volume)->spacing[1] == 4);
+    assert_true(snow_volume_get_info(volume)->spacing[1] == 4);
     snow_volume_close(volume);
     support_files_end(&files);
 }
@@ -423,13 +423,13 @@ static void fewer_axes_than_three_are_filled_up(void **state) {
     static const double wanted[3][4] = {
         {0, 0, -1, 0}, {3, 0, 0, 0}, {0, -2, 0, 0}};
     expect_matrix(volume, wanted);
-    assert_int_equal(snow_volume_describe(volume)->dims[2], 1);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 1);
     expect_counting(volume);
     volume = opened(&files, MAGIC "type: ushort\ndimension: 1\nsizes: 24\n"
                                   "endian: little\nencoding: raw\n"
                                   "space dimension: 2\nspace directions: "
                                   "(0,3)\n\n");
-    assert_true(snow_volume_describe(volume)->spacing[0] == 3);
+    assert_true(snow_volume_get_info(volume)->spacing[0] == 3);
     expect_counting(volume);
     support_files_end(&files);
 }
@@ -456,14 +456,14 @@ static void a_last_axis_of_time_or_list_has_steps(void **state) {
             snow_volume *volume = support_opened(&files, path, &options);
             assert_int_equal(*(const uint8_t *)snow_volume_voxels(volume),
                              16 * time);
-            assert_int_equal(snow_volume_describe(volume)->times, 3);
-            assert_int_equal(snow_volume_describe(volume)->time, time);
+            assert_int_equal(snow_volume_get_info(volume)->times, 3);
+            assert_int_equal(snow_volume_get_info(volume)->time, time);
             assert_int_equal(files.notices, 1);
             snow_volume_close(volume);
         }
         snow_volume_options beyond = {.time = 3};
-        support_refused(&files, path, &beyond, SNOW_BAD_USAGE, "time step 3",
-                        MOST);
+        support_refused(&files, path, &beyond, SNOW_STATUS_BAD_USAGE,
+                        "time step 3", MOST);
     }
     support_files_end(&files);
 }
@@ -476,7 +476,7 @@ static void axes_of_one_sample_are_left_out(void **state) {
         opened(&files, MAGIC "type: ushort\ndimension: 5\nendian: little\n"
                              "sizes: 1 4 1 3 2\nencoding: raw\n"
                              "kinds: stub domain domain domain domain\n\n");
-    const int64_t *dims = snow_volume_describe(volume)->dims;
+    const int64_t *dims = snow_volume_get_info(volume)->dims;
     assert_true(dims[0] == 4 && dims[1] == 3 && dims[2] == 2);
     expect_counting(volume);
     support_files_end(&files);
@@ -499,7 +499,7 @@ static void vectors_colours_and_unknown_axes_are_refused(void **state) {
             MAGIC "type: uint8\nencoding: raw\ndimension: 3\nsizes: 3 4 4\n"
                   "kinds: vector domain domain\n\n",
             "axis 0 has 3 values");
-    refused(&files, TIMES "\n", "nothing says what the 4th is");
+    refused(&files, TIMES "\n", "the meaning of the 4th is unknown");
     refused(&files, TIMES "kinds: time domain domain domain\n\n",
             "not the last");
     support_files_end(&files);
@@ -568,7 +568,7 @@ static void contradictions_are_refused(void **state) {
     support_files_begin(&files);
 #define RAW SHORTS "encoding: raw\n"
     static const char *const headers[][2] = {
-        {RAW "type: float\n\n", "comes twice"},
+        {RAW "type: float\n\n", "occurs twice"},
         {MAGIC SIZES "encoding: raw\n\n", "\"type\""},
         {MAGIC "type: block\n" SIZES "encoding: raw\nblock size: 4\n\n",
          "block"},
@@ -608,7 +608,7 @@ static void contradictions_are_refused(void **state) {
         {RAW "line skip: -1\n\n", "line skip"},
         {RAW "line skip: 9\n\n", "fewer lines"},
         {RAW "byte skip: 1\n\n", "the voxels"},
-        {RAW "spacing: 1 1 1\n\n", "no field"},
+        {RAW "spacing: 1 1 1\n\n", "is not a field"},
         {"NRRD0006\n\n", "NRRD0006"},
         {"NRRX0004\n\n", "NRRD000"},
     };
@@ -633,7 +633,7 @@ static void headers_alone_that_promise_no_data_are_refused(void **state) {
     for (size_t i = 0; i < sizeof headers / sizeof *headers; i++)
         support_refused(&files,
                         support_write_text(&files, "a.nhdr", headers[i][0]),
-                        NULL, SNOW_BAD_INPUT, headers[i][1], MOST);
+                        NULL, SNOW_STATUS_BAD_INPUT, headers[i][1], MOST);
     support_files_end(&files);
 }
 
@@ -684,7 +684,7 @@ static void sizes_that_lie_are_refused_before_their_memory(void **state) {
                  sizes[i / 3], encodings[i % 3]);
         support_refused(&files,
                         write_nrrd(&files, "a.nrrd", header, data, size), NULL,
-                        SNOW_BAD_INPUT, "", MOST);
+                        SNOW_STATUS_BAD_INPUT, "", MOST);
     }
     support_files_end(&files);
 }
@@ -696,7 +696,7 @@ static void data_too_short_or_too_long_are_told(void **state) {
     static const char header[] = SHORTS "encoding: raw\n\n";
     support_refused(&files,
                     write_nrrd(&files, "a.nrrd", header, counting(), 47), NULL,
-                    SNOW_BAD_INPUT, "47", MOST);
+                    SNOW_STATUS_BAD_INPUT, "47", MOST);
     unsigned char longer[50] = {0};
     memcpy(longer, counting(), 48);
     expect_counting(support_opened(
@@ -751,14 +751,17 @@ static void a_missing_data_file_is_named(void **state) {
     support_files_begin(&files);
     const char *path = support_write_text(
         &files, "a.nhdr", SHORTS "encoding: raw\ndata file: none.raw\n");
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "none.raw", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "none.raw",
+                    MOST);
     path = support_write_text(&files, "b.nhdr",
                               SHORTS "encoding: raw\ndata file: /dev/zero\n");
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "a device", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "a device",
+                    MOST);
     path = support_write_text(&files, "c.nhdr",
                               SHORTS "encoding: raw\ndata file: LIST\n"
                                      "none.raw\nnone.raw\n");
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "none.raw", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "none.raw",
+                    MOST);
     support_files_end(&files);
 }
 
@@ -806,7 +809,7 @@ static void slices_in_files_are_joined(void **state) {
         if (i + 1 < count) /* the last pattern has a number too many */
             expect_counting(support_opened(&files, path, NULL));
         else
-            support_refused(&files, path, NULL, SNOW_BAD_INPUT,
+            support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
                             "number of files", MOST);
     }
     support_files_end(&files);
@@ -822,11 +825,11 @@ static void slices_of_wrong_size_are_refused_before_memory(void **state) {
         &files, "a.nhdr",
         MAGIC "type: uint8\ndimension: 3\nsizes: 100000 100000 2\n"
               "encoding: raw\ndata file: s%d 1 2 1\n");
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "s1", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "s1", MOST);
     support_write(&files, "s2", counting(), 23);
     path = support_write_text(&files, "b.nhdr",
                               SHORTS "encoding: raw\ndata file: s%d 1 2 1\n");
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "s2", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "s2", MOST);
     support_files_end(&files);
 }
 
@@ -843,7 +846,7 @@ static void a_time_step_needs_its_own_files_only(void **state) {
     snow_volume *volume = support_opened(&files, path, &options);
     assert_memory_equal(snow_volume_voxels(volume), counting(), 16);
     snow_volume_close(volume);
-    support_refused(&files, path, NULL, SNOW_BAD_INPUT, "t0", MOST);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT, "t0", MOST);
     support_files_end(&files);
 }
 
@@ -874,9 +877,9 @@ static void memory_has_no_other_files(void **state) {
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open_memory(files.context, "a.nhdr", header,
                                              sizeof header - 1, NULL, &volume),
-                     SNOW_BAD_INPUT);
-    assert_non_null(
-        strstr(snow_context_message(files.context), "cannot be reached"));
+                     SNOW_STATUS_BAD_INPUT);
+    assert_non_null(strstr(snow_context_message(files.context),
+                           "cannot be opened from here"));
     support_files_end(&files);
 }
 
@@ -886,8 +889,9 @@ static void options_for_raw_data_do_not_fit(void **state) {
     support_files_begin(&files);
     const char *path = write_nrrd(&files, "a.nrrd", SHORTS "encoding: raw\n\n",
                                   counting(), 48);
-    const snow_volume_options options = {.type = SNOW_UINT8};
-    support_refused(&files, path, &options, SNOW_BAD_USAGE, "nrrd", MOST);
+    const snow_volume_options options = {.type = SNOW_TYPE_UINT8};
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_USAGE, "nrrd",
+                    MOST);
     support_files_end(&files);
 }
 
@@ -903,7 +907,7 @@ static void a_cut_file_is_refused_at_every_length(void **state) {
     memcpy(all + length, packed, size);
     for (size_t cut = 1; cut < length + size; cut++)
         support_refused(&files, support_write(&files, "a.nrrd", all, cut), NULL,
-                        SNOW_BAD_INPUT, "", MOST);
+                        SNOW_STATUS_BAD_INPUT, "", MOST);
     support_files_end(&files);
 }
 
@@ -931,8 +935,8 @@ static void the_real_balls_are_one_ball(void **state) {
         snow_volume *other = support_opened(&files, support_data(name), NULL);
         assert_memory_equal(snow_volume_voxels(other), snow_volume_voxels(ball),
                             54000);
-        assert_memory_equal(snow_volume_describe(other)->matrix,
-                            snow_volume_describe(ball)->matrix,
+        assert_memory_equal(snow_volume_get_info(other)->matrix,
+                            snow_volume_get_info(ball)->matrix,
                             sizeof(double[4][4]));
         snow_volume_close(other);
     }
@@ -954,8 +958,8 @@ static void the_real_odd_files_are_refused(void **state) {
                  names[i][0]);
         const char *path = support_data(name);
         if (path)
-            support_refused(&files, path, NULL, SNOW_BAD_INPUT, names[i][1],
-                            MOST);
+            support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                            names[i][1], MOST);
     }
     support_files_end(&files);
 }
@@ -1004,9 +1008,9 @@ static void the_real_files_have_their_figures(void **state) {
         if (!path)
             continue;
         snow_volume *volume = support_opened(&files, path, NULL);
-        const snow_volume_info *info = snow_volume_describe(volume);
-        snow_volume_measures m;
-        snow_volume_measure(volume, &m);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        snow_volume_statistics m;
+        snow_volume_get_statistics(volume, &m);
         for (int k = 0; k < 3; k++) {
             assert_int_equal(info->dims[k], real[i].dims[k]);
             assert_true(fabs(info->spacing[k] - real[i].spacing[k]) < 1e-15);

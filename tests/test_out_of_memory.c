@@ -22,11 +22,11 @@ static snow_status make_picture(snow_context *context, const test_paths *paths,
                       .gradient_opacity_count = 2};
     snow_view view;
     snow_status status = snow_volume_open(context, paths->input, NULL, &volume);
-    if (status == SNOW_OK)
-        status = snow_transfer_make(volume, &look, &transfer);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
+        status = snow_transfer_new_for_volume(volume, &look, &transfer);
+    if (status == SNOW_STATUS_OK)
         status = snow_frame_new(context, &frame);
-    if (status == SNOW_OK) {
+    if (status == SNOW_STATUS_OK) {
         snow_view_default(volume, &view);
         view.width = view.height = 32;
         view.azimuth = 30;
@@ -34,7 +34,7 @@ static snow_status make_picture(snow_context *context, const test_paths *paths,
         status =
             snow_frame_render(frame, volume, transfer, &view, settings, &image);
     }
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_image_save(image, paths->output, NULL);
     snow_image_free(image);
     snow_frame_free(frame);
@@ -48,8 +48,8 @@ static snow_status run(support_failing *allocator, const test_paths *paths,
                        const snow_settings *settings, double fov) {
     snow_allocator functions = support_failing_allocator(allocator);
     snow_context *context;
-    if (snow_context_new(&functions, &context) != SNOW_OK)
-        return SNOW_NO_MEMORY;
+    if (snow_context_new(&functions, &context) != SNOW_STATUS_OK)
+        return SNOW_STATUS_NO_MEMORY;
     snow_status status = make_picture(context, paths, settings, fov);
     snow_context_free(context);
     assert_int_equal(allocator->held, 0);
@@ -60,9 +60,11 @@ static void write_input(const test_paths *paths) {
     snow_context *context = support_context();
     snow_volume *volume;
     int64_t dims[3] = {12, 13, 14};
-    assert_int_equal(snow_volume_phantom(context, "shells", dims, 0, &volume),
-                     SNOW_OK);
-    assert_int_equal(snow_volume_save(volume, paths->input, true), SNOW_OK);
+    assert_int_equal(
+        snow_volume_open_phantom(context, "shells", dims, 0, &volume),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_volume_save(volume, paths->input, true),
+                     SNOW_STATUS_OK);
     snow_volume_close(volume);
     snow_context_free(context);
 }
@@ -85,17 +87,17 @@ static void fail_each_seen(const char *suffix, snow_method method,
     settings.encoding = encoding;
     settings.threads = threads;
     support_failing whole = {.failing = -1};
-    assert_int_equal(run(&whole, &paths, &settings, fov), SNOW_OK);
+    assert_int_equal(run(&whole, &paths, &settings, fov), SNOW_STATUS_OK);
     assert_int_equal(unlink(paths.output), 0);
     assert_true(whole.allocations > 20);
     for (long n = 0; n < whole.allocations; n++) {
         support_failing allocator = {.failing = n, .for_good = for_good};
         snow_status status = run(&allocator, &paths, &settings, fov);
         /* Without memory for threads the calling one does it all. */
-        if (status == SNOW_OK && threads > 1)
+        if (status == SNOW_STATUS_OK && threads > 1)
             assert_int_equal(unlink(paths.output), 0);
         else
-            assert_int_equal(status, SNOW_NO_MEMORY);
+            assert_int_equal(status, SNOW_STATUS_NO_MEMORY);
         assert_int_equal(access(paths.output, F_OK), -1);
     }
     assert_int_equal(unlink(paths.input), 0);
@@ -115,9 +117,9 @@ static void perspective_fails_cleanly_at_every_allocation(void **state) {
                        for_good, 1, 30);
         fail_each_seen(".mha", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, for_good,
                        1, 60);
-        fail_each_seen(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_AUTO,
+        fail_each_seen(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_AUTO,
                        for_good, 1, 30);
-        fail_each_seen(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_RLE,
+        fail_each_seen(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_RLE,
                        for_good, 3, 30);
     }
 }
@@ -127,8 +129,8 @@ static void a_picture_fails_cleanly_at_every_allocation(void **state) {
     fail_each(".nrrd", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_CRS, false, 1);
     fail_each(".nii.gz", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_RLE, false, 1);
     fail_each(".mha", SNOW_METHOD_ORIGINAL, SNOW_ENCODING_AUTO, false, 1);
-    fail_each(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_CRS, false, 1);
-    fail_each(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_AUTO, false, 3);
+    fail_each(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_CRS, false, 1);
+    fail_each(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_AUTO, false, 3);
     fail_each(".mha", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_AUTO, false, 3);
 }
 
@@ -137,8 +139,8 @@ static void a_picture_fails_cleanly_when_memory_ends_for_good(void **state) {
     fail_each(".nrrd", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_BITMAP, true, 1);
     fail_each(".nii.gz", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_AUTO, true, 1);
     fail_each(".mha", SNOW_METHOD_TESTED, SNOW_ENCODING_AUTO, true, 1);
-    fail_each(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_RLE, true, 1);
-    fail_each(".nrrd", SNOW_METHOD_SHEARED, SNOW_ENCODING_BITMAP, true, 3);
+    fail_each(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_RLE, true, 1);
+    fail_each(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_BITMAP, true, 3);
 }
 
 int main(void) {

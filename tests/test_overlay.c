@@ -20,7 +20,7 @@ static snow_volume_info patient(void) {
 
 static snow_view view_of(snow_context *context, const char *name) {
     snow_view view;
-    assert_int_equal(snow_view_named(context, name, &view), SNOW_OK);
+    assert_int_equal(snow_view_from_name(context, name, &view), SNOW_STATUS_OK);
     return view;
 }
 
@@ -42,7 +42,8 @@ static void letters_of_named_views_are_those_of_radiology(void **state) {
             snow_view view = view_of(f->context, table[n][0]);
             view.fov = eye ? 40 : 0;
             assert_int_equal(
-                snow_view_letters(f->context, &info, &view, letters), SNOW_OK);
+                snow_view_orientation(f->context, &info, &view, letters),
+                SNOW_STATUS_OK);
             for (int edge = 0; edge < 4; edge++)
                 assert_string_equal(letters[edge], table[n][1 + edge]);
         }
@@ -66,8 +67,9 @@ static void letters_turn_with_the_camera(void **state) {
         view.azimuth = table[n].azimuth;
         view.elevation = table[n].elevation;
         view.roll = table[n].roll;
-        assert_int_equal(snow_view_letters(f->context, &info, &view, letters),
-                         SNOW_OK);
+        assert_int_equal(
+            snow_view_orientation(f->context, &info, &view, letters),
+            SNOW_STATUS_OK);
         for (int edge = 0; edge < 4; edge++)
             assert_string_equal(letters[edge], table[n].letters[edge]);
     }
@@ -88,9 +90,9 @@ static void a_step_along_a_letter_goes_to_its_edge(void **state) {
         scene.view.roll = (double)(support_random(&random) % 3600) / 10;
         reference_camera camera;
         reference_camera_of(&scene, &camera);
-        assert_int_equal(
-            snow_view_letters(f->context, &scene.info, &scene.view, letters),
-            SNOW_OK);
+        assert_int_equal(snow_view_orientation(f->context, &scene.info,
+                                               &scene.view, letters),
+                         SNOW_STATUS_OK);
         for (int edge = 0; edge < 4; edge++) {
             int best = 0;
             double farthest = 0;
@@ -120,13 +122,13 @@ static void what_is_no_patient_has_no_letters(void **state) {
     snow_view view = view_of(f->context, "iso");
     char letters[4][4];
     info.medical = false;
-    assert_int_equal(snow_view_letters(f->context, &info, &view, letters),
-                     SNOW_OK);
+    assert_int_equal(snow_view_orientation(f->context, &info, &view, letters),
+                     SNOW_STATUS_OK);
     for (int edge = 0; edge < 4; edge++)
         assert_string_equal(letters[edge], "");
     view.zoom = 0;
-    assert_int_equal(snow_view_letters(f->context, &info, &view, letters),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_view_orientation(f->context, &info, &view, letters),
+                     SNOW_STATUS_BAD_USAGE);
 }
 
 /* --- shapes ------------------------------------------------------------------
@@ -135,7 +137,7 @@ static void what_is_no_patient_has_no_letters(void **state) {
 static snow_overlay *overlay_of(snow_context *context, int width, int height) {
     snow_overlay *overlay = NULL;
     assert_int_equal(snow_overlay_new(context, width, height, &overlay),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     return overlay;
 }
 
@@ -164,7 +166,7 @@ static void every_character_is_drawn_in_its_box(void **state) {
             double width = height * snow_font_width(text);
             assert_int_equal(
                 snow_overlay_text(overlay, height, height, 0, 0, height, text),
-                SNOW_OK);
+                SNOW_STATUS_OK);
             float *pixels = draw_alone(overlay, side);
             double border = 2.7 + 0.15 * height, most = 0;
             for (int y = 0; y < side; y++)
@@ -194,7 +196,7 @@ static void letters_are_told_apart(void **state) {
         const char text[2] = {names[n], 0};
         snow_overlay *overlay = overlay_of(f->context, 20, 20);
         assert_int_equal(snow_overlay_text(overlay, 5, 5, 0, 0, 9, text),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
         pixels[n] = draw_alone(overlay, 20);
         snow_overlay_free(overlay);
     }
@@ -215,9 +217,11 @@ static void pieces_of_rows_are_the_row(void **state) {
     snow_volume_info info = patient();
     snow_view view = view_of(f->context, "iso");
     view.width = 700, view.height = 130;
-    assert_int_equal(snow_overlay_letters(overlay, &info, &view), SNOW_OK);
-    assert_int_equal(snow_overlay_note(overlay, "step 12"), SNOW_OK);
-    assert_int_equal(snow_overlay_scale_bar(overlay, &info, &view), SNOW_OK);
+    assert_int_equal(snow_overlay_orientation(overlay, &info, &view),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_overlay_title(overlay, "step 12"), SNOW_STATUS_OK);
+    assert_int_equal(snow_overlay_scale_bar(overlay, &info, &view),
+                     SNOW_STATUS_OK);
     float *whole = draw_alone(overlay, 700), *pieces = draw_alone(overlay, 7);
     assert_memory_equal(whole, pieces, 700 * 130 * 4 * sizeof *whole);
     free(whole);
@@ -234,7 +238,7 @@ static void letters_stand_out_on_any_background(void **state) {
             double height = fmax(9, 0.036 * side);
             assert_int_equal(
                 snow_overlay_text(overlay, height, 2, 0, 0, height, "L"),
-                SNOW_OK);
+                SNOW_STATUS_OK);
             float low = 1, high = 0, row[4 * 512];
             for (int y = 0; y < 64; y++) {
                 for (int i = 0; i < 4 * 512; i++)
@@ -267,10 +271,10 @@ static void the_scale_bar_is_as_long_as_it_says(void **state) {
         view.zoom = cases[n].zoom;
         snprintf(info.unit, sizeof info.unit, "%s", cases[n].unit);
         assert_int_equal(snow_camera_make(f->context, &info, &view, &camera),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
         snow_overlay *overlay = overlay_of(f->context, 512, 512);
         assert_int_equal(snow_overlay_scale_bar(overlay, &info, &view),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
         /* Its line is the first stroke. */
         double length =
             (double)(overlay->numbers[2] - overlay->numbers[0]) * camera.pitch;
@@ -290,7 +294,8 @@ static void a_perspective_view_has_no_scale_bar(void **state) {
     snow_view view = view_of(f->context, "anterior");
     snow_overlay *overlay = overlay_of(f->context, 512, 512);
     view.fov = 30;
-    assert_int_equal(snow_overlay_scale_bar(overlay, &info, &view), SNOW_OK);
+    assert_int_equal(snow_overlay_scale_bar(overlay, &info, &view),
+                     SNOW_STATUS_OK);
     assert_int_equal(overlay->shape_count, 0);
     snow_overlay_free(overlay);
 }
@@ -302,10 +307,10 @@ static void the_color_bar_has_the_transfer_functions_colors(void **state) {
     snow_transfer *transfer = NULL;
     assert_int_equal(
         snow_transfer_new(f->context, colors, 2, opacities, 2, &transfer),
-        SNOW_OK);
+        SNOW_STATUS_OK);
     snow_overlay *overlay = overlay_of(f->context, 300, 400);
     assert_int_equal(snow_overlay_color_bar(overlay, transfer, "HU", NULL),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_false(overlay->grey);
     const snow_shape *bar = NULL;
     for (size_t n = 0; n < overlay->shape_count; n++)
@@ -337,10 +342,11 @@ static void any_range_has_ticks(void **state) {
             snow_transfer *transfer = NULL;
             assert_int_equal(snow_transfer_new(f->context, colors, 2, &opacity,
                                                1, &transfer),
-                             SNOW_OK);
+                             SNOW_STATUS_OK);
             snow_overlay *overlay = overlay_of(f->context, side, side);
             assert_int_equal(
-                snow_overlay_color_bar(overlay, transfer, NULL, NULL), SNOW_OK);
+                snow_overlay_color_bar(overlay, transfer, NULL, NULL),
+                SNOW_STATUS_OK);
             /* border, colours, opacity, tick lines, and a text for each */
             assert_true(overlay->shape_count >= 5);
             assert_true(overlay->shape_count <= 4 + 12);
@@ -360,14 +366,16 @@ static void files_show_it_and_the_picture_stays(void **state) {
         uint64_t sum = snow_image_checksum(image);
         snow_overlay *overlay = overlay_of(f->context, 140, 130);
         assert_int_equal(snow_overlay_text(overlay, 70, 60, 0.5, 0.5, 40, "S"),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
         for (int flat = 0; flat < 2; flat++) {
             const snow_image_options options = {
                 .overlay = overlay, .overwrite = true, .flatten = flat};
             snow_image *read = NULL;
             const char *path = support_image_path(f, "a.png");
-            assert_int_equal(snow_image_save(image, path, &options), SNOW_OK);
-            assert_int_equal(snow_image_load(f->context, path, &read), SNOW_OK);
+            assert_int_equal(snow_image_save(image, path, &options),
+                             SNOW_STATUS_OK);
+            assert_int_equal(snow_image_load(f->context, path, &read),
+                             SNOW_STATUS_OK);
             /* The middle of the letter is white and opaque. */
             const float *pixel = snow_image_pixels(read) + 4 * (60 * 140 + 70);
             bool found = false;
@@ -376,7 +384,7 @@ static void files_show_it_and_the_picture_stays(void **state) {
             assert_true(found);
             /* What a movie gets is what a flat file holds. */
             unsigned char *bytes = malloc(140 * 130 * 3);
-            snow_image_bytes_drawn(image, &options, bytes);
+            snow_image_to_rgb8_with(image, &options, bytes);
             for (int i = 0; flat && i < 140 * 130 * 3; i++)
                 assert_int_equal(
                     bytes[i],
@@ -389,12 +397,12 @@ static void files_show_it_and_the_picture_stays(void **state) {
         const snow_image_options options = {.overlay = overlay};
         assert_int_equal(
             snow_image_save(image, support_image_path(f, "b.npy"), &options),
-            SNOW_BAD_USAGE);
+            SNOW_STATUS_BAD_USAGE);
         snow_overlay *other = overlay_of(f->context, 140, 131);
         const snow_image_options wrong = {.overlay = other};
         assert_int_equal(
             snow_image_save(image, support_image_path(f, "b.png"), &wrong),
-            SNOW_BAD_USAGE);
+            SNOW_STATUS_BAD_USAGE);
         snow_overlay_free(other);
         snow_overlay_free(overlay);
         snow_image_free(image);
@@ -407,12 +415,13 @@ static void a_grey_picture_with_a_colored_bar_is_colored(void **state) {
     snow_image *image = support_picture(f->context, 40, 40, 2, 3);
     snow_overlay *overlay = overlay_of(f->context, 40, 40);
     const float red[3] = {1, 0, 0};
-    assert_int_equal(snow_overlay_rows(overlay, 3, 4, 9, 5, red), SNOW_OK);
+    assert_int_equal(snow_overlay_rows(overlay, 3, 4, 9, 5, red),
+                     SNOW_STATUS_OK);
     const snow_image_options options = {.overlay = overlay};
     const char *path = support_image_path(f, "a.png");
     snow_image *read = NULL;
-    assert_int_equal(snow_image_save(image, path, &options), SNOW_OK);
-    assert_int_equal(snow_image_load(f->context, path, &read), SNOW_OK);
+    assert_int_equal(snow_image_save(image, path, &options), SNOW_STATUS_OK);
+    assert_int_equal(snow_image_load(f->context, path, &read), SNOW_STATUS_OK);
     const float *pixel = snow_image_pixels(read) + 4 * (4 * 40 + 5);
     assert_true(pixel[0] == 1 && pixel[1] == 0 && pixel[3] == 1);
     snow_image_free(read);
@@ -426,8 +435,8 @@ static void it_fails_cleanly_without_memory(void **state) {
     snow_volume_info info = patient();
     const snow_color_point colors[] = {{0, 1, 0, 0}, {300, 0, 0, 1}};
     const snow_opacity_point opacity = {0, 1};
-    snow_status status = SNOW_NO_MEMORY;
-    for (int64_t n = 0; status != SNOW_OK; n++) {
+    snow_status status = SNOW_STATUS_NO_MEMORY;
+    for (int64_t n = 0; status != SNOW_STATUS_OK; n++) {
         support_memory memory = {.left = INT64_MAX};
         snow_context *context = support_failing_context(&memory);
         snow_transfer *transfer = NULL;
@@ -435,16 +444,17 @@ static void it_fails_cleanly_without_memory(void **state) {
         snow_view view = view_of(context, "iso");
         assert_int_equal(
             snow_transfer_new(context, colors, 2, &opacity, 1, &transfer),
-            SNOW_OK);
+            SNOW_STATUS_OK);
         memory.left = n;
         status = snow_overlay_new(context, 512, 512, &overlay);
-        if (status == SNOW_OK)
-            status = snow_overlay_letters(overlay, &info, &view);
-        if (status == SNOW_OK)
+        if (status == SNOW_STATUS_OK)
+            status = snow_overlay_orientation(overlay, &info, &view);
+        if (status == SNOW_STATUS_OK)
             status = snow_overlay_color_bar(overlay, transfer, "HU", NULL);
-        if (status == SNOW_OK)
+        if (status == SNOW_STATUS_OK)
             status = snow_overlay_scale_bar(overlay, &info, &view);
-        assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
+        assert_true(status == SNOW_STATUS_OK ||
+                    status == SNOW_STATUS_NO_MEMORY);
         memory.left = INT64_MAX;
         snow_overlay_free(overlay);
         snow_transfer_free(transfer);

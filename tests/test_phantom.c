@@ -8,13 +8,14 @@
 static snow_volume *make(snow_context *context, const char *name,
                          const int64_t dims[3], uint64_t seed) {
     snow_volume *volume = NULL;
-    if (snow_volume_phantom(context, name, dims, seed, &volume) != SNOW_OK)
+    if (snow_volume_open_phantom(context, name, dims, seed, &volume) !=
+        SNOW_STATUS_OK)
         fail_msg("%s: %s", name, snow_context_message(context));
     return volume;
 }
 
 static uint64_t byte_count(const snow_volume *volume) {
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     return (uint64_t)(info->dims[0] * info->dims[1] * info->dims[2]) *
            snow_type_size(info->type);
 }
@@ -22,7 +23,7 @@ static uint64_t byte_count(const snow_volume *volume) {
 /* FNV-1a over the bytes; those of float32 in little-endian order. */
 static uint64_t checksum(const snow_volume *volume) {
     const unsigned char *bytes = snow_volume_voxels(volume);
-    size_t size = snow_type_size(snow_volume_describe(volume)->type);
+    size_t size = snow_type_size(snow_volume_get_info(volume)->type);
     const uint16_t probe = 1;
     bool little = *(const unsigned char *)&probe;
     uint64_t sum = UINT64_C(0xcbf29ce484222325), count = byte_count(volume);
@@ -77,8 +78,8 @@ static void the_papers_phantoms_use_all_of_8_bits(void **state) {
     snow_context *context = support_context();
     for (size_t i = 0; i < 4; i++) {
         snow_volume *volume = make(context, names[i], NULL, 0);
-        snow_volume_measures measures;
-        snow_volume_measure(volume, &measures);
+        snow_volume_statistics measures;
+        snow_volume_get_statistics(volume, &measures);
         assert_true(measures.min == 0 && measures.max == 255);
         snow_volume_close(volume);
     }
@@ -93,19 +94,19 @@ static void default_sizes_types_and_places_are_told(void **state) {
         snow_type type;
         bool medical;
     } expected[] = {
-        {"cube", {256, 256, 110}, SNOW_UINT8, false},
-        {"head", {256, 256, 113}, SNOW_UINT8, true},
-        {"engine", {256, 256, 110}, SNOW_UINT8, false},
-        {"shells", {128, 128, 128}, SNOW_UINT8, false},
-        {"marschner-lobb", {40, 40, 40}, SNOW_FLOAT32, false},
-        {"turbulence", {128, 128, 128}, SNOW_FLOAT32, false},
+        {"cube", {256, 256, 110}, SNOW_TYPE_UINT8, false},
+        {"head", {256, 256, 113}, SNOW_TYPE_UINT8, true},
+        {"engine", {256, 256, 110}, SNOW_TYPE_UINT8, false},
+        {"shells", {128, 128, 128}, SNOW_TYPE_UINT8, false},
+        {"marschner-lobb", {40, 40, 40}, SNOW_TYPE_FLOAT32, false},
+        {"turbulence", {128, 128, 128}, SNOW_TYPE_FLOAT32, false},
     };
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         snow_volume *volume = make(context, expected[i].name, NULL, 0);
-        const snow_volume_info *info = snow_volume_describe(volume);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_string_equal(snow_phantom_name(i), expected[i].name);
-        assert_non_null(snow_phantom_text(i));
+        assert_non_null(snow_phantom_description(i));
         assert_string_equal(info->format, "phantom");
         assert_memory_equal(info->dims, expected[i].dims, sizeof info->dims);
         assert_int_equal(info->type, expected[i].type);
@@ -120,7 +121,7 @@ static void default_sizes_types_and_places_are_told(void **state) {
         snow_volume_close(volume);
     }
     assert_null(snow_phantom_name(6));
-    assert_null(snow_phantom_text(6));
+    assert_null(snow_phantom_description(6));
     snow_context_free(context);
 }
 
@@ -179,11 +180,11 @@ static void any_size_shows_the_same_shape(void **state) {
     snow_context *context = support_context();
     for (size_t n = 0; snow_phantom_name(n); n++) {
         snow_volume *whole = make(context, snow_phantom_name(n), NULL, 0);
-        const snow_volume_info *a = snow_volume_describe(whole);
+        const snow_volume_info *a = snow_volume_get_info(whole);
         for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
             snow_volume *volume =
                 make(context, snow_phantom_name(n), sizes[i], 0);
-            const snow_volume_info *b = snow_volume_describe(volume);
+            const snow_volume_info *b = snow_volume_get_info(volume);
             assert_memory_equal(b->dims, sizes[i], sizeof b->dims);
             for (int k = 0; k < 3; k++)
                 assert_true(fabs(a->spacing[k] * (double)a->dims[k] -
@@ -200,7 +201,7 @@ static void a_size_of_0_along_an_axis_is_the_default_there(void **state) {
     const int64_t dims[3] = {0, 16, 0}, expected[3] = {128, 16, 128};
     snow_context *context = support_context();
     snow_volume *volume = make(context, "shells", dims, 0);
-    assert_memory_equal(snow_volume_describe(volume)->dims, expected,
+    assert_memory_equal(snow_volume_get_info(volume)->dims, expected,
                         sizeof expected);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -208,7 +209,7 @@ static void a_size_of_0_along_an_axis_is_the_default_there(void **state) {
 
 /* Whether the volume differs from itself with axis a counted backwards. */
 static bool differs_mirrored(const snow_volume *volume, int axis, int most) {
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const uint8_t *bytes = snow_volume_voxels(volume);
     const int64_t *n = info->dims;
     for (int64_t k = 0; k < n[2]; k++)
@@ -243,7 +244,7 @@ static void the_nose_is_in_front_and_the_capsule_on_the_right(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_volume *head = make(context, "head", NULL, 0);
-    const snow_volume_info *info = snow_volume_describe(head);
+    const snow_volume_info *info = snow_volume_get_info(head);
     const uint8_t *bytes = snow_volume_voxels(head);
     /* Along the two rays from the middle of the face, front and back. */
     int64_t i = 128, k = (int64_t)((-30 - info->matrix[2][3]) / 2);
@@ -276,7 +277,7 @@ static void marschner_and_lobbs_signal_is_theirs(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_volume *volume = make(context, "marschner-lobb", NULL, 0);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const float *values = snow_volume_voxels(volume);
     for (int k = 0; k < 40; k++)
         for (int j = 0; j < 40; j++)
@@ -298,15 +299,18 @@ static void unknown_names_and_sizes_are_refused(void **state) {
     snow_volume *volume = NULL;
     const int64_t negative[3] = {4, -1, 4};
     const int64_t huge[3] = {INT64_MAX / 2, INT64_MAX / 2, 2};
-    assert_int_equal(snow_volume_phantom(context, "foot", NULL, 0, &volume),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(
+        snow_volume_open_phantom(context, "foot", NULL, 0, &volume),
+        SNOW_STATUS_BAD_USAGE);
     const char *message = snow_context_message(context);
     for (size_t n = 0; snow_phantom_name(n); n++)
         assert_non_null(strstr(message, snow_phantom_name(n)));
-    assert_int_equal(snow_volume_phantom(context, "head", negative, 0, &volume),
-                     SNOW_BAD_USAGE);
-    assert_int_equal(snow_volume_phantom(context, "head", huge, 0, &volume),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(
+        snow_volume_open_phantom(context, "head", negative, 0, &volume),
+        SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(
+        snow_volume_open_phantom(context, "head", huge, 0, &volume),
+        SNOW_STATUS_BAD_USAGE);
     assert_null(volume);
     assert_true(snow_context_bytes(context) == 0);
     snow_context_free(context);

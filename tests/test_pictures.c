@@ -12,7 +12,7 @@ static void refuse_save(image_fixture *f, const snow_image *image,
                         const char *words) {
     assert_int_equal(
         snow_image_save(image, support_image_path(f, name), options),
-        SNOW_BAD_USAGE);
+        SNOW_STATUS_BAD_USAGE);
     if (!strstr(snow_context_message(f->context), words))
         fail_msg("%s", snow_context_message(f->context));
     assert_int_equal(support_image_files(f), 0);
@@ -21,7 +21,7 @@ static void refuse_save(image_fixture *f, const snow_image *image,
 static bool is_built(const char *wanted) {
     const char *suffix;
     bool built = false;
-    for (size_t i = 0; (suffix = snow_image_suffix(i, &built)); i++)
+    for (size_t i = 0; (suffix = snow_image_format_suffix(i, &built)); i++)
         if (strcmp(suffix, wanted) == 0)
             return built;
     fail_msg("%s is no format", wanted);
@@ -38,13 +38,13 @@ static void a_build_without_a_library_says_so(void **state) {
         snow_image *image = support_picture(f->context, 5, 4, 4, 1);
         char name[8];
         snprintf(name, sizeof name, "a%s", names[n][0]);
-        assert_int_equal(snow_image_bits(name), n == 2 ? 8 : 0);
+        assert_int_equal(snow_image_format_bits(name), n == 2 ? 8 : 0);
         snow_image *read = NULL;
         snow_status status = snow_image_load_memory(f->context, "it", magic[n],
                                                     sizeof magic[n], &read);
-        assert_int_equal(status, SNOW_BAD_INPUT);
-        bool told = strstr(snow_context_message(f->context), names[n][1]);
-        assert_true(told == !is_built(names[n][0]));
+        assert_int_equal(status, SNOW_STATUS_BAD_INPUT);
+        bool given = strstr(snow_context_message(f->context), names[n][1]);
+        assert_true(given == !is_built(names[n][0]));
         if (!is_built(names[n][0]))
             refuse_save(f, image, name, NULL, names[n][1]);
         snow_image_free(image);
@@ -60,7 +60,7 @@ static const int sizes[][2] = {{1, 1},   {1, 100}, {100, 1},
 static snow_image *values_of(snow_context *context, int width, int height) {
     snow_image *image = NULL;
     assert_int_equal(snow_image_new(context, width, height, 1, &image),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     for (int i = 0; i < width * height; i++)
         snow_image_pixels(image)[i] = i % 7 ? 1000.5f * (float)i : NAN;
     return image;
@@ -87,12 +87,13 @@ static void floats_come_back_bit_for_bit(void **state) {
                 const snow_image_options over = {.overwrite = true};
                 snow_image *read = NULL;
                 snow_image_difference difference;
-                assert_int_equal(snow_image_save(image, path, &over), SNOW_OK);
+                assert_int_equal(snow_image_save(image, path, &over),
+                                 SNOW_STATUS_OK);
                 assert_int_equal(snow_image_load(f->context, path, &read),
-                                 SNOW_OK);
+                                 SNOW_STATUS_OK);
                 assert_int_equal(snow_image_channels(read), 4);
                 assert_int_equal(snow_image_compare(image, read, &difference),
-                                 SNOW_OK);
+                                 SNOW_STATUS_OK);
                 assert_true(difference.largest == 0);
                 snow_image_free(read);
                 snow_image_free(image);
@@ -103,10 +104,10 @@ static void floats_come_back_bit_for_bit(void **state) {
 /* What Z holds is read by tests/oracle_pictures.py: no reader here takes it. */
 static void a_depth_lies_beside_an_exr_picture_only(void **state) {
     image_fixture *f = *state;
-    assert_true(snow_image_takes_depth("a.exr"));
-    assert_false(snow_image_takes_depth("a.tif"));
-    assert_false(snow_image_takes_depth("-"));
-    assert_false(snow_image_takes_depth("a"));
+    assert_true(snow_image_format_has_depth("a.exr"));
+    assert_false(snow_image_format_has_depth("a.tif"));
+    assert_false(snow_image_format_has_depth("-"));
+    assert_false(snow_image_format_has_depth("a"));
     for (int channels = 1; channels <= 4 && is_built(".exr"); channels *= 2) {
         snow_image *image =
             channels == 1 ? values_of(f->context, 33, 20)
@@ -117,12 +118,14 @@ static void a_depth_lies_beside_an_exr_picture_only(void **state) {
                                  wrong = {.depth = other};
         snow_image *read = NULL;
         snow_image_difference difference;
-        refuse_save(f, image, "a.npy", &beside, "takes no depth beside");
-        refuse_save(f, image, "a.exr", &wrong, "the depth is of 20 x 33");
+        refuse_save(f, image, "a.npy", &beside, "cannot hold depth");
+        refuse_save(f, image, "a.exr", &wrong, "the depth has 20 x 33");
         const char *path = support_image_path(f, "a.exr");
-        assert_int_equal(snow_image_save(image, path, &beside), SNOW_OK);
-        assert_int_equal(snow_image_load(f->context, path, &read), SNOW_OK);
-        assert_int_equal(snow_image_compare(image, read, &difference), SNOW_OK);
+        assert_int_equal(snow_image_save(image, path, &beside), SNOW_STATUS_OK);
+        assert_int_equal(snow_image_load(f->context, path, &read),
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_image_compare(image, read, &difference),
+                         SNOW_STATUS_OK);
         assert_true(difference.largest == 0);
         remove(path);
         snow_image_free(read);
@@ -145,12 +148,16 @@ static void webp_holds_what_png_holds(void **state) {
                 .background = {0.2, n / 2 == 1 ? 0.2 : 0.7, 0.2}};
             snow_image *png = NULL, *webp = NULL;
             const char *path = support_image_path(f, "a.png");
-            assert_int_equal(snow_image_save(image, path, &options), SNOW_OK);
-            assert_int_equal(snow_image_load(f->context, path, &png), SNOW_OK);
+            assert_int_equal(snow_image_save(image, path, &options),
+                             SNOW_STATUS_OK);
+            assert_int_equal(snow_image_load(f->context, path, &png),
+                             SNOW_STATUS_OK);
             remove(path);
             path = support_image_path(f, "a.webp");
-            assert_int_equal(snow_image_save(image, path, &options), SNOW_OK);
-            assert_int_equal(snow_image_load(f->context, path, &webp), SNOW_OK);
+            assert_int_equal(snow_image_save(image, path, &options),
+                             SNOW_STATUS_OK);
+            assert_int_equal(snow_image_load(f->context, path, &webp),
+                             SNOW_STATUS_OK);
             remove(path);
             assert_true(snow_image_checksum(png) == snow_image_checksum(webp));
             snow_image_free(png);
@@ -165,16 +172,16 @@ static void what_a_format_cannot_hold_is_refused(void **state) {
     snow_image *image = support_picture(f->context, 9, 9, 4, 1);
     snow_image *wide = support_picture(f->context, 16384, 1, 2, 1);
     if (is_built(".webp")) {
-        refuse_save(f, image, "a.webp", &deep, "8 bits a channel");
+        refuse_save(f, image, "a.webp", &deep, "8 bits per channel");
         refuse_save(f, wide, "a.webp", NULL, "at most 16383 pixels");
         assert_int_equal(snow_image_check(f->context,
                                           support_image_path(f, "a.webp"),
                                           16384, 1, NULL),
-                         SNOW_BAD_USAGE);
+                         SNOW_STATUS_BAD_USAGE);
         assert_int_equal(snow_image_check(f->context,
                                           support_image_path(f, "a.webp"),
                                           16383, 1, NULL),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
     }
     if (is_built(".exr"))
         refuse_save(f, image, "a.exr", &flat, "neither a background");
@@ -197,14 +204,14 @@ static void damaged_files_are_refused_or_read(void **state) {
             continue;
         snow_image *image = support_picture(f->context, 40, 30, 4, 7);
         const char *path = support_image_path(f, name);
-        assert_int_equal(snow_image_save(image, path, NULL), SNOW_OK);
+        assert_int_equal(snow_image_save(image, path, NULL), SNOW_STATUS_OK);
         support_bytes file = support_read_file(path);
         remove(path);
         int refused = 0;
         for (size_t cut = 16; cut < file.size; cut += file.size / 50 + 1) {
             snow_image *read = NULL;
             if (snow_image_load_memory(f->context, "it", file.bytes, cut,
-                                       &read) != SNOW_OK)
+                                       &read) != SNOW_STATUS_OK)
                 refused++;
             else
                 snow_image_free(read);
@@ -222,9 +229,9 @@ static void damaged_files_are_refused_or_read(void **state) {
             }
             snow_status status = snow_image_load_memory(f->context, "it", copy,
                                                         file.size, &read);
-            if (status != SNOW_OK) {
-                assert_true(status == SNOW_BAD_INPUT ||
-                            status == SNOW_NO_MEMORY);
+            if (status != SNOW_STATUS_OK) {
+                assert_true(status == SNOW_STATUS_BAD_INPUT ||
+                            status == SNOW_STATUS_NO_MEMORY);
                 assert_null(strchr(snow_context_message(f->context), '\n'));
             }
             snow_image_free(read);
@@ -244,8 +251,8 @@ static void they_fail_cleanly_without_memory(void **state) {
         if (!is_built(names[n]))
             continue;
         const char *path = support_image_path(f, name);
-        snow_status status = SNOW_NO_MEMORY;
-        for (int64_t at = 0; status != SNOW_OK; at++) {
+        snow_status status = SNOW_STATUS_NO_MEMORY;
+        for (int64_t at = 0; status != SNOW_STATUS_OK; at++) {
             support_memory memory = {.left = INT64_MAX};
             snow_context *context = support_failing_context(&memory);
             snow_image *image = support_picture(context, 40, 30, 4, 7);
@@ -253,10 +260,10 @@ static void they_fail_cleanly_without_memory(void **state) {
             const snow_image_options over = {.overwrite = true};
             memory.left = at;
             status = snow_image_save(image, path, &over);
-            if (status == SNOW_OK)
+            if (status == SNOW_STATUS_OK)
                 status = snow_image_load(context, path, &read);
             memory.left = INT64_MAX;
-            if (status != SNOW_OK && status != SNOW_NO_MEMORY)
+            if (status != SNOW_STATUS_OK && status != SNOW_STATUS_NO_MEMORY)
                 fail_msg("%s", snow_context_message(context));
             snow_image_free(read);
             snow_image_free(image);

@@ -153,7 +153,7 @@ static void every_level_sees_and_packs_the_same_pixels(void **state) {
             for (pattern kind = NONE;
                  kind < PATTERNS && snow_isa_runs(levels[l]); kind++)
                 check_scans(
-                    snow_pixels_pick(levels[l], channels, SNOW_LAY_OVER),
+                    snow_pixels_pick(levels[l], channels, SNOW_COMPOSITE_OVER),
                     channels, kind);
 }
 
@@ -163,7 +163,7 @@ static void every_level_sees_and_packs_the_same_pixels(void **state) {
 
 /* Layers in the middle of a picture. */
 typedef struct stack {
-    snow_laying laying;
+    snow_composite_op composite_op;
     int channels, count;
     int64_t first, last;
     snow_active layers[LAYERS];
@@ -239,10 +239,12 @@ static bool expect(const stack *s, int64_t at, float *out) {
             continue;
         float left = 1 - out[last];
         for (int c = 0; c <= last; c++)
-            if (s->laying == SNOW_LAY_MOST)
+            if (s->composite_op == SNOW_COMPOSITE_MAXIMUM)
                 out[c] = back[c] > out[c] ? back[c] : out[c];
             else
-                out[c] += s->laying == SNOW_LAY_SUM ? back[c] : left * back[c];
+                out[c] += s->composite_op == SNOW_COMPOSITE_SUM
+                              ? back[c]
+                              : left * back[c];
         any = true;
     }
     return any;
@@ -280,10 +282,11 @@ static void check_merge(const snow_pixel_loops *loops, stack *s, int64_t from,
     free(out);
 }
 
-static void check_stack(snow_isa isa, int channels, snow_laying laying,
-                        uint64_t *random) {
-    const snow_pixel_loops *loops = snow_pixels_pick(isa, channels, laying);
-    stack s = {.channels = channels, .laying = laying};
+static void check_stack(snow_isa isa, int channels,
+                        snow_composite_op composite_op, uint64_t *random) {
+    const snow_pixel_loops *loops =
+        snow_pixels_pick(isa, channels, composite_op);
+    stack s = {.channels = channels, .composite_op = composite_op};
     int64_t laid = 0;
     s.first = (int64_t)(support_random(random) % 300);
     s.last = s.first + 1 + (int64_t)(support_random(random) % 400);
@@ -305,13 +308,14 @@ static void check_stack(snow_isa isa, int channels, snow_laying laying,
 static void every_level_lays_the_same_pixels(void **state) {
     (void)state;
     for (size_t l = 0; l < COUNT_OF(levels); l++)
-        for (int kind = SNOW_LAY_OVER; kind <= SNOW_LAY_SUM + 1; kind++) {
-            int channels = kind > SNOW_LAY_SUM ? 4 : 2;
-            snow_laying laying =
-                channels == 4 ? SNOW_LAY_OVER : (snow_laying)kind;
+        for (int kind = SNOW_COMPOSITE_OVER; kind <= SNOW_COMPOSITE_SUM + 1;
+             kind++) {
+            int channels = kind > SNOW_COMPOSITE_SUM ? 4 : 2;
+            snow_composite_op composite_op =
+                channels == 4 ? SNOW_COMPOSITE_OVER : (snow_composite_op)kind;
             uint64_t random = 5;
             for (int i = 0; i < 1500 && snow_isa_runs(levels[l]); i++)
-                check_stack(levels[l], channels, laying, &random);
+                check_stack(levels[l], channels, composite_op, &random);
         }
 }
 
@@ -366,8 +370,9 @@ static void each_level_is_timed(void **state) {
                 double scan, lay;
                 if (!snow_isa_runs(levels[l]))
                     continue;
-                time_level(snow_pixels_pick(levels[l], channels, SNOW_LAY_OVER),
-                           pixels, &scan, &lay);
+                time_level(
+                    snow_pixels_pick(levels[l], channels, SNOW_COMPOSITE_OVER),
+                    pixels, &scan, &lay);
                 print_message("             %d floats, %-9s %-7s %.2f ns to "
                               "look at a pixel, %.2f to lay one\n",
                               channels, names[k], snow_isa_name(levels[l]),

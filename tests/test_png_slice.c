@@ -48,7 +48,7 @@ static void samples_stay_as_they_are(void **state) {
     snow_volume *volume = support_opened(
         &files, write_png(&files, "a.png", 5, 3, 16, 1, 7), NULL);
     const uint16_t *voxels = snow_volume_voxels(volume);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     assert_true(info->dims[0] == 5 && info->dims[1] == 3 && info->dims[2] == 1);
     for (int i = 0; i < 15; i++)
         assert_int_equal(voxels[i], (7 + i % 5) << 8 | i / 5);
@@ -105,9 +105,11 @@ static void a_damaged_slice_is_named(void **state) {
     fclose(file);
     bytes[size - 20] ^= 1; /* in the last of the pixels' bytes */
     support_write(&files, "z1.png", bytes, size);
-    support_refused(&files, files.folder, NULL, SNOW_BAD_INPUT, "z1.png", MOST);
+    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT, "z1.png",
+                    MOST);
     support_write(&files, "z1.png", bytes, 30);
-    support_refused(&files, files.folder, NULL, SNOW_BAD_INPUT, "z1.png", MOST);
+    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT, "z1.png",
+                    MOST);
     support_files_end(&files);
 }
 

@@ -2,9 +2,9 @@
  * whole and with its ghosts, and little more is read than there is. */
 #include "support_volumes.h"
 
-#include "classify/transfer.h"
-#include "decompose/part.h"
-#include "ghosts.h"
+#include "decompose/deterministic.h"
+#include "render/ghosts.h"
+#include "transfer/transfer.h"
 #include "volume/volume.h"
 
 #include <snowglass/ranks.h>
@@ -28,7 +28,7 @@ typedef struct order {
     snow_ranks_options how;
     const snow_volume *whole;
     const snow_transfer *expected;
-    snow_part parts[MOST_RANKS];
+    snow_extent parts[MOST_RANKS];
     int64_t stored[MOST_RANKS];
     uint64_t read[MOST_RANKS];
 } order;
@@ -42,22 +42,22 @@ static void begin_order(order *o, const snow_volume *whole) {
 
 /* On threads of their own nothing can be asserted: what is wrong is a failure.
  */
-#define REQUIRE(comm, condition)                                      \
-    do {                                                              \
-        if (!(condition))                                             \
-            return snow_fail(snow_comm_context(comm), SNOW_BAD_INPUT, \
-                             "line %d: not " #condition, __LINE__);   \
+#define REQUIRE(comm, condition)                                             \
+    do {                                                                     \
+        if (!(condition))                                                    \
+            return snow_fail(snow_comm_context(comm), SNOW_STATUS_BAD_INPUT, \
+                             "line %d: not " #condition, __LINE__);          \
     } while (0)
 
 /* Every stored voxel is that of the whole, in its place in the world. */
 static snow_status check_voxels(snow_comm *comm, const order *o,
                                 const snow_volume *volume) {
-    snow_part part;
+    snow_extent part;
     snow_volume_info whole;
     const snow_volume_info *all = &o->whole->info;
     size_t size = snow_type_size(all->type);
     const int64_t *dims = volume->info.dims;
-    snow_volume_get_part(volume, &part);
+    snow_volume_get_extent(volume, &part);
     snow_volume_whole(volume, &whole);
     REQUIRE(comm, volume->info.type == all->type);
     REQUIRE(comm, !memcmp(part.dims, all->dims, sizeof part.dims));
@@ -83,16 +83,16 @@ static snow_status check_voxels(snow_comm *comm, const order *o,
                             to, (size_t)dims[0] * size));
             to += (size_t)dims[0] * size;
         }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* Ghosts on every side that has a neighbour, as many as the view needs. */
 static snow_status check_ghosts(snow_comm *comm, const order *o,
                                 const snow_view *view,
                                 const snow_volume *volume) {
-    snow_part part;
+    snow_extent part;
     int64_t layers[3];
-    snow_volume_get_part(volume, &part);
+    snow_volume_get_extent(volume, &part);
     SNOW_TRY(snow_ghosts_needed(
         snow_comm_context(comm), &o->whole->info, view, &o->settings,
         o->look.gradient_opacities != NULL, o->how.turns != 0, layers));
@@ -105,7 +105,7 @@ static snow_status check_ghosts(snow_comm *comm, const order *o,
         REQUIRE(comm, part.stored[i] <= (below > 0 ? below : 0));
         REQUIRE(comm, part.stored[i] + volume->info.dims[i] >= end);
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status check_transfer(snow_comm *comm, const order *o,
@@ -115,7 +115,7 @@ static snow_status check_transfer(snow_comm *comm, const order *o,
     REQUIRE(comm, !e || (e->opacity_count == transfer->opacity_count &&
                          !memcmp(e->opacities, transfer->opacities,
                                  e->opacity_count * sizeof *e->opacities)));
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status turn_part(snow_comm *comm, order *o,
@@ -123,18 +123,18 @@ static snow_status turn_part(snow_comm *comm, order *o,
                              snow_volume **volume) {
     uint64_t read = snow_context_bytes_read(snow_comm_context(comm));
     const snow_volume *before = *volume;
-    SNOW_TRY(snow_ranks_recut(comm, transfer, &o->view, &o->settings, &o->how,
-                              volume));
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &o->view, &o->settings,
+                                    &o->how, volume));
     REQUIRE(comm, before == *volume);
-    SNOW_TRY(snow_ranks_recut(comm, transfer, &o->turned, &o->settings, &o->how,
-                              volume));
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &o->turned, &o->settings,
+                                    &o->how, volume));
     REQUIRE(comm, read == snow_context_bytes_read(snow_comm_context(comm)));
     SNOW_TRY(check_ghosts(comm, o, &o->turned, *volume));
     before = *volume;
-    SNOW_TRY(snow_ranks_recut(comm, transfer, &o->turned, &o->settings, &o->how,
-                              volume));
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &o->turned, &o->settings,
+                                    &o->how, volume));
     REQUIRE(comm, before == *volume);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status open_part(snow_comm *comm, void *user) {
@@ -147,15 +147,15 @@ static snow_status open_part(snow_comm *comm, void *user) {
                              &o->how, &volume, &transfer));
     o->read[rank] = snow_context_bytes_read(snow_comm_context(comm));
     snow_status status = check_transfer(comm, o, transfer);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = check_ghosts(comm, o, &o->view, volume);
     /* The others would wait for a rank that does not turn. */
-    status = snow_comm_agree(comm, status);
-    if (status == SNOW_OK && o->turn)
+    status = snow_comm_agree_status(comm, status);
+    if (status == SNOW_STATUS_OK && o->turn)
         status = turn_part(comm, o, transfer, &volume);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = check_voxels(comm, o, volume);
-    snow_volume_get_part(volume, &o->parts[rank]);
+    snow_volume_get_extent(volume, &o->parts[rank]);
     o->stored[rank] =
         volume->info.dims[0] * volume->info.dims[1] * volume->info.dims[2];
     snow_transfer_free(transfer);
@@ -170,7 +170,7 @@ static void check_cover(const order *o, int ranks) {
     unsigned char *seen = calloc(voxels, 1);
     assert_non_null(seen);
     for (int rank = 0; rank < ranks; rank++) {
-        const snow_part *p = &o->parts[rank];
+        const snow_extent *p = &o->parts[rank];
         for (int64_t z = 0; z < p->count[2]; z++)
             for (int64_t y = 0; y < p->count[1]; y++)
                 for (int64_t x = 0; x < p->count[0]; x++)
@@ -184,7 +184,8 @@ static void check_cover(const order *o, int ranks) {
 }
 
 static void open_by(support_place *place, order *o, int ranks) {
-    if (snow_comm_threads(place->context, ranks, open_part, o) != SNOW_OK)
+    if (snow_comm_run_threads(place->context, ranks, open_part, o) !=
+        SNOW_STATUS_OK)
         fail_msg("%d ranks, cut %d: %s", ranks, o->how.cut,
                  snow_context_message(place->context));
     check_cover(o, ranks);
@@ -195,10 +196,10 @@ static const char *put_engine(support_place *place, const char *name) {
     const int64_t dims[3] = {40, 36, 30};
     snow_volume *volume;
     assert_int_equal(
-        snow_volume_phantom(place->context, "engine", dims, 0, &volume),
-        SNOW_OK);
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &volume),
+        SNOW_STATUS_OK);
     const char *path = support_place_path(place, name);
-    assert_int_equal(snow_volume_save(volume, path, true), SNOW_OK);
+    assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
     snow_volume_close(volume);
     return path;
 }
@@ -218,16 +219,18 @@ static void every_rank_gets_its_part(void **state) {
         snow_volume *whole;
         snow_transfer *expected;
         assert_int_equal(
-            snow_volume_open(place->context, path, &options, &whole), SNOW_OK);
-        assert_int_equal(snow_transfer_make(whole, NULL, &expected), SNOW_OK);
-        for (int cut = SNOW_CUT_AUTO; cut <= SNOW_CUT_BRICKS; cut++)
+            snow_volume_open(place->context, path, &options, &whole),
+            SNOW_STATUS_OK);
+        assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &expected),
+                         SNOW_STATUS_OK);
+        for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
             for (int i = 0; i < 5; i++) {
                 order o;
                 begin_order(&o, whole);
                 o.path = path;
                 o.options = options;
                 o.expected = expected;
-                o.how.cut = (snow_cut)cut;
+                o.how.cut = (snow_partition)cut;
                 o.view.azimuth = 40.0 * i;
                 open_by(place, &o, ranks[i]);
             }
@@ -242,16 +245,17 @@ static void slabs_lie_along_the_slice_axis(void **state) {
     snow_volume *whole;
     const int64_t dims[3] = {40, 36, 30};
     assert_int_equal(
-        snow_volume_phantom(place->context, "engine", dims, 0, &whole),
-        SNOW_OK);
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
     for (int n = 0; n < 6; n++) {
         order o;
         begin_order(&o, whole);
         o.path = "phantom:engine";
         memcpy(o.options.dims, dims, sizeof dims);
-        o.how.cut = n < 3 ? SNOW_CUT_EQUAL : SNOW_CUT_COUNTED;
-        assert_int_equal(snow_view_named(place->context, views[n % 3], &o.view),
-                         SNOW_OK);
+        o.how.cut = n < 3 ? SNOW_PARTITION_EQUAL : SNOW_PARTITION_COUNTED;
+        assert_int_equal(
+            snow_view_from_name(place->context, views[n % 3], &o.view),
+            SNOW_STATUS_OK);
         open_by(place, &o, 5);
         for (int rank = 0; rank < 5; rank++)
             for (int i = 0; i < 3; i++)
@@ -267,17 +271,17 @@ static void deterministic_cuts_lie_between_groups(void **state) {
     snow_volume *whole;
     const int64_t dims[3] = {20, 20, 100};
     assert_int_equal(
-        snow_volume_phantom(place->context, "shells", dims, 0, &whole),
-        SNOW_OK);
-    for (int cut = SNOW_CUT_EQUAL; cut <= SNOW_CUT_BRICKS; cut++) {
+        snow_volume_open_phantom(place->context, "shells", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
         order o;
         begin_order(&o, whole);
         o.path = "phantom:shells";
         memcpy(o.options.dims, dims, sizeof dims);
-        o.how.cut = (snow_cut)cut;
+        o.how.cut = (snow_partition)cut;
         o.settings.deterministic = 1;
-        assert_int_equal(snow_view_named(place->context, "+z", &o.view),
-                         SNOW_OK);
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
         open_by(place, &o, 7);
         for (int rank = 0; rank < 7; rank++) {
             bool found = false;
@@ -297,13 +301,13 @@ static void a_crop_is_dealt_out_like_a_volume(void **state) {
     const snow_volume_options options = {.crop = {{5, 33}, {0, 0}, {11, 29}}};
     snow_volume *whole;
     assert_int_equal(snow_volume_open(place->context, path, &options, &whole),
-                     SNOW_OK);
-    for (int cut = SNOW_CUT_EQUAL; cut <= SNOW_CUT_BRICKS; cut++) {
+                     SNOW_STATUS_OK);
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
         order o;
         begin_order(&o, whole);
         o.path = path;
         o.options = options;
-        o.how.cut = (snow_cut)cut;
+        o.how.cut = (snow_partition)cut;
         open_by(place, &o, 6);
     }
     snow_volume_close(whole);
@@ -317,18 +321,18 @@ static void the_file_is_read_once(void **state) {
     const uint64_t slice = 256 * 240;
     snow_volume *whole;
     assert_int_equal(
-        snow_volume_phantom(place->context, "engine", dims, 0, &whole),
-        SNOW_OK);
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
     char path[256];
     snprintf(path, sizeof path, "%s", support_place_path(place, "e.nrrd"));
-    assert_int_equal(snow_volume_save(whole, path, true), SNOW_OK);
-    for (int cut = SNOW_CUT_EQUAL; cut <= SNOW_CUT_BRICKS; cut++) {
+    assert_int_equal(snow_volume_save(whole, path, true), SNOW_STATUS_OK);
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
         order o;
         begin_order(&o, whole);
-        assert_int_equal(snow_view_named(place->context, "+z", &o.view),
-                         SNOW_OK);
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
         o.path = path;
-        o.how.cut = (snow_cut)cut;
+        o.how.cut = (snow_partition)cut;
         open_by(place, &o, 8);
         uint64_t sum = 0, most = 0;
         int64_t stored = 0;
@@ -339,7 +343,7 @@ static void the_file_is_read_once(void **state) {
         }
         /* Twice a buffer: inspected, and opened. */
         uint64_t headers = 2 * 65536;
-        uint64_t ghosts = cut == SNOW_CUT_EQUAL ? 2 * slice : 0;
+        uint64_t ghosts = cut == SNOW_PARTITION_EQUAL ? 2 * slice : 0;
         assert_in_range(sum, slice * 200, slice * 200 + 8 * (headers + ghosts));
         assert_true(most <= slice * 25 + headers + ghosts);
         print_message("cut %d: file %lld, read %llu, most by one %llu, most "
@@ -357,30 +361,31 @@ static void another_view_is_served_without_the_file(void **state) {
     snow_volume *whole;
     const int64_t dims[3] = {40, 36, 30};
     assert_int_equal(
-        snow_volume_phantom(place->context, "engine", dims, 0, &whole),
-        SNOW_OK);
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
     for (int n = 0; n < 16; n++) {
         order o;
         begin_order(&o, whole);
         o.path = "phantom:engine";
         memcpy(o.options.dims, dims, sizeof dims);
-        o.how.cut = (snow_cut)(n % 4);
+        o.how.cut = (snow_partition)(n % 4);
         o.settings.deterministic = n % 3 == 0;
-        o.settings.method = n % 5 ? SNOW_METHOD_SHEARED : SNOW_METHOD_FOOTPRINT;
+        o.settings.method =
+            n % 5 ? SNOW_METHOD_SHEAR_WARP : SNOW_METHOD_FOOTPRINT;
         o.turn = true;
         if (n % 2) { /* gradients without shading */
             o.settings.shade = SNOW_SHADE_NONE;
             o.look.gradient_opacities = curve;
             o.look.gradient_opacity_count = 2;
         }
-        assert_int_equal(snow_view_named(place->context, "+z", &o.view),
-                         SNOW_OK);
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
         o.turned = o.view;
         o.turned.azimuth = 80;
         o.turned.zoom = 0.2; /* wide pixels: more ghosts */
         open_by(place, &o, ranks[n / 4]);
-        bool slabs = o.how.cut == SNOW_CUT_EQUAL ||
-                     o.how.cut == SNOW_CUT_COUNTED || n % 5 == 0;
+        bool slabs = o.how.cut == SNOW_PARTITION_EQUAL ||
+                     o.how.cut == SNOW_PARTITION_COUNTED || n % 5 == 0;
         for (int rank = 0; rank < ranks[n / 4] && slabs; rank++)
             if (o.parts[rank].count[0])
                 assert_true(o.parts[rank].count[1] == 36 &&
@@ -395,13 +400,13 @@ static void bricks_for_turns_stay_where_they_are(void **state) {
     snow_volume *whole;
     const int64_t dims[3] = {40, 36, 30};
     assert_int_equal(
-        snow_volume_phantom(place->context, "engine", dims, 0, &whole),
-        SNOW_OK);
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
     order o, again;
     begin_order(&o, whole);
     o.path = "phantom:engine";
     memcpy(o.options.dims, dims, sizeof dims);
-    o.how.cut = SNOW_CUT_BRICKS;
+    o.how.cut = SNOW_PARTITION_BRICKS;
     o.how.turns = 1;
     open_by(place, &o, 8);
     again = o;
@@ -426,23 +431,23 @@ static int count_bricks(const order *o, int ranks, int slice_axis) {
 static void
 every_method_is_cut_into_bricks_but_deterministic_pictures(void **state) {
     support_place *place = *state;
-    const snow_method methods[] = {SNOW_METHOD_SHEARED, SNOW_METHOD_FOOTPRINT,
-                                   SNOW_METHOD_ORIGINAL};
+    const snow_method methods[] = {SNOW_METHOD_SHEAR_WARP,
+                                   SNOW_METHOD_FOOTPRINT, SNOW_METHOD_ORIGINAL};
     snow_volume *whole;
     const int64_t dims[3] = {40, 36, 30};
     assert_int_equal(
-        snow_volume_phantom(place->context, "engine", dims, 0, &whole),
-        SNOW_OK);
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
     for (int n = 0; n < 6; n++) {
         order o;
         begin_order(&o, whole);
-        assert_int_equal(snow_view_named(place->context, "+z", &o.view),
-                         SNOW_OK);
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
         o.path = "phantom:engine";
         memcpy(o.options.dims, dims, sizeof dims);
         o.settings.method = methods[n % 3];
         o.settings.deterministic = n >= 3;
-        o.how.cut = SNOW_CUT_BRICKS;
+        o.how.cut = SNOW_PARTITION_BRICKS;
         open_by(place, &o, 8);
         assert_int_equal(count_bricks(&o, 8, 2) > 0, n < 3);
     }
@@ -455,15 +460,16 @@ static void a_file_that_one_rank_lacks_fails_all(void **state) {
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
     snprintf(other, sizeof other, "%s", support_place_path(place, "none.nrrd"));
     snow_volume *whole = support_place_open(place, path);
-    for (int cut = SNOW_CUT_AUTO; cut <= SNOW_CUT_BRICKS; cut++) {
+    for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++) {
         order o;
         begin_order(&o, whole);
         o.path = path;
         o.wrong = other;
         o.odd = 3;
-        o.how.cut = (snow_cut)cut;
-        assert_int_equal(snow_comm_threads(place->context, 5, open_part, &o),
-                         SNOW_BAD_INPUT);
+        o.how.cut = (snow_partition)cut;
+        assert_int_equal(
+            snow_comm_run_threads(place->context, 5, open_part, &o),
+            SNOW_STATUS_BAD_INPUT);
         assert_non_null(
             strstr(snow_context_message(place->context), "rank 3: "));
         assert_non_null(
@@ -480,16 +486,16 @@ static void a_file_that_differs_on_one_rank_is_refused(void **state) {
     snow_volume *whole = support_place_open(place, path), *half;
     const snow_volume_options options = {.crop = {{0, 0}, {0, 0}, {3, 0}}};
     assert_int_equal(snow_volume_open(place->context, path, &options, &half),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     snprintf(other, sizeof other, "%s", support_place_path(place, "o.nrrd"));
-    assert_int_equal(snow_volume_save(half, other, true), SNOW_OK);
+    assert_int_equal(snow_volume_save(half, other, true), SNOW_STATUS_OK);
     snow_volume_close(half);
     begin_order(&o, whole);
     o.path = path;
     o.wrong = other;
     o.odd = 1;
-    assert_int_equal(snow_comm_threads(place->context, 4, open_part, &o),
-                     SNOW_BAD_INPUT);
+    assert_int_equal(snow_comm_run_threads(place->context, 4, open_part, &o),
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(
         strstr(snow_context_message(place->context), "is not the same file"));
     snow_volume_close(whole);
@@ -515,14 +521,14 @@ static void a_pipe_is_read_by_one_rank_and_sent_to_all(void **state) {
     snprintf(pipe, sizeof pipe, "%s", support_place_path(place, "pipe"));
     assert_int_equal(mkfifo(pipe, 0600), 0);
     snow_volume *whole = support_place_open(place, path);
-    for (int cut = SNOW_CUT_AUTO; cut <= SNOW_CUT_BRICKS; cut++)
+    for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
         for (int ranks = 1; ranks <= 7; ranks += 3) {
             order o;
             pthread_t thread;
             const char *names[2] = {path, pipe};
             begin_order(&o, whole);
             o.path = pipe;
-            o.how.cut = (snow_cut)cut;
+            o.how.cut = (snow_partition)cut;
             assert_int_equal(pthread_create(&thread, NULL, feed, names), 0);
             open_by(place, &o, ranks);
             pthread_join(thread, NULL);
@@ -540,20 +546,22 @@ static void memory_that_is_missing_fails_all_ranks(void **state) {
     char path[256];
     snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
     snow_volume *whole = support_place_open(place, path);
-    for (int cut = SNOW_CUT_EQUAL; cut <= SNOW_CUT_BRICKS; cut++) {
-        snow_status status = SNOW_NO_MEMORY;
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
+        snow_status status = SNOW_STATUS_NO_MEMORY;
         int64_t tries = 0;
-        for (; status != SNOW_OK && tries < 6000; tries += 3) {
+        for (; status != SNOW_STATUS_OK && tries < 6000;
+             tries += 3 * (int64_t)support_stride(7)) {
             order o;
             begin_order(&o, whole);
             o.path = path;
-            o.how.cut = (snow_cut)cut;
+            o.how.cut = (snow_partition)cut;
             o.turn = true;
             o.turned.azimuth = 90;
             place->fail_at = place->allocations + 1 + tries;
-            status = snow_comm_threads(place->context, 4, open_part, &o);
+            status = snow_comm_run_threads(place->context, 4, open_part, &o);
             place->fail_at = 0;
-            assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
+            assert_true(status == SNOW_STATUS_OK ||
+                        status == SNOW_STATUS_NO_MEMORY);
         }
         assert_in_range(tries, 50, 5999);
     }
@@ -566,32 +574,36 @@ static void a_plan_tells_parts_and_loads(void **state) {
     snow_transfer *transfer;
     const int64_t dims[3] = {64, 60, 56};
     assert_int_equal(
-        snow_volume_phantom(place->context, "engine", dims, 0, &whole),
-        SNOW_OK);
-    assert_int_equal(snow_transfer_make(whole, NULL, &transfer), SNOW_OK);
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &transfer),
+                     SNOW_STATUS_OK);
     double ratio;
     assert_int_equal(snow_transfer_sparse_ratio(transfer, whole, 20, &ratio),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     int64_t all = (int64_t)((1 - ratio) * 64 * 60 * 56 + 0.5);
-    for (int cut = SNOW_CUT_AUTO; cut <= SNOW_CUT_BRICKS; cut++)
+    for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
         for (int axis = 0; axis < 3; axis++) {
             order o;
             int64_t loads[12], sum = 0;
             begin_order(&o, whole);
-            assert_int_equal(snow_ranks_plan(whole, transfer, 20, (snow_cut)cut,
-                                             axis, 12, o.parts, loads),
-                             SNOW_OK);
+            assert_int_equal(snow_ranks_partition(whole, transfer, 20,
+                                                  (snow_partition)cut, axis, 12,
+                                                  o.parts, loads),
+                             SNOW_STATUS_OK);
             check_cover(&o, 12);
             for (int i = 0; i < 12; i++)
                 sum += loads[i];
             assert_int_equal(sum, all);
         }
-    assert_int_equal(
-        snow_ranks_plan(whole, transfer, 20, SNOW_CUT_AUTO, 3, 12, NULL, NULL),
-        SNOW_BAD_USAGE);
-    assert_int_equal(
-        snow_ranks_plan(whole, transfer, 20, SNOW_CUT_AUTO, 2, 0, NULL, NULL),
-        SNOW_BAD_USAGE);
+    assert_int_equal(snow_ranks_partition(whole, transfer, 20,
+                                          SNOW_PARTITION_AUTO, 3, 12, NULL,
+                                          NULL),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_ranks_partition(whole, transfer, 20,
+                                          SNOW_PARTITION_AUTO, 2, 0, NULL,
+                                          NULL),
+                     SNOW_STATUS_BAD_USAGE);
     snow_transfer_free(transfer);
     snow_volume_close(whole);
 }
@@ -600,21 +612,22 @@ static void options_that_are_none_are_refused_by_all(void **state) {
     support_place *place = *state;
     snow_volume *whole;
     assert_int_equal(
-        snow_volume_phantom(place->context, "cube", NULL, 0, &whole), SNOW_OK);
+        snow_volume_open_phantom(place->context, "cube", NULL, 0, &whole),
+        SNOW_STATUS_OK);
     order o;
     begin_order(&o, whole);
     o.path = "phantom:cube";
-    o.how.cut = (snow_cut)9;
-    assert_int_equal(snow_comm_threads(place->context, 3, open_part, &o),
-                     SNOW_BAD_USAGE);
-    o.how.cut = SNOW_CUT_AUTO;
+    o.how.cut = (snow_partition)9;
+    assert_int_equal(snow_comm_run_threads(place->context, 3, open_part, &o),
+                     SNOW_STATUS_BAD_USAGE);
+    o.how.cut = SNOW_PARTITION_AUTO;
     o.settings.footprint = 99;
-    assert_int_equal(snow_comm_threads(place->context, 3, open_part, &o),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_comm_run_threads(place->context, 3, open_part, &o),
+                     SNOW_STATUS_BAD_USAGE);
     o.settings.footprint = 0;
     o.options.crop[1][1] = 9999;
-    assert_int_equal(snow_comm_threads(place->context, 3, open_part, &o),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_comm_run_threads(place->context, 3, open_part, &o),
+                     SNOW_STATUS_BAD_USAGE);
     snow_volume_close(whole);
 }
 
@@ -648,15 +661,15 @@ static snow_status draw_views(snow_comm *comm, turntable *t,
     for (int n = 0; n < PICTURES; n++) {
         snow_image *image = NULL;
         if (n)
-            SNOW_TRY(snow_ranks_recut(comm, transfer, &t->views[n],
-                                      &o->settings, &o->how, volume));
+            SNOW_TRY(snow_ranks_repartition(comm, transfer, &t->views[n],
+                                            &o->settings, &o->how, volume));
         SNOW_TRY(snow_ranks_render(frame, comm, *volume, transfer, &t->views[n],
                                    &o->settings, &o->how, &image));
         if (image)
             compare_pictures(t, n, snow_image_pixels(image));
         snow_image_free(image);
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status draw_turntable(snow_comm *comm, void *user) {
@@ -667,7 +680,7 @@ static snow_status draw_turntable(snow_comm *comm, void *user) {
     SNOW_TRY(snow_ranks_open(comm, t->o.path, &t->o.options, NULL, &t->views[0],
                              &t->o.settings, &t->o.how, &volume, &transfer));
     snow_status status = snow_frame_new(snow_comm_context(comm), &frame);
-    if (status == SNOW_OK) {
+    if (status == SNOW_STATUS_OK) {
         status = draw_views(comm, t, transfer, frame, &volume);
         snow_frame_free(frame);
     }
@@ -680,8 +693,9 @@ static void draw_serial(support_place *place, turntable *t,
                         const snow_volume *whole) {
     snow_transfer *transfer;
     snow_frame *frame;
-    assert_int_equal(snow_transfer_make(whole, NULL, &transfer), SNOW_OK);
-    assert_int_equal(snow_frame_new(place->context, &frame), SNOW_OK);
+    assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_frame_new(place->context, &frame), SNOW_STATUS_OK);
     for (int n = 0; n < PICTURES; n++) {
         snow_image *image;
         snow_view_default(whole, &t->views[n]);
@@ -690,7 +704,7 @@ static void draw_serial(support_place *place, turntable *t,
         t->views[n].elevation = 11.0 * n;
         assert_int_equal(snow_frame_render(frame, whole, transfer, &t->views[n],
                                            &t->o.settings, &image),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
         t->floats = (size_t)SIDE * SIDE * 2; /* grey and opacity */
         t->serial[n] = malloc(t->floats * sizeof(float));
         assert_non_null(t->serial[n]);
@@ -719,13 +733,13 @@ static void pictures_from_all_sides_are_those_of_one_processor(void **state) {
         t.o.settings.method = n == 2 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_AUTO;
         t.o.settings.threads = 1;
         draw_serial(place, &t, whole);
-        for (int cut = SNOW_CUT_AUTO; cut <= SNOW_CUT_BRICKS; cut++)
+        for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
             for (int i = 0; i < 4; i++) {
-                t.o.how.cut = (snow_cut)cut;
+                t.o.how.cut = (snow_partition)cut;
                 t.o.how.turns = n == 3;
                 t.most = 0;
-                if (snow_comm_threads(place->context, ranks[i], draw_turntable,
-                                      &t) != SNOW_OK)
+                if (snow_comm_run_threads(place->context, ranks[i],
+                                          draw_turntable, &t) != SNOW_STATUS_OK)
                     fail_msg("%d ranks, cut %d: %s", ranks[i], cut,
                              snow_context_message(place->context));
                 if (t.most > (n == 1 ? 0 : 0.5 / 255 + 1e-5))

@@ -4,8 +4,8 @@
 
 #include <math.h>
 
-static const snow_volume_options told = {
-    .dims = {4, 3, 2}, .type = SNOW_UINT16, .endian = SNOW_ENDIAN_BIG};
+static const snow_volume_options given = {
+    .dims = {4, 3, 2}, .type = SNOW_TYPE_UINT16, .endian = SNOW_ENDIAN_BIG};
 
 /* 24 values 0x0100, 0x0302, ... as little endian, 48 bytes. */
 static const unsigned char *counting(void) {
@@ -20,11 +20,11 @@ static void options_describe_the_bytes(void **state) {
     support_files files;
     support_files_begin(&files);
     const char *path = support_write(&files, "a.raw", counting(), 48);
-    snow_volume_options options = told;
+    snow_volume_options options = given;
     options.spacing[0] = 0.5;
     options.spacing[2] = 2;
     snow_volume *volume = support_opened(&files, path, &options);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const uint16_t *voxels = snow_volume_voxels(volume);
     for (int i = 0; i < 24; i++)
         assert_int_equal(voxels[i], (2 * i) << 8 | (2 * i + 1));
@@ -55,8 +55,8 @@ static void check_type(support_files *files, snow_type type, bool big,
     const char *path = support_write(files, "t.raw", bytes, 3 * size);
     snow_volume *volume = support_opened(files, path, &options);
     assert_memory_equal(snow_volume_voxels(volume), values, 3 * size);
-    snow_volume_measures m;
-    snow_volume_measure(volume, &m);
+    snow_volume_statistics m;
+    snow_volume_get_statistics(volume, &m);
     assert_true(m.sum == 6 && m.wsum == 14);
     snow_volume_close(volume);
 }
@@ -65,11 +65,11 @@ static void every_type_is_read_in_both_byte_orders(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-#define CHECK_BOTH(name, c_type, text)                                  \
-    {                                                                   \
-        const c_type values[3] = {1, 2, 3};                             \
-        check_type(&files, SNOW_##name, false, values, sizeof(c_type)); \
-        check_type(&files, SNOW_##name, true, values, sizeof(c_type));  \
+#define CHECK_BOTH(name, c_type, text)                                       \
+    {                                                                        \
+        const c_type values[3] = {1, 2, 3};                                  \
+        check_type(&files, SNOW_TYPE_##name, false, values, sizeof(c_type)); \
+        check_type(&files, SNOW_TYPE_##name, true, values, sizeof(c_type));  \
     }
     SNOW_TYPE_MAP(CHECK_BOTH)
 #undef CHECK_BOTH
@@ -81,16 +81,16 @@ static void an_offset_skips_bytes(void **state) {
     support_files files;
     support_files_begin(&files);
     const char *path = support_write(&files, "a.raw", counting(), 50);
-    snow_volume_options options = told;
+    snow_volume_options options = given;
     options.offset = 2;
     snow_volume *volume = support_opened(&files, path, &options);
     assert_int_equal(*(const uint16_t *)snow_volume_voxels(volume), 0x0203);
     snow_volume_close(volume);
     options.offset = 3;
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "the voxels",
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "the voxels",
                     70000);
     options.offset = UINT64_MAX;
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "the voxels",
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "the voxels",
                     70000);
     support_files_end(&files);
 }
@@ -99,15 +99,15 @@ static void a_short_file_is_refused_before_its_memory(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    snow_volume_options options = told;
+    snow_volume_options options = given;
     const char *path = support_write(&files, "a.raw", counting(), 47);
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "47", 70000);
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "47", 70000);
     options.dims[2] = 1000000000;
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "the voxels",
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "the voxels",
                     70000);
     options.dims[0] = options.dims[1] = 4000000000;
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "larger than any",
-                    70000);
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT,
+                    "larger than any", 70000);
     support_files_end(&files);
 }
 
@@ -116,7 +116,7 @@ static void a_long_file_is_read_with_one_notice(void **state) {
     support_files files;
     support_files_begin(&files);
     const char *path = support_write(&files, "a.raw", counting(), 49);
-    snow_volume_close(support_opened(&files, path, &told));
+    snow_volume_close(support_opened(&files, path, &given));
     assert_int_equal(files.notices, 1);
     assert_non_null(strstr(files.notice, "1 byte after"));
     support_files_end(&files);
@@ -129,16 +129,19 @@ static void a_cut_or_damaged_gzip_is_refused(void **state) {
     unsigned char packed[200];
     size_t size = support_gzip(counting(), 48, packed, sizeof packed);
     const char *path = support_write(&files, "a.raw.gz", packed, size);
-    snow_volume_close(support_opened(&files, path, &told));
+    snow_volume_close(support_opened(&files, path, &given));
     path = support_write(&files, "cut.raw.gz", packed, size - 5);
-    support_refused(&files, path, &told, SNOW_BAD_INPUT, "cut", 70000);
+    support_refused(&files, path, &given, SNOW_STATUS_BAD_INPUT, "truncated",
+                    70000);
     packed[size - 6] ^= 16;
     path = support_write(&files, "sum.raw.gz", packed, size);
-    support_refused(&files, path, &told, SNOW_BAD_INPUT, "damaged", 70000);
+    support_refused(&files, path, &given, SNOW_STATUS_BAD_INPUT, "damaged",
+                    70000);
     packed[0] ^= 1; /* no gzip any more: bytes like any others */
     path = support_write(&files, "magic.raw.gz", packed, size);
-    snow_volume_options tiny = {.dims = {2, 2, 2}, .type = SNOW_UINT8};
-    support_refused(&files, path, &tiny, SNOW_BAD_INPUT, "is not gzip", 70000);
+    snow_volume_options tiny = {.dims = {2, 2, 2}, .type = SNOW_TYPE_UINT8};
+    support_refused(&files, path, &tiny, SNOW_STATUS_BAD_INPUT, "is not gzip",
+                    70000);
     support_files_end(&files);
 }
 
@@ -149,9 +152,10 @@ static void a_gzip_that_cannot_hold_the_sizes_is_refused_early(void **state) {
     unsigned char packed[200];
     size_t size = support_gzip(counting(), 48, packed, sizeof packed);
     const char *path = support_write(&files, "a.raw.gz", packed, size);
-    snow_volume_options options = told;
+    snow_volume_options options = given;
     options.dims[2] = 100000;
-    support_refused(&files, path, &options, SNOW_BAD_INPUT, "at most", 70000);
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_INPUT, "at most",
+                    70000);
     support_files_end(&files);
 }
 
@@ -166,7 +170,7 @@ static void the_name_tells_what_options_leave_out(void **state) {
         const char *path = support_write(&files, names[i], counting(), 48);
         snow_volume *volume = support_opened(&files, path, NULL);
         assert_int_equal(*(const uint16_t *)snow_volume_voxels(volume), 0x0100);
-        assert_int_equal(snow_volume_describe(volume)->dims[1], 3);
+        assert_int_equal(snow_volume_get_info(volume)->dims[1], 3);
         assert_int_equal(files.notices, (int)i + 1);
         assert_non_null(strstr(files.notice, "4x3x2 uint16, little"));
         snow_volume_close(volume);
@@ -185,8 +189,8 @@ static void options_win_over_the_name(void **state) {
     support_files_begin(&files);
     const char *path =
         support_write(&files, "a_9x9x9_float64.raw", counting(), 48);
-    snow_volume *volume = support_opened(&files, path, &told);
-    assert_int_equal(snow_volume_describe(volume)->dims[0], 4);
+    snow_volume *volume = support_opened(&files, path, &given);
+    assert_int_equal(snow_volume_get_info(volume)->dims[0], 4);
     assert_int_equal(files.notices, 0);
     snow_volume_close(volume);
     support_files_end(&files);
@@ -197,9 +201,10 @@ static void nothing_told_is_a_matter_of_usage(void **state) {
     support_files files;
     support_files_begin(&files);
     const char *path = support_write(&files, "a.raw", counting(), 48);
-    support_refused(&files, path, NULL, SNOW_BAD_USAGE, "--dims", 70000);
-    snow_volume_options options = {.dims = {4, 3, 0}, .type = SNOW_UINT16};
-    support_refused(&files, path, &options, SNOW_BAD_USAGE, "--dims", 70000);
+    support_refused(&files, path, NULL, SNOW_STATUS_BAD_USAGE, "--dims", 70000);
+    snow_volume_options options = {.dims = {4, 3, 0}, .type = SNOW_TYPE_UINT16};
+    support_refused(&files, path, &options, SNOW_STATUS_BAD_USAGE, "--dims",
+                    70000);
     support_files_end(&files);
 }
 
@@ -208,14 +213,15 @@ static void options_out_of_range_are_refused(void **state) {
     support_files files;
     support_files_begin(&files);
     const char *path = support_write(&files, "a.raw", counting(), 48);
-    snow_volume_options bad[5] = {told, told, told, told, told};
+    snow_volume_options bad[5] = {given, given, given, given, given};
     bad[0].dims[1] = -3;
     bad[1].spacing[0] = NAN;
     bad[2].spacing[1] = -1;
     bad[3].time = 1;
     bad[4].time = -1;
     for (int i = 0; i < 5; i++)
-        support_refused(&files, path, &bad[i], SNOW_BAD_USAGE, "", 70000);
+        support_refused(&files, path, &bad[i], SNOW_STATUS_BAD_USAGE, "",
+                        70000);
     support_files_end(&files);
 }
 
@@ -224,29 +230,29 @@ static void the_real_engine_and_head_have_their_figures(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    snow_volume_measures m;
+    snow_volume_statistics m;
     const char *path = support_data("classic/engine_256x256x110_u8.raw.gz");
     if (!path) {
         support_files_end(&files);
         skip();
     }
     const snow_volume_options engine = {.dims = {256, 256, 110},
-                                        .type = SNOW_UINT8};
+                                        .type = SNOW_TYPE_UINT8};
     snow_volume *volume = support_opened(&files, path, &engine);
-    snow_volume_measure(volume, &m);
+    snow_volume_get_statistics(volume, &m);
     assert_true(m.min == 0 && m.max == 255 && m.sum == 187475047 &&
                 m.wsum == 94688151341);
     snow_volume_close(volume);
     const snow_volume_options head = {.dims = {256, 256, 113},
-                                      .type = SNOW_UINT16,
+                                      .type = SNOW_TYPE_UINT16,
                                       .endian = SNOW_ENDIAN_BIG,
                                       .spacing = {1, 1, 2}};
     path = support_data("classic/CThead_256x256x113_u16be.raw.gz");
     volume = support_opened(&files, path, &head);
-    snow_volume_measure(volume, &m);
+    snow_volume_get_statistics(volume, &m);
     assert_true(m.min == 0 && m.max == 3272 && m.sum == 2810724494 &&
                 m.wsum == 1419355380335);
-    assert_true(snow_volume_describe(volume)->spacing[2] == 2);
+    assert_true(snow_volume_get_info(volume)->spacing[2] == 2);
     snow_volume_close(volume);
     assert_int_equal(files.notices, 0);
     support_files_end(&files);

@@ -40,10 +40,11 @@ static snow_status parse(snow_context *context, const char *text,
 static char *write_text(snow_context *context, const snow_recipe *recipe) {
     size_t length, again;
     assert_int_equal(snow_recipe_write(context, recipe, NULL, 0, &length),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     char *text = malloc(length + 1);
     assert_int_equal(
-        snow_recipe_write(context, recipe, text, length + 1, &again), SNOW_OK);
+        snow_recipe_write(context, recipe, text, length + 1, &again),
+        SNOW_STATUS_OK);
     assert_int_equal(length, again);
     assert_int_equal(strlen(text), length);
     return text;
@@ -53,7 +54,7 @@ static void every_key_reaches_its_field(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_recipe r;
-    assert_int_equal(parse(context, all_keys, &r), SNOW_OK);
+    assert_int_equal(parse(context, all_keys, &r), SNOW_STATUS_OK);
     assert_string_equal(r.input, "a.raw");
     assert_string_equal(r.output, "b_%04d.png");
     assert_string_equal(r.depth, "d.npy");
@@ -90,7 +91,7 @@ static void every_key_reaches_its_field(void **state) {
     assert_int_equal(r.settings.threads, 3);
     assert_true(r.settings.deterministic);
     assert_int_equal(r.settings.isa, SNOW_ISA_SCALAR);
-    assert_true(r.data.dims[2] == 7 && r.data.type == SNOW_INT16);
+    assert_true(r.data.dims[2] == 7 && r.data.type == SNOW_TYPE_INT16);
     assert_true(r.data.spacing[2] == 0.1);
     assert_int_equal(r.data.endian, SNOW_ENDIAN_BIG);
     assert_true(r.data.offset == 352 && r.data.time == 2);
@@ -116,9 +117,9 @@ static void what_is_written_reads_as_it_was(void **state) {
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         snow_recipe a, b;
-        assert_int_equal(parse(context, texts[i], &a), SNOW_OK);
+        assert_int_equal(parse(context, texts[i], &a), SNOW_STATUS_OK);
         char *text = write_text(context, &a);
-        assert_int_equal(parse(context, text, &b), SNOW_OK);
+        assert_int_equal(parse(context, text, &b), SNOW_STATUS_OK);
         char *again = write_text(context, &b);
         assert_string_equal(text, again);
         assert_int_equal(a.range, b.range);
@@ -148,7 +149,7 @@ static void an_empty_recipe_is_the_defaults(void **state) {
     snow_context *context = support_context();
     snow_recipe a, b;
     snow_recipe_init(&a);
-    assert_int_equal(parse(context, "{}", &b), SNOW_OK);
+    assert_int_equal(parse(context, "{}", &b), SNOW_STATUS_OK);
     snow_recipe_clear(&b);
     assert_memory_equal(&a, &b, sizeof a);
     snow_context_free(context);
@@ -157,7 +158,7 @@ static void an_empty_recipe_is_the_defaults(void **state) {
 static void a_wrong_recipe_is_refused_by_its_key(void **state) {
     (void)state;
     static const char *const wrong[][2] = {
-        {"{\"colourmap\": \"hot\"}", "\"colourmap\" is no key"},
+        {"{\"colourmap\": \"hot\"}", "\"colourmap\" is not a key"},
         {"{\"colormap\": \"nothing\"}", "must be one of grey"},
         {"{\"size\": [640]}", "\"size\" must be [width, height]"},
         {"{\"size\": [640, 0]}", "\"size\" must be"},
@@ -166,7 +167,7 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"footprint\": 2.5}", "\"footprint\" must be a whole number"},
         {"{\"footprint\": 10}", "from 2 to 9"},
         {"{\"azimuth\": \"30\"}", "\"azimuth\" must be a number"},
-        {"{\"opacity\": [[0, 0], [-1, 1]]}", "values that do not fall"},
+        {"{\"opacity\": [[0, 0], [-1, 1]]}", "values that do not decrease"},
         {"{\"opacity\": [[0, 1.5]]}", "opacities 0 to 1"},
         {"{\"gradient-opacity\": [[0, 2]]}", "\"gradient-opacity\" must be"},
         {"{\"opacity\": []}", "\"opacity\" must be"},
@@ -176,11 +177,12 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"background\": \"#12345\"}", "\"background\" must be"},
         {"{\"background\": \"#1010-8\"}", "\"background\" must be"},
         {"{\"range\": [\"p 1\", \"p99\"]}", "\"range\" must be"},
-        {"{\"window\": 1.7e308, \"level\": 1.7e308}", "go together"},
-        {"{\"window\": 1e-300, \"level\": 1e308}", "go together"},
+        {"{\"window\": 1.7e308, \"level\": 1.7e308}", "must be given together"},
+        {"{\"window\": 1e-300, \"level\": 1e308}", "must be given together"},
         {"{\"background\": [0, 0, 2]}", "\"background\" must be"},
-        {"{\"window\": 3}", "go together"},
-        {"{\"window\": 3, \"level\": 1, \"range\": [0, 1]}", "go together"},
+        {"{\"window\": 3}", "must be given together"},
+        {"{\"window\": 3, \"level\": 1, \"range\": [0, 1]}",
+         "must be given together"},
         {"{\"type\": \"int12\"}", "\"type\" must be one of"},
         {"{\"overwrite\": 1}", "true or false"},
         {"{\"mode\": \"most\"}", "\"mode\" must be one of"},
@@ -194,17 +196,18 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"{\"crop\": [[1, 5], [3, 2], [0, 0]]}", "\"crop\" must be"},
         {"[1]", "one JSON object"},
         {"{\n\"roll\": }", "line 2"},
-        {"", "no JSON"}};
+        {"", "not valid JSON"}};
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         snow_recipe r;
-        assert_int_equal(parse(context, wrong[i][0], &r), SNOW_BAD_INPUT);
+        assert_int_equal(parse(context, wrong[i][0], &r),
+                         SNOW_STATUS_BAD_INPUT);
         if (!strstr(snow_context_message(context), wrong[i][1]))
             fail_msg("%s: %s", wrong[i][0], snow_context_message(context));
     }
     snow_recipe r;
     assert_int_equal(snow_recipe_load(context, "no/such/recipe.json", &r),
-                     SNOW_BAD_INPUT);
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(context), "cannot be opened"));
     snow_context_free(context);
 }
@@ -214,27 +217,32 @@ static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
     snow_context *context = support_context();
     snow_recipe r;
     snow_view usual, named, view;
-    assert_int_equal(snow_view_named(context, "left", &usual), SNOW_OK);
-    assert_int_equal(snow_view_named(context, "iso", &named), SNOW_OK);
+    assert_int_equal(snow_view_from_name(context, "left", &usual),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_view_from_name(context, "iso", &named),
+                     SNOW_STATUS_OK);
     assert_int_equal(parse(context, "{\"azimuth\": 5, \"size\": [9, 8]}", &r),
-                     SNOW_OK);
-    assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_recipe_get_view(context, &r, &usual, &view),
+                     SNOW_STATUS_OK);
     assert_memory_equal(view.back, usual.back, sizeof view.back);
     assert_true(view.azimuth == 5 && view.width == 9 && view.height == 8);
     assert_false(view.has_position || view.has_target || view.has_up);
     r.view = "iso";
-    assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
+    assert_int_equal(snow_recipe_get_view(context, &r, &usual, &view),
+                     SNOW_STATUS_OK);
     assert_memory_equal(view.back, named.back, sizeof view.back);
     snow_recipe_clear(&r);
     assert_int_equal(
         parse(context, "{\"position\": [1, 2, -3.5], \"up\": [0, 1, 0]}", &r),
-        SNOW_OK);
-    assert_int_equal(snow_recipe_view(context, &r, &usual, &view), SNOW_OK);
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_recipe_get_view(context, &r, &usual, &view),
+                     SNOW_STATUS_OK);
     assert_true(view.has_position && !view.has_target && view.has_up);
     assert_true(view.position[2] == -3.5 && view.upward[1] == 1);
     r.view = "iso";
-    assert_int_equal(snow_recipe_view(context, &r, &usual, &view),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_recipe_get_view(context, &r, &usual, &view),
+                     SNOW_STATUS_BAD_USAGE);
     snow_recipe_clear(&r);
     snow_context_free(context);
 }
@@ -245,13 +253,15 @@ static void opacities_per_millimetre_follow_the_unit(void **state) {
     snow_recipe r;
     snow_settings s;
     snow_recipe_init(&r);
-    assert_int_equal(snow_recipe_settings(context, &r, "furlong", &s), SNOW_OK);
+    assert_int_equal(snow_recipe_get_settings(context, &r, "furlong", &s),
+                     SNOW_STATUS_OK);
     assert_true(s.opacity_length == 0);
     r.opacity_per_mm = true;
-    assert_int_equal(snow_recipe_settings(context, &r, "um", &s), SNOW_OK);
+    assert_int_equal(snow_recipe_get_settings(context, &r, "um", &s),
+                     SNOW_STATUS_OK);
     assert_true(s.opacity_length == 1000);
-    assert_int_equal(snow_recipe_settings(context, &r, "furlong", &s),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_recipe_get_settings(context, &r, "furlong", &s),
+                     SNOW_STATUS_BAD_USAGE);
     snow_context_free(context);
 }
 

@@ -22,14 +22,14 @@ static snow_volume *make_volume(support_place *place, snow_type type,
     info.medical = medical;
     strcpy(info.unit, "mm");
     snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_share(place->context, &info, bits, &volume),
-                     SNOW_OK);
+    assert_int_equal(snow_volume_wrap(place->context, &info, bits, &volume),
+                     SNOW_STATUS_OK);
     return volume;
 }
 
 static void save(support_place *place, const snow_volume *volume,
                  const char *path) {
-    if (snow_volume_save(volume, path, true) != SNOW_OK)
+    if (snow_volume_save(volume, path, true) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(place->context));
 }
 
@@ -45,13 +45,13 @@ static void every_format_keeps_every_type_and_the_matrix(void **state) {
         {"a.mha", 1e-13},
     };
     for (size_t i = 0; i < 4; i++)
-        for (int type = SNOW_INT8; type <= SNOW_FLOAT64; type++) {
+        for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
             const char *path = support_place_path(place, files[i].name);
             snow_volume *volume =
                 make_volume(place, (snow_type)type, true, oblique);
             save(place, volume, path);
             snow_volume *back = support_place_open(place, path);
-            const snow_volume_info *info = snow_volume_describe(back);
+            const snow_volume_info *info = snow_volume_get_info(back);
             support_same_voxels(volume, back);
             support_same_matrix(info->matrix, oblique, files[i].tolerance);
             assert_true(info->medical);
@@ -66,7 +66,7 @@ static void raw_keeps_every_type_when_told_what_it_is(void **state) {
     support_place *place = *state;
     static const char *const names[] = {"a.raw", "a.raw.gz"};
     for (size_t i = 0; i < 2; i++)
-        for (int type = SNOW_INT8; type <= SNOW_FLOAT64; type++) {
+        for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
             const char *path = support_place_path(place, names[i]);
             snow_volume *volume =
                 make_volume(place, (snow_type)type, false, oblique);
@@ -76,13 +76,13 @@ static void raw_keeps_every_type_when_told_what_it_is(void **state) {
             snow_volume *back = NULL;
             assert_int_equal(
                 snow_volume_open(place->context, path, &options, &back),
-                SNOW_OK);
+                SNOW_STATUS_OK);
             support_same_voxels(volume, back);
             snow_volume_close(back);
             snow_volume_close(volume);
             place->notices[0] = 0;
         }
-    snow_volume *volume = make_volume(place, SNOW_UINT8, false, oblique);
+    snow_volume *volume = make_volume(place, SNOW_TYPE_UINT8, false, oblique);
     save(place, volume, support_place_path(place, "a.raw"));
     assert_non_null(strstr(place->notices, "--dims 5x3x4 --type uint8"));
     snow_volume_close(volume);
@@ -97,11 +97,12 @@ static void what_is_no_patient_stays_none(void **state) {
     for (size_t i = 0; i < 6; i++) {
         const char *path = support_place_path(place, names[i / 2]);
         const double(*matrix)[4] = i % 2 ? oblique : spaced;
-        snow_volume *volume = make_volume(place, SNOW_INT16, false, matrix);
+        snow_volume *volume =
+            make_volume(place, SNOW_TYPE_INT16, false, matrix);
         save(place, volume, path);
         snow_volume *back = support_place_open(place, path);
-        assert_false(snow_volume_describe(back)->medical);
-        support_same_matrix(snow_volume_describe(back)->matrix, matrix,
+        assert_false(snow_volume_get_info(back)->medical);
+        support_same_matrix(snow_volume_get_info(back)->matrix, matrix,
                             i % 2 ? 1e-5 : 0);
         snow_volume_close(back);
         snow_volume_close(volume);
@@ -113,22 +114,23 @@ static void scaling_survives_or_is_refused(void **state) {
     static const struct {
         const char *name;
         snow_status status;
-    } files[] = {{"a.nii", SNOW_OK},
-                 {"a.nii.gz", SNOW_OK},
-                 {"a.mha", SNOW_OK},
-                 {"a.nrrd", SNOW_BAD_USAGE},
-                 {"a.raw", SNOW_BAD_USAGE}};
+    } files[] = {{"a.nii", SNOW_STATUS_OK},
+                 {"a.nii.gz", SNOW_STATUS_OK},
+                 {"a.mha", SNOW_STATUS_OK},
+                 {"a.nrrd", SNOW_STATUS_BAD_USAGE},
+                 {"a.raw", SNOW_STATUS_BAD_USAGE}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         const char *path = support_place_path(place, files[i].name);
-        snow_volume *volume = make_volume(place, SNOW_UINT8, true, oblique);
+        snow_volume *volume =
+            make_volume(place, SNOW_TYPE_UINT8, true, oblique);
         volume->info.slope = 0.25;
         volume->info.intercept = -1024;
         assert_int_equal(snow_volume_save(volume, path, false),
                          files[i].status);
-        if (files[i].status == SNOW_OK) {
+        if (files[i].status == SNOW_STATUS_OK) {
             snow_volume *back = support_place_open(place, path);
-            assert_true(snow_volume_describe(back)->slope == 0.25);
-            assert_true(snow_volume_describe(back)->intercept == -1024);
+            assert_true(snow_volume_get_info(back)->slope == 0.25);
+            assert_true(snow_volume_get_info(back)->intercept == -1024);
             snow_volume_close(back);
         } else {
             assert_non_null(
@@ -142,10 +144,10 @@ static void scaling_survives_or_is_refused(void **state) {
 static void what_nifti_1_cannot_hold_becomes_nifti_2(void **state) {
     support_place *place = *state;
     static const unsigned char voxels[40000];
-    snow_volume_info info = {.dims = {40000, 1, 1}, .type = SNOW_UINT8};
+    snow_volume_info info = {.dims = {40000, 1, 1}, .type = SNOW_TYPE_UINT8};
     snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_share(place->context, &info, voxels, &volume),
-                     SNOW_OK);
+    assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
     const char *path = support_place_path(place, "a.nii");
     save(place, volume, path);
     snow_volume *back = support_place_open(place, path);
@@ -156,10 +158,10 @@ static void what_nifti_1_cannot_hold_becomes_nifti_2(void **state) {
                                       {0, 1e-42, 0, 0.1},
                                       {0, 0, 1e-42, 0.3},
                                       {0, 0, 0, 1}};
-    volume = make_volume(place, SNOW_UINT8, true, tiny);
+    volume = make_volume(place, SNOW_TYPE_UINT8, true, tiny);
     save(place, volume, path);
     back = support_place_open(place, path);
-    support_same_matrix(snow_volume_describe(back)->matrix, tiny, 0);
+    support_same_matrix(snow_volume_get_info(back)->matrix, tiny, 0);
     snow_volume_close(back);
     snow_volume_close(volume);
 }
@@ -168,7 +170,7 @@ static void the_same_volume_gives_the_same_bytes(void **state) {
     support_place *place = *state;
     static const char *const pairs[][2] = {{"a.nii.gz", "b.nii.gz"},
                                            {"a.mha", "b.mha"}};
-    snow_volume *volume = make_volume(place, SNOW_INT32, true, oblique);
+    snow_volume *volume = make_volume(place, SNOW_TYPE_INT32, true, oblique);
     for (size_t i = 0; i < 2; i++) {
         static char bytes[2][4096];
         size_t sizes[2];
@@ -188,12 +190,14 @@ static void the_same_volume_gives_the_same_bytes(void **state) {
 
 static void existing_files_and_unknown_endings_are_refused(void **state) {
     support_place *place = *state;
-    snow_volume *volume = make_volume(place, SNOW_UINT8, true, oblique);
+    snow_volume *volume = make_volume(place, SNOW_TYPE_UINT8, true, oblique);
     const char *path = support_place_put(place, "a.nii", "old", 3);
-    assert_int_equal(snow_volume_save(volume, path, false), SNOW_BAD_OUTPUT);
+    assert_int_equal(snow_volume_save(volume, path, false),
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_non_null(strstr(snow_context_message(place->context), "exists"));
     path = support_place_path(place, "a.xyz");
-    assert_int_equal(snow_volume_save(volume, path, false), SNOW_BAD_USAGE);
+    assert_int_equal(snow_volume_save(volume, path, false),
+                     SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(place->context), ".nii.gz"));
     snow_volume_close(volume);
 }
@@ -206,10 +210,10 @@ static void a_volume_of_many_buffers_is_packed_whole(void **state) {
     uint64_t seed = 9;
     for (size_t i = 0; i < count; i++)
         voxels[i] = (float)support_uniform(&seed);
-    snow_volume_info info = {.dims = {100, 100, 70}, .type = SNOW_FLOAT32};
+    snow_volume_info info = {.dims = {100, 100, 70}, .type = SNOW_TYPE_FLOAT32};
     snow_volume *volume = NULL;
-    assert_int_equal(snow_volume_share(place->context, &info, voxels, &volume),
-                     SNOW_OK);
+    assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
+                     SNOW_STATUS_OK);
     const char *path = support_place_path(place, "a.nii.gz");
     save(place, volume, path);
     snow_volume *back = support_place_open(place, path);
@@ -223,7 +227,8 @@ static void a_volume_of_many_buffers_is_packed_whole(void **state) {
  * one succeeds; returns how many allocations that took. */
 static int64_t starve(support_place *place, const snow_volume *volume,
                       const char *path, bool saving) {
-    const snow_volume_options raw = {.dims = {5, 3, 4}, .type = SNOW_INT16};
+    const snow_volume_options raw = {.dims = {5, 3, 4},
+                                     .type = SNOW_TYPE_INT16};
     const snow_volume_options *options = strstr(path, ".raw") ? &raw : NULL;
     for (int64_t n = 1;; n++) {
         snow_volume *back = NULL;
@@ -236,9 +241,9 @@ static int64_t starve(support_place *place, const snow_volume *volume,
         place->fail_at = 0;
         snow_volume_close(back);
         assert_int_equal(snow_context_bytes(place->context), held);
-        if (status == SNOW_OK)
+        if (status == SNOW_STATUS_OK)
             return n - 1;
-        assert_int_equal(status, SNOW_NO_MEMORY);
+        assert_int_equal(status, SNOW_STATUS_NO_MEMORY);
         assert_null(back);
         if (saving)
             assert_int_not_equal(access(path, F_OK), 0);
@@ -249,7 +254,7 @@ static void every_failing_allocation_is_survived(void **state) {
     support_place *place = *state;
     static const char *const names[] = {"a.nrrd", "a.nii", "a.nii.gz",
                                         "a.mha",  "a.raw", "a.raw.gz"};
-    snow_volume *volume = make_volume(place, SNOW_INT16, true, oblique);
+    snow_volume *volume = make_volume(place, SNOW_TYPE_INT16, true, oblique);
     for (size_t i = 0; i < 6; i++) {
         const char *path = support_place_path(place, names[i]);
         assert_true(starve(place, volume, path, true) > 1);

@@ -16,8 +16,9 @@ static snow_tf *take(snow_context *context, const char *name, const void *bytes,
                      size_t size, const char *wanted) {
     snow_tf *tf = NULL;
     remark[0] = 0;
-    snow_context_set_notice(context, listen, NULL);
-    if (snow_tf_parse(context, name, bytes, size, wanted, &tf) != SNOW_OK)
+    snow_context_set_warning(context, listen, NULL);
+    if (snow_look_parse(context, name, bytes, size, wanted, &tf) !=
+        SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
     return tf;
 }
@@ -38,8 +39,8 @@ static void look_up(const snow_tf *tf, double value, double rgba[4]) {
                           p->color_count ? p->color_count : 1,
                           p->opacity_count ? p->opacities : solid,
                           p->opacity_count ? p->opacity_count : 1, &transfer),
-        SNOW_OK);
-    snow_transfer_at(transfer, value, rgba);
+        SNOW_STATUS_OK);
+    snow_transfer_evaluate(transfer, value, rgba);
     snow_transfer_free(transfer);
     snow_context_free(context);
 }
@@ -68,7 +69,7 @@ static void a_volume_property_of_slicer(void **state) {
     const snow_points *p = snow_tf_points(tf);
     assert_string_equal(snow_tf_format(tf), "slicer-vp");
     assert_string_equal(p->name, "My CT");
-    assert_int_equal(p->values, SNOW_VALUES_DATA);
+    assert_int_equal(p->values, SNOW_DOMAIN_DATA);
     assert_int_equal(p->color_count, 3);
     assert_int_equal(p->opacity_count, 4);
     assert_int_equal(p->gradient_count, 3);
@@ -104,14 +105,14 @@ static void a_preset_of_slicer_by_name(void **state) {
     assert_non_null(strstr(remark, "2 presets"));
     snow_tf_free(tf);
     tf = NULL;
-    assert_int_equal(snow_tf_parse(context, "p.xml", presets, strlen(presets),
-                                   "CT-Skin", &tf),
-                     SNOW_BAD_INPUT);
+    assert_int_equal(snow_look_parse(context, "p.xml", presets, strlen(presets),
+                                     "CT-Skin", &tf),
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(context), "'CT-Skin'"));
 #else
     assert_int_equal(
-        snow_tf_parse(context, "p.xml", presets, strlen(presets), NULL, &tf),
-        SNOW_BAD_INPUT);
+        snow_look_parse(context, "p.xml", presets, strlen(presets), NULL, &tf),
+        SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(context), "expat"));
 #endif
     assert_null(tf);
@@ -183,13 +184,13 @@ static void a_map_of_niivue(void **state) {
                             "\"min\":100,\"max\":355}");
     assert_string_equal(snow_tf_format(tf), "niivue");
     assert_string_equal(snow_tf_points(tf)->name, "ct_bones");
-    assert_int_equal(snow_tf_points(tf)->values, SNOW_VALUES_DATA);
+    assert_int_equal(snow_tf_points(tf)->values, SNOW_DOMAIN_DATA);
     expect(tf, 151, 0.2, 0, 0, 0.2, 1e-12);
     expect(tf, 355, 1, 1, 0, 0.4, 1e-12);
     snow_tf_free(tf);
     tf =
         take_text(context, "a.json", "{\"R\":[0,255],\"G\":[0,0],\"B\":[0,0]}");
-    assert_int_equal(snow_tf_points(tf)->values, SNOW_VALUES_RANGE);
+    assert_int_equal(snow_tf_points(tf)->values, SNOW_DOMAIN_RANGE);
     expect(tf, 0.5, 0.5, 0, 0, 0.5, 1e-12);
     snow_tf_free(tf);
     snow_context_free(context);
@@ -207,7 +208,7 @@ static void palettes_of_amrvis(void **state) {
     snow_context *context = support_context();
     snow_tf *tf = take(context, "a.pal", bytes, 1024, NULL);
     assert_string_equal(snow_tf_format(tf), "pal");
-    assert_int_equal(snow_tf_points(tf)->values, SNOW_VALUES_RANGE);
+    assert_int_equal(snow_tf_points(tf)->values, SNOW_DOMAIN_RANGE);
     expect(tf, 0.2, 0.2, 0.8, 0.2, 0.2, 1e-12);
     expect(tf, 1, 1, 0, 0.2, 1, 1e-12);
     snow_tf_free(tf);
@@ -273,7 +274,7 @@ static void what_is_written_reads_as_the_same_bits(void **state) {
             gradients[i] = (snow_opacity_point){value / 7, 1 / (i + 1.0)};
         }
         const snow_points points = {.name = "some name",
-                                    .values = (snow_point_values)(n % 3),
+                                    .values = (snow_domain)(n % 3),
                                     .log = n % 2 == 1,
                                     .per_mm = n % 5 == 0,
                                     .colors = colors,
@@ -285,13 +286,13 @@ static void what_is_written_reads_as_the_same_bits(void **state) {
         char text[16384], again[16384];
         size_t length, size;
         assert_int_equal(
-            snow_tf_write_json(context, &points, text, sizeof text, &length),
-            SNOW_OK);
+            snow_look_write_json(context, &points, text, sizeof text, &length),
+            SNOW_STATUS_OK);
         snow_tf *tf = take(context, "x", text, length, NULL);
         assert_true(same_points(&points, snow_tf_points(tf)));
-        assert_int_equal(snow_tf_write_json(context, snow_tf_points(tf), again,
-                                            sizeof again, &size),
-                         SNOW_OK);
+        assert_int_equal(snow_look_write_json(context, snow_tf_points(tf),
+                                              again, sizeof again, &size),
+                         SNOW_STATUS_OK);
         assert_string_equal(text, again);
         snow_tf_free(tf);
     }
@@ -306,13 +307,13 @@ static void presets_survive_our_json_and_tables(void **state) {
         const snow_points *preset = snow_preset_points(n);
         size_t length;
         assert_int_equal(
-            snow_tf_write_json(context, preset, text, sizeof text, &length),
-            SNOW_OK);
+            snow_look_write_json(context, preset, text, sizeof text, &length),
+            SNOW_STATUS_OK);
         snow_tf *tf = take(context, "x.json", text, length, NULL);
         assert_true(same_points(preset, snow_tf_points(tf)));
         assert_int_equal(
-            snow_tf_write_csv(context, preset, text, sizeof text, &length),
-            SNOW_OK);
+            snow_look_write_csv(context, preset, text, sizeof text, &length),
+            SNOW_STATUS_OK);
         assert_int_equal(length, strlen(text));
         snow_tf *table = take(context, "x.csv", text, length, NULL);
         double low = preset->opacities[0].value;
@@ -333,13 +334,13 @@ static void a_text_that_does_not_fit_is_not_written(void **state) {
     char text[50] = "old";
     size_t length = 0;
     snow_context *context = support_context();
-    assert_int_equal(snow_tf_write_json(context, snow_preset_points(1), text,
-                                        sizeof text, &length),
-                     SNOW_OK);
+    assert_int_equal(snow_look_write_json(context, snow_preset_points(1), text,
+                                          sizeof text, &length),
+                     SNOW_STATUS_OK);
     assert_true(length > sizeof text && text[0] == 0);
-    assert_int_equal(snow_tf_write_csv(context, snow_preset_points(1), text,
-                                       sizeof text, &length),
-                     SNOW_OK);
+    assert_int_equal(snow_look_write_csv(context, snow_preset_points(1), text,
+                                         sizeof text, &length),
+                     SNOW_STATUS_OK);
     assert_true(length > sizeof text && text[0] == 0);
     snow_context_free(context);
 }
@@ -351,43 +352,43 @@ static void bad_files_are_refused_in_one_line(void **state) {
     static const struct {
         const char *name, *text, *says;
     } rows[] = {
-        {"a.json", "{\"R\": [0,", "line 1 is no JSON"},
-        {"a.json", "{\"x\": 1}", "no transfer function"},
-        {"a.json", "[]", "no transfer function"},
+        {"a.json", "{\"R\": [0,", "line 1 is not valid JSON"},
+        {"a.json", "{\"x\": 1}", "not a transfer function"},
+        {"a.json", "[]", "not a transfer function"},
         {"a.json", "{\"R\":[0,256],\"G\":[0,1],\"B\":[0,1]}", "entry 2"},
         {"a.json", "{\"R\":[0,2],\"G\":[0],\"B\":[0,1]}", "entry 1"},
-        {"a.json", "{\"RGBPoints\":[0,1,1]}", "four a point"},
+        {"a.json", "{\"RGBPoints\":[0,1,1]}", "four numbers per point"},
         {"a.json", "{\"RGBPoints\":[5,1,1,1,4,0,0,0]}", "rising order"},
         {"a.json", "{\"RGBPoints\":[5,1,2,1]}", "from 0 to 1"},
         {"a.json", "{\"ColorSpace\":\"YUV\",\"RGBPoints\":[5,1,1,1]}", "YUV"},
         {"a.json", "{\"Points\":[5,1,2,1]}", "midpoint"},
         {"a.json", "{\"RGBPoints\":[]}", "neither colours"},
         {"a.json", "{\"RGBPoints\":[0,1,1,1],\"UseLogScale\":1}", "logarithms"},
-        {"a.json", "{\"snowglass-tf\":2}", "must be 1"},
+        {"a.json", "{\"snowglass-tf\":2}", "is not 1"},
         {"a.json", "{\"snowglass-tf\":1,\"values\":\"px\"}", "\"values\""},
         {"a.json", "{\"snowglass-tf\":1,\"colors\":[[1,2]]}", "colour 1"},
         {"a.vp", "1 1 0.9 0.1", "number 5 of the light"},
-        {"a.vp", "1 1 1 1 1 1 3 0 0 0", "must be 2 for each"},
+        {"a.vp", "1 1 1 1 1 1 3 0 0 0", "needs 2 for each"},
         {"a.vp", "1 1 1 1 1 1 4 0 0 1", "ends early"},
         {"a.vp", "1 1 1 1 1 1 4 0 0 9 7", "opacities point 2"},
         {"a.vp", "1 1 1 1 1 1 1e30", "1e+30 numbers"},
         {"a.pal", "abc", "has 3 bytes"},
-        {"a.csv", "1,2,3\n", "line 1 is no row"},
-        {"a.csv", "1,0\n2,0,0,0,1\n", "line 2 is no row"},
-        {"a.csv", "1,0\n2,x\n", "line 2 is no row"},
-        {"a.csv", "value,opacity\nthese,are\n", "line 2 is no row"},
+        {"a.csv", "1,2,3\n", "line 1 is not a row"},
+        {"a.csv", "1,0\n2,0,0,0,1\n", "line 2 is not a row"},
+        {"a.csv", "1,0\n2,x\n", "line 2 is not a row"},
+        {"a.csv", "value,opacity\nthese,are\n", "line 2 is not a row"},
         {"a.csv", "0,0\n1,7\n", "0 to 1"},
-        {"a.csv", "", "no transfer function"},
-        {"a.csv", "1,1e999\n", "line 1 is no row"},
+        {"a.csv", "", "not a transfer function"},
+        {"a.csv", "1,1e999\n", "line 1 is not a row"},
         {"a.xml", "<MRML>", ""},
         {"a.xml", "<!DOCTYPE a [<!ENTITY b \"c\">]><MRML/>", ""},
     };
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         snow_tf *tf = NULL;
-        assert_int_equal(snow_tf_parse(context, rows[i].name, rows[i].text,
-                                       strlen(rows[i].text), NULL, &tf),
-                         SNOW_BAD_INPUT);
+        assert_int_equal(snow_look_parse(context, rows[i].name, rows[i].text,
+                                         strlen(rows[i].text), NULL, &tf),
+                         SNOW_STATUS_BAD_INPUT);
         assert_null(tf);
         const char *message = snow_context_message(context);
         if (!strstr(message, rows[i].says) ||
@@ -397,12 +398,13 @@ static void bad_files_are_refused_in_one_line(void **state) {
         assert_int_equal(snow_context_bytes(context), 0);
     }
     snow_tf *tf = NULL;
-    assert_int_equal(snow_tf_parse(context, "a", "\1\0\2", 3, NULL, &tf),
-                     SNOW_BAD_INPUT);
-    assert_int_equal(snow_tf_load(context, "none.vp", &tf), SNOW_BAD_INPUT);
+    assert_int_equal(snow_look_parse(context, "a", "\1\0\2", 3, NULL, &tf),
+                     SNOW_STATUS_BAD_INPUT);
+    assert_int_equal(snow_look_load(context, "none.vp", &tf),
+                     SNOW_STATUS_BAD_INPUT);
     assert_non_null(
         strstr(snow_context_message(context), "none.vp: cannot be opened"));
-    assert_int_equal(snow_tf_load(context, ".", &tf), SNOW_BAD_INPUT);
+    assert_int_equal(snow_look_load(context, ".", &tf), SNOW_STATUS_BAD_INPUT);
     snow_context_free(context);
 }
 
@@ -412,17 +414,18 @@ static void no_memory_leaves_nothing_behind(void **state) {
         vp, "0,0\n1,1\n",
         "{\"ColorSpace\":\"Lab\",\"RGBPoints\":[0,1,0,0,1,0,0,1]}"};
     for (int n = 0; n < 3; n++) {
-        snow_status status = SNOW_NO_MEMORY;
+        snow_status status = SNOW_STATUS_NO_MEMORY;
         int64_t failures = 0;
-        for (; status != SNOW_OK; failures++) {
+        for (; status != SNOW_STATUS_OK; failures++) {
             snow_tf *tf = NULL;
             place->allocations = 0;
             place->fail_at = failures + 1;
-            status = snow_tf_parse(place->context, "x", texts[n],
-                                   strlen(texts[n]), NULL, &tf);
+            status = snow_look_parse(place->context, "x", texts[n],
+                                     strlen(texts[n]), NULL, &tf);
             place->fail_at = 0;
-            assert_true(status == SNOW_OK || !tf);
-            assert_true(status == SNOW_OK || status == SNOW_NO_MEMORY);
+            assert_true(status == SNOW_STATUS_OK || !tf);
+            assert_true(status == SNOW_STATUS_OK ||
+                        status == SNOW_STATUS_NO_MEMORY);
             snow_tf_free(tf);
             assert_int_equal(snow_context_bytes(place->context), 0);
         }

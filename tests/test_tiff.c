@@ -67,7 +67,7 @@ static void pages_are_slices_in_order(void **state) {
     for (int z = 0; z < 5; z++)
         add_page(&t, 3, 8, 10 + z, 0, 0);
     snow_volume *volume = support_opened(&files, write_tiff(&files, &t), NULL);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     const uint8_t *voxels = snow_volume_voxels(volume);
     assert_string_equal(info->format, "tiff");
     assert_true(info->dims[0] == 3 && info->dims[1] == 2 && info->dims[2] == 5);
@@ -89,7 +89,7 @@ static void small_copies_are_no_slices(void **state) {
     add_page(&t, 4, 8, 2, 0, 0);
     snow_volume *volume = support_opened(&files, write_tiff(&files, &t), NULL);
     const uint8_t *voxels = snow_volume_voxels(volume);
-    assert_int_equal(snow_volume_describe(volume)->dims[2], 2);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 2);
     assert_true(voxels[0] == 1 && voxels[8] == 2);
     snow_volume_close(volume);
     support_files_end(&files);
@@ -106,7 +106,7 @@ static void pages_that_lie_are_refused(void **state) {
         {258, 16, "must be alike"}, {339, 2, "must be alike"},
         {258, 12, "12 bits"},       {339, 6, "format 6"},
         {339, 3, "format 3"},       {262, 6, "samplesperpixel"},
-        {262, 32844, "brightness"}, {256, 2000000000, "must be alike"},
+        {262, 32844, "luminance"},  {256, 2000000000, "must be alike"},
         {273, 60000, "damaged"},    {259, 32773, "damaged"},
         {259, 12345, "damaged"},
     };
@@ -117,8 +117,8 @@ static void pages_that_lie_are_refused(void **state) {
         begin(&t);
         add_page(&t, 4, 8, 1, 0, 0);
         add_page(&t, 4, 8, 1, cases[i].tag, cases[i].value);
-        support_refused(&files, write_tiff(&files, &t), NULL, SNOW_BAD_INPUT,
-                        cases[i].part, MOST);
+        support_refused(&files, write_tiff(&files, &t), NULL,
+                        SNOW_STATUS_BAD_INPUT, cases[i].part, MOST);
     }
     support_files_end(&files);
 }
@@ -130,15 +130,15 @@ static void sizes_that_the_file_cannot_hold_cost_nothing(void **state) {
     support_files_begin(&files);
     begin(&t);
     add_page(&t, 4, 8, 1, 256, 2000000000);
-    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_BAD_INPUT,
+    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
                     "cannot hold", MOST);
     begin(&t);
     add_page(&t, 4, 8, 1, 257, 4000000000);
-    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_BAD_INPUT,
+    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
                     "damaged", MOST);
     put(&t, t.link, 4, 8 + 8); /* the next page is the same one */
-    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_BAD_INPUT, ";",
-                    MOST);
+    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
+                    ";", MOST);
     support_files_end(&files);
 }
 
@@ -164,11 +164,11 @@ static void a_folder_with_a_gap_is_refused(void **state) {
     volume = support_opened(&files, files.folder, &box);
     voxels = snow_volume_voxels(volume);
     assert_true(voxels[0] == 9 && voxels[3] == 10);
-    assert_int_equal(snow_volume_describe(volume)->dims[1], 2);
+    assert_int_equal(snow_volume_get_info(volume)->dims[1], 2);
     snow_volume_close(volume);
     assert_int_equal(remove(support_path(&files, "s9.tif")), 0);
-    support_refused(&files, files.folder, NULL, SNOW_BAD_INPUT, "missing",
-                    MOST);
+    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT,
+                    "missing", MOST);
     support_files_end(&files);
 }
 

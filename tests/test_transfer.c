@@ -9,7 +9,7 @@ static const snow_color_point black[] = {{0, 0, 0, 0}};
 
 static double opacity_at(const snow_transfer *transfer, double value) {
     double rgba[4];
-    snow_transfer_at(transfer, value, rgba);
+    snow_transfer_evaluate(transfer, value, rgba);
     assert_true(rgba[3] == snow_transfer_opacity(transfer, value));
     return rgba[3];
 }
@@ -19,7 +19,7 @@ static snow_transfer *opacities_only(snow_context *context,
                                      size_t count) {
     snow_transfer *transfer = NULL;
     if (snow_transfer_new(context, black, 1, points, count, &transfer) !=
-        SNOW_OK)
+        SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
     return transfer;
 }
@@ -39,8 +39,8 @@ static void values_between_points_are_interpolated(void **state) {
     double rgba[4];
     assert_int_equal(
         snow_transfer_new(context, colors, 2, opacities, 2, &transfer),
-        SNOW_OK);
-    snow_transfer_at(transfer, 15, rgba);
+        SNOW_STATUS_OK);
+    snow_transfer_evaluate(transfer, 15, rgba);
     assert_true(rgba[0] == 0.5 && rgba[1] == 0.5 && rgba[2] == 0.5);
     assert_true(near(rgba[3], 0.3));
     assert_false(snow_transfer_is_grey(transfer));
@@ -71,12 +71,13 @@ static void a_steps_value_belongs_to_the_later_point(void **state) {
     snow_transfer *transfer;
     double rgba[4];
     assert_int_equal(
-        snow_transfer_new(context, colors, 2, points, 4, &transfer), SNOW_OK);
+        snow_transfer_new(context, colors, 2, points, 4, &transfer),
+        SNOW_STATUS_OK);
     assert_true(opacity_at(transfer, nextafter(5, 0)) == 0);
     assert_true(opacity_at(transfer, 5) == 1);
-    snow_transfer_at(transfer, 5, rgba);
+    snow_transfer_evaluate(transfer, 5, rgba);
     assert_true(rgba[0] == 1);
-    snow_transfer_at(transfer, 4.999, rgba);
+    snow_transfer_evaluate(transfer, 4.999, rgba);
     assert_true(rgba[0] == 0);
     snow_transfer_free(transfer);
     snow_context_free(context);
@@ -88,7 +89,7 @@ static void nan_is_transparent_and_black(void **state) {
     snow_context *context = support_context();
     snow_transfer *transfer = opacities_only(context, points, 1);
     double rgba[4] = {9, 9, 9, 9};
-    snow_transfer_at(transfer, NAN, rgba);
+    snow_transfer_evaluate(transfer, NAN, rgba);
     for (int i = 0; i < 4; i++)
         assert_true(rgba[i] == 0);
     assert_true(opacity_at(transfer, 3) == 1);
@@ -121,7 +122,7 @@ static void bad_points_are_refused(void **state) {
 #define REFUSED(colors, n, opacities, m, text)                          \
     assert_int_equal(                                                   \
         snow_transfer_new(context, colors, n, opacities, m, &transfer), \
-        SNOW_BAD_USAGE);                                                \
+        SNOW_STATUS_BAD_USAGE);                                         \
     assert_non_null(strstr(snow_context_message(context), text))
     REFUSED(black, 1, falling, 2, "point 2 at 4 comes after 5");
     REFUSED(black, 1, beyond, 1, "1.5");
@@ -144,17 +145,17 @@ static void a_gradient_opacity_is_a_curve_of_its_own(void **state) {
     const snow_opacity_point curve[] = {{2, 0}, {4, 0.5}, {4, 0.75}, {9, 1}};
     snow_context *context = support_context();
     snow_transfer *transfer = opacities_only(context, points, 1);
-    assert_true(snow_transfer_gradient_opacity(transfer, 0) == 1);
-    assert_null(strstr(snow_transfer_text(transfer), "gradient"));
+    assert_true(snow_transfer_evaluate_gradient(transfer, 0) == 1);
+    assert_null(strstr(snow_transfer_description(transfer), "gradient"));
     assert_int_equal(snow_transfer_set_gradient_opacity(transfer, curve, 4),
-                     SNOW_OK);
-    assert_true(snow_transfer_gradient_opacity(transfer, 0) == 0);
-    assert_true(near(snow_transfer_gradient_opacity(transfer, 3), 0.25));
-    assert_true(snow_transfer_gradient_opacity(transfer, 4) == 0.75);
-    assert_true(snow_transfer_gradient_opacity(transfer, INFINITY) == 1);
-    assert_true(snow_transfer_gradient_opacity(transfer, NAN) == 1);
+                     SNOW_STATUS_OK);
+    assert_true(snow_transfer_evaluate_gradient(transfer, 0) == 0);
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 3), 0.25));
+    assert_true(snow_transfer_evaluate_gradient(transfer, 4) == 0.75);
+    assert_true(snow_transfer_evaluate_gradient(transfer, INFINITY) == 1);
+    assert_true(snow_transfer_evaluate_gradient(transfer, NAN) == 1);
     assert_true(opacity_at(transfer, 3) == 0.5); /* that of the value alone */
-    assert_non_null(strstr(snow_transfer_text(transfer),
+    assert_non_null(strstr(snow_transfer_description(transfer),
                            "; gradient opacity 0 at 2, 0.5 at 4, 0.75 at 4, 1 "
                            "at 9"));
     snow_transfer_free(transfer);
@@ -169,15 +170,16 @@ static void a_gradient_opacity_is_taken_away_by_none_and_by_ones(void **state) {
     snow_context *context = support_context();
     snow_transfer *transfer = opacities_only(context, points, 1);
     char before[SNOW_TRANSFER_TEXT_BYTES];
-    snprintf(before, sizeof before, "%s", snow_transfer_text(transfer));
+    snprintf(before, sizeof before, "%s", snow_transfer_description(transfer));
     for (size_t count = 0; count <= 2; count += 2) {
         assert_int_equal(snow_transfer_set_gradient_opacity(transfer, curve, 2),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
         assert_int_equal(
-            snow_transfer_set_gradient_opacity(transfer, ones, count), SNOW_OK);
-        assert_true(snow_transfer_gradient_opacity(transfer, 2) == 1);
+            snow_transfer_set_gradient_opacity(transfer, ones, count),
+            SNOW_STATUS_OK);
+        assert_true(snow_transfer_evaluate_gradient(transfer, 2) == 1);
         assert_int_equal(transfer->gradient_count, 0);
-        assert_string_equal(snow_transfer_text(transfer), before);
+        assert_string_equal(snow_transfer_description(transfer), before);
     }
     snow_transfer_free(transfer);
     snow_context_free(context);
@@ -192,15 +194,15 @@ static void a_bad_gradient_opacity_changes_nothing(void **state) {
     snow_context *context = support_context();
     snow_transfer *transfer = opacities_only(context, points, 1);
     assert_int_equal(snow_transfer_set_gradient_opacity(transfer, curve, 2),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_int_equal(snow_transfer_set_gradient_opacity(transfer, falling, 2),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(context),
                            "gradient opacity point 2 at 4 comes after 5"));
     assert_int_equal(snow_transfer_set_gradient_opacity(transfer, beyond, 1),
-                     SNOW_BAD_USAGE);
+                     SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(context), "1.5"));
-    assert_true(near(snow_transfer_gradient_opacity(transfer, 3), 0.5));
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 3), 0.5));
     snow_transfer_free(transfer);
     snow_context_free(context);
 }
@@ -213,23 +215,25 @@ static void a_look_has_a_gradient_opacity(void **state) {
     for (int i = 0; i < 256; i++)
         many[i] = (snow_opacity_point){-1.23456e-100 / (i + 1), 0.12345};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 3);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 3);
     snow_look look = {.preset = "linear",
                       .gradient_opacities = curve,
                       .gradient_opacity_count = 2};
     snow_transfer *transfer = support_look(volume, look), *none = NULL;
-    assert_true(near(snow_transfer_gradient_opacity(transfer, 3), 0.5));
-    assert_non_null(strstr(snow_transfer_text(transfer),
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 3), 0.5));
+    assert_non_null(strstr(snow_transfer_description(transfer),
                            "); gradient opacity 0 at 2, 1 at 4"));
     snow_transfer_free(transfer);
     look.gradient_opacities = look.opacities = many;
     look.gradient_opacity_count = look.opacity_count = 256;
     transfer = support_look(volume, look); /* more than there is room to tell */
-    assert_non_null(strstr(snow_transfer_text(transfer), ", ... ("));
-    assert_non_null(strstr(snow_transfer_text(transfer), "; gradient opacity"));
+    assert_non_null(strstr(snow_transfer_description(transfer), ", ... ("));
+    assert_non_null(
+        strstr(snow_transfer_description(transfer), "; gradient opacity"));
     snow_transfer_free(transfer);
     look.gradient_opacity_count = 0;
-    assert_int_equal(snow_transfer_make(volume, &look, &none), SNOW_BAD_USAGE);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &none),
+                     SNOW_STATUS_BAD_USAGE);
     assert_non_null(
         strstr(snow_context_message(context), "0 gradient opacities"));
     snow_volume_close(volume);
@@ -244,12 +248,12 @@ static void linear_on_8_bits_is_the_value_itself(void **state) {
     for (int i = 0; i < 256; i++)
         bytes[i] = (uint8_t)i;
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 256);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 256);
     snow_transfer *transfer =
         support_look(volume, (snow_look){.preset = "linear"});
     for (int i = 0; i < 256; i++) {
         double rgba[4];
-        snow_transfer_at(transfer, i, rgba);
+        snow_transfer_evaluate(transfer, i, rgba);
         assert_true(rgba[3] == i / 255.0);
         assert_true(rgba[0] == i / 255.0);
     }
@@ -268,17 +272,17 @@ static void table_1_of_the_real_engine_comes_out(void **state) {
                         wanted[] = {27.9, 77.5, 81.7};
     snow_context *context = support_context();
     const snow_volume_options options = {.dims = {256, 256, 110},
-                                         .type = SNOW_UINT8};
+                                         .type = SNOW_TYPE_UINT8};
     snow_volume *volume;
     assert_int_equal(snow_volume_open(context, path, &options, &volume),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     snow_transfer *transfer =
         support_look(volume, (snow_look){.preset = "linear"});
     for (int i = 0; i < 3; i++) {
         double found = -1;
         assert_int_equal(
             snow_transfer_sparse_ratio(transfer, volume, thresholds[i], &found),
-            SNOW_OK);
+            SNOW_STATUS_OK);
         assert_true(fabs(100 * found - wanted[i]) < 0.05);
     }
     snow_transfer_free(transfer);
@@ -290,7 +294,7 @@ static void a_range_of_values_spreads_any_look(void **state) {
     (void)state;
     const int16_t values[] = {-1000, 0, 100, 3000};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_INT16, values, 4);
+    snow_volume *volume = support_row(context, SNOW_TYPE_INT16, values, 4);
     snow_look look = {
         .preset = "linear", .range = SNOW_RANGE_VALUES, .low = 20, .high = 60};
     snow_transfer *linear = support_look(volume, look);
@@ -319,7 +323,7 @@ static void percentiles_are_of_finite_values(void **state) {
     values[200] = NAN, values[201] = INFINITY, values[202] = -INFINITY;
     values[203] = NAN;
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 204);
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 204);
     snow_transfer *transfer =
         support_look(volume, (snow_look){.preset = "linear",
                                          .range = SNOW_RANGE_PERCENTILES,
@@ -352,14 +356,17 @@ static void quantiles_are_those_of_sorted_values(void **state) {
     memcpy(sorted, values, sizeof values);
     qsort(sorted, N, sizeof *sorted, ascending);
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT64, values, N);
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT64, values, N);
     const double shares[4] = {0, 0.01, 0.5, 1};
     double found[4];
-    snow_census census;
-    assert_int_equal(snow_census_new(volume, NULL, false, &census), SNOW_OK);
-    assert_int_equal(snow_quantiles(&census, SNOW_EXACT, shares, 4, found),
-                     SNOW_OK);
-    snow_census_free(&census);
+    snow_histogram census;
+    assert_int_equal(
+        snow_histogram_new(volume, NULL, false, SNOW_NEED_COUNTS, &census),
+        SNOW_STATUS_OK);
+    assert_int_equal(
+        snow_quantiles(&census, SNOW_HISTOGRAM_EXACT, shares, 4, found),
+        SNOW_STATUS_OK);
+    snow_histogram_free(&census);
     assert_true(found[0] == sorted[0]);
     assert_true(found[1] == sorted[30]); /* the 31st: 0.01 * 3001 rounded up */
     assert_true(found[2] == sorted[1500]);
@@ -385,16 +392,17 @@ static void all_types_give_one_look(void **state) {
     for (int range = SNOW_RANGE_AUTO; range <= SNOW_RANGE_PERCENTILES;
          range++) {
         const snow_look look = {
-            .range = (snow_range_kind)range, .low = 3, .high = 97};
+            .range = (snow_range)range, .low = 3, .high = 97};
         snow_volume *a, *b;
-        info.type = SNOW_INT16;
-        assert_int_equal(snow_volume_share(context, &info, shorts, &a),
-                         SNOW_OK);
-        info.type = SNOW_FLOAT32;
-        assert_int_equal(snow_volume_share(context, &info, floats, &b),
-                         SNOW_OK);
+        info.type = SNOW_TYPE_INT16;
+        assert_int_equal(snow_volume_wrap(context, &info, shorts, &a),
+                         SNOW_STATUS_OK);
+        info.type = SNOW_TYPE_FLOAT32;
+        assert_int_equal(snow_volume_wrap(context, &info, floats, &b),
+                         SNOW_STATUS_OK);
         snow_transfer *p = support_look(a, look), *q = support_look(b, look);
-        assert_string_equal(snow_transfer_text(p), snow_transfer_text(q));
+        assert_string_equal(snow_transfer_description(p),
+                            snow_transfer_description(q));
         snow_transfer_free(p);
         snow_transfer_free(q);
         snow_volume_close(a);
@@ -407,7 +415,7 @@ static void the_full_range_is_from_smallest_to_largest(void **state) {
     (void)state;
     const float values[] = {NAN, -3, 5, 1, INFINITY};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, 5);
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 5);
     snow_transfer *transfer = support_look(
         volume, (snow_look){.preset = "linear", .range = SNOW_RANGE_FULL});
     assert_true(opacity_at(transfer, -3) == 0);
@@ -421,12 +429,14 @@ static void the_full_range_is_from_smallest_to_largest(void **state) {
 static void slope_and_intercept_count(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 1, 2, 3, 4};
-    const snow_volume_info info = {
-        .dims = {5, 1, 1}, .type = SNOW_UINT8, .slope = -10, .intercept = 100};
+    const snow_volume_info info = {.dims = {5, 1, 1},
+                                   .type = SNOW_TYPE_UINT8,
+                                   .slope = -10,
+                                   .intercept = 100};
     snow_context *context = support_context();
     snow_volume *volume;
-    assert_int_equal(snow_volume_share(context, &info, bytes, &volume),
-                     SNOW_OK);
+    assert_int_equal(snow_volume_wrap(context, &info, bytes, &volume),
+                     SNOW_STATUS_OK);
     snow_transfer *transfer =
         support_look(volume, (snow_look){.preset = "linear"});
     assert_true(opacity_at(transfer, 60) == 0);
@@ -446,18 +456,18 @@ static void presets_and_maps_are_listed_and_all_work(void **state) {
     static const char *const maps[] = {"grey", "viridis", "inferno",
                                        "cool-warm", "turbo"};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_INT16, values, 8);
+    snow_volume *volume = support_row(context, SNOW_TYPE_INT16, values, 8);
     for (size_t i = 0; i < 4; i++)
         assert_string_equal(snow_preset_name(i), presets[i]);
     for (size_t i = 0; i < 5; i++)
         assert_string_equal(snow_colormap_name(i), maps[i]);
     size_t count = 0;
     for (; snow_preset_name(count); count++) {
-        assert_non_null(snow_preset_text(count));
+        assert_non_null(snow_preset_description(count));
         snow_transfer_free(support_look(
             volume, (snow_look){.preset = snow_preset_name(count)}));
     }
-    assert_null(snow_preset_text(count));
+    assert_null(snow_preset_description(count));
     for (size_t i = 0; snow_colormap_name(i); i++)
         snow_transfer_free(support_look(
             volume, (snow_look){.colormap = snow_colormap_name(i)}));
@@ -469,7 +479,7 @@ static void ct_presets_keep_their_hounsfield_values(void **state) {
     (void)state;
     const int16_t values[] = {-1000, 40, 900};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_INT16, values, 3);
+    snow_volume *volume = support_row(context, SNOW_TYPE_INT16, values, 3);
     snow_transfer *bone =
         support_look(volume, (snow_look){.preset = "ct-bone"});
     assert_true(opacity_at(bone, 60) == 0); /* muscle */
@@ -495,8 +505,8 @@ static void ct_presets_warn_of_values_with_an_offset(void **state) {
     const uint16_t values[] = {0, 1040, 1900};
     snow_context *context = support_context();
     int notices = 0;
-    snow_context_set_notice(context, count_notice, &notices);
-    snow_volume *volume = support_row(context, SNOW_UINT16, values, 3);
+    snow_context_set_warning(context, count_notice, &notices);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT16, values, 3);
     snow_transfer_free(support_look(volume, (snow_look){.preset = "ct-soft"}));
     assert_int_equal(notices, 1);
     snow_transfer_free(
@@ -513,18 +523,18 @@ static void unknown_names_are_refused_with_a_list(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer = NULL;
     const snow_look preset = {.preset = "ct-foot"};
     const snow_look map = {.colormap = "jet"};
-    assert_int_equal(snow_transfer_make(volume, &preset, &transfer),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &preset, &transfer),
+                     SNOW_STATUS_BAD_USAGE);
     const char *message = snow_context_message(context);
     assert_non_null(strstr(message, "ct-foot"));
     for (size_t i = 0; snow_preset_name(i); i++)
         assert_non_null(strstr(message, snow_preset_name(i)));
-    assert_int_equal(snow_transfer_make(volume, &map, &transfer),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &map, &transfer),
+                     SNOW_STATUS_BAD_USAGE);
     for (size_t i = 0; snow_colormap_name(i); i++)
         assert_non_null(strstr(message, snow_colormap_name(i)));
     assert_null(transfer);
@@ -544,11 +554,12 @@ static void empty_ranges_are_refused(void **state) {
     };
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer = NULL;
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++)
-        assert_int_equal(snow_transfer_make(volume, &looks[i], &transfer),
-                         SNOW_BAD_USAGE);
+        assert_int_equal(
+            snow_transfer_new_for_volume(volume, &looks[i], &transfer),
+            SNOW_STATUS_BAD_USAGE);
     assert_null(transfer);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -558,11 +569,11 @@ static void a_colour_map_replaces_the_colours_only(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer = support_look(
         volume, (snow_look){.preset = "linear", .colormap = "inferno"});
     double rgba[4];
-    snow_transfer_at(transfer, 255, rgba);
+    snow_transfer_evaluate(transfer, 255, rgba);
     assert_true(fabs(rgba[0] - 0.988362) < 1 / 255.0);
     assert_true(fabs(rgba[2] - 0.644924) < 1 / 255.0);
     assert_true(opacity_at(transfer, 51) == 0.2);
@@ -577,7 +588,7 @@ static void given_opacities_replace_the_presets(void **state) {
     const snow_opacity_point points[] = {{100, 0}, {100, 0.5}};
     const snow_opacity_point falling[] = {{100, 0}, {50, 0.5}};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_look look = {
         .preset = "linear", .opacities = points, .opacity_count = 2};
     snow_transfer *transfer = support_look(volume, look);
@@ -586,8 +597,8 @@ static void given_opacities_replace_the_presets(void **state) {
     snow_transfer_free(transfer);
     look.opacities = falling;
     transfer = NULL;
-    assert_int_equal(snow_transfer_make(volume, &look, &transfer),
-                     SNOW_BAD_USAGE);
+    assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
+                     SNOW_STATUS_BAD_USAGE);
     assert_null(transfer);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -647,14 +658,14 @@ static void colour_maps_are_the_published_ones(void **state) {
     static const int entries[5] = {0, 64, 128, 192, 255};
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 2);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     for (size_t n = 0; n < sizeof tables / sizeof *tables; n++) {
         snow_transfer *transfer =
             support_look(volume, (snow_look){.preset = "linear",
                                              .colormap = tables[n].name});
         for (int i = 0; i < 5; i++) {
             double rgba[4];
-            snow_transfer_at(transfer, entries[i], rgba);
+            snow_transfer_evaluate(transfer, entries[i], rgba);
             for (int c = 0; c < 3; c++)
                 if (fabs(rgba[c] - tables[n].rgb[i][c]) > 1 / 255.0)
                     fail_msg("%s at %d: channel %d is %g", tables[n].name,
@@ -668,23 +679,25 @@ static void colour_maps_are_the_published_ones(void **state) {
 
 static void gray_is_grey(void **state) {
     (void)state;
-    assert_int_equal(snow_colormap_named("gray"), snow_colormap_named("grey"));
-    assert_true(snow_colormap_named("grey") >= 0);
+    assert_int_equal(snow_colormap_from_name("gray"),
+                     snow_colormap_from_name("grey"));
+    assert_true(snow_colormap_from_name("grey") >= 0);
 }
 
 static void names_are_free_in_case_and_dashes(void **state) {
     (void)state;
     for (size_t i = 0; snow_colormap_name(i); i++)
-        assert_int_equal(snow_colormap_named(snow_colormap_name(i)), i);
+        assert_int_equal(snow_colormap_from_name(snow_colormap_name(i)), i);
     for (size_t i = 0; snow_preset_name(i); i++)
-        assert_int_equal(snow_preset_named(snow_preset_name(i)), i);
-    assert_int_equal(snow_colormap_named("CoolWarm"),
-                     snow_colormap_named("cool-warm"));
-    assert_int_equal(snow_preset_named("CT_Bone"),
-                     snow_preset_named("ct-bone"));
-    assert_int_equal(snow_preset_named("ctbone"), snow_preset_named("ct-bone"));
-    assert_int_equal(snow_preset_named("ct-bon"), -1);
-    assert_int_equal(snow_preset_named("ct-boness"), -1);
+        assert_int_equal(snow_preset_from_name(snow_preset_name(i)), i);
+    assert_int_equal(snow_colormap_from_name("CoolWarm"),
+                     snow_colormap_from_name("cool-warm"));
+    assert_int_equal(snow_preset_from_name("CT_Bone"),
+                     snow_preset_from_name("ct-bone"));
+    assert_int_equal(snow_preset_from_name("ctbone"),
+                     snow_preset_from_name("ct-bone"));
+    assert_int_equal(snow_preset_from_name("ct-bon"), -1);
+    assert_int_equal(snow_preset_from_name("ct-boness"), -1);
     /* As users of other viewers write them. */
     static const char *const known[] = {"CT-AAA",
                                         "CT-AAA2",
@@ -712,22 +725,24 @@ static void names_are_free_in_case_and_dashes(void **state) {
                                         "MR-T2-Brain",
                                         "DTI-FA-Brain"};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        assert_true(snow_preset_named(known[i]) >= 0);
-    assert_int_equal(snow_preset_named("ct bone"), -1);
-    assert_int_equal(snow_colormap_named(""), -1);
-    assert_int_equal(snow_colormap_named("-grey"), -1);
+        assert_true(snow_preset_from_name(known[i]) >= 0);
+    assert_int_equal(snow_preset_from_name("ct bone"), -1);
+    assert_int_equal(snow_colormap_from_name(""), -1);
+    assert_int_equal(snow_colormap_from_name("-grey"), -1);
 }
 
 static void a_view_keeps_its_sign(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_view a, b;
-    assert_int_equal(snow_view_named(context, "Anterior", &a), SNOW_OK);
-    assert_int_equal(snow_view_named(context, "+y", &b), SNOW_OK);
+    assert_int_equal(snow_view_from_name(context, "Anterior", &a),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_view_from_name(context, "+y", &b), SNOW_STATUS_OK);
     assert_memory_equal(a.back, b.back, sizeof a.back);
-    assert_int_equal(snow_view_named(context, "-X", &a), SNOW_OK);
+    assert_int_equal(snow_view_from_name(context, "-X", &a), SNOW_STATUS_OK);
     assert_true(a.back[0] < 0);
-    assert_int_equal(snow_view_named(context, "x", &a), SNOW_BAD_USAGE);
+    assert_int_equal(snow_view_from_name(context, "x", &a),
+                     SNOW_STATUS_BAD_USAGE);
     snow_context_free(context);
 }
 
@@ -751,14 +766,15 @@ static void background_is_transparent_and_the_object_is_not(void **state) {
     scatter(values + AIR + TISSUE, BONE, 2000, 200, &random);
     snow_context *context = support_context();
     snow_volume *volume =
-        support_row(context, SNOW_FLOAT32, values, AIR + TISSUE + BONE);
+        support_row(context, SNOW_TYPE_FLOAT32, values, AIR + TISSUE + BONE);
     snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 50) == 0);
     assert_true(opacity_at(transfer, 950) >= 0.2);
     assert_true(opacity_at(transfer, 2000) > opacity_at(transfer, 1000));
     assert_true(snow_transfer_is_grey(transfer));
-    assert_non_null(strstr(snow_transfer_text(transfer), "from the histogram"));
-    assert_null(strchr(snow_transfer_text(transfer), '\n'));
+    assert_non_null(
+        strstr(snow_transfer_description(transfer), "from the histogram"));
+    assert_null(strchr(snow_transfer_description(transfer), '\n'));
     snow_transfer_free(transfer);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -772,7 +788,7 @@ static void sparse_vessels_are_found_in_an_empty_volume(void **state) {
     memset(values, 0, sizeof values);
     scatter(values, VESSEL, 150, 100, &random);
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, ALL);
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, ALL);
     snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 0) == 0);
     assert_true(opacity_at(transfer, 180) > 0.3);
@@ -794,7 +810,7 @@ static void a_few_wild_values_do_not_blank_the_picture(void **state) {
     for (int i = 0; i < 20; i++)
         values[i * 400] = i % 2 ? 3e38F : NAN;
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_FLOAT32, values, ALL);
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, ALL);
     snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 12) == 0);
     assert_true(opacity_at(transfer, 110) > 0.2);
@@ -807,7 +823,7 @@ static void a_mask_of_0_and_1_shows_its_ones(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 0, 0, 1, 1, 0, 0, 0};
     snow_context *context = support_context();
-    snow_volume *volume = support_row(context, SNOW_UINT8, bytes, 8);
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 8);
     snow_transfer *transfer = support_look(volume, (snow_look){0});
     assert_true(opacity_at(transfer, 0) == 0);
     assert_true(opacity_at(transfer, 1) > 0.3);
@@ -823,14 +839,15 @@ static void check_all_looks(snow_type type, const void *values, int64_t n) {
     for (int range = SNOW_RANGE_AUTO; range <= SNOW_RANGE_PERCENTILES; range++)
         for (size_t p = 0; p == 0 || snow_preset_name(p - 1); p++) {
             snow_look look = {.preset = p ? snow_preset_name(p - 1) : NULL,
-                              .range = (snow_range_kind)range,
+                              .range = (snow_range)range,
                               .low = 1,
                               .high = 99,
                               .colormap = "turbo"};
             snow_transfer *transfer = support_look(volume, look);
             for (int64_t i = 0; i < n; i++) {
                 double rgba[4];
-                snow_transfer_at(transfer, snow_volume_native(volume, i), rgba);
+                snow_transfer_evaluate(transfer, snow_volume_native(volume, i),
+                                       rgba);
                 for (int c = 0; c < 4; c++)
                     assert_true(rgba[c] >= 0 && rgba[c] <= 1);
             }
@@ -851,17 +868,17 @@ static void odd_volumes_have_a_look_too(void **state) {
     const uint64_t large[] = {0, UINT64_MAX};
     const uint8_t zero[] = {0}, constant[] = {7, 7, 7};
     const int8_t negative[] = {-5, -5};
-    check_all_looks(SNOW_FLOAT32, nans, 2);
-    check_all_looks(SNOW_FLOAT32, infinite, 2);
-    check_all_looks(SNOW_FLOAT64, wide, 3);
-    check_all_looks(SNOW_FLOAT64, one, 1);
-    check_all_looks(SNOW_FLOAT64, tiny, 3);
-    check_all_looks(SNOW_INT64, whole, 3);
-    check_all_looks(SNOW_INT64, close, 3);
-    check_all_looks(SNOW_UINT64, large, 2);
-    check_all_looks(SNOW_UINT8, zero, 1);
-    check_all_looks(SNOW_UINT8, constant, 3);
-    check_all_looks(SNOW_INT8, negative, 2);
+    check_all_looks(SNOW_TYPE_FLOAT32, nans, 2);
+    check_all_looks(SNOW_TYPE_FLOAT32, infinite, 2);
+    check_all_looks(SNOW_TYPE_FLOAT64, wide, 3);
+    check_all_looks(SNOW_TYPE_FLOAT64, one, 1);
+    check_all_looks(SNOW_TYPE_FLOAT64, tiny, 3);
+    check_all_looks(SNOW_TYPE_INT64, whole, 3);
+    check_all_looks(SNOW_TYPE_INT64, close, 3);
+    check_all_looks(SNOW_TYPE_UINT64, large, 2);
+    check_all_looks(SNOW_TYPE_UINT8, zero, 1);
+    check_all_looks(SNOW_TYPE_UINT8, constant, 3);
+    check_all_looks(SNOW_TYPE_INT8, negative, 2);
 }
 
 static void
@@ -870,8 +887,8 @@ a_volume_of_zeros_shows_nothing_and_one_of_sevens_does(void **state) {
     const uint8_t zeros[] = {0, 0}, sevens[] = {7, 7};
     static const char *const presets[] = {NULL, "linear", "mr-default"};
     snow_context *context = support_context();
-    snow_volume *empty = support_row(context, SNOW_UINT8, zeros, 2);
-    snow_volume *full = support_row(context, SNOW_UINT8, sevens, 2);
+    snow_volume *empty = support_row(context, SNOW_TYPE_UINT8, zeros, 2);
+    snow_volume *full = support_row(context, SNOW_TYPE_UINT8, sevens, 2);
     for (int i = 0; i < 3; i++) {
         snow_transfer *a =
             support_look(empty, (snow_look){.preset = presets[i]});

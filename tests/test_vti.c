@@ -51,7 +51,7 @@ static void text_and_base64_are_read_in_place(void **state) {
     };
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         snow_volume *volume = opened(files, texts[i], NULL);
-        const snow_volume_info *info = snow_volume_describe(volume);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_string_equal(info->format, "vti");
         assert_true(info->dims[0] == 3 && info->dims[1] == 2);
         /* The first index is 1. */
@@ -76,7 +76,7 @@ static void the_scalars_of_the_file_come_before_others(void **state) {
         files,
         support_write_text(files, "b.vti",
                            FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4 5" END),
-        &options, SNOW_BAD_USAGE, "the file has a", MOST);
+        &options, SNOW_STATUS_BAD_USAGE, "the file has a", MOST);
 }
 
 static void appended_arrays_lie_at_their_offsets(void **state) {
@@ -93,7 +93,7 @@ static void what_is_no_image_is_refused(void **state) {
     support_files *files = *state;
     static const char *const cases[][2] = {
         {"<VTKFile type=\"PolyData\"/>", "not of image data"},
-        {"<a><VTKFile/></a>", "no file of VTK"},
+        {"<a><VTKFile/></a>", "not a VTK file"},
         {"<VTKFile type=\"ImageData\"><", "XML is damaged"},
         {FILE_TAG, "XML is damaged"},
         {FILE_TAG "</VTKFile>", "no array"},
@@ -105,15 +105,16 @@ static void what_is_no_image_is_refused(void **state) {
          "WholeExtent"},
         {FILE_TAG "<ImageData WholeExtent=\"0 9 0 9 0 9\">"
                   "<Piece Extent=\"0 9 0 9 0 4\"/></ImageData></VTKFile>",
-         "pieces"},
-        {FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4" END, "no uint8"},
+         "no piece"},
+        {FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4" END,
+         "not a valid uint8"},
         {FILE_TAG GRID ARRAY("a", "binary") "BQAAAAABAgME" END,
-         "5 bytes where the voxels need 6"},
+         "5 bytes but the voxels need 6"},
         {FILE_TAG GRID ARRAY("a", "binary") "BgAAAAABAgM=" END, "too early"},
         {FILE_TAG GRID ARRAY("a", "binary") "BgAAAAABAg=" END, "base64"},
-        {FILE_TAG GRID ARRAY("a", "hex") "00" END, "not known"},
+        {FILE_TAG GRID ARRAY("a", "hex") "00" END, "unknown type"},
         {FILE_TAG GRID "<DataArray type=\"String\" format=\"ascii\">" END,
-         "not known"},
+         "unknown type"},
         {FILE_TAG
          "<ImageData WholeExtent=\"0 9 0 9 0 9\" Spacing=\"0 1 1\">"
          "<Piece Extent=\"0 9 0 9 0 9\"><PointData>" ARRAY("a", "ascii") END,
@@ -122,11 +123,11 @@ static void what_is_no_image_is_refused(void **state) {
          "<ImageData WholeExtent=\"0 99999999 0 99999999 0 9\">"
          "<Piece Extent=\"0 99999999 0 99999999 0 9\"><PointData>" ARRAY(
              "a", "ascii") END,
-         "is cut"},
+         "is truncated"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         support_refused(files, support_write_text(files, "a.vti", cases[i][0]),
-                        NULL, SNOW_BAD_INPUT, cases[i][1], MOST);
+                        NULL, SNOW_STATUS_BAD_INPUT, cases[i][1], MOST);
 }
 
 /* A compressed array in three blocks of 2 bytes, the sizes as told. */
@@ -150,7 +151,7 @@ static void blocks_that_lie_are_refused(void **state) {
                 (unsigned char)(heads[i][k / 4] >> (8 * (k % 4)));
         support_refused(files,
                         support_write(files, "a.vti", bytes, sizeof bytes),
-                        NULL, SNOW_BAD_INPUT, ";", MOST);
+                        NULL, SNOW_STATUS_BAD_INPUT, ";", MOST);
     }
 }
 

@@ -41,7 +41,7 @@ static void words_may_be_written_in_many_ways(void **state) {
     support_files_begin(&files);
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         snow_volume *volume = opened(&files, texts[i], NULL);
-        const snow_volume_info *info = snow_volume_describe(volume);
+        const snow_volume_info *info = snow_volume_get_info(volume);
         assert_true(info->dims[0] == 3 && info->dims[1] == 2);
         assert_true(info->matrix[0][0] == 0.5 && info->matrix[2][2] == 2);
         assert_true(info->matrix[0][3] == 1 && info->matrix[2][3] == 3);
@@ -60,7 +60,7 @@ static void values_of_cells_lie_between_points(void **state) {
                                  SPACED "CELL_DATA 2\nSCALARS c int\n"
                                         "LOOKUP_TABLE default\n7 8\n",
                                  NULL);
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     assert_true(info->dims[0] == 2 && info->dims[1] == 1);
     assert_true(info->matrix[0][3] == 1.25 && info->matrix[1][3] == 2.5);
     assert_true(info->matrix[2][3] == 3); /* an axis of one point */
@@ -80,7 +80,7 @@ static void an_array_is_chosen_by_name_and_channel(void **state) {
     assert_int_equal(files.notices, 1); /* of the channel */
     const snow_volume_options wrong = {.dataset = "other"};
     support_refused(&files, support_write_text(&files, "b.vtk", text), &wrong,
-                    SNOW_BAD_USAGE, "s, the one", MOST);
+                    SNOW_STATUS_BAD_USAGE, "s, the one", MOST);
     support_files_end(&files);
 }
 
@@ -93,7 +93,7 @@ static void shares_of_colours_are_bytes(void **state) {
                                         "0 1 0.5 0.00392157 -1 2\n",
                                  NULL);
     static const uint8_t wanted[] = {0, 255, 128, 1, 0, 255};
-    assert_int_equal(snow_volume_describe(volume)->type, SNOW_UINT8);
+    assert_int_equal(snow_volume_get_info(volume)->type, SNOW_TYPE_UINT8);
     assert_memory_equal(snow_volume_voxels(volume), wanted, 6);
     snow_volume_close(volume);
     support_files_end(&files);
@@ -104,21 +104,22 @@ static void what_is_no_image_is_refused(void **state) {
     static const char *const cases[][2] = {
         {HEAD "DATASET POLYDATA\n", "POLYDATA"},
         {HEAD "DATASET RECTILINEAR_GRID\n", "resample"},
-        {HEAD "DIMENSIONS 3 2 1\n", "makes no sense"},
-        {"# vtk DataFile Version 3.0\nx\nHEX\n", "makes no sense"},
+        {HEAD "DIMENSIONS 3 2 1\n", "is not valid in this place"},
+        {"# vtk DataFile Version 3.0\nx\nHEX\n", "is not valid in this place"},
         {"# vtk DataFile Version 3.0\n", "end of file"},
         {GRID, "no array"},
         {SPACED "POINT_DATA 6\n", "no array"},
         {SPACED "POINT_DATA 5\nSCALARS s short\nLOOKUP_TABLE default\n"
                 "0 1 2 3 4",
-         "5 values where the grid has 6"},
-        {SPACED SCALARS "0 1 2 3 4", "is cut"},
-        {SPACED SCALARS "0 1 2 3 4 x", "no int16"},
+         "5 values but the grid has 6"},
+        {SPACED SCALARS "0 1 2 3 4", "truncated"},
+        {SPACED SCALARS "0 1 2 3 4 x", "not a valid int16"},
         {SPACED "POINT_DATA 6\nSCALARS s bit\nLOOKUP_TABLE default\n" NUMBERS,
-         "makes no sense"},
+         "is not valid in this place"},
         {SPACED "POINT_DATA 6\nSCALARS s short 0\nLOOKUP_TABLE d\n" NUMBERS,
-         "makes no sense"},
-        {SPACED "POINT_DATA 6\nSCALARS s short\n" NUMBERS, "makes no sense"},
+         "is not valid in this place"},
+        {SPACED "POINT_DATA 6\nSCALARS s short\n" NUMBERS,
+         "is not valid in this place"},
         {GRID "SPACING 0 1 1\n" SCALARS NUMBERS, "spacing"},
         {GRID "SPACING nan 1 1\n" SCALARS NUMBERS, "spacing"},
         {HEAD "DATASET STRUCTURED_POINTS\nDIMENSIONS 0 2 1\n" SCALARS NUMBERS,
@@ -126,17 +127,17 @@ static void what_is_no_image_is_refused(void **state) {
         {HEAD "DATASET STRUCTURED_POINTS\nDIMENSIONS 2000000 2000000 2000000\n"
               "POINT_DATA 8000000000000000000\nSCALARS s double\n"
               "LOOKUP_TABLE d\n0",
-         "larger than any file"},
+         "too large for any file"},
         {HEAD "DATASET STRUCTURED_POINTS\nDIMENSIONS 100000 100000 10\n"
               "POINT_DATA 100000000000\nSCALARS s double\nLOOKUP_TABLE d\n0",
-         "is cut"},
+         "is truncated"},
     };
     support_files files;
     support_files_begin(&files);
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         support_refused(&files,
                         support_write_text(&files, "a.vtk", cases[i][0]), NULL,
-                        SNOW_BAD_INPUT, cases[i][1], MOST);
+                        SNOW_STATUS_BAD_INPUT, cases[i][1], MOST);
     support_files_end(&files);
 }
 

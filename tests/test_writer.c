@@ -1,8 +1,8 @@
 /* tests/test_writer.c - files come into being whole or not at all.  Built
- * twice: with SNOW_NAMELESS=0 as on a file system where files have names from
+ * twice: with SNOW_TMPFILE=0 as on a file system where files have names from
  * their first byte. */
 #define _GNU_SOURCE /* O_TMPFILE */
-#include "base/writer.h"
+#include "io/writer.h"
 #include "support.h"
 
 #include <dirent.h>
@@ -79,9 +79,9 @@ static snow_status write_text(fixture *f, const char *path, bool overwrite,
                               const char *text) {
     snow_writer *writer = NULL;
     SNOW_TRY(snow_writer_open(f->context, path, overwrite, &writer));
-    if (snow_writer_write(writer, text, strlen(text)) != SNOW_OK) {
+    if (snow_writer_write(writer, text, strlen(text)) != SNOW_STATUS_OK) {
         snow_writer_abandon(writer);
-        return SNOW_BAD_OUTPUT;
+        return SNOW_STATUS_BAD_OUTPUT;
     }
     return snow_writer_commit(writer);
 }
@@ -96,7 +96,7 @@ static void a_committed_file_has_its_bytes_and_leaves_no_other(void **state) {
     fixture *f = *state;
     snow_writer *writer = NULL;
     assert_int_equal(snow_writer_open(f->context, f->path, false, &writer),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_ptr_equal(snow_writer_context(writer), f->context);
     /* Pieces below, at and above the writer's buffer. */
     static unsigned char bytes[300000];
@@ -107,10 +107,10 @@ static void a_committed_file_has_its_bytes_and_leaves_no_other(void **state) {
     size_t at = 0;
     for (size_t i = 0; i < sizeof pieces / sizeof *pieces; at += pieces[i++])
         assert_int_equal(snow_writer_write(writer, bytes + at, pieces[i]),
-                         SNOW_OK);
+                         SNOW_STATUS_OK);
     assert_int_equal(at, sizeof bytes);
     assert_int_not_equal(access(f->path, F_OK), 0);
-    assert_int_equal(snow_writer_commit(writer), SNOW_OK);
+    assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_OK);
     assert_int_equal(count_files(f->folder, false), 1);
     static unsigned char back[sizeof bytes + 1];
     FILE *file = fopen(f->path, "rb");
@@ -122,7 +122,7 @@ static void a_committed_file_has_its_bytes_and_leaves_no_other(void **state) {
 static void the_mode_is_what_the_umask_says(void **state) {
     fixture *f = *state;
     mode_t before = umask(027);
-    assert_int_equal(write_text(f, f->path, false, "x"), SNOW_OK);
+    assert_int_equal(write_text(f, f->path, false, "x"), SNOW_STATUS_OK);
     umask(before);
     struct stat here;
     assert_int_equal(stat(f->path, &here), 0);
@@ -137,7 +137,7 @@ static void a_replaced_file_keeps_its_permissions(void **state) {
         unlink(f->path);
         put_text(f->path, "old");
         assert_int_equal(chmod(f->path, modes[i]), 0);
-        assert_int_equal(write_text(f, f->path, true, "new"), SNOW_OK);
+        assert_int_equal(write_text(f, f->path, true, "new"), SNOW_STATUS_OK);
         assert_int_equal(stat(f->path, &here), 0);
         assert_int_equal(here.st_mode & 0777, modes[i]);
         assert_text(f->path, "new");
@@ -147,11 +147,12 @@ static void a_replaced_file_keeps_its_permissions(void **state) {
 static void an_existing_file_is_kept_unless_overwriting(void **state) {
     fixture *f = *state;
     put_text(f->path, "old");
-    assert_int_equal(write_text(f, f->path, false, "new"), SNOW_BAD_OUTPUT);
+    assert_int_equal(write_text(f, f->path, false, "new"),
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "exists");
     assert_message(f, "(-y)");
     assert_text(f->path, "old");
-    assert_int_equal(write_text(f, f->path, true, "new"), SNOW_OK);
+    assert_int_equal(write_text(f, f->path, true, "new"), SNOW_STATUS_OK);
     assert_text(f->path, "new");
     assert_int_equal(count_files(f->folder, false), 1);
 }
@@ -160,10 +161,10 @@ static void a_file_that_appears_meanwhile_is_kept(void **state) {
     fixture *f = *state;
     snow_writer *writer = NULL;
     assert_int_equal(snow_writer_open(f->context, f->path, false, &writer),
-                     SNOW_OK);
-    assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_OK);
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_STATUS_OK);
     put_text(f->path, "theirs");
-    assert_int_equal(snow_writer_commit(writer), SNOW_BAD_OUTPUT);
+    assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "exists");
     assert_text(f->path, "theirs");
     assert_int_equal(count_files(f->folder, false), 1);
@@ -173,17 +174,17 @@ static void a_file_that_appears_meanwhile_is_replaced_if_told(void **state) {
     fixture *f = *state;
     snow_writer *writer = NULL;
     assert_int_equal(snow_writer_open(f->context, f->path, true, &writer),
-                     SNOW_OK);
-    assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_OK);
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_writer_write(writer, "mine", 4), SNOW_STATUS_OK);
     put_text(f->path, "theirs");
-    assert_int_equal(snow_writer_commit(writer), SNOW_OK);
+    assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_OK);
     assert_text(f->path, "mine");
     assert_int_equal(count_files(f->folder, false), 1);
 }
 
 /* Whether files of the folder have names while they are written. */
 static bool are_named(const char *folder) {
-#ifdef SNOW_NAMELESS
+#ifdef SNOW_TMPFILE
     (void)folder;
     return true;
 #else
@@ -202,8 +203,9 @@ static void a_writer_that_is_killed_leaves_nothing(void **state) {
     assert_true(child >= 0);
     if (!child) {
         snow_writer *writer = NULL;
-        if (snow_writer_open(f->context, f->path, false, &writer) == SNOW_OK &&
-            snow_writer_write(writer, many, sizeof many) == SNOW_OK)
+        if (snow_writer_open(f->context, f->path, false, &writer) ==
+                SNOW_STATUS_OK &&
+            snow_writer_write(writer, many, sizeof many) == SNOW_STATUS_OK)
             raise(SIGKILL);
         _exit(1);
     }
@@ -219,8 +221,8 @@ static void an_abandoned_file_leaves_nothing(void **state) {
     put_text(f->path, "old");
     snow_writer *writer = NULL;
     assert_int_equal(snow_writer_open(f->context, f->path, true, &writer),
-                     SNOW_OK);
-    assert_int_equal(snow_writer_write(writer, "half", 4), SNOW_OK);
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_writer_write(writer, "half", 4), SNOW_STATUS_OK);
     snow_writer_abandon(writer);
     snow_writer_abandon(NULL);
     assert_text(f->path, "old");
@@ -233,8 +235,9 @@ static void a_link_stays_a_link_and_its_target_is_replaced(void **state) {
     snprintf(link_path, sizeof link_path, "%s/link", f->folder);
     put_text(f->path, "old");
     assert_int_equal(symlink("out.bin", link_path), 0);
-    assert_int_equal(write_text(f, link_path, false, "new"), SNOW_BAD_OUTPUT);
-    assert_int_equal(write_text(f, link_path, true, "new"), SNOW_OK);
+    assert_int_equal(write_text(f, link_path, false, "new"),
+                     SNOW_STATUS_BAD_OUTPUT);
+    assert_int_equal(write_text(f, link_path, true, "new"), SNOW_STATUS_OK);
     struct stat here;
     assert_int_equal(lstat(link_path, &here), 0);
     assert_true(S_ISLNK(here.st_mode));
@@ -243,16 +246,17 @@ static void a_link_stays_a_link_and_its_target_is_replaced(void **state) {
 
 static void folders_and_missing_folders_are_refused(void **state) {
     fixture *f = *state;
-    assert_int_equal(write_text(f, f->folder, true, "x"), SNOW_BAD_OUTPUT);
+    assert_int_equal(write_text(f, f->folder, true, "x"),
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "folder");
     assert_int_equal(write_text(f, "/tmp/no/such/folder/a", false, "x"),
-                     SNOW_BAD_OUTPUT);
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "No such file or directory; make the folder first");
-    assert_int_equal(write_text(f, "", false, "x"), SNOW_BAD_OUTPUT);
-    assert_message(f, "names no file");
+    assert_int_equal(write_text(f, "", false, "x"), SNOW_STATUS_BAD_OUTPUT);
+    assert_message(f, "is not a file name");
     char slash[160];
     snprintf(slash, sizeof slash, "%s/new/", f->folder);
-    assert_int_equal(write_text(f, slash, false, "x"), SNOW_BAD_OUTPUT);
+    assert_int_equal(write_text(f, slash, false, "x"), SNOW_STATUS_BAD_OUTPUT);
     assert_int_equal(count_files(f->folder, false), 0);
 }
 
@@ -262,7 +266,7 @@ static void a_name_of_the_greatest_length_can_be_written(void **state) {
     memset(name, 'n', 255);
     name[255] = 0;
     snprintf(path, sizeof path, "%s/%s", f->folder, name);
-    assert_int_equal(write_text(f, path, false, "x"), SNOW_OK);
+    assert_int_equal(write_text(f, path, false, "x"), SNOW_STATUS_OK);
     assert_text(path, "x");
 }
 
@@ -272,14 +276,14 @@ static void a_name_that_is_too_long_is_refused_at_once(void **state) {
     snow_writer *writer = NULL;
     snprintf(path, sizeof path, "%s/%0300d", f->folder, 0);
     assert_int_equal(snow_writer_open(f->context, path, false, &writer),
-                     SNOW_BAD_OUTPUT);
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "choose a shorter name");
     assert_int_equal(count_files(f->folder, false), 0);
 }
 
 static void devices_are_written_through(void **state) {
     fixture *f = *state;
-    assert_int_equal(write_text(f, "/dev/null", false, "x"), SNOW_OK);
+    assert_int_equal(write_text(f, "/dev/null", false, "x"), SNOW_STATUS_OK);
     struct stat here;
     assert_int_equal(stat("/dev/null", &here), 0);
     assert_true(S_ISCHR(here.st_mode));
@@ -289,17 +293,19 @@ static void a_full_device_is_reported(void **state) {
     fixture *f = *state;
     if (access("/dev/full", W_OK) != 0)
         skip();
-    assert_int_equal(write_text(f, "/dev/full", false, "x"), SNOW_BAD_OUTPUT);
+    assert_int_equal(write_text(f, "/dev/full", false, "x"),
+                     SNOW_STATUS_BAD_OUTPUT);
     assert_message(f, "free some space");
     snow_writer *writer = NULL;
     static const char many[200000];
     assert_int_equal(snow_writer_open(f->context, "/dev/full", false, &writer),
-                     SNOW_OK);
+                     SNOW_STATUS_OK);
     assert_int_equal(snow_writer_write(writer, many, sizeof many),
-                     SNOW_BAD_OUTPUT);
+                     SNOW_STATUS_BAD_OUTPUT);
     /* A failure sticks: the commit cannot succeed after it. */
-    assert_int_equal(snow_writer_write(writer, many, 1), SNOW_BAD_OUTPUT);
-    assert_int_equal(snow_writer_commit(writer), SNOW_BAD_OUTPUT);
+    assert_int_equal(snow_writer_write(writer, many, 1),
+                     SNOW_STATUS_BAD_OUTPUT);
+    assert_int_equal(snow_writer_commit(writer), SNOW_STATUS_BAD_OUTPUT);
 }
 
 static void a_file_over_the_size_limit_leaves_nothing(void **state) {
@@ -317,10 +323,10 @@ static void a_file_over_the_size_limit_leaves_nothing(void **state) {
     snow_status second = snow_writer_write(writer, many, sizeof many);
     snow_status committed = snow_writer_commit(writer);
     setrlimit(RLIMIT_FSIZE, &before);
-    assert_int_equal(opened, SNOW_OK);
-    assert_int_equal(first, SNOW_OK);
-    assert_int_equal(second, SNOW_BAD_OUTPUT);
-    assert_int_equal(committed, SNOW_BAD_OUTPUT);
+    assert_int_equal(opened, SNOW_STATUS_OK);
+    assert_int_equal(first, SNOW_STATUS_OK);
+    assert_int_equal(second, SNOW_STATUS_BAD_OUTPUT);
+    assert_int_equal(committed, SNOW_STATUS_BAD_OUTPUT);
     assert_int_equal(count_files(f->folder, false), 0);
 }
 
@@ -335,7 +341,7 @@ static void a_dash_is_standard_output(void **state) {
     dup2(saved, STDOUT_FILENO);
     close(saved);
     fclose(file);
-    assert_int_equal(status, SNOW_OK);
+    assert_int_equal(status, SNOW_STATUS_OK);
     assert_text(f->path, "to stdout");
 }
 
@@ -357,9 +363,11 @@ static void no_memory_leaves_nothing(void **state) {
         int left = few + 1; /* one for the context */
         snow_allocator allocator = {allocate_few, release_any, &left};
         snow_context *context = NULL;
-        assert_int_equal(snow_context_new(&allocator, &context), SNOW_OK);
+        assert_int_equal(snow_context_new(&allocator, &context),
+                         SNOW_STATUS_OK);
         snow_writer *writer = NULL;
-        if (snow_writer_open(context, f->path, false, &writer) == SNOW_OK) {
+        if (snow_writer_open(context, f->path, false, &writer) ==
+            SNOW_STATUS_OK) {
             successes++;
             snow_writer_abandon(writer);
         } else {

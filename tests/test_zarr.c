@@ -1,8 +1,8 @@
 /* tests/test_zarr.c - Zarr: what is read of a store and what memory it takes.
  * Values and places are compared with zarr in oracle_zarr.py; stores are
- * records in memory here (volume/zarr.h). */
+ * records in memory here (formats/zarr/zarr.h). */
+#include "formats/zarr/zarr.h"
 #include "support_volumes.h"
-#include "volume/zarr.h"
 
 #include <dirent.h>
 #include <stdio.h>
@@ -80,13 +80,15 @@ static void only_the_chunks_of_a_box_are_read(void **state) {
     describe(&r, "[2, 2, 4]", "[2, 2, 2]", PLAIN);
     add_text(&r, "0.0.0", "damaged");
     add_bytes(&r, "0.0.1", ones, sizeof ones);
-    assert_int_equal(open_records(place, &r, "", &box, &volume), SNOW_OK);
+    assert_int_equal(open_records(place, &r, "", &box, &volume),
+                     SNOW_STATUS_OK);
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int i = 0; i < 4; i++)
         assert_int_equal(voxels[i], 1);
     assert_string_equal(place->notices, "");
     snow_volume_close(volume);
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "0.0.0: holds 7 bytes", 4096);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: holds 7 bytes",
+                   4096);
 }
 
 static void chunks_that_are_missing_are_filled_and_told(void **state) {
@@ -96,7 +98,8 @@ static void chunks_that_are_missing_are_filled_and_told(void **state) {
     snow_volume *volume;
     describe(&r, "[2, 2, 4]", "[2, 2, 2]", PLAIN);
     add_bytes(&r, "0.0.1", ones, sizeof ones);
-    assert_int_equal(open_records(place, &r, "", NULL, &volume), SNOW_OK);
+    assert_int_equal(open_records(place, &r, "", NULL, &volume),
+                     SNOW_STATUS_OK);
     const uint8_t *voxels = snow_volume_voxels(volume);
     for (int i = 0; i < 16; i++)
         assert_int_equal(voxels[i], i % 4 < 2 ? 7 : 1);
@@ -118,7 +121,8 @@ static void memory_is_that_of_the_volume_and_a_chunk(void **state) {
         add_bytes(&r, name, chunk, sizeof chunk);
     }
     uint64_t before = snow_context_bytes(place->context);
-    assert_int_equal(open_records(place, &r, "", &box, &volume), SNOW_OK);
+    assert_int_equal(open_records(place, &r, "", &box, &volume),
+                     SNOW_STATUS_OK);
     assert_true(snow_context_peak_bytes(place->context) <
                 before + 3 * sizeof chunk + 8192);
     snow_volume_close(volume);
@@ -131,26 +135,28 @@ static void sizes_that_lie_take_no_memory(void **state) {
     unsigned char head[64] = {2, 1, 1, 1, 0, 0, 0, 64, 0, 0, 0, 1, 64};
     describe(&r, "[1, 1, 8]", "[1024, 1024, 1024]", PLAIN);
     add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "holds 64 bytes", 8192);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "holds 64 bytes",
+                   8192);
 #if SNOW_HAVE_BLOSC
     describe(&r, "[1, 1, 8]", "[1, 1, 8]",
              "\"compressor\": {\"id\": \"blosc\"}");
     add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "0.0.0: ", 8192);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: ", 8192);
     describe(&r, "[1, 1, 8]", "[1, 1, 1000000]",
              "\"compressor\": {\"id\": \"blosc\"}");
     add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "0.0.0: ", 8192);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "0.0.0: ", 8192);
 #endif
     describe(&r, "[1, 1, 8]", "[4096, 1024, 1024]",
              "\"compressor\": {\"id\": \"zlib\"}");
     add_bytes(&r, "0.0.0", head, sizeof head);
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "no packer", 8192);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "too few for", 8192);
     describe(&r, "[4096, 4096, 4096]", "[64, 64, 64]", PLAIN);
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "most of it is missing",
-                   8192);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT,
+                   "most of it is missing", 8192);
     describe(&r, "[4096, 4096, 4096]", "[1, 1, 64]", PLAIN);
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "1048576 chunks", 8192);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "1048576 chunks",
+                   8192);
 }
 
 static void paths_do_not_climb(void **state) {
@@ -160,15 +166,15 @@ static void paths_do_not_climb(void **state) {
     describe(&r, "[1, 1, 1]", "[1, 1, 1]", PLAIN);
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char text[256];
-        expect_refused(place, &r, bad[i], SNOW_BAD_USAGE, "no path within",
-                       1 << 16);
+        expect_refused(place, &r, bad[i], SNOW_STATUS_BAD_USAGE,
+                       "not a path within", 1 << 16);
         static records image;
         image.size = 0;
         snprintf(text, sizeof text,
                  "{\"multiscales\": [{\"datasets\": [{\"path\": \"%s\"}]}]}",
                  bad[i]);
         add_text(&image, ".zattrs", text);
-        expect_refused(place, &image, "", SNOW_BAD_INPUT, "no path within",
+        expect_refused(place, &image, "", SNOW_STATUS_BAD_INPUT, "invalid path",
                        1 << 16);
     }
 }
@@ -183,7 +189,7 @@ static void names_are_kept_on_one_line(void **state) {
     add_text(&r, "p\nq/.zarray",
              "{\"shape\": [2, 1, 1], \"chunks\": [1, 1, 1], \"dtype\": "
              "\"|u1\", \"order\": \"C\", \"compressor\": null}");
-    expect_refused(place, &r, "", SNOW_BAD_INPUT, "a?b", 1 << 16);
+    expect_refused(place, &r, "", SNOW_STATUS_BAD_INPUT, "a?b", 1 << 16);
     assert_null(strchr(snow_context_message(place->context), '\n'));
     assert_non_null(strstr(place->notices, "level 0 of 2 (p?q)"));
 }
@@ -215,7 +221,7 @@ static void check_file(support_place *place, const char *path) {
         volume = NULL;
         place->fail_at = place->allocations + i;
         assert_int_equal(open_records(place, &r, "", NULL, &volume),
-                         SNOW_NO_MEMORY);
+                         SNOW_STATUS_NO_MEMORY);
         assert_null(volume);
         place->fail_at = 0;
         assert_true(snow_context_bytes(place->context) == held);

@@ -39,7 +39,7 @@ static pipe_worker face = {
 };
 
 static void check(snow_status status) {
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         pipe_fail(&face, snow_context_message(worker.context));
 }
 
@@ -55,7 +55,7 @@ static void take(const pipe_table *table) {
 static void load(void) {
     check(snow_volume_open(worker.context, worker.raw, &worker.options,
                            &worker.volume));
-    check(snow_view_named(worker.context, "+z", &worker.view));
+    check(snow_view_from_name(worker.context, "+z", &worker.view));
     check(snow_frame_new(worker.context, &worker.frame));
     worker.view.width = worker.view.height = face.size;
 }
@@ -95,16 +95,16 @@ static void pixel(int x, int y, unsigned char rgb[3]) {
 
 static void set_up(char **argv) {
     snow_settings *settings = &worker.settings;
-    int method = snow_method_named(argv[8]);
-    int quality = snow_quality_named(argv[9]);
-    int kernel = snow_kernel_named(argv[10]);
+    int method = snow_method_from_name(argv[8]);
+    int quality = snow_quality_from_name(argv[9]);
+    int kernel = snow_kernel_from_name(argv[10]);
     if (method < 0 || quality < 0 || kernel < 0)
         pipe_fail(&face, "no such method, quality or kernel");
-    if (snow_context_new(NULL, &worker.context) != SNOW_OK)
+    if (snow_context_new(NULL, &worker.context) != SNOW_STATUS_OK)
         pipe_fail(&face, "no memory");
     worker.raw = argv[1];
     face.size = atoi(argv[5]);
-    worker.options.type = SNOW_UINT8;
+    worker.options.type = SNOW_TYPE_UINT8;
     for (int i = 0; i < 3; i++)
         worker.options.dims[i] = atoi(argv[2 + i]);
     snow_settings_init(settings);

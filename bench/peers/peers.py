@@ -307,7 +307,7 @@ def parse():
     parser.add_argument("--program", action="append", help="only this one, may "
                         f"be repeated: {' '.join(programs.THREADS)}")
     parser.add_argument("--threads", type=int, help="only runs with so many")
-    parser.add_argument("--method", default="sheared",
+    parser.add_argument("--method", default="shear-warp",
                         help="method of Snowglass (%(default)s)")
     parser.add_argument("--json", action="store_true",
                         help="print JSON in place of the tables")

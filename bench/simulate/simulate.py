@@ -3,7 +3,7 @@
 
 usage: simulate.py [--quick | --long] [--build FOLDER] [--only WORD]
 
-Builds bench/mpi_combine.c with SimGrid's smpicc out of the very sources of
+Builds bench/combine/mpi_combine.c with SimGrid's smpicc out of the very sources of
 the library, writes the platforms, runs every case, and prints one line for
 each.  --quick leaves out what takes minutes, --long adds 4,096 nodes and large
 pictures; --only runs the cases whose name contains a word.  Exit status 1 when
@@ -23,12 +23,11 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 # What the program is made of: nothing that renders.  Pictures in files are PNG
 # and what else needs no further library.
-SOURCES = ["bench/mpi_combine.c", "bench/combine.c", "bench/combine_*.c",
-           "bench/hosts.c", "bench/line.c", "bench/words.c",
+SOURCES = ["bench/combine/*.c", "bench/hosts.c", "bench/line.c", "bench/words.c",
            "src/combine/active.c", "src/combine/borders.c",
            "src/combine/exchange.c", "src/combine/gather.c",
            "src/combine/pixels.c", "src/combine/rounds.c", "src/simd/isa.c",
-           "src/comm/*.c", "src/base/*.c", "src/image/*.c",
+           "src/comm/*.c", "src/base/*.c", "src/io/*.c", "src/image/*.c",
            "src/mpi/comm_mpi.c"]
 ABSENT = [f"-DSNOW_HAVE_{name}=0" for name in ("EXR", "TIFF", "WEBP")]
 
@@ -169,7 +168,7 @@ def build(folder):
     subprocess.run(["smpicc", "-std=c11", "-O2", "-ffp-contract=off",
                     "-D_POSIX_C_SOURCE=200809L", *ABSENT, '-DSNOW_VERSION="simulated"',
                     f"-I{ROOT}/include",
-                    f"-I{ROOT}/src", f"-I{ROOT}/bench", *sources, "-o",
+                    f"-I{ROOT}/src", f"-I{ROOT}/bench", f"-I{ROOT}/bench/combine", *sources, "-o",
                     str(program), "-lpng", "-lz", "-lm", "-lpthread"], check=True)
     return program
 

@@ -188,12 +188,13 @@ static snow_insitu *open_movie(const box *b, const char *pattern) {
                             .opacity_count = 3};
     snow_insitu *movie = NULL;
     snow_view view;
-    if (snow_insitu_new_mpi(NULL, b->comm, &movie) != SNOW_OK)
+    if (snow_insitu_new_mpi(NULL, b->comm, &movie) != SNOW_STATUS_OK)
         return NULL;
     snow_insitu_set_grid(movie, b->dims, NULL, NULL);
     snow_insitu_set_brick(movie, 0, b->first, b->count, NULL);
     snow_insitu_set_look(movie, &look);
-    snow_view_named(snow_comm_context(snow_insitu_comm(movie)), "iso", &view);
+    snow_view_from_name(snow_comm_context(snow_insitu_comm(movie)), "iso",
+                        &view);
     snow_insitu_set_view(movie, &view);
     snow_insitu_set_output(movie, pattern, NULL);
     return movie;
@@ -201,9 +202,9 @@ static snow_insitu *open_movie(const box *b, const char *pattern) {
 
 /* One frame.  The fields change places at every step, so v is told anew. */
 static int show(snow_insitu *movie, const box *b, int step) {
-    snow_insitu_set_voxels(movie, 0, SNOW_FLOAT64, b->v + at(b, 0, 0, 0),
+    snow_insitu_set_voxels(movie, 0, SNOW_TYPE_FLOAT64, b->v + at(b, 0, 0, 0),
                            b->step);
-    if (snow_insitu_step(movie, step) == SNOW_OK)
+    if (snow_insitu_step(movie, step) == SNOW_STATUS_OK)
         return 0;
     fprintf(stderr, "gray_scott: %s\n", snow_insitu_message(movie));
     return 1;

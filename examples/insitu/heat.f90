@@ -35,13 +35,13 @@ program heat
   call heat_sources()
 
   ! ---------------------------------------------------------------------------
-  status = snow_insitu_new_fortran(MPI_COMM_WORLD, movie)
+  status = snow_insitu_new_mpi_fortran(MPI_COMM_WORLD, movie)
   if (status /= 0) call MPI_Abort(MPI_COMM_WORLD, 1, error)
   status = snow_insitu_set_grid(movie, int(n, c_int64_t), &
     [0d0, 0d0, 0d0], [1d0, 1d0, 1d0])
   status = snow_insitu_set_brick(movie, 0, int([0, 0, z0], c_int64_t), &
     int([n(1), n(2), nz], c_int64_t), snow_halo([1, 1, 1], [1, 1, 1]))
-  status = snow_insitu_set_voxels(movie, 0, SNOW_FLOAT64, c_loc(t(1,1,1)), &
+  status = snow_insitu_set_voxels(movie, 0, SNOW_TYPE_FLOAT64, c_loc(t(1,1,1)), &
     c_null_ptr)
   status = snow_recipe_apply_file(movie, trim(recipe) // c_null_char)
   ! ---------------------------------------------------------------------------

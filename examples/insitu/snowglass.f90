@@ -9,7 +9,7 @@
 !
 !   halo = snow_halo([1,1,1], [1,1,1])
 !   status = snow_insitu_set_brick(movie, 0, first, count, halo)
-!   status = snow_insitu_set_voxels(movie, 0, SNOW_FLOAT64, &
+!   status = snow_insitu_set_voxels(movie, 0, SNOW_TYPE_FLOAT64, &
 !                                   c_loc(u(1,1,1)), c_null_ptr)
 !
 ! where first counts from 0.  u is a target (or pointer).
@@ -17,9 +17,9 @@ module snowglass
   use, intrinsic :: iso_c_binding
   implicit none
 
-  integer(c_int), parameter :: SNOW_INT8 = 1, SNOW_UINT8 = 2, SNOW_INT16 = 3, &
-    SNOW_UINT16 = 4, SNOW_INT32 = 5, SNOW_UINT32 = 6, SNOW_INT64 = 7, &
-    SNOW_UINT64 = 8, SNOW_FLOAT32 = 9, SNOW_FLOAT64 = 10
+  integer(c_int), parameter :: SNOW_TYPE_INT8 = 1, SNOW_TYPE_UINT8 = 2, SNOW_TYPE_INT16 = 3, &
+    SNOW_TYPE_UINT16 = 4, SNOW_TYPE_INT32 = 5, SNOW_TYPE_UINT32 = 6, SNOW_TYPE_INT64 = 7, &
+    SNOW_TYPE_UINT64 = 8, SNOW_TYPE_FLOAT32 = 9, SNOW_TYPE_FLOAT64 = 10
 
   type, bind(c) :: snow_halo
     integer(c_int64_t) :: low(3) = 0, high(3) = 0
@@ -27,7 +27,7 @@ module snowglass
 
   interface
     ! Collective over comm: an integer, or comm%MPI_VAL of module mpi_f08.
-    integer(c_int) function snow_insitu_new_fortran(comm, movie) bind(c)
+    integer(c_int) function snow_insitu_new_mpi_fortran(comm, movie) bind(c)
       import
       integer(c_int), value :: comm
       type(c_ptr), intent(out) :: movie

@@ -2,9 +2,9 @@
  *
  * A communicator is a fixed group of processors, numbered from 0 (its ranks),
  * that send each other messages.  Three makers: a group of one
- * (snow_comm_self), threads of this process (snow_comm_threads), and MPI
- * (snowglass/mpi.h, in a library of its own); anybody may add a transport by
- * filling in snow_comm_ops.  Rank 0 is the paper's display processor.
+ * (snow_comm_new_self), threads of this process (snow_comm_run_threads), and
+ * MPI (snowglass/mpi.h, in a library of its own); anybody may add a transport
+ * by filling in snow_comm_ops.  Rank 0 is the paper's display processor.
  *
  * Collective calls, marked so, are made by all ranks of a communicator in the
  * same order.  What fails on one rank fails on all: they agree on the status,
@@ -30,7 +30,7 @@ typedef struct snow_message {
 
 /* Work that has nothing to do with messages, done piece by piece: does one, or
  * returns false where none is left. */
-typedef bool snow_meanwhile_fn(void *user);
+typedef bool snow_idle_fn(void *user);
 
 /* What a transport does.  Its functions are called by the thread that the
  * communicator belongs to.  Those that return a status leave their reason with
@@ -61,7 +61,7 @@ typedef struct snow_comm_ops {
     /* From now on waits do pieces of `work` as long as there is one and none of
      * their messages is done; NULL: no more.  A transport without this function
      * waits idly. */
-    void (*occupy)(void *self, snow_meanwhile_fn *work, void *user);
+    void (*occupy)(void *self, snow_idle_fn *work, void *user);
     /* Lets messages under way move on, without waiting for any: called now and
      * then by who works while some are.  NULL where they move by themselves. */
     void (*progress)(void *self);
@@ -75,67 +75,50 @@ typedef struct snow_comm_ops {
 
 /* A communicator over a transport.  `ops` is copied; `self` is handed to its
  * functions, and ended with the communicator.  Errors, where self is not ended:
- * SNOW_BAD_USAGE (a record of another size, a rank that is none of `ranks`),
- * SNOW_NO_MEMORY. */
+ * SNOW_STATUS_BAD_USAGE (a record of another size, a rank that is none of
+ * `ranks`), SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_comm_new(snow_context *context,
                                    const snow_comm_ops *ops, void *self,
                                    int rank, int ranks, snow_comm **out);
 
-/* A group of one.  Errors: SNOW_NO_MEMORY. */
-SNOW_API snow_status snow_comm_self(snow_context *context, snow_comm **out);
+/* A group of one.  Errors: SNOW_STATUS_NO_MEMORY. */
+SNOW_API snow_status snow_comm_new_self(snow_context *context, snow_comm **out);
 
 /* Runs `body` on `ranks` threads, each with a communicator and a context of its
- * own, and returns when all have ended: with SNOW_OK, or the status and (in
- * `context`) the message of the lowest rank that failed of itself.  The ranks'
- * memory comes from `context`, which counts it; its listener hears rank 0.
- * Communicators and contexts end with the call: a body frees what it made with
- * them, but not them.  A body that returns releases all who wait for it, and
- * where all ranks wait for one another all are released: their calls fail.
- * Errors also: SNOW_BAD_USAGE (ranks below 1), SNOW_NO_MEMORY (threads too). */
+ * own, and returns when all have ended: with SNOW_STATUS_OK, or the status and
+ * (in `context`) the message of the lowest rank that failed of itself.  The
+ * ranks' memory comes from `context`, which counts it; its listener hears rank
+ * 0. Communicators and contexts end with the call: a body frees what it made
+ * with them, but not them.  A body that returns releases all who wait for it,
+ * and where all ranks wait for one another all are released: their calls fail.
+ * Errors also: SNOW_STATUS_BAD_USAGE (ranks below 1), SNOW_STATUS_NO_MEMORY
+ * (threads too). */
 typedef snow_status snow_comm_body_fn(snow_comm *comm, void *user);
-SNOW_API snow_status snow_comm_threads(snow_context *context, int ranks,
-                                       snow_comm_body_fn *body, void *user);
-
-/* A cluster to be modelled: one processor a node, a port each way, and a
- * network between the ports that never is the bottleneck (a crossbar). */
-typedef struct snow_network {
-    double latency;   /* seconds from port to port */
-    double bandwidth; /* bytes per second of a port, above 0 */
-    double overhead;  /* seconds of the processor per message, at both ends */
-    double slowness;  /* seconds of the modelled processor per second of this
-                         one's, above 0 */
-} snow_network;
-
-/* As snow_comm_threads, in modelled time: a rank's clock (snow_comm_seconds)
- * runs with the processor time of its own thread, and messages take the
- * network's. Ranks compute one at a time, so that they do not disturb one
- * another: times are meant to be read, not waited for.  A body that shares its
- * work with other threads is modelled wrongly. */
-SNOW_API snow_status snow_comm_modelled(snow_context *context, int ranks,
-                                        const snow_network *network,
-                                        snow_comm_body_fn *body, void *user);
+SNOW_API snow_status snow_comm_run_threads(snow_context *context, int ranks,
+                                           snow_comm_body_fn *body, void *user);
 
 /* Frees it, after the objects made with it (collective for transports that need
  * it); NULL is accepted. */
 SNOW_API void snow_comm_free(snow_comm *comm);
 
-SNOW_API int snow_comm_rank(const snow_comm *comm);  /* from 0 */
-SNOW_API int snow_comm_ranks(const snow_comm *comm); /* how many */
+SNOW_API int snow_comm_rank(const snow_comm *comm); /* from 0 */
+SNOW_API int snow_comm_size(const snow_comm *comm); /* how many */
 SNOW_API snow_context *snow_comm_context(const snow_comm *comm);
 
-/* Collective.  What became of all ranks: SNOW_OK only where all are OK.
+/* Collective.  What became of all ranks: SNOW_STATUS_OK only where all are OK.
  * Otherwise the status of the lowest rank that failed, and its message in every
  * context, with "rank N: " before it where there are several.  On a broken
  * communicator it fails at once. */
-SNOW_API snow_status snow_comm_agree(snow_comm *comm, snow_status status);
+SNOW_API snow_status snow_comm_agree_status(snow_comm *comm,
+                                            snow_status status);
 
 /* Collective.  `count` bytes of rank `root` to all; of every rank to all, `all`
  * having room for ranks * count bytes, in order of rank.  Errors: those of the
  * transport. */
 SNOW_API snow_status snow_comm_broadcast(snow_comm *comm, void *bytes,
                                          size_t count, int root);
-SNOW_API snow_status snow_comm_share(snow_comm *comm, const void *mine,
-                                     size_t count, void *all);
+SNOW_API snow_status snow_comm_allgather(snow_comm *comm, const void *mine,
+                                         size_t count, void *all);
 
 /* Whether the transport itself has failed on this rank (a peer is gone, say).
  * All further calls on the communicator fail with the same status, and the

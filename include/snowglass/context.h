@@ -10,6 +10,7 @@
 #define SNOWGLASS_CONTEXT_H
 
 #include <snowglass/status.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -30,10 +31,10 @@ typedef struct snow_allocator {
 
 /* Hears remarks that are no errors: what was guessed, bytes after the data,
  * a spacing replaced by 1.  `text` is one line without its end. */
-typedef void snow_notice_fn(void *user, const char *text);
+typedef void snow_warning_fn(void *user, const char *text);
 
 /* Makes a context.  `allocator` may be NULL (malloc and free); it is copied.
- * Errors: SNOW_NO_MEMORY.  Free with snow_context_free. */
+ * Errors: SNOW_STATUS_NO_MEMORY.  Free with snow_context_free. */
 SNOW_API snow_status snow_context_new(const snow_allocator *allocator,
                                       snow_context **out);
 
@@ -46,8 +47,36 @@ SNOW_API void snow_context_free(snow_context *context);
 SNOW_API const char *snow_context_message(const snow_context *context);
 
 /* Sets who hears remarks; NULL (the default) for nobody. */
-SNOW_API void snow_context_set_notice(snow_context *context,
-                                      snow_notice_fn *notice, void *user);
+SNOW_API void snow_context_set_warning(snow_context *context,
+                                       snow_warning_fn *notice, void *user);
+
+/* --- stop and progress -----------------------------------------------------
+ */
+
+/* Whether a picture is to end now (snow_settings.stop): true ends it with
+ * SNOW_STATUS_STOPPED.  Called by the thread that called the library and by no
+ * other, often, between small parts of the work.  Must not call the library
+ * with objects of the same context. */
+typedef bool snow_stop_fn(void *user);
+
+/* What a call that takes long is doing.  A picture of a volume that stays in
+ * its file reads while it encodes, and reports SNOW_STAGE_ENCODE. */
+typedef enum snow_stage {
+    SNOW_STAGE_READ = 0, /* a volume is opened, or a phantom made */
+    SNOW_STAGE_ENCODE,   /* of a picture: classified, shaded and encoded */
+    SNOW_STAGE_RENDER    /* of a picture: all else */
+} snow_stage;
+
+/* Hears how far a stage is, as a fraction from 0 to 1 that never falls in one
+ * call; returning true ends the call with SNOW_STATUS_STOPPED, unless it is
+ * nearly done.  Called as snow_stop_fn, at most 20 times a second, and not at
+ * all for what is done in less than 1/20 s.  A stage that was reported and is
+ * done reports 1 in the end. */
+typedef bool snow_progress_fn(void *user, snow_stage stage, double fraction);
+
+/* Sets who hears of progress; NULL (the default) for nobody. */
+SNOW_API void snow_context_set_progress(snow_context *context,
+                                        snow_progress_fn *progress, void *user);
 
 /* --- for those who extend the library, as by a transport (comm.h) --------- */
 
@@ -56,8 +85,8 @@ SNOW_API void snow_context_set_notice(snow_context *context,
 SNOW_API snow_status snow_context_fail(snow_context *context,
                                        snow_status status, const char *format,
                                        ...) SNOW_PRINTF(3, 4);
-SNOW_API void snow_context_remark(snow_context *context, const char *format,
-                                  ...) SNOW_PRINTF(2, 3);
+SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
+    SNOW_PRINTF(2, 3);
 
 /* A block of the context's memory, aligned to 64, or NULL and a message that
  * gives the size; NULL is accepted by the other. */
@@ -68,8 +97,10 @@ SNOW_API void snow_context_release(snow_context *context, void *block);
  */
 
 /* The most bytes that objects of this context may hold together from now on; 0:
- * as many as there are.  What would exceed it fails with SNOW_NO_MEMORY. */
-SNOW_API void snow_context_set_limit(snow_context *context, uint64_t bytes);
+ * as many as there are.  What would exceed it fails with SNOW_STATUS_NO_MEMORY.
+ */
+SNOW_API void snow_context_set_memory_limit(snow_context *context,
+                                            uint64_t bytes);
 
 /* Bytes that objects of this context hold now, and the most they ever held. */
 SNOW_API uint64_t snow_context_bytes(const snow_context *context);

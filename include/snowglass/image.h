@@ -19,7 +19,8 @@ typedef struct snow_overlay snow_overlay; /* snowglass/overlay.h */
 
 /* A transparent picture of 1 to 32768 pixels a side with 2 or 4 channels, or
  * an array of zeros with 1.
- * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.  Free with snow_image_free. */
+ * Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY.  Free with
+ * snow_image_free. */
 SNOW_API snow_status snow_image_new(snow_context *context, int width,
                                     int height, int channels, snow_image **out);
 
@@ -63,53 +64,55 @@ typedef struct snow_image_options {
  *         loss (Deflate); values as one sample; also .tiff
  *   .webp straight alpha as in PNG, 8 bits, packed without loss; at most 16383
  *         pixels a side
- * The last three need libraries that a build may lack (snow_image_suffix).
- * Values are no colours: a PNG or WebP of them is refused (snow_values_paint in
- * render.h makes colours of them).
- * The file is written aside and renamed, so that it is whole or absent; an
- * existing one is kept, and an error, unless options->overwrite.  `options`
- * may be NULL.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix, or
- * one that this build lacks; a background, bits or an overlay for floats;
- * values into levels; a depth for other formats than EXR, or of another size),
- * SNOW_NO_MEMORY. */
+ * The last three need libraries that a build may lack
+ * (snow_image_format_suffix). Values are no colours: a PNG or WebP of them is
+ * refused (snow_image_apply_colormap in render.h makes colours of them). The
+ * file is written aside and renamed, so that it is whole or absent; an existing
+ * one is kept, and an error, unless options->overwrite.  `options` may be NULL.
+ * Errors: SNOW_STATUS_BAD_OUTPUT, SNOW_STATUS_BAD_USAGE (unknown suffix, or one
+ * that this build lacks; a background, bits or an overlay for floats; values
+ * into levels; a depth for other formats than EXR, or of another size),
+ * SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_image_save(const snow_image *image, const char *path,
                                      const snow_image_options *options);
 
 /* The most bits a channel that the format of a path's suffix has for levels: 16
  * for .png and "-", 8 for .webp; 0 where it holds floats, which takes neither
  * bits, a background nor an overlay; -1: none that snow_image_save writes. */
-SNOW_API int snow_image_bits(const char *path);
+SNOW_API int snow_image_format_bits(const char *path);
 
 /* Whether the format of a path's suffix has a channel for a depth beside the
  * picture (snow_image_options): .exr. */
-SNOW_API bool snow_image_takes_depth(const char *path);
+SNOW_API bool snow_image_format_has_depth(const char *path);
 
 /* The suffix of picture format `index` (from 0), and whether this build writes
  * and reads it, and has beside it what it must load for that; NULL past the
  * end. */
-SNOW_API const char *snow_image_suffix(size_t index, bool *built);
+SNOW_API const char *snow_image_format_suffix(size_t index, bool *built);
 
 /* The picture on a background (red, green, blue, 0 to 1) as rows of bytes, red,
  * green, blue for each pixel: width * height * 3 of them, with the levels that
  * a PNG of 8 bits on that background stores. */
-SNOW_API void snow_image_bytes(const snow_image *image,
-                               const double background[3], unsigned char *rgb);
+SNOW_API void snow_image_to_rgb8(const snow_image *image,
+                                 const double background[3],
+                                 unsigned char *rgb);
 
 /* The same with all options: the background where `flatten`, black elsewhere,
  * and the overlay. */
-SNOW_API void snow_image_bytes_drawn(const snow_image *image,
-                                     const snow_image_options *options,
-                                     unsigned char *rgb);
+SNOW_API void snow_image_to_rgb8_with(const snow_image *image,
+                                      const snow_image_options *options,
+                                      unsigned char *rgb);
 
 /* Whether a path's suffix (or "-") is one that snow_image_save writes: asked
- * before a long rendering.  Errors: SNOW_BAD_USAGE, SNOW_BAD_OUTPUT (it exists
- * and `overwrite` is false; its folder is missing or not writable). */
+ * before a long rendering.  Errors: SNOW_STATUS_BAD_USAGE,
+ * SNOW_STATUS_BAD_OUTPUT (it exists and `overwrite` is false; its folder is
+ * missing or not writable). */
 SNOW_API snow_status snow_image_check_path(snow_context *context,
                                            const char *path, bool overwrite);
 
 /* The same of all that snow_image_save would refuse for a picture of a size
- * with these options, which may be NULL.  Errors: SNOW_BAD_USAGE,
- * SNOW_BAD_OUTPUT. */
+ * with these options, which may be NULL.  Errors: SNOW_STATUS_BAD_USAGE,
+ * SNOW_STATUS_BAD_OUTPUT. */
 SNOW_API snow_status snow_image_check(snow_context *context, const char *path,
                                       int width, int height,
                                       const snow_image_options *options);
@@ -118,7 +121,7 @@ SNOW_API snow_status snow_image_check(snow_context *context, const char *path,
  * straight alpha is multiplied in), WebP, NPY (float32 or float64, (h, w) or
  * (h, w, 1 to 4)), PFM, EXR (scan lines; R, G, B, A or Y), TIFF (8 or 16 bits,
  * or floats; strips).  It has four channels; alpha is 1 where the file has
- * none. Errors: SNOW_BAD_INPUT, SNOW_NO_MEMORY. */
+ * none. Errors: SNOW_STATUS_BAD_INPUT, SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_image_load(snow_context *context, const char *path,
                                      snow_image **out);
 
@@ -140,8 +143,8 @@ typedef struct snow_image_difference {
 
 /* Compares two pictures of one size (1 and 2 channels count as grey).  NaN
  * equals NaN only, an infinity itself only: else they are infinitely far apart.
- * Errors: SNOW_DIFFERENT when the sizes differ (the message gives them),
- * SNOW_NO_MEMORY. */
+ * Errors: SNOW_STATUS_DIFFERENT when the sizes differ (the message gives them),
+ * SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_image_compare(const snow_image *a,
                                         const snow_image *b,
                                         snow_image_difference *out);

@@ -6,7 +6,7 @@
  *   snow_insitu_new(comm, &movie);                     once
  *   snow_insitu_set_grid(movie, dims, NULL, NULL);
  *   snow_insitu_set_brick(movie, 0, first, count, NULL);
- *   snow_insitu_set_voxels(movie, 0, SNOW_FLOAT64, u, NULL);
+ *   snow_insitu_set_voxels(movie, 0, SNOW_TYPE_FLOAT64, u, NULL);
  *   snow_insitu_set_output(movie, "u_%04d.png", NULL);
  *   ...
  *   snow_insitu_step(movie, step);                     as often as wished
@@ -34,12 +34,12 @@ typedef struct snow_insitu snow_insitu;
 
 /* Collective.  A movie (or a single picture) of one field.  `comm` stays the
  * caller's and is freed after it; for MPI and Fortran communicators see
- * snowglass/mpi.h.  Errors: SNOW_NO_MEMORY. */
+ * snowglass/mpi.h.  Errors: SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out);
 
 /* Hands the communicator over, and its context with it or not: they are freed
  * when it is. */
-SNOW_API void snow_insitu_adopt_comm(snow_insitu *insitu, bool with_context);
+SNOW_API void snow_insitu_own_comm(snow_insitu *insitu, bool with_context);
 
 /* Collective where the communicator's own free is.  NULL is accepted. */
 SNOW_API void snow_insitu_free(snow_insitu *insitu);
@@ -49,24 +49,25 @@ SNOW_API const char *snow_insitu_message(const snow_insitu *insitu);
 
 /* A failure of the caller's own on this rank, as if a setter's: the next
  * collective call fails on all ranks with the message that the context has.
- * SNOW_OK is none.  Returns the status. */
-SNOW_API snow_status snow_insitu_set_failure(snow_insitu *insitu,
-                                             snow_status status);
+ * SNOW_STATUS_OK is none.  Returns the status. */
+SNOW_API snow_status snow_insitu_set_error(snow_insitu *insitu,
+                                           snow_status status);
 
 /* The communicator that it was made over. */
 SNOW_API snow_comm *snow_insitu_comm(const snow_insitu *insitu);
 
 /* Who hears remarks (pictures left out or made smaller, and why): one line of
  * text, on rank 0. */
-SNOW_API void snow_insitu_set_notice(snow_insitu *insitu,
-                                     snow_notice_fn *notice, void *user);
+SNOW_API void snow_insitu_set_warning(snow_insitu *insitu,
+                                      snow_warning_fn *notice, void *user);
 
 /* --- the data --------------------------------------------------------------
  */
 
 /* The global grid: voxels along x, y, z, the world place of voxel (0, 0, 0) and
  * the world distance of neighbours.  NULL origin: 0, 0, 0; NULL spacing: 1, 1,
- * 1.  The same on all ranks.  Forgets all bricks.  Errors: SNOW_BAD_USAGE. */
+ * 1.  The same on all ranks.  Forgets all bricks.  Errors:
+ * SNOW_STATUS_BAD_USAGE. */
 SNOW_API snow_status snow_insitu_set_grid(snow_insitu *insitu,
                                           const int64_t dims[3],
                                           const double origin[3],
@@ -84,7 +85,7 @@ typedef struct snow_halo {
  * around it besides, and is up to date whenever a picture is made; where it is
  * as wide as the picture asks for on all ranks nothing is exchanged.  NULL: no
  * halo.  Parts of it beyond the grid are left alone.  Forgets the brick's
- * voxels.  Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY. */
+ * voxels.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_insitu_set_brick(snow_insitu *insitu, int id,
                                            const int64_t first[3],
                                            const int64_t count[3],
@@ -95,7 +96,7 @@ SNOW_API snow_status snow_insitu_set_brick(snow_insitu *insitu, int id,
  * stride[1] + k * stride[2] values from it.  NULL: x fastest, without gaps,
  * halo included.  Any strides will do: arrays of C and of Fortran, padding,
  * one component of several.  One type for all bricks of all ranks.  Nothing is
- * read before the next collective call.  Errors: SNOW_BAD_USAGE. */
+ * read before the next collective call.  Errors: SNOW_STATUS_BAD_USAGE. */
 SNOW_API snow_status snow_insitu_set_voxels(snow_insitu *insitu, int id,
                                             snow_type type, const void *voxels,
                                             const int64_t stride[3]);
@@ -112,8 +113,8 @@ typedef struct snow_world_brick {
  * .. count - 1.  Where bricks share the voxels of their borders, as meshes do
  * that have values at the corners of cells, the higher one keeps them, and they
  * are the other's halo.  Grid and bricks that are as they were need not be
- * planned anew.  Errors: SNOW_BAD_USAGE (spacings that differ, a brick between
- * the voxels of the others), SNOW_NO_MEMORY. */
+ * planned anew.  Errors: SNOW_STATUS_BAD_USAGE (spacings that differ, a brick
+ * between the voxels of the others), SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_insitu_place_bricks(snow_insitu *insitu,
                                               const snow_world_brick *bricks,
                                               int count,
@@ -132,12 +133,12 @@ typedef enum snow_balance {
     SNOW_BALANCE_IN_PLACE = 0, /* where the voxels are, as long as each rank's
                                   bricks are one box together and the method
                                   draws any cut; else as RECUT */
-    SNOW_BALANCE_RECUT         /* all voxels go to ranks with equal parts */
+    SNOW_BALANCE_REPARTITION   /* all voxels go to ranks with equal parts */
 } snow_balance;
 
-SNOW_API snow_status snow_insitu_set_sharing(snow_insitu *insitu,
-                                             snow_ghosts ghosts,
-                                             snow_balance balance);
+SNOW_API snow_status snow_insitu_set_distribution(snow_insitu *insitu,
+                                                  snow_ghosts ghosts,
+                                                  snow_balance balance);
 
 /* --- the picture, the same on all ranks ------------------------------------
  */
@@ -146,7 +147,7 @@ SNOW_API snow_status snow_insitu_set_sharing(snow_insitu *insitu,
  * values.  What it takes from the values it takes from those of the next
  * picture, once: the colours of a movie do not change their meaning from frame
  * to frame.  Setting it again, also to the same, chooses anew.  Errors:
- * SNOW_BAD_USAGE, SNOW_NO_MEMORY. */
+ * SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_insitu_set_look(snow_insitu *insitu,
                                           const snow_look *look);
 
@@ -161,7 +162,7 @@ SNOW_API snow_status snow_insitu_set_ranks(snow_insitu *insitu,
 
 /* Where snow_insitu_step writes: a path with one %d (or %04d) in place of the
  * step's number.  Files of an earlier run are kept, and an error, unless
- * options->overwrite.  Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY. */
+ * options->overwrite.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_insitu_set_output(snow_insitu *insitu,
                                             const char *pattern,
                                             const snow_image_options *options);
@@ -169,8 +170,8 @@ SNOW_API snow_status snow_insitu_set_output(snow_insitu *insitu,
 /* What snow_insitu_step draws over its pictures (snowglass/overlay.h): colour
  * bar and scale bar, and the number of the step (nothing, unless told).  Files
  * of floats have none. */
-SNOW_API snow_status snow_insitu_set_marks(snow_insitu *insitu, bool legend,
-                                           bool step);
+SNOW_API snow_status snow_insitu_set_annotations(snow_insitu *insitu,
+                                                 bool legend, bool step);
 
 /* What pictures may cost; 0: whatever they do.
  *
@@ -202,7 +203,8 @@ SNOW_API snow_status snow_insitu_update(snow_insitu *insitu);
  * snow_insitu_set_ranks say scattered, each rank's part of it, ungathered, on
  * all ranks.  Another picture of the
  * same voxels (another view, say) costs no exchange and no encoding. */
-SNOW_API snow_status snow_insitu_draw(snow_insitu *insitu, snow_image **image);
+SNOW_API snow_status snow_insitu_render(snow_insitu *insitu,
+                                        snow_image **image);
 
 /* Update, draw, and write the picture on rank 0.  Means and sums (modes of
  * those names) become colours where the file holds colours: the look's, over
@@ -215,16 +217,16 @@ typedef struct snow_spread {
 } snow_spread;
 
 /* How far a picture was lowered to keep a limit. */
-typedef enum snow_lowering {
-    SNOW_LOWERED_NOT = 0,
-    SNOW_LOWERED_DRAFT,   /* draft quality */
-    SNOW_LOWERED_HALF,    /* and half the width and height */
-    SNOW_LOWERED_QUARTER, /* and a quarter */
-    SNOW_LOWERED_SKIPPED  /* left out */
-} snow_lowering;
+typedef enum snow_degradation {
+    SNOW_DEGRADATION_NONE = 0,
+    SNOW_DEGRADATION_DRAFT,   /* draft quality */
+    SNOW_DEGRADATION_HALF,    /* and half the width and height */
+    SNOW_DEGRADATION_QUARTER, /* and a quarter */
+    SNOW_DEGRADATION_SKIPPED  /* left out */
+} snow_degradation;
 
 /* Figures of the last picture, and of all so far. */
-typedef struct snow_insitu_figures {
+typedef struct snow_insitu_stats {
     snow_spread seconds_update; /* voxels copied and exchanged */
     snow_spread seconds_look;   /* transfer function chosen */
     snow_spread seconds_render; /* the local image: stages of snow_stats */
@@ -232,23 +234,23 @@ typedef struct snow_insitu_figures {
     snow_spread seconds_draw;   /* render and combine, until it lies on rank 0
                                  */
     snow_spread seconds_write;
-    snow_spread seconds_step; /* all of a step */
-    snow_spread bytes_sent;   /* in that step */
-    snow_spread bytes_held;   /* by the context, now */
-    snow_spread bytes_peak;   /* the most that it ever held */
-    snow_spread voxels;       /* stored for the picture, ghosts included */
-    snow_spread interesting;  /* of them: the work */
-    int64_t pictures;         /* made so far */
-    int64_t skipped;          /* left out so far */
-    int ranks_copied;         /* that copied voxels; the others shared them */
-    bool exchanged;           /* voxels travelled */
-    bool recut;               /* work was done where the voxels are not */
-    snow_lowering lowering;   /* of the last picture */
-} snow_insitu_figures;
+    snow_spread seconds_step;  /* all of a step */
+    snow_spread bytes_sent;    /* in that step */
+    snow_spread bytes_held;    /* by the context, now */
+    snow_spread bytes_peak;    /* the most that it ever held */
+    snow_spread voxels;        /* stored for the picture, ghosts included */
+    snow_spread interesting;   /* of them: the work */
+    int64_t pictures;          /* made so far */
+    int64_t skipped;           /* left out so far */
+    int ranks_copied;          /* that copied voxels; the others shared them */
+    bool exchanged;            /* voxels travelled */
+    bool recut;                /* work was done where the voxels are not */
+    snow_degradation lowering; /* of the last picture */
+} snow_insitu_stats;
 
 /* Collective. */
-SNOW_API snow_status snow_insitu_measure(snow_insitu *insitu,
-                                         snow_insitu_figures *out);
+SNOW_API snow_status snow_insitu_get_stats(snow_insitu *insitu,
+                                           snow_insitu_stats *out);
 
 #ifdef __cplusplus
 }

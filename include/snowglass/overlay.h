@@ -16,19 +16,19 @@
 extern "C" {
 #endif
 
-/* An empty one for pictures of a size.  Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.
- * Free with snow_overlay_free, which accepts NULL. */
+/* An empty one for pictures of a size.  Errors: SNOW_STATUS_BAD_USAGE,
+ * SNOW_STATUS_NO_MEMORY. Free with snow_overlay_free, which accepts NULL. */
 SNOW_API snow_status snow_overlay_new(snow_context *context, int width,
                                       int height, snow_overlay **out);
 SNOW_API void snow_overlay_free(snow_overlay *overlay);
 
 /* Height of a capital letter, in pixels, that suits pictures of its size. */
-SNOW_API double snow_overlay_letter_height(const snow_overlay *overlay);
+SNOW_API double snow_overlay_text_height(const snow_overlay *overlay);
 
 /* Draws a line of text (ASCII; other bytes are boxes) whose capitals are
  * `height` pixels high.  (x, y) is the place in the picture at which the share
  * (share_x, share_y) of its box lies: (0, 0) its upper left corner, (1, 1) its
- * lower right one on the base line.  Errors: SNOW_NO_MEMORY. */
+ * lower right one on the base line.  Errors: SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_overlay_text(snow_overlay *overlay, double x,
                                        double y, double share_x, double share_y,
                                        double height, const char *text);
@@ -37,18 +37,18 @@ SNOW_API snow_status snow_overlay_text(snow_overlay *overlay, double x,
  * top, bottom, of R L A P S I (right, left, anterior, posterior, superior,
  * inferior); two letters, the nearer one first, where the edge is more than 25
  * degrees away from either.  Of a volume whose world is a patient
- * (snow_volume_info.medical) only; else all are "".  Errors: SNOW_BAD_USAGE
- * (the view). */
-SNOW_API snow_status snow_view_letters(snow_context *context,
-                                       const snow_volume_info *info,
-                                       const snow_view *view,
-                                       char letters[4][4]);
+ * (snow_volume_info.medical) only; else all are "".  Errors:
+ * SNOW_STATUS_BAD_USAGE (the view). */
+SNOW_API snow_status snow_view_orientation(snow_context *context,
+                                           const snow_volume_info *info,
+                                           const snow_view *view,
+                                           char letters[4][4]);
 
 /* Draws them, in the middle of the edges; nothing on pictures with a side below
- * 64 pixels.  Errors: as above, SNOW_NO_MEMORY. */
-SNOW_API snow_status snow_overlay_letters(snow_overlay *overlay,
-                                          const snow_volume_info *info,
-                                          const snow_view *view);
+ * 64 pixels.  Errors: as above, SNOW_STATUS_NO_MEMORY. */
+SNOW_API snow_status snow_overlay_orientation(snow_overlay *overlay,
+                                              const snow_volume_info *info,
+                                              const snow_view *view);
 
 /* Draws, in the lower right corner, the colours along the values of a transfer
  * function with ticks at round values, and over them its opacity as a line: 0
@@ -56,7 +56,7 @@ SNOW_API snow_status snow_overlay_letters(snow_overlay *overlay,
  * values may be NULL.  `range` of pictures without opacity: the values that the
  * first and the last colour stand for, and no line; else NULL.  Nothing on
  * pictures with a side below 128 pixels.
- * Errors: SNOW_NO_MEMORY. */
+ * Errors: SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_overlay_color_bar(snow_overlay *overlay,
                                             const snow_transfer *transfer,
                                             const char *unit,
@@ -64,14 +64,16 @@ SNOW_API snow_status snow_overlay_color_bar(snow_overlay *overlay,
 
 /* Draws, in the lower left corner, a line of a round length.  In perspective,
  * where a length has no one size, and on pictures with a side below 128 pixels
- * nothing is drawn.  Errors: SNOW_BAD_USAGE (the view), SNOW_NO_MEMORY. */
+ * nothing is drawn.  Errors: SNOW_STATUS_BAD_USAGE (the view),
+ * SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_overlay_scale_bar(snow_overlay *overlay,
                                             const snow_volume_info *info,
                                             const snow_view *view);
 
 /* Draws a line of text in the upper left corner, on pictures with a side of 64
- * pixels or more.  Errors: SNOW_NO_MEMORY. */
-SNOW_API snow_status snow_overlay_note(snow_overlay *overlay, const char *text);
+ * pixels or more.  Errors: SNOW_STATUS_NO_MEMORY. */
+SNOW_API snow_status snow_overlay_title(snow_overlay *overlay,
+                                        const char *text);
 
 #ifdef __cplusplus
 }

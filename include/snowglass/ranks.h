@@ -1,6 +1,6 @@
 /* snowglass/ranks.h - one picture by many processors: section 4 of the paper.
  *
- * Every rank holds a part of the volume (snow_part), splats it into a local
+ * Every rank holds a part of the volume (snow_extent), splats it into a local
  * image, and the local images are combined.  All calls are collective
  * (snowglass/comm.h): every rank makes them with the same arguments. */
 #ifndef SNOWGLASS_RANKS_H
@@ -14,29 +14,30 @@ extern "C" {
 #endif
 
 /* How the volume is cut. */
-typedef enum snow_cut {
-    SNOW_CUT_AUTO = 0, /* by count; into bricks where slabs would be thin */
-    SNOW_CUT_EQUAL,    /* the paper's slabs: as equal as can be */
-    SNOW_CUT_COUNTED,  /* slabs of about equally many interesting voxels */
-    SNOW_CUT_BRICKS,   /* boxes of about equally many interesting voxels */
-    SNOW_CUT_MEASURED  /* as AUTO, and for later pictures by the time that the
-                          first ones took (snow_ranks_balance) */
-} snow_cut;
+typedef enum snow_partition {
+    SNOW_PARTITION_AUTO =
+        0,                /* by count; into bricks where slabs would be thin */
+    SNOW_PARTITION_EQUAL, /* the paper's slabs: as equal as can be */
+    SNOW_PARTITION_COUNTED, /* slabs of about equally many interesting voxels */
+    SNOW_PARTITION_BRICKS,  /* boxes of about equally many interesting voxels */
+    SNOW_PARTITION_MEASURED /* as AUTO, and for later pictures by the time that
+                         the first ones took (snow_ranks_rebalance) */
+} snow_partition;
 
 /* How local images are combined. */
-typedef enum snow_combining {
+typedef enum snow_combine {
     SNOW_COMBINE_AUTO = 0, /* by the number of ranks and the image's size */
     SNOW_COMBINE_TREE,     /* the paper's hierarchy */
     SNOW_COMBINE_SWAP,     /* binary swap */
     SNOW_COMBINE_DIRECT,   /* direct send */
     SNOW_COMBINE_RADIX     /* radix-k */
-} snow_combining;
+} snow_combine;
 
 /* Zeros are the defaults. */
 typedef struct snow_ranks_options {
     size_t size; /* bytes of this record */
-    snow_cut cut;
-    snow_combining combining;
+    snow_partition cut;
+    snow_combine combining;
     int radix;      /* of SNOW_COMBINE_RADIX, 2 to 64; 0: chosen */
     int pixel_bits; /* 8: the picture's channels are rounded to whole steps of
                        1/255 before they travel to rank 0 (a quarter of the
@@ -52,7 +53,7 @@ typedef struct snow_ranks_options {
                        none.  NULL: it makes the one that the look asks for */
 } snow_ranks_options;
 
-/* Opens this rank's part of a volume (snow_volume_get_part), with the ghost
+/* Opens this rank's part of a volume (snow_volume_get_extent), with the ghost
  * voxels around it that kernels of the view and gradients reach.  The cut
  * depends on the view (slabs lie along its slice axis) and, where it is by
  * count, on transfer function and threshold.
@@ -66,8 +67,8 @@ typedef struct snow_ranks_options {
  * The transfer function is the one that `look` asks for on the whole volume, to
  * the bit, on all ranks; NULL where `how` has one.  All results are new, and
  * the caller's.  Errors, on all ranks: those of snow_volume_open,
- * snow_transfer_make and snow_frame_render; SNOW_BAD_INPUT where ranks see
- * different files. */
+ * snow_transfer_new_for_volume and snow_frame_render; SNOW_STATUS_BAD_INPUT
+ * where ranks see different files. */
 SNOW_API snow_status snow_ranks_open(
     snow_comm *comm, const char *path, const snow_volume_options *options,
     const snow_look *look, const snow_view *view, const snow_settings *settings,
@@ -79,49 +80,51 @@ SNOW_API snow_status snow_ranks_open(
  * volume is cut anew and voxels change hands; no file is read.  *volume is then
  * closed and replaced.  Where nothing has to change, nothing but one small
  * message round is done.  `transfer` is the same on all ranks. */
-SNOW_API snow_status snow_ranks_recut(snow_comm *comm,
-                                      const snow_transfer *transfer,
-                                      const snow_view *view,
-                                      const snow_settings *settings,
-                                      const snow_ranks_options *how,
-                                      snow_volume **volume);
+SNOW_API snow_status snow_ranks_repartition(snow_comm *comm,
+                                            const snow_transfer *transfer,
+                                            const snow_view *view,
+                                            const snow_settings *settings,
+                                            const snow_ranks_options *how,
+                                            snow_volume **volume);
 
 /* The same before one of many pictures, of which `left` are to come, this one
- * with them; called before each of a frame.  With SNOW_CUT_MEASURED parts are
- * also cut anew where the ranks' last pictures took unequally long, in
+ * with them; called before each of a frame.  With SNOW_PARTITION_MEASURED parts
+ * are also cut anew where the ranks' last pictures took unequally long, in
  * processor time up to the local image, and where that is made good within the
  * pictures that are left: an interesting voxel then costs what those of its
  * rank took. Pictures are those of any other cut, within what snow_ranks_render
  * says. Parts of deterministic pictures, and with any other cut, are not
  * touched by time.  One small message round more. */
-SNOW_API snow_status snow_ranks_balance(snow_frame *frame, snow_comm *comm,
-                                        const snow_transfer *transfer,
-                                        const snow_view *view,
-                                        const snow_settings *settings,
-                                        const snow_ranks_options *how,
-                                        int64_t left, snow_volume **volume);
+SNOW_API snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
+                                          const snow_transfer *transfer,
+                                          const snow_view *view,
+                                          const snow_settings *settings,
+                                          const snow_ranks_options *how,
+                                          int64_t left, snow_volume **volume);
 
-/* snow_transfer_make for the whole that the ranks' volumes are parts of. */
-SNOW_API snow_status snow_ranks_transfer(snow_comm *comm,
-                                         const snow_volume *volume,
-                                         const snow_look *look,
-                                         snow_transfer **out);
+/* snow_transfer_new_for_volume for the whole that the ranks' volumes are parts
+ * of. */
+SNOW_API snow_status snow_ranks_new_transfer(snow_comm *comm,
+                                             const snow_volume *volume,
+                                             const snow_look *look,
+                                             snow_transfer **out);
 
 /* Not collective: how a whole volume would be cut for `ranks` ranks with slices
  * along `slice_axis` (0 to 2).  `parts` (without ghosts) and `loads`, the
  * interesting voxels of each, have as many entries; either may be NULL.
- * Errors: SNOW_BAD_USAGE (ranks below 1, no such axis or cut), SNOW_NO_MEMORY.
+ * Errors: SNOW_STATUS_BAD_USAGE (ranks below 1, no such axis or cut),
+ * SNOW_STATUS_NO_MEMORY.
  */
-SNOW_API snow_status snow_ranks_plan(const snow_volume *volume,
-                                     const snow_transfer *transfer,
-                                     double threshold, snow_cut cut,
-                                     int slice_axis, int ranks,
-                                     snow_part *parts, int64_t *loads);
+SNOW_API snow_status snow_ranks_partition(const snow_volume *volume,
+                                          const snow_transfer *transfer,
+                                          double threshold, snow_partition cut,
+                                          int slice_axis, int ranks,
+                                          snow_extent *parts, int64_t *loads);
 
 /* Collective.  The picture, on rank 0; NULL on the others, unless it is
  * scattered.
  *
- * Every rank's volume is its part (snow_volume_set_part) of one whole, with
+ * Every rank's volume is its part (snow_volume_set_extent) of one whole, with
  * the ghost voxels that the view needs; each voxel is one rank's own, and a
  * rank may own none.  Parts may be any boxes that have an order from front to
  * back: slabs, a grid, a k-d tree.  The picture is that of snow_frame_render of
@@ -140,8 +143,8 @@ SNOW_API snow_status snow_ranks_plan(const snow_volume *volume,
  *
  * The frame belongs to the communicator's context, keeps buffers for it, and is
  * freed before it.  Errors, on all ranks alike: those of snow_frame_render, and
- * SNOW_BAD_USAGE (parts that overlap, leave voxels out, have too few ghosts or
- * no order). */
+ * SNOW_STATUS_BAD_USAGE (parts that overlap, leave voxels out, have too few
+ * ghosts or no order). */
 SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
                                        const snow_volume *volume,
                                        const snow_transfer *transfer,
@@ -166,10 +169,10 @@ SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
  * All that is handed over may be freed or changed after the begin, but for the
  * frame, which has a second local image then, and the communicator.  A begin
  * leaves what goes wrong with its picture to the finish, and fails with
- * SNOW_BAD_USAGE (two pictures are under way, or one of another communicator)
- * or SNOW_NO_MEMORY; then nothing is begun.  Pictures that nobody finishes end
- * with the frame.  Errors of finish: those of snow_ranks_render, and
- * SNOW_BAD_USAGE (no picture is under way). */
+ * SNOW_STATUS_BAD_USAGE (two pictures are under way, or one of another
+ * communicator) or SNOW_STATUS_NO_MEMORY; then nothing is begun.  Pictures that
+ * nobody finishes end with the frame.  Errors of finish: those of
+ * snow_ranks_render, and SNOW_STATUS_BAD_USAGE (no picture is under way). */
 SNOW_API snow_status snow_ranks_begin(snow_frame *frame, snow_comm *comm,
                                       const snow_volume *volume,
                                       const snow_transfer *transfer,

@@ -21,7 +21,7 @@
 extern "C" {
 #endif
 
-#define SNOW_RECIPE_POINTS 256
+#define SNOW_RECIPE_POINTS_MAX 256
 
 /* Texts are NULL where not told, numbers as each field says. */
 typedef struct snow_recipe {
@@ -31,10 +31,10 @@ typedef struct snow_recipe {
     snow_volume_options data; /* how to open the input */
     const char *preset;       /* the look, as in snow_look */
     const char *colormap;
-    snow_range_kind range;
+    snow_range range;
     double low, high;
     size_t opacity_count; /* 0: the preset's */
-    snow_opacity_point opacities[SNOW_RECIPE_POINTS];
+    snow_opacity_point opacities[SNOW_RECIPE_POINTS_MAX];
     bool opacity_per_mm; /* opacities are those of a millimetre, instead of the
                             smallest voxel spacing */
     bool opacity_per_voxel; /* they are not, whatever the file of `tf` says */
@@ -53,9 +53,10 @@ typedef struct snow_recipe {
     snow_image_options image; /* of the file */
     void *owned;              /* what texts lie in; NULL: the caller's */
     size_t gradient_opacity_count; /* of the look; 0: none */
-    snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS];
-    const char *tf;    /* a file that stands for a preset (tf.h), or NULL */
-    bool log;          /* as in snow_look */
+    snow_opacity_point gradient_opacities[SNOW_RECIPE_POINTS_MAX];
+    const char *tf; /* a file that stands for a preset (transfer/formats/tf.h),
+                       or NULL */
+    bool log;       /* as in snow_look */
     const char *depth; /* path of the depths, or NULL; the output's own .exr
                           gets them as a channel (image.h) */
 } snow_recipe;
@@ -65,8 +66,8 @@ SNOW_API void snow_recipe_init(snow_recipe *recipe);
 
 /* Reads a recipe from a file, or from `bytes` of text, which messages call
  * `name`.  The record's texts live until snow_recipe_clear, which must follow.
- * Errors: SNOW_BAD_INPUT (no file, no JSON: with the line; a key that is
- * unknown or whose value does not fit), SNOW_NO_MEMORY. */
+ * Errors: SNOW_STATUS_BAD_INPUT (no file, no JSON: with the line; a key that is
+ * unknown or whose value does not fit), SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_recipe_load(snow_context *context, const char *path,
                                       snow_recipe *out);
 SNOW_API snow_status snow_recipe_parse(snow_context *context, const char *name,
@@ -77,7 +78,7 @@ SNOW_API void snow_recipe_clear(snow_recipe *recipe);
 /* Writes a recipe's text, several lines and a final zero byte, into `room`
  * bytes, and tells how many it has, without that byte: of a text that does not
  * fit nothing but a zero byte is written, and the call may be made again with
- * *length + 1.  Errors: SNOW_NO_MEMORY. */
+ * *length + 1.  Errors: SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_recipe_write(snow_context *context,
                                        const snow_recipe *recipe, char *text,
                                        size_t room, size_t *length);
@@ -86,19 +87,21 @@ SNOW_API snow_status snow_recipe_write(snow_context *context,
  * `tf`, which the caller loads (snow_recipe_apply does); the view, for which
  * `usual` stands in where the recipe names none; the settings for a volume, in
  * whose unit of length opacities per millimetre are told.  Errors:
- * SNOW_BAD_USAGE (no such view; a unit that is no length). */
-SNOW_API void snow_recipe_look(const snow_recipe *recipe, snow_look *out);
-SNOW_API snow_status snow_recipe_view(snow_context *context,
-                                      const snow_recipe *recipe,
-                                      const snow_view *usual, snow_view *out);
-SNOW_API snow_status snow_recipe_settings(snow_context *context,
+ * SNOW_STATUS_BAD_USAGE (no such view; a unit that is no length). */
+SNOW_API void snow_recipe_get_look(const snow_recipe *recipe, snow_look *out);
+SNOW_API snow_status snow_recipe_get_view(snow_context *context,
                                           const snow_recipe *recipe,
-                                          const char *unit, snow_settings *out);
+                                          const snow_view *usual,
+                                          snow_view *out);
+SNOW_API snow_status snow_recipe_get_settings(snow_context *context,
+                                              const snow_recipe *recipe,
+                                              const char *unit,
+                                              snow_settings *out);
 
 /* Tells it all to pictures in situ: look, view, settings, and the output where
  * there is one.  A grid in situ has no unit: opacities per millimetre are those
- * of a length of 1.  Errors: as above and of the setters; SNOW_BAD_USAGE (a
- * depth, which pictures in situ have none of). */
+ * of a length of 1.  Errors: as above and of the setters; SNOW_STATUS_BAD_USAGE
+ * (a depth, which pictures in situ have none of). */
 SNOW_API snow_status snow_recipe_apply(const snow_recipe *recipe,
                                        snow_insitu *insitu);
 

@@ -24,9 +24,9 @@ typedef enum snow_method {
                               against the threshold first: the honest one */
     SNOW_METHOD_FOOTPRINT, /* interesting voxels only, through an encoding;
                               each onto the image itself: the exact one */
-    SNOW_METHOD_SHEARED    /* interesting voxels only; slices are splatted and
-                              composited on their own grid, sheared, and the
-                              result is warped to the image once: the fast one */
+    SNOW_METHOD_SHEAR_WARP /* interesting voxels only; slices are splatted and
+                           composited on their own grid, sheared, and the
+                           result is warped to the image once: the fast one */
 } snow_method;
 
 /* How the places of interesting voxels are written: section 3.2. */
@@ -115,6 +115,9 @@ typedef struct snow_settings {
     double iso;             /* data value of mode iso, finite (0) */
     int depth;              /* not 0: with snow_frame_depth, in modes over and
                                iso (0) */
+    snow_stop_fn *stop;     /* asked whether the picture is to end early; NULL:
+                               it is not (NULL) */
+    void *stop_user;        /* its argument (NULL) */
 } snow_settings;
 
 /* The defaults, as far as a record of `size` bytes reaches. */
@@ -175,18 +178,31 @@ typedef struct snow_stats {
     int halvings[3];
 } snow_stats;
 
-/* A frame with empty buffers.  Errors: SNOW_NO_MEMORY. */
+/* A frame with empty buffers.  Errors: SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);
 SNOW_API void snow_frame_free(snow_frame *frame);
 
 /* Renders one picture: figure 8 of the paper on one processor.  `*image` is
  * made anew and owned by the caller.  volume, transfer and frame must come from
  * one context; `settings` NULL are those of snow_settings_init.  Errors:
- * SNOW_BAD_USAGE (a setting out of range, with its name), SNOW_BAD_INPUT (a
- * geometry beyond all measure), SNOW_NO_MEMORY; then no image is made. */
+ * SNOW_STATUS_BAD_USAGE (a setting out of range, with its name),
+ * SNOW_STATUS_BAD_INPUT (a geometry beyond all measure), SNOW_STATUS_NO_MEMORY,
+ * SNOW_STATUS_STOPPED (asked for by settings.stop or by the progress function);
+ * then no image is made, and the frame is as good as before. */
 SNOW_API snow_status snow_frame_render(
     snow_frame *frame, const snow_volume *volume, const snow_transfer *transfer,
     const snow_view *view, const snow_settings *settings, snow_image **image);
+
+/* Opens a file (or phantom:NAME), renders one picture with the look that its
+ * histogram suggests, and closes the file.  `view` NULL: 512x512 pixels from
+ * the default side; `settings` NULL: the defaults.  `*image` is owned by the
+ * caller; free it with snow_image_free.  Errors: those of snow_volume_open and
+ * snow_frame_render; then no image is made.  A core without formats
+ * (-DSNOW_FORMATS=OFF) lacks this function. */
+SNOW_API snow_status snow_render_file(snow_context *context, const char *path,
+                                      const snow_view *view,
+                                      const snow_settings *settings,
+                                      snow_image **image);
 
 /* How far away the last picture is: values of one channel, NaN where there is
  * nothing; NULL unless settings.depth asked for it.  It is the world distance
@@ -197,17 +213,17 @@ SNOW_API const snow_image *snow_frame_depth(const snow_frame *frame);
 
 /* The smallest and the largest value of a picture of modes mean and sum; 0 and
  * 1 when it has none. */
-SNOW_API void snow_values_range(const snow_image *values, double *low,
-                                double *high);
+SNOW_API void snow_image_value_range(const snow_image *values, double *low,
+                                     double *high);
 
 /* Makes colours of such a picture: those of the transfer function, from its
  * first control point to its last, spread over low to high (low <= high);
- * opaque, and transparent where there is no value.  Errors: SNOW_BAD_USAGE,
- * SNOW_NO_MEMORY. */
-SNOW_API snow_status snow_values_paint(const snow_image *values,
-                                       const snow_transfer *transfer,
-                                       double low, double high,
-                                       snow_image **out);
+ * opaque, and transparent where there is no value.  Errors:
+ * SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
+SNOW_API snow_status snow_image_apply_colormap(const snow_image *values,
+                                               const snow_transfer *transfer,
+                                               double low, double high,
+                                               snow_image **out);
 
 /* Figures of the last picture; owned by the frame.  Zeros before the first one;
  * after a failure what was counted until then. */
@@ -218,15 +234,15 @@ SNOW_API const snow_stats *snow_frame_stats(const snow_frame *frame);
 SNOW_API const char *snow_method_name(snow_method method);
 SNOW_API const char *snow_encoding_name(snow_encoding encoding);
 SNOW_API const char *snow_kernel_name(snow_kernel kernel);
-SNOW_API int snow_method_named(const char *name);
-SNOW_API int snow_encoding_named(const char *name);
-SNOW_API int snow_kernel_named(const char *name);
+SNOW_API int snow_method_from_name(const char *name);
+SNOW_API int snow_encoding_from_name(const char *name);
+SNOW_API int snow_kernel_from_name(const char *name);
 SNOW_API const char *snow_quality_name(snow_quality quality);
-SNOW_API int snow_quality_named(const char *name);
+SNOW_API int snow_quality_from_name(const char *name);
 SNOW_API const char *snow_isa_name(snow_isa isa);
-SNOW_API int snow_isa_named(const char *name);
+SNOW_API int snow_isa_from_name(const char *name);
 SNOW_API const char *snow_mode_name(snow_mode mode);
-SNOW_API int snow_mode_named(const char *name);
+SNOW_API int snow_mode_from_name(const char *name);
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,9 @@
 /* snowglass/snowglass.h - everything.
  *
  * Order of use: a context; a volume (snow_volume_open); a transfer function
- * for it (snow_transfer_make); a view (snow_view_default); a frame; pictures
- * (snow_frame_render, snow_image_save); then free all in any order, the context
- * last.
+ * for it (snow_transfer_new_for_volume); a view (snow_view_default); a frame;
+ * pictures (snow_frame_render, snow_image_save); then free all in any order,
+ * the context last.
  *
  * Until version 1.0 the interface may change with each minor version, and with
  * it the name of the shared library (libsnowglass.so.0.1). */

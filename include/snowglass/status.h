@@ -26,16 +26,17 @@ extern "C" {
     X(BAD_INPUT, 3, "the input is missing, unreadable or unsupported")   \
     X(BAD_OUTPUT, 4, "the output cannot be written")                     \
     X(NO_MEMORY, 5, "more memory is needed than is allowed or there is") \
-    X(DIFFERENT, 6, "the comparison found a difference")
+    X(DIFFERENT, 6, "the comparison found a difference")                 \
+    X(STOPPED, 130, "stopped, as the caller asked")
 
 typedef enum snow_status {
-#define SNOW_STATUS_ENUM(name, value, text) SNOW_##name = value,
+#define SNOW_STATUS_ENUM(name, value, text) SNOW_STATUS_##name = value,
     SNOW_STATUS_MAP(SNOW_STATUS_ENUM)
 #undef SNOW_STATUS_ENUM
 } snow_status;
 
 /* The text of a status: a constant string, never NULL. */
-SNOW_API const char *snow_status_text(snow_status status);
+SNOW_API const char *snow_status_description(snow_status status);
 
 #ifdef __cplusplus
 }

@@ -12,7 +12,7 @@
  * where that leaves two readings.  Colours that a file joins in another colour
  * space are turned to points so close that straight lines between them are
  * nowhere off by more than 1/500.  What a file says and is not taken over is
- * told as a remark (snow_context_set_notice).
+ * told as a remark (snow_context_set_warning).
  *
  * These functions belong to libsnowglass-recipe, which has a JSON library. */
 #ifndef SNOWGLASS_TF_H
@@ -27,21 +27,22 @@ extern "C" {
 typedef struct snow_tf snow_tf;
 
 /* The most points of a kind, and bytes of a file. */
-#define SNOW_TF_POINTS 65536
-#define SNOW_TF_BYTES (16 << 20)
+#define SNOW_LOOK_POINTS_MAX 65536
+#define SNOW_LOOK_BYTES_MAX (16 << 20)
 
 /* Reads a file.  Of one with several transfer functions "FILE#NAME" names one
  * (letters of either case, dashes left out), and the first is taken where none
- * is named.  Errors: SNOW_BAD_INPUT (no file, no transfer function, a bad one:
- * the message says where), SNOW_NO_MEMORY.  Free with snow_tf_free. */
-SNOW_API snow_status snow_tf_load(snow_context *context, const char *path,
-                                  snow_tf **out);
+ * is named.  Errors: SNOW_STATUS_BAD_INPUT (no file, no transfer function, a
+ * bad one: the message says where), SNOW_STATUS_NO_MEMORY.  Free with
+ * snow_tf_free. */
+SNOW_API snow_status snow_look_load(snow_context *context, const char *path,
+                                    snow_tf **out);
 
 /* The same of `size` bytes, which messages call `name`; `wanted` is the name of
  * one of several, or NULL. */
-SNOW_API snow_status snow_tf_parse(snow_context *context, const char *name,
-                                   const void *bytes, size_t size,
-                                   const char *wanted, snow_tf **out);
+SNOW_API snow_status snow_look_parse(snow_context *context, const char *name,
+                                     const void *bytes, size_t size,
+                                     const char *wanted, snow_tf **out);
 SNOW_API void snow_tf_free(snow_tf *tf);
 
 /* What it says; lives as long as it. */
@@ -55,14 +56,14 @@ SNOW_API const char *snow_tf_format(const snow_tf *tf);
  * but has no gradient opacity, no logarithmic scale and no name.  Text goes to
  * `room` bytes, with a final zero byte, and *length says how many it has
  * without that: of a text that does not fit nothing but a zero byte is written,
- * and the call may be made again.  Errors: SNOW_NO_MEMORY; SNOW_BAD_USAGE (CSV
- * of points without colours or opacities). */
-SNOW_API snow_status snow_tf_write_json(snow_context *context,
-                                        const snow_points *points, char *text,
-                                        size_t room, size_t *length);
-SNOW_API snow_status snow_tf_write_csv(snow_context *context,
-                                       const snow_points *points, char *text,
-                                       size_t room, size_t *length);
+ * and the call may be made again.  Errors: SNOW_STATUS_NO_MEMORY;
+ * SNOW_STATUS_BAD_USAGE (CSV of points without colours or opacities). */
+SNOW_API snow_status snow_look_write_json(snow_context *context,
+                                          const snow_points *points, char *text,
+                                          size_t room, size_t *length);
+SNOW_API snow_status snow_look_write_csv(snow_context *context,
+                                         const snow_points *points, char *text,
+                                         size_t room, size_t *length);
 
 #ifdef __cplusplus
 }

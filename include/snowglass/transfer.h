@@ -34,7 +34,8 @@ typedef struct snow_opacity_point {
 
 /* A transfer function from its control points, which are copied.  Values must
  * be finite and not fall; at least one point of each kind.
- * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.  Free with snow_transfer_free. */
+ * Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY.  Free with
+ * snow_transfer_free. */
 SNOW_API snow_status snow_transfer_new(snow_context *context,
                                        const snow_color_point *colors,
                                        size_t color_count,
@@ -45,8 +46,8 @@ SNOW_API snow_status snow_transfer_new(snow_context *context,
 SNOW_API void snow_transfer_free(snow_transfer *transfer);
 
 /* From now on points are joined linearly in the logarithm of the value; values
- * of 0 and below are transparent.  Errors: SNOW_BAD_USAGE (a point that is not
- * above 0). */
+ * of 0 and below are transparent.  Errors: SNOW_STATUS_BAD_USAGE (a point that
+ * is not above 0). */
 SNOW_API snow_status snow_transfer_set_log(snow_transfer *transfer);
 SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
 
@@ -56,39 +57,40 @@ SNOW_API bool snow_transfer_is_log(const snow_transfer *transfer);
  * volume's world (a millimetre, as a rule), of central differences; their
  * opacities are the factors, 0 to 1.  Between points they are linear, beyond
  * the ends constant.  The points are copied; a count of 0, or points that are
- * all 1, take away what was given before.  snow_transfer_text tells of it.
- * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY; then all stays as it was. */
+ * all 1, take away what was given before.  snow_transfer_description tells of
+ * it. Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY; then all stays as
+ * it was. */
 SNOW_API snow_status snow_transfer_set_gradient_opacity(
     snow_transfer *transfer, const snow_opacity_point *points, size_t count);
 
 /* The factor for a magnitude; 1 without a gradient opacity.  NaN, which has no
  * place in the curve, counts as a magnitude beyond its end. */
-SNOW_API double snow_transfer_gradient_opacity(const snow_transfer *transfer,
-                                               double magnitude);
+SNOW_API double snow_transfer_evaluate_gradient(const snow_transfer *transfer,
+                                                double magnitude);
 
 /* Over which data values a look is spread. */
-typedef enum snow_range_kind {
+typedef enum snow_range {
     SNOW_RANGE_AUTO = 0,   /* chosen from the histogram */
     SNOW_RANGE_FULL,       /* smallest to largest finite value */
     SNOW_RANGE_VALUES,     /* low to high, data values */
     SNOW_RANGE_PERCENTILES /* low to high, percent of the finite voxels */
-} snow_range_kind;
+} snow_range;
 
 /* What the values of control points mean. */
-typedef enum snow_point_values {
-    SNOW_VALUES_DATA = 0, /* data values */
-    SNOW_VALUES_RANGE,    /* shares, 0 to 1, from the smallest value to the
+typedef enum snow_domain {
+    SNOW_DOMAIN_DATA = 0, /* data values */
+    SNOW_DOMAIN_RANGE,    /* shares, 0 to 1, from the smallest value to the
                              largest */
-    SNOW_VALUES_OBJECT    /* shares from the background's end to the brightest,
+    SNOW_DOMAIN_OBJECT    /* shares from the background's end to the brightest,
                              both read from the histogram */
-} snow_point_values;
+} snow_domain;
 
 /* A transfer function as data, before there is a volume: what presets are, and
  * what files hold.  Points as in snow_transfer_new, or none: then the histogram
  * says. */
 typedef struct snow_points {
     const char *name; /* for people */
-    snow_point_values values;
+    snow_domain values;
     bool log;    /* points are joined by the logarithm of values */
     bool per_mm; /* opacities are of a millimetre; false: of a voxel */
     const snow_color_point *colors;
@@ -103,7 +105,7 @@ typedef struct snow_points {
 typedef struct snow_look {
     const char *preset;   /* "linear", "ct-bone", ...; NULL: automatic */
     const char *colormap; /* "grey", "viridis", ...; NULL: the preset's */
-    snow_range_kind range;
+    snow_range range;
     double low, high; /* for VALUES and PERCENTILES; low < high */
     const snow_opacity_point *opacities; /* replace the preset's; NULL: keep */
     size_t opacity_count;
@@ -119,24 +121,25 @@ typedef struct snow_look {
 /* The transfer function that `look` asks for on `volume`.  A preset in data
  * units (ct-*) keeps its values unless a range is given, over which it is then
  * spread, and its gradient opacity with it.  The result depends on the volume's
- * values only, and is the same on every machine.  Errors: SNOW_BAD_USAGE
- * (unknown name, bad points; the message lists the names), SNOW_NO_MEMORY. */
-SNOW_API snow_status snow_transfer_make(const snow_volume *volume,
-                                        const snow_look *look,
-                                        snow_transfer **out);
+ * values only, and is the same on every machine.  Errors: SNOW_STATUS_BAD_USAGE
+ * (unknown name, bad points; the message lists the names),
+ * SNOW_STATUS_NO_MEMORY. */
+SNOW_API snow_status snow_transfer_new_for_volume(const snow_volume *volume,
+                                                  const snow_look *look,
+                                                  snow_transfer **out);
 
 /* One line that says what was chosen: "grey 72..213; opacity 0 at 72, 0.4 at
  * 213 (from the histogram)".  Owned by the transfer function. */
-SNOW_API const char *snow_transfer_text(const snow_transfer *transfer);
+SNOW_API const char *snow_transfer_description(const snow_transfer *transfer);
 
 /* Colour and opacity at a data value, straight, without the gradient opacity;
  * NaN gives zeros. */
-SNOW_API void snow_transfer_at(const snow_transfer *transfer, double value,
-                               double rgba[4]);
+SNOW_API void snow_transfer_evaluate(const snow_transfer *transfer,
+                                     double value, double rgba[4]);
 
 /* The data values of the first and the last colour. */
-SNOW_API void snow_transfer_span(const snow_transfer *transfer, double *low,
-                                 double *high);
+SNOW_API void snow_transfer_domain(const snow_transfer *transfer, double *low,
+                                   double *high);
 
 /* True when every colour is grey, so that pictures need two channels. */
 SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);
@@ -144,12 +147,12 @@ SNOW_API bool snow_transfer_is_grey(const snow_transfer *transfer);
 /* True when it was chosen by itself for a volume that has no surfaces to shade
  * (one that its object fills, or of one slice): pictures of it are better
  * without shading, which is the caller's to choose. */
-SNOW_API bool snow_transfer_is_flat(const snow_transfer *transfer);
+SNOW_API bool snow_transfer_is_unshaded(const snow_transfer *transfer);
 
 /* Share of uninteresting voxels, 0 to 1 (the paper's sparse ratio SR, section
  * 5.2): those with opacity 0 or, for threshold T > 0, 255 a <= T + 0.0001.  The
  * opacity a is that with the gradient opacity.
- * Errors: SNOW_NO_MEMORY. */
+ * Errors: SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
                                                 const snow_volume *volume,
                                                 double threshold,
@@ -158,23 +161,23 @@ SNOW_API snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
 /* Name and description of preset and colour map `index` (from 0); NULL past
  * the end. */
 SNOW_API const char *snow_preset_name(size_t index);
-SNOW_API const char *snow_preset_text(size_t index);
+SNOW_API const char *snow_preset_description(size_t index);
 SNOW_API const char *snow_colormap_name(size_t index);
 
 /* A preset as data, which live as long as the program; NULL past the end. */
 SNOW_API const snow_points *snow_preset_points(size_t index);
 
 /* The control points of a colour map, for values of 0 to 1: into `room` points,
- * SNOW_COLORMAP_POINTS suffice.  How many there are; 0 past the end. */
-#define SNOW_COLORMAP_POINTS 32
+ * SNOW_COLORMAP_POINTS_MAX suffice.  How many there are; 0 past the end. */
+#define SNOW_COLORMAP_POINTS_MAX 32
 SNOW_API size_t snow_colormap_points(size_t index, snow_color_point *points,
                                      size_t room);
 
 /* The index of a name, -1 when there is none, to be asked before a volume is
  * read.  Wherever a look is named, letters may be of either case, and dashes
  * and underscores be missing ("CT_Bone" is "ct-bone"); "gray" is "grey". */
-SNOW_API int snow_preset_named(const char *name);
-SNOW_API int snow_colormap_named(const char *name);
+SNOW_API int snow_preset_from_name(const char *name);
+SNOW_API int snow_colormap_from_name(const char *name);
 
 #ifdef __cplusplus
 }

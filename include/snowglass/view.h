@@ -24,14 +24,14 @@
 extern "C" {
 #endif
 
-#define SNOW_FOV_LEAST 0.001
-#define SNOW_FOV_MOST 120
-#define SNOW_FOV_USUAL                                     \
+#define SNOW_FOV_MIN 0.001
+#define SNOW_FOV_MAX 120
+#define SNOW_FOV_DEFAULT                                   \
     30 /* where perspective is asked for, and no more told \
         */
 
-/* Make one with snow_view_named or snow_view_default, or set it to zeros first:
- * it may grow at its end, and 0 is the default of what is added. */
+/* Make one with snow_view_from_name or snow_view_default, or set it to zeros
+ * first: it may grow at its end, and 0 is the default of what is added. */
 typedef struct snow_view {
     int width, height;  /* image in pixels, 1 to 32768 each */
     double back[3];     /* unit vector, target to camera, in the world */
@@ -40,8 +40,8 @@ typedef struct snow_view {
     double elevation;   /* degrees: moves the camera up */
     double roll;        /* degrees: turns the camera clockwise */
     double zoom;        /* above 0; 2 shows everything twice as large */
-    double fov;         /* degrees over the shorter side, SNOW_FOV_LEAST to
-                           SNOW_FOV_MOST; 0: a parallel projection */
+    double fov;         /* degrees over the shorter side, SNOW_FOV_MIN to
+                           SNOW_FOV_MAX; 0: a parallel projection */
     bool has_position;  /* `position` counts, in place of `back` */
     bool has_target;    /* `target` counts, in place of the middle */
     bool has_up;        /* `upward` counts, in place of `up` */
@@ -57,9 +57,9 @@ typedef struct snow_view {
  * +y -y +z -z, at 512x512, angles 0, zoom 1, parallel.  +z: the camera sits on
  * the +z side, +y is up; for x and y sides +z is up; anterior is +y, left -x,
  * superior +z; iso looks from (1, 1, 1), +z up.  Letters may be of either case.
- * Errors: SNOW_BAD_USAGE. */
-SNOW_API snow_status snow_view_named(snow_context *context, const char *name,
-                                     snow_view *out);
+ * Errors: SNOW_STATUS_BAD_USAGE. */
+SNOW_API snow_status snow_view_from_name(snow_context *context,
+                                         const char *name, snow_view *out);
 
 /* The default view of a volume: anterior when its file gives a medical
  * orientation, +z otherwise; at 512x512, angles 0, zoom 1. */

@@ -31,7 +31,7 @@ typedef struct snow_volume snow_volume;
 
 typedef enum snow_type {
     SNOW_TYPE_NONE = 0, /* not told */
-#define SNOW_TYPE_ENUM(name, type, text) SNOW_##name,
+#define SNOW_TYPE_ENUM(name, type, text) SNOW_TYPE_##name,
     SNOW_TYPE_MAP(SNOW_TYPE_ENUM)
 #undef SNOW_TYPE_ENUM
 } snow_type;
@@ -41,7 +41,7 @@ typedef enum snow_type {
  * understood as float32 and float64. */
 SNOW_API size_t snow_type_size(snow_type type);
 SNOW_API const char *snow_type_name(snow_type type);
-SNOW_API snow_type snow_type_named(const char *name);
+SNOW_API snow_type snow_type_from_name(const char *name);
 
 /* What is known of a volume beside its voxels. */
 typedef struct snow_volume_info {
@@ -78,10 +78,10 @@ typedef struct snow_label_range {
 } snow_label_range;
 
 /* Ranges that one list of labels may have. */
-#define SNOW_LABELS_MOST 256
+#define SNOW_LABELS_MAX 256
 
 /* Planes that one volume may be clipped by. */
-#define SNOW_CLIPS_MOST 6
+#define SNOW_CLIPS_MAX 6
 
 /* How to open a volume.  Zero everywhere is right for every format but raw. */
 typedef struct snow_volume_options {
@@ -106,11 +106,11 @@ typedef struct snow_volume_options {
                             value (snow_volume_mask); NULL: none.  It is read
                             with the same crop and spacing; one with a single
                             time step is that of all */
-    const char *labels;  /* of the mask, those inside (snow_labels_read); NULL:
+    const char *labels;  /* of the mask, those inside (snow_labels_parse); NULL:
                             all but 0 */
     /* Planes a, b, c, d of the world: voxels where a x + b y + c z > d have no
      * value (snow_volume_clip); one whose a, b, c are 0 is none. */
-    double clip[SNOW_CLIPS_MOST][4];
+    double clip[SNOW_CLIPS_MAX][4];
     bool each_time; /* all time steps are opened in turn: no remark tells that
                        this is one of several */
 } snow_volume_options;
@@ -122,9 +122,9 @@ typedef struct snow_volume_options {
  * may be NULL.  Of a volume that is cropped little more than the box is read
  * and kept; it is a volume of its own, whose matrix puts it where it was.  A
  * mask and planes are applied to what was read.
- * Errors: SNOW_BAD_INPUT (missing, damaged, contradictory, unsupported; nothing
- * is kept), SNOW_BAD_USAGE (options that do not fit the format),
- * SNOW_NO_MEMORY.  Close with snow_volume_close. */
+ * Errors: SNOW_STATUS_BAD_INPUT (missing, damaged, contradictory, unsupported;
+ * nothing is kept), SNOW_STATUS_BAD_USAGE (options that do not fit the format),
+ * SNOW_STATUS_NO_MEMORY.  Close with snow_volume_close. */
 SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
                                       const snow_volume_options *options,
                                       snow_volume **out);
@@ -137,26 +137,23 @@ SNOW_API snow_status snow_volume_open(snow_context *context, const char *path,
  * same bit for bit as of snow_volume_open (but drafts of few pixels, which are
  * made of all voxels here, and not of a level of fewer):
  *
- *   snow_transfer_make   reads it once, and types of more than 16 bits a few
- *                        times
- *   snow_frame_render    reads it where a volume in memory is encoded, and
- *                        keeps the interesting voxels: for the first picture,
- *                        another opacity function or threshold, and another
- *                        slice axis; encoding AUTO is the bit-map.  And for
- *                        each depth, and each picture of mode iso or by
- *                        another method than sheared, asked for or left to
- *                        footprint: depths and the latter may differ by
- *                        rounding, their slabs are sized by the context's
- *                        limit, and deterministic ones are SNOW_NO_MEMORY
+ *   snow_transfer_new_for_volume   reads it once, and types of more than 16
+ * bits a few times snow_frame_render    reads it where a volume in memory is
+ * encoded, and keeps the interesting voxels: for the first picture, another
+ * opacity function or threshold, and another slice axis; encoding AUTO is the
+ * bit-map.  And for each depth, and each picture of mode iso or by another
+ * method than sheared, asked for or left to footprint: depths and the latter
+ * may differ by rounding, their slabs are sized by the context's limit, and
+ * deterministic ones are SNOW_STATUS_NO_MEMORY
  *
- * All else that looks at voxels refuses it (SNOW_BAD_USAGE),
- * snow_volume_voxels is NULL, and snow_volume_measure finds no finite value.
- * Path and options are copied; the file must stay as it is and where it is.
- * Errors: as snow_volume_inspect; SNOW_BAD_USAGE (standard input, a pipe); of
- * later readings those of snow_volume_open. */
-SNOW_API snow_status snow_volume_stream(snow_context *context, const char *path,
-                                        const snow_volume_options *options,
-                                        uint64_t slab_bytes, snow_volume **out);
+ * All else that looks at voxels refuses it (SNOW_STATUS_BAD_USAGE),
+ * snow_volume_voxels is NULL, and snow_volume_get_statistics finds no finite
+ * value. Path and options are copied; the file must stay as it is and where it
+ * is. Errors: as snow_volume_inspect; SNOW_STATUS_BAD_USAGE (standard input, a
+ * pipe); of later readings those of snow_volume_open. */
+SNOW_API snow_status snow_volume_open_streamed(
+    snow_context *context, const char *path, const snow_volume_options *options,
+    uint64_t slab_bytes, snow_volume **out);
 
 /* Seconds that reading its slabs has taken so far; 0 of other volumes, and not
  * part of the figures of looks and pictures. */
@@ -182,29 +179,30 @@ SNOW_API snow_status snow_volume_open_memory(snow_context *context,
 /* A volume over the caller's own voxels, which are shared, not copied, and
  * must outlive it.  Of `info` the fields dims, type, matrix, slope, intercept,
  * medical and unit count; a matrix of zeros means the identity, slope 0 means
- * 1.  Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY. */
-SNOW_API snow_status snow_volume_share(snow_context *context,
-                                       const snow_volume_info *info,
-                                       const void *voxels, snow_volume **out);
+ * 1.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
+SNOW_API snow_status snow_volume_wrap(snow_context *context,
+                                      const snow_volume_info *info,
+                                      const void *voxels, snow_volume **out);
 
 /* A processor's part of a volume that many share: a box of voxels, with as many
  * more around it as kernels and gradients reach. */
-typedef struct snow_part {
+typedef struct snow_extent {
     int64_t dims[3];   /* of the whole grid */
     int64_t stored[3]; /* voxel of the whole that is the first one here */
     int64_t first[3]; /* voxels of the whole that this processor answers for; */
     int64_t count[3]; /*   the others here are its neighbours'.  0: none */
-} snow_part;
+} snow_extent;
 
 /* Says that a volume is a part of a larger one: its dims are those of the
  * voxels that it stores, its matrix takes their indices to the world.  A
  * picture of it is the part's share of the whole picture, in its place there.
- * Errors: SNOW_BAD_USAGE (boxes that do not lie in one another). */
-SNOW_API snow_status snow_volume_set_part(snow_volume *volume,
-                                          const snow_part *part);
+ * Errors: SNOW_STATUS_BAD_USAGE (boxes that do not lie in one another). */
+SNOW_API snow_status snow_volume_set_extent(snow_volume *volume,
+                                            const snow_extent *part);
 
 /* Where it lies in the whole; a volume that is no part is the whole. */
-SNOW_API void snow_volume_get_part(const snow_volume *volume, snow_part *out);
+SNOW_API void snow_volume_get_extent(const snow_volume *volume,
+                                     snow_extent *out);
 
 /* Promises that shared voxels stay as they are now, until it is called again:
  * frames may keep what they encoded of them from picture to picture.  Without
@@ -215,20 +213,21 @@ SNOW_API void snow_volume_freeze(snow_volume *volume);
 /* A built-in test volume: "cube", "head", "engine", "shells" or
  * "marschner-lobb".  `dims` NULL or 0s: its default size; `seed` moves what
  * is random in it.  The same arguments give the same bytes on every machine.
- * Errors: SNOW_BAD_USAGE (unknown name; sizes below 1), SNOW_NO_MEMORY. */
-SNOW_API snow_status snow_volume_phantom(snow_context *context,
-                                         const char *name,
-                                         const int64_t dims[3], uint64_t seed,
-                                         snow_volume **out);
+ * Errors: SNOW_STATUS_BAD_USAGE (unknown name; sizes below 1),
+ * SNOW_STATUS_NO_MEMORY. */
+SNOW_API snow_status snow_volume_open_phantom(snow_context *context,
+                                              const char *name,
+                                              const int64_t dims[3],
+                                              uint64_t seed, snow_volume **out);
 
 /* Name and one-line description of phantom `index` (from 0); NULL past the
  * end. */
 SNOW_API const char *snow_phantom_name(size_t index);
-SNOW_API const char *snow_phantom_text(size_t index);
+SNOW_API const char *snow_phantom_description(size_t index);
 
 /* Name and description of input format `index` (from 0); NULL past the end. */
 SNOW_API const char *snow_format_name(size_t index);
-SNOW_API const char *snow_format_text(size_t index);
+SNOW_API const char *snow_format_description(size_t index);
 
 /* Name of optional library `index` (from 0) that formats of volumes and
  * pictures need; NULL past the end.  *version is that of the build, NULL where
@@ -242,7 +241,7 @@ SNOW_API const char *snow_library_name(size_t index, const char **version,
 SNOW_API void snow_volume_close(snow_volume *volume);
 
 /* What is known of it; owned by the volume. */
-SNOW_API const snow_volume_info *snow_volume_describe(const snow_volume *);
+SNOW_API const snow_volume_info *snow_volume_get_info(const snow_volume *);
 
 /* The patient's name in UTF-8, where the file tells one: "" where not.  It is
  * in nothing else that the library writes or says.  Owned by the volume. */
@@ -256,21 +255,21 @@ SNOW_API const void *snow_volume_voxels(const snow_volume *volume);
  * double in storage order.  64-bit integers beyond 2^53 are rounded to double
  * first, here and wherever values are looked at.  min and max are NaN when no
  * voxel is finite. */
-typedef struct snow_volume_measures {
+typedef struct snow_volume_statistics {
     int64_t voxels; /* all */
     int64_t finite; /* finite ones */
     double min, max;
     double sum;  /* of values */
     double wsum; /* of value * (linear index mod 1009 + 1) */
-} snow_volume_measures;
+} snow_volume_statistics;
 
-SNOW_API void snow_volume_measure(const snow_volume *volume,
-                                  snow_volume_measures *out);
+SNOW_API void snow_volume_get_statistics(const snow_volume *volume,
+                                         snow_volume_statistics *out);
 
 /* Counts the finite data values in `bins` equal bins from lo to hi; value v
  * falls into bin floor((v - lo) / (hi - lo) * bins), hi itself into the last;
  * values outside are not counted.  `counts` has `bins` entries.
- * Errors: SNOW_BAD_USAGE unless lo < hi, both finite, and bins > 0. */
+ * Errors: SNOW_STATUS_BAD_USAGE unless lo < hi, both finite, and bins > 0. */
 SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
                                            double hi, size_t bins,
                                            uint64_t *counts);
@@ -281,7 +280,7 @@ SNOW_API snow_status snow_volume_histogram(const snow_volume *volume, double lo,
  * how many, and one that does not fit is an error.  Otherwise range[0] to
  * range[1] are spread over all that an integer type of up to 32 bits holds, and
  * values beyond are the ends.  The volume may be closed before the new one.
- * Errors: SNOW_BAD_USAGE, SNOW_NO_MEMORY.
+ * Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY.
  */
 SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
                                          snow_type type, const double range[2],
@@ -290,8 +289,8 @@ SNOW_API snow_status snow_volume_convert(const snow_volume *volume,
 /* Reads "1,4-7,-3": whole numbers and ranges of them, below 2^53 both ways,
  * into `ranges`, which has `room` entries.  False, and nothing changed, for any
  * other text and for more ranges than there is room for. */
-SNOW_API bool snow_labels_read(const char *text, snow_label_range *ranges,
-                               size_t room, size_t *count);
+SNOW_API bool snow_labels_parse(const char *text, snow_label_range *ranges,
+                                size_t room, size_t *count);
 
 /* The same volume where the mask is, and no values (NaN) elsewhere, which no
  * look, mode or encoding shows.  Inside is where the mask's data value is one
@@ -300,7 +299,7 @@ SNOW_API bool snow_labels_read(const char *text, snow_label_range *ranges,
  * float64; slope, intercept and all else stay.  The mask must have the same
  * sizes and, where both tell a place in the same world, lie there to a tenth of
  * a voxel.  Both may be closed before the new one.
- * Errors: SNOW_BAD_INPUT (another grid), SNOW_NO_MEMORY. */
+ * Errors: SNOW_STATUS_BAD_INPUT (another grid), SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
                                       const snow_volume *mask,
                                       const snow_label_range *labels,
@@ -309,8 +308,8 @@ SNOW_API snow_status snow_volume_mask(const snow_volume *volume,
 /* The same volume on one side of `count` planes of the world, four numbers a,
  * b, c, d each, and no values where a x + b y + c z > d of any of them; a voxel
  * in a plane stays.  A plane whose a, b, c are 0 is none.  Type and all else as
- * of a mask. Errors: SNOW_BAD_USAGE (more than SNOW_CLIPS_MOST planes),
- * SNOW_NO_MEMORY. */
+ * of a mask. Errors: SNOW_STATUS_BAD_USAGE (more than SNOW_CLIPS_MAX planes),
+ * SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
                                       const double *planes, size_t count,
                                       snow_volume **out);
@@ -320,13 +319,21 @@ SNOW_API snow_status snow_volume_clip(const snow_volume *volume,
  * and renamed, so that it is whole or absent; an existing one is kept, and an
  * error, unless `overwrite`.  .nii keeps geometry in single precision where
  * that holds it; .npy and .raw keep none, and a remark tells how to open them
- * again.  Errors: SNOW_BAD_OUTPUT, SNOW_BAD_USAGE (unknown suffix; slope and
- * intercept, which .nrrd, .npy and .raw cannot say), SNOW_NO_MEMORY. */
+ * again.  Errors: SNOW_STATUS_BAD_OUTPUT, SNOW_STATUS_BAD_USAGE (unknown
+ * suffix; slope and intercept, which .nrrd, .npy and .raw cannot say),
+ * SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_volume_save(const snow_volume *volume,
                                       const char *path, bool overwrite);
 
 /* Suffix `index` (from 0) that snow_volume_save knows; NULL past the end. */
-SNOW_API const char *snow_volume_suffix(size_t index);
+SNOW_API const char *snow_volume_format_suffix(size_t index);
+
+/* A core that was built without formats (-DSNOW_FORMATS=OFF) has volumes in
+ * memory, their pictures, on one rank or many, and pictures as PNG, NPY and
+ * PFM. It lacks what reads and writes files of volumes: snow_volume_open,
+ * _inspect, _open_memory, _stream, _save and _suffix, snow_format_name and
+ * _text, snow_library_name, snow_ranks_open; and snowglass/recipe.h and tf.h.
+ */
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* base/base.h - what every stage stands on: contexts, errors, checked sizes,
- * memory, time.  Knows nothing of volumes and pictures. */
+/* base/base.h - the foundation of every stage: contexts, errors, checked sizes,
+ * memory, time. It does not depend on volumes and pictures. */
 #ifndef SNOW_BASE_H
 #define SNOW_BASE_H
 
@@ -9,65 +9,82 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Leaves a function when a call in it fails and there is nothing to undo. */
-#define SNOW_TRY(call)                        \
-    do {                                      \
-        snow_status snow_try_status = (call); \
-        if (snow_try_status != SNOW_OK)       \
-            return snow_try_status;           \
+/* Returns from a function with the status of a failed call, if nothing needs to
+ * be undone. */
+#define SNOW_TRY(call)                         \
+    do {                                       \
+        snow_status snow_try_status = (call);  \
+        if (snow_try_status != SNOW_STATUS_OK) \
+            return snow_try_status;            \
     } while (0)
 
 #define SNOW_MESSAGE_BYTES 10240
 
+typedef struct snow_monitor snow_monitor; /* base/monitor.h */
+
 struct snow_context {
     snow_allocator allocator;
-    pthread_mutex_t lock;   /* of bytes, peak and message: the threads of one
-                               picture allocate */
-    snow_notice_fn *notice; /* NULL: nobody listens */
+    pthread_mutex_t lock;    /* of bytes, peak and message: several threads of a
+                                picture allocate */
+    snow_warning_fn *notice; /* NULL: no warnings */
     void *notice_user;
-    uint64_t bytes, peak;   /* held now; the most ever held */
-    uint64_t limit;         /* of bytes; 0: none */
-    struct snow_pool *pool; /* threads (base/parallel.h), NULL until needed */
-    uint64_t serials;       /* given out so far, to tell objects apart */
-    uint64_t bytes_read;    /* from files */
-    void *spare;            /* a block that the next volume may take for its
-                               voxels (volume/stream.c); NULL: none */
+    uint64_t bytes, peak; /* allocated now; the most so far */
+    uint64_t limit;       /* of bytes; 0: none */
+    struct snow_pool
+        *pool;             /* threads (base/thread_pool.h), NULL until needed */
+    uint64_t generations;  /* number of generations given out, which distinguish
+                              objects */
+    uint64_t bytes_read;   /* from files */
+    snow_monitor *monitor; /* of the call or picture at work; NULL: none */
+    snow_progress_fn *progress; /* NULL: none */
+    void *progress_user;
+    double progress_due; /* time of its next call */
+    void *spare;         /* a block that the next volume may use for its voxels
+                            (volume/stream.c); NULL: none */
     size_t spare_bytes;
     char message[SNOW_MESSAGE_BYTES];
 };
 
 /* Sets the context's message and returns `status`, so that a failing function
- * ends with `return snow_fail(...)`.  The text is one line without its end:
- * what is wrong; what to try. */
+ * ends with `return snow_fail(...)`. The text is one line without a newline:
+ * what is wrong: the limit; what to do. */
 snow_status snow_fail(snow_context *context, snow_status status,
                       const char *format, ...) SNOW_PRINTF(3, 4);
 
-/* Puts "prefix: " before the message of a failure below and passes its status
- * on: each layer adds what it knows (the name of the file, say). */
+/* Puts "prefix: " before the message of a failure in a called function and
+ * returns its status: each level adds what it knows (the name of the file,
+ * say). */
 snow_status snow_fail_within(snow_context *context, snow_status status,
                              const char *format, ...) SNOW_PRINTF(3, 4);
 
-/* Tells the listener, if there is one. */
+/* Puts "path: " before the message of a failure in a file, unless it begins
+ * with that already, and passes its status on. */
+snow_status snow_fail_in_file(snow_context *context, snow_status status,
+                              const char *path);
+
+/* Calls the warning function, if there is one. */
 void snow_notify(snow_context *context, const char *format, ...)
     SNOW_PRINTF(2, 3);
 
 /* --- memory -------------------------------------------------------------- */
 
-/* A block of `bytes` bytes (0 counts as 1) aligned to 64, or NULL and a
- * message that gives the size.  Contents are undefined, unless `clear`. */
+/* A block of `bytes` bytes (0 counts as 1) aligned to 64, or NULL with a
+ * message that gives the size. Contents are undefined, except those of
+ * snow_allocate_clear. */
 void *snow_allocate(snow_context *context, size_t bytes);
 void *snow_allocate_clear(snow_context *context, size_t bytes);
 
-/* The same for an array whose size is checked against overflow. */
+/* The same for an array; its size is checked for overflow. */
 void *snow_allocate_array(snow_context *context, uint64_t count, size_t size);
 
-/* Makes `*block` hold at least `bytes`, growing by half again so that a run of
- * appends costs linear time; its first `keep` bytes stay.  `*capacity` is the
- * block's size in bytes, 0 with a NULL block.  On failure nothing changes. */
+/* Makes `*block` hold at least `bytes`, growing by half so that a sequence of
+ * appends costs linear time; its first `keep` bytes are preserved. `*capacity`
+ * is the block's size in bytes, 0 with a NULL block. On failure nothing
+ * changes. */
 snow_status snow_reserve(snow_context *context, void *block_pointer,
                          size_t *capacity, size_t keep, size_t bytes);
 
-/* Frees a block of any of these; NULL is accepted. */
+/* Frees a block from any of these; NULL is accepted. */
 void snow_release(snow_context *context, void *block);
 
 /* --- checked sizes -------------------------------------------------------- */
@@ -79,8 +96,8 @@ bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out);
 /* --- time ------------------------------------------------------------------
  */
 
-/* Seconds of a steady clock, and of this process' processor time; only
- * differences mean something. */
+/* Seconds of a monotonic clock, and of this process' processor time; only
+ * differences are meaningful. */
 double snow_seconds(void);
 double snow_cpu_seconds(void);
 double snow_thread_seconds(void); /* of the calling thread */
@@ -88,25 +105,24 @@ double snow_thread_seconds(void); /* of the calling thread */
 /* --- text ------------------------------------------------------------------
  */
 
-/* Numbers of untrusted text: the whole of `text` must be one number in range
- * (blanks around it are accepted).  False otherwise, with *out untouched.
- * parse_double takes nan and inf too, no hexadecimal numbers, and has a point
- * before the decimals in every locale. */
+/* Parses numbers in untrusted text: the whole of `text` must be one number in
+ * range (blanks around it are accepted). Returns false otherwise, with *out
+ * unchanged. snow_parse_double also accepts nan and inf, rejects hexadecimal
+ * numbers, and uses a decimal point in every locale. */
 bool snow_parse_int64(const char *text, int64_t *out);
 bool snow_parse_double(const char *text, double *out);
 
-/* Copies a number with `point`, the locale's sign, in place of its point.
- * False where it does not fit into `room` bytes, has that sign already, or is
- * hexadecimal. */
+/* Copies a number, replacing its point by `point`, the locale's. Returns false
+ * if it does not fit into `capacity` bytes, already contains the locale's, or
+ * is hexadecimal. */
 bool snow_localize_number(const char *text, const char *point, char *out,
-                          size_t room);
+                          size_t capacity);
 
-/* True when `text` ends with `suffix`, letters of either case. */
+/* True if `text` ends with `suffix`, ignoring case. */
 bool snow_has_suffix(const char *text, const char *suffix);
 
-/* True when two names are one for people: letters of either case, dashes and
- * underscores left out ("CT_Bone" is "ct-bone"), but for a sign in front ("-x"
- * is not "x"). */
+/* True if two names are equal to people: ignoring case, dashes and underscores
+ * ("CT_Bone" is "ct-bone"), except for a leading sign ("-x" is not "x"). */
 bool snow_same_name(const char *a, const char *b);
 
 #endif

@@ -1,23 +1,23 @@
 /* base/module.c - finds and loads modules.
  *
- * libhdf5, libtiff and GDCM bring fifty other libraries: most of what a small
- * picture took, before a byte was read.  So their readers lie in modules.
- * A module is linked with a copy of all that its reader calls (memory,
- * messages, sources): the library keeps no state, so that two copies of it are
- * as good as one, and whatever a reader needs is found when the module is made.
- * The other way, to load libhdf5 itself and look its functions up, takes a
- * table of some fifty functions and of types that its macros hide, tells of a
- * missing one when it is run, and is of no use for the C++ of GDCM.
+ * libhdf5, libtiff and GDCM load fifty other libraries, which took most of the
+ * time of a small picture before a byte was read. So their readers are in
+ * modules. A module is linked with a copy of all that its reader calls (memory,
+ * messages, sources). The library has no state, so two copies are as good as
+ * one, and linking checks that the module is complete. The alternative, loading
+ * libhdf5 itself and looking up its functions, needs a table of some fifty
+ * functions and of types that its macros hide, reports a missing one only at
+ * run time, and does not work for the C++ of GDCM.
  *
- * Modules are looked for beside the object that this code is part of, program
- * or shared library, wherever that was moved to; nowhere else, and never by a
- * path that depends on the current folder:
+ * Modules are searched beside the object that contains this code, program or
+ * shared library, wherever that was moved to. No other folder is searched, and
+ * no path depends on the current folder:
  *
  *   FOLDER/libsnowglass.so    FOLDER/snowglass-0.1/libsnowglass-NAME.so
  *   PREFIX/bin/snowglass      PREFIX/lib/snowglass-0.1/libsnowglass-NAME.so
  *
- * The system's loader counts who has what, so that there is no state here
- * either: who asks twice gets the same. */
+ * The system's loader counts references, so there is no state here either: a
+ * second request returns the same module. */
 #ifndef _XOPEN_SOURCE
 #define _XOPEN_SOURCE 700 /* realpath */
 #endif
@@ -40,7 +40,7 @@
 #define TEXT_OF(name) #name
 #define NAME_OF(name) TEXT_OF(name)
 
-/* A module and what it is looked for beside. */
+/* A module, and the object beside which it is searched. */
 typedef struct module_file {
     char self[PATH_MAX]; /* the program or library, without symbolic links */
     char name[64];       /* "libsnowglass-hdf5.so" */
@@ -49,12 +49,12 @@ typedef struct module_file {
     struct stat found;
 } module_file;
 
-/* In the order of looking: of a library or a build folder, and of a program. */
+/* In search order: beside a library or in a build folder, and for a program. */
 static const char *const folders[] = {SNOW_MODULE_FOLDER, SNOW_MODULE_WAY};
 #define FOLDER_COUNT (sizeof folders / sizeof *folders)
 
-/* The file that this constant was mapped from.  The loader knows it too, but by
- * the name that it was given: relative to where the process was then. */
+/* The file that this constant was mapped from. The loader knows it too, but by
+ * the name it was given, relative to the working directory at that time. */
 static bool find_self(char out[PATH_MAX]) {
     static const char here = 0;
 #ifdef __linux__
@@ -79,7 +79,7 @@ static bool find_self(char out[PATH_MAX]) {
 #endif
 }
 
-/* One folder to look in; without symbolic links, where it is there. */
+/* The name of one folder to search, without symbolic links, if it exists. */
 static void name_folder(module_file *file, size_t index) {
     char folder[PATH_MAX], real[PATH_MAX];
     int length = (int)(strrchr(file->self, '/') - file->self);
@@ -91,7 +91,8 @@ static void name_folder(module_file *file, size_t index) {
     snprintf(file->path, sizeof file->path, "%s/%s", file->folder, file->name);
 }
 
-/* Else *file names the folder where it should be, of a program or library. */
+/* On failure *file names the folder where the module should be, for a program
+ * or library. */
 static bool find_in_folders(module_file *file) {
     for (size_t i = 0; i < FOLDER_COUNT; i++) {
         name_folder(file, i);
@@ -111,22 +112,22 @@ static snow_status find_module(snow_context *context, const char *name,
                                module_file *file) {
     name_module(name, file);
     if (!find_self(file->self))
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "needs %s, which lies beside Snowglass, but where "
-                         "that is cannot be told; mount /proc",
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "needs %s, which is installed beside Snowglass, but "
+                         "that folder cannot be determined; mount /proc",
                          file->name);
     if (!find_in_folders(file))
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "needs %s, which is not in %s; install Snowglass "
-                         "again, with all its files",
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "needs %s, which is not in %s; reinstall Snowglass "
+                         "with all its files",
                          file->name, file->folder);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Whether only those may change it who may change the program as well: what is
- * run must not be what anyone put there.  A group may write that is root's, or
- * the program's that may write there too: so it is in the folders of who works
- * with a group of his own (umask 002). */
+/* Whether only those who may change the program may change the file: others
+ * must not be able to inject code. A group may have write access if it is
+ * root's, or one that may write to the program too: that is usual in folders of
+ * users with their own group (umask 002). */
 static bool is_ours(const struct stat *file, const struct stat *self) {
     bool owned = file->st_uid == 0 || file->st_uid == geteuid() ||
                  file->st_uid == self->st_uid;
@@ -141,23 +142,23 @@ static snow_status check_owner(snow_context *context, const module_file *file) {
     struct stat self, folder;
     if (stat(file->self, &self) == 0 && stat(file->folder, &folder) == 0 &&
         is_ours(&folder, &self) && is_ours(&file->found, &self))
-        return SNOW_OK;
-    return snow_fail(context, SNOW_BAD_INPUT,
-                     "needs %s, which others could change; let it and its "
-                     "folder have the owner of %s, and nobody else write there "
-                     "(chmod go-w)",
-                     file->path, file->self);
+        return SNOW_STATUS_OK;
+    return snow_fail(
+        context, SNOW_STATUS_BAD_INPUT,
+        "needs %s, which other users could change: it and its folder must "
+        "belong to the owner of %s and be writable by nobody else (chmod go-w)",
+        file->path, file->self);
 }
 
-/* The loader maps a cut file without a word, and the process ends where it
- * first touches what is missing.  Tables at the end of an object, which it does
- * not read, tell how long it was. */
+/* The loader maps a truncated file without an error, and the process crashes
+ * when it touches the missing part. Tables at the end of an object, which the
+ * loader does not read, give its original length. */
 static bool is_whole(const module_file *file) {
 #ifdef __linux__
     ElfW(Ehdr) head;
     int descriptor = open(file->path, O_RDONLY | O_CLOEXEC);
     if (descriptor < 0)
-        return true; /* dlopen will say why */
+        return true; /* dlopen reports the reason */
     bool read_all = read(descriptor, &head, sizeof head) == sizeof head;
     close(descriptor);
     return read_all && memcmp(head.e_ident, ELFMAG, SELFMAG) == 0 &&
@@ -170,18 +171,18 @@ static bool is_whole(const module_file *file) {
 #endif
 }
 
-/* The loader has a lock of its own, of which ThreadSanitizer does not know: it
- * would take what one thread writes there and another reads for a race. */
+/* The loader has its own lock, which ThreadSanitizer does not know: it would
+ * report a race between one thread's writes there and another's reads. */
 static pthread_mutex_t loading = PTHREAD_MUTEX_INITIALIZER;
 
-/* All symbols are looked up now: later, a missing one would end the process.
- * A module is never closed, since the libraries in it leave handlers for the
- * end of the process. */
+/* All symbols are resolved now: later, a missing one would end the process. A
+ * module is never closed, since its libraries register handlers for the end of
+ * the process. */
 static void *load(const char *path, const char **why) {
     pthread_mutex_lock(&loading);
     void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
     void *parts = handle ? dlsym(handle, NAME_OF(SNOW_MODULE_SYMBOL)) : NULL;
-    *why = parts ? NULL : dlerror(); /* of this thread, until it asks again */
+    *why = parts ? NULL : dlerror(); /* of this thread, until its next call */
     pthread_mutex_unlock(&loading);
     return parts;
 }
@@ -191,18 +192,18 @@ static snow_status open_module(snow_context *context, const module_file *file,
     const char *why;
     const snow_module *module = load(file->path, &why);
     if (!module)
-        return snow_fail(context, SNOW_BAD_INPUT,
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "needs %s, which cannot be loaded (%s); install the "
-                         "library that it lacks, or Snowglass again",
-                         file->path, why ? why : "no reason told");
+                         "missing library, or reinstall Snowglass",
+                         file->path, why ? why : "no reason given");
     if (strcmp(module->stamp, snow_module_stamp) != 0)
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "needs %s, which is of another build, %.64s where "
-                         "this one is %s; install both from one, and start "
-                         "the program again",
-                         file->path, module->stamp, snow_module_stamp);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "needs %s, which is of another build, %.64s instead of %s; install "
+            "both from one build, and restart the program",
+            file->path, module->stamp, snow_module_stamp);
     *out = module;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_module_load(snow_context *context, const char *name,
@@ -211,10 +212,10 @@ snow_status snow_module_load(snow_context *context, const char *name,
     SNOW_TRY(find_module(context, name, &file));
     SNOW_TRY(check_owner(context, &file));
     if (!is_whole(&file))
-        return snow_fail(context, SNOW_BAD_INPUT,
-                         "needs %s, which is cut or damaged; install Snowglass "
-                         "again",
-                         file.path);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "needs %s, which is truncated or damaged; reinstall Snowglass",
+            file.path);
     return open_module(context, &file, out);
 }
 
@@ -224,14 +225,14 @@ bool snow_module_is_there(const char *name) {
     return find_self(file.self) && find_in_folders(&file);
 }
 
-#else /* all readers are linked */
+#else /* all readers are linked in */
 
 snow_status snow_module_load(snow_context *context, const char *name,
                              const snow_module **out) {
     (void)out;
-    return snow_fail(context, SNOW_FAILED,
-                     "asks for the module %s of a build that has none; tell "
-                     "Snowglass' authors",
+    return snow_fail(context, SNOW_STATUS_FAILED,
+                     "requires the module %s, but this build has no modules; "
+                     "report this to Snowglass' authors",
                      name);
 }
 

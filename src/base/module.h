@@ -1,9 +1,8 @@
 /* base/module.h - parts of the library that are loaded when a file needs them.
  *
  * A module is a shared object of ours, libsnowglass-NAME.so, in the folder of
- * modules beside the library; module.c tells why and where.  Files that are
- * compiled with SNOW_LOADS are the side that loads: of them, the readers are
- * but a face over the module. */
+ * modules beside the library; module.c explains why and where. Files compiled
+ * with SNOW_LOADS are the loading side: their readers only call the module. */
 #ifndef SNOW_MODULE_H
 #define SNOW_MODULE_H
 
@@ -17,37 +16,38 @@ struct snow_format;
 struct snow_image_format;
 struct gdcm_frame;
 
-/* What a module holds; NULL where it has no such part. */
+/* The contents of a module; NULL for parts that it lacks. */
 typedef struct snow_module {
-    const char *stamp; /* of its build; stays first, whatever comes behind it */
+    const char *stamp; /* of its build; always the first field */
     const struct snow_format *volume;
     const struct snow_image_format *picture;
     bool (*unpack)(struct gdcm_frame *frame, const void *packed, size_t size,
-                   void *out, size_t room); /* as volume/gdcm_bridge.h */
+                   void *out,
+                   size_t capacity); /* as formats/dicom/gdcm_bridge.h */
     snow_status (*expect_blosc)(snow_context *context, const char *name,
                                 const unsigned char *packed, size_t size,
-                                uint64_t bytes); /* as volume/zarr.h */
+                                uint64_t bytes); /* as formats/zarr/zarr.h */
     snow_status (*unpack_blosc)(snow_context *context, const char *name,
                                 const unsigned char *packed, unsigned char *out,
                                 uint64_t bytes);
 } snow_module;
 
-/* The one name that a module shows: `SNOW_API const snow_module
+/* The one symbol that a module exports: `SNOW_API const snow_module
  * SNOW_MODULE_SYMBOL = {...}`. */
 #define SNOW_MODULE_SYMBOL snow_module_parts
 
-/* The version, and a digest of the sources that both sides are made of: the
- * inner structures that they share are those of one tree only. */
+/* The version, and a digest of the sources of both sides, which share internal
+ * structures: these must come from one tree. */
 extern const char snow_module_stamp[];
 
 /* The module of a name ("hdf5"), which stays loaded until the process ends.
- * Any threads may ask at the same time.  Errors: SNOW_BAD_INPUT, when it is
- * missing, damaged, of another build, in the hands of others than the
- * program's owner, or lacks a library. */
+ * Thread-safe. Errors: SNOW_STATUS_BAD_INPUT, if it is missing, damaged, of
+ * another build, writable by others than the program's owner, or lacks a
+ * library. */
 snow_status snow_module_load(snow_context *context, const char *name,
                              const snow_module **out);
 
-/* Whether it is there, by its name alone: nothing is loaded. */
+/* Whether it exists, by its name alone: nothing is loaded. */
 bool snow_module_is_there(const char *name);
 
 #endif

@@ -1,5 +1,5 @@
-/* base/processors.c - how many processors this process may use: those of its
- * affinity, and no more than the quotas of its control groups (cgroup v2 and
+/* base/processors.c - the number of processors this process may use: those of
+ * its affinity, and at most the quotas of its control groups (cgroup v2 and
  * v1), rounded up. */
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "base/base.h"
@@ -13,7 +13,7 @@
 
 #define GROUPS "/sys/fs/cgroup"
 
-/* Processors of a quota and its period in microseconds; 0: no limit. */
+/* Processors for a quota and its period in microseconds; 0: no limit. */
 static int processors_of(long long quota, long long period) {
     if (quota <= 0 || period <= 0)
         return 0;
@@ -21,7 +21,7 @@ static int processors_of(long long quota, long long period) {
     return whole < INT_MAX ? (int)whole : 0;
 }
 
-/* One number of a file; 0 when there is none. */
+/* One number from a file; 0 if there is none. */
 static long long number_in(const char *path) {
     long long number = 0;
     FILE *file = fopen(path, "r");
@@ -33,7 +33,7 @@ static long long number_in(const char *path) {
     return number;
 }
 
-/* The quota of one group of v2: "150000 100000", or "max 100000". */
+/* The quota of one v2 group: "150000 100000", or "max 100000". */
 static int quota_of(const char *group) {
     char path[PATH_MAX];
     long long quota = 0, period = 0;
@@ -50,7 +50,7 @@ static int lesser_limit(int a, int b) {
     return a == 0 || (b > 0 && b < a) ? b : a;
 }
 
-/* A group is held by the limits of those above it too. */
+/* The limits of its parent groups apply to a group too. */
 static int quota_along(char *group) {
     int limit = quota_of("");
     while (*group) {
@@ -76,7 +76,8 @@ static int cgroup_limit(void) {
     return lesser_limit(quota_along(own), old);
 }
 
-/* More processors than a cpu_set_t has bits are asked for by number. */
+/* The number of processors is used if there are more than bits of a cpu_set_t.
+ */
 static int affinity(void) {
     cpu_set_t set;
     if (sched_getaffinity(0, sizeof set, &set) == 0)

@@ -1,4 +1,4 @@
-/* base/text.c - numbers and names out of text that nobody vouches for. */
+/* base/text.c - parses numbers and names in untrusted text. */
 #include "base/base.h"
 
 #include <ctype.h>
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* True when nothing but blanks follows. */
+/* True if only blanks follow. */
 static bool at_end(const char *text) {
     while (isspace((unsigned char)*text))
         text++;
@@ -24,23 +24,23 @@ bool snow_parse_int64(const char *text, int64_t *out) {
     return true;
 }
 
-/* Longer than any double's exact decimal form, of which the smallest number has
- * the longest: 1077 letters. */
+/* Longer than any double's exact decimal form, which is longest for the
+ * smallest number: 1077 characters. */
 #define NUMBER_BYTES 1200
 
-/* A hexadecimal number is refused along the way: no format has them, and
- * strtod would take them. */
+/* Hexadecimal numbers are rejected here: no format has them, but strtod accepts
+ * them. */
 bool snow_localize_number(const char *text, const char *point, char *out,
-                          size_t room) {
+                          size_t capacity) {
     size_t length = strlen(point), used = 0;
     for (; *text; text++) {
         bool is_point = *text == '.';
-        /* "1,5" is no number in a file, whatever it is to the user. */
+        /* "1,5" is not a number in a file, whatever the locale. */
         if (*text == 'x' || *text == 'X' ||
             (!is_point && length && !strncmp(text, point, length)))
             return false;
         size_t wanted = is_point ? length : 1;
-        if (wanted >= room - used)
+        if (wanted >= capacity - used)
             return false;
         memcpy(out + used, is_point ? point : text, wanted);
         used += wanted;
@@ -49,10 +49,10 @@ bool snow_localize_number(const char *text, const char *point, char *out,
     return true;
 }
 
-/* strtod goes by the locale of the program around the library, which the
- * library must neither trust nor change: files have a point, and get the
- * locale's sign for it here.  nl_langinfo, because localeconv's answer is
- * shared by all threads. */
+/* strtod uses the locale of the calling program, which the library must neither
+ * trust nor change: files have a point, which is replaced here by that of the
+ * locale. nl_langinfo is used because localeconv's result is shared by all
+ * threads. */
 bool snow_parse_double(const char *text, double *out) {
     char *end, number[NUMBER_BYTES];
     if (!snow_localize_number(text, nl_langinfo(RADIXCHAR), number,
@@ -60,7 +60,8 @@ bool snow_parse_double(const char *text, double *out) {
         return false;
     errno = 0;
     double value = strtod(number, &end);
-    /* 1e999 is no infinity; a number too small for a double is 0. */
+    /* 1e999 is not accepted as infinity; a number too small for a double is 0.
+     */
     bool overflow = errno == ERANGE && (value > 1 || value < -1);
     if (end == number || overflow || !at_end(end))
         return false;
@@ -79,8 +80,9 @@ bool snow_has_suffix(const char *text, const char *suffix) {
     return true;
 }
 
-/* What of a name counts: the sign in front, then all but dashes and
- * underscores.  ASCII only, so that no locale changes what a name means. */
+/* The significant characters of a name: the leading sign, then all except
+ * dashes and underscores. ASCII only, so that no locale changes the meaning of
+ * a name. */
 static int next_letter(const char *name, size_t *at) {
     while (*at > 0 && (name[*at] == '-' || name[*at] == '_'))
         ++*at;

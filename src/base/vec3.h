@@ -20,7 +20,7 @@ static inline void snow_cross(const double a[3], const double b[3],
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Makes a unit vector of a vector that is not 0. */
+/* Normalizes a vector that is not 0. */
 static inline void snow_normalize(double a[3]) {
     double length = snow_length(a);
     for (int i = 0; i < 3; i++)

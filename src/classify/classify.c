@@ -1,14 +1,14 @@
-/* classify/classify.c - transfer function applied: native value to sample
+/* classify/classify.c - applies the transfer function: native value to sample
  * (model, points 3 and 6).
  *
- * A voxel is interesting when its opacity is above 0 and, for a threshold
- * T > 0, 255 a > T + 0.0001; a is the opacity before it is corrected for the
- * path length, with the gradient opacity where there is one.  What is
- * uninteresting contributes nothing. */
+ * A voxel is interesting when its opacity is above 0 and, for a threshold T >
+ * 0, 255 a > T + 0.0001. Here a is the opacity before the correction for path
+ * length, times the gradient opacity if there is one. Voxels that are not
+ * interesting contribute nothing. */
 #include "classify/classify.h"
-#include "classify/keep_bytes.h"
+#include "classify/classify_u8.h"
 
-#include "base/power.h"
+#include "base/exp_log.h"
 
 #include <string.h>
 
@@ -49,22 +49,22 @@
 #define ROW_NAME classify_row_float64
 #include "classify/classify_row.tmpl.h"
 
-/* Per scalar type: its row loop, and the native values that a table spans
- * (none for types too wide for one). */
+/* Per scalar type: its row loop, and the native values that a table spans (0
+ * values for types too wide for a table). */
 static const struct type_row {
     snow_classify_row_fn *classify_row;
     int32_t lowest, values;
 } type_rows[] = {
-    [SNOW_INT8] = {classify_row_int8, INT8_MIN, 256},
-    [SNOW_UINT8] = {classify_row_uint8, 0, 256},
-    [SNOW_INT16] = {classify_row_int16, INT16_MIN, 65536},
-    [SNOW_UINT16] = {classify_row_uint16, 0, 65536},
-    [SNOW_INT32] = {classify_row_int32, 0, 0},
-    [SNOW_UINT32] = {classify_row_uint32, 0, 0},
-    [SNOW_INT64] = {classify_row_int64, 0, 0},
-    [SNOW_UINT64] = {classify_row_uint64, 0, 0},
-    [SNOW_FLOAT32] = {classify_row_float32, 0, 0},
-    [SNOW_FLOAT64] = {classify_row_float64, 0, 0},
+    [SNOW_TYPE_INT8] = {classify_row_int8, INT8_MIN, 256},
+    [SNOW_TYPE_UINT8] = {classify_row_uint8, 0, 256},
+    [SNOW_TYPE_INT16] = {classify_row_int16, INT16_MIN, 65536},
+    [SNOW_TYPE_UINT16] = {classify_row_uint16, 0, 65536},
+    [SNOW_TYPE_INT32] = {classify_row_int32, 0, 0},
+    [SNOW_TYPE_UINT32] = {classify_row_uint32, 0, 0},
+    [SNOW_TYPE_INT64] = {classify_row_int64, 0, 0},
+    [SNOW_TYPE_UINT64] = {classify_row_uint64, 0, 0},
+    [SNOW_TYPE_FLOAT32] = {classify_row_float32, 0, 0},
+    [SNOW_TYPE_FLOAT64] = {classify_row_float64, 0, 0},
 };
 
 bool snow_classify_value(const snow_classifier *c, double native,
@@ -105,7 +105,7 @@ static snow_status make_table(snow_context *context, snow_classifier *c,
         c->keep[i] = snow_classify_value(c, native, c->table + i * channels) ||
                      c->keep_all;
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_classifier_make(snow_context *context,
@@ -122,17 +122,18 @@ snow_status snow_classifier_make(snow_context *context,
     c->threshold = options->threshold;
     c->exponent = options->opacity_exponent;
     c->classify_row = row->classify_row;
-    c->keep_bytes = snow_keep_bytes_pick(options->isa);
-    c->fades = snow_transfer_fades(transfer);
-    if (c->fades) {
-        SNOW_TRY(snow_fader_init(context, volume, transfer, c->threshold,
-                                 options->isa, &c->fader));
-        c->fade_premultiply = c->premultiply;
-        c->fade_exponent = c->exponent;
+    c->classify_u8 = snow_classify_u8_pick(options->isa);
+    c->gradient_factors = snow_transfer_has_gradient_opacity(transfer);
+    if (c->gradient_factors) {
+        SNOW_TRY(snow_gradient_opacity_init(context, volume, transfer,
+                                            c->threshold, options->isa,
+                                            &c->gradient_opacity));
+        c->gradient_opacity_premultiply = c->premultiply;
+        c->gradient_opacity_exponent = c->exponent;
         c->premultiply = false;
         c->exponent = 1;
     }
-    return row->values ? make_table(context, c, row) : SNOW_OK;
+    return row->values ? make_table(context, c, row) : SNOW_STATUS_OK;
 }
 
 void snow_classifier_fini(snow_context *context, snow_classifier *c) {
@@ -153,15 +154,17 @@ const void *snow_row_voxels(const snow_volume *volume,
            (size_t)first * snow_type_size(volume->info.type);
 }
 
-/* What a gradient opacity makes of up to SNOW_FADE_BLOCK voxels of a row: those
- * that stay interesting move up to `kept` and `out`, which lie at or before
- * where they come from.  Returns their number.  Where every voxel is wanted,
- * opacity counts and the threshold does not, as it is without. */
-static size_t fade_block(const snow_classifier *c, const double *factors,
-                         size_t count, const uint32_t *columns,
-                         const float *samples, uint32_t *kept, float *out) {
+/* Applies the gradient opacity to up to SNOW_GRADIENT_OPACITY_BLOCK voxels of a
+ * row. Voxels that stay interesting are moved up to `kept` and `out`, which lie
+ * at or before their sources. Returns their number. With keep_all every voxel
+ * stays and the threshold is ignored, as without a gradient opacity. */
+static size_t apply_gradient_opacity_block(const snow_classifier *c,
+                                           const double *factors, size_t count,
+                                           const uint32_t *columns,
+                                           const float *samples, uint32_t *kept,
+                                           float *out) {
     size_t channels = (size_t)c->channels, stay = 0;
-    double opacities[SNOW_FADE_BLOCK];
+    double opacities[SNOW_GRADIENT_OPACITY_BLOCK];
     for (size_t n = 0; n < count; n++) {
         double opacity = (double)samples[(n + 1) * channels - 1] * factors[n];
         kept[stay] = columns[n];
@@ -170,9 +173,10 @@ static size_t fade_block(const snow_classifier *c, const double *factors,
         opacities[stay] = opacity;
         stay += c->keep_all || snow_is_interesting(opacity, c->threshold);
     }
-    snow_fade_correct(&c->fader, c->fade_exponent, stay, opacities);
+    snow_gradient_opacity_correct(
+        &c->gradient_opacity, c->gradient_opacity_exponent, stay, opacities);
     for (size_t n = 0; n < stay; n++) {
-        double weight = c->fade_premultiply ? opacities[n] : 1;
+        double weight = c->gradient_opacity_premultiply ? opacities[n] : 1;
         float *sample = out + n * channels;
         for (size_t i = 0; i + 1 < channels; i++)
             sample[i] = (float)((double)sample[i] * weight);
@@ -181,46 +185,54 @@ static size_t fade_block(const snow_classifier *c, const double *factors,
     return stay;
 }
 
-/* The same for the `count` voxels of a row from entry `first` of the strip on.
- */
-static size_t fade_row(const snow_classifier *c, const snow_fade_row *row,
-                       size_t first, size_t count, snow_strip *strip) {
+/* The same for the `count` voxels of a row from entry `first` of the row block
+ * on. */
+static size_t apply_gradient_opacity_row(const snow_classifier *c,
+                                         const snow_gradient_opacity_row *row,
+                                         size_t first, size_t count,
+                                         snow_row_block *row_block) {
     size_t channels = (size_t)c->channels, stay = 0;
-    uint32_t *columns = strip->columns + first;
-    float *samples = strip->samples + first * channels;
-    for (size_t n = 0; n < count; n += SNOW_FADE_BLOCK) {
+    uint32_t *columns = row_block->columns + first;
+    float *samples = row_block->samples + first * channels;
+    for (size_t n = 0; n < count; n += SNOW_GRADIENT_OPACITY_BLOCK) {
         size_t left = count - n;
-        size_t some = left < SNOW_FADE_BLOCK ? left : SNOW_FADE_BLOCK;
-        double factors[SNOW_FADE_BLOCK];
-        snow_fade_factors(&c->fader, row, columns + n, some, factors);
-        stay +=
-            fade_block(c, factors, some, columns + n, samples + n * channels,
-                       columns + stay, samples + stay * channels);
+        size_t some = left < SNOW_GRADIENT_OPACITY_BLOCK
+                          ? left
+                          : SNOW_GRADIENT_OPACITY_BLOCK;
+        double factors[SNOW_GRADIENT_OPACITY_BLOCK];
+        snow_gradient_opacity_factors(&c->gradient_opacity, row, columns + n,
+                                      some, factors);
+        stay += apply_gradient_opacity_block(
+            c, factors, some, columns + n, samples + n * channels,
+            columns + stay, samples + stay * channels);
     }
     return stay;
 }
 
-void snow_classify_strip(const snow_classifier *classifier,
-                         const snow_placement *placement, int64_t slice,
-                         int64_t first, int64_t rows, snow_strip *strip) {
-    strip->slice = slice;
-    strip->first_row = first;
-    strip->rows = rows;
-    strip->count = 0;
+void snow_classify_row_block(const snow_classifier *classifier,
+                             const snow_placement *placement, int64_t slice,
+                             int64_t first, int64_t rows,
+                             snow_row_block *row_block) {
+    row_block->slice = slice;
+    row_block->first_row = first;
+    row_block->rows = rows;
+    row_block->count = 0;
     for (int64_t row = 0; row < rows; row++) {
         int64_t stride;
         const void *voxels = snow_row_voxels(classifier->volume, placement,
                                              slice, first + row, &stride);
         size_t count = classifier->classify_row(
             classifier, voxels, stride, placement->columns,
-            strip->columns + strip->count,
-            strip->samples + strip->count * (size_t)classifier->channels);
-        if (classifier->fades)
-            count =
-                fade_row(classifier,
-                         &(snow_fade_row){placement, slice, first + row, false},
-                         strip->count, count, strip);
-        strip->count += count;
-        strip->row_end[row] = strip->count;
+            row_block->columns + row_block->count,
+            row_block->samples +
+                row_block->count * (size_t)classifier->channels);
+        if (classifier->gradient_factors)
+            count = apply_gradient_opacity_row(
+                classifier,
+                &(snow_gradient_opacity_row){placement, slice, first + row,
+                                             false},
+                row_block->count, count, row_block);
+        row_block->count += count;
+        row_block->row_end[row] = row_block->count;
     }
 }

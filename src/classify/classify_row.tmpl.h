@@ -3,9 +3,9 @@
  *
  *   ROW_TYPE    C type of a voxel
  *   ROW_NAME    name of the function
- *   ROW_LOWEST  the smallest value of the type: with it the row is classified
- *               by the table; without it every voxel is evaluated
- *   ROW_BYTES   for the types of 8 bits: they may have faster loops
+ *   ROW_LOWEST  the smallest value of the type: if defined, rows are classified
+ *               by table; otherwise every voxel is evaluated
+ *   ROW_BYTES   defined for 8-bit types, which may have faster loops
  *
  * All are undefined at the end. */
 
@@ -16,13 +16,13 @@ static size_t ROW_NAME(const snow_classifier *c, const void *voxels,
     size_t count = 0;
 #ifdef ROW_LOWEST
 #ifdef ROW_BYTES
-    if (c->keep_bytes && stride == 1)
-        count = c->keep_bytes(c->keep, voxels, (unsigned char)(ROW_LOWEST),
-                              columns, kept);
+    if (c->classify_u8 && stride == 1)
+        count = c->classify_u8(c->keep, voxels, (unsigned char)(ROW_LOWEST),
+                               columns, kept);
     else
 #endif
-        /* The places first, without a branch: a voxel that is not kept is
-         * overwritten by the next one. */
+        /* First the columns, without a branch: the next voxel overwrites one
+         * that is not kept. */
         for (int64_t i = 0; i < columns; i++) {
             kept[count] = (uint32_t)i;
             count += c->keep[(int)voxel[i * stride] - (ROW_LOWEST)];

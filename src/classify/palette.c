@@ -1,22 +1,22 @@
 /* classify/palette.c - the samples of all codes for one view.
  *
- * What a code looks like is made once for a transfer function: its colour, its
- * opacity a, and log(1 - a).  A view then costs one exponential a code (model,
- * point 6), by base/power.h, in loops that a compiler carries to vectors.
- * Whether the looks still hold is told by a key: a copy of all numbers that
- * they are made of. */
-#include "base/parallel.h"
-#include "base/power.h"
+ * The look of a code is made once for a transfer function: its colour, its
+ * opacity a, and log(1 - a). A view then costs one exponential for each code
+ * (model, point 6), by base/exp_log.h, in loops that the compiler vectorizes. A
+ * key, a copy of all numbers that determine the looks, shows whether they are
+ * still valid. */
+#include "base/exp_log.h"
+#include "base/thread_pool.h"
 #include "classify/codes.h"
 #include "simd/isa.h"
 
 #include <string.h>
 
-/* Codes of one item of work: few enough that it stays in the first-level
- * cache, and that 256 codes are one item. */
+/* Codes of one work item: few enough to stay in the first-level cache, and 256
+ * codes are one item. */
 #define BLOCK 1024
 
-/* The loops of one level, in classify/palette.tmpl.h. */
+/* The loops of one instruction set, in classify/palette.tmpl.h. */
 typedef struct palette_kernels {
     void (*clear)(const double *opacities, size_t count, double *clarities);
     void (*correct)(const double *clarities, size_t count, double exponent,
@@ -49,20 +49,20 @@ static const palette_kernels *best_kernels(void) {
     return &kernels_scalar;
 }
 
-/* What making looks or samples needs, for the threads. */
+/* What the threads need to make looks or samples. */
 typedef struct palette_job {
-    const snow_coder *coder;
+    const snow_quantizer *quantizer;
     const snow_transfer *transfer;
     snow_palette *palette;
     double exponent;
     bool premultiply;
     const palette_kernels *kernels;
-    bool clear; /* logarithms in the place of opacities */
+    bool clear; /* store logarithms in place of opacities */
 } palette_job;
 
 static size_t block_end(const palette_job *job, size_t first) {
     size_t end = first + BLOCK;
-    return end < job->coder->codes ? end : job->coder->codes;
+    return end < job->quantizer->codes ? end : job->quantizer->codes;
 }
 
 /* --- looks ----------------------------------------------------------------
@@ -77,7 +77,7 @@ static void make_looks(void *user, int64_t item, int worker) {
     snow_transfer_hint hint = {0, 0};
     double opacities[BLOCK];
     for (size_t n = 0; n < count; n++) {
-        double value = snow_coder_value(job->coder, first + n), rgba[4];
+        double value = snow_quantizer_value(job->quantizer, first + n), rgba[4];
         float *look = palette->looks + (first + n) * channels;
         snow_transfer_near(job->transfer, value, &hint, rgba);
         for (size_t i = 0; i + 1 < channels; i++)
@@ -95,22 +95,21 @@ static size_t add_numbers(double *key, size_t count, const void *numbers,
     return count + bytes / sizeof *key;
 }
 
-/* Writes all that looks depend on into the palette's key; *changed tells
- * whether it was another one. */
-static snow_status take_key(snow_context *context, const snow_coder *coder,
+/* Writes all numbers that looks depend on into the palette's key; *changed is
+ * set to whether it differs from the old key. */
+static snow_status take_key(snow_context *context,
+                            const snow_quantizer *quantizer,
                             const snow_transfer *transfer,
                             snow_palette *palette, bool *changed) {
-    const double head[] = {(double)coder->type,
-                           coder->slope,
-                           coder->intercept,
-                           (double)transfer->log,
-                           (double)transfer->color_count,
-                           (double)transfer->opacity_count};
-    size_t stops = coder->stop_count * sizeof *coder->stops;
+    const double head[] = {
+        (double)quantizer->type,       quantizer->slope,
+        quantizer->intercept,          (double)transfer->log,
+        (double)transfer->color_count, (double)transfer->opacity_count};
+    size_t stops = quantizer->stop_count * sizeof *quantizer->stops;
     size_t colors = transfer->color_count * sizeof *transfer->colors;
     size_t opacities = transfer->opacity_count * sizeof *transfer->opacities;
     size_t bytes = sizeof head + stops + colors + opacities;
-    /* Both at once, so that a second picture takes no memory. */
+    /* Both buffers at once, so that a second picture allocates nothing. */
     SNOW_TRY(snow_reserve(context, &palette->key, &palette->key_capacity,
                           palette->key_count * sizeof *palette->key, bytes));
     SNOW_TRY(snow_reserve(context, &palette->next_key,
@@ -118,7 +117,7 @@ static snow_status take_key(snow_context *context, const snow_coder *coder,
     double *key = palette->next_key;
     size_t count = add_numbers(key, 0, head, sizeof head);
     if (stops)
-        count = add_numbers(key, count, coder->stops, stops);
+        count = add_numbers(key, count, quantizer->stops, stops);
     count = add_numbers(key, count, transfer->colors, colors);
     count = add_numbers(key, count, transfer->opacities, opacities);
     *changed = count != palette->key_count ||
@@ -129,14 +128,14 @@ static snow_status take_key(snow_context *context, const snow_coder *coder,
     palette->key_capacity = capacity;
     palette->key = key;
     palette->key_count = count;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* --- samples --------------------------------------------------------------
  */
 
-/* The opacities of a block for the exponent; looks of exponent 1 are taken as
- * they are. */
+/* The opacities of a block for the exponent; with exponent 1 those of the looks
+ * are used unchanged. */
 static void opacities_of(const palette_job *job, size_t first, size_t count,
                          float *opacities) {
     const snow_palette *palette = job->palette;
@@ -175,15 +174,15 @@ static void fill_color(const float *looks, const float *opacities, size_t count,
     }
 }
 
-/* Bands may hold voxels of codes that are not interesting any more. */
+/* Bands may hold voxels whose codes are no longer interesting. */
 static void clear_dull(const palette_job *job, size_t first, size_t count) {
-    const snow_coder *coder = job->coder;
+    const snow_quantizer *quantizer = job->quantizer;
     size_t channels = (size_t)job->palette->channels;
     float *samples = job->palette->samples + first * channels;
     for (size_t i = 0; i < count; i++)
         for (size_t c = 0; c < channels; c++)
             samples[i * channels + c] =
-                coder->keep[first + i] ? samples[i * channels + c] : 0;
+                quantizer->keep[first + i] ? samples[i * channels + c] : 0;
 }
 
 static void make_samples(void *user, int64_t item, int worker) {
@@ -201,7 +200,7 @@ static void make_samples(void *user, int64_t item, int worker) {
     else
         fill_color(palette->looks + place, opacities, count, job->premultiply,
                    palette->samples + place);
-    if (snow_type_size(job->coder->type) <= 2)
+    if (snow_type_size(job->quantizer->type) <= 2)
         clear_dull(job, first, count);
 }
 
@@ -220,42 +219,42 @@ static snow_status make_room(snow_context *context, size_t codes,
                         codes * sizeof *palette->clarities);
 }
 
-/* Looks where they are out of date, and samples. */
+/* Makes the looks if they are out of date, then the samples. */
 static snow_status make_palette(snow_context *context, palette_job *job,
                                 int threads) {
-    const snow_coder *coder = job->coder;
+    const snow_quantizer *quantizer = job->quantizer;
     const snow_transfer *transfer = job->transfer;
     snow_palette *palette = job->palette;
-    int64_t items = (int64_t)((coder->codes + BLOCK - 1) / BLOCK);
+    int64_t items = (int64_t)((quantizer->codes + BLOCK - 1) / BLOCK);
     bool changed;
-    SNOW_TRY(take_key(context, coder, transfer, palette, &changed));
+    SNOW_TRY(take_key(context, quantizer, transfer, palette, &changed));
     if (changed) {
         size_t count = palette->key_count;
-        palette->key_count = 0; /* no key, until there are looks for it */
+        palette->key_count = 0; /* invalid until the looks are made */
         palette->channels = transfer->grey ? 2 : 4;
-        SNOW_TRY(make_room(context, coder->codes, palette));
-        snow_parallel(context, threads, items, make_looks, job);
+        SNOW_TRY(make_room(context, quantizer->codes, palette));
+        SNOW_TRY(snow_parallel(context, threads, items, make_looks, job));
         palette->key_count = count;
     }
-    snow_parallel(context, threads, items, make_samples, job);
-    return SNOW_OK;
+    return snow_parallel(context, threads, items, make_samples, job);
 }
 
-snow_status snow_palette_make(snow_context *context, const snow_coder *coder,
+snow_status snow_palette_make(snow_context *context,
+                              const snow_quantizer *quantizer,
                               const snow_transfer *transfer, double exponent,
                               bool premultiply, int threads,
                               snow_palette *palette) {
-    palette_job job = {coder,       transfer,       palette, exponent,
+    palette_job job = {quantizer,   transfer,       palette, exponent,
                        premultiply, best_kernels(), false};
     return make_palette(context, &job, threads);
 }
 
 snow_status snow_palette_make_clear(snow_context *context,
-                                    const snow_coder *coder,
+                                    const snow_quantizer *quantizer,
                                     const snow_transfer *transfer, int threads,
                                     snow_palette *palette) {
-    palette_job job = {coder, transfer,       palette, 1,
-                       false, best_kernels(), true};
+    palette_job job = {quantizer, transfer,       palette, 1,
+                       false,     best_kernels(), true};
     return make_palette(context, &job, threads);
 }
 

@@ -1,7 +1,6 @@
 /* classify/palette.tmpl.h - clarities of opacities, and opacities of a view
- * from clarities, in loops that the compiler carries to vectors.  For one level
- * of simd/select.h, which is to be included before.  All levels make the same
- * bits. */
+ * from clarities, in loops that the compiler vectorizes, for one instruction
+ * set. Include simd/select.h first. All instruction sets give the same bits. */
 
 TARGET static void NAME(clear)(const double *restrict opacities, size_t count,
                                double *restrict clarities) {

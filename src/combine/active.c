@@ -1,8 +1,9 @@
-/* combine/active.c - masks of active pixels, and laying masked pixels over one
- * another without unpacking what is not active (see active.h).
+/* combine/active.c - masks of active pixels, and compositing of masked pixels
+ * without unpacking the inactive ones (see active.h).
  *
  * Over is that of composite/over.c, front += (1 - front.alpha) * back, with the
- * same operations on each float; on nothing it is what lies behind, exactly. */
+ * same operations on each float. Where the front is empty the result is the
+ * back, exactly. */
 #include "combine/active.h"
 
 #include "simd/vec_scalar.h"
@@ -27,9 +28,9 @@ static int64_t population_of(const uint64_t *words, int64_t count) {
 /* --- the local image ------------------------------------------------------ */
 
 /* The mask of `count` <= 64 pixels of line y from column x on, all drawn. */
-static uint64_t look(const snow_pixel_loops *loops,
-                     const snow_exchange_order *order, int y, int x,
-                     int count) {
+static uint64_t active_mask(const snow_pixel_loops *loops,
+                            const snow_exchange_params *order, int y, int x,
+                            int count) {
     if (order->rehearsal)
         return order->rehearsal->active(order->rehearsal->user, y, x, count);
     return loops->look(order->pixels + (size_t)y * order->stride +
@@ -37,8 +38,8 @@ static uint64_t look(const snow_pixel_loops *loops,
                        count);
 }
 
-/* The drawn columns of line y among x0 .. x1 - 1; none where x0 >= x1. */
-static void clip(const snow_exchange_order *order, int y, int *x0, int *x1) {
+/* Clips columns x0 .. x1 - 1 of line y to the drawn ones; none if x0 >= x1. */
+static void clip(const snow_exchange_params *order, int y, int *x0, int *x1) {
     const snow_rectangle *drawn = &order->drawn;
     if (y < drawn->y0 || y >= drawn->y1)
         *x1 = *x0;
@@ -48,10 +49,11 @@ static void clip(const snow_exchange_order *order, int y, int *x0, int *x1) {
         *x1 = drawn->x1;
 }
 
-/* Active ones among columns x0 .. x1 - 1 of line y, all drawn; column 0 is
- * pixel `zero` of the picture. */
-static void rehearse_line(const snow_exchange_order *order, int y, int64_t zero,
-                          int x0, int x1, uint64_t *words, int64_t first_word) {
+/* Finds the active ones among columns x0 .. x1 - 1 of line y, all drawn,
+ * without their pixels; column 0 is pixel `zero` of the picture. */
+static void rehearse_line(const snow_exchange_params *order, int y,
+                          int64_t zero, int x0, int x1, uint64_t *words,
+                          int64_t first_word) {
     for (int x = x0; x < x1;) {
         int64_t at = zero + x;
         int count = 64 - (int)(at % 64);
@@ -64,9 +66,9 @@ static void rehearse_line(const snow_exchange_order *order, int y, int64_t zero,
     }
 }
 
-/* All of columns x0 .. x1 - 1 of line y, drawn or not. */
-static float *copy_line(const snow_exchange_order *order, int y, int x0, int x1,
-                        float *out) {
+/* Copies all of columns x0 .. x1 - 1 of line y, drawn or not. */
+static float *copy_line(const snow_exchange_params *order, int y, int x0,
+                        int x1, float *out) {
     const size_t channels = (size_t)order->channels;
     int from = x0, to = x1;
     clip(order, y, &from, &to);
@@ -80,7 +82,7 @@ static float *copy_line(const snow_exchange_order *order, int y, int x0, int x1,
 }
 
 int64_t snow_active_scan(const snow_pixel_loops *loops,
-                         const snow_exchange_order *order, const int *lines,
+                         const snow_exchange_params *order, const int *lines,
                          int64_t first, int64_t last, uint64_t *words,
                          float *out, int64_t *scanned) {
     const int64_t width = order->width;
@@ -120,13 +122,13 @@ int64_t snow_active_scan(const snow_pixel_loops *loops,
 }
 
 int64_t snow_active_in_line(const snow_pixel_loops *loops,
-                            const snow_exchange_order *order, int y) {
+                            const snow_exchange_params *order, int y) {
     int x0 = 0, x1 = order->width;
     int64_t active = 0;
     clip(order, y, &x0, &x1);
     for (int x = x0; x < x1; x += 64)
-        active +=
-            population(look(loops, order, y, x, x1 - x < 64 ? x1 - x : 64));
+        active += population(
+            active_mask(loops, order, y, x, x1 - x < 64 ? x1 - x : 64));
     return active;
 }
 
@@ -141,7 +143,7 @@ int64_t snow_active_count(const uint64_t *words, int64_t first, int64_t from,
 
 /* --- messages ------------------------------------------------------------- */
 
-/* The end of a message. */
+/* The tail of a message. */
 typedef struct tail {
     uint32_t first_word, words;
 } tail;
@@ -151,8 +153,8 @@ size_t snow_active_room(int64_t count, size_t pixel_bytes) {
            sizeof(tail) + SNOW_PIXELS_SLACK;
 }
 
-/* Which bytes of a word are not 0, as 8 bits: the highest bit of each such byte
- * is set, and all of them are moved into one byte. */
+/* A bit for each byte of a word that is not 0: the highest bit of each such
+ * byte is set, and all of them are moved into one byte. */
 static unsigned bytes_of(uint64_t word) {
     const uint64_t low = 0x7f7f7f7f7f7f7f7f;
     uint64_t high = (((word & low) + low) | word) & ~low;
@@ -189,8 +191,8 @@ static size_t mask_bytes(const unsigned char *which, int64_t count) {
     return bytes;
 }
 
-/* Unpacks words, the bytes of which begin at `from`; returns how many pixels
- * are active. */
+/* Unpacks words, whose bytes begin at `from`; returns the number of active
+ * pixels. */
 static int64_t unpack_words(const unsigned char *which, int64_t count,
                             const unsigned char *from, uint64_t *words) {
     int64_t active = 0;
@@ -235,8 +237,7 @@ bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
 
 /* --- layers --------------------------------------------------------------- */
 
-/* What is left of a merge in a rehearsal: masks, and how many pixels there
- * were. */
+/* A merge in a rehearsal: masks, and the number of pixels. */
 static void merge_masks(const snow_active *layers, int count, int64_t first,
                         int64_t last, uint64_t *words, int64_t *laid) {
     for (int64_t i = first / 64; i * 64 < last; i++) {

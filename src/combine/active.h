@@ -1,35 +1,32 @@
-/* combine/active.h - runs of pixels of which only the active ones are there.
+/* combine/active.h - runs of pixels of which only the active ones are stored.
  *
- * The paper's bit-map scheme (section 3.2.2) once more, for pictures: a bit for
- * each pixel tells whether it is active (any channel is not 0), and the active
- * ones lie packed.  A mask is a word for each 64 pixels, numbered from the
- * picture's first, so that the masks of all ranks fit together wherever the
- * picture is cut.
+ * This is the paper's bit-map scheme (section 3.2.2) for images: a bit for each
+ * pixel is set if it is active (any channel is not 0), and the active ones are
+ * packed. A mask has a word for each 64 pixels, numbered from the picture's
+ * first, so that the masks of all ranks are aligned wherever the picture is
+ * divided.
  *
- * As a message, the mask is a bit-map in its turn, of bytes that are not 0;
- * empty words at both ends are left out:
+ * In a message the mask is itself a bit-map, of bytes that are not 0; empty
+ * words at both ends are left out:
  *
- *   | active pixels | bytes of the mask, not 0 | a byte for each word: which |
- * f | n |
+ *   | active pixels | mask bytes, not 0 | a byte for each word: which | f | n |
  *
- * f: the first word's number, n: how many words.  A message of no bytes has no
- * active pixel.  So a run costs little however short: random pixels, 3 of 10
- * active, take 0.5 bytes each, 1 of 100 takes 2.4 bytes, long runs 0.15. */
+ * f: number of the first word, n: number of words. A message of no bytes has no
+ * active pixel. So even short runs are cheap: random pixels, 3 of 10 active,
+ * take 0.5 bytes each, 1 of 100 takes 2.4 bytes, long runs 0.15. */
 #ifndef SNOW_ACTIVE_H
 #define SNOW_ACTIVE_H
 
 #include "combine/exchange.h"
 #include "combine/pixels.h"
 
-/* Pixels first .. last - 1 of the picture, all those of one rank's, or one
- * subset's, combined image. */
+/* Pixels first .. last - 1 of the combined image of one rank or one subset. */
 typedef struct snow_active {
     int64_t first, last;
-    const uint64_t *words; /* the first is that of pixel `first`; NULL: all
-                              pixels are active */
-    const float *pixels;   /* packed; NULL: there are none (a rehearsal) */
-    const float *next;     /* of pixels: the first that is not merged yet */
-    bool own;              /* this rank's: not counted as laid */
+    const uint64_t *words; /* from that of `first` on; NULL: all are active */
+    const float *pixels;   /* packed; NULL: none (a rehearsal) */
+    const float *next;     /* first of the pixels not yet merged */
+    bool own;              /* this rank's: not counted in *laid */
 } snow_active;
 
 /* Words of the mask of first .. last - 1. */
@@ -37,7 +34,7 @@ static inline int64_t snow_active_words(int64_t first, int64_t last) {
     return last > first ? (last - 1) / 64 - first / 64 + 1 : 0;
 }
 
-/* The bits of word `index` that are pixels first .. last - 1. */
+/* The bits of word `index` that belong to pixels first .. last - 1. */
 static inline uint64_t snow_active_range(int64_t index, int64_t first,
                                          int64_t last) {
     uint64_t bits = ~(uint64_t)0;
@@ -59,49 +56,48 @@ static inline uint64_t snow_active_bits(const snow_active *layer, int64_t index,
     return own & range;
 }
 
-/* Bytes that a message of `count` pixels may take, and what loops may touch
- * beyond them. */
+/* The most bytes of a message of `count` pixels, including those beyond it that
+ * loops may access. */
 size_t snow_active_room(int64_t count, size_t pixel_bytes);
 
-/* Looks at pixels first .. last - 1 of the local image: their mask into
- * `words`, the active ones to `out` (not in a rehearsal); returns how many
- * there are, and adds to *scanned how many were looked at.  `lines` is the
- * order of lines, NULL for that of the picture.  When all pixels travel, all
+/* Scans pixels first .. last - 1 of the local image: writes their mask to
+ * `words` and the active ones to `out` (not in a rehearsal); returns their
+ * number, and adds the number of pixels examined to *scanned. `lines` is the
+ * order of lines, NULL for that of the picture. With `whole` params all pixels
  * are active and `words` is not written. */
 int64_t snow_active_scan(const snow_pixel_loops *loops,
-                         const snow_exchange_order *order, const int *lines,
+                         const snow_exchange_params *order, const int *lines,
                          int64_t first, int64_t last, uint64_t *words,
                          float *out, int64_t *scanned);
 
-/* How many pixels of one line of the local image are active. */
+/* The number of active pixels in one line of the local image. */
 int64_t snow_active_in_line(const snow_pixel_loops *loops,
-                            const snow_exchange_order *order, int y);
+                            const snow_exchange_params *order, int y);
 
-/* How many of pixels from .. to - 1 are active by a mask whose first pixel is
- * `first`. */
+/* The number of active pixels among from .. to - 1, by a mask whose first pixel
+ * is `first`. */
 int64_t snow_active_count(const uint64_t *words, int64_t first, int64_t from,
                           int64_t to);
 
-/* Completes a message that begins with `count` pixels of pixel_bytes, which
- * are there already; returns its length. */
+/* Completes a message whose `count` pixels of pixel_bytes are already written;
+ * returns its length. */
 size_t snow_active_close(unsigned char *message, const uint64_t *words,
                          int64_t first, int64_t last, int64_t count,
                          size_t pixel_bytes);
 
-/* The pixels of a message, with their mask unpacked into `words`.  False for
- * what is no such message. */
+/* The pixels of a message, with their mask unpacked into `words`. Returns false
+ * if the message is invalid. */
 bool snow_active_open(const unsigned char *message, size_t bytes, int64_t first,
                       int64_t last, size_t pixel_bytes, uint64_t *words,
                       snow_active *out);
 
-/* Lays layers over one another, ordered from front to back, in pixels first ..
- * last - 1.  Parts of the picture are asked for in rising order: layers
- * remember where they are.  Each layer lies inside what is asked for in all.
- * The result's mask goes to `words`.  With `packed`, its active pixels go to
- * `out`; else all pixels do, number n to out[(n - first) * channels], 0 where
- * no layer is.  In a rehearsal `out` is NULL.  Returns how many pixels
- * there are in `out`, or would be; adds to *laid how many pixels of layers that
- * came there were. */
+/* Composites layers, ordered from front to back, in pixels first .. last - 1.
+ * Call it for parts of the picture in rising order: layers keep their position.
+ * Each layer lies inside the union of all calls. The result's mask goes to
+ * `words`. With `packed`, its active pixels go to `out`; otherwise all pixels
+ * do, number n to out[(n - first) * channels], 0 where no layer is. In a
+ * rehearsal `out` is NULL. Returns the number of pixels in `out`, or that would
+ * be there; adds the number of pixels of received layers to *laid. */
 int64_t snow_active_merge(const snow_pixel_loops *loops, snow_active *layers,
                           int count, int channels, int64_t first, int64_t last,
                           uint64_t *words, float *out, bool packed,

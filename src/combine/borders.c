@@ -1,9 +1,9 @@
-/* combine/borders.c - cuts of the picture into pieces. */
+/* combine/borders.c - the partition of the picture into regions. */
 #include "combine/borders.h"
 
-/* Counted pieces are measured up to so many; that takes a microsecond.  More of
- * them are small anyway. */
-#define PIECES_MEASURED 64
+/* Counted regions are measured up to this number, which takes a microsecond. A
+ * larger number of regions is small anyway. */
+#define REGIONS_MEASURED 64
 
 static int64_t least(int64_t a, int64_t b) {
     return a < b ? a : b;
@@ -22,16 +22,17 @@ int snow_borders_line(const snow_borders *borders, int bin) {
     return (int)((int64_t)borders->height * bin / borders->bins);
 }
 
-/* Every pixel weighs at least 1 / (SNOW_PIECE_MOST - 1) of the mean count.  All
- * weights together are then at most SNOW_PIECE_MOST times what they were if all
- * pixels had the least, and so are a piece's pixels against an even piece's. */
+/* Every pixel has a weight of at least 1 / (SNOW_IMAGE_REGION_MOST - 1) of the
+ * mean count. All weights together are then at most SNOW_IMAGE_REGION_MOST
+ * times the sum if all pixels had the least weight, so a counted region has at
+ * most so many times the pixels of an even one. */
 void snow_borders_count(snow_borders *borders, int64_t *counts) {
     const int64_t pixels = (int64_t)borders->width * borders->height;
     int64_t sum = 0, before = 0;
     for (int i = 0; i < borders->bins; i++)
         sum += counts[i];
     /* Weights are counted in sixteenths of a pixel, for sparse pictures. */
-    int64_t lightest = 16 * sum / (pixels * (SNOW_PIECE_MOST - 1)) + 1;
+    int64_t lightest = 16 * sum / (pixels * (SNOW_IMAGE_REGION_MOST - 1)) + 1;
     for (int i = 0; i < borders->bins; i++) {
         int64_t lines =
             snow_borders_line(borders, i + 1) - snow_borders_line(borders, i);
@@ -43,7 +44,7 @@ void snow_borders_count(snow_borders *borders, int64_t *counts) {
     borders->counted = true;
 }
 
-/* The pixel that has so much weight before it. */
+/* The first pixel with `weight` before it. */
 static int64_t weighed(const snow_borders *borders, int64_t weight) {
     int low = 0, high = borders->bins; /* weights[low] <= weight */
     while (high - low > 1) {
@@ -60,40 +61,40 @@ static int64_t weighed(const snow_borders *borders, int64_t weight) {
     return first + (int64_t)(part * (double)(end - first));
 }
 
-int64_t snow_border(const snow_borders *borders, int piece, int pieces) {
+int64_t snow_border(const snow_borders *borders, int region, int regions) {
     const int64_t pixels = (int64_t)borders->width * borders->height;
-    if (piece == pieces)
+    if (region == regions)
         return pixels;
     if (!borders->counted)
-        return pixels / borders->grain * piece / pieces * borders->grain;
+        return pixels / borders->grain * region / regions * borders->grain;
     int64_t sum = borders->weights[borders->bins];
-    /* In two parts, as sum * piece may not fit. */
-    int64_t weight = sum / pieces * piece + sum % pieces * piece / pieces;
+    /* In two parts, since sum * region may overflow. */
+    int64_t weight = sum / regions * region + sum % regions * region / regions;
     return weighed(borders, weight) / borders->grain * borders->grain;
 }
 
-/* The pixels of the largest piece. */
-static int64_t largest(const snow_borders *borders, int pieces) {
+/* The pixels of the largest region. */
+static int64_t largest(const snow_borders *borders, int regions) {
     int64_t most = 0, first = 0;
-    for (int i = 1; i <= pieces; i++) {
-        int64_t end = snow_border(borders, i, pieces);
+    for (int i = 1; i <= regions; i++) {
+        int64_t end = snow_border(borders, i, regions);
         most = end - first > most ? end - first : most;
         first = end;
     }
     return most;
 }
 
-int64_t snow_border_room(const snow_borders *borders, int pieces) {
+int64_t snow_border_room(const snow_borders *borders, int regions) {
     const int64_t pixels = (int64_t)borders->width * borders->height;
-    int64_t even = pixels / pieces + 1;
+    int64_t even = pixels / regions + 1;
     if (!borders->counted)
         return least(pixels, even + borders->grain);
-    if (pieces <= PIECES_MEASURED)
-        return largest(borders, pieces);
-    return least(pixels, SNOW_PIECE_MOST * even + 1 + borders->grain);
+    if (regions <= REGIONS_MEASURED)
+        return largest(borders, regions);
+    return least(pixels, SNOW_IMAGE_REGION_MOST * even + 1 + borders->grain);
 }
 
-/* `number` of `bits` bits read backwards. */
+/* The lowest `bits` bits of `number`, reversed. */
 static int64_t backwards(int64_t number, int bits) {
     int64_t out = 0;
     for (int i = 0; i < bits; i++)

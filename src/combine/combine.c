@@ -1,6 +1,6 @@
-/* combine/combine.c - the combining tree of section 4, within one process.
- * Over is associative, so a tree gives the picture of a chain but for float
- * rounding; its order depends on the number of parts only. */
+/* combine/combine.c - the combining tree of section 4, within one process. Over
+ * is associative, so a tree gives the picture of a chain, except for float
+ * rounding. The order of operations depends on the number of parts only. */
 #include "combine/combine.h"
 
 void snow_combine_tree(float *const *images, int parts, size_t pixels,

@@ -1,25 +1,25 @@
-/* combine/exchange.c - the combining stage (lines 14 to 18 of figure 8), by any
- * of the methods of rounds.h.
+/* combine/exchange.c - the combining stage (lines 14 to 18 of figure 8), with
+ * any of the methods of rounds.h.
  *
- * Before the first round each rank's combined image is its local image.  In a
- * round it is cut into parts, each looked through (or, later, merged from what
- * came in the round before) only when it is sent, so that computing and sending
- * overlap; an unfinished local image is drawn on until one is there, and which
- * part is sent first changes no bit.  Pixels are read and written once a round,
- * packed; only the last round unpacks them.
+ * Before the first round each rank's combined image is its local image. In a
+ * round it is divided into parts. Each part is scanned (or, later, merged from
+ * what was received in the round before) only when it is sent, so that
+ * computing and sending overlap. An unfinished local image is drawn further
+ * until a part is ready; the order of sending changes no bit. Pixels are read
+ * and written once a round, packed; only the last round unpacks them.
  *
- * Memory is taken when the order's shape changes, or when counted pieces are
- * larger than any before.  All ranks know that, and agree on whether there was
- * enough: a rank that fails alone would leave the others waiting.  There is
- * room for parts all of whose pixels are active; of that only what comes is
- * touched, so a system gives pages for no more. */
+ * Memory is allocated when the shape of the params changes, or when counted
+ * regions are larger than any before. All ranks know that, and agree on the
+ * status: a rank that failed alone would leave the others waiting. There is
+ * room for parts all of whose pixels are active; only the memory of received
+ * pixels is touched, so the system provides no more pages. */
 #include "combine/combiner.h"
 
 #include <string.h>
 
 /* --- memory --------------------------------------------------------------- */
 
-/* A message begins at a multiple of so many bytes. */
+/* Messages begin at a multiple of this many bytes. */
 #define ALIGNMENT 64
 
 static size_t align(size_t bytes) {
@@ -30,10 +30,10 @@ snow_status snow_combiner_new(snow_comm *comm, snow_combiner **out) {
     snow_combiner *combiner =
         snow_allocate_clear(comm->context, sizeof *combiner);
     if (!combiner)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     combiner->comm = comm;
     *out = combiner;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void drop_buffers(snow_combiner *combiner) {
@@ -51,16 +51,16 @@ static void drop_buffers(snow_combiner *combiner) {
     snow_release(context, combiner->ranks);
     snow_release(context, combiner->table);
     snow_release(context, combiner->layers);
-    snow_release(context, combiner->parcels);
+    snow_release(context, combiner->packed_messages);
     snow_release(context, combiner->words);
     snow_release(context, combiner->part);
-    snow_release(context, combiner->piece);
+    snow_release(context, combiner->region);
     combiner->rounds.shares = NULL;
     combiner->lines = combiner->ranks = combiner->table = NULL;
     combiner->layers = NULL;
-    combiner->parcels = NULL;
+    combiner->packed_messages = NULL;
     combiner->words = combiner->part = NULL;
-    combiner->piece = NULL;
+    combiner->region = NULL;
     combiner->needs = (snow_exchange_needs){0};
     combiner->shape = (snow_exchange_shape){0};
 }
@@ -81,12 +81,12 @@ static size_t more(size_t a, size_t b) {
     return a > b ? a : b;
 }
 
-/* The most pixels that a rank holds after `level` rounds.  Groups have two
- * sizes at most, and pieces are largest in one of them. */
+/* The most pixels that a rank holds after `level` rounds. Groups have at most
+ * two sizes, and regions are largest in one of them. */
 static int64_t held(const snow_combiner *combiner, int level) {
     const snow_rounds *rounds = &combiner->rounds;
     const snow_borders *borders = &combiner->borders;
-    int group = rounds->seats;
+    int group = rounds->rank_order;
     for (int i = rounds->count - 1; i >= level && group > 1; i--)
         group = group / rounds->radices[i] > 1 ? group / rounds->radices[i] : 1;
     if (rounds->tree || level == 0)
@@ -95,10 +95,12 @@ static int64_t held(const snow_combiner *combiner, int level) {
                 snow_border_room(borders, group + 1));
 }
 
-/* How many messages a rank may have in a round (snow_rounds_room). */
+/* The most messages of a rank in a round (snow_rounds_room). */
 static size_t peers_in(const snow_rounds *rounds, int level) {
     int radix = rounds->radices[level];
-    return 2 * (size_t)(radix < rounds->seats ? radix : rounds->seats) + 4;
+    return 2 * (size_t)(radix < rounds->rank_order ? radix
+                                                   : rounds->rank_order) +
+           4;
 }
 
 static void count_round(const snow_combiner *combiner, int level,
@@ -130,14 +132,14 @@ static void count_needs(const snow_combiner *combiner,
     }
     for (int i = 0; i < rounds->count; i++)
         count_round(combiner, i, out);
-    out->piece =
+    out->region =
         (size_t)held(combiner, rounds->count) * channels * sizeof(float);
 }
 
-/* What does not depend on where pieces begin. */
+/* Allocates what does not depend on the borders of regions. */
 static snow_status take_lists(snow_combiner *combiner) {
     snow_context *context = combiner->comm->context;
-    const size_t seats = (size_t)combiner->comm->ranks;
+    const size_t rank_order = (size_t)combiner->comm->ranks;
     size_t peers = 8;
     bool fine = true;
     for (int i = 0; i < combiner->rounds.count; i++)
@@ -155,21 +157,23 @@ static snow_status take_lists(snow_combiner *combiner) {
         (combiner->rounds.shares =
              snow_allocate_array(context, snow_rounds_room(&combiner->rounds),
                                  sizeof(snow_share))) &&
-        (combiner->ranks = snow_allocate_array(context, seats, sizeof(int))) &&
-        (combiner->table = snow_allocate_array(context, seats, sizeof(int))) &&
+        (combiner->ranks =
+             snow_allocate_array(context, rank_order, sizeof(int))) &&
+        (combiner->table =
+             snow_allocate_array(context, rank_order, sizeof(int))) &&
         (combiner->layers =
              snow_allocate_array(context, peers, sizeof(snow_active))) &&
-        (combiner->parcels =
-             snow_allocate_array(context, peers, sizeof(snow_parcel))) &&
+        (combiner->packed_messages = snow_allocate_array(
+             context, peers, sizeof(snow_packed_message))) &&
         (combiner->part = snow_allocate_array(
              context, (uint64_t)held(combiner, 0) / 64 + 2, sizeof(uint64_t)));
-    if (fine && combiner->shape.pieces == SNOW_PIECES_INTERLACED)
+    if (fine && combiner->shape.regions == SNOW_IMAGE_PARTITION_INTERLACED)
         fine = (combiner->lines = snow_allocate_array(
                     context, (uint64_t)combiner->shape.height, sizeof(int)));
-    return fine ? SNOW_OK : SNOW_NO_MEMORY;
+    return fine ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
 }
 
-/* Replaces a block by one of another size; what is in it is not kept. */
+/* Replaces a block by one of another size; its contents are lost. */
 static bool take_block(snow_context *context, void *block_pointer,
                        size_t bytes) {
     void *block;
@@ -190,12 +194,12 @@ static snow_status take_buffers(snow_combiner *combiner,
                take_block(context, &combiner->in[i].bytes, need->in[i]) &&
                take_block(context, &combiner->out[i].bytes, need->out[i]);
     fine = fine && take_block(context, &combiner->words, need->words) &&
-           take_block(context, &combiner->piece, shown ? need->piece : 0);
-    return fine ? SNOW_OK : SNOW_NO_MEMORY;
+           take_block(context, &combiner->region, shown ? need->region : 0);
+    return fine ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
 }
 
-/* Makes room for pieces as they are now cut.  Needs are the same on all ranks,
- * which so come to `agree` together, or not at all. */
+/* Allocates buffers for the current regions. Needs are the same on all ranks,
+ * so either all ranks call snow_comm_agree_status or none does. */
 static snow_status fit_buffers(snow_combiner *combiner) {
     snow_exchange_needs *had = &combiner->needs, need;
     size_t *now = need.bytes, *before = had->bytes;
@@ -204,16 +208,16 @@ static snow_status fit_buffers(snow_combiner *combiner) {
     for (int i = 0; i < SNOW_NEEDS; i++)
         fits = fits && now[i] <= before[i];
     if (fits)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     for (int i = 0; i < SNOW_NEEDS; i++) {
-        /* Counted pieces of the next view are a little larger. */
+        /* Counted regions of the next view may be a little larger. */
         if (combiner->borders.counted)
             now[i] += now[i] / 8;
         now[i] = more(now[i], before[i]);
     }
     snow_status status =
-        snow_comm_agree(combiner->comm, take_buffers(combiner, &need));
-    if (status != SNOW_OK)
+        snow_comm_agree_status(combiner->comm, take_buffers(combiner, &need));
+    if (status != SNOW_STATUS_OK)
         drop_buffers(combiner);
     else
         *had = need;
@@ -222,34 +226,34 @@ static snow_status fit_buffers(snow_combiner *combiner) {
 
 /* --- the plan ------------------------------------------------------------- */
 
-/* AUTO counts where messages are so large that unequal pieces cost more than
- * the reduction: about 2 us for each doubling of ranks, against a tenth of the
+/* AUTO counts if messages are so large that unequal regions cost more than the
+ * reduction: about 2 us for each doubling of ranks, against a tenth of the
  * picture's pixels at 12 GB/s, a third of which can be saved. */
-static bool counts_pieces(const snow_exchange_order *order, int ranks) {
+static bool counts_regions(const snow_exchange_params *order, int ranks) {
     double bytes = (double)order->width * order->height * order->channels * 4;
     int doublings = 0;
     while (((int64_t)1 << doublings) < ranks)
         doublings++;
     if (order->method == SNOW_COMBINE_TREE || ranks < 3)
         return false;
-    if (order->pieces == SNOW_PIECES_AUTO)
+    if (order->regions == SNOW_IMAGE_PARTITION_AUTO)
         return !order->whole && bytes > 720e3 * doublings;
-    return order->pieces == SNOW_PIECES_COUNTED;
+    return order->regions == SNOW_IMAGE_PARTITION_COUNTED;
 }
 
-static snow_combining chosen_method(const snow_exchange_order *order) {
+static snow_combine chosen_method(const snow_exchange_params *order) {
     return order->method == SNOW_COMBINE_AUTO ? SNOW_COMBINE_RADIX
                                               : order->method;
 }
 
-static snow_exchange_shape shape_of(const snow_exchange_order *order) {
+static snow_exchange_shape shape_of(const snow_exchange_params *order) {
     return (snow_exchange_shape){.width = order->width,
                                  .height = order->height,
                                  .channels = order->channels,
                                  .radix = order->radix,
                                  .grain = order->grain,
                                  .method = order->method,
-                                 .pieces = order->pieces,
+                                 .regions = order->regions,
                                  .whole = order->whole};
 }
 
@@ -258,81 +262,83 @@ static bool same_shape(const snow_exchange_shape *a,
     return a->width == b->width && a->height == b->height &&
            a->channels == b->channels && a->radix == b->radix &&
            a->grain == b->grain && a->method == b->method &&
-           a->pieces == b->pieces && a->whole == b->whole;
+           a->regions == b->regions && a->whole == b->whole;
 }
 
-/* A plan for the order; all ranks come here together. */
+/* Makes a plan for the params; all ranks call it together. */
 static snow_status take_shape(snow_combiner *combiner,
-                              const snow_exchange_order *order) {
+                              const snow_exchange_params *order) {
     snow_comm *comm = combiner->comm;
     drop_buffers(combiner);
     combiner->filled = false;
     combiner->shape = shape_of(order);
     snow_borders_even(&combiner->borders, order->width, order->height,
                       order->grain);
-    combiner->borders.counted = counts_pieces(order, comm->ranks);
+    combiner->borders.counted = counts_regions(order, comm->ranks);
     snow_rounds_choose(&combiner->rounds, chosen_method(order), order->radix,
                        comm->ranks, (int64_t)order->width * order->height,
                        (size_t)order->channels * sizeof(float));
-    snow_status status = snow_comm_agree(comm, take_lists(combiner));
-    if (status != SNOW_OK)
+    snow_status status = snow_comm_agree_status(comm, take_lists(combiner));
+    if (status != SNOW_STATUS_OK)
         drop_buffers(combiner);
     else if (combiner->lines)
         snow_order_lines(combiner->lines, order->height);
     return status;
 }
 
-static snow_status check_order(const snow_combiner *combiner,
-                               const snow_exchange_order *order) {
+static snow_status check_params(const snow_combiner *combiner,
+                                const snow_exchange_params *order) {
     snow_context *context = combiner->comm->context;
     if (order->width < 1 || order->height < 1 ||
         (order->channels != 2 &&
-         (order->channels != 4 || order->laying != SNOW_LAY_OVER)))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "a picture of %d x %d pixels and %d channels cannot "
-                         "be combined; it has 2 or 4 channels",
-                         order->width, order->height, order->channels);
+         (order->channels != 4 || order->composite_op != SNOW_COMPOSITE_OVER)))
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "cannot combine a picture of %d x %d pixels and %d channels: sides "
+            "must be at least 1, and channels 2 or 4",
+            order->width, order->height, order->channels);
     if (order->grain < 1 || order->width % order->grain != 0 ||
         order->radix < 0 || order->radix == 1)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "pieces of whole %d pixels by radix %d; grain is 1 or "
-                         "the width, radix 0 or at least 2",
-                         order->grain, order->radix);
-    return SNOW_OK;
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "cannot divide the picture into regions of %d pixels by radix %d: "
+            "grain must be 1 or the width, radix 0 or at least 2",
+            order->grain, order->radix);
+    return SNOW_STATUS_OK;
 }
 
-/* Lists for this rank's seat. */
-static snow_status take_seats(snow_combiner *combiner,
-                              const snow_exchange_order *order) {
+/* Fills in the lists for this rank's position. */
+static snow_status take_rank_order(snow_combiner *combiner,
+                                   const snow_exchange_params *order) {
     snow_rounds *rounds = &combiner->rounds;
-    int seat = -1, display = -1;
-    for (int i = 0; i < rounds->seats; i++) {
+    int rank_position = -1, display = -1;
+    for (int i = 0; i < rounds->rank_order; i++) {
         if (order->ranks[i] == combiner->comm->rank)
-            seat = i;
+            rank_position = i;
         if (order->ranks[i] == 0)
             display = i;
     }
-    if (seat < 0 || display < 0)
-        return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
-                         "rank %d is not in the order from front to back; name "
-                         "every rank once",
-                         seat < 0 ? combiner->comm->rank : 0);
-    bool same = combiner->filled && rounds->seat == seat &&
+    if (rank_position < 0 || display < 0)
+        return snow_fail(combiner->comm->context, SNOW_STATUS_BAD_USAGE,
+                         "rank %d is missing in the order from front to back: "
+                         "name every rank once",
+                         rank_position < 0 ? combiner->comm->rank : 0);
+    bool same = combiner->filled && rounds->rank_position == rank_position &&
                 (rounds->display == display || !rounds->tree);
     if (!same)
-        snow_rounds_fill(rounds, seat, display, combiner->table);
+        snow_rounds_fill(rounds, rank_position, display, combiner->table);
     combiner->filled = true;
     memcpy(combiner->ranks, order->ranks,
-           (size_t)rounds->seats * sizeof *order->ranks);
-    return SNOW_OK;
+           (size_t)rounds->rank_order * sizeof *order->ranks);
+    return SNOW_STATUS_OK;
 }
 
 /* Counts active pixels, in every line of a small picture and in some lines of a
- * large one: what is saved by exact counts is less than what they take. */
+ * large one: exact counts would take longer than they save. */
 #define LINES_COUNTED 128
 
 static void count_lines(snow_combiner *combiner,
-                        const snow_exchange_order *order, int64_t *counts) {
+                        const snow_exchange_params *order, int64_t *counts) {
     const snow_borders *borders = &combiner->borders;
     int64_t scanned = 0;
     int step =
@@ -358,11 +364,11 @@ typedef struct stretch {
 
 static stretch stretch_of(const snow_combiner *combiner,
                           const snow_share *share) {
-    if (share->piece < 0)
+    if (share->region < 0)
         return (stretch){0, 0};
     return (stretch){
-        snow_border(&combiner->borders, share->piece, share->pieces),
-        snow_border(&combiner->borders, share->piece + 1, share->pieces)};
+        snow_border(&combiner->borders, share->region, share->regions),
+        snow_border(&combiner->borders, share->region + 1, share->regions)};
 }
 
 static stretch overlap(stretch a, stretch b) {
@@ -370,19 +376,19 @@ static stretch overlap(stretch a, stretch b) {
     return both.last > both.first ? both : (stretch){0, 0};
 }
 
-/* All that is the same during one exchange. */
+/* The state of one exchange. */
 typedef struct exchange {
     snow_combiner *combiner;
-    snow_exchange_order *order; /* `unfinished` until the image is there */
+    snow_exchange_params *order; /* `unfinished` until the image is finished */
     size_t pixel_bytes;
-    bool tallies;             /* counts for the picture after this one */
+    bool tallies;             /* counts for the next picture */
     int64_t sent;             /* bytes, in the first round */
-    int layer_count;          /* of combiner->layers, to be merged */
+    int layer_count;          /* of combiner->layers, to merge */
     const unsigned char *own; /* the message to oneself */
     size_t own_bytes;
 } exchange;
 
-static void clip_drawn(snow_exchange_order *order) {
+static void clip_drawn(snow_exchange_params *order) {
     snow_rectangle *drawn = &order->drawn;
     drawn->x0 = drawn->x0 > 0 ? drawn->x0 : 0;
     drawn->y0 = drawn->y0 > 0 ? drawn->y0 : 0;
@@ -392,9 +398,9 @@ static void clip_drawn(snow_exchange_order *order) {
         *drawn = (snow_rectangle){0, 0, 0, 0};
 }
 
-/* Whether a part of the local image is there. */
+/* Whether a part of the local image is finished. */
 static bool is_there(exchange *run, stretch part) {
-    snow_exchange_order *order = run->order;
+    snow_exchange_params *order = run->order;
     const snow_unfinished *unfinished = order->unfinished;
     bool all = run->combiner->lines != NULL; /* of all regions */
     int y0 = all ? 0 : (int)(part.first / order->width);
@@ -417,7 +423,7 @@ static void end_drawing(exchange *run) {
     run->order->unfinished = NULL;
 }
 
-/* Draws on while messages travel. */
+/* Continues drawing while messages are in flight. */
 static void draw_on(exchange *run) {
     const snow_unfinished *unfinished = run->order->unfinished;
     if (unfinished->step(unfinished->user))
@@ -427,7 +433,7 @@ static void draw_on(exchange *run) {
     snow_comm_progress(run->combiner->comm);
 }
 
-/* Adds a part of the local image, whose mask is there, to the counts. */
+/* Adds a part of the local image, whose mask is complete, to the counts. */
 static void tally(snow_combiner *combiner, stretch part) {
     const snow_borders *borders = &combiner->borders;
     int64_t end;
@@ -442,11 +448,11 @@ static void tally(snow_combiner *combiner, stretch part) {
     }
 }
 
-/* Cuts the picture by counts: those that are known, or its own, for which it
- * must be there. */
-static snow_status count_pieces(exchange *run) {
+/* Divides the picture by counts: given ones, or its own, for which it must be
+ * finished. */
+static snow_status count_regions(exchange *run) {
     snow_combiner *combiner = run->combiner;
-    const snow_exchange_order *order = run->order;
+    const snow_exchange_params *order = run->order;
     snow_borders *borders = &combiner->borders;
     const size_t bins = (size_t)borders->bins;
     int64_t counts[SNOW_BINS_MOST] = {0};
@@ -461,15 +467,15 @@ static snow_status count_pieces(exchange *run) {
     memset(combiner->counts, 0, sizeof combiner->counts);
     run->tallies = !order->whole;
     combiner->counted_bins = run->tallies ? borders->bins : 0;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Writes the part of this rank's combined image that is in `part` as a message
- * to `out`; its length. */
+/* Writes the part of this rank's combined image in `part` as a message to
+ * `out`; returns its length. */
 static size_t write_part(exchange *run, int level, stretch part,
                          unsigned char *out) {
     snow_combiner *combiner = run->combiner;
-    const snow_exchange_order *order = run->order;
+    const snow_exchange_params *order = run->order;
     snow_exchange_figures *figures = &combiner->figures;
     float *pixels = order->rehearsal ? NULL : (float *)(void *)out;
     int64_t scanned = 0, laid = 0, count;
@@ -502,15 +508,15 @@ static const snow_share *share_at(const snow_combiner *combiner, int index) {
     return &combiner->rounds.shares[index];
 }
 
-/* What this rank holds before a round. */
+/* The pixels that this rank holds before a round. */
 static stretch held_before(const snow_combiner *combiner, int level) {
-    const snow_share all = {combiner->rounds.seat, 0, 1};
+    const snow_share all = {combiner->rounds.rank_position, 0, 1};
     return stretch_of(combiner,
                       level ? &combiner->rounds.rounds[level - 1].mine : &all);
 }
 
-/* Gets ready for what comes in a round: its messages are numbered as its list
- * is, and those that do not come stay done. */
+/* Starts the receives of a round: messages have the numbers of the list; those
+ * that are not received stay done. */
 static snow_status begin_receives(exchange *run, int level) {
     snow_combiner *combiner = run->combiner;
     const snow_round *round = &combiner->rounds.rounds[level];
@@ -522,41 +528,43 @@ static snow_status begin_receives(exchange *run, int level) {
         const snow_share *share = share_at(combiner, round->first_receive + i);
         stretch part = overlap(mine, stretch_of(combiner, share));
         in->messages[i] = (snow_message){0};
-        if (part.first >= part.last || share->seat == combiner->rounds.seat)
+        if (part.first >= part.last ||
+            share->rank_position == combiner->rounds.rank_position)
             continue;
-        size_t room =
+        size_t capacity =
             snow_active_room(part.last - part.first, run->pixel_bytes);
-        SNOW_TRY(snow_comm_receive(combiner->comm, in->bytes + at, room,
-                                   run->order->ranks[share->seat],
+        SNOW_TRY(snow_comm_receive(combiner->comm, in->bytes + at, capacity,
+                                   run->order->ranks[share->rank_position],
                                    SNOW_TAG_COMBINE, &in->messages[i]));
-        at += align(room);
+        at += align(capacity);
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Lists what this rank sends in a round, or keeps; how much.  Ranks begin with
- * different parts, lest all send to one; merged parts come in rising order. */
-static int list_parcels(const snow_combiner *combiner, int level) {
+/* Lists what this rank sends or keeps in a round; returns the number. Ranks
+ * begin with different parts, so that not all send to the same one; merged
+ * parts come in rising order. */
+static int list_packed_messages(const snow_combiner *combiner, int level) {
     const snow_round *round = &combiner->rounds.rounds[level];
     const stretch holds = held_before(combiner, level);
     int from = 0, count = 0;
     for (int i = 0; i < round->sends && level == 0; i++)
-        if (share_at(combiner, round->first_send + i)->seat ==
-            combiner->rounds.seat)
+        if (share_at(combiner, round->first_send + i)->rank_position ==
+            combiner->rounds.rank_position)
             from = i + 1;
     for (int i = 0; i < round->sends; i++) {
         int share = round->first_send + (from + i) % round->sends;
         stretch part =
             overlap(holds, stretch_of(combiner, share_at(combiner, share)));
         if (part.first < part.last)
-            combiner->parcels[count++] =
-                (snow_parcel){part.first, part.last, share};
+            combiner->packed_messages[count++] =
+                (snow_packed_message){part.first, part.last, share};
     }
     return count;
 }
 
-/* Sends a part of what this rank holds to the owner of the new piece, or keeps
- * it; `at` is its place in the buffer, and then the next one's. */
+/* Sends a part of what this rank holds to the owner of the new region, or keeps
+ * it; `at` is its offset in the buffer, and then that of the next one. */
 static snow_status send_part(exchange *run, int level, int index, stretch part,
                              size_t *at) {
     snow_combiner *combiner = run->combiner;
@@ -565,45 +573,45 @@ static snow_status send_part(exchange *run, int level, int index, stretch part,
     unsigned char *message = out->bytes + *at;
     size_t bytes = write_part(run, level, part, message);
     *at += align(snow_active_room(part.last - part.first, run->pixel_bytes));
-    if (share->seat == combiner->rounds.seat) {
+    if (share->rank_position == combiner->rounds.rank_position) {
         run->own = message;
         run->own_bytes = bytes;
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     }
     run->sent += (int64_t)bytes;
     return snow_comm_send(combiner->comm, message, bytes,
-                          run->order->ranks[share->seat], SNOW_TAG_COMBINE,
-                          &out->messages[out->count++]);
+                          run->order->ranks[share->rank_position],
+                          SNOW_TAG_COMBINE, &out->messages[out->count++]);
 }
 
-/* Sends what this rank holds, parts of an unfinished image when they are there.
- */
+/* Sends what this rank holds; parts of an unfinished image when finished. */
 static snow_status send_round(exchange *run, int level) {
     snow_combiner *combiner = run->combiner;
-    snow_parcel *parcels = combiner->parcels;
+    snow_packed_message *packed_messages = combiner->packed_messages;
     snow_traffic *out = &combiner->out[level & 1];
     size_t at = 0;
     SNOW_TRY(snow_comm_wait_all(combiner->comm, out->messages, out->count));
     out->count = 0;
     run->own_bytes = 0;
-    for (int left = list_parcels(combiner, level); left;) {
+    for (int left = list_packed_messages(combiner, level); left;) {
         int absent = 0;
         for (int i = 0; i < left; i++) {
-            stretch part = {parcels[i].first, parcels[i].last};
+            stretch part = {packed_messages[i].first, packed_messages[i].last};
             if (is_there(run, part))
-                SNOW_TRY(send_part(run, level, parcels[i].share, part, &at));
+                SNOW_TRY(
+                    send_part(run, level, packed_messages[i].share, part, &at));
             else
-                parcels[absent++] = parcels[i];
+                packed_messages[absent++] = packed_messages[i];
         }
         left = absent;
         if (left)
             draw_on(run);
     }
     end_drawing(run);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Makes a layer of a message. */
+/* Makes a message into a layer. */
 static bool open_layer(const exchange *run, const unsigned char *bytes,
                        size_t count, stretch part, uint64_t *words,
                        snow_active *out) {
@@ -621,7 +629,7 @@ static bool open_layer(const exchange *run, const unsigned char *bytes,
     return good;
 }
 
-/* Waits for what comes in a round, and makes layers of it. */
+/* Waits for the messages of a round, and makes layers of them. */
 static snow_status end_receives(exchange *run, int level) {
     snow_combiner *combiner = run->combiner;
     const snow_round *round = &combiner->rounds.rounds[level];
@@ -638,7 +646,7 @@ static snow_status end_receives(exchange *run, int level) {
             continue;
         const unsigned char *bytes = in->bytes + at;
         size_t count = in->messages[i].bytes;
-        if (share->seat == combiner->rounds.seat) {
+        if (share->rank_position == combiner->rounds.rank_position) {
             bytes = run->own;
             count = run->own_bytes;
         } else {
@@ -649,26 +657,26 @@ static snow_status end_receives(exchange *run, int level) {
             combiner->figures.receive_largest = (int64_t)count;
         snow_active *layer = &combiner->layers[run->layer_count++];
         bool good = open_layer(run, bytes, count, part, words, layer);
-        layer->own = share->seat == combiner->rounds.seat;
+        layer->own = share->rank_position == combiner->rounds.rank_position;
         if (!good)
-            return snow_fail(combiner->comm->context, SNOW_FAILED,
-                             "rank %d sent what is no part of this picture; "
-                             "give all ranks the same order",
-                             run->order->ranks[share->seat]);
+            return snow_fail(combiner->comm->context, SNOW_STATUS_FAILED,
+                             "rank %d sent data of another picture: all ranks "
+                             "must combine the same picture",
+                             run->order->ranks[share->rank_position]);
         words += snow_active_words(part.first, part.last);
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* The layers of the last round, unpacked. */
-static void lay_piece(exchange *run, stretch piece) {
+/* Composites and unpacks the layers of the last round. */
+static void composite_region(exchange *run, stretch region) {
     snow_combiner *combiner = run->combiner;
-    const snow_exchange_order *order = run->order;
-    float *out = order->rehearsal ? NULL : combiner->piece;
+    const snow_exchange_params *order = run->order;
+    float *out = order->rehearsal ? NULL : combiner->region;
     int64_t laid = 0;
     snow_active_merge(combiner->loops, combiner->layers, run->layer_count,
-                      order->channels, piece.first, piece.last, combiner->part,
-                      out, false, &laid);
+                      order->channels, region.first, region.last,
+                      combiner->part, out, false, &laid);
     combiner->figures.laid += laid;
     snow_comm_work(combiner->comm, (double)laid * order->blend_seconds);
 }
@@ -681,7 +689,7 @@ static snow_status run_rounds(exchange *run) {
         SNOW_TRY(send_round(run, level));
         SNOW_TRY(end_receives(run, level));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* One rank: its local image is the picture. */
@@ -692,11 +700,11 @@ static snow_status run_alone(exchange *run, stretch all) {
     size_t bytes = write_part(run, 0, all, out);
     run->layer_count = 1;
     open_layer(run, out, bytes, all, combiner->words, combiner->layers);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void begin_figures(snow_combiner *combiner,
-                          const snow_exchange_order *order) {
+                          const snow_exchange_params *order) {
     snow_exchange_figures *figures = &combiner->figures;
     *figures = (snow_exchange_figures){.method = chosen_method(order),
                                        .rounds = combiner->rounds.count,
@@ -704,7 +712,7 @@ static void begin_figures(snow_combiner *combiner,
     memcpy(figures->radices, combiner->rounds.radices, sizeof figures->radices);
 }
 
-/* The end of this rank's part of the first round, which it does not send. */
+/* The end of this rank's part of the first round, which it keeps. */
 static double where_to_begin(const snow_combiner *combiner) {
     const snow_borders *borders = &combiner->borders;
     const stretch mine = held_before(combiner, combiner->rounds.count ? 1 : 0);
@@ -714,68 +722,70 @@ static double where_to_begin(const snow_combiner *combiner) {
 
 static snow_status combine(exchange *run, stretch *mine) {
     snow_combiner *combiner = run->combiner;
-    snow_exchange_order *order = run->order;
+    snow_exchange_params *order = run->order;
     const snow_exchange_shape shape = shape_of(order);
-    SNOW_TRY(check_order(combiner, order));
+    SNOW_TRY(check_params(combiner, order));
     clip_drawn(order);
     if (!same_shape(&shape, &combiner->shape))
         SNOW_TRY(take_shape(combiner, order));
     combiner->loops =
-        snow_pixels_pick(SNOW_ISA_AUTO, order->channels, order->laying);
-    SNOW_TRY(take_seats(combiner, order));
+        snow_pixels_pick(SNOW_ISA_AUTO, order->channels, order->composite_op);
+    SNOW_TRY(take_rank_order(combiner, order));
     begin_figures(combiner, order);
     run->tallies = false;
     combiner->counted_bins = 0;
     if (combiner->borders.counted)
-        SNOW_TRY(count_pieces(run));
+        SNOW_TRY(count_regions(run));
     SNOW_TRY(fit_buffers(combiner));
     combiner->figures.begin_at = where_to_begin(combiner);
     *mine = held_before(combiner, combiner->rounds.count);
     SNOW_TRY(combiner->rounds.count ? run_rounds(run) : run_alone(run, *mine));
-    lay_piece(run, *mine);
+    composite_region(run, *mine);
     for (int i = 0; i < 2; i++) {
         snow_traffic *sent = &combiner->out[i];
         SNOW_TRY(
             snow_comm_wait_all(combiner->comm, sent->messages, sent->count));
         sent->count = 0;
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_exchange(snow_combiner *combiner,
-                          const snow_exchange_order *asked, snow_piece *out) {
-    snow_exchange_order order = *asked;
+                          const snow_exchange_params *asked,
+                          snow_image_region *out) {
+    snow_exchange_params order = *asked;
     exchange run = {.combiner = combiner,
                     .order = &order,
                     .pixel_bytes = (size_t)order.channels * sizeof(float)};
     stretch mine;
     snow_status status = combine(&run, &mine);
-    if (order.unfinished) /* where it failed */
+    if (order.unfinished) /* after a failure */
         order.unfinished->end(order.unfinished->user);
     SNOW_TRY(status);
     combiner->scan_seconds = order.scan_seconds;
     combiner->blend_seconds = order.blend_seconds;
-    *out =
-        (snow_piece){mine.first, mine.last - mine.first,
-                     order.rehearsal ? NULL : combiner->piece, combiner->part};
-    return SNOW_OK;
+    *out = (snow_image_region){mine.first, mine.last - mine.first,
+                               order.rehearsal ? NULL : combiner->region,
+                               combiner->part};
+    return SNOW_STATUS_OK;
 }
 
-/* --- what is told afterwards ---------------------------------------------- */
+/* --- figures -------------------------------------------------------------- */
 
-const snow_exchange_figures *snow_exchange_told(const snow_combiner *combiner) {
+const snow_exchange_figures *
+snow_exchange_get_figures(const snow_combiner *combiner) {
     return &combiner->figures;
 }
 
-void snow_exchange_pieces(const snow_combiner *combiner, int64_t *firsts,
-                          int64_t *counts) {
+void snow_exchange_regions(const snow_combiner *combiner, int64_t *firsts,
+                           int64_t *counts) {
     const snow_rounds *rounds = &combiner->rounds;
-    for (int i = 0; i < rounds->seats; i++) {
+    for (int i = 0; i < rounds->rank_order; i++) {
         snow_share share = {i, snow_rounds_last(rounds, i),
-                            rounds->tree ? 1 : rounds->seats};
-        stretch piece = stretch_of(combiner, &share);
-        firsts[combiner->ranks[i]] = piece.first;
-        counts[combiner->ranks[i]] = piece.last - piece.first;
+                            rounds->tree ? 1 : rounds->rank_order};
+        stretch region = stretch_of(combiner, &share);
+        firsts[combiner->ranks[i]] = region.first;
+        counts[combiner->ranks[i]] = region.last - region.first;
     }
 }
 

@@ -1,21 +1,20 @@
-/* combine/gather.c - pieces of the picture brought to the display processor.
+/* combine/gather.c - gathers regions of the picture at the display processor.
  *
  * A tree of ranks: 0 .. n - 1 are split into near-equal runs, the first rank of
- * each leads it, and so on; each rank sends what it has got from those below
- * once, with its own, as it came:
+ * each leads it, and so on; each rank sends what it received from those below
+ * once, unchanged, with its own:
  *
- *   block:  | u64 runs | u64 bytes of pixels | x y count, u16 each ... | pixels
- * |
+ *   block:  | u64 runs | u64 pixel bytes | x y count, u16 each ... | pixels |
  *
  * Wide trees have few steps, narrow ones few messages for one rank; with as
  * many branches as ranks all send to the display processor directly.
  *
- * Nobody knows how long a message will be, so it begins with its length and has
- * at most SLOT bytes; where it is longer, a second message has the rest, which
- * the receiver then has the right room for.  Runs of all ranks are apart, and
- * gaps between those of a rank are no shorter than what a run costs, which
- * bounds what can come: no memory is taken on the way.  A rank to which none
- * sends has room for its own pixels only. */
+ * No rank knows the length of a message in advance. So a message begins with
+ * its length and has at most SLOT bytes; the rest of a longer one is a second
+ * message, for which the receiver then has the right buffer. Runs of all ranks
+ * are disjoint, and gaps between those of a rank are no shorter than the cost
+ * of a run, which bounds the data: no memory is allocated on the way. A rank
+ * without children has room for its own pixels only. */
 #include "combine/combiner.h"
 
 #include <string.h>
@@ -56,7 +55,7 @@ static void drop_packed(snow_combiner *combiner) {
     snow_release(combiner->comm->context, state->packed);
     state->runs = NULL;
     state->packed = NULL;
-    state->packed_room = 0;
+    state->packed_capacity = 0;
 }
 
 void snow_gather_free(snow_combiner *combiner) {
@@ -67,13 +66,13 @@ void snow_gather_free(snow_combiner *combiner) {
 
 /* --- the tree ------------------------------------------------------------- */
 
-/* Part i of `parts` of count ranks from first on. */
+/* Part i of `parts` of `count` ranks, beginning with `first`. */
 static int part_first(int first, int count, int parts, int i) {
     return first + (int)((int64_t)count * i / parts);
 }
 
-/* Goes down the tree to where `rank` leads nothing more: counts its children,
- * and lists them unless `children` is NULL. */
+/* Walks down the tree until `rank` leads nothing more: counts its children, and
+ * lists them unless `children` is NULL. */
 static int walk_tree(int rank, int ranks, int radix, int *children,
                      int *parent) {
     int first = 0, count = ranks, found = 0;
@@ -97,7 +96,7 @@ static int walk_tree(int rank, int ranks, int radix, int *children,
     return found;
 }
 
-/* Wide where pixels take longer than messages, which they do from 2 MB on, by
+/* Wide if pixels take longer than messages, which is the case from 2 MB on by
  * simulated networks (docs/combining.md). */
 static int chosen_radix(const snow_combiner *combiner, int width, int height,
                         size_t pixel_bytes) {
@@ -112,7 +111,8 @@ static int chosen_radix(const snow_combiner *combiner, int width, int height,
 /* --- memory --------------------------------------------------------------- */
 
 /* Bytes of all blocks: a run with the gap behind it costs no more than its
- * pixels and those of the gap, unless it ends a rank's part of a line. */
+ * pixels and those of the gap, unless it is the last of a rank's part of a
+ * line. */
 static size_t most_bytes(const snow_gather_state *state, int ranks) {
     const uint64_t width = (uint64_t)state->width,
                    height = (uint64_t)state->height;
@@ -129,23 +129,23 @@ static snow_status take_buffers(snow_combiner *combiner) {
     int count = walk_tree(combiner->comm->rank, ranks, state->used_radix, NULL,
                           &state->parent);
     const size_t some = (size_t)count + 1;
-    state->room = count ? most_bytes(state, ranks) : 0;
+    state->capacity = count ? most_bytes(state, ranks) : 0;
     bool fine =
         (state->children = snow_allocate_array(context, some, sizeof(int))) &&
-        (!count || (state->bytes = snow_allocate(context, state->room))) &&
-        snow_reserve(context, &state->own, &state->own_room, 0, EMPTY) ==
-            SNOW_OK &&
+        (!count || (state->bytes = snow_allocate(context, state->capacity))) &&
+        snow_reserve(context, &state->own, &state->own_capacity, 0, EMPTY) ==
+            SNOW_STATUS_OK &&
         (state->slots = snow_allocate_array(context, some, SLOT)) &&
         (state->messages =
              snow_allocate_array(context, 2 * some, sizeof(snow_message))) &&
         (state->places = snow_allocate_array(context, some, sizeof(size_t))) &&
         (state->queue = snow_allocate_array(context, some, sizeof(int)));
     if (!fine)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     state->child_count =
         walk_tree(combiner->comm->rank, ranks, state->used_radix,
                   state->children, &state->parent);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status take_shape(snow_combiner *combiner, int width, int height,
@@ -154,28 +154,28 @@ static snow_status take_shape(snow_combiner *combiner, int width, int height,
     const int radix = chosen_radix(combiner, width, height, pixel_bytes);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 ||
         pixel_bytes < 1 || pixel_bytes > 1024)
-        return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
-                         "a picture of %d x %d pixels of %zu bytes cannot be "
-                         "gathered; sides go to 65535",
+        return snow_fail(combiner->comm->context, SNOW_STATUS_BAD_USAGE,
+                         "cannot gather a picture of %d x %d pixels of %zu "
+                         "bytes: sides must be 1 to 65535",
                          width, height, pixel_bytes);
     if (state->width == width && state->height == height &&
         state->pixel_bytes == pixel_bytes && state->used_radix == radix)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     drop_buffers(combiner);
     state->width = width;
     state->height = height;
     state->pixel_bytes = pixel_bytes;
     state->used_radix = radix;
     snow_status status =
-        snow_comm_agree(combiner->comm, take_buffers(combiner));
-    if (status != SNOW_OK)
+        snow_comm_agree_status(combiner->comm, take_buffers(combiner));
+    if (status != SNOW_STATUS_OK)
         drop_buffers(combiner);
     return status;
 }
 
 /* --- blocks --------------------------------------------------------------- */
 
-/* Whether a run lies in the picture. */
+/* Whether a run is inside the picture. */
 static bool run_fits(const snow_gather_state *state,
                      const snow_pixel_run *run) {
     return run->x >= 0 && run->y >= 0 && run->count >= 0 &&
@@ -192,14 +192,14 @@ snow_status snow_gather_reserve(snow_combiner *combiner, int width, int height,
     if (walk_tree(combiner->comm->rank, combiner->comm->ranks, radix, NULL,
                   &parent) > 0 ||
         parent < 0)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     size_t bytes =
         EMPTY + run_count * SNOW_RUN_BYTES + (size_t)pixels * pixel_bytes;
-    return snow_reserve(combiner->comm->context, &state->own, &state->own_room,
-                        0, bytes);
+    return snow_reserve(combiner->comm->context, &state->own,
+                        &state->own_capacity, 0, bytes);
 }
 
-/* Whether the gap before a run is short of what the run costs. */
+/* Whether the gap before a run is shorter than the cost of the run. */
 static bool crowds(const snow_gather_state *state, const snow_pixel_run *before,
                    const snow_pixel_run *run) {
     int64_t gap = (int64_t)run->x - before->x - before->count;
@@ -207,8 +207,8 @@ static bool crowds(const snow_gather_state *state, const snow_pixel_run *before,
            gap * (int64_t)state->pixel_bytes < SNOW_RUN_BYTES;
 }
 
-/* This rank's own runs may be wrong, or its memory short, without the others'
- * knowing: it goes on with no runs then, and fails in the end. */
+/* This rank's runs may be invalid, or its memory short, and the others do not
+ * know: it continues without runs then, and fails in the end. */
 static snow_status check_runs(snow_combiner *combiner,
                               const snow_pixel_run *runs, size_t count) {
     const snow_gather_state *state = &combiner->gather;
@@ -223,10 +223,11 @@ static snow_status check_runs(snow_combiner *combiner,
     if (good)
         return snow_gather_reserve(combiner, state->width, state->height, count,
                                    all - left, state->pixel_bytes);
-    return snow_fail(combiner->comm->context, SNOW_BAD_USAGE,
-                     "runs lie outside the picture of %d x %d pixels, have "
-                     "more pixels than it, or gaps below %d bytes",
-                     state->width, state->height, SNOW_RUN_BYTES);
+    return snow_fail(
+        combiner->comm->context, SNOW_STATUS_BAD_USAGE,
+        "invalid runs: they must be inside the picture of %d x %d pixels, have "
+        "no more pixels than it, and gaps of at least %d bytes",
+        state->width, state->height, SNOW_RUN_BYTES);
 }
 
 /* Copies one run into the picture. */
@@ -237,8 +238,8 @@ static void place_run(const snow_gather_state *state, const snow_pixel_run *run,
            (size_t)run->count * state->pixel_bytes);
 }
 
-/* A block of this rank's runs at `out`; its length.  Pixels are not touched
- * where there are none (a rehearsal). */
+/* Writes a block of this rank's runs to `out`; returns its length. Without
+ * pixels (a rehearsal) none are touched. */
 static size_t write_block(const snow_gather_state *state,
                           const snow_pixel_run *runs, size_t run_count,
                           const void *pixels, unsigned char *out) {
@@ -259,7 +260,7 @@ static size_t write_block(const snow_gather_state *state,
     return (size_t)(at - out) + bytes;
 }
 
-/* Copies the pixels of blocks into the picture; false where they are none. */
+/* Copies the pixels of blocks into the picture; false if they are invalid. */
 static bool place_blocks(const snow_gather_state *state,
                          const unsigned char *at, size_t bytes,
                          unsigned char *picture) {
@@ -302,19 +303,19 @@ static snow_status begin_receives(snow_combiner *combiner) {
             combiner->comm, state->slots + (size_t)i * SLOT, SLOT,
             state->children[i], SNOW_TAG_GATHER, &state->messages[i]));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* How many long messages are on their way to a rank at a time.  Two fill its
- * network; all at once would end together, and the display processor could not
- * place one while the next comes. */
-#define UNDER_WAY 2
+/* The number of long messages in flight to a rank. Two saturate its network; if
+ * all were, they would end together, and the display processor could not copy
+ * one while the next is received. */
+#define IN_FLIGHT 2
 
-/* What a rank has got so far. */
+/* What a rank has received so far. */
 typedef struct intake {
-    size_t used;                /* bytes that blocks take, or will */
-    int queued, asked, arrived; /* children with more than a beginning: found,
-                                   told to send, done */
+    size_t used; /* bytes that blocks take, including those still to come */
+    int queued, asked, arrived; /* children with long messages: found, asked to
+                                   send, done */
 } intake;
 
 static uint64_t told_length(const snow_gather_state *state, int child) {
@@ -323,17 +324,18 @@ static uint64_t told_length(const snow_gather_state *state, int child) {
     return length;
 }
 
-/* The beginning of a child's message is there: it goes behind what is there
- * already; is there a rest, the child is queued. */
+/* The beginning of a child's message has arrived: it is appended to the data;
+ * if there is a rest, the child is queued. */
 static snow_status take_beginning(snow_combiner *combiner, int child,
                                   intake *in) {
     snow_gather_state *state = &combiner->gather;
     const size_t here = state->messages[child].bytes;
     const uint64_t length = here >= HEAD ? told_length(state, child) : 0;
-    if (here < HEAD || length < here - HEAD || length > state->room - in->used)
-        return snow_fail(combiner->comm->context, SNOW_FAILED,
-                         "rank %d sent more pixels than the picture has; runs "
-                         "of ranks must be apart",
+    if (here < HEAD || length < here - HEAD ||
+        length > state->capacity - in->used)
+        return snow_fail(combiner->comm->context, SNOW_STATUS_FAILED,
+                         "rank %d sent more pixels than the picture has: runs "
+                         "of different ranks must not overlap",
                          state->children[child]);
     memcpy(state->bytes + in->used, state->slots + (size_t)child * SLOT + HEAD,
            here - HEAD);
@@ -341,30 +343,30 @@ static snow_status take_beginning(snow_combiner *combiner, int child,
     in->used += (size_t)length;
     if (length > here - HEAD)
         state->queue[in->queued++] = child;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Gets ready for the rests of children whose turn it is. */
+/* Starts the receives of rests, for the children whose turn it is. */
 static snow_status ask_rests(snow_combiner *combiner, intake *in) {
     snow_gather_state *state = &combiner->gather;
     const size_t here = SLOT - HEAD;
-    while (in->asked < in->queued && in->asked - in->arrived < UNDER_WAY) {
+    while (in->asked < in->queued && in->asked - in->arrived < IN_FLIGHT) {
         int child = state->queue[in->asked++];
         SNOW_TRY(snow_comm_receive(
             combiner->comm, state->bytes + state->places[child] + here,
             (size_t)told_length(state, child) - here, state->children[child],
             SNOW_TAG_GATHER, &state->messages[state->child_count + child]));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* A message of `length` bytes, whose own length stands before them. */
+/* Sends a message of `length` bytes, which is preceded by its own length. */
 static snow_status send_up(snow_combiner *combiner, unsigned char *bytes,
                            size_t length) {
     snow_gather_state *state = &combiner->gather;
     snow_message messages[2] = {{0}};
-    const uint64_t told = length;
-    memcpy(bytes, &told, HEAD);
+    const uint64_t given = length;
+    memcpy(bytes, &given, HEAD);
     size_t all = length + HEAD, beginning = all < SLOT ? all : SLOT;
     SNOW_TRY(snow_comm_send(combiner->comm, bytes, beginning, state->parent,
                             SNOW_TAG_GATHER, &messages[0]));
@@ -375,22 +377,22 @@ static snow_status send_up(snow_combiner *combiner, unsigned char *bytes,
     return snow_comm_wait_all(combiner->comm, messages, 2);
 }
 
-/* All of a child's blocks are there: the display processor places them. */
+/* All of a child's blocks have arrived: the display processor copies them. */
 static bool place_child(snow_combiner *combiner, int child,
                         unsigned char *picture) {
     const snow_gather_state *state = &combiner->gather;
     const size_t length = (size_t)told_length(state, child);
     if (state->parent >= 0)
         return true;
-    /* By the byte as looking at a pixel of four floats. */
+    /* Costs per byte as examining a pixel of four floats. */
     snow_comm_work(combiner->comm,
                    (double)length / 16 * combiner->scan_seconds);
     return !picture || place_blocks(state, state->bytes + state->places[child],
                                     length, picture);
 }
 
-/* What children send, in the order of its coming, behind the first `used` bytes
- * that are there. */
+/* Receives what children send, in order of arrival, behind the first `used`
+ * bytes. */
 static snow_status take_children(snow_combiner *combiner, size_t *used,
                                  unsigned char *picture) {
     snow_gather_state *state = &combiner->gather;
@@ -414,10 +416,11 @@ static snow_status take_children(snow_combiner *combiner, size_t *used,
     }
     *used = in.used;
     if (!good)
-        return snow_fail(combiner->comm->context, SNOW_FAILED,
-                         "runs lie outside the picture of %d x %d pixels",
+        return snow_fail(combiner->comm->context, SNOW_STATUS_FAILED,
+                         "received invalid runs: they must be inside the "
+                         "picture of %d x %d pixels",
                          state->width, state->height);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_gather(snow_combiner *combiner, int width, int height,
@@ -428,7 +431,7 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
     size_t used = HEAD;
     SNOW_TRY(take_shape(combiner, width, height, pixel_bytes));
     snow_status status = check_runs(combiner, runs, run_count);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         run_count = 0;
     SNOW_TRY(begin_receives(combiner));
     unsigned char *block = state->child_count ? state->bytes : state->own;
@@ -444,31 +447,33 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
     return status;
 }
 
-/* --- a piece as it is ----------------------------------------------------- */
+/* --- gathering regions ---------------------------------------------------- */
 
-/* Buffers for the piece of any seat, of the same size on all ranks but those
- * without a piece in a tree; all ranks come here together. */
+/* Allocates buffers for the region of any position, of the same size on all
+ * ranks except those without a region in a tree; all ranks call it together. */
 static snow_status take_packed(snow_combiner *combiner, size_t pixel_bytes) {
     snow_gather_state *state = &combiner->gather;
     snow_context *context = combiner->comm->context;
-    const int pieces = combiner->rounds.tree ? 1 : combiner->comm->ranks;
-    const int64_t room = snow_border_room(&combiner->borders, pieces);
-    if (state->packed_room == room && state->packed_bytes == pixel_bytes)
-        return SNOW_OK;
+    const int regions = combiner->rounds.tree ? 1 : combiner->comm->ranks;
+    const int64_t capacity = snow_border_room(&combiner->borders, regions);
+    if (state->packed_capacity == capacity &&
+        state->packed_bytes == pixel_bytes)
+        return SNOW_STATUS_OK;
     drop_packed(combiner);
-    state->packed_room = room;
+    state->packed_capacity = capacity;
     state->packed_bytes = pixel_bytes;
     /* Every second pixel may be a run, and every line's first. */
-    uint64_t runs = (uint64_t)(room / 2 + room / combiner->shape.width + 3);
+    uint64_t runs =
+        (uint64_t)(capacity / 2 + capacity / combiner->shape.width + 3);
     bool fine =
         (combiner->rounds.tree && combiner->comm->rank) ||
         ((state->runs =
               snow_allocate_array(context, runs, sizeof *state->runs)) &&
          (state->packed =
-              snow_allocate_array(context, (uint64_t)room, pixel_bytes)));
-    snow_status status =
-        snow_comm_agree(combiner->comm, fine ? SNOW_OK : SNOW_NO_MEMORY);
-    if (status != SNOW_OK)
+              snow_allocate_array(context, (uint64_t)capacity, pixel_bytes)));
+    snow_status status = snow_comm_agree_status(
+        combiner->comm, fine ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
+    if (status != SNOW_STATUS_OK)
         drop_packed(combiner);
     return status;
 }
@@ -482,8 +487,8 @@ static void round_pixels(const float *pixels, int64_t floats,
     }
 }
 
-/* Appends pixels first .. last - 1, of one line, to what is packed. */
-static void pack_run(snow_combiner *combiner, const snow_piece *piece,
+/* Appends pixels first .. last - 1, of one line, to the packed ones. */
+static void pack_run(snow_combiner *combiner, const snow_image_region *region,
                      int64_t first, int64_t last, size_t *run_count,
                      int64_t *packed) {
     snow_gather_state *state = &combiner->gather;
@@ -494,8 +499,8 @@ static void pack_run(snow_combiner *combiner, const snow_piece *piece,
     state->runs[(*run_count)++] = (snow_pixel_run){
         (int32_t)(first % width),
         snow_exchange_line(combiner, (int)(first / width)), (int32_t)count};
-    if (piece->pixels) {
-        const float *from = piece->pixels + (first - piece->first) * channels;
+    if (region->pixels) {
+        const float *from = region->pixels + (first - region->first) * channels;
         if (state->packed_bytes == (size_t)channels)
             round_pixels(from, count * channels, out);
         else
@@ -504,11 +509,11 @@ static void pack_run(snow_combiner *combiner, const snow_piece *piece,
     *packed += count;
 }
 
-/* The next pixel from `at` on that is active, or is not; `end` at most. */
-static int64_t next_pixel(const snow_piece *piece, int64_t at, int64_t end,
-                          bool active) {
+/* The next pixel from `at` on whose activity is `active`; at most `end`. */
+static int64_t next_pixel(const snow_image_region *region, int64_t at,
+                          int64_t end, bool active) {
     while (at < end) {
-        uint64_t word = piece->active[at / 64 - piece->first / 64];
+        uint64_t word = region->active[at / 64 - region->first / 64];
         word = (active ? word : ~word) >> (at % 64);
         if (word) {
             at += __builtin_ctzll(word);
@@ -519,26 +524,26 @@ static int64_t next_pixel(const snow_piece *piece, int64_t at, int64_t end,
     return at < end ? at : end;
 }
 
-/* Packs the active pixels of a piece, line by line; gaps that are shorter than
- * what a run costs are filled. */
-static size_t pack_piece(snow_combiner *combiner, const snow_piece *piece,
-                         int64_t *packed) {
+/* Packs the active pixels of a region, line by line; gaps shorter than the cost
+ * of a run are filled. */
+static size_t pack_region(snow_combiner *combiner,
+                          const snow_image_region *region, int64_t *packed) {
     const int64_t width = combiner->shape.width;
     const int64_t gap = SNOW_RUN_BYTES / (int64_t)combiner->gather.packed_bytes;
-    const int64_t last = piece->first + piece->count;
+    const int64_t last = region->first + region->count;
     size_t runs = 0;
-    for (int64_t line = piece->first; line < last;) {
+    for (int64_t line = region->first; line < last;) {
         int64_t end = (line / width + 1) * width;
         end = end < last ? end : last;
-        int64_t at = next_pixel(piece, line, end, true);
+        int64_t at = next_pixel(region, line, end, true);
         while (at < end) {
-            int64_t stop = next_pixel(piece, at, end, false);
-            int64_t next = next_pixel(piece, stop, end, true);
+            int64_t stop = next_pixel(region, at, end, false);
+            int64_t next = next_pixel(region, stop, end, true);
             while (next < end && next - stop <= gap) {
-                stop = next_pixel(piece, next, end, false);
-                next = next_pixel(piece, stop, end, true);
+                stop = next_pixel(region, next, end, false);
+                next = next_pixel(region, stop, end, true);
             }
-            pack_run(combiner, piece, at, stop, &runs, packed);
+            pack_run(combiner, region, at, stop, &runs, packed);
             at = next;
         }
         line = end;
@@ -546,16 +551,17 @@ static size_t pack_piece(snow_combiner *combiner, const snow_piece *piece,
     return runs;
 }
 
-snow_status snow_gather_piece(snow_combiner *combiner, const snow_piece *piece,
-                              int bits, void *picture) {
+snow_status snow_gather_region(snow_combiner *combiner,
+                               const snow_image_region *region, int bits,
+                               void *picture) {
     const snow_exchange_shape *shape = &combiner->shape;
     const size_t pixel_bytes =
         (size_t)shape->channels * (bits == 8 ? 1 : sizeof(float));
     int64_t packed = 0;
     SNOW_TRY(take_packed(combiner, pixel_bytes));
-    size_t runs = pack_piece(combiner, piece, &packed);
+    size_t runs = pack_region(combiner, region, &packed);
     snow_comm_work(combiner->comm, (double)packed * combiner->blend_seconds);
     return snow_gather(
         combiner, shape->width, shape->height, combiner->gather.runs, runs,
-        piece->pixels ? combiner->gather.packed : NULL, pixel_bytes, picture);
+        region->pixels ? combiner->gather.packed : NULL, pixel_bytes, picture);
 }

@@ -1,5 +1,5 @@
-/* combine/pixels.c - the loops of pixels.h on every level, and the choice of
- * one. */
+/* combine/pixels.c - the loops of pixels.h for every instruction set, and the
+ * choice of one. */
 #include "combine/active.h"
 
 #include <string.h>
@@ -8,19 +8,20 @@
 #define SELECT_SCALAR
 #include "simd/select.h"
 
-#include "combine/pixels_levels.h"
+#include "combine/pixels_isa.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
 
-#include "combine/pixels_levels.h"
+#include "combine/pixels_isa.h"
 #define SELECT_AVX512
 #include "simd/select.h"
 
-#include "combine/pixels_levels.h"
+#include "combine/pixels_isa.h"
 #endif
 
-/* The loops of a level: of 2 channels for each snow_laying, and of 4. */
+/* The loops of an instruction set: for 2 channels and each snow_composite_op,
+ * and for 4. */
 #define LOOPS(level)                                                     \
     {                                                                    \
         &loops_over2_##level, &loops_most2_##level, &loops_sum2_##level, \
@@ -28,7 +29,7 @@
     }
 
 const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels,
-                                         snow_laying laying) {
+                                         snow_composite_op composite_op) {
     static const snow_pixel_loops *const levels[][4] = {
         LOOPS(scalar),
 #if SNOW_HAS_AVX
@@ -42,5 +43,5 @@ const snow_pixel_loops *snow_pixels_pick(snow_isa isa, int channels,
     level = isa == SNOW_ISA_AVX512 ? 2 : isa == SNOW_ISA_AVX2;
 #endif
     (void)isa;
-    return levels[level][channels == 2 ? (int)laying : 3];
+    return levels[level][channels == 2 ? (int)composite_op : 3];
 }

@@ -1,20 +1,20 @@
-/* combine/pixels.tmpl.h - the loops of pixels.h for one level and one number of
- * channels.  Define before including, with simd/select.h's words in force:
+/* combine/pixels.tmpl.h - the loops of pixels.h for one instruction set and one
+ * number of channels. Include simd/select.h first, and define:
  *
  *   PIXELS_CHANNELS  floats of a pixel: 2 or 4
- *   PIXELS_LAYING(front, back)
- *                    what becomes of a vector of pixels that lies before
- *                    another; nothing behind it must change nothing
+ *   PIXELS_COMPOSITE_OP(front, back)
+ *                    composites a vector of pixels before another; an empty
+ *                    back must change nothing
  *   PIXELS_NAME      name of the functions: PIXELS_NAME(look), (scan), (merge)
  *
- * All are undefined at the end.  Of 64 pixels most often all or none are
- * active: all are one loop.  Else which of them are decides no branch, which
- * the processor would guess wrong.  Active pixels are listed by number, and a
- * vector holds only such, wherever they lie, which costs the same at any
- * density.  But where it has room for eight, to fetch them one by one would
- * take longer than to spread out neighbours, active or not.
+ * All are undefined at the end. Usually all or none of 64 pixels are active;
+ * all are one loop. Otherwise no branch depends on which of them are, since it
+ * would be mispredicted. Active pixels are listed by number, and a vector holds
+ * only these, wherever they are, which costs the same at any density. But for a
+ * vector of eight, fetching them one by one would take longer than processing
+ * neighbours, active or not.
  *
- * Memory is asked for some lines ahead, since there are as many streams as
+ * Data are prefetched some lines ahead, since there are as many streams as
  * layers and each begins a new page every few hundred pixels. */
 
 #if PIXELS_CHANNELS == 2
@@ -22,7 +22,7 @@
 #define PIXELS_GATHER V(gather2)
 #define PIXELS_SCATTER V(scatter2)
 #else
-#define PIXELS_SOME V(some4)
+#define PIXELS_SOME V(nonzero4)
 #define PIXELS_GATHER V(gather4)
 #define PIXELS_SCATTER V(scatter4)
 #endif
@@ -50,7 +50,8 @@ TARGET static uint64_t PIXELS_NAME(look)(const float *pixels, int count) {
 }
 
 #if PIXELS_LISTED
-/* The numbers of active pixels, and more of `spare` than a vector may want. */
+/* Lists the numbers of active pixels, and pads the list with `spare` to whole
+ * vectors. */
 TARGET static inline int PIXELS_NAME(list)(uint64_t bits, uint32_t spare,
                                            uint32_t places[64 + 16]) {
     int count = V(list)(bits, places);
@@ -79,7 +80,7 @@ TARGET static inline float *PIXELS_NAME(pack)(float *out, const float *pixels,
     return out + count * PIXELS_CHANNELS;
 #else
     for (; bits; bits >>= PIXELS_EACH, pixels += LANES)
-        out += 2 * V(squeeze2)(pixels, PIXELS_FEW(bits), out);
+        out += 2 * V(compress2)(pixels, PIXELS_FEW(bits), out);
     return out;
 #endif
 }
@@ -101,14 +102,14 @@ TARGET static float *PIXELS_NAME(scan)(const float *pixels, int64_t at,
     return out;
 }
 
-/* Lays packed pixels behind those of a tile of 64, and one that may be spoilt;
- * returns the first that is left. */
+/* Composites packed pixels behind those of a tile of 64 and a scratch pixel;
+ * returns the first pixel not used. */
 TARGET static inline const float *
-PIXELS_NAME(lay)(float *tile, const float *packed, uint64_t bits) {
+PIXELS_NAME(composite)(float *tile, const float *packed, uint64_t bits) {
     if (bits == ~(uint64_t)0) {
         for (int i = 0; i < 64 * PIXELS_CHANNELS; i += LANES) {
             V(vec) front = V(load)(tile + i);
-            front = PIXELS_LAYING(front, V(load)(packed + i));
+            front = PIXELS_COMPOSITE_OP(front, V(load)(packed + i));
             V(store)(tile + i, front);
         }
         return packed + 64 * PIXELS_CHANNELS;
@@ -120,7 +121,7 @@ PIXELS_NAME(lay)(float *tile, const float *packed, uint64_t bits) {
         const float *from = packed + i * PIXELS_CHANNELS;
         V(vec) front = PIXELS_GATHER(tile, places + i);
         __builtin_prefetch(from + PIXELS_AHEAD);
-        front = PIXELS_LAYING(front, V(load)(from));
+        front = PIXELS_COMPOSITE_OP(front, V(load)(from));
         PIXELS_SCATTER(tile, places + i, front);
     }
     return packed + count * PIXELS_CHANNELS;
@@ -128,14 +129,15 @@ PIXELS_NAME(lay)(float *tile, const float *packed, uint64_t bits) {
     __builtin_prefetch(packed + PIXELS_AHEAD);
     for (int i = 0; i < 64 * 2; i += LANES, bits >>= PIXELS_EACH) {
         V(vec) back = V(next2)(packed, PIXELS_FEW(bits));
-        V(store)(tile + i, PIXELS_LAYING(V(load)(tile + i), back));
+        V(store)(tile + i, PIXELS_COMPOSITE_OP(V(load)(tile + i), back));
         packed += 2 * V(popcount)(PIXELS_FEW(bits));
     }
     return packed;
 #endif
 }
 
-/* All of a tile's pixels in first .. last - 1; its first is number `at`. */
+/* Copies all of a tile's pixels in first .. last - 1; its first is number `at`.
+ */
 TARGET static inline float *PIXELS_NAME(copy)(float *out, const float *tile,
                                               int64_t at, int64_t first,
                                               int64_t last) {
@@ -161,7 +163,7 @@ TARGET static float *PIXELS_NAME(merge)(snow_active *layers, int count,
                 continue;
             if (!seen)
                 memset(tile, 0, sizeof tile);
-            layers[i].next = PIXELS_NAME(lay)(tile, layers[i].next, bits);
+            layers[i].next = PIXELS_NAME(composite)(tile, layers[i].next, bits);
             seen |= bits;
             came += layers[i].own ? 0 : V(popcount)(bits);
         }
@@ -184,7 +186,7 @@ static const snow_pixel_loops PIXELS_NAME(loops) = {
 #undef PIXELS_AHEAD
 #undef PIXELS_CHANNELS
 #undef PIXELS_SOME
-#undef PIXELS_LAYING
+#undef PIXELS_COMPOSITE_OP
 #undef PIXELS_GATHER
 #undef PIXELS_SCATTER
 #undef PIXELS_NAME

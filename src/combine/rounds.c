@@ -1,11 +1,11 @@
-/* combine/rounds.c - the scheme of rounds.h: near-equal splits, and which
- * pieces of two cuts overlap. */
+/* combine/rounds.c - the communication pattern of rounds.h: near-equal splits,
+ * and overlaps of the regions of two divisions. */
 #include "combine/rounds.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A run of seats. */
+/* A run of rank positions. */
 typedef struct group {
     int start, count;
 } group;
@@ -18,7 +18,7 @@ static int least(int a, int b) {
  */
 
 /* Subset i of a group split into at most `radix` near-equal ones; the first
- * ones have the odd seats. */
+ * ones are one larger if it does not divide evenly. */
 static group subset_of(group whole, int radix, int i) {
     int parts = least(whole.count, radix);
     int size = whole.count / parts, larger = whole.count % parts;
@@ -26,31 +26,30 @@ static group subset_of(group whole, int radix, int i) {
                    size + (i < larger)};
 }
 
-/* Which subset a seat is in. */
-static int subset_at(group whole, int radix, int seat) {
+/* The subset of a rank position. */
+static int subset_at(group whole, int radix, int rank_position) {
     int parts = least(whole.count, radix);
     int size = whole.count / parts, larger = whole.count % parts;
-    int place = seat - whole.start;
+    int place = rank_position - whole.start;
     return place < larger * (size + 1)
                ? place / (size + 1)
                : larger + (place - larger * (size + 1)) / size;
 }
 
-/* The group that a seat is in after `level` rounds. */
-static group group_at(const snow_rounds *rounds, int level, int seat) {
-    group g = {0, rounds->seats};
+/* The group of a rank position after `level` rounds. */
+static group group_at(const snow_rounds *rounds, int level, int rank_position) {
+    group g = {0, rounds->rank_order};
     for (int i = rounds->count - 1; i >= level; i--)
         g = subset_of(g, rounds->radices[i],
-                      subset_at(g, rounds->radices[i], seat));
+                      subset_at(g, rounds->radices[i], rank_position));
     return g;
 }
 
-/* --- pieces ---------------------------------------------------------------
- */
+/* --- regions -------------------------------------------------------------- */
 
-/* How many of `size` equal pieces have their middle before that of piece a of
- * `of`; or at it, where `also`. */
-static int pieces_before(int a, int of, int size, bool also) {
+/* How many of `size` equal regions have their middle before that of region a of
+ * `of`; or at it, with `also`. */
+static int regions_before(int a, int of, int size, bool also) {
     int64_t over = (int64_t)(2 * a + 1) * size - of, step = 2 * (int64_t)of;
     if (over < 0)
         return 0;
@@ -58,46 +57,48 @@ static int pieces_before(int a, int of, int size, bool also) {
     return (int)(count < size ? count : size);
 }
 
-/* The piece that a seat gets when its group is made: pieces are given out by
- * the middles of what the seats had before, so that most of it stays. */
-static int piece_in(const snow_rounds *rounds, int level, group whole,
-                    int seat) {
+/* The region that a rank position gets when its group is made: regions are
+ * assigned by the middles of those before, so that most of their pixels stay.
+ */
+static int region_in(const snow_rounds *rounds, int level, group whole,
+                     int rank_position) {
     if (level == 0)
         return 0;
     int radix = rounds->radices[level - 1];
-    int i = subset_at(whole, radix, seat);
+    int i = subset_at(whole, radix, rank_position);
     group own = subset_of(whole, radix, i);
-    int a = piece_in(rounds, level - 1, own, seat);
+    int a = region_in(rounds, level - 1, own, rank_position);
     int parts = least(whole.count, radix);
     int size = whole.count / parts, larger = whole.count % parts;
     /* Subsets before and after this one, of the two sizes. */
     int big_before = least(i, larger), small_before = i - big_before;
     int big_after = larger - big_before - (i < larger);
     int small_after = parts - larger - small_before - (i >= larger);
-    return a + big_before * pieces_before(a, own.count, size + 1, true) +
-           small_before * pieces_before(a, own.count, size, true) +
-           big_after * pieces_before(a, own.count, size + 1, false) +
-           small_after * pieces_before(a, own.count, size, false);
+    return a + big_before * regions_before(a, own.count, size + 1, true) +
+           small_before * regions_before(a, own.count, size, true) +
+           big_after * regions_before(a, own.count, size + 1, false) +
+           small_after * regions_before(a, own.count, size, false);
 }
 
-/* Who has the picture of a group in the tree. */
+/* The rank position that holds a group's picture in the tree. */
 static int holder(const snow_rounds *rounds, group g) {
     bool displays =
         rounds->display >= g.start && rounds->display < g.start + g.count;
     return displays ? rounds->display : g.start;
 }
 
-static int pieces_of(const snow_rounds *rounds, group g) {
+static int regions_of(const snow_rounds *rounds, group g) {
     return rounds->tree ? 1 : g.count;
 }
 
-static int piece_at(const snow_rounds *rounds, int level, group g, int seat) {
+static int region_at(const snow_rounds *rounds, int level, group g,
+                     int rank_position) {
     if (rounds->tree)
-        return holder(rounds, g) == seat ? 0 : -1;
-    return piece_in(rounds, level, g, seat);
+        return holder(rounds, g) == rank_position ? 0 : -1;
+    return region_in(rounds, level, g, rank_position);
 }
 
-/* owners[piece] of a group, filled in; `owners` begins at the group. */
+/* Fills in owners[region] of a group; `owners` begins at the group. */
 static void list_owners(const snow_rounds *rounds, int level, group g,
                         int *owners) {
     if (rounds->tree) {
@@ -105,114 +106,121 @@ static void list_owners(const snow_rounds *rounds, int level, group g,
         return;
     }
     for (int s = g.start; s < g.start + g.count; s++)
-        owners[piece_in(rounds, level, g, s)] = s;
+        owners[region_in(rounds, level, g, s)] = s;
 }
 
 /* --- lists ----------------------------------------------------------------
  */
 
 size_t snow_rounds_room(const snow_rounds *rounds) {
-    size_t room = 0;
-    for (int i = 0; i < rounds->count; i++) /* of either list, and spare */
-        room += 2 * (size_t)(2 * least(rounds->radices[i], rounds->seats) + 4);
-    return room;
+    size_t capacity = 0;
+    for (int i = 0; i < rounds->count; i++) /* in either list, and spare */
+        capacity +=
+            2 * (size_t)(2 * least(rounds->radices[i], rounds->rank_order) + 4);
+    return capacity;
 }
 
-static int append(snow_rounds *rounds, int seat, int piece, int pieces) {
-    rounds->shares[rounds->share_count] = (snow_share){seat, piece, pieces};
+static int append_share(snow_rounds *rounds, int rank_position, int region,
+                        int regions) {
+    rounds->shares[rounds->share_count] =
+        (snow_share){rank_position, region, regions};
     return ++rounds->share_count;
 }
 
-/* Appends the pieces (of `to`) that piece `piece` of `of` overlaps; owners are
- * told by piece. */
-static void append_overlaps(snow_rounds *rounds, int piece, int of, int to,
+/* Appends the regions (of `to`) that region `region` of `of` overlaps, with
+ * their owners. */
+static void append_overlaps(snow_rounds *rounds, int region, int of, int to,
                             const int *owners) {
-    int64_t first = (int64_t)piece * to / of;
-    int64_t end = ((int64_t)(piece + 1) * to + of - 1) / of;
+    int64_t first = (int64_t)region * to / of;
+    int64_t end = ((int64_t)(region + 1) * to + of - 1) / of;
     for (int64_t t = first; t < end; t++)
-        append(rounds, owners[t], (int)t, to);
+        append_share(rounds, owners[t], (int)t, to);
 }
 
 static void fill_round(snow_rounds *rounds, int level, int *table) {
     snow_round *round = &rounds->rounds[level];
     const int radix = rounds->radices[level];
-    const group g = group_at(rounds, level + 1, rounds->seat);
-    const int before = subset_at(g, radix, rounds->seat);
+    const group g = group_at(rounds, level + 1, rounds->rank_position);
+    const int before = subset_at(g, radix, rounds->rank_position);
     const group own = subset_of(g, radix, before);
-    const int had = piece_at(rounds, level, own, rounds->seat);
+    const int had = region_at(rounds, level, own, rounds->rank_position);
     round->mine =
-        (snow_share){rounds->seat, piece_at(rounds, level + 1, g, rounds->seat),
-                     pieces_of(rounds, g)};
+        (snow_share){rounds->rank_position,
+                     region_at(rounds, level + 1, g, rounds->rank_position),
+                     regions_of(rounds, g)};
     round->first_send = rounds->share_count;
     list_owners(rounds, level + 1, g, table);
     if (had >= 0)
-        append_overlaps(rounds, had, pieces_of(rounds, own),
-                        pieces_of(rounds, g), table);
+        append_overlaps(rounds, had, regions_of(rounds, own),
+                        regions_of(rounds, g), table);
     round->sends = rounds->share_count - round->first_send;
     round->first_receive = rounds->share_count;
-    for (int i = 0; i < least(g.count, radix) && round->mine.piece >= 0; i++) {
+    for (int i = 0; i < least(g.count, radix) && round->mine.region >= 0; i++) {
         group other = subset_of(g, radix, i);
         list_owners(rounds, level, other, table);
-        append_overlaps(rounds, round->mine.piece, round->mine.pieces,
-                        pieces_of(rounds, other), table);
+        append_overlaps(rounds, round->mine.region, round->mine.regions,
+                        regions_of(rounds, other), table);
     }
     round->receives = rounds->share_count - round->first_receive;
 }
 
-void snow_rounds_fill(snow_rounds *rounds, int seat, int display, int *table) {
-    rounds->seat = seat;
+void snow_rounds_fill(snow_rounds *rounds, int rank_position, int display,
+                      int *table) {
+    rounds->rank_position = rank_position;
     rounds->display = display;
     rounds->share_count = 0;
     for (int level = 0; level < rounds->count; level++)
         fill_round(rounds, level, table);
 }
 
-int snow_rounds_last(const snow_rounds *rounds, int seat) {
-    return piece_at(rounds, rounds->count, (group){0, rounds->seats}, seat);
+int snow_rounds_last(const snow_rounds *rounds, int rank_position) {
+    return region_at(rounds, rounds->count, (group){0, rounds->rank_order},
+                     rank_position);
 }
 
 /* --- the choice -----------------------------------------------------------
  */
 
-/* What the choice takes a network for: seconds for a message to arrive, for a
- * processor to start or end one, and for a byte.  On a slower network all grow
- * together, and the choice is about the same. */
+/* The assumed network: seconds for a message to arrive, for a processor to
+ * start or end one, and for a byte. If all are larger in proportion, the choice
+ * is about the same. */
 #define LATENCY 1.0e-6
 #define OVERHEAD 0.3e-6
 #define SECONDS_A_BYTE 0.0825e-9
 
-/* What it takes pictures for: a volume's footprint is so much of the picture,
- * and a 32nd of the volume hides so much of that. */
+/* The assumed pictures: the fraction of the picture that a volume's footprint
+ * covers, and the fraction of that which a 32nd of the volume hides. */
 #define FOOTPRINT 0.4
 #define HIDDEN 0.3
 
 #define RADIX_MOST 64
 
-/* The part of the picture's pixels that `parts` of all parts of the volume
- * make active when they are combined. */
+/* The fraction of the picture's pixels that are active when `parts` of all
+ * parts of the volume are combined. */
 static double active_part(double parts) {
     return FOOTPRINT * (1 - pow(1 - HIDDEN, 32 * parts));
 }
 
-/* All sequences of radices, cut off where they cannot be the best. */
+/* A search of all sequences of radices, pruned where they cannot be the best.
+ */
 typedef struct search {
-    double seats, bytes, best;
-    int radices[SNOW_ROUNDS_MOST], count; /* under way */
+    double rank_order, bytes, best;
+    int radices[SNOW_ROUNDS_MOST], count; /* current */
     snow_rounds *found;
 } search;
 
-/* Seconds for a round that makes groups out of `radix` subsets each, when there
- * are `left` subsets.  A rank starts its messages one after another while the
- * first are on their way, and ends what comes one after another. */
+/* Seconds for a round that makes groups of `radix` subsets each, when there are
+ * `left` subsets. A rank starts its messages one after another while the first
+ * are in flight, and ends received ones one after another. */
 static double round_seconds(const search *s, int left, int radix) {
     double messages = (left % radix ? 1.6 : 1) * (radix - 1);
-    double held = s->bytes * active_part(1.0 / left) * left / s->seats;
+    double held = s->bytes * active_part(1.0 / left) * left / s->rank_order;
     double start = OVERHEAD * messages;
     double travel = SECONDS_A_BYTE * held * (radix - 1) / radix;
     return LATENCY + OVERHEAD * messages + (start > travel ? start : travel);
 }
 
-/* Whether there are radices that divide it. */
+/* Whether it is a product of available radices. */
 static bool divides(int left) {
     for (int factor = 2; factor <= 16; factor++)
         while (left % factor == 0)
@@ -240,28 +248,28 @@ static void search_rounds(search *s, int left, double seconds) {
     }
 }
 
-/* As many rounds of one radix as it takes, the last with what is left. */
-static void repeat_radix(snow_rounds *rounds, int seats, int radix) {
+/* As many rounds of one radix as necessary, the last with the rest. */
+static void repeat_radix(snow_rounds *rounds, int rank_order, int radix) {
     rounds->count = 0;
-    for (int left = seats; left > 1; left = (left + radix - 1) / radix)
+    for (int left = rank_order; left > 1; left = (left + radix - 1) / radix)
         rounds->radices[rounds->count++] = least(radix, left);
 }
 
-void snow_rounds_choose(snow_rounds *rounds, snow_combining method, int radix,
-                        int seats, int64_t pixels, size_t pixel_bytes) {
-    rounds->seats = seats;
+void snow_rounds_choose(snow_rounds *rounds, snow_combine method, int radix,
+                        int rank_order, int64_t pixels, size_t pixel_bytes) {
+    rounds->rank_order = rank_order;
     rounds->tree = method == SNOW_COMBINE_TREE;
     rounds->count = 0;
     if (method == SNOW_COMBINE_TREE || method == SNOW_COMBINE_SWAP)
-        repeat_radix(rounds, seats, 2);
+        repeat_radix(rounds, rank_order, 2);
     else if (method == SNOW_COMBINE_DIRECT)
-        repeat_radix(rounds, seats, seats > 2 ? seats : 2);
+        repeat_radix(rounds, rank_order, rank_order > 2 ? rank_order : 2);
     else if (method == SNOW_COMBINE_RADIX && radix)
-        repeat_radix(rounds, seats, radix);
-    else if (seats > 1)
-        search_rounds(&(search){.seats = seats,
+        repeat_radix(rounds, rank_order, radix);
+    else if (rank_order > 1)
+        search_rounds(&(search){.rank_order = rank_order,
                                 .bytes = (double)pixels * (double)pixel_bytes,
                                 .best = HUGE_VAL,
                                 .found = rounds},
-                      seats, 0);
+                      rank_order, 0);
 }

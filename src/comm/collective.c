@@ -1,15 +1,15 @@
-/* comm/collective.c - what ranks do together, out of messages alone.
+/* comm/collective.c - collective operations, built from messages alone.
  *
- * The patterns are the usual ones (Thakur, Rabenseifner, Gropp, Optimization
- * of Collective Communication Operations in MPICH, 2005): recursive doubling
- * for numbers, a binomial tree for a broadcast, doubling windows around the
- * ring for a share.  Nothing is allocated, see comm.h. */
+ * The patterns are the usual ones (Thakur, Rabenseifner, Gropp, Optimization of
+ * Collective Communication Operations in MPICH, 2005): recursive doubling for a
+ * reduction, a binomial tree for a broadcast, doubling windows around the ring
+ * for an all-gather (share). Nothing is allocated, see comm.h. */
 #include "comm/comm.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Sends to one rank while it receives from another, or the same. */
+/* Sends to one rank while receiving from the same or another. */
 static snow_status swap(snow_comm *comm, const void *out, size_t out_bytes,
                         int to, void *in, size_t in_bytes, int from) {
     snow_message messages[2] = {{0}};
@@ -38,11 +38,11 @@ static snow_status receive_one(snow_comm *comm, void *bytes, size_t count,
 
 /* --- reduction ------------------------------------------------------------ */
 
-/* values[i] = values[i] by others[i]. */
+/* values[i] = reduction of values[i] and others[i]. */
 typedef void reduce_fn(void *values, const void *others, size_t count,
                        const void *how);
 
-/* Whole numbers add up without overflow being undefined. */
+/* Sums of integers wrap around, so that overflow is defined. */
 static void reduce_ints(void *values, const void *others, size_t count,
                         const void *how) {
     int64_t *a = values;
@@ -56,7 +56,7 @@ static void reduce_ints(void *values, const void *others, size_t count,
     }
 }
 
-/* How many maxima there are before the sums. */
+/* The number of maxima, which come before the sums. */
 static void reduce_both(void *values, const void *others, size_t count,
                         const void *how) {
     const size_t maxima = *(const size_t *)how;
@@ -78,15 +78,15 @@ static void reduce_doubles(void *values, const void *others, size_t count,
     }
 }
 
-/* Ranks of a power of two swap with those that differ in one bit, bit after
- * bit.  Both of a pair compute a + b, which is b + a to the bit, so that in the
- * end all have the same bits.  The ranks beyond the power hand in their numbers
- * before, and get the result after:
+/* Ranks of a power of two exchange with those whose number differs in one bit,
+ * bit after bit. Both of a pair compute a + b, which is b + a to the bit, so
+ * that in the end all have the same bits. The ranks beyond the power send their
+ * numbers before, and receive the result after:
  *
  *   rank   0   1   2   3   4      0 <- 4
  *          0 - 1   2 - 3          bit 0
  *          0 ----- 2, 1 ----- 3   bit 1
- *          0 ------------> 4                                             */
+ *          0 ------------> 4 */
 static snow_status reduce_some(snow_comm *comm, void *values, size_t count,
                                reduce_fn *reduce, const void *how) {
     const size_t bytes = count * sizeof comm->scratch[0];
@@ -107,10 +107,11 @@ static snow_status reduce_some(snow_comm *comm, void *values, size_t count,
         SNOW_TRY(swap(comm, values, bytes, other, comm->scratch, bytes, other));
         reduce(values, comm->scratch, count, how);
     }
-    return helps ? send_one(comm, values, bytes, comm->rank + power) : SNOW_OK;
+    return helps ? send_one(comm, values, bytes, comm->rank + power)
+                 : SNOW_STATUS_OK;
 }
 
-/* As many numbers at a time as there is room for. */
+/* In chunks of the scratch memory's size. */
 static snow_status reduce_all(snow_comm *comm, void *values, size_t count,
                               snow_reduction by, reduce_fn *reduce) {
     unsigned char *bytes = values;
@@ -143,13 +144,13 @@ snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,
 
 /* --- broadcast and share -------------------------------------------------- */
 
-/* Numbered from the root, rank r has its bytes from r without its highest bit,
- * and passes them to r + 2^k for the higher bits in turn. */
+/* Numbered from the root, rank r receives the bytes from r without its highest
+ * bit, and passes them on to r + 2^k for the higher bits in turn. */
 snow_status snow_comm_broadcast(snow_comm *comm, void *bytes, size_t count,
                                 int root) {
     const int ranks = comm->ranks;
     const int mine = (comm->rank - root + ranks) % ranks;
-    int bit = 1; /* the lowest above all bits of mine */
+    int bit = 1; /* lowest above all bits of this rank's number */
     while (bit <= mine)
         bit *= 2;
     SNOW_TRY(comm->broken);
@@ -158,7 +159,7 @@ snow_status snow_comm_broadcast(snow_comm *comm, void *bytes, size_t count,
             receive_one(comm, bytes, count, (mine - bit / 2 + root) % ranks));
     for (; mine + bit < ranks; bit *= 2)
         SNOW_TRY(send_one(comm, bytes, count, (mine + bit + root) % ranks));
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* Ranks from .. from + count - 1 around the ring, as one or two runs of `all`:
@@ -172,15 +173,15 @@ static void cut_ring(const snow_comm *comm, int from, int count, int first[2],
     length[1] = count - length[0];
 }
 
-/* After a round rank r knows ranks r .. r + known - 1; the next doubles that by
- * what the rank at its end knows. */
+/* After a round rank r has ranks r .. r + known - 1; the next round doubles
+ * that by what the rank after these has. */
 static snow_status share_round(snow_comm *comm, size_t bytes,
                                unsigned char *all, int known) {
     const int ranks = comm->ranks;
     const int count = known <= ranks - known ? known : ranks - known;
     const int from = (comm->rank + known) % ranks;
     const int to = (comm->rank + ranks - known) % ranks;
-    int in[2], in_length[2], out[2], out_length[2], under_way = 0;
+    int in[2], in_length[2], out[2], out_length[2], in_flight = 0;
     cut_ring(comm, from, count, in, in_length);
     cut_ring(comm, comm->rank, count, out, out_length);
     snow_message messages[4] = {{0}};
@@ -189,38 +190,38 @@ static snow_status share_round(snow_comm *comm, size_t bytes,
             SNOW_TRY(snow_comm_receive(comm, all + (size_t)in[run] * bytes,
                                        (size_t)in_length[run] * bytes, from,
                                        SNOW_TAG_COLLECTIVE,
-                                       &messages[under_way++]));
+                                       &messages[in_flight++]));
         if (out_length[run])
             SNOW_TRY(snow_comm_send(comm, all + (size_t)out[run] * bytes,
                                     (size_t)out_length[run] * bytes, to,
                                     SNOW_TAG_COLLECTIVE,
-                                    &messages[under_way++]));
+                                    &messages[in_flight++]));
     }
-    return snow_comm_wait_all(comm, messages, under_way);
+    return snow_comm_wait_all(comm, messages, in_flight);
 }
 
-snow_status snow_comm_share(snow_comm *comm, const void *mine, size_t count,
-                            void *all) {
+snow_status snow_comm_allgather(snow_comm *comm, const void *mine, size_t count,
+                                void *all) {
     unsigned char *bytes = all;
     SNOW_TRY(comm->broken);
     if (!count)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     memmove(bytes + (size_t)comm->rank * count, mine, count);
     for (int known = 1; known < comm->ranks; known *= 2)
         SNOW_TRY(share_round(comm, count, bytes, known));
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* --- agreement ------------------------------------------------------------ */
 
-/* Whether a message tells a rank already, as one does that all have agreed on
- * before. */
-static bool tells_rank(const char *message) {
+/* Whether a message begins with a rank, as one does that was agreed on before.
+ */
+static bool names_rank(const char *message) {
     int rank, length = 0;
     return sscanf(message, "rank %d: %n", &rank, &length) == 1 && length > 0;
 }
 
-/* Brings the first failure and its message to everybody. */
+/* Sends the first failure and its message to all ranks. */
 static snow_status spread_failure(snow_comm *comm, snow_status status,
                                   int first) {
     struct {
@@ -232,21 +233,21 @@ static snow_status spread_failure(snow_comm *comm, snow_status status,
     SNOW_TRY(snow_comm_broadcast(comm, &failure, sizeof failure, first));
     failure.message[sizeof failure.message - 1] = 0;
     comm->agreed = true;
-    if (tells_rank(failure.message))
+    if (names_rank(failure.message))
         return snow_fail(comm->context, (snow_status)failure.status, "%s",
                          failure.message);
     return snow_fail(comm->context, (snow_status)failure.status, "rank %d: %s",
                      first, failure.message);
 }
 
-snow_status snow_comm_agree(snow_comm *comm, snow_status status) {
+snow_status snow_comm_agree_status(snow_comm *comm, snow_status status) {
     SNOW_TRY(comm->broken);
     if (comm->ranks == 1)
         return status;
-    int64_t first = status == SNOW_OK ? comm->ranks : comm->rank;
+    int64_t first = status == SNOW_STATUS_OK ? comm->ranks : comm->rank;
     SNOW_TRY(snow_comm_reduce_ints(comm, &first, 1, SNOW_MIN));
     comm->agreed = false;
     if (first == comm->ranks)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     return spread_failure(comm, status, (int)first);
 }

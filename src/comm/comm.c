@@ -1,32 +1,32 @@
-/* comm/comm.c - a communicator: a transport's functions behind a count of what
- * is sent and a memory of failures.
+/* comm/comm.c - a communicator: a transport's functions, with a count of what
+ * is sent and the status of a failure.
  *
- * A transport that has failed once is not used again.  Its state is unknown,
- * and the ranks that still work would wait for messages of a round that this
- * rank has left. */
+ * A transport that has failed is not used again. Its state is unknown, and the
+ * ranks that still work would wait for messages of a round that this rank has
+ * left. */
 #include "comm/comm.h"
 
 snow_status snow_comm_new(snow_context *context, const snow_comm_ops *ops,
                           void *self, int rank, int ranks, snow_comm **out) {
     if (ops->size != sizeof *ops)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "a transport's record of %zu bytes where this library "
-                         "has %zu; build both of one version",
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "the transport's record has %zu bytes, but this "
+                         "library expects %zu; build both from one version",
                          ops->size, sizeof *ops);
     if (ranks < 1 || rank < 0 || rank >= ranks)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "rank %d is none of %d; ranks count from 0", rank,
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid rank %d of %d: ranks count from 0", rank,
                          ranks);
     snow_comm *comm = snow_allocate(context, sizeof *comm);
     if (!comm)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     *comm = (snow_comm){.context = context,
                         .ops = *ops,
                         .self = self,
                         .rank = rank,
                         .ranks = ranks};
     *out = comm;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_comm_free(snow_comm *comm) {
@@ -40,7 +40,7 @@ int snow_comm_rank(const snow_comm *comm) {
     return comm->rank;
 }
 
-int snow_comm_ranks(const snow_comm *comm) {
+int snow_comm_size(const snow_comm *comm) {
     return comm->ranks;
 }
 
@@ -49,7 +49,7 @@ snow_context *snow_comm_context(const snow_comm *comm) {
 }
 
 bool snow_comm_broken(const snow_comm *comm) {
-    return comm->broken != SNOW_OK;
+    return comm->broken != SNOW_STATUS_OK;
 }
 
 void snow_comm_sent(const snow_comm *comm, uint64_t *messages,
@@ -58,38 +58,41 @@ void snow_comm_sent(const snow_comm *comm, uint64_t *messages,
     *bytes = comm->bytes_sent;
 }
 
-/* Passes a transport's answer on, and keeps it where it is a failure. */
+/* Returns a transport's status, and stores it if it is a failure. */
 static snow_status heed(snow_comm *comm, snow_status status) {
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         comm->broken = status;
     return status;
 }
 
-/* Whether a message may go: not on what is broken, nor where nobody is. */
-static snow_status check(snow_comm *comm, int rank, int tag) {
+/* Checks that the communicator is not broken, and that rank and tag are valid.
+ */
+static snow_status check_peer(snow_comm *comm, int rank, int tag) {
     SNOW_TRY(comm->broken);
     if (rank < 0 || rank >= comm->ranks || tag < 0 || tag > 32767)
-        return heed(comm, snow_fail(comm->context, SNOW_BAD_USAGE,
-                                    "a message of tag %d with rank %d of %d",
-                                    tag, rank, comm->ranks));
-    return SNOW_OK;
+        return heed(
+            comm, snow_fail(comm->context, SNOW_STATUS_BAD_USAGE,
+                            "invalid message with tag %d to or from rank %d of "
+                            "%d: ranks count from 0, tags must not be negative",
+                            tag, rank, comm->ranks));
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_comm_send(snow_comm *comm, const void *bytes, size_t count,
                            int to, int tag, snow_message *message) {
-    SNOW_TRY(check(comm, to, tag));
+    SNOW_TRY(check_peer(comm, to, tag));
     SNOW_TRY(
         heed(comm, comm->ops.send(comm->self, bytes, count, to, tag, message)));
     comm->messages_sent++;
     comm->bytes_sent += count;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-snow_status snow_comm_receive(snow_comm *comm, void *bytes, size_t room,
+snow_status snow_comm_receive(snow_comm *comm, void *bytes, size_t capacity,
                               int from, int tag, snow_message *message) {
-    SNOW_TRY(check(comm, from, tag));
-    return heed(comm,
-                comm->ops.receive(comm->self, bytes, room, from, tag, message));
+    SNOW_TRY(check_peer(comm, from, tag));
+    return heed(comm, comm->ops.receive(comm->self, bytes, capacity, from, tag,
+                                        message));
 }
 
 snow_status snow_comm_wait_any(snow_comm *comm, snow_message *messages,
@@ -118,7 +121,7 @@ void snow_comm_work(snow_comm *comm, double seconds) {
         comm->ops.work(comm->self, seconds);
 }
 
-void snow_comm_occupy(snow_comm *comm, snow_meanwhile_fn *work, void *user) {
+void snow_comm_occupy(snow_comm *comm, snow_idle_fn *work, void *user) {
     if (comm->ops.occupy)
         comm->ops.occupy(comm->self, work, user);
 }

@@ -1,15 +1,15 @@
 /* comm/threads.c - ranks that are threads of this process.
  *
- * Each has a context whose memory is the caller's context's, which then knows
- * what all of them hold, and a box in one post office.  Nobody starts before
- * all are there: where the system gives too few threads, none has begun. */
-#include "comm/office.h"
+ * Each has a context whose memory is that of the caller's context, which so
+ * counts the memory of all, and a mailbox. No thread starts before all exist:
+ * if the system provides too few threads, none has begun. */
+#include "comm/mailbox.h"
 
 typedef enum crew_gate { CLOSED, OPEN, SENT_HOME } crew_gate;
 
 typedef struct thread_crew {
     snow_context *context; /* the caller's */
-    snow_office *office;
+    snow_mailbox *mailbox;
     snow_comm_body_fn *body;
     void *user;
     pthread_mutex_t lock;
@@ -49,84 +49,86 @@ static void turn_gate(thread_crew *crew, crew_gate gate) {
     pthread_mutex_unlock(&crew->lock);
 }
 
-static void *live(void *argument) {
+static void *run_rank(void *argument) {
     thread_rank *member = argument;
     thread_crew *crew = member->crew;
     if (wait_at_gate(crew) == OPEN) {
         member->status = crew->body(member->comm, crew->user);
-        snow_office_leave(crew->office, snow_comm_rank(member->comm));
+        snow_mailbox_leave(crew->mailbox, snow_comm_rank(member->comm));
     }
     return NULL;
 }
 
-static snow_status equip(thread_crew *crew, thread_rank *member, int rank) {
+static snow_status prepare_rank(thread_crew *crew, thread_rank *member,
+                                int rank) {
     const snow_allocator shared = {allocate_shared, release_shared,
                                    crew->context};
     member->crew = crew;
     SNOW_TRY(snow_context_new(&shared, &member->context));
     if (rank == 0)
-        snow_context_set_notice(member->context, crew->context->notice,
-                                crew->context->notice_user);
-    snow_status status = snow_office_comm(crew->office, member->context, rank,
-                                          false, &member->comm);
-    return status == SNOW_OK ? status
-                             : snow_fail(crew->context, status, "%s",
-                                         member->context->message);
+        snow_context_set_warning(member->context, crew->context->notice,
+                                 crew->context->notice_user);
+    snow_status status = snow_mailbox_comm(crew->mailbox, member->context, rank,
+                                           false, &member->comm);
+    return status == SNOW_STATUS_OK ? status
+                                    : snow_fail(crew->context, status, "%s",
+                                                member->context->message);
 }
 
 /* Makes the threads, lets them work, and waits for their end. */
-static snow_status work(thread_crew *crew, thread_rank *members, int ranks) {
+static snow_status run_ranks(thread_crew *crew, thread_rank *members,
+                             int ranks) {
     int made = 0;
-    while (made < ranks &&
-           !pthread_create(&members[made].thread, NULL, live, &members[made]))
+    while (made < ranks && !pthread_create(&members[made].thread, NULL,
+                                           run_rank, &members[made]))
         made++;
     turn_gate(crew, made == ranks ? OPEN : SENT_HOME);
     for (int rank = 0; rank < made; rank++)
         pthread_join(members[rank].thread, NULL);
     if (made == ranks)
-        return SNOW_OK;
-    return snow_fail(crew->context, SNOW_NO_MEMORY,
-                     "the system gives %d threads where %d are wanted; take "
-                     "fewer ranks",
-                     made, ranks);
+        return SNOW_STATUS_OK;
+    return snow_fail(
+        crew->context, SNOW_STATUS_NO_MEMORY,
+        "the system provides %d of the %d threads needed; use fewer ranks",
+        made, ranks);
 }
 
-/* Whether the failure of `a` is rather told than that of `b`: who failed of
- * itself before those that could not go on without it, of the first the lowest
- * rank, of the others the first in time. */
+/* Whether the failure of `a` is reported rather than that of `b`: a rank that
+ * failed by itself before those that could not go on without it; among the
+ * former the lowest rank, among the latter the first in time. */
 static bool comes_before(const thread_rank *a, const thread_rank *b) {
-    const snow_office *office = a->crew->office;
+    const snow_mailbox *mailbox = a->crew->mailbox;
     if (!a->comm->broken != !b->comm->broken)
         return !a->comm->broken;
     if (!a->comm->broken)
         return a->comm->rank < b->comm->rank;
-    return snow_office_left_before(office, a->comm->rank) <
-           snow_office_left_before(office, b->comm->rank);
+    return snow_mailbox_left_before(mailbox, a->comm->rank) <
+           snow_mailbox_left_before(mailbox, b->comm->rank);
 }
 
 static snow_status sum_up(thread_crew *crew, const thread_rank *members,
                           int ranks) {
-    const thread_rank *told = NULL;
+    const thread_rank *given = NULL;
     for (int rank = 0; rank < ranks; rank++)
-        if (members[rank].status != SNOW_OK &&
-            (!told || comes_before(&members[rank], told)))
-            told = &members[rank];
-    if (!told)
-        return SNOW_OK;
-    if (told->comm->agreed || ranks == 1)
-        return snow_fail(crew->context, told->status, "%s",
-                         told->context->message);
-    return snow_fail(crew->context, told->status, "rank %d: %s",
-                     told->comm->rank, told->context->message);
+        if (members[rank].status != SNOW_STATUS_OK &&
+            (!given || comes_before(&members[rank], given)))
+            given = &members[rank];
+    if (!given)
+        return SNOW_STATUS_OK;
+    if (given->comm->agreed || ranks == 1)
+        return snow_fail(crew->context, given->status, "%s",
+                         given->context->message);
+    return snow_fail(crew->context, given->status, "rank %d: %s",
+                     given->comm->rank, given->context->message);
 }
 
 static snow_status run(thread_crew *crew, thread_rank *members, int ranks) {
-    snow_status status = SNOW_OK;
-    for (int rank = 0; rank < ranks && status == SNOW_OK; rank++)
-        status = equip(crew, &members[rank], rank);
-    if (status == SNOW_OK)
-        status = work(crew, members, ranks);
-    if (status == SNOW_OK)
+    snow_status status = SNOW_STATUS_OK;
+    for (int rank = 0; rank < ranks && status == SNOW_STATUS_OK; rank++)
+        status = prepare_rank(crew, &members[rank], rank);
+    if (status == SNOW_STATUS_OK)
+        status = run_ranks(crew, members, ranks);
+    if (status == SNOW_STATUS_OK)
         status = sum_up(crew, members, ranks);
     for (int rank = 0; rank < ranks; rank++) {
         snow_comm_free(members[rank].comm);
@@ -138,10 +140,12 @@ static snow_status run(thread_crew *crew, thread_rank *members, int ranks) {
 static snow_status run_with_gate(thread_crew *crew, thread_rank *members,
                                  int ranks) {
     if (pthread_mutex_init(&crew->lock, NULL))
-        return snow_fail(crew->context, SNOW_NO_MEMORY, "no memory for a lock");
+        return snow_fail(crew->context, SNOW_STATUS_NO_MEMORY,
+                         "cannot create a lock: out of memory");
     if (pthread_cond_init(&crew->turn, NULL)) {
         pthread_mutex_destroy(&crew->lock);
-        return snow_fail(crew->context, SNOW_NO_MEMORY, "no memory for a lock");
+        return snow_fail(crew->context, SNOW_STATUS_NO_MEMORY,
+                         "cannot create a lock: out of memory");
     }
     snow_status status = run(crew, members, ranks);
     pthread_cond_destroy(&crew->turn);
@@ -149,19 +153,20 @@ static snow_status run_with_gate(thread_crew *crew, thread_rank *members,
     return status;
 }
 
-snow_status snow_comm_threads(snow_context *context, int ranks,
-                              snow_comm_body_fn *body, void *user) {
+snow_status snow_comm_run_threads(snow_context *context, int ranks,
+                                  snow_comm_body_fn *body, void *user) {
     if (ranks < 1)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "%d ranks; there must be at least 1", ranks);
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid number of ranks %d: must be at least 1",
+                         ranks);
     thread_crew crew = {.context = context, .body = body, .user = user};
-    SNOW_TRY(snow_office_new(context, ranks, &crew.office));
-    snow_status status = SNOW_NO_MEMORY;
+    SNOW_TRY(snow_mailbox_new(context, ranks, &crew.mailbox));
+    snow_status status = SNOW_STATUS_NO_MEMORY;
     size_t bytes = (size_t)ranks * sizeof(thread_rank);
     thread_rank *members = snow_allocate_clear(context, bytes);
     if (members)
         status = run_with_gate(&crew, members, ranks);
     snow_release(context, members);
-    snow_office_free(crew.office);
+    snow_mailbox_free(crew.mailbox);
     return status;
 }

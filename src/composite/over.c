@@ -1,5 +1,6 @@
-/* composite/over.c - "composite successive slices to produce the local image"
- * (line 13 of figure 8); Porter and Duff 1984. */
+/* composite/over.c - composites sheets front to back: "composite successive
+ * slices to produce the local image" (line 13 of figure 8); Porter and Duff
+ * 1984. */
 #include "composite/over.h"
 #include "simd/isa.h"
 
@@ -34,7 +35,7 @@ static void over_rgba(float *restrict front, const float *restrict back,
 #include "composite/over.tmpl.h"
 #endif
 
-snow_over_fn *snow_over_pick(snow_isa isa, int channels) {
+snow_composite_fn *snow_over_pick(snow_isa isa, int channels) {
 #if SNOW_HAS_AVX
     if (isa == SNOW_ISA_AVX512)
         return channels == 2 ? over_grey_avx512 : over_rgba_avx512;
@@ -53,7 +54,8 @@ void snow_over_row(float *front, const float *back, size_t count,
         over_rgba(front, back, count);
 }
 
-void snow_lay_sheet(float *image, snow_sheet *sheet, snow_over_fn *lay) {
+void snow_composite_sheet(float *image, snow_sheet *sheet,
+                          snow_composite_fn *composite) {
     size_t channels = (size_t)sheet->channels;
     if (sheet->x0 < sheet->x1) {
         size_t count = (size_t)(sheet->x1 - sheet->x0);
@@ -61,7 +63,7 @@ void snow_lay_sheet(float *image, snow_sheet *sheet, snow_over_fn *lay) {
             size_t width = (size_t)sheet->width, x = (size_t)sheet->x0;
             size_t line = (size_t)(y - sheet->top);
             float *back = sheet->pixels + (line * width + x) * channels;
-            lay(image + ((size_t)y * width + x) * channels, back, count);
+            composite(image + ((size_t)y * width + x) * channels, back, count);
             memset(back, 0, count * channels * sizeof *back);
         }
     }

@@ -1,5 +1,6 @@
-/* composite/over.h - composition (Cp in figure 7): sheets into the image,
- * front to back, by Porter and Duff's over; premultiplied, linear as stored. */
+/* composite/over.h - composition (Cp in figure 7): composites sheets into the
+ * image, front to back, with Porter and Duff's over operator. Pixels are
+ * premultiplied, in the linear space of their stored values. */
 #ifndef SNOW_OVER_H
 #define SNOW_OVER_H
 
@@ -12,15 +13,16 @@
 void snow_over_row(float *front, const float *back, size_t count, int channels);
 
 /* The same for one number of channels. */
-typedef void snow_over_fn(float *front, const float *back, size_t count);
+typedef void snow_composite_fn(float *front, const float *back, size_t count);
 
-/* The loop of a level (resolved) for 2 or 4 channels; all give the same bits.
- */
-snow_over_fn *snow_over_pick(snow_isa isa, int channels);
+/* The loop of an instruction set (resolved) for 2 or 4 channels; all give the
+ * same bits. */
+snow_composite_fn *snow_over_pick(snow_isa isa, int channels);
 
-/* Lays a sheet behind what the image holds so far, row by row with `lay`, which
- * is for their number of channels, and clears the sheet.  They have one size.
+/* Composites a sheet behind the image, row by row with `composite`, which must
+ * fit their number of channels, and clears the sheet. Both have the same size.
  */
-void snow_lay_sheet(float *image, snow_sheet *sheet, snow_over_fn *lay);
+void snow_composite_sheet(float *image, snow_sheet *sheet,
+                          snow_composite_fn *composite);
 
 #endif

@@ -1,8 +1,8 @@
-/* composite/over.tmpl.h - "over" for a run of pixels, for one level, chosen
- * before.  Nothing is to be defined.
+/* composite/over.tmpl.h - "over" for a run of pixels, for one instruction set.
+ * Include simd/select.h first; nothing else needs to be defined.
  *
- * The same product and sum for each float as over_grey and over_rgba, which
- * also do what is left at the end: no bit depends on the level. */
+ * Each float is the same product and sum as in over_grey and over_rgba, which
+ * also process the rest of a run: no bit depends on the instruction set. */
 
 static TARGET void NAME(over_grey)(float *front, const float *back,
                                    size_t count) {

@@ -1,4 +1,4 @@
-/* composite/tile.c - the tile functions of all levels. */
+/* composite/tile.c - the tile functions for all instruction sets. */
 #include "composite/tile.h"
 
 #include <string.h>
@@ -6,16 +6,16 @@
 #define SELECT_SCALAR
 #include "simd/select.h"
 
-#include "composite/tile_levels.h"
+#include "composite/tile_isa.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
 
-#include "composite/tile_levels.h"
+#include "composite/tile_isa.h"
 #define SELECT_AVX512
 #include "simd/select.h"
 
-#include "composite/tile_levels.h"
+#include "composite/tile_isa.h"
 #endif
 
 snow_tile_fn *snow_tile_of(snow_isa isa, int channels) {

@@ -1,28 +1,28 @@
-/* composite/tile.tmpl.h - the cells of a tile.  Define before including, with
- * simd/select.h's words in force:
+/* composite/tile.tmpl.h - the cells of a tile. Include simd/select.h first, and
+ * define:
  *
- *   TILE_CHANNELS  floats of a pixel: 2 or 4
- *   TILE_WEAVE     V(weave2) or V(weave4)
- *   TILE_EVENS     V(evens2) or V(evens4)
- *   TILE_ALPHA     V(alpha2) or V(alpha4)
- *   TILE_NAME      names of the functions
+ *   TILE_CHANNELS      floats of a pixel: 2 or 4
+ *   TILE_INTERLEAVE    V(interleave2) or V(interleave4)
+ *   TILE_DEINTERLEAVE  V(deinterleave2) or V(deinterleave4)
+ *   TILE_ALPHA         V(alpha2) or V(alpha4)
+ *   TILE_NAME          names of the functions
  *
- * All are undefined at the end.  The functions below take the numbers of taps
- * and phases as arguments that are constants where it matters (TILE_NAME()), so
- * that loops unroll and weights stay in registers.  The order of additions does
- * not depend on the level. */
+ * All are undefined at the end. The functions below take the numbers of taps
+ * and phases as arguments, which are constants in the common cases
+ * (TILE_NAME()), so that loops unroll and weights stay in registers. The order
+ * of additions does not depend on the instruction set. */
 
 /* Floats of a filtered row. */
 #define TILE_ROW (2 * SNOW_TILE_COLUMNS * TILE_CHANNELS)
 
-/* Vectors of so many floats that are summed side by side. */
+/* Number of vectors of floats that are summed in parallel. */
 #define TILE_ABREAST(floats) ((floats) / LANES < 4 ? (floats) / LANES : 4)
 
 /* Pixels of a vector. */
 #define TILE_VECTOR (LANES / TILE_CHANNELS)
 
 /* Returns a function of (tile, width, taps, phases, lead), with constants in
- * the cases that pictures are made of. */
+ * the common cases. */
 #define TILE_CASE(call, t, width, taps, comb, lattice)  \
     if ((lattice)->phases == 1)                         \
         return call(t, width, taps, 1, 0);              \
@@ -40,8 +40,9 @@
         return call(t, width, taps, (lattice)->phases, (comb)->lead[1]); \
     }
 
-/* Along u, one pixel a lattice column: pixel n sums voxels n + m.  Vectors are
- * summed side by side, since each sum waits for itself at every tap. */
+/* Along u, one pixel a lattice column: pixel n sums voxels n + m. Several
+ * vectors are summed in parallel, since each tap of a sum depends on the one
+ * before. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_single)(const float *samples, const V(vec) * weights, const int taps,
                    float *pixels) {
@@ -63,8 +64,8 @@ TILE_NAME(_single)(const float *samples, const V(vec) * weights, const int taps,
 }
 
 /* Along u, two pixels a column, each phase with its own weights; the odd one
- * begins `lead` voxels later.  A vector of voxels is loaded once for both:
- * loads are what the loop waits for. */
+ * begins `lead` voxels later. A vector of voxels is loaded once for both, since
+ * loads limit the speed of the loop. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_double)(const float *samples, const V(vec) * weights, const int taps,
                    const int lead, float *pixels) {
@@ -81,12 +82,12 @@ TILE_NAME(_double)(const float *samples, const V(vec) * weights, const int taps,
             else if (m > lead)
                 b = V(fma)(weights[taps + m - lead], voxels, b);
         }
-        TILE_WEAVE(a, b, pixels + 2 * at);
+        TILE_INTERLEAVE(a, b, pixels + 2 * at);
     }
 }
 
-/* Along u, two voxels a pixel: of sums at every voxel, which whole vectors
- * make, every other one. */
+/* Along u, two voxels a pixel: sums at every voxel, in whole vectors, of which
+ * every other one is kept. */
 TARGET static inline __attribute__((always_inline)) void
 TILE_NAME(_halved)(const float *samples, const V(vec) * weights, const int taps,
                    float *pixels) {
@@ -99,12 +100,12 @@ TILE_NAME(_halved)(const float *samples, const V(vec) * weights, const int taps,
             a = V(fma)(weights[m], V(load)(at), a);
             b = V(fma)(weights[m], V(load)(at + LANES), b);
         }
-        V(store)(pixels + n * TILE_CHANNELS, TILE_EVENS(a, b));
+        V(store)(pixels + n * TILE_CHANNELS, TILE_DEINTERLEAVE(a, b));
     }
 }
 
-/* One line: rows weighted and added up, behind the image.  True while something
- * still shines through. */
+/* One line: rows are weighted, added up and composited behind the image.
+ * Returns true while it is not opaque. */
 TARGET static inline __attribute__((always_inline)) bool
 TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
                  const int taps, const int width) {
@@ -125,7 +126,7 @@ TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
             least = V(min)(least, front);
         }
     }
-    /* Colours are never below 0, so that only alpha - 1 counts. */
+    /* Colours are never negative, so only alpha - 1 counts. */
     return V(any_less)(least, V(set1)(-SNOW_OPAQUE_ENOUGH));
 }
 
@@ -192,7 +193,8 @@ TILE_NAME(_along_u)(const snow_tile *t, const int width, const int taps,
     return 0;
 }
 
-/* Lays the wanted cells behind the image; returns those that are finished. */
+/* Composites the wanted cells behind the image; returns those that are
+ * finished. */
 TARGET static inline __attribute__((always_inline)) uint64_t
 TILE_NAME(_along_v)(const snow_tile *t, const int width, const int taps,
                     const int phases, const int lead) {
@@ -239,7 +241,7 @@ TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
 #undef TILE_CASE
 #undef TILE_CASES
 #undef TILE_CHANNELS
-#undef TILE_WEAVE
-#undef TILE_EVENS
+#undef TILE_INTERLEAVE
+#undef TILE_DEINTERLEAVE
 #undef TILE_ALPHA
 #undef TILE_NAME

@@ -1,56 +1,57 @@
-/* decompose/bricks.c - boxes of about equally many interesting voxels, by
- * halving: a k-d tree over blocks of the grid.
+/* decompose/bricks.c - bricks with about equally many interesting voxels, by
+ * bisection: a k-d tree over blocks of the grid.
  *
- * A node has a box of blocks and some ranks.  It is cut where both sides have,
- * for each of their ranks, as equal a cost as a border of blocks allows; how
- * many ranks a side gets is free within limits, which makes the upper cuts
- * almost perfect.  What is left over comes from the last cuts, of boxes few
+ * A node has a box of blocks and some ranks. It is cut where the costs for each
+ * rank of both sides are as equal as the borders of blocks permit. The number
+ * of ranks of a side is free within limits, which makes the upper cuts almost
+ * perfect. The remaining imbalance comes from the last cuts, of boxes few
  * blocks wide.
  *
  * The cost of a box comes from the sums of all blocks before a corner (F. C.
- * Crow, "Summed-area tables for texture mapping", SIGGRAPH 1984) in eight
- * looks, however large it is. */
-#include "decompose/cut.h"
+ * Crow, "Summed-area tables for texture mapping", SIGGRAPH 1984) with eight
+ * look-ups, whatever its size. */
+#include "decompose/partition.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Blocks: so many for each rank, but no more and no fewer in all than these. */
+/* Number of blocks: for each rank, and the minimum and maximum in all. */
 #define BLOCKS_A_RANK 16384
 #define LEAST_BLOCKS (INT64_C(1) << 20)
 #define MOST_BLOCKS (INT64_C(1) << 22)
 
-/* Another axis than the longest must be better by so much to be cut: long thin
- * boxes have many ghost voxels around them. */
+/* An axis other than the longest must be better by this factor to be cut: long
+ * thin boxes have many ghost voxels. */
 #define LONGEST_BONUS 1.01
 
-/* And so must a cut whose larger side has all ranks, not half of them. */
+/* The same for a cut whose larger side has all ranks, not half of them. */
 #define HALVES_BONUS 0.01
 
-static bool lay_blocks(int64_t edge, int64_t most, snow_tally *tally) {
-    const snow_cut_grid *grid = &tally->grid;
+static bool lay_blocks(int64_t edge, int64_t most, snow_block_counts *counts) {
+    const snow_partition_grid *grid = &counts->grid;
     uint64_t blocks = 1;
     for (int i = 0; i < 3; i++) {
-        tally->block[i] = edge < grid->dims[i] ? edge : grid->dims[i];
-        tally->blocks[i] = (grid->dims[i] - 1) / tally->block[i] + 1;
+        counts->block[i] = edge < grid->dims[i] ? edge : grid->dims[i];
+        counts->blocks[i] = (grid->dims[i] - 1) / counts->block[i] + 1;
         if (grid->borders && i == grid->axis)
-            tally->blocks[i] = grid->count;
-        if (!snow_mul_u64(blocks, (uint64_t)tally->blocks[i], &blocks))
+            counts->blocks[i] = grid->count;
+        if (!snow_mul_u64(blocks, (uint64_t)counts->blocks[i], &blocks))
             return false;
     }
     return blocks <= (uint64_t)most;
 }
 
-snow_tally snow_tally_for_bricks(const snow_cut_grid *grid, int ranks) {
-    snow_tally tally = {.grid = *grid};
+snow_block_counts snow_block_counts_for_bricks(const snow_partition_grid *grid,
+                                               int ranks) {
+    snow_block_counts counts = {.grid = *grid};
     int64_t most = (int64_t)ranks * BLOCKS_A_RANK, edge = 1;
     if (most < LEAST_BLOCKS)
         most = LEAST_BLOCKS;
     if (most > MOST_BLOCKS)
         most = MOST_BLOCKS;
-    while (!lay_blocks(edge, most, &tally))
+    while (!lay_blocks(edge, most, &counts))
         edge *= 2;
-    return tally;
+    return counts;
 }
 
 /* A box of blocks: first .. end - 1. */
@@ -59,17 +60,17 @@ typedef struct node {
     int rank, ranks;
 } node;
 
-/* sums[corner] is of the blocks before it along all axes. */
+/* sums[corner] is the sum of the blocks before it along all axes. */
 typedef struct tree {
-    const snow_tally *tally;
+    const snow_block_counts *counts;
     int64_t *sums;
     size_t step[3];   /* from corner to corner */
-    double emptiness; /* cost of a voxel, in interesting ones */
+    double emptiness; /* cost of a voxel, relative to an interesting one */
     snow_box *boxes;
 } tree;
 
 static void sum_up(tree *t) {
-    const int64_t *blocks = t->tally->blocks, *count = t->tally->counts;
+    const int64_t *blocks = t->counts->blocks, *count = t->counts->counts;
     t->step[0] = 1;
     t->step[1] = (size_t)blocks[0] + 1;
     t->step[2] = t->step[1] * ((size_t)blocks[1] + 1);
@@ -89,8 +90,8 @@ static void sum_up(tree *t) {
         }
 }
 
-static snow_box voxels_of(const snow_tally *tally, const node *n) {
-    return snow_tally_box(tally, n->first, n->end);
+static snow_box voxels_of(const snow_block_counts *counts, const node *n) {
+    return snow_block_counts_box(counts, n->first, n->end);
 }
 
 static double cost_of(const tree *t, const node *n) {
@@ -105,20 +106,20 @@ static double cost_of(const tree *t, const node *n) {
         }
         count += ends % 2 ? t->sums[at] : -t->sums[at];
     }
-    snow_box box = voxels_of(t->tally, n);
+    snow_box box = voxels_of(t->counts, n);
     return (double)count + t->emptiness * (double)box.count[0] *
                                (double)box.count[1] * (double)box.count[2];
 }
 
-/* A cut of a node: its parts, and how bad it is: the larger cost a rank over
- * the mean, and what is put on it for the sake of shape. */
+/* A cut of a node: its parts, and its badness: the larger cost for each rank
+ * over the mean, with the bonuses for shape. */
 typedef struct cut {
     node low, high;
     double score;
 } cut;
 
-/* Cuts before block `at` of an axis, and deals out the ranks by cost; no side
- * has less than a third of them where there are three. */
+/* Cuts before block `at` of an axis, and distributes the ranks by cost; no side
+ * gets less than a third of them if there are three. */
 static cut cut_at(const tree *t, const node *n, double cost, int axis,
                   int64_t at) {
     cut c = {*n, *n, 0};
@@ -140,9 +141,9 @@ static cut cut_at(const tree *t, const node *n, double cost, int axis,
     return c;
 }
 
-/* The best cut of a node with two blocks at least. */
+/* The best cut of a node with at least two blocks. */
 static cut best_cut(const tree *t, const node *n) {
-    snow_box box = voxels_of(t->tally, n);
+    snow_box box = voxels_of(t->counts, n);
     double cost = cost_of(t, n);
     int longest = -1;
     cut best = {.score = 0};
@@ -164,14 +165,14 @@ static cut best_cut(const tree *t, const node *n) {
     return best;
 }
 
-/* Recursive: the ranks at least shrink by a third, so that it ends soon.  A
- * single block goes to the first of its ranks. */
+/* Recursive: the number of ranks shrinks by at least a third, so the depth is
+ * small. A single block goes to the first of its ranks. */
 static void cut_node(const tree *t, const node *n) {
     bool single = true;
     for (int i = 0; i < 3; i++)
         single = single && n->end[i] - n->first[i] == 1;
     if (n->ranks == 1 || single) {
-        snow_box box = voxels_of(t->tally, n), none = box;
+        snow_box box = voxels_of(t->counts, n), none = box;
         memset(none.count, 0, sizeof none.count);
         for (int i = 0; i < n->ranks; i++)
             t->boxes[n->rank + i] = i ? none : box;
@@ -182,23 +183,24 @@ static void cut_node(const tree *t, const node *n) {
     cut_node(t, &c.high);
 }
 
-snow_status snow_cut_bricks(snow_context *context, const snow_tally *tally,
-                            int ranks, snow_box *boxes) {
-    const int64_t *blocks = tally->blocks;
-    tree t = {.tally = tally, .boxes = boxes};
+snow_status snow_partition_bricks(snow_context *context,
+                                  const snow_block_counts *counts, int ranks,
+                                  snow_box *boxes) {
+    const int64_t *blocks = counts->blocks;
+    tree t = {.counts = counts, .boxes = boxes};
     uint64_t corners = (uint64_t)(blocks[0] + 1) * (uint64_t)(blocks[1] + 1) *
                        (uint64_t)(blocks[2] + 1);
     t.sums = snow_allocate_array(context, corners, sizeof *t.sums);
     if (!t.sums)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     sum_up(&t);
     node root = {.ranks = ranks};
     memcpy(root.end, blocks, sizeof root.end);
-    const int64_t *dims = tally->grid.dims;
+    const int64_t *dims = counts->grid.dims;
     double voxels = (double)dims[0] * (double)dims[1] * (double)dims[2];
     int64_t all = t.sums[corners - 1];
     t.emptiness = all ? (double)all / (SNOW_EMPTINESS * voxels) : 1;
     cut_node(&t, &root);
     snow_release(context, t.sums);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }

@@ -1,29 +1,29 @@
 /* decompose/order.c - see order.h.
  *
- * Two boxes that are apart along an axis are met by a ray in the order in which
- * it runs along that axis.  Where two axes differ no ray meets both boxes, and
- * where all agree some rays may: that is the relation which is sorted
- * topologically.  Boxes of a grid, of a k-d tree and of slabs have no rings;
- * three boxes around a corner may have one. */
+ * A ray meets two boxes that are separated along an axis in the order in which
+ * it runs along that axis. If two axes disagree no ray meets both boxes; if all
+ * agree some rays may. This relation is sorted topologically. Boxes of a grid,
+ * of a k-d tree and of slabs have no cycles; three boxes around a corner may
+ * have one. */
 #include "decompose/order.h"
 
 #include <string.h>
 
-/* 1 where rays run from `a` to `b` along an axis on which they are apart, with
- * `a` lower; -1 from `b` to `a`; 0 where none does. */
-static int runs_upward(const snow_sight *sight, int axis, int64_t a_end,
+/* 1 if rays run from `a` to `b` along an axis on which they are separated, with
+ * `a` lower; -1 from `b` to `a`; 0 if none does. */
+static int runs_upward(const snow_viewer *sight, int axis, int64_t a_end,
                        int64_t b_first) {
     if (!sight->perspective)
         return (sight->along[axis] > 0) - (sight->along[axis] < 0);
-    /* An eye between the two sees one or the other. */
+    /* A ray from an eye between the two meets only one of them. */
     if (sight->eye[axis] <= (double)a_end - 0.5)
         return 1;
     return sight->eye[axis] >= (double)b_first - 0.5 ? -1 : 0;
 }
 
-/* The same with the boxes in either order; 2 where they are not apart. */
+/* The same with the boxes in either order; 2 if they are not separated. */
 static int before_along(const snow_box *a, const snow_box *b,
-                        const snow_sight *sight, int axis) {
+                        const snow_viewer *sight, int axis) {
     int64_t a_end = a->first[axis] + a->count[axis];
     int64_t b_end = b->first[axis] + b->count[axis];
     if (a_end <= b->first[axis])
@@ -34,7 +34,7 @@ static int before_along(const snow_box *a, const snow_box *b,
 }
 
 int snow_box_before(const snow_box *a, const snow_box *b,
-                    const snow_sight *sight) {
+                    const snow_viewer *sight) {
     int found = 2;
     for (int axis = 0; axis < 3; axis++) {
         int here = before_along(a, b, sight, axis);
@@ -51,9 +51,9 @@ static bool is_empty(const snow_box *box) {
     return !box->count[0] || !box->count[1] || !box->count[2];
 }
 
-/* Counts for each box those before it; false where two overlap. */
+/* Counts for each box the boxes before it; false if two overlap. */
 static bool count_before(const snow_box *boxes, int count,
-                         const snow_sight *sight, int *before) {
+                         const snow_viewer *sight, int *before) {
     for (int a = 0; a < count; a++)
         for (int b = a + 1; b < count; b++) {
             if (is_empty(&boxes[a]) || is_empty(&boxes[b]))
@@ -68,11 +68,10 @@ static bool count_before(const snow_box *boxes, int count,
     return true;
 }
 
-/* Takes boxes that nothing lies before any more, the lowest number first;
- * returns how many there were.  Each is looked for once and compared with all:
- * count^2 steps. */
-static int take_boxes(const snow_box *boxes, int count, const snow_sight *sight,
-                      int *before, int *order) {
+/* Removes boxes with no box before them, the lowest number first; returns their
+ * number. Each is compared with all others once: count^2 steps. */
+static int take_boxes(const snow_box *boxes, int count,
+                      const snow_viewer *sight, int *before, int *order) {
     int taken = 0, ready = 0;
     for (int n = 0; n < count; n++)
         if (!is_empty(&boxes[n]) && before[n] == 0)
@@ -91,22 +90,23 @@ static int take_boxes(const snow_box *boxes, int count, const snow_sight *sight,
 }
 
 snow_status snow_order_boxes(snow_context *context, const snow_box *boxes,
-                             int count, const snow_sight *sight, int *order) {
+                             int count, const snow_viewer *sight, int *order) {
     int *work = snow_allocate_array(context, (uint64_t)count * 2, sizeof *work);
     if (!work)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     int *before = work, *found = work + count;
     memset(work, 0, (size_t)count * 2 * sizeof *work);
-    snow_status status = SNOW_OK;
+    snow_status status = SNOW_STATUS_OK;
     if (!count_before(boxes, count, sight, before))
-        status = snow_fail(context, SNOW_BAD_USAGE,
-                           "parts of the volume overlap; let each voxel be "
-                           "one processor's own");
+        status = snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                           "parts of the volume overlap: every voxel must "
+                           "belong to one processor only");
     else if (take_boxes(boxes, count, sight, before, found) < count)
-        status = snow_fail(context, SNOW_BAD_USAGE,
-                           "parts of the volume lie before one another in a "
-                           "ring; cut it into slabs, a grid or a k-d tree");
-    if (status == SNOW_OK)
+        status = snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                           "parts of the volume have no order from front to "
+                           "back: they occlude each other in a cycle; "
+                           "partition it into slabs, a grid or a k-d tree");
+    if (status == SNOW_STATUS_OK)
         memcpy(order, found, (size_t)count * sizeof *order);
     snow_release(context, work);
     return status;

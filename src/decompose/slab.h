@@ -1,6 +1,6 @@
-/* decompose/slab.h - slab decomposition (SD in figure 7, section 4): the
- * slices of a volume dealt out in runs, one run to each processor.  Knows only
- * sizes. */
+/* decompose/slab.h - slab decomposition (SD in figure 7, section 4): divides
+ * the slices of a volume into runs, one for each processor. Needs sizes only.
+ */
 #ifndef SNOW_SLAB_H
 #define SNOW_SLAB_H
 
@@ -11,8 +11,8 @@ typedef struct snow_slab {
     int64_t first, count;
 } snow_slab;
 
-/* Slab `part` (from 0) of `slices` slices cut into `parts` slabs that are as
- * equal as can be: their sizes differ by one at most, larger ones first. */
+/* Slab `part` (from 0) of `slices` slices divided into `parts` slabs as equal
+ * as possible: their sizes differ by at most one, larger ones first. */
 snow_slab snow_slab_equal(int64_t slices, int parts, int part);
 
 #endif

@@ -1,23 +1,23 @@
-/* encode/bitmap.c - one bit for every voxel (section 3.2.2, figure 5).
+/* encode/bitmap.c - the bit-map encoding: one bit for every voxel (section
+ * 3.2.2, figure 5).
  *
- * The rows of a slice follow each other without a gap; voxel n of the slice is
- * bit n mod 8, counted from the lowest, of byte n / 8.  The slice's last byte
- * is filled up with zeros.
+ * The rows of a slice follow each other without a gap. Voxel n of the slice is
+ * bit n mod 8, counted from the lowest, of byte n / 8. The slice's last byte is
+ * padded with zeros.
  *
- * A band's slice has one of two forms, whichever takes fewer bytes; so its size
- * tells which one it is.
+ * A band's slice has one of two forms, whichever takes fewer bytes; its size
+ * shows which.
  *
- *   plain   as above, but that each row begins with a byte of its own:
+ *   plain   as above, except that each row begins at a byte:
  *
  *           | row 0 . . . . . . 0 0 | row 1 . . . . . . 0 0 | row 2 ...
  *
- *   words   every row is cut into words of 64 voxels (the last one filled up
- *           with zeros); a summary tells by a bit which of them, row by row,
- *           hold anything, and those words follow:
+ *   words   every row is divided into words of 64 voxels (the last one padded
+ *           with zeros); a summary has a bit for each word, row by row, set if
+ *           the word is not zero, and the words that are not zero follow:
  *
  *           | 0 0 1 0  0 0 0 0  0 1 1 0 ... | word 2 | word 9 | word 10 | ...
- *              row 0      row 1     row 2
- */
+ *              row 0      row 1     row 2 */
 #include "encode/encode.h"
 
 #include <string.h>
@@ -34,21 +34,21 @@ static snow_status bitmap_add_row(snow_sparse *s, const uint32_t *columns,
         size_t bit = first + columns[i];
         bits[bit / 8] |= (unsigned char)(1u << bit % 8);
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status bitmap_end_slice(snow_sparse *s) {
     (void)s;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Bits n .. n + 55 at least, in the low end of a word.  Reads up to 8 bytes
- * beyond the one that holds bit n. */
+/* Bits n .. n + 55 at least, in the low end of a word. Reads up to 8 bytes
+ * beyond the byte of bit n. */
 static uint64_t load_bits(const unsigned char *bits, size_t n) {
     return snow_load_word(bits + n / 8) >> n % 8;
 }
 
-#define CHUNK 56 /* bits that one load always gives */
+#define CHUNK 56 /* bits that every load provides */
 
 /* Bits first .. first + count - 1, count <= CHUNK. */
 static uint64_t some_bits(const unsigned char *bits, size_t first,
@@ -60,7 +60,7 @@ static size_t lesser(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
-/* How many of `count` bits from `first` on are set. */
+/* The number of bits set among `count` bits from `first` on. */
 static size_t count_bits(const unsigned char *bits, size_t first,
                          size_t count) {
     size_t set = 0;
@@ -106,8 +106,7 @@ static size_t summary_bytes(const snow_sparse *s) {
     return (snow_mask_words(s) * (size_t)s->rows + 7) / 8;
 }
 
-/* The last word of a row reaches into the next row, which then overwrites it.
- */
+/* A row's last word extends into the next row, which then overwrites it. */
 static void write_plain(const snow_sparse *s, const uint64_t *masks,
                         unsigned char *at) {
     size_t words = snow_mask_words(s);
@@ -137,7 +136,7 @@ static snow_status bitmap_add_masks(snow_sparse *s, const uint64_t *masks,
         at += plain;
     }
     snow_sparse_close_ea(s, at);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static size_t plain_next_row(snow_walk *walk, snow_span *spans) {
@@ -173,7 +172,7 @@ static size_t plain_skip(snow_walk *walk, int64_t rows) {
         walk->slice + (size_t)walk->row * row, (size_t)rows * row);
 }
 
-/* walk->ea is at the next word that holds anything. */
+/* walk->ea points to the next stored word. */
 static size_t words_next_row(snow_walk *walk, snow_span *spans) {
     size_t words = snow_mask_words(walk->sparse), count = 0;
     size_t first = (size_t)walk->row * words;
@@ -195,8 +194,9 @@ static void words_next_mask(snow_walk *walk, uint64_t *mask, size_t step) {
     for (size_t w = 0; w < words; w += CHUNK) {
         size_t some = lesser(words - w, CHUNK);
         uint64_t summary = some_bits(walk->slice, first + w, some);
-        /* Each word is read, also where none is stored and the next one, or the
-         * room behind the last, is: how many are is hard to guess. */
+        /* Every word is read, even where none is stored and the next one, or
+         * the margin behind the last, is read instead: a branch would be
+         * mispredicted. */
         for (size_t n = w; n < w + some; n++, summary >>= 1) {
             uint64_t full = summary & 1;
             mask[n * step] = snow_load_word(walk->ea) & (0 - full);

@@ -1,6 +1,6 @@
-/* encode/blocks_avx2.h - blocks of 64 codes for encode/rows.tmpl.h: comparisons
- * by vectors; codes are packed eight at a time, by a shuffle with the places of
- * the set bits. */
+/* encode/blocks_avx2.h - blocks of 64 codes for encode/rows.tmpl.h, with AVX2.
+ * Vectors compare; codes are packed eight at a time, by a shuffle with the
+ * positions of the set bits. */
 #ifndef SNOW_BLOCKS_AVX2_H
 #define SNOW_BLOCKS_AVX2_H
 
@@ -43,7 +43,7 @@ SNOW_AVX2_INLINE uint64_t within_8_avx2(block_8_avx2 block, uint8_t first,
     return low | (uint64_t)high << 32;
 }
 
-/* Where group n of eight goes, from snow_counts_of_bytes. */
+/* Start of group n of eight, from snow_counts_of_bytes. */
 SNOW_AVX2_INLINE size_t begin_of(uint64_t counts, int n) {
     return n ? counts >> 8 * (n - 1) & 255 : 0;
 }
@@ -57,9 +57,9 @@ SNOW_AVX2_INLINE void pack_8_avx2(block_8_avx2 block, uint64_t mask,
     store_256(codes + 32, block.part[1]);
     uint64_t counts = snow_counts_of_bytes(mask);
     for (int n = 0; n < 8; n++) {
-        const void *order = &snow_places_of_byte[mask >> 8 * n & 255];
+        const void *params = &snow_places_of_byte[mask >> 8 * n & 255];
         __m128i eight = _mm_loadl_epi64((const __m128i *)(codes + 8 * n));
-        eight = _mm_shuffle_epi8(eight, _mm_loadl_epi64(order));
+        eight = _mm_shuffle_epi8(eight, _mm_loadl_epi64(params));
         _mm_storel_epi64((__m128i *)(out + begin_of(counts, n)), eight);
     }
 }
@@ -91,8 +91,8 @@ SNOW_AVX2_INLINE __m256i inside_16(__m256i codes, __m256i first,
     return _mm256_cmpeq_epi16(_mm256_min_epu16(above, width), above);
 }
 
-/* 32 codes: two vectors of words to one of bytes, whose middle quarters the
- * packing has swapped. */
+/* 32 codes: two vectors of 16-bit values become one of bytes, and packing swaps
+ * the middle quarters. */
 SNOW_AVX2_INLINE uint64_t bits_of_half(__m256i low, __m256i high, __m256i first,
                                        __m256i width) {
     __m256i bytes = _mm256_packs_epi16(inside_16(low, first, width),
@@ -120,11 +120,12 @@ SNOW_AVX2_INLINE void pack_16_avx2(block_16_avx2 block, uint64_t mask,
     for (int n = 0; n < 8; n++) {
         const void *places = &snow_places_of_byte[mask >> 8 * n & 255];
         /* Word k is bytes 2 k and 2 k + 1. */
-        __m128i order = _mm_loadl_epi64(places);
-        order = _mm_add_epi8(order, order);
-        order = _mm_unpacklo_epi8(order, _mm_add_epi8(order, _mm_set1_epi8(1)));
+        __m128i params = _mm_loadl_epi64(places);
+        params = _mm_add_epi8(params, params);
+        params =
+            _mm_unpacklo_epi8(params, _mm_add_epi8(params, _mm_set1_epi8(1)));
         __m128i eight = _mm_loadu_si128((const __m128i *)(codes + 8 * n));
-        eight = _mm_shuffle_epi8(eight, order);
+        eight = _mm_shuffle_epi8(eight, params);
         _mm_storeu_si128((__m128i *)(out + begin_of(counts, n)), eight);
     }
 }

@@ -1,5 +1,5 @@
-/* encode/blocks_avx512.h - blocks of 64 codes for encode/rows.tmpl.h, by
- * comparisons into mask registers and by compression (VBMI2). */
+/* encode/blocks_avx512.h - blocks of 64 codes for encode/rows.tmpl.h, with
+ * AVX-512: comparisons into mask registers, and compression (VBMI2). */
 #ifndef SNOW_BLOCKS_AVX512_H
 #define SNOW_BLOCKS_AVX512_H
 

@@ -1,6 +1,6 @@
 /* encode/blocks_scalar.h - blocks of 64 codes for encode/rows.tmpl.h, in plain
- * C.  Comparisons give bytes of 0 and 1, by loops that a compiler carries to
- * its vectors; eight such bytes become eight bits by one multiplication. */
+ * C. Comparisons give bytes of 0 and 1, in loops that the compiler vectorizes;
+ * one multiplication turns eight such bytes into eight bits. */
 #ifndef SNOW_BLOCKS_SCALAR_H
 #define SNOW_BLOCKS_SCALAR_H
 

@@ -6,18 +6,18 @@
  *   . . . c .                         counted from the slice's start in IA
  *   . . . . .      COL   1 2 3        column of each voxel
  *
- * INDR holds 32-bit numbers, COL 16-bit ones.  Rows longer than 65,536 are cut
- * into segments of that length, each with an INDR of its own, so that a column
- * within its segment always fits.
+ * INDR holds 32-bit numbers, COL 16-bit ones.  Rows longer than 65,536 are
+ * divided into segments of that length, each with its own INDR entry, so that a
+ * column within its segment always fits.
  *
- * A band's slice is cut finer: into cells, 256 columns of one row each, row by
- * row.  A summary tells by a bit which cells hold anything; those follow, each
- * as a byte for the number of its voxels, less one, and a byte for the column
- * of each within the cell.  What INDR tells is the sum of the numbers before.
+ * A band's slice is divided more finely into cells, 256 columns of one row
+ * each, row by row. A summary has a bit for each cell, set if the cell holds
+ * voxels. These cells follow: a byte for the number of voxels, less one, and a
+ * byte for the column of each within the cell. The sum of the numbers before a
+ * cell replaces INDR.
  *
  *   | 0 1 0 0  1 0 ... | 2 | 17 18 90 | 0 | 255 | ...
- *      summary          cell 1: three  cell 4: one
- */
+ *      summary          cell 1: three  cell 4: one */
 #include "encode/encode.h"
 
 #define SEGMENT 65536
@@ -59,7 +59,7 @@ static snow_status crs_add_row(snow_sparse *s, const uint32_t *columns,
     }
     while (segment < segments)
         store_indr(indr, ++segment, voxels);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* Keeps the next slice's INDR aligned. */
@@ -103,7 +103,7 @@ static size_t crs_skip(snow_walk *walk, int64_t rows) {
 #define CELL 256
 #define CELL_WORDS (CELL / 64)
 
-/* Cells of a row. */
+/* The number of cells of a row. */
 static size_t cells_of(const snow_sparse *s) {
     return ((size_t)s->columns + CELL - 1) / CELL;
 }
@@ -119,7 +119,7 @@ static bool any_set(const uint64_t *masks, size_t words) {
     return set != 0;
 }
 
-/* A row of cells, the first of which is bit `cell` of the summary. */
+/* Writes a row of cells; the first is bit `cell` of the summary. */
 static unsigned char *write_row(const snow_sparse *s, const uint64_t *masks,
                                 unsigned char *summary, size_t cell,
                                 unsigned char *at) {
@@ -148,14 +148,14 @@ static snow_status crs_add_masks(snow_sparse *s, const uint64_t *masks,
     for (int64_t row = 0; row < s->rows; row++, masks += words)
         end = write_row(s, masks, at, (size_t)row * cells, end);
     snow_sparse_close_ea(s, end);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static bool cell_is_full(const snow_walk *walk, size_t cell) {
     return walk->slice[cell / 8] >> cell % 8 & 1;
 }
 
-/* walk->ea is at the next cell that holds anything. */
+/* walk->ea points to the next cell that holds voxels. */
 static size_t cells_next_row(snow_walk *walk, snow_span *spans) {
     size_t cells = cells_of(walk->sparse), count = 0;
     const unsigned char *at = walk->ea;

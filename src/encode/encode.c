@@ -1,4 +1,4 @@
-/* encode/encode.c - what the three schemes share: IA, PA and the walk
+/* encode/encode.c - the common part of the three schemes: IA, PA and the walk
  * (section 3.1 of the paper, figure 3). */
 #include "encode/encode.h"
 
@@ -30,11 +30,11 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
         voxels > UINT32_MAX ||
         !snow_mul_u64((uint64_t)placement->slices + 1, sizeof *s->pa,
                       &pointers))
-        return snow_fail(s->context, SNOW_BAD_USAGE,
-                         "slices of %lldx%lld voxels are too large to encode; "
-                         "take a part of the volume",
-                         (long long)placement->columns,
-                         (long long)placement->rows);
+        return snow_fail(
+            s->context, SNOW_STATUS_BAD_USAGE,
+            "slices of %lldx%lld voxels are too large to encode: the limit is "
+            "4294967295 voxels; render a part of the volume",
+            (long long)placement->columns, (long long)placement->rows);
     SNOW_TRY(
         snow_reserve(s->context, &s->pa, &s->pa_capacity, 0, (size_t)pointers));
     s->scheme = scheme;
@@ -45,15 +45,7 @@ snow_status snow_sparse_begin(snow_sparse *s, const snow_scheme *scheme,
     s->filled = 0;
     s->ea_bytes = s->ia_voxels = 0;
     s->pa[0] = (snow_slice_pointer){0, 0};
-    return SNOW_OK;
-}
-
-snow_status snow_sparse_grow_ea(snow_sparse *s, size_t size) {
-    SNOW_TRY(snow_reserve(s->context, &s->ea, &s->ea_capacity, s->ea_bytes,
-                          s->ea_bytes + size + SNOW_EA_MARGIN));
-    memset(s->ea + s->ea_bytes, 0, size + SNOW_EA_MARGIN);
-    s->ea_bytes += size;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_sparse_begin_slice(snow_sparse *s) {
@@ -67,42 +59,44 @@ snow_status snow_sparse_lend(snow_sparse *s, size_t voxels, float **samples) {
                           s->ia_voxels * sample,
                           (s->ia_voxels + voxels) * sample));
     *samples = s->ia + s->ia_voxels * (size_t)s->channels;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Appends samples to IA, where they may be already. */
+/* Appends samples to IA; they may be there already. */
 static snow_status add_samples(snow_sparse *s, const float *samples,
                                size_t count) {
     size_t sample = (size_t)s->channels * sizeof *samples;
     size_t bytes = s->ia_voxels * sample;
-    if (!count) /* and perhaps no IA yet */
-        return SNOW_OK;
+    if (!count) /* IA may be NULL */
+        return SNOW_STATUS_OK;
     SNOW_TRY(snow_reserve(s->context, &s->ia, &s->ia_capacity, bytes,
                           bytes + count * sample));
     float *end = s->ia + s->ia_voxels * (size_t)s->channels;
     if (samples != end)
         memcpy(end, samples, count * sample);
     s->ia_voxels += count;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-snow_status snow_sparse_add_strip(snow_sparse *s, const snow_strip *strip) {
-    SNOW_TRY(add_samples(s, strip->samples, strip->count));
+snow_status snow_sparse_add_row_block(snow_sparse *s,
+                                      const snow_row_block *row_block) {
+    SNOW_TRY(add_samples(s, row_block->samples, row_block->count));
     size_t begin = 0;
-    for (int64_t row = 0; row < strip->rows; row++) {
-        size_t end = strip->row_end[row];
-        SNOW_TRY(s->scheme->add_row(s, strip->columns + begin, end - begin));
+    for (int64_t row = 0; row < row_block->rows; row++) {
+        size_t end = row_block->row_end[row];
+        SNOW_TRY(
+            s->scheme->add_row(s, row_block->columns + begin, end - begin));
         s->row++;
         begin = end;
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_sparse_end_slice(snow_sparse *s) {
     SNOW_TRY(s->scheme->end_slice(s));
     s->filled++;
     s->pa[s->filled] = (snow_slice_pointer){s->ea_bytes, s->ia_voxels};
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
@@ -120,21 +114,7 @@ snow_status snow_sparse_begin_band(snow_sparse *s, const snow_scheme *scheme,
     s->filled = 0;
     s->ea_bytes = s->ia_voxels = 0;
     s->pa[0] = (snow_slice_pointer){0, 0};
-    return SNOW_OK;
-}
-
-snow_status snow_sparse_open_ea(snow_sparse *s, size_t most,
-                                unsigned char **at) {
-    SNOW_TRY(snow_reserve(s->context, &s->ea, &s->ea_capacity, s->ea_bytes,
-                          s->ea_bytes + most + SNOW_EA_MARGIN));
-    *at = s->ea + s->ea_bytes;
-    return SNOW_OK;
-}
-
-void snow_sparse_close_ea(snow_sparse *s, const unsigned char *end) {
-    s->ea_bytes = (size_t)(end - s->ea);
-    /* What a walk reads beyond the end is masked away, but must be there. */
-    snow_store_word(s->ea + s->ea_bytes, 0);
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,
@@ -143,7 +123,7 @@ snow_status snow_sparse_add_masks(snow_sparse *s, const uint64_t *masks,
         SNOW_TRY(s->scheme->add_masks(s, masks, voxels));
     s->filled++;
     s->pa[s->filled] = (snow_slice_pointer){s->ea_bytes, s->ia_voxels};
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_sparse_fini(snow_sparse *s) {
@@ -151,7 +131,7 @@ void snow_sparse_fini(snow_sparse *s) {
     snow_release(s->context, s->ia);
     snow_release(s->context, s->codes);
     snow_release(s->context, s->normals);
-    snow_release(s->context, s->fades);
+    snow_release(s->context, s->gradient_factors);
     snow_release(s->context, s->pa);
     *s = (snow_sparse){.context = s->context};
 }
@@ -168,7 +148,7 @@ static size_t nothing_skip(snow_walk *walk, int64_t rows) {
     return 0;
 }
 
-/* A slice of no bytes. */
+/* The reader of a slice of no bytes. */
 static const snow_reader nothing = {nothing_next_row, NULL, nothing_skip};
 
 void snow_walk_begin(snow_walk *walk, const snow_sparse *s, int64_t slice) {

@@ -3,14 +3,14 @@
  *
  *   PA[slice] = { ea, ia }     slice pointers: any slice in constant time
  *                  |   |
- *   EA  ...........+.......    places of the interesting voxels, as one of
- *                      |       three schemes writes them (crs, bitmap, rle)
+ *   EA  ...........+.......    positions of the interesting voxels, written by
+ *                      |       one of three schemes (crs, bitmap, rle)
  *   IA  ...............+...    samples of the interesting voxels, the same
  *                              for all schemes: slice, row, column order
  *
- * All schemes are read back as the same spans: maximal runs of interesting
- * voxels within a row, so that what is splatted, and its order, and every bit
- * of the picture are the same. */
+ * All schemes are read as the same spans, maximal runs of interesting voxels
+ * within a row. So the splatted voxels, their order and every bit of the
+ * picture are the same. */
 #ifndef SNOW_ENCODE_H
 #define SNOW_ENCODE_H
 
@@ -24,7 +24,7 @@ typedef struct snow_span {
     uint32_t column, length;
 } snow_span;
 
-/* An element of PA: where a slice begins in EA (bytes) and in IA (voxels). */
+/* An element of PA: the start of a slice in EA (bytes) and in IA (voxels). */
 typedef struct snow_slice_pointer {
     uint64_t ea, ia;
 } snow_slice_pointer;
@@ -33,12 +33,12 @@ typedef struct snow_scheme snow_scheme;
 typedef struct snow_reader snow_reader;
 
 /* A volume's interesting voxels, or those of a band of rows (encode/bands.h).
- * Slices are appended in order; the buffers are kept when it is begun again.
+ * Slices are appended in order; beginning again reuses the buffers.
  *
- * Slices of a whole volume are written as the paper's figures 4 to 6 show.
- * Those of a band are written in forms that cost next to nothing where nothing
- * is: each scheme's file draws its own.  One rule is common: a band's slice
- * without interesting voxels takes no bytes of EA. */
+ * Slices of a whole volume are written as in the paper's figures 4 to 6. Those
+ * of a band have forms that cost next to nothing where there are no voxels;
+ * each scheme's file draws its own. In all of them a slice without interesting
+ * voxels takes no bytes of EA. */
 typedef struct snow_sparse {
     snow_context *context;
     const snow_scheme *scheme;
@@ -46,21 +46,22 @@ typedef struct snow_sparse {
     int64_t columns, rows; /* of a slice */
 
     int64_t filled;    /* slices ended so far */
-    unsigned char *ea; /* with bytes beyond its end, to be read past */
+    unsigned char *ea; /* readable beyond its end */
     size_t ea_bytes, ea_capacity;
-    /* IA holds samples (footprint), or codes, normals and factors
+    /* IA holds samples (exact method), or codes, normals and factors
      * (encode/bands.h). */
     float *ia;
     size_t ia_voxels, ia_capacity; /* capacity in bytes */
     unsigned char *codes;
-    uint16_t *normals, *fades;
-    size_t codes_capacity, normals_capacity, fades_capacity; /* bytes */
+    uint16_t *normals, *gradient_factors;
+    size_t codes_capacity, normals_capacity,
+        gradient_factors_capacity; /* bytes */
     int code_bytes; /* 1 or 2: this is a band; 0: a whole volume */
     const snow_mask_loops *loops; /* bands, while encoding */
     snow_slice_pointer *pa;       /* one more than slices */
     size_t pa_capacity;
     int64_t row; /* next row of the slice being encoded */
-    /* RLE, while encoding: the run that is still growing. */
+    /* RLE, while encoding: the current run, which may still grow. */
     uint64_t run;
     bool run_interesting;
 } snow_sparse;
@@ -68,44 +69,46 @@ typedef struct snow_sparse {
 /* A walk through the rows of one slice. */
 typedef struct snow_walk {
     const snow_sparse *sparse;
-    const snow_reader *reader;  /* of the form that the slice is written in */
+    const snow_reader *reader;  /* of the form of the slice */
     const unsigned char *slice; /* its first byte in EA */
     size_t slice_bytes;
-    const unsigned char *ea; /* the next run, cell or word to be read */
+    const unsigned char *ea; /* next run, cell or word to read */
     size_t voxel;            /* the next row's first voxel in IA */
     int64_t row;             /* the next row */
-    /* RLE: voxels left in the current run, its kind, whether there is one. */
+    /* RLE: voxels left in the current run, its kind, and whether there is one.
+     */
     uint32_t run;
     bool run_interesting, started;
 } snow_walk;
 
-/* How one form of a slice is read. */
+/* Functions that read one form of a slice. */
 struct snow_reader {
-    /* Reads the next row's spans into `spans`, which has room for
-     * (columns + 1) / 2; returns their number.  The walk's voxel and row are
-     * moved on by the caller. */
+    /* Reads the next row's spans into `spans`, which has room for (columns + 1)
+     * / 2; returns their number. The caller advances the walk's voxel and row.
+     */
     size_t (*next_row)(snow_walk *walk, snow_span *spans);
-    /* The same as snow_mask_words words of bits, `step` apart; NULL where a
-     * form has no quicker way than by spans. */
+    /* The same as snow_mask_words words of bits, `step` apart; NULL if the form
+     * has no faster way than spans. */
     void (*next_mask)(snow_walk *walk, uint64_t *mask, size_t step);
-    /* Passes over rows: returns how many voxels they hold.  The same holds. */
+    /* Skips rows; returns their number of voxels. Also leaves voxel and row to
+     * the caller. */
     size_t (*skip)(snow_walk *walk, int64_t rows);
 };
 
 /* A way to write EA (section 3.2). */
 struct snow_scheme {
     /* Begins a slice, appends its rows (columns of the interesting voxels,
-     * rising), ends it.  Errors: SNOW_NO_MEMORY. */
+     * rising), ends it. Errors: SNOW_STATUS_NO_MEMORY. */
     snow_status (*begin_slice)(snow_sparse *sparse);
     snow_status (*add_row)(snow_sparse *sparse, const uint32_t *columns,
                            size_t count);
     snow_status (*end_slice)(snow_sparse *sparse);
     /* Appends a band's slice of `voxels` > 0 interesting voxels: `masks` holds
      * snow_mask_words words for each row, a bit for each voxel, lowest first.
-     * Errors: SNOW_NO_MEMORY. */
+     * Errors: SNOW_STATUS_NO_MEMORY. */
     snow_status (*add_masks)(snow_sparse *sparse, const uint64_t *masks,
                              size_t voxels);
-    /* Sets a walk, whose slice is known, before its first row. */
+    /* Sets a walk, whose slice is set already, before its first row. */
     void (*begin_walk)(snow_walk *walk);
 };
 
@@ -116,75 +119,76 @@ extern const snow_scheme snow_scheme_rle;
 /* The scheme of an encoding other than AUTO. */
 const snow_scheme *snow_scheme_of(snow_encoding encoding);
 
-/* The encoding that is read fastest, or else takes the fewest bytes: the
- * bit-map, whose cost does not depend on the data; below 5 % interesting
- * voxels, where it must look at what is empty, RLE when runs are long (16
- * voxels and more), for a run takes fewer bytes than a few columns, else CRS.
- */
+/* Chooses the encoding that is read fastest, or else takes the fewest bytes.
+ * The bit-map is the default, as its cost does not depend on the data. Below 5
+ * % interesting voxels, where it must scan what is empty: RLE if runs are long
+ * (16 voxels or more), for a run takes fewer bytes than a few columns, else
+ * CRS. */
 snow_encoding snow_encoding_choose(uint64_t voxels, uint64_t interesting,
                                    uint64_t runs);
 
-/* Begins a sparse volume anew.  Errors: SNOW_BAD_USAGE (a slice of 2^32 voxels
- * or more), SNOW_NO_MEMORY. */
+/* Begins a sparse volume, empty. Errors: SNOW_STATUS_BAD_USAGE (a slice of 2^32
+ * voxels or more), SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_begin(snow_sparse *sparse, const snow_scheme *scheme,
                               const snow_placement *placement, int channels);
 
 snow_status snow_sparse_begin_slice(snow_sparse *sparse);
 
-/* Lends the strip the end of IA, with room for `voxels` samples, so that they
- * need not be copied there; until the next call for the sparse matrix.  Errors:
- * SNOW_NO_MEMORY. */
+/* Lends the end of IA to a row block, with room for `voxels` samples, so that
+ * they need not be copied; valid until the next call for the sparse matrix.
+ * Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_lend(snow_sparse *sparse, size_t voxels,
                              float **samples);
 
-/* Appends the rows of a strip; strips come in order of rows. */
-snow_status snow_sparse_add_strip(snow_sparse *sparse, const snow_strip *strip);
+/* Appends the rows of a row block; blocks come in the order of rows. */
+snow_status snow_sparse_add_row_block(snow_sparse *sparse,
+                                      const snow_row_block *row_block);
 
 snow_status snow_sparse_end_slice(snow_sparse *sparse);
 
-/* Begins a band of `rows` rows anew: no IA is written, but PA tells of
- * ia_voxels, which the caller counts.  Errors: SNOW_NO_MEMORY. */
+/* Begins a band of `rows` rows, empty. IA is not written, but PA refers to
+ * ia_voxels, which the caller counts. Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_begin_band(snow_sparse *sparse,
                                    const snow_scheme *scheme, int64_t columns,
                                    int64_t rows, int64_t slices, int code_bytes,
                                    snow_isa isa);
 
-/* 64-bit words that the mask of a row takes. */
+/* 64-bit words of a row's mask. */
 static inline size_t snow_mask_words(const snow_sparse *sparse) {
     return ((size_t)sparse->columns + 63) / 64;
 }
 
-/* Appends a slice of a band; `voxels` of it are interesting, and counted in
- * ia_voxels already.  Errors: SNOW_NO_MEMORY. */
+/* Appends a slice of a band; `voxels` of it are interesting, and already
+ * counted in ia_voxels. Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_add_masks(snow_sparse *sparse, const uint64_t *masks,
                                   size_t voxels);
 
-/* Frees the buffers; the record may be all zeros but for its context. */
+/* Frees the buffers; the record may be all zeros except for its context. */
 void snow_sparse_fini(snow_sparse *sparse);
 
 /* Sets a walk to the beginning of a slice, in constant time. */
 void snow_walk_begin(snow_walk *walk, const snow_sparse *sparse, int64_t slice);
 
-/* Passes over rows without telling their spans. */
+/* Skips rows without reading their spans. */
 void snow_walk_skip(snow_walk *walk, int64_t rows);
 
-/* The next row: its spans, and the place of its first voxel in IA; returns the
- * number of spans. */
+/* Reads the next row: its spans, and the position of its first voxel in IA.
+ * Returns the number of spans. */
 size_t snow_walk_row(snow_walk *walk, snow_span *spans, size_t *voxel);
 
-/* For the schemes: appends `size` bytes to EA, cleared. */
+/* For the schemes: appends `size` bytes of zeros to EA. */
 snow_status snow_sparse_grow_ea(snow_sparse *sparse, size_t size);
 
-/* For the schemes: room for up to `most` bytes at EA's end, which *at is set
- * to, and SNOW_EA_MARGIN more that may be written too; and how many of them
- * count. */
+/* For the schemes: snow_sparse_open_ea reserves up to `most` bytes at EA's end,
+ * to which *at is set, and SNOW_EA_MARGIN more that may be overwritten; the
+ * second call says how many of them are used. */
 #define SNOW_EA_MARGIN 64
 snow_status snow_sparse_open_ea(snow_sparse *sparse, size_t most,
                                 unsigned char **at);
 void snow_sparse_close_ea(snow_sparse *sparse, const unsigned char *end);
 
-/* Adds voxels to a row's spans: the last span grows where they touch it, or a
- * new one begins. */
+/* Adds voxels to a row's spans: extends the last span if they touch it, or
+ * begins a new one. */
 static inline size_t snow_span_append(snow_span *spans, size_t count,
                                       uint32_t column, uint32_t length) {
     if (count && spans[count - 1].column + spans[count - 1].length == column) {

@@ -1,15 +1,14 @@
 /* encode/fetch.c - see fetch.h.
  *
- * The block of a band holds the same rows of some slices one after another:
+ * The block of a band holds the same rows of several slices:
  *
- *   slice s    row 0 | row 1 | ... | row 31 | a cache line to spare
+ *   slice s    row 0 | row 1 | ... | row 31 | one unused cache line
  *   slice s+1  row 0 | row 1 | ... | row 31 |
  *   ...
  *
  * Row r of all of them comes from one plane of the volume, where their voxels
- * lie side by side: it is the transpose of a strip of that plane.  The line to
- * spare puts the same place of different slices into different sets of the
- * cache. */
+ * are adjacent: it is the transpose of a strip of that plane. The unused line
+ * puts the same position of different slices into different cache sets. */
 #include "encode/fetch.h"
 
 #include <string.h>
@@ -20,55 +19,56 @@
 /* Fewer slices than this are not worth a tile. */
 #define TILE_WORTH 8
 
-static void measure(snow_fetch *f, const snow_fetch_order *order) {
-    const snow_placement *p = order->placement;
-    const int64_t *dims = order->volume->info.dims;
-    size_t size = snow_type_size(order->volume->info.type);
+static void measure_steps(snow_fetch *f, const snow_fetch_params *params) {
+    const snow_placement *p = params->placement;
+    const int64_t *dims = params->volume->info.dims;
+    size_t size = snow_type_size(params->volume->info.type);
     const size_t steps[3] = {size, size * (size_t)dims[0],
                              size * (size_t)dims[0] * (size_t)dims[1]};
     *f = (snow_fetch){
         .column_step = steps[p->u_axis],
         .row_step = steps[p->v_axis],
         .slice_step = steps[p->slice_axis],
-        .type = order->volume->info.type,
+        .type = params->volume->info.type,
         .size = size,
         .columns = (size_t)p->columns,
-        .rows = (size_t)order->rows,
-        .slices = order->slices,
-        .between = order->between,
+        .rows = (size_t)params->rows,
+        .slices = params->slices,
+        .between = params->between,
         .transposed = p->u_axis != 0,
     };
     f->pitch = (f->columns + TILE - 1) / TILE * TILE * size;
     f->slice_pitch = f->rows * f->pitch + LINE;
-    /* With slices between there is one more, the partner of the last one. */
-    f->room = LINE / (int64_t)size + order->between;
+    /* With `between` one more: the partner of the last slice. */
+    f->capacity = LINE / (int64_t)size + params->between;
 }
 
 static size_t mean_bytes(const snow_fetch *f) {
     return f->between ? f->rows * f->pitch : 0;
 }
 
-size_t snow_fetch_bytes(const snow_fetch_order *order) {
+size_t snow_fetch_bytes(const snow_fetch_params *params) {
     snow_fetch f;
-    measure(&f, order);
-    size_t block = f.transposed ? (size_t)f.room * f.slice_pitch : 0;
+    measure_steps(&f, params);
+    size_t block = f.transposed ? (size_t)f.capacity * f.slice_pitch : 0;
     return block + mean_bytes(&f);
 }
 
-void snow_fetch_begin(snow_fetch *f, const snow_fetch_order *order,
+void snow_fetch_begin(snow_fetch *f, const snow_fetch_params *params,
                       void *scratch) {
-    measure(f, order);
+    measure_steps(f, params);
     int64_t stride;
-    f->voxels = snow_row_voxels(order->volume, order->placement,
-                                order->first_slice, order->first_row, &stride);
-    f->transpose = snow_transpose_of(f->size, order->isa);
+    f->voxels =
+        snow_row_voxels(params->volume, params->placement, params->first_slice,
+                        params->first_row, &stride);
+    f->transpose = snow_transpose_of(f->size, params->isa);
     f->mean = scratch;
     f->block = f->mean + mean_bytes(f);
 }
 
 /* --- slices along x ------------------------------------------------------- */
 
-/* `lines` lines of `count` voxels into the block, whatever their number. */
+/* Transposes `lines` lines of `count` voxels into the block, for any number. */
 static void transpose_few(const snow_fetch *f, const unsigned char *in,
                           size_t lines, size_t count, unsigned char *out) {
     for (size_t n = 0; n < count; n++)
@@ -77,8 +77,8 @@ static void transpose_few(const snow_fetch *f, const unsigned char *in,
                    in + u * f->column_step + n * f->size, f->size);
 }
 
-/* A tile at an edge: nothing is read beyond its lines, and they are filled up.
- * The block has room for a whole one. */
+/* Transposes a tile at an edge: nothing is read beyond its lines, and they are
+ * padded. The block has room for a whole tile. */
 static void transpose_edge(const snow_fetch *f, const unsigned char *in,
                            size_t lines, size_t count, unsigned char *out) {
     unsigned char tile[TILE * LINE] = {0};
@@ -87,7 +87,7 @@ static void transpose_edge(const snow_fetch *f, const unsigned char *in,
     f->transpose(tile, LINE, out, f->slice_pitch, tile);
 }
 
-/* The tile after that of columns `u` on of a row at `in`: in the same row, or
+/* The tile after that of columns `u` on of the row at `in`: in the same row, or
  * the first of the next. */
 static const unsigned char *
 next_tile(const snow_fetch *f, const unsigned char *in, size_t row, size_t u) {
@@ -96,8 +96,8 @@ next_tile(const snow_fetch *f, const unsigned char *in, size_t row, size_t u) {
     return row + 1 < f->rows && TILE <= f->columns ? in + f->row_step : in;
 }
 
-/* Row `row` of `count` slices from `slice` on, no more than a line holds, into
- * `out`. */
+/* Copies row `row` of `count` slices from `slice` on, at most one cache line,
+ * into `out`. */
 static void fill_row(const snow_fetch *f, int64_t slice, size_t row,
                      size_t count, unsigned char *out) {
     const unsigned char *in =
@@ -117,11 +117,11 @@ static void fill_row(const snow_fetch *f, int64_t slice, size_t row,
     }
 }
 
-/* Makes the block hold slices from `slice` on. */
+/* Fills the block with slices from `slice` on. */
 static void fill_block(snow_fetch *f, int64_t slice) {
     int64_t left = f->slices - slice, line = LINE / (int64_t)f->size;
     f->block_first = slice;
-    f->block_count = left < f->room ? left : f->room;
+    f->block_count = left < f->capacity ? left : f->capacity;
     for (int64_t n = 0; n < f->block_count; n += line) {
         int64_t some = f->block_count - n < line ? f->block_count - n : line;
         for (size_t row = 0; row < f->rows; row++)
@@ -172,7 +172,7 @@ MEAN_ROW(FLOAT64, double, MEAN_FLOAT)
 typedef void mean_fn(const void *a, const void *b, size_t columns, void *out);
 
 static mean_fn *const means[] = {
-#define MEAN_ENTRY(name, type, text) [SNOW_##name] = mean_##name,
+#define MEAN_ENTRY(name, type, text) [SNOW_TYPE_##name] = mean_##name,
     SNOW_TYPE_MAP(MEAN_ENTRY)};
 
 static void slice_between(snow_fetch *f, int64_t slice, snow_rows *out) {
@@ -191,7 +191,7 @@ static void slice_between(snow_fetch *f, int64_t slice, snow_rows *out) {
 void snow_fetch_slice(snow_fetch *f, int64_t slice, snow_rows *out) {
     int64_t here = f->between ? slice / 2 : slice;
     bool is_between = f->between && slice % 2;
-    /* The block has to hold the next slice too. */
+    /* The block must hold the next slice too. */
     int64_t last = here + is_between;
     if (f->transposed && last >= f->block_first + f->block_count)
         fill_block(f, here);

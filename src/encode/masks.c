@@ -1,4 +1,4 @@
-/* encode/masks.c - see masks.h: plain loops, which take a mask a byte at a
+/* encode/masks.c - see masks.h: plain loops, which process a mask a byte at a
  * time, and AVX-512, which compresses. */
 #include "encode/masks.h"
 
@@ -56,7 +56,7 @@ static unsigned char *places_scalar(const uint64_t *masks, size_t words,
         uint64_t ends = snow_counts_of_bytes(mask);
         for (unsigned n = 0; n < 8; n++) {
             uint64_t places = snow_places_of_byte[mask >> 8 * n & 255];
-            /* Each of the eight bytes moves on by base + 8 n, modulo 256. */
+            /* Each of the eight bytes is advanced by base + 8 n, modulo 256. */
             uint64_t add =
                 UINT64_C(0x0101010101010101) * ((base + 8 * n) & 255);
             uint64_t low = UINT64_C(0x7f7f7f7f7f7f7f7f);
@@ -120,7 +120,7 @@ SNOW_AVX512_TARGET static unsigned char *places_avx512(const uint64_t *masks,
     }
     return out;
 }
-/* Up to eight words from `w` on; beyond the last, zeros. */
+/* Up to eight words from `w` on; zeros beyond the last. */
 SNOW_AVX512_INLINE __m512i load_words(const uint64_t *masks, size_t w,
                                       size_t words) {
     unsigned some = words - w < 8 ? (1u << (words - w)) - 1 : 255;

@@ -1,9 +1,7 @@
-/* encode/masks.h - the inner loops of writing EA: what the schemes make of the
- * masks of a slice.
+/* encode/masks.h - the inner loops that write EA from the masks of a slice.
  *
- * They work without a branch for each bit or word: how many are set is as
- * random as the data, and a branch that is guessed wrongly costs as much as ten
- * places. */
+ * They have no branch for each bit or word: the number of set bits is as random
+ * as the data, and a mispredicted branch costs as much as ten positions. */
 #ifndef SNOW_MASKS_H
 #define SNOW_MASKS_H
 
@@ -11,34 +9,34 @@
 
 #include <string.h>
 
-/* All levels write the same bytes. */
+/* All instruction sets write the same bytes. */
 typedef struct snow_mask_loops {
-    /* For each bit set in `words` words its number, counted from `base` on,
-     * modulo 256, into `out`; returns the end of what counts there, beyond
-     * which up to 64 bytes may be written.  CRS stores such numbers as
-     * columns, and runs end at them. */
+    /* Writes the index of each bit set in `words` words, counted from `base`
+     * on, modulo 256, to `out`. Returns the end of the indices; up to 64 bytes
+     * beyond it may be overwritten. CRS stores these indices as columns, and
+     * runs end at them. */
     unsigned char *(*places)(const uint64_t *masks, size_t words, unsigned base,
                              unsigned char *out);
-    /* How many words are not 0. */
+    /* The number of words that are not 0. */
     size_t (*count_words)(const uint64_t *masks, size_t words);
-    /* Words that are not 0 to `out`, and a bit for each of all words to
-     * `summary`; returns the end, beyond which up to 64 bytes may be written.
+    /* Writes the words that are not 0 to `out`, and a bit for each word to
+     * `summary`. Returns the end; up to 64 bytes beyond it may be overwritten.
      */
     unsigned char *(*pack_words)(const uint64_t *masks, size_t words,
                                  unsigned char *summary, unsigned char *out);
-    /* How many bits of some bytes are set. */
+    /* The number of bits set in some bytes. */
     size_t (*count_bits)(const unsigned char *bytes, size_t count);
 } snow_mask_loops;
 
 /* `isa` is resolved. */
 const snow_mask_loops *snow_mask_loops_of(snow_isa isa);
 
-/* For each byte, the numbers of its set bits, a byte each, lowest first. */
+/* For each byte, the indices of its set bits, a byte each, lowest first. */
 extern const uint64_t snow_places_of_byte[256];
 
-/* In byte n, how many bits are set in bytes 0 to n of a mask: bits are added up
- * in pairs, fours and eights, then a multiplication adds each byte to all above
- * it. */
+/* In byte n, the number of bits set in bytes 0 to n of a mask: bits are added
+ * up in pairs, fours and eights, then a multiplication adds each byte to all
+ * above it. */
 static inline uint64_t snow_counts_of_bytes(uint64_t mask) {
     mask -= mask >> 1 & UINT64_C(0x5555555555555555);
     mask = (mask & UINT64_C(0x3333333333333333)) +

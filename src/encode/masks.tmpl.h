@@ -1,5 +1,5 @@
-/* encode/masks.tmpl.h - counting bits of bytes, for one level: simd/select.h's
- * words are in force. */
+/* encode/masks.tmpl.h - counts the bits of bytes, for one instruction set.
+ * Include simd/select.h first. */
 TARGET static size_t NAME(count_bits)(const unsigned char *bytes,
                                       size_t count) {
     size_t set = 0;

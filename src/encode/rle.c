@@ -1,53 +1,52 @@
-/* encode/rle.c - run lengths (section 3.2.3, figure 6).
+/* encode/rle.c - run-length encoding (section 3.2.3, figure 6).
  *
- * A slice is one string of voxels, its rows end to end.  EA holds the lengths
- * of its runs, uninteresting and interesting in turn, beginning with an
- * uninteresting one (perhaps of length 0), a byte each.  A run above 255 is
+ * A slice is one string of voxels, its rows end to end. EA holds the lengths of
+ * its runs, a byte each. Uninteresting and interesting runs alternate,
+ * beginning with an uninteresting one (perhaps of length 0). A run above 255 is
  * split by a run of length 0 of the other kind: 300 is 255 0 45.
  *
- * A band's slice begins with a summary that tells by a bit which of its rows
- * hold anything.  The runs of those rows follow, each row by itself: it begins
- * with an uninteresting run and ends where its columns do.
+ * A band's slice begins with a summary: a bit for each row, set if the row
+ * holds voxels. The runs of those rows follow, separately for each row: they
+ * begin with an uninteresting run and end with the row's last column.
  *
  *   | 0 1 1 0 ... | 12 30 214 | 0 5 251 | ...     256 columns
- *      summary      row 1       row 2
- */
+ *      summary      row 1       row 2 */
 #include "encode/encode.h"
 
 #define LONGEST 255
 
-/* Ends the growing run: writes it down. */
+/* Ends the current run and writes it. */
 static snow_status write_run(snow_sparse *s) {
     size_t at = s->ea_bytes, bytes = 1 + 2 * (size_t)(s->run / LONGEST);
     if (s->run && s->run % LONGEST == 0)
         bytes -= 2;
     SNOW_TRY(snow_sparse_grow_ea(s, bytes));
     for (; s->run > LONGEST; s->run -= LONGEST, at += 2)
-        s->ea[at] = LONGEST; /* the 0 behind it is there already */
+        s->ea[at] = LONGEST; /* the 0 behind it is already there */
     s->ea[at] = (unsigned char)s->run;
     s->run = 0;
     s->run_interesting = !s->run_interesting;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Lets the current run grow by voxels of one kind, or begins the next. */
+/* Extends the current run by voxels of the same kind, or begins the next. */
 static snow_status add_voxels(snow_sparse *s, bool interesting,
                               uint64_t voxels) {
     if (voxels && interesting != s->run_interesting)
         SNOW_TRY(write_run(s));
     s->run += voxels;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status rle_begin_slice(snow_sparse *s) {
     s->run = 0;
     s->run_interesting = false;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status rle_add_row(snow_sparse *s, const uint32_t *columns,
                                size_t count) {
-    uint64_t at = 0; /* the first column that is not yet told */
+    uint64_t at = 0; /* first column not yet written */
     for (size_t i = 0; i < count;) {
         size_t end = i + 1;
         while (end < count && columns[end] == columns[end - 1] + 1)
@@ -67,10 +66,10 @@ static snow_status rle_end_slice(snow_sparse *s) {
 static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     uint32_t columns = (uint32_t)walk->sparse->columns;
     size_t count = 0;
-    /* walk->run is what the row before left of its last run. */
+    /* walk->run is the rest of the last run of the row before. */
     for (uint32_t column = 0; column < columns;) {
         while (!walk->run) {
-            /* At the slice's very first byte the kind is uninteresting. */
+            /* The first run of a slice is uninteresting. */
             walk->run_interesting = walk->started && !walk->run_interesting;
             walk->started = true;
             walk->run = *walk->ea++;
@@ -108,26 +107,26 @@ static size_t summary_bytes(const snow_sparse *s) {
     return ((size_t)s->rows + 7) / 8;
 }
 
-/* Bytes that the runs of a slice take at most: beside the ends of rows, each
- * belongs to an interesting voxel; and so many more splits. */
+/* The most bytes that the runs of a slice take: apart from the ends of rows,
+ * each run belongs to an interesting voxel; the splits come on top. */
 static size_t most_bytes(const snow_sparse *s, size_t voxels) {
     size_t splits = 2 * ((size_t)s->columns / LONGEST) + 1;
     return 2 * voxels + (size_t)s->rows * splits;
 }
 
-/* Encoding first writes down where runs end, as places counted through all
- * rows that hold anything, modulo 256: within 256 columns no run is too long
- * for a byte, so that differences of such places are the runs. */
+/* The encoder first writes the ends of runs, as positions counted through all
+ * rows that hold voxels, modulo 256. Within 256 columns no run is too long for
+ * a byte, so the differences of these positions are the runs. */
 typedef struct places {
     unsigned char *at; /* the next one goes here */
-    size_t origin;     /* place of the row's first column */
-    size_t told;       /* columns of the row up to the last place */
+    size_t origin;     /* position of the row's first column */
+    size_t given;      /* columns of the row up to the last position */
 } places;
 
-/* Puts down splits until a run that ends at `column` fits a byte. */
+/* Writes splits until a run that ends at `column` fits a byte. */
 static void split_run(places *p, size_t column) {
-    for (; column - p->told > LONGEST; p->told += LONGEST) {
-        p->at[0] = (unsigned char)(p->origin + p->told + LONGEST);
+    for (; column - p->given > LONGEST; p->given += LONGEST) {
+        p->at[0] = (unsigned char)(p->origin + p->given + LONGEST);
         p->at[1] = p->at[0];
         p->at += 2;
     }
@@ -135,27 +134,27 @@ static void split_run(places *p, size_t column) {
 
 #define STEP 4 /* words of 256 columns */
 
-/* Places of the set bits of STEP words, which begin with `column`. */
+/* Writes the positions of the set bits of STEP words; the first is `column`. */
 static void put_changes(const snow_sparse *s, const uint64_t *changes,
                         size_t column, places *p) {
     size_t w = 0, origin = p->origin + column;
     if (!(changes[0] | changes[1] | changes[2] | changes[3]))
         return;
-    if (column) { /* else the run so far is short */
+    if (column) { /* otherwise the run so far is short */
         while (!changes[w])
             w++;
         split_run(p, column + 64 * w + (size_t)__builtin_ctzll(changes[w]));
     }
     p->at = s->loops->places(changes, STEP, (unsigned)origin % 256, p->at);
-    p->told = column + (unsigned char)(p->at[-1] - origin);
+    p->given = column + (unsigned char)(p->at[-1] - origin);
 }
 
-/* A run ends with each bit that differs from the one before, and with the row.
- */
+/* Writes a row. A run ends with each bit that differs from the one before, and
+ * with the row. */
 static void put_row(const snow_sparse *s, const uint64_t *masks, places *p) {
     size_t words = snow_mask_words(s), columns = (size_t)s->columns;
     uint64_t before = 0;
-    p->told = 0;
+    p->given = 0;
     for (size_t w = 0; w < words; w += STEP) {
         uint64_t changes[STEP] = {0};
         for (size_t n = 0; n < STEP && w + n < words; n++) {
@@ -189,7 +188,7 @@ static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
                                  size_t voxels) {
     size_t words = snow_mask_words(s), most = most_bytes(s, voxels);
     unsigned char *at;
-    /* Summary and runs; behind them for a while the places, after a 0. */
+    /* Summary and runs; behind them, temporarily, the positions, after a 0. */
     SNOW_TRY(snow_sparse_open_ea(s, summary_bytes(s) + 2 * most + 1, &at));
     unsigned char *runs = at + summary_bytes(s), *from = runs + most;
     places p = {.at = from + 1};
@@ -203,14 +202,14 @@ static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
     size_t count = (size_t)(p.at - from) - 1;
     subtract(from, count, runs);
     snow_sparse_close_ea(s, runs + count);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static bool row_is_full(const snow_walk *walk, int64_t row) {
     return walk->slice[row / 8] >> row % 8 & 1;
 }
 
-/* walk->ea is at the runs of the next row that holds anything. */
+/* walk->ea points to the runs of the next row that holds voxels. */
 static size_t rows_next_row(snow_walk *walk, snow_span *spans) {
     if (!row_is_full(walk, walk->row))
         return 0;

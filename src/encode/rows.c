@@ -1,8 +1,9 @@
-/* encode/rows.c - the row loops of encoding, for all voxel types and levels.
+/* encode/rows.c - the row loops of encoding, for all voxel types and
+ * instruction sets.
  *
  * Voxels of 8 and 16 bits are compared with the intervals of interesting codes,
- * 64 at a time; wider ones go through the coder one by one, those that cannot
- * be interesting excepted. */
+ * 64 at a time. Wider ones go through the quantizer one by one, except those
+ * that cannot be interesting. */
 #include "encode/rows.h"
 
 #include "encode/blocks_scalar.h"
@@ -42,7 +43,7 @@
 #include "encode/rows.tmpl.h"
 #endif
 
-/* By level, and bytes of a code less one: see rows.tmpl.h. */
+/* By instruction set, and bytes of a code less one: see rows.tmpl.h. */
 static snow_encode_rows_fn *const *loops_of(snow_isa isa, int bytes) {
 #if SNOW_HAS_AVX
     if (isa == SNOW_ISA_AVX512)
@@ -66,21 +67,20 @@ size_t snow_columns_of_masks(const uint64_t *masks, size_t words,
 
 /* --- wider types ---------------------------------------------------------- */
 
-/* Sets the codes of a block's voxels that pass the coder. */
+/* Sets the codes of a block's voxels that the quantizer keeps. */
 static uint64_t encode_values(const snow_row_encoder *e, const double *values,
                               uint64_t candidates, uint16_t *codes) {
     uint64_t mask = 0;
     for (; candidates; candidates &= candidates - 1) {
         int n = __builtin_ctzll(candidates);
-        uint64_t kept = snow_coder_code(e->coder, values[n], codes);
+        uint64_t kept = snow_quantizer_code(e->quantizer, values[n], codes);
         codes += kept;
         mask |= kept << n;
     }
     return mask;
 }
 
-/* Up to 64 voxels; those outside of the bounds, and NaN, do not get as far as
- * the coder. */
+/* Up to 64 voxels; those out of bounds, and NaN, skip the quantizer. */
 #define WIDE_ROWS(name, type, text)                                            \
     static uint64_t block_##name(const snow_row_encoder *e, const type *voxel, \
                                  size_t count, uint16_t *codes) {              \
@@ -115,23 +115,23 @@ static uint64_t encode_values(const snow_row_encoder *e, const double *values,
 SNOW_TYPE_MAP(WIDE_ROWS)
 
 static snow_encode_rows_fn *const wide_rows[] = {
-#define WIDE_ENTRY(name, type, text) [SNOW_##name] = encode_##name,
+#define WIDE_ENTRY(name, type, text) [SNOW_TYPE_##name] = encode_##name,
     SNOW_TYPE_MAP(WIDE_ENTRY)};
 
-void snow_row_encoder_init(const snow_coder *coder, snow_isa isa,
+void snow_row_encoder_init(const snow_quantizer *quantizer, snow_isa isa,
                            snow_row_encoder *out) {
-    size_t runs = coder->native_run_count;
-    *out = (snow_row_encoder){.coder = coder,
-                              .encode_rows = wide_rows[coder->type],
-                              .bias = (uint16_t)-coder->lowest,
+    size_t runs = quantizer->native_run_count;
+    *out = (snow_row_encoder){.quantizer = quantizer,
+                              .encode_rows = wide_rows[quantizer->type],
+                              .bias = (uint16_t)-quantizer->lowest,
                               .low = INFINITY,
                               .high = -INFINITY};
     if (runs) {
-        out->low = coder->native_runs[0].first;
-        out->high = coder->native_runs[runs - 1].last;
+        out->low = quantizer->native_runs[0].first;
+        out->high = quantizer->native_runs[runs - 1].last;
     }
-    if (snow_type_size(coder->type) > 2)
+    if (snow_type_size(quantizer->type) > 2)
         return;
-    int loop = coder->run_count < 0 ? 0 : coder->run_count == 1 ? 1 : 2;
-    out->encode_rows = loops_of(isa, coder->bytes)[loop];
+    int loop = quantizer->run_count < 0 ? 0 : quantizer->run_count == 1 ? 1 : 2;
+    out->encode_rows = loops_of(isa, quantizer->bytes)[loop];
 }

@@ -1,11 +1,11 @@
-/* encode/rows.tmpl.h - the row loop for codes of one size at one level.  Define
- * before including:
+/* encode/rows.tmpl.h - the row loop for codes of one size and one instruction
+ * set.  Define before including:
  *
  *   ROW_CODE   uint8_t or uint16_t: the code, and a voxel's bits
- *   ROW(word)  word with size and level behind it: kept_8_avx2
- *   TARGET     what stands before each function (simd/select.h)
+ *   ROW(word)  word with size and instruction set appended
+ *   TARGET     attribute of each function (simd/select.h)
  *
- * and these, which work on a block of 64 voxels:
+ * and these, for a block of 64 voxels:
  *
  *   ROW(block)                      its type
  *   ROW(load)(p, bias)              64 voxels as codes
@@ -15,30 +15,31 @@
  *
  * ROW_CODE and ROW are undefined at the end. */
 
-/* As many runs as RUNS says, which is a constant where this is inlined. */
+/* Tests against RUNS runs, a constant where this is inlined. */
 static inline __attribute__((always_inline)) TARGET uint64_t
-ROW(test)(const snow_coder *coder, int runs, ROW(block) block) {
+ROW(test)(const snow_quantizer *quantizer, int runs, ROW(block) block) {
     uint64_t mask = 0;
     for (int n = 0; n < runs; n++)
-        mask |= ROW(within)(block, (ROW_CODE)coder->runs[n].first,
-                            (ROW_CODE)coder->runs[n].last);
+        mask |= ROW(within)(block, (ROW_CODE)quantizer->runs[n].first,
+                            (ROW_CODE)quantizer->runs[n].last);
     return mask;
 }
 
-/* One block; `runs` -1: by the table. */
+/* Encodes one block; `runs` -1: by the table. */
 static inline __attribute__((always_inline)) TARGET uint64_t
 ROW(encode_block)(const snow_row_encoder *encoder, int runs,
                   const ROW_CODE *voxels, uint64_t valid, ROW_CODE *codes) {
-    const snow_coder *coder = encoder->coder;
+    const snow_quantizer *quantizer = encoder->quantizer;
     ROW(block) block = ROW(load)(voxels, (ROW_CODE)encoder->bias);
-    uint64_t mask = runs < 0 ? ROW(bits)(block, coder->keep)
-                             : ROW(test)(coder, runs, block);
+    uint64_t mask = runs < 0 ? ROW(bits)(block, quantizer->keep)
+                             : ROW(test)(quantizer, runs, block);
     mask &= valid;
     ROW(pack)(block, mask, codes);
     return mask;
 }
 
-/* The columns of a row that fill no block; nothing is read beyond them. */
+/* Encodes the columns of a row that fill no block; nothing is read beyond them.
+ */
 static inline __attribute__((always_inline)) TARGET uint64_t
 ROW(encode_rest)(const snow_row_encoder *encoder, int runs,
                  const ROW_CODE *voxels, size_t columns, ROW_CODE *codes) {
@@ -74,7 +75,7 @@ ROW(encode)(const snow_row_encoder *encoder, int runs, const snow_rows *rows,
     return (size_t)(at - codes);
 }
 
-/* One interval is what a threshold gives, and has a loop of its own. */
+/* A threshold gives a single interval, which has a loop of its own. */
 TARGET static size_t ROW(encode_one)(const snow_row_encoder *encoder,
                                      const snow_rows *rows, uint64_t *masks,
                                      void *codes) {
@@ -84,7 +85,8 @@ TARGET static size_t ROW(encode_one)(const snow_row_encoder *encoder,
 TARGET static size_t ROW(encode_runs)(const snow_row_encoder *encoder,
                                       const snow_rows *rows, uint64_t *masks,
                                       void *codes) {
-    return ROW(encode)(encoder, encoder->coder->run_count, rows, masks, codes);
+    return ROW(encode)(encoder, encoder->quantizer->run_count, rows, masks,
+                       codes);
 }
 
 TARGET static size_t ROW(encode_table)(const snow_row_encoder *encoder,

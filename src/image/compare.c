@@ -1,25 +1,24 @@
-/* image/compare.c - how far two pictures differ.
+/* image/compare.c - measures how far two pictures differ.
  *
- * Absolute differences and the peak signal-to-noise ratio are taken over all
- * four premultiplied channels, without alpha where a file left it out;
- * structural similarity after Wang, Bovik, Sheikh
- * and Simoncelli, "Image quality assessment: from error visibility to
- * structural similarity" (2004), equation 13, over every 8 x 8 window (smaller
- * where the picture is) of the luma over black, with equal weights, K1 = 0.01,
- * K2 = 0.03 and L = 1.
+ * Absolute differences and the peak signal-to-noise ratio use all four
+ * premultiplied channels, but not alpha if a file omits it.  Structural
+ * similarity follows Wang, Bovik, Sheikh and Simoncelli, "Image quality
+ * assessment: from error visibility to structural similarity" (2004), equation
+ * 13, over every 8 x 8 window (smaller if the picture is) of the luma over
+ * black, with equal weights, K1 = 0.01, K2 = 0.03 and L = 1.
  *
- * Where a sample is not finite: equal samples (NaN and NaN, or the same
- * infinity) do not differ; others are infinitely far apart, and a window that
- * holds such a pixel has no similarity. */
+ * Samples that are not finite: equal ones (NaN and NaN, or the same infinity)
+ * do not differ.  Others differ infinitely, and a window with such a pixel has
+ * no similarity. */
 #include "image/image.h"
 
 #include <math.h>
 
 #define WINDOW 8
 
-/* Differences while they are added up, in row order. */
+/* The sums of differences, in row order. */
 typedef struct difference_sums {
-    int channels; /* that count */
+    int channels; /* number of channels compared */
     double largest, absolute, squared;
     int x, y;
 } difference_sums;
@@ -28,15 +27,15 @@ static bool are_equal(double a, double b) {
     return a == b || (isnan(a) && isnan(b));
 }
 
-/* In double, where the difference of two floats cannot overflow. */
+/* In double precision the difference of two floats cannot overflow. */
 static double absolute_difference(float a, float b) {
     if (are_equal(a, b))
         return 0;
     return isfinite(a) && isfinite(b) ? fabs((double)a - (double)b) : INFINITY;
 }
 
-/* Adds row y.  Each row has sums of its own first, which keeps the rounding of
- * large pictures small. */
+/* Adds row y.  Each row is summed on its own first, which keeps the rounding
+ * errors of large pictures small. */
 static void add_row(const snow_image *a, const snow_image *b, int y,
                     difference_sums *sums) {
     size_t first = (size_t)y * (size_t)a->width;
@@ -68,8 +67,8 @@ static double luma_of(const snow_image *image, size_t index) {
            0.0722 * (double)p[2];
 }
 
-/* Lumas of row y.  Equal ones that are not finite become 0 in both, unequal
- * ones NaN, which the sums of a window carry on. */
+/* The lumas of row y.  Equal ones that are not finite become 0 in both; unequal
+ * ones become NaN, which spreads to the sums of a window. */
 static void fill_lumas(const snow_image *a, const snow_image *b, int y,
                        double *row_a, double *row_b) {
     size_t first = (size_t)y * (size_t)a->width;
@@ -96,7 +95,7 @@ static void add_moments(moments *sum, const moments *part) {
     sum->ab += part->ab;
 }
 
-/* Column sums over `rows` stored rows.  They are made anew for each row of
+/* Column sums over `rows` stored rows.  They are computed anew for each row of
  * windows: differences of running sums would keep the rounding errors of a
  * bright spot long after it has left the window. */
 static void sum_columns(const double *lumas_a, const double *lumas_b, int width,
@@ -119,8 +118,9 @@ static double window_similarity(const moments *sum, double n) {
     double variance_a = sum->aa / n - mean_a * mean_a;
     double variance_b = sum->bb / n - mean_b * mean_b;
     double covariance = sum->ab / n - mean_a * mean_b;
-    /* Rounding, which is large where values are, must not break what holds
-     * of all numbers: no negative variance, and Cauchy and Schwarz. */
+    /* Rounding errors, which are large for large values, must not break two
+     * facts: variances are not negative, and the inequality of Cauchy and
+     * Schwarz. */
     variance_a = variance_a < 0 ? 0 : variance_a;
     variance_b = variance_b < 0 ? 0 : variance_b;
     double most = sqrt(variance_a * variance_b);
@@ -136,8 +136,8 @@ static double window_similarity(const moments *sum, double n) {
     return score > 1 ? 1 : score < -1 ? -1 : score;
 }
 
-/* Adds up the similarities of a row of windows, `side` columns wide and of that
- * many pixels in all. */
+/* Adds the similarities of a row of windows, each `side` columns wide and with
+ * that many pixels in all. */
 static double add_windows(const moments *columns, int width, int side,
                           double pixels) {
     double total = 0;
@@ -150,8 +150,8 @@ static double add_windows(const moments *columns, int width, int side,
     return total;
 }
 
-/* Mean similarity over all windows.  Only the rows under the windows are kept,
- * row y at y modulo the window's height. */
+/* Mean similarity over all windows.  Only the rows under the windows are kept;
+ * row y is stored at y modulo the window's height. */
 static snow_status measure_similarity(const snow_image *a, const snow_image *b,
                                       double *out) {
     int width = a->width;
@@ -174,17 +174,17 @@ static snow_status measure_similarity(const snow_image *a, const snow_image *b,
     snow_release(a->context, columns);
     snow_release(a->context, lumas);
     if (!done)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     *out = total / ((double)(width - wide + 1) * (a->height - high + 1));
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_image_compare(const snow_image *a, const snow_image *b,
                                snow_image_difference *out) {
     if (a->width != b->width || a->height != b->height)
-        return snow_fail(a->context, SNOW_DIFFERENT,
-                         "the pictures have %d x %d and %d x %d pixels; only "
-                         "pictures of one size can be compared",
+        return snow_fail(a->context, SNOW_STATUS_DIFFERENT,
+                         "the pictures have %d x %d and %d x %d pixels; "
+                         "compare pictures of one size",
                          a->width, a->height, b->width, b->height);
     double ssim = 0;
     SNOW_TRY(measure_similarity(a, b, &ssim));
@@ -201,5 +201,5 @@ snow_status snow_image_compare(const snow_image *a, const snow_image *b,
         .x = sums.x,
         .y = sums.y,
     };
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }

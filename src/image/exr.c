@@ -1,17 +1,18 @@
 /* image/exr.c - OpenEXR files, by the core library of OpenEXR 3 (in C).
  *
- * Written: one part of scan lines with channels A, B, G, R of 32-bit floats,
- * premultiplied as the format wants it, or Y of values in data units, and Z of
- * a depth beside them; ZIP packed.  The format means light to be linear; our
- * values are written as they are.  Read: parts of scan lines, any packing,
- * channels R, G, B, A or Y, halves and integers too; others are passed over.
+ * Writes one part of scan lines with ZIP compression.  Its channels are A, B,
+ * G, R of 32-bit floats, premultiplied as the format requires, or Y for values
+ * in data units, and Z for depth.  The format expects linear light; our values
+ * are written as they are.  Reads parts of scan lines with any compression,
+ * channels R, G, B, A or Y, also halves and integers; other channels are
+ * ignored.
  *
- * The library takes its own memory, which no context counts: of a chunk of 16
- * lines at a time. */
+ * The library allocates its own memory, which no context counts: one chunk of
+ * 16 lines at a time. */
 #include "image/image.h"
 
-#include "base/random.h"
-#include "base/store.h"
+#include "io/memory_file.h"
+#include "io/seekable.h"
 
 static bool probe_exr(const unsigned char *bytes, size_t size) {
     return size >= 4 && bytes[0] == 0x76 && bytes[1] == 0x2f &&
@@ -23,13 +24,13 @@ static bool probe_exr(const unsigned char *bytes, size_t size) {
 #include <openexr.h>
 #include <stdio.h>
 
-/* What the library's functions see. */
+/* The state for the library's callbacks. */
 typedef struct exr_file {
     snow_context *context;
     exr_context_t exr;
-    snow_store store;   /* when writing */
-    snow_random *bytes; /* when reading */
-    snow_status status; /* of ours, beneath the library */
+    snow_memory_file store; /* when writing */
+    snow_seekable *bytes;   /* when reading */
+    snow_status status;     /* of our functions below the library */
     char complaint[200];
 } exr_file;
 
@@ -39,7 +40,7 @@ static exr_file *file_of(exr_const_context_t exr) {
     return user;
 }
 
-/* The first complaint says most. */
+/* The first error is the most specific. */
 static void hear_error(exr_const_context_t exr, exr_result_t code,
                        const char *text) {
     exr_file *file = file_of(exr);
@@ -54,8 +55,8 @@ static int64_t write_bytes(exr_const_context_t exr, void *user,
     exr_file *file = user;
     (void)exr;
     (void)fail;
-    file->status = snow_store_put(&file->store, at, bytes, (size_t)size);
-    return file->status == SNOW_OK ? (int64_t)size : -1;
+    file->status = snow_memory_file_put(&file->store, at, bytes, (size_t)size);
+    return file->status == SNOW_STATUS_OK ? (int64_t)size : -1;
 }
 
 static int64_t read_bytes(exr_const_context_t exr, void *user, void *bytes,
@@ -64,12 +65,12 @@ static int64_t read_bytes(exr_const_context_t exr, void *user, void *bytes,
     exr_file *file = user;
     (void)exr;
     (void)fail;
-    return (int64_t)snow_random_read(file->bytes, at, bytes, (size_t)size);
+    return (int64_t)snow_seekable_read(file->bytes, at, bytes, (size_t)size);
 }
 
-static int64_t tell_size(exr_const_context_t exr, void *user) {
+static int64_t set_size(exr_const_context_t exr, void *user) {
     (void)exr;
-    return (int64_t)snow_random_size(((exr_file *)user)->bytes);
+    return (int64_t)snow_seekable_size(((exr_file *)user)->bytes);
 }
 
 static exr_context_initializer_t hooks_of(exr_file *file) {
@@ -77,7 +78,7 @@ static exr_context_initializer_t hooks_of(exr_file *file) {
     hooks.error_handler_fn = hear_error;
     hooks.user_data = file;
     hooks.read_fn = read_bytes;
-    hooks.size_fn = tell_size;
+    hooks.size_fn = set_size;
     hooks.write_fn = write_bytes;
     hooks.max_image_width = hooks.max_image_height = SNOW_IMAGE_SIDE;
     return hooks;
@@ -86,12 +87,12 @@ static exr_context_initializer_t hooks_of(exr_file *file) {
 /* --- writing ---------------------------------------------------------------
  */
 
-/* Samples of a pixel while it is written: red, green, blue (or the value),
- * alpha, depth. */
+/* Samples of a pixel for writing: red, green, blue (or the value), alpha,
+ * depth. */
 #define SAMPLES 5
 
-/* In the order of their names, as the format has them, and the sample of a
- * pixel that each is. */
+/* Channels in the order of their names, as the format requires, and the sample
+ * of a pixel for each. */
 typedef struct exr_channel {
     const char *name;
     int sample;
@@ -101,11 +102,11 @@ static const exr_channel channels[] = {
     {"A", 3}, {"B", 2}, {"G", 1}, {"R", 0}, {"Z", 4}};
 static const exr_channel value_channels[] = {{"Y", 0}, {"Z", 4}};
 
-/* A picture, and what is written beside it. */
+/* A picture and its depth. */
 typedef struct exr_content {
     const snow_image *image, *depth; /* NULL: none */
     const exr_channel *channels;
-    int count; /* of them */
+    int count; /* number of channels */
 } exr_content;
 
 static exr_content content_of(const snow_image *image,
@@ -131,7 +132,7 @@ static exr_result_t begin_part(exr_file *file, const exr_content *content) {
     return code == EXR_ERR_SUCCESS ? exr_write_header(file->exr) : code;
 }
 
-/* Lines from y on. */
+/* Fills lines from y on. */
 static void fill_lines(const exr_content *content, int y, int count,
                        float *out) {
     size_t width = (size_t)content->image->width, first = (size_t)y * width;
@@ -195,19 +196,19 @@ static snow_status make_file(exr_file *file, const exr_content *content) {
         uint64_t pixels = (uint64_t)content->image->width * (uint64_t)at_once;
         lines = snow_allocate_array(file->context, pixels, 4 * SAMPLES);
         if (!lines)
-            return SNOW_NO_MEMORY;
+            return SNOW_STATUS_NO_MEMORY;
         code = write_lines(file, content, lines, at_once);
     }
     snow_release(file->context, lines);
     if (code == EXR_ERR_SUCCESS)
-        return SNOW_OK;
-    if (file->status != SNOW_OK)
+        return SNOW_STATUS_OK;
+    if (file->status != SNOW_STATUS_OK)
         return file->status;
-    return snow_fail(file->context, SNOW_FAILED,
-                     "the EXR file cannot be made (OpenEXR: %s); write a .npy "
-                     "instead",
-                     *file->complaint ? file->complaint
-                                      : exr_get_default_error_message(code));
+    return snow_fail(
+        file->context, SNOW_STATUS_FAILED,
+        "the EXR file cannot be written (OpenEXR: %s); write a .npy instead",
+        *file->complaint ? file->complaint
+                         : exr_get_default_error_message(code));
 }
 
 static snow_status write_exr(const snow_image *image,
@@ -219,28 +220,29 @@ static snow_status write_exr(const snow_image *image,
     snow_status status = make_file(&file, &content);
     if (file.exr)
         exr_finish(&file.exr);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_writer_write(writer, file.store.bytes, file.store.size);
-    snow_store_free(&file.store);
+    snow_memory_file_free(&file.store);
     return status;
 }
 
 /* --- reading ---------------------------------------------------------------
  */
 
-/* Packed bytes are never fewer: of the lossy packings, which take the most, a
- * block of 64 values becomes nothing but its share of a Deflate stream. */
+/* A lower bound for the compressed bytes: the strongest, a lossy compression,
+ * turns a block of 64 values into its share of a Deflate stream. */
 #define PACKED_MOST (64 * SNOW_DEFLATE_RATIO)
 
 static snow_status refuse(const exr_file *file, const snow_source *source) {
-    return snow_fail(file->context, SNOW_BAD_INPUT,
-                     "%s: is a damaged or cut EXR file (OpenEXR: %s); get it "
-                     "anew",
-                     snow_source_name(source),
-                     *file->complaint ? file->complaint : "no more bytes");
+    return snow_fail(
+        file->context, SNOW_STATUS_BAD_INPUT,
+        "%s: is a damaged or truncated EXR file (OpenEXR: %s); get it again",
+        snow_source_name(source),
+        *file->complaint ? file->complaint : "no more bytes");
 }
 
-/* Which sample a channel is: 0 to 3, -1 none, of Y all colours. */
+/* The index of a channel's sample: 0 to 3; -1 none; Y stands for all
+ * colours. */
 static int sample_of(const char *name, bool *grey) {
     *grey = name[0] == 'Y' && !name[1];
     if (*grey)
@@ -251,7 +253,7 @@ static int sample_of(const char *name, bool *grey) {
     return -1;
 }
 
-/* What of the picture the file has; grey is copied to all colours later. */
+/* The channels that the file has; grey is copied to all colours later. */
 typedef struct exr_plan {
     int x0, y0, width, height;
     int at_once;
@@ -277,10 +279,10 @@ static snow_status find_channels(const exr_file *file,
         colors += sample < 3 && !grey;
     }
     if (colors == 3 || (colors == 0 && plan->grey))
-        return SNOW_OK;
-    return snow_fail(file->context, SNOW_BAD_INPUT,
-                     "%s: has neither whole channels R, G and B nor Y alone; "
-                     "give a file with these",
+        return SNOW_STATUS_OK;
+    return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                     "%s: has neither complete channels R, G and B nor Y "
+                     "alone; give a file with these",
                      snow_source_name(source));
 }
 
@@ -293,15 +295,15 @@ static snow_status read_header(const exr_file *file, const snow_source *source,
         exr_get_data_window(file->exr, 0, &box) != EXR_ERR_SUCCESS)
         return refuse(file, source);
     if (storage != EXR_STORAGE_SCANLINE)
-        return snow_fail(file->context, SNOW_BAD_INPUT,
-                         "%s: its first part is of tiles or deep; give one of "
-                         "scan lines",
-                         snow_source_name(source));
+        return snow_fail(
+            file->context, SNOW_STATUS_BAD_INPUT,
+            "%s: its first part is tiled or deep; give one with scan lines",
+            snow_source_name(source));
     int64_t width = (int64_t)box.max.x - box.min.x + 1;
     int64_t height = (int64_t)box.max.y - box.min.y + 1;
     SNOW_TRY(snow_image_check_sides(source, width, height));
     if ((uint64_t)(width * height) / PACKED_MOST >
-        snow_random_size(file->bytes))
+        snow_seekable_size(file->bytes))
         return refuse(file, source);
     if (exr_get_scanlines_per_chunk(file->exr, 0, &at_once) !=
             EXR_ERR_SUCCESS ||
@@ -367,7 +369,7 @@ static snow_status read_lines(const exr_file *file, const snow_source *source,
         if (!plan->has_alpha)
             pixel[3] = 1;
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status read_file(exr_file *file, const snow_source *source,
@@ -381,7 +383,7 @@ static snow_status read_file(exr_file *file, const snow_source *source,
     SNOW_TRY(read_header(file, source, &plan));
     SNOW_TRY(snow_image_new(file->context, plan.width, plan.height, 4, &image));
     snow_status status = read_lines(file, source, &plan, image);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         *out = image;
     else
         snow_image_free(image);
@@ -390,11 +392,11 @@ static snow_status read_file(exr_file *file, const snow_source *source,
 
 static snow_status read_exr(snow_source *source, snow_image **out) {
     exr_file file = {.context = snow_source_context(source)};
-    SNOW_TRY(snow_random_open(source, &file.bytes));
+    SNOW_TRY(snow_seekable_open(source, &file.bytes));
     snow_status status = read_file(&file, source, out);
     if (file.exr)
         exr_finish(&file.exr);
-    snow_random_close(file.bytes);
+    snow_seekable_close(file.bytes);
     return status;
 }
 

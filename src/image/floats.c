@@ -1,14 +1,13 @@
-/* image/floats.c - rows of plain floats in and out of files, which PFM and NPY
- * share.
+/* image/floats.c - reads and writes rows of plain floats, for PFM and NPY.
  *
- * A row at a time passes through one buffer, so that reading needs the picture
- * and little more; byte orders are spelt out, never the machine's. */
+ * One row at a time passes through a buffer, so that reading needs little more
+ * memory than the picture.  Byte orders are explicit, never the machine's. */
 #include "image/image.h"
 
 #include <string.h>
 
-/* The number that `size` (4 or 8) bytes of an IEEE 754 float stand for.  A
- * double beyond float's range becomes infinite. */
+/* Decodes an IEEE 754 float of `size` (4 or 8) bytes.  A double beyond float's
+ * range becomes infinite. */
 static float decode_sample(const unsigned char *bytes, int size,
                            bool big_endian) {
     uint64_t bits = 0;
@@ -25,11 +24,10 @@ static float decode_sample(const unsigned char *bytes, int size,
     return sample;
 }
 
-/* Spreads what a file has for a pixel over red, green, blue and alpha:
+/* Expands the samples of a pixel in the file to red, green, blue and alpha:
  *
  *   g        -> g g g 1        r g b    -> r g b 1
- *   g a      -> g g g a        r g b a  -> r g b a
- */
+ *   g a      -> g g g a        r g b a  -> r g b a */
 static void spread_pixel(const float *samples, int channels, float *pixel) {
     bool grey = channels < 3;
     pixel[0] = samples[0];
@@ -38,7 +36,7 @@ static void spread_pixel(const float *samples, int channels, float *pixel) {
     pixel[3] = channels % 2 == 0 ? samples[channels - 1] : 1;
 }
 
-/* Turns a row of the file into `width` pixels of four floats. */
+/* Converts a row of the file to `width` pixels of four floats. */
 static void decode_row(const unsigned char *bytes, int width,
                        const snow_float_layout *layout, float *row) {
     for (int x = 0; x < width; x++) {
@@ -60,12 +58,12 @@ static snow_status read_rows(snow_source *source,
                        (size_t)layout->sample_bytes;
     unsigned char *bytes = snow_allocate(image->context, row_bytes);
     if (!bytes)
-        return SNOW_NO_MEMORY;
-    snow_status status = SNOW_OK;
-    for (int i = 0; i < image->height && status == SNOW_OK; i++) {
+        return SNOW_STATUS_NO_MEMORY;
+    snow_status status = SNOW_STATUS_OK;
+    for (int i = 0; i < image->height && status == SNOW_STATUS_OK; i++) {
         status = snow_source_read_all(source, bytes, row_bytes, "the pixels");
         int y = layout->bottom_up ? image->height - 1 - i : i;
-        if (status == SNOW_OK)
+        if (status == SNOW_STATUS_OK)
             decode_row(bytes, image->width, layout,
                        image->pixels + (size_t)y * (size_t)image->width * 4);
     }
@@ -73,8 +71,8 @@ static snow_status read_rows(snow_source *source,
     return status;
 }
 
-/* The order matters: the sides bound the product, the product is held against
- * the bytes that there are, and only then memory is asked for. */
+/* The order matters: the sides bound the product, the product is compared with
+ * the bytes in the file, and only then memory is allocated. */
 snow_status snow_image_read_floats(snow_source *source, int64_t width,
                                    int64_t height,
                                    const snow_float_layout *layout,
@@ -89,15 +87,15 @@ snow_status snow_image_read_floats(snow_source *source, int64_t width,
     SNOW_TRY(snow_image_make(snow_source_context(source), (int)width,
                              (int)height, 4, &image));
     snow_status status = read_rows(source, layout, image);
-    if (status != SNOW_OK) {
+    if (status != SNOW_STATUS_OK) {
         snow_image_free(image);
         return status;
     }
     *out = image;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Puts row y into `bytes`; 3 channels leave alpha out. */
+/* Writes row y into `bytes`; with 3 channels alpha is omitted. */
 static void encode_row(const snow_image *image, int y, int channels,
                        unsigned char *bytes) {
     size_t first = (size_t)y * (size_t)image->width;
@@ -118,9 +116,9 @@ snow_status snow_image_write_floats(const snow_image *image, int channels,
     size_t row_bytes = (size_t)image->width * (size_t)channels * sizeof(float);
     unsigned char *bytes = snow_allocate(image->context, row_bytes);
     if (!bytes)
-        return SNOW_NO_MEMORY;
-    snow_status status = SNOW_OK;
-    for (int i = 0; i < image->height && status == SNOW_OK; i++) {
+        return SNOW_STATUS_NO_MEMORY;
+    snow_status status = SNOW_STATUS_OK;
+    for (int i = 0; i < image->height && status == SNOW_STATUS_OK; i++) {
         int y = bottom_up ? image->height - 1 - i : i;
         encode_row(image, y, channels, bytes);
         status = snow_writer_write(writer, bytes, row_bytes);

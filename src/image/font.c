@@ -7,13 +7,14 @@
  *   -xyxyxy   straight lines from point to point
  *   ~xyxyxy   a curve from the first to the last point, whose control points
  *             are all others: the quadratic B-spline, which runs from the
- * middle of each side of the control polygon to that of the next oxyxyxy   the
- * same closed: four corners of a box make a round letter .xy       a dot
+ *             middle of each side of the control polygon to that of the next
+ *   oxyxyxy   the same closed: four corners of a box make a round letter
+ *   .xy       a dot
  *
  * x is a digit, y a digit, a, b, c (10, 11, 12) or z, y, x, w (-1 to -4).  A
- * glyph is as wide as its farthest point; SPACE lies between two.  Strokes have
- * round ends and one width, so that the letters stay letters from 9 pixels to a
- * hundred. */
+ * glyph is as wide as its farthest point; SPACE separates two glyphs.  Strokes
+ * have round ends and one width, so that letters are readable at heights from
+ * 9 to a hundred pixels. */
 #include "image/font.h"
 
 #include <assert.h>
@@ -21,10 +22,10 @@
 
 #define CAPITAL 12.0 /* units */
 #define SPACE 3.8
-#define BLANK 2.5 /* width of the blank, beside the space around it */
+#define BLANK 2.5 /* width of the blank, besides the space around it */
 #define PIECES 6  /* straight pieces of a curve between two middles */
 
-/* From ' ' on. */
+/* Beginning with ' '. */
 static const char *const glyphs[] = {
     "", "-0c04.00", "-0c09-3c39", "-2c10-6c50-0878-0474",
     "~7a7c0c0676700002-4e3y", "-7c00o0c3c3909o43737040", "~70171c5c5805005075",
@@ -61,7 +62,7 @@ static const char *const glyphs[] = {
 static_assert(sizeof glyphs / sizeof *glyphs == 127 - ' ',
               "a glyph for each character");
 
-/* Of bytes that are no ASCII. */
+/* For bytes outside ASCII. */
 static const char box[] = "-000c7c7000";
 
 static const char *glyph_of(char letter) {
@@ -104,7 +105,7 @@ double snow_font_width(const char *text) {
     return width / CAPITAL;
 }
 
-/* Where a glyph is drawn. */
+/* The position at which a glyph is drawn. */
 typedef struct pen {
     snow_overlay *overlay;
     double x, y, unit; /* of its grid's origin, pixels; pixels a unit */
@@ -120,7 +121,7 @@ static snow_status line_to(pen *p, double x, double y) {
     return status;
 }
 
-/* A parabola from where the pen is. */
+/* Draws a parabola from the pen's position. */
 static snow_status curve_to(pen *p, const double control[2], double x,
                             double y) {
     const double from[2] = {p->at[0], p->at[1]}, to[2] = {x, y};
@@ -130,7 +131,7 @@ static snow_status curve_to(pen *p, const double control[2], double x,
             at[i] = s * s * from[i] + 2 * s * t * control[i] + t * t * to[i];
         SNOW_TRY(line_to(p, at[0], at[1]));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void point_at(const char *points, size_t index, double point[2]) {
@@ -154,11 +155,11 @@ static snow_status draw_lines(pen *p, const char *points, size_t count) {
         point_at(points, n, to);
         SNOW_TRY(line_to(p, to[0], to[1]));
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Of an open curve the first and the last side are straight up to their
- * middles, so that it ends in its end points. */
+/* The first and the last side of an open curve are straight up to their
+ * middles, so that the curve ends in its end points. */
 static snow_status draw_curve(pen *p, const char *points, size_t count,
                               bool closed) {
     double control[2], to[2];
@@ -173,7 +174,7 @@ static snow_status draw_curve(pen *p, const char *points, size_t count,
         SNOW_TRY(curve_to(p, control, to[0], to[1]));
     }
     if (closed)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     point_at(points, count - 1, to);
     return line_to(p, to[0], to[1]);
 }
@@ -191,7 +192,7 @@ static snow_status draw_glyph(pen *p, const char *glyph) {
             SNOW_TRY(draw_curve(p, glyph, length / 2, mode == 'o'));
         glyph += length;
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_font_draw(snow_overlay *overlay, double x, double y,
@@ -202,5 +203,5 @@ snow_status snow_font_draw(snow_overlay *overlay, double x, double y,
         SNOW_TRY(draw_glyph(&p, glyph));
         p.x += (glyph_width(glyph) + SPACE) * p.unit;
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }

@@ -1,9 +1,9 @@
-/* image/image.c - pictures in memory, and their check sum.
+/* image/image.c - pictures in memory, and their checksum.
  *
- * A picture is one block of floats, premultiplied and linear, which the
- * compositing fills (section 4.2 of the paper: the sheets end up here).  The
- * check sum is 64-bit FNV-1a (Fowler, Noll, Vo; RFC 9923), taken over a form
- * that does not depend on the machine. */
+ * A picture is one block of floats, premultiplied and linear, filled by
+ * compositing (section 4.2 of the paper: the sheets end up here).  The checksum
+ * is 64-bit FNV-1a (Fowler, Noll, Vo; RFC 9923), computed from a form that does
+ * not depend on the machine. */
 #include "image/image.h"
 
 #include <string.h>
@@ -12,31 +12,32 @@ snow_status snow_image_make(snow_context *context, int width, int height,
                             int channels, snow_image **out) {
     if (width < 1 || height < 1 || width > SNOW_IMAGE_SIDE ||
         height > SNOW_IMAGE_SIDE)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "a picture of %d x %d pixels cannot be made; take 1 "
-                         "to %d a side",
-                         width, height, SNOW_IMAGE_SIDE);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "a picture of %d x %d pixels is not possible; use 1 to %d per side",
+            width, height, SNOW_IMAGE_SIDE);
     if (channels != 1 && channels != 2 && channels != 4)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "a picture of %d channels cannot be made; take 1 "
-                         "(values), 2 (grey, alpha) or 4 (red, green, blue, "
-                         "alpha)",
-                         channels);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "a picture of %d channels is not possible; use 1 (values), 2 "
+            "(grey, alpha) or 4 (red, green, blue, alpha)",
+            channels);
     snow_image *image = snow_allocate(context, sizeof *image);
     if (!image)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     uint64_t samples = (uint64_t)width * (uint64_t)height * (uint64_t)channels;
     *image = (snow_image){context, width, height, channels, false, NULL};
     image->pixels = snow_allocate_array(context, samples, sizeof(float));
     if (!image->pixels) {
         snow_release(context, image);
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     }
     *out = image;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Number of floats; snow_image_make saw to it that their bytes fit. */
+/* Number of floats; snow_image_make has checked that their bytes do not
+ * overflow. */
 static size_t count_samples(const snow_image *image) {
     return (size_t)image->width * (size_t)image->height *
            (size_t)image->channels;
@@ -48,7 +49,7 @@ snow_status snow_image_new(snow_context *context, int width, int height,
     SNOW_TRY(snow_image_make(context, width, height, channels, &image));
     memset(image->pixels, 0, count_samples(image) * sizeof(float));
     *out = image;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_image_free(snow_image *image) {
@@ -75,7 +76,7 @@ float *snow_image_pixels(snow_image *image) {
     return image->pixels;
 }
 
-/* Takes the four bytes of a number, the lowest first, into an FNV-1a hash. */
+/* Adds the four bytes of a number, lowest first, to an FNV-1a hash. */
 static uint64_t hash_number(uint64_t hash, uint32_t number) {
     for (int shift = 0; shift < 32; shift += 8) {
         hash ^= number >> shift & 255;
@@ -84,8 +85,8 @@ static uint64_t hash_number(uint64_t hash, uint32_t number) {
     return hash;
 }
 
-/* The bits of a sample, one form for each value: sums are equal where
- * snow_image_compare finds no difference. */
+/* The bits of a sample in canonical form: sums are equal if snow_image_compare
+ * finds no difference. */
 static uint32_t canonical_bits(float sample) {
     if (sample == 0)
         return 0;
@@ -113,10 +114,10 @@ snow_status snow_image_check_sides(const snow_source *source, int64_t width,
                                    int64_t height) {
     if (width >= 1 && height >= 1 && width <= SNOW_IMAGE_SIDE &&
         height <= SNOW_IMAGE_SIDE)
-        return SNOW_OK;
-    return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
-                     "%s: a picture of %lld x %lld pixels is not read; it may "
-                     "have 1 to %d a side",
+        return SNOW_STATUS_OK;
+    return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                     "%s: a picture of %lld x %lld pixels cannot be read; 1 to "
+                     "%d per side are possible",
                      snow_source_name(source), (long long)width,
                      (long long)height, SNOW_IMAGE_SIDE);
 }

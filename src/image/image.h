@@ -1,10 +1,10 @@
-/* image/image.h - the inside of a picture, and the picture formats. */
+/* image/image.h - the private record of a picture, and the picture formats. */
 #ifndef SNOW_IMAGE_H
 #define SNOW_IMAGE_H
 
 #include "base/base.h"
-#include "base/source.h"
-#include "base/writer.h"
+#include "io/source.h"
+#include "io/writer.h"
 
 #include <snowglass/image.h>
 
@@ -14,17 +14,17 @@
 struct snow_image {
     snow_context *context;
     int width, height, channels;
-    bool alpha_unknown; /* its file had none, yet the picture may have had */
+    bool alpha_unknown; /* its file had none, but the picture may have had */
     float *pixels;      /* [(y * width + x) * channels] */
 };
 
 /* As snow_image_new, but the pixels are undefined.  For readers, which fill
- * them: a size that a file merely claims then costs address space only. */
+ * them: a false size in a file then costs only address space. */
 snow_status snow_image_make(snow_context *context, int width, int height,
                             int channels, snow_image **out);
 
-/* Pixel `index` (y * width + x) as red, green, blue, alpha; grey is r = g = b,
- * and so are values, of alpha 1. */
+/* Pixel `index` (y * width + x) as red, green, blue, alpha.  Grey pixels and
+ * values give r = g = b; values have alpha 1. */
 static inline void snow_image_rgba(const snow_image *image, size_t index,
                                    float rgba[4]) {
     const float *pixel = image->pixels + index * (size_t)image->channels;
@@ -37,66 +37,67 @@ static inline void snow_image_rgba(const snow_image *image, size_t index,
 
 /* --- formats -------------------------------------------------------------- */
 
-/* What one file format can do.  A new one is a file that defines its record,
- * and a line in the table of formats.c. */
+/* The functions of a file format.  A new format is a file that defines its
+ * record, and a line in the table of formats.c. */
 typedef struct snow_image_format {
     const char *name;    /* for messages: "PNG" */
-    const char *suffix;  /* of the files it writes: ".png" */
-    const char *other;   /* another one, or NULL */
-    const char *package; /* Debian's, of the library that this build lacks: then
-                            there is neither write nor read; NULL: none */
-    const char *module;  /* base/module.h: it is loaded to read and write, and
-                            may be missing; NULL: none */
-    bool in_any_order;   /* reads the source by base/random.h */
-    bool takes_depth;    /* beside the picture (snow_image_options) */
+    const char *suffix;  /* suffix of the files it writes: ".png" */
+    const char *other;   /* another suffix, or NULL */
+    const char *package; /* the Debian package that this build lacks: then write
+                            and read are missing; NULL: none */
+    const char *module;  /* base/module.h: loaded to read and write, and may be
+                            missing; NULL: none */
+    bool in_any_order;   /* reads the source with io/seekable.h */
+    bool takes_depth;    /* with the picture (snow_image_options) */
     int most_side;       /* pixels; 0: SNOW_IMAGE_SIDE */
-    int bits;            /* the most a channel, of levels; 0: floats, without
-                            background and overlay */
+    int bits; /* the most per channel, for integers; 0: floats, without
+                 background and overlay */
 
     /* Writes the picture.  The caller opened the writer, and commits it. */
     snow_status (*write)(const snow_image *image,
                          const snow_image_options *options,
                          snow_writer *writer);
 
-    /* Whether a file that begins with these bytes is of this format. */
+    /* Whether a file that begins with these bytes has this format. */
     bool (*probe)(const unsigned char *bytes, size_t size);
 
-    /* Makes a picture of four channels from the source's first byte on. */
+    /* Reads a picture of four channels, from the source's first byte on. */
     snow_status (*read)(snow_source *source, snow_image **out);
 } snow_image_format;
 
 extern const snow_image_format snow_image_png, snow_image_npy, snow_image_pfm,
     snow_image_exr, snow_image_tiff, snow_image_webp;
 
-/* Rows of a picture as files of 8 and 16 bits hold them: overlay drawn, laid on
- * the background or with straight alpha, rounded. */
+/* Rows of a picture as files of 8 and 16 bits hold them: with the overlay,
+ * placed on the background or with straight alpha, rounded. */
 typedef struct snow_levels {
     const snow_image *image;
     const snow_overlay *overlay; /* NULL: none */
     const double *background;    /* NULL: with alpha */
     int bits;                    /* 8 or 16 */
-    int samples;  /* a pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
-    int channels; /* of a row before that: 2 or 4 */
+    int samples;  /* per pixel: 1 grey, 2 grey and alpha, 3 or 4 colour */
+    int channels; /* per pixel before that: 2 or 4 */
     float *drawn;
     double *row;
-    unsigned char *bytes; /* of the row that was made last */
+    unsigned char *bytes; /* of the last row */
 } snow_levels;
 
-/* Begins with a picture, which stays grey where nothing of it has a colour,
- * unless `colored`.  snow_levels_end must follow, also after a failure. */
+/* Begins with a picture.  It stays grey if nothing in it has a colour, unless
+ * `colored`.  snow_levels_end must follow, even after a failure. */
 snow_status snow_levels_begin(const snow_image *image,
                               const snow_image_options *options, bool colored,
                               snow_levels *out);
 void snow_levels_end(snow_levels *levels);
 
-/* Makes row y: width * samples samples, of 16 bits the high byte first. */
+/* Makes row y: width * samples samples; those of 16 bits have the high byte
+ * first. */
 const unsigned char *snow_levels_row(snow_levels *levels, int y);
 
-/* Refuses, on behalf of a reader, sides outside 1 to SNOW_IMAGE_SIDE. */
+/* Refuses, for a reader, sides outside 1 to SNOW_IMAGE_SIDE. */
 snow_status snow_image_check_sides(const snow_source *source, int64_t width,
                                    int64_t height);
 
-/* How plain floats lie in a file. */
+/* The layout of plain floats in a file. */
 typedef struct snow_float_layout {
     int channels;     /* 1 grey, 2 grey and alpha, 3 colour, 4 with alpha */
     int sample_bytes; /* 4 or 8 */
@@ -104,14 +105,14 @@ typedef struct snow_float_layout {
     bool bottom_up; /* the file's first row is the picture's last */
 } snow_float_layout;
 
-/* Reads `width` x `height` pixels from where the source stands; alpha is 1
- * where the file has none. */
+/* Reads `width` x `height` pixels at the source's position; alpha is 1 if the
+ * file has none. */
 snow_status snow_image_read_floats(snow_source *source, int64_t width,
                                    int64_t height,
                                    const snow_float_layout *layout,
                                    snow_image **out);
 
-/* Appends all pixels as little-endian 32-bit floats, 3 or 4 a pixel, or 1 of
+/* Appends all pixels as little-endian 32-bit floats, 3 or 4 per pixel, or 1 for
  * values. */
 snow_status snow_image_write_floats(const snow_image *image, int channels,
                                     bool bottom_up, snow_writer *writer);

@@ -1,16 +1,16 @@
-/* image/levels.c - rows of a picture in the levels of 8 and 16 bits, with what
- * is drawn over it: what PNG and WebP files hold, and movies' frames. */
+/* image/levels.c - rows of a picture as integers of 8 and 16 bits, with the
+ * overlay: the contents of PNG and WebP files and of movies' frames. */
 #include "image/image.h"
 #include "image/overlay.h"
 #include "image/samples.h"
 
 #include <string.h>
 
-/* Pixels at a time: their samples stay in the first-level cache. */
+/* Pixels per step: their samples stay in the first-level cache. */
 #define SOME 256
 
-/* A grey picture becomes one of colours where its background or its overlay has
- * any, or the file knows no grey. */
+/* A grey picture is written in colour if its background or its overlay has
+ * colour, or if the file format has no grey. */
 static void plan(const snow_image *image, const snow_image_options *options,
                  bool colored, snow_levels *out) {
     const double *b = options->flatten ? options->background : NULL;
@@ -22,7 +22,7 @@ static void plan(const snow_image *image, const snow_image_options *options,
                          .bits = options->bits == 16 ? 16 : 8,
                          .channels = grey ? 2 : 4};
     if (b && (b[0] != b[1] || b[1] != b[2]))
-        grey = false; /* snow_flatten_row spreads grey over all three */
+        grey = false; /* snow_flatten_row copies grey to all three */
     out->samples = (grey ? 1 : 3) + (b ? 0 : 1);
 }
 
@@ -36,7 +36,8 @@ snow_status snow_levels_begin(const snow_image *image,
     out->row = snow_allocate_array(context, count, sizeof(double));
     out->bytes = snow_allocate_array(context, count, 2);
     out->drawn = snow_allocate_array(context, drawn, sizeof(float));
-    return out->row && out->bytes && out->drawn ? SNOW_OK : SNOW_NO_MEMORY;
+    return out->row && out->bytes && out->drawn ? SNOW_STATUS_OK
+                                                : SNOW_STATUS_NO_MEMORY;
 }
 
 void snow_levels_end(snow_levels *levels) {
@@ -46,7 +47,7 @@ void snow_levels_end(snow_levels *levels) {
     snow_release(context, levels->row);
 }
 
-/* Some pixels from (x, y) on, with the shapes over them. */
+/* Converts some pixels from (x, y) on, with the shapes over them. */
 static void draw_some(const snow_image *image, const snow_overlay *overlay,
                       int y, int x, int count, int channels, float *out) {
     size_t first = (size_t)y * (size_t)image->width + (size_t)x;
@@ -76,10 +77,10 @@ const unsigned char *snow_levels_row(snow_levels *l, int y) {
     return l->bytes;
 }
 
-/* Takes no memory: a movie's frames are made while others are rendered. */
-void snow_image_bytes_drawn(const snow_image *image,
-                            const snow_image_options *options,
-                            unsigned char *rgb) {
+/* Allocates no memory: frames of a movie are made while others are rendered. */
+void snow_image_to_rgb8_with(const snow_image *image,
+                             const snow_image_options *options,
+                             unsigned char *rgb) {
     static const double black[3] = {0, 0, 0};
     const double *background = options->flatten ? options->background : black;
     float drawn[4 * SOME];
@@ -94,9 +95,9 @@ void snow_image_bytes_drawn(const snow_image *image,
         }
 }
 
-void snow_image_bytes(const snow_image *image, const double background[3],
-                      unsigned char *rgb) {
+void snow_image_to_rgb8(const snow_image *image, const double background[3],
+                        unsigned char *rgb) {
     snow_image_options options = {.flatten = true};
     memcpy(options.background, background, sizeof options.background);
-    snow_image_bytes_drawn(image, &options, rgb);
+    snow_image_to_rgb8_with(image, &options, rgb);
 }

@@ -1,19 +1,18 @@
 /* image/npy.c - pictures as NumPy arrays.
  *
- * What such a file is stands in base/npy.h.  Written are float32
- * arrays of (height, width, 4), premultiplied, or (height, width) of values in
- * data units; read are floats of both sizes and byte orders with 1 to 4
- * channels. */
-#include "base/npy.h"
+ * io/npy_header.h describes the format.  Writes float32 arrays of shape
+ * (height, width, 4), premultiplied, or (height, width) for values in data
+ * units. Reads floats of both sizes and byte orders with 1 to 4 channels. */
 #include "image/image.h"
+#include "io/npy_header.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static const unsigned char magic[6] = {0x93, 'N', 'U', 'M', 'P', 'Y'};
 
-/* The text is shorter than the room for any sides: the file is the same, byte
- * for byte, as numpy.save makes. */
+/* The header text fits for all sizes: the file is the same, byte for byte, as
+ * from numpy.save. */
 static snow_status write_npy(const snow_image *image,
                              const snow_image_options *options,
                              snow_writer *writer) {
@@ -28,7 +27,8 @@ static snow_status write_npy(const snow_image *image,
                       "{'descr': '<f4', 'fortran_order': False, "
                       "'shape': (%d, %d%s), }",
                       image->height, image->width, channels == 1 ? "" : ", 4");
-    /* The longest text, for sides of 32768, still leaves the newline room. */
+    /* Even the longest text, for sides of 32768, leaves room for the
+     * newline. */
     header[length] = ' ';
     header[sizeof header - 1] = '\n';
     header[8] = (char)(sizeof header - 10);
@@ -38,12 +38,12 @@ static snow_status write_npy(const snow_image *image,
 }
 
 static snow_status refuse(snow_source *source, const char *reason) {
-    return snow_fail(snow_source_context(source), SNOW_BAD_INPUT, "%s: %s",
-                     snow_source_name(source), reason);
+    return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                     "%s: %s", snow_source_name(source), reason);
 }
 
-/* Takes apart a type such as <f4.  NumPy writes the byte order of the machine
- * as < or >, never as =. */
+/* Parses a type such as <f4.  NumPy writes the machine's byte order as < or >,
+ * never as =. */
 static bool parse_type(const char *type, snow_float_layout *layout) {
     bool known = (type[0] == '<' || type[0] == '>') && type[1] == 'f' &&
                  (type[2] == '4' || type[2] == '8') && type[3] == '\0';
@@ -52,22 +52,22 @@ static bool parse_type(const char *type, snow_float_layout *layout) {
     return known;
 }
 
-/* Each refusal tells the NumPy call that makes a readable file. */
+/* Each refusal names the NumPy call that makes a readable file. */
 static snow_status read_npy(snow_source *source, snow_image **out) {
     npy_header header;
     snow_float_layout layout = {.channels = 1};
     SNOW_TRY(snow_npy_read_header(source, &header));
     if (!parse_type(header.type, &layout))
-        return refuse(source, "the array is not of float32 or float64; save "
-                              "it with .astype('float32')");
+        return refuse(source, "the array is not float32 or float64; save it "
+                              "with .astype('float32')");
     if (header.fortran_order)
         return refuse(source, "the array is in Fortran order; save it with "
                               "numpy.ascontiguousarray");
     bool has_channels = header.axes == 3;
     if ((header.axes != 2 && !has_channels) ||
         (has_channels && (header.shape[2] < 1 || header.shape[2] > 4)))
-        return refuse(source, "the array has not the shape of a picture; it "
-                              "is (h, w) or (h, w, 1 to 4)");
+        return refuse(source, "the array does not have the shape of a picture; "
+                              "it must be (h, w) or (h, w, 1 to 4)");
     if (has_channels)
         layout.channels = (int)header.shape[2];
     return snow_image_read_floats(source, header.shape[1], header.shape[0],

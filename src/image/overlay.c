@@ -1,9 +1,11 @@
-/* image/overlay.c - shapes over a picture, drawn row by row as it is written.
+/* image/overlay.c - shapes that are drawn over a picture row by row when it is
+ * written.
  *
- * A stroke covers what is no farther from its line than its radius; over one
- * pixel's width at the border coverage falls from 1 to 0.  Of strokes of one
- * shape the nearest counts, so that joints do not show; the border of a whole
- * shape lies below all of its strokes.  Laid on by Porter and Duff's over. */
+ * A stroke covers the points within its radius of its line; over one pixel at
+ * the border the coverage falls from 1 to 0.  Where strokes of one shape
+ * overlap the nearest counts, so joints are invisible.  The dark border of a
+ * shape lies below all of its strokes.  Shapes are composited with Porter and
+ * Duff's over. */
 #include "image/overlay.h"
 #include "image/image.h"
 
@@ -12,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Pixels at a time: their distances lie on the stack. */
+/* Pixels per step: their distances are on the stack. */
 #define SOME 256
 
 #define WHITE 1.0f
@@ -23,17 +25,17 @@ snow_status snow_overlay_new(snow_context *context, int width, int height,
                              snow_overlay **out) {
     if (width < 1 || height < 1 || width > SNOW_IMAGE_SIDE ||
         height > SNOW_IMAGE_SIDE)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "an overlay of %d x %d pixels cannot be made; take 1 "
-                         "to %d a side",
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "an overlay of %d x %d pixels is not possible; use 1 "
+                         "to %d per side",
                          width, height, SNOW_IMAGE_SIDE);
     snow_overlay *overlay = snow_allocate(context, sizeof *overlay);
     if (!overlay)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     *overlay = (snow_overlay){
         .context = context, .width = width, .height = height, .grey = true};
     *out = overlay;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_overlay_free(snow_overlay *overlay) {
@@ -50,7 +52,7 @@ static snow_status add_shape(snow_overlay *overlay, const snow_shape *shape) {
     SNOW_TRY(snow_reserve(overlay->context, &overlay->shapes,
                           &overlay->shape_room, used, used + sizeof *shape));
     overlay->shapes[overlay->shape_count++] = *shape;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status add_numbers(snow_overlay *overlay, const float *numbers,
@@ -61,7 +63,7 @@ static snow_status add_numbers(snow_overlay *overlay, const float *numbers,
                           &overlay->number_room, used, used + more));
     memcpy(overlay->numbers + overlay->number_count, numbers, more);
     overlay->number_count += count;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_overlay_begin(snow_overlay *overlay, double radius,
@@ -85,7 +87,7 @@ snow_status snow_overlay_stroke(snow_overlay *overlay, double x0, double y0,
     shape->box[1] = fmin(shape->box[1], fmin(y0, y1) - reach);
     shape->box[2] = fmax(shape->box[2], fmax(x0, x1) + reach);
     shape->box[3] = fmax(shape->box[3], fmax(y0, y1) + reach);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
@@ -105,8 +107,9 @@ snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
 /* --- drawing ---------------------------------------------------------------
  */
 
-/* Lays a colour on a pixel. */
-static void lay(float *pixel, int channels, const float *rgb, float cover) {
+/* Composites a colour over a pixel. */
+static void composite_pixel(float *pixel, int channels, const float *rgb,
+                            float cover) {
     bool missing = false;
     for (int c = 0; c < channels; c++)
         missing |= isnan(pixel[c]) != 0;
@@ -117,7 +120,7 @@ static void lay(float *pixel, int channels, const float *rgb, float cover) {
     }
 }
 
-/* Squared distance of a place from a stroke. */
+/* Squared distance of a point from a stroke. */
 static float square_to(const float *stroke, float x, float y) {
     float along[2] = {stroke[2] - stroke[0], stroke[3] - stroke[1]};
     float from[2] = {x - stroke[0], y - stroke[1]};
@@ -129,13 +132,14 @@ static float square_to(const float *stroke, float x, float y) {
     return from[0] * from[0] + from[1] * from[1];
 }
 
-/* Pixels of [x, x + count) whose middles lie between two places. */
-static void cut(double low, double high, int x, int count, int range[2]) {
+/* The pixels of [x, x + count) whose centres lie between two positions. */
+static void clip_range(double low, double high, int x, int count,
+                       int range[2]) {
     range[0] = (int)fmin(fmax(ceil(low - 0.5 - x), 0), count);
     range[1] = (int)fmin(fmax(floor(high - 0.5 - x) + 1, range[0]), count);
 }
 
-/* The least squared distance of each of some pixels. */
+/* The smallest squared distance for each of some pixels. */
 static void measure(const snow_overlay *overlay, const snow_shape *shape, int y,
                     int x, int count, float *squares) {
     const float *stroke = overlay->numbers + shape->first;
@@ -145,8 +149,9 @@ static void measure(const snow_overlay *overlay, const snow_shape *shape, int y,
         if (fminf(stroke[1], stroke[3]) - reach > middle ||
             fmaxf(stroke[1], stroke[3]) + reach < middle)
             continue;
-        cut((double)(fminf(stroke[0], stroke[2]) - reach),
-            (double)(fmaxf(stroke[0], stroke[2]) + reach), x, count, range);
+        clip_range((double)(fminf(stroke[0], stroke[2]) - reach),
+                   (double)(fmaxf(stroke[0], stroke[2]) + reach), x, count,
+                   range);
         for (int i = range[0]; i < range[1]; i++)
             squares[i] = fminf(
                 squares[i], square_to(stroke, (float)(x + i) + 0.5f, middle));
@@ -171,8 +176,9 @@ static void draw_strokes(const snow_overlay *overlay, const snow_shape *shape,
         float border = cover_of(shape->halo, distance);
         if (!(border > 0))
             continue;
-        lay(pixel, channels, dark, DARK_OPACITY * border);
-        lay(pixel, channels, white, cover_of(shape->radius, distance));
+        composite_pixel(pixel, channels, dark, DARK_OPACITY * border);
+        composite_pixel(pixel, channels, white,
+                        cover_of(shape->radius, distance));
     }
 }
 
@@ -181,7 +187,7 @@ static void draw_shape(const snow_overlay *overlay, const snow_shape *shape,
     int range[2];
     if (y + 0.5 < shape->box[1] || y + 0.5 > shape->box[3])
         return;
-    cut(shape->box[0], shape->box[2], x, count, range);
+    clip_range(shape->box[0], shape->box[2], x, count, range);
     if (range[0] >= range[1])
         return;
     x += range[0];
@@ -194,7 +200,7 @@ static void draw_shape(const snow_overlay *overlay, const snow_shape *shape,
     const float *color =
         overlay->numbers + shape->first + 3 * (y - (int)shape->box[1]);
     for (int i = 0; i < count; i++)
-        lay(pixels + i * channels, channels, color, 1);
+        composite_pixel(pixels + i * channels, channels, color, 1);
 }
 
 void snow_overlay_draw(const snow_overlay *overlay, int y, int x, int count,

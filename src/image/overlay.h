@@ -1,4 +1,4 @@
-/* image/overlay.h - shapes over a picture, and how they come into its rows. */
+/* image/overlay.h - shapes over a picture, drawn into its rows. */
 #ifndef SNOW_OVERLAY_H
 #define SNOW_OVERLAY_H
 
@@ -6,14 +6,15 @@
 
 #include <snowglass/image.h>
 
-/* Strokes, which share one halo, or a rectangle whose rows have colours. */
+/* A shape: strokes that share one halo, or a rectangle whose rows have
+ * colours. */
 typedef struct snow_shape {
     bool filled;   /* a rectangle */
-    size_t first;  /* of its numbers; strokes: x0 y0 x1 y1 each, */
-    size_t count;  /*   a rectangle: red green blue of each row */
-    double radius; /* of strokes, and of their dark border */
+    size_t first;  /* index of its numbers; strokes: x0 y0 x1 y1 each, */
+    size_t count;  /* for a rectangle: red green blue of each row */
+    double radius; /* of strokes and of their dark border */
     double halo;
-    double box[4]; /* x0 y0 x1 y1: pixels that it can touch lie within */
+    double box[4]; /* x0 y0 x1 y1: bounds of the pixels it can touch */
 } snow_shape;
 
 struct snow_overlay {
@@ -26,19 +27,19 @@ struct snow_overlay {
     size_t number_count, number_room;
 };
 
-/* Begins a shape of strokes; those that follow belong to it. */
+/* Begins a shape of strokes; the following strokes belong to it. */
 snow_status snow_overlay_begin(snow_overlay *overlay, double radius,
                                double halo);
 snow_status snow_overlay_stroke(snow_overlay *overlay, double x0, double y0,
                                 double x1, double y1);
 
-/* A rectangle from whole pixel (x0, y0) to before (x1, y1), with three numbers
- * of 0 to 1 for each of its rows, from the top. */
+/* Adds a rectangle from pixel (x0, y0) up to, not including, (x1, y1), with
+ * three numbers of 0 to 1 for each of its rows, from the top. */
 snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
                               int y1, const float *colors);
 
-/* Lays the shapes on `count` pixels from (x, y) on: premultiplied, 2 or 4
- * channels.  What was not a number becomes one where a shape covers it. */
+/* Draws the shapes on `count` pixels from (x, y) on: premultiplied, 2 or 4
+ * channels.  NaN becomes a number where a shape covers it. */
 void snow_overlay_draw(const snow_overlay *overlay, int y, int x, int count,
                        int channels, float *pixels);
 

@@ -7,14 +7,14 @@
  *   -1.0          the scale; negative: little-endian
  *   rows of floats, the lowest row first, no padding
  *
- * Written are colour maps without alpha, of the premultiplied pixels, and
- * values in data units as grey; read are both kinds and both byte orders. */
+ * Writes colour maps of the premultiplied pixels without alpha, and values in
+ * data units as grey.  Reads both kinds and both byte orders. */
 #include "image/image.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Alpha has no place in the format: what is written is the picture on black. */
+/* The format has no alpha: the file holds the picture on black. */
 static snow_status write_pfm(const snow_image *image,
                              const snow_image_options *options,
                              snow_writer *writer) {
@@ -37,14 +37,14 @@ static bool probe_pfm(const unsigned char *bytes, size_t size) {
 }
 
 static snow_status refuse_header(snow_source *source) {
-    return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
-                     "%s: the PFM header is damaged; it has PF or Pf, width, "
+    return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                     "%s: the PFM header is damaged; it needs PF or Pf, width, "
                      "height and a scale that is not 0",
                      snow_source_name(source));
 }
 
-/* Takes one word of the header and the one blank that ends it: after the last
- * word the pixels begin right there. */
+/* Reads one word of the header and the single blank that ends it: the pixels
+ * begin directly after the last word. */
 static snow_status read_word(snow_source *source, char *word, size_t size) {
     size_t length = 0;
     while (length < size) {
@@ -57,15 +57,15 @@ static snow_status read_word(snow_source *source, char *word, size_t size) {
             word[length++] = (char)c;
         } else if (length > 0) {
             word[length] = '\0';
-            return SNOW_OK;
+            return SNOW_STATUS_OK;
         }
     }
     return refuse_header(source);
 }
 
-/* Takes the header up to the first pixel.  The scale's sign is the byte order;
- * its size relates samples to watts a square metre and steradian, which readers
- * commonly leave alone. */
+/* Reads the header up to the first pixel.  The scale's sign is the byte order.
+ * Its size relates samples to watts per square metre and steradian; readers
+ * usually ignore it. */
 static snow_status read_header(snow_source *source, int64_t *width,
                                int64_t *height, snow_float_layout *layout) {
     char kind[4], word[3][32];
@@ -79,13 +79,13 @@ static snow_status read_header(snow_source *source, int64_t *width,
         return refuse_header(source);
     if (scale != 1 && scale != -1)
         snow_notify(snow_source_context(source),
-                    "%s: the scale %g of the PFM header is not applied",
+                    "%s: the scale %g of the PFM header is ignored",
                     snow_source_name(source), scale);
     *layout = (snow_float_layout){.channels = strcmp(kind, "PF") ? 1 : 3,
                                   .sample_bytes = 4,
                                   .big_endian = scale > 0,
                                   .bottom_up = true};
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status read_pfm(snow_source *source, snow_image **out) {
@@ -94,7 +94,7 @@ static snow_status read_pfm(snow_source *source, snow_image **out) {
     SNOW_TRY(read_header(source, &width, &height, &layout));
     SNOW_TRY(snow_image_read_floats(source, width, height, &layout, out));
     (*out)->alpha_unknown = true;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 const snow_image_format snow_image_pfm = {

@@ -1,14 +1,14 @@
 /* image/png.c - PNG files, written and read by libpng.
  *
- * Written: 8 or 16 bits a channel, straight alpha, or none where the picture
- * is laid on a background; values are written as they are, without a chunk
- * that says what they mean.  Read: every kind of PNG, as 16 bits a channel,
- * alpha multiplied in; check sums must be right, and chunks other than the
- * picture are passed over.
+ * Writes 8 or 16 bits per channel with straight alpha, or without alpha if the
+ * picture is placed on a background.  Values are written as they are, without a
+ * chunk about their meaning.  Reads every kind of PNG, as 16 bits per channel,
+ * with alpha multiplied in; checksums must be right, and chunks other than the
+ * picture are ignored.
  *
- * libpng takes its memory from the context, and leaves by longjmp where it
- * fails.  So that no variable is lost on the way, everything that must survive
- * lies in a `png_job` of the function above the one that calls setjmp. */
+ * libpng allocates from the context, and leaves by longjmp on errors.  To lose
+ * no variable, everything that must survive is in a `png_job` of the function
+ * above the one that calls setjmp. */
 #include "image/image.h"
 
 #include <assert.h>
@@ -18,12 +18,12 @@
 #include <string.h>
 #include <zlib.h>
 
-static_assert(sizeof(float) == 4, "16-bit pixels fit behind float ones");
+static_assert(sizeof(float) == 4, "16-bit pixels are read behind float ones");
 
 typedef struct png_job {
     snow_context *context;
-    snow_status status;  /* why libpng was left, SNOW_OK before */
-    snow_status refusal; /* what libpng's own complaints count as */
+    snow_status status;  /* why libpng failed, SNOW_STATUS_OK before */
+    snow_status refusal; /* the status of libpng's own errors */
     const char *prefix;  /* the beginning of their messages */
     const char *remedy;  /* and their end */
     snow_source *source; /* when reading */
@@ -35,13 +35,13 @@ typedef struct png_job {
 
 /* --- between libpng and the library --------------------------------------- */
 
-/* Stands for malloc, for zlib's state as well.  libpng may go on without the
- * block, or complain of it; the status is kept for that case. */
+/* Replaces malloc, also for zlib's state.  libpng may continue without the
+ * block, or report an error; the status is kept for that case. */
 static void *allocate_block(png_structp png, png_alloc_size_t bytes) {
     png_job *job = png_get_mem_ptr(png);
     void *block = snow_allocate(job->context, bytes);
     if (!block)
-        job->status = SNOW_NO_MEMORY;
+        job->status = SNOW_STATUS_NO_MEMORY;
     return block;
 }
 
@@ -50,41 +50,42 @@ static void release_block(png_structp png, void *block) {
     snow_release(job->context, block);
 }
 
-/* Leaves libpng for an error that already has its message. */
+/* Leaves libpng after an error that already has its message. */
 static void leave(png_job *job, snow_status status) {
-    if (job->status == SNOW_OK)
+    if (job->status == SNOW_STATUS_OK)
         job->status = status;
     longjmp(job->jump, 1);
 }
 
-/* libpng's complaint.  What failed below it (memory, the file) said more. */
+/* Handles libpng's errors.  A failure below libpng (memory, the file) has a
+ * more specific message. */
 static void hear_error(png_structp png, png_const_charp text) {
     png_job *job = png_get_error_ptr(png);
-    if (job->status == SNOW_OK)
+    if (job->status == SNOW_STATUS_OK)
         snow_fail(job->context, job->refusal, "%s (libpng: %s); %s",
                   job->prefix, text, job->remedy);
     leave(job, job->refusal);
 }
 
-/* Remarks that change nothing in the pixels. */
+/* Ignores warnings: they change nothing in the pixels. */
 static void hear_warning(png_structp png, png_const_charp text) {
     (void)png;
     (void)text;
 }
 
-/* Sources and writers hand out or take all, or fail with a message. */
+/* Sources and writers transfer all bytes, or fail with a message. */
 static void read_bytes(png_structp png, png_bytep bytes, size_t size) {
     png_job *job = png_get_io_ptr(png);
     snow_status status =
         snow_source_read_all(job->source, bytes, size, "the PNG data");
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         leave(job, status);
 }
 
 static void write_bytes(png_structp png, png_bytep bytes, size_t size) {
     png_job *job = png_get_io_ptr(png);
     snow_status status = snow_writer_write(job->writer, bytes, size);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         leave(job, status);
 }
 
@@ -93,23 +94,23 @@ static void flush_nothing(png_structp png) {
     (void)png;
 }
 
-/* libpng made no structure: memory ran out, or it is not the libpng of the
+/* libpng returned no structure: out of memory, or it is not the libpng of the
  * headers that this was built with. */
 static snow_status refuse_library(png_job *job) {
-    if (job->status != SNOW_OK)
+    if (job->status != SNOW_STATUS_OK)
         return job->status;
-    return snow_fail(job->context, SNOW_FAILED,
-                     "libpng %s is not compatible with the %s that this was "
-                     "built for; install the latter",
+    return snow_fail(job->context, SNOW_STATUS_FAILED,
+                     "libpng %s is not compatible with %s, for which this was "
+                     "built; install the latter",
                      png_get_libpng_ver(NULL), PNG_LIBPNG_VER_STRING);
 }
 
 /* --- writing -------------------------------------------------------------- */
 
-/* Level 1, the filter "up" and runs alone (Z_RLE) were measured to be the best
- * trade on renderings: as fast as deflate's quickest matching at 8 bits and a
- * third faster at 16, in somewhat less space; level 6 takes four times as long
- * for a fifth less. */
+/* Level 1, the filter "up" and only runs (Z_RLE) were measured as the best
+ * trade-off for renderings: as fast as deflate's quickest matching at 8 bits
+ * and a third faster at 16, in somewhat less space.  Level 6 takes four times
+ * as long for a fifth less. */
 static void write_header(png_job *job, snow_levels *levels) {
     static const int types[] = {0, PNG_COLOR_TYPE_GRAY,
                                 PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
@@ -126,7 +127,7 @@ static void write_header(png_job *job, snow_levels *levels) {
     png_write_info(job->png, job->info);
 }
 
-/* Whatever fails in libpng comes back here, once. */
+/* Every failure in libpng returns here, once. */
 static snow_status run_writer(png_job *job, snow_levels *levels) {
     if (setjmp(job->jump))
         return job->status;
@@ -141,7 +142,7 @@ static snow_status run_writer(png_job *job, snow_levels *levels) {
     for (int y = 0; y < levels->image->height; y++)
         png_write_row(job->png, snow_levels_row(levels, y));
     png_write_end(job->png, job->info);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status write_png(const snow_image *image,
@@ -149,12 +150,12 @@ static snow_status write_png(const snow_image *image,
                              snow_writer *writer) {
     snow_levels levels;
     png_job job = {.context = image->context,
-                   .refusal = SNOW_FAILED,
-                   .prefix = "the PNG file cannot be made",
+                   .refusal = SNOW_STATUS_FAILED,
+                   .prefix = "the PNG file cannot be written",
                    .remedy = "write a .npy instead",
                    .writer = writer};
     snow_status status = snow_levels_begin(image, options, false, &levels);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = run_writer(&job, &levels);
     png_destroy_write_struct(&job.png, &job.info);
     snow_levels_end(&levels);
@@ -172,24 +173,24 @@ static uint32_t big_endian_32(const unsigned char *bytes) {
            (uint32_t)bytes[2] << 8 | bytes[3];
 }
 
-/* Bits of a pixel as the file stores it, by IHDR's depth and colour type; the
- * least possible for combinations that libpng will refuse. */
+/* Bits per pixel in the file, from IHDR's depth and colour type; the smallest
+ * possible for combinations that libpng will refuse. */
 static uint64_t stored_bits(unsigned char depth, unsigned char type) {
     static const unsigned char samples[7] = {1, 1, 3, 1, 2, 1, 4};
     return depth >= 1 && depth <= 16 && type < 7 ? depth * samples[type] : 1;
 }
 
-/* Looks at IHDR, which comes first, before libpng does: sides that are too
- * long, or need more packed bytes than there are, are refused while nothing is
- * allocated yet.  Deflate packs at most 1032 bytes into one. */
+/* Checks IHDR, which comes first, before libpng does.  Sides that are too long,
+ * or need more compressed bytes than the file has, are refused before anything
+ * is allocated.  Deflate compresses at most 1032 bytes into one. */
 static snow_status check_header(snow_source *source) {
     unsigned char start[26];
     size_t got;
     SNOW_TRY(snow_source_peek(source, start, sizeof start, &got));
     if (got < sizeof start || memcmp(start + 12, "IHDR", 4) != 0)
-        return snow_fail(snow_source_context(source), SNOW_BAD_INPUT,
-                         "%s: the PNG file is cut or damaged in its header; "
-                         "get it anew",
+        return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                         "%s: the PNG file is truncated or damaged in its "
+                         "header; get it again",
                          snow_source_name(source));
     uint64_t width = big_endian_32(start + 16);
     uint64_t height = big_endian_32(start + 20);
@@ -198,8 +199,8 @@ static snow_status check_header(snow_source *source) {
     return snow_source_expect(source, bits / 8 / 1032, "the pixels");
 }
 
-/* Has libpng read all up to the pixels, of which it will give 8 bytes each:
- * red, green, blue, alpha, 16 bits, the high byte first. */
+/* Reads everything before the pixels.  libpng will give 8 bytes per pixel: red,
+ * green, blue, alpha, 16 bits, the high byte first. */
 static void begin_reading(png_job *job) {
     png_structp png = job->png;
     png_set_read_fn(png, job, read_bytes);
@@ -207,7 +208,8 @@ static void begin_reading(png_job *job) {
     png_set_crc_action(png, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     /* -1: all chunks but IHDR, PLTE, tRNS, IDAT and IEND */
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, -1);
-    /* What libpng would forgive, a wrong Adler-32 above all, is an error. */
+    /* An error that libpng would forgive, such as a wrong Adler-32, is an
+     * error. */
     png_set_benign_errors(png, 0);
     png_read_info(png, job->info);
     png_set_expand_16(png);
@@ -215,21 +217,20 @@ static void begin_reading(png_job *job) {
     png_set_add_alpha(png, 0xffff, PNG_FILLER_AFTER);
 }
 
-/* A row of `width` float pixels is twice as long as one of 16-bit pixels; the
- * latter is put into its second half.  Interlaced files need all rows until
- * the last pass, and this way no other memory than the picture's:
+/* A row of `width` float pixels is twice as long as one of 16-bit pixels, so
+ * the latter is read into its second half.  Interlaced files need all rows
+ * until the last pass; this way they need no memory besides the picture's:
  *
  *   while libpng reads   |  undefined  | R0 R1 R2 R3 |   8 bytes a pixel
- *   afterwards           |  F0  |  F1  |  F2  |  F3  |  16 bytes a pixel
- */
+ *   afterwards           |  F0  |  F1  |  F2  |  F3  |  16 bytes a pixel */
 static unsigned char *raw_row(const snow_image *image, int y) {
     size_t width = (size_t)image->width;
     float *row = image->pixels + 4 * width * (size_t)y;
     return (unsigned char *)(row + 2 * width);
 }
 
-/* Reads the pixels into the picture's own memory, all passes of an interlaced
- * file over one another. */
+/* Reads the pixels into the picture's own memory; all passes of an interlaced
+ * file write to the same place. */
 static void read_rows(png_job *job, const snow_image *image) {
     int passes = png_set_interlace_handling(job->png);
     png_read_update_info(job->png, job->info);
@@ -241,11 +242,11 @@ static void read_rows(png_job *job, const snow_image *image) {
     png_read_end(job->png, NULL);
 }
 
-/* Turns the 16-bit pixels of a row into premultiplied floats, in place, from
- * the left: with w pixels in a row, float pixel x ends at byte 16 x + 16, not
- * beyond the end of raw pixel x at 8 w + 8 x + 8, so that it covers none that
- * is still to come.  Levels of 8 bits came as 257 times themselves, which makes
- * their quotient by 65535 the one by 255. */
+/* Converts the 16-bit pixels of a row to premultiplied floats, in place, from
+ * the left.  With w pixels in a row, float pixel x ends at byte 16 x + 16.
+ * That is not beyond the end of raw pixel x at 8 w + 8 x + 8, so no later pixel
+ * is overwritten.  Levels of 8 bits come as 257 times themselves, so their
+ * quotient by 65535 is the one by 255. */
 static void widen_row(const snow_image *image, int y) {
     const unsigned char *raw = raw_row(image, y);
     float *out = image->pixels + 4 * (size_t)image->width * (size_t)y;
@@ -259,8 +260,8 @@ static void widen_row(const snow_image *image, int y) {
     }
 }
 
-/* Whatever fails in libpng comes back here, once; *image is the caller's to
- * free when it is not NULL. */
+/* Every failure in libpng returns here, once; the caller frees *image if it is
+ * not NULL. */
 static snow_status run_reader(png_job *job, snow_image **image) {
     if (setjmp(job->jump))
         return job->status;
@@ -276,7 +277,7 @@ static snow_status run_reader(png_job *job, snow_image **image) {
         job->context, (int)png_get_image_width(job->png, job->info),
         (int)png_get_image_height(job->png, job->info), 4, image));
     read_rows(job, *image);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status read_png(snow_source *source, snow_image **out) {
@@ -286,21 +287,21 @@ static snow_status read_png(snow_source *source, snow_image **out) {
     snprintf(prefix, sizeof prefix, "%s: the PNG file is damaged",
              snow_source_name(source));
     png_job job = {.context = context,
-                   .refusal = SNOW_BAD_INPUT,
+                   .refusal = SNOW_STATUS_BAD_INPUT,
                    .prefix = prefix,
-                   .remedy = "get it anew",
+                   .remedy = "get it again",
                    .source = source};
     snow_image *image = NULL;
     snow_status status = run_reader(&job, &image);
     png_destroy_read_struct(&job.png, &job.info, NULL);
-    if (status != SNOW_OK) {
+    if (status != SNOW_STATUS_OK) {
         snow_image_free(image);
         return status;
     }
     for (int y = 0; y < image->height; y++)
         widen_row(image, y);
     *out = image;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 const snow_image_format snow_image_png = {

@@ -1,7 +1,6 @@
-/* image/samples.h - from float pixels to the levels that files of 8 and 16 bits
- * hold: alpha divided out or laid on a background, limited, rounded.  PNG files
- * and snow_image_bytes go through here, so that they agree to the last level.
- */
+/* image/samples.h - converts float pixels to integers of 8 and 16 bits: divides
+ * by alpha or places them on a background, clamps, rounds.  PNG files and
+ * snow_image_to_rgb8 both use it, so their results are identical. */
 #ifndef SNOW_SAMPLES_H
 #define SNOW_SAMPLES_H
 
@@ -9,13 +8,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Between 0 and 1; NaN becomes 0. */
+/* Clamps to 0..1; NaN becomes 0. */
 static inline double snow_clamp_unit(double x) {
     return x > 0 ? (x < 1 ? x : 1) : 0;
 }
 
-/* One sample that is not a number makes the pixel unknown: what the others say
- * was computed beside it. */
+/* One NaN sample makes the whole pixel invalid: the others were computed from
+ * the same input. */
 static inline bool snow_has_nan(const float *pixel, int channels) {
     bool found = false;
     for (int c = 0; c < channels; c++)
@@ -23,8 +22,8 @@ static inline bool snow_has_nan(const float *pixel, int channels) {
     return found;
 }
 
-/* Divides alpha out of a row; what is transparent, or not a number, becomes
- * 0 in all channels. */
+/* Divides a row by alpha; transparent and NaN pixels become 0 in all
+ * channels. */
 static inline void snow_straighten_row(const float *row, int width,
                                        int channels, double *out) {
     for (int x = 0; x < width; x++, row += channels, out += channels) {
@@ -37,9 +36,9 @@ static inline void snow_straighten_row(const float *row, int width,
     }
 }
 
-/* Lays a row on a background of `kept` channels (1 grey, 3 colour), by Porter
- * and Duff's "over" on premultiplied samples; what is not a number shows the
- * background alone. */
+/* Places a row on a background of `kept` channels (1 grey, 3 colour), by Porter
+ * and Duff's "over" on premultiplied samples; NaN pixels show only the
+ * background. */
 static inline void snow_flatten_row(const float *row, int width, int channels,
                                     const double *background, int kept,
                                     double *out) {
@@ -54,8 +53,8 @@ static inline void snow_flatten_row(const float *row, int width, int channels,
     }
 }
 
-/* round(255 x), halves up.  In double precision, where the product of a float
- * and 255 is exact, so that the nearest level is taken always. */
+/* round(255 x), halves up.  In double precision the product of a float and 255
+ * is exact, so the result is always the nearest level. */
 static inline void snow_quantise_8(const double *samples, size_t count,
                                    unsigned char *bytes) {
     for (size_t i = 0; i < count; i++)

@@ -1,17 +1,16 @@
 /* image/tiff.c - TIFF pictures of floats, by libtiff.
  *
- * Written: 32-bit floats, red, green, blue and associated (premultiplied)
- * alpha, in strips packed by Deflate.  Read: 8 and 16 bits or floats, 1 to 4
- * samples a pixel that lie beside each other, in strips; straight alpha is
- * multiplied in. */
+ * Writes 32-bit floats, red, green, blue and associated (premultiplied) alpha,
+ * in strips compressed by Deflate.  Reads 8 and 16 bits or floats, 1 to 4
+ * interleaved samples per pixel, in strips; straight alpha is multiplied in. */
 #include "image/image.h"
 
 #include "base/module.h"
-#include "base/tiff.h"
+#include "io/tiff.h"
 
 #if SNOW_HAVE_TIFF && !SNOW_LOADS
 
-/* Bytes of a strip before it is packed, about. */
+/* Approximate bytes of a strip before compression. */
 #define STRIP_BYTES 65536
 
 /* --- writing ---------------------------------------------------------------
@@ -40,12 +39,12 @@ static bool set_tags(TIFF *tiff, const snow_image *image, int strip) {
 }
 
 static snow_status fail_writing(const snow_tiff *file) {
-    if (file->status != SNOW_OK)
+    if (file->status != SNOW_STATUS_OK)
         return file->status;
-    return snow_fail(file->context, SNOW_FAILED,
-                     "the TIFF file cannot be made (libtiff: %s); write a .npy "
-                     "instead",
-                     *file->complaint ? file->complaint : "no memory");
+    return snow_fail(
+        file->context, SNOW_STATUS_FAILED,
+        "the TIFF file cannot be written (libtiff: %s); write a .npy instead",
+        *file->complaint ? file->complaint : "out of memory");
 }
 
 static snow_status fill_file(snow_tiff *file, const snow_image *image) {
@@ -57,7 +56,7 @@ static snow_status fill_file(snow_tiff *file, const snow_image *image) {
     float *line =
         snow_allocate_array(file->context, (uint64_t)image->width, 16);
     if (!line)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     bool good = true;
     for (int y = 0; y < image->height && good; y++) {
         size_t first = (size_t)y * (size_t)image->width;
@@ -69,9 +68,9 @@ static snow_status fill_file(snow_tiff *file, const snow_image *image) {
         good = TIFFWriteScanline(file->tiff, line, (uint32_t)y, 0) == 1;
     }
     snow_release(file->context, line);
-    good =
-        good && TIFFWriteDirectory(file->tiff) == 1 && file->status == SNOW_OK;
-    return good ? SNOW_OK : fail_writing(file);
+    good = good && TIFFWriteDirectory(file->tiff) == 1 &&
+           file->status == SNOW_STATUS_OK;
+    return good ? SNOW_STATUS_OK : fail_writing(file);
 }
 
 static snow_status write_tiff(const snow_image *image,
@@ -80,10 +79,10 @@ static snow_status write_tiff(const snow_image *image,
     snow_tiff file;
     (void)options;
     snow_status status = snow_tiff_create(image->context, &file);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = fill_file(&file, image);
     snow_tiff_end(&file);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_writer_write(writer, file.store.bytes, file.store.size);
     snow_tiff_close(&file);
     return status;
@@ -132,18 +131,18 @@ static snow_status read_header(const snow_tiff *file, const snow_source *source,
         plan->straight = extra[0] == EXTRASAMPLE_UNASSALPHA;
     SNOW_TRY(snow_image_check_sides(source, plan->width, plan->height));
     if (!is_known(tiff, plan))
-        return snow_fail(file->context, SNOW_BAD_INPUT,
-                         "%s: is a TIFF of %u samples of %u bits; give one of "
-                         "1 to 4 samples beside each other, of 8 or 16 bits or "
-                         "floats, in strips",
-                         snow_source_name(source), plan->samples, plan->bits);
+        return snow_fail(
+            file->context, SNOW_STATUS_BAD_INPUT,
+            "%s: is a TIFF of %u samples of %u bits; give one of 1 to 4 "
+            "interleaved samples, of 8 or 16 bits or floats, in strips",
+            snow_source_name(source), plan->samples, plan->bits);
     if ((uint64_t)plan->width * plan->height / SNOW_DEFLATE_RATIO >
-        snow_random_size(file->bytes))
+        snow_seekable_size(file->bytes))
         return refuse(file, source);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Samples lie in the machine's order. */
+/* Samples are in the machine's byte order. */
 static double sample_at(const tiff_plan *plan, const unsigned char *line,
                         size_t index) {
     uint16_t level;
@@ -186,14 +185,14 @@ static snow_status read_lines(const snow_tiff *file, const snow_source *source,
     unsigned char *line = snow_allocate_array(file->context, bytes, 1);
     bool good = bytes == (uint64_t)plan->width * plan->samples * plan->bits / 8;
     if (!line)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     for (uint32_t y = 0; y < plan->height && good; y++) {
         good = TIFFReadScanline(file->tiff, line, y, 0) == 1;
         if (good)
             widen_line(plan, line, image->pixels + 4 * (size_t)y * plan->width);
     }
     snow_release(file->context, line);
-    return good ? SNOW_OK : refuse(file, source);
+    return good ? SNOW_STATUS_OK : refuse(file, source);
 }
 
 static snow_status read_page(const snow_tiff *file, const snow_source *source,
@@ -204,7 +203,7 @@ static snow_status read_page(const snow_tiff *file, const snow_source *source,
     SNOW_TRY(snow_image_make(file->context, (int)plan.width, (int)plan.height,
                              4, &image));
     snow_status status = read_lines(file, source, &plan, image);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         *out = image;
     else
         snow_image_free(image);
@@ -214,7 +213,7 @@ static snow_status read_page(const snow_tiff *file, const snow_source *source,
 static snow_status read_tiff(snow_source *source, snow_image **out) {
     snow_tiff file;
     snow_status status = snow_tiff_open(source, &file);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = read_page(&file, source, out);
     else
         snow_fail_within(file.context, status, "%s", snow_source_name(source));

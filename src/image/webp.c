@@ -1,17 +1,17 @@
-/* image/webp.c - WebP files, by libwebp: 8 bits a channel, without loss.
+/* image/webp.c - WebP files, by libwebp: 8 bits per channel, lossless.
  *
- * Written are the levels of a PNG on the same background, straight alpha and
- * the colours below it as they are.  The encoder runs at its quickest setting,
- * which takes as long as our PNG; others take many times that.  Read: any still
- * WebP, alpha multiplied in.  libwebp takes its own memory, which no context
- * counts. */
+ * Writes the same levels as a PNG on the same background; with straight alpha,
+ * colours below transparent alpha are kept.  The encoder runs at its fastest
+ * setting, which takes as long as our PNG; others take many times that.  Reads
+ * any still WebP, with alpha multiplied in.  libwebp allocates its own memory,
+ * which no context counts. */
 #include "image/image.h"
 
-#include "base/random.h"
+#include "io/seekable.h"
 
 #include <string.h>
 
-/* RIFF, four bytes of its size, WEBP. */
+/* RIFF, four bytes of size, WEBP. */
 static bool probe_webp(const unsigned char *bytes, size_t size) {
     return size >= 12 && memcmp(bytes, "RIFF", 4) == 0 &&
            memcmp(bytes + 8, "WEBP", 4) == 0;
@@ -22,7 +22,7 @@ static bool probe_webp(const unsigned char *bytes, size_t size) {
 #include <webp/decode.h>
 #include <webp/encode.h>
 
-/* What libwebp's writer sees. */
+/* The state for libwebp's writer. */
 typedef struct webp_job {
     snow_writer *writer;
     snow_status status;
@@ -32,10 +32,10 @@ static int write_bytes(const uint8_t *bytes, size_t size,
                        const WebPPicture *picture) {
     webp_job *job = picture->custom_ptr;
     job->status = snow_writer_write(job->writer, bytes, size);
-    return job->status == SNOW_OK;
+    return job->status == SNOW_STATUS_OK;
 }
 
-/* The levels as libwebp has them: alpha in the highest byte. */
+/* Converts the levels to libwebp's order: alpha in the highest byte. */
 static void fill_line(const snow_levels *levels, const unsigned char *row,
                       uint32_t *out) {
     int samples = levels->samples;
@@ -58,21 +58,23 @@ static snow_status encode(snow_levels *levels, webp_job *job,
     picture->writer = write_bytes;
     picture->custom_ptr = job;
     if (good && !WebPPictureAlloc(picture))
-        return snow_fail(context, SNOW_NO_MEMORY,
-                         "there is no memory to pack %d x %d pixels as WebP",
+        return snow_fail(context, SNOW_STATUS_NO_MEMORY,
+                         "out of memory to compress %d x %d pixels as WebP; "
+                         "use a smaller picture",
                          picture->width, picture->height);
     for (int y = 0; y < picture->height && good; y++)
         fill_line(levels, snow_levels_row(levels, y),
                   picture->argb + (size_t)y * (size_t)picture->argb_stride);
     if (good && WebPEncode(&config, picture))
-        return SNOW_OK;
-    if (job->status != SNOW_OK)
+        return SNOW_STATUS_OK;
+    if (job->status != SNOW_STATUS_OK)
         return job->status;
     bool memory = picture->error_code == VP8_ENC_ERROR_OUT_OF_MEMORY ||
                   picture->error_code == VP8_ENC_ERROR_BITSTREAM_OUT_OF_MEMORY;
-    return snow_fail(context, memory ? SNOW_NO_MEMORY : SNOW_FAILED,
-                     "the WebP file cannot be made (libwebp: error %d); write "
-                     "a .png instead",
+    return snow_fail(context,
+                     memory ? SNOW_STATUS_NO_MEMORY : SNOW_STATUS_FAILED,
+                     "the WebP file cannot be written (libwebp: error %d); "
+                     "write a .png instead",
                      (int)picture->error_code);
 }
 
@@ -80,14 +82,14 @@ static snow_status write_webp(const snow_image *image,
                               const snow_image_options *options,
                               snow_writer *writer) {
     snow_levels levels;
-    webp_job job = {writer, SNOW_OK};
+    webp_job job = {writer, SNOW_STATUS_OK};
     WebPPicture picture;
     if (!WebPPictureInit(&picture))
-        return snow_fail(image->context, SNOW_FAILED,
-                         "libwebp is not compatible with the one that this was "
-                         "built for; install the latter");
+        return snow_fail(image->context, SNOW_STATUS_FAILED,
+                         "libwebp is not compatible with the version for which "
+                         "this was built; install that version");
     snow_status status = snow_levels_begin(image, options, true, &levels);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = encode(&levels, &job, &picture);
     WebPPictureFree(&picture);
     snow_levels_end(&levels);
@@ -98,13 +100,13 @@ static snow_status write_webp(const snow_image *image,
  */
 
 static snow_status refuse(const snow_source *source, const char *reason) {
-    return snow_fail(snow_source_context(source), SNOW_BAD_INPUT, "%s: %s",
-                     snow_source_name(source), reason);
+    return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                     "%s: %s", snow_source_name(source), reason);
 }
 
-/* Bytes of the file in the second half of each row become floats in place, as
- * in image/png.c: float pixel x ends at byte 16 x + 16, raw pixel x at
- * 12 w + 4 x + 4, which is not before. */
+/* Converts the bytes in the second half of each row to floats in place, as in
+ * image/png.c: float pixel x ends at byte 16 x + 16, raw pixel x at 12 w + 4 x
+ * + 4, which is not before. */
 static void widen(const snow_image *image) {
     size_t width = (size_t)image->width;
     for (int y = 0; y < image->height; y++) {
@@ -126,10 +128,11 @@ static snow_status decode(const snow_source *source, const unsigned char *bytes,
     WebPBitstreamFeatures found;
     snow_image *image = NULL;
     if (WebPGetFeatures(bytes, size, &found) != VP8_STATUS_OK)
-        return refuse(source, "the WebP file is damaged or cut; get it anew");
+        return refuse(source,
+                      "the WebP file is damaged or truncated; get it again");
     if (found.has_animation)
-        return refuse(source, "is an animated WebP; give a picture, such as "
-                              "webpmux -get frame 1 makes");
+        return refuse(source, "is an animated WebP; give a single picture, for "
+                              "example from webpmux -get frame 1");
     SNOW_TRY(snow_image_check_sides(source, found.width, found.height));
     SNOW_TRY(snow_image_make(snow_source_context(source), found.width,
                              found.height, 4, &image));
@@ -138,27 +141,28 @@ static snow_status decode(const snow_source *source, const unsigned char *bytes,
     size_t room = all * (size_t)image->height - 12 * width;
     if (!WebPDecodeRGBAInto(bytes, size, raw, room, (int)all)) {
         snow_image_free(image);
-        return refuse(source, "the WebP file is damaged or cut; get it anew");
+        return refuse(source,
+                      "the WebP file is damaged or truncated; get it again");
     }
     widen(image);
     *out = image;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* The decoder wants all bytes beside one another. */
+/* The decoder needs all bytes in one block. */
 static snow_status read_webp(snow_source *source, snow_image **out) {
     snow_context *context = snow_source_context(source);
-    snow_random *store = NULL;
-    SNOW_TRY(snow_random_open(source, &store));
-    uint64_t size = snow_random_size(store);
+    snow_seekable *store = NULL;
+    SNOW_TRY(snow_seekable_open(source, &store));
+    uint64_t size = snow_seekable_size(store);
     unsigned char *bytes = snow_allocate_array(context, size + 1, 1);
-    snow_status status = bytes ? SNOW_OK : SNOW_NO_MEMORY;
-    if (bytes && snow_random_read(store, 0, bytes, (size_t)size) != size)
+    snow_status status = bytes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    if (bytes && snow_seekable_read(store, 0, bytes, (size_t)size) != size)
         status = refuse(source, "the WebP file cannot be read to its end");
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = decode(source, bytes, (size_t)size, out);
     snow_release(context, bytes);
-    snow_random_close(store);
+    snow_seekable_close(store);
     return status;
 }
 

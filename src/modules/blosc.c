@@ -1,6 +1,6 @@
 /* modules/blosc.c - libsnowglass-blosc.so: chunks of Zarr by libblosc. */
 #include "base/module.h"
-#include "volume/zarr.h"
+#include "formats/zarr/zarr.h"
 
 extern SNOW_API const snow_module SNOW_MODULE_SYMBOL;
 

@@ -1,6 +1,6 @@
 /* modules/gdcm.c - libsnowglass-gdcm.so: packed frames of DICOM by GDCM. */
 #include "base/module.h"
-#include "volume/gdcm_bridge.h"
+#include "formats/dicom/gdcm_bridge.h"
 
 extern SNOW_API const snow_module SNOW_MODULE_SYMBOL;
 

@@ -1,6 +1,6 @@
 /* modules/hdf5.c - libsnowglass-hdf5.so: HDF5 and NetCDF-4 by libhdf5. */
 #include "base/module.h"
-#include "volume/volume.h"
+#include "formats/format.h"
 
 extern SNOW_API const snow_module SNOW_MODULE_SYMBOL;
 

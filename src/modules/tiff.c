@@ -1,8 +1,8 @@
 /* modules/tiff.c - libsnowglass-tiff.so: TIFF volumes and pictures by libtiff.
  */
 #include "base/module.h"
+#include "formats/format.h"
 #include "image/image.h"
-#include "volume/volume.h"
 
 extern SNOW_API const snow_module SNOW_MODULE_SYMBOL;
 

@@ -1,17 +1,17 @@
-/* mpi/comm_mpi.c - the record of functions of a communicator, filled in from
- * MPI.
+/* mpi/comm_mpi.c - a communicator's record of functions, implemented with MPI.
  *
- * MPI counts in int.  A message of more bytes than SNOW_MPI_CHUNK is one of a
- * datatype made for it, of whole chunks and a rest; its signature is still so
- * many bytes, so that the receiver's type, made for its room, matches it.
+ * MPI counts in int. A message of more bytes than SNOW_MPI_CHUNK is one element
+ * of a datatype made for it, of whole chunks and a rest; its signature is still
+ * that number of bytes, so that the receiver's type, made for its buffer,
+ * matches it.
  *
- * Requests lie in a table; a message's handle is its place there, from 1.  This
- * file stands on public headers only, and uses none of the names that SimGrid's
+ * Requests are stored in a table; a message's handle is its index there, from
+ * 1. This file uses public headers only, and none of the names that SimGrid's
  * mpi.h replaces by macros (malloc, free, sleep, ...). */
 #include <snowglass/mpi.h>
 
-#ifndef SMPI_H /* where time is simulated, tests would be counted */
-#include "mpi/watch.h"
+#ifndef SMPI_H /* tests would take simulated time */
+#include "mpi/watchdog.h"
 #endif
 
 #include <stdint.h>
@@ -30,27 +30,27 @@ typedef struct mpi_slot {
 /* The side of one rank. */
 typedef struct mpi_side {
     snow_context *context;
-    MPI_Comm group; /* ours, a duplicate */
-    bool failed;    /* MPI's state is unknown: it is left alone */
+    MPI_Comm group; /* a duplicate of the caller's */
+    bool failed;    /* MPI's state is unknown: it is not used any more */
     mpi_slot *slots;
     int slot_count;
-    /* Of the last wait: what was asked for. */
+    /* Of the last wait: its requests. */
     MPI_Request *requests;
-    int *places; /* of the requests among the messages */
-    int *peers;  /* of the requests */
-    int room;    /* of the three */
+    int *places;  /* indices of the requests among the messages */
+    int *peers;   /* of the requests */
+    int capacity; /* of the three */
 #ifndef SMPI_H
-    snow_meanwhile_fn *meanwhile; /* what is done in waits, or NULL */
+    snow_idle_fn *meanwhile; /* other work done in waits, or NULL */
     void *meanwhile_user;
-    mpi_watch *watch;
+    mpi_watchdog *watchdog;
 #endif
 } mpi_side;
 
 /* --- failures --------------------------------------------------------------
  */
 
-/* The message of an MPI error that a call to do with `peer` (-1: nobody in
- * particular) has returned. */
+/* Reports the MPI error of a call that concerns `peer` (-1: no particular
+ * rank). */
 static snow_status fail_mpi(snow_context *context, int error, const char *what,
                             int peer) {
     char text[MPI_MAX_ERROR_STRING + 1] = "";
@@ -61,17 +61,17 @@ static snow_status fail_mpi(snow_context *context, int error, const char *what,
         if (*at == '\n')
             *at = ' ';
     if (kind == MPI_ERR_TRUNCATE)
-        return snow_context_fail(context, SNOW_FAILED,
-                                 "a message from rank %d is longer than the "
-                                 "room for it; the ranks do different things",
+        return snow_context_fail(context, SNOW_STATUS_FAILED,
+                                 "a message from rank %d exceeds its buffer: "
+                                 "all ranks must make the same calls",
                                  peer);
     if (peer < 0)
-        return snow_context_fail(context, SNOW_FAILED, "MPI cannot %s: %s",
-                                 what, text);
-    return snow_context_fail(context, SNOW_FAILED,
-                             "MPI cannot %s rank %d: %s; look whether all "
-                             "processes still run",
-                             what, peer, text);
+        return snow_context_fail(context, SNOW_STATUS_FAILED,
+                                 "MPI cannot %s: %s", what, text);
+    return snow_context_fail(
+        context, SNOW_STATUS_FAILED,
+        "MPI cannot %s rank %d: %s; check whether all processes are running",
+        what, peer, text);
 }
 
 static snow_status fail_side(mpi_side *side, int error, const char *what,
@@ -83,54 +83,53 @@ static snow_status fail_side(mpi_side *side, int error, const char *what,
 /* --- memory ----------------------------------------------------------------
  */
 
-/* Replaces a block by a larger one that begins with the `keep` bytes of the old
- * one. */
-static snow_status grow(mpi_side *side, void *block_pointer, size_t keep,
-                        size_t bytes) {
+/* Replaces a block by a larger one; the first `keep` bytes are copied. */
+static snow_status grow_block(mpi_side *side, void *block_pointer, size_t keep,
+                              size_t bytes) {
     void *old;
     void *block = snow_context_allocate(side->context, bytes);
     if (!block)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     memcpy(&old, block_pointer, sizeof old);
     if (keep)
         memcpy(block, old, keep);
     snow_context_release(side->context, old);
     memcpy(block_pointer, &block, sizeof block);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status spare_slot(mpi_side *side, int *out) {
     for (int i = 0; i < side->slot_count; i++)
         if (side->slots[i].request == MPI_REQUEST_NULL) {
             *out = i;
-            return SNOW_OK;
+            return SNOW_STATUS_OK;
         }
     int count = side->slot_count * 2 + 8;
-    snow_status status =
-        grow(side, &side->slots, (size_t)side->slot_count * sizeof(mpi_slot),
-             (size_t)count * sizeof(mpi_slot));
-    if (status != SNOW_OK)
+    snow_status status = grow_block(side, &side->slots,
+                                    (size_t)side->slot_count * sizeof(mpi_slot),
+                                    (size_t)count * sizeof(mpi_slot));
+    if (status != SNOW_STATUS_OK)
         return status;
     for (int i = side->slot_count; i < count; i++)
         side->slots[i].request = MPI_REQUEST_NULL;
     *out = side->slot_count;
     side->slot_count = count;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Room for so many requests in a wait. */
+/* Reserves memory for the requests of a wait. */
 static snow_status make_room(mpi_side *side, int count) {
-    if (count <= side->room)
-        return SNOW_OK;
-    size_t room = (size_t)count * 2;
+    if (count <= side->capacity)
+        return SNOW_STATUS_OK;
+    size_t capacity = (size_t)count * 2;
     snow_status status =
-        grow(side, &side->requests, 0, room * sizeof(MPI_Request));
-    if (status == SNOW_OK)
-        status = grow(side, &side->places, 0, room * sizeof(int));
-    if (status == SNOW_OK)
-        status = grow(side, &side->peers, 0, room * sizeof(int));
-    if (status == SNOW_OK)
-        side->room = (int)room;
+        grow_block(side, &side->requests, 0, capacity * sizeof(MPI_Request));
+    if (status == SNOW_STATUS_OK)
+        status = grow_block(side, &side->places, 0, capacity * sizeof(int));
+    if (status == SNOW_STATUS_OK)
+        status = grow_block(side, &side->peers, 0, capacity * sizeof(int));
+    if (status == SNOW_STATUS_OK)
+        side->capacity = (int)capacity;
     return status;
 }
 
@@ -163,13 +162,13 @@ static int start(mpi_side *side, mpi_slot *slot, void *bytes, int count,
                                       side->group, &slot->request);
 }
 
-/* Starts a message either way. */
+/* Starts a send or a receive. */
 static snow_status begin(mpi_side *side, bool receives, void *bytes,
                          size_t count, int peer, int tag,
                          snow_message *message) {
     int place, error;
     snow_status status = spare_slot(side, &place);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         return status;
     mpi_slot *slot = &side->slots[place];
     slot->receives = receives;
@@ -182,7 +181,7 @@ static snow_status begin(mpi_side *side, bool receives, void *bytes,
         error = large_type(count, &type);
         if (error == MPI_SUCCESS) {
             error = start(side, slot, bytes, 1, type, tag);
-            MPI_Type_free(&type); /* which waits until it is not needed */
+            MPI_Type_free(&type); /* waits until it is not needed */
         }
     }
     if (error != MPI_SUCCESS) {
@@ -192,27 +191,28 @@ static snow_status begin(mpi_side *side, bool receives, void *bytes,
     }
     message->handle = (void *)(uintptr_t)(place + 1);
     message->bytes = receives ? 0 : count;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status send_bytes(void *self, const void *bytes, size_t count,
                               int to, int tag, snow_message *message) {
-    void *unchanged; /* MPI's own headers once had no const here */
+    void *unchanged; /* old MPI headers have no const here */
     memcpy(&unchanged, &bytes, sizeof unchanged);
     return begin(self, false, unchanged, count, to, tag, message);
 }
 
-static snow_status receive_bytes(void *self, void *bytes, size_t room, int from,
-                                 int tag, snow_message *message) {
-    return begin(self, true, bytes, room, from, tag, message);
+static snow_status receive_bytes(void *self, void *bytes, size_t capacity,
+                                 int from, int tag, snow_message *message) {
+    return begin(self, true, bytes, capacity, from, tag, message);
 }
 
 static mpi_slot *slot_of(const mpi_side *side, const snow_message *message) {
     return &side->slots[(uintptr_t)message->handle - 1];
 }
 
-/* Fills in the requests of the messages that are under way; their number. */
-static int gather(mpi_side *side, const snow_message *messages, int count) {
+/* Collects the requests of the messages in flight; returns their number. */
+static int collect_requests(mpi_side *side, const snow_message *messages,
+                            int count) {
     int asked = 0;
     for (int i = 0; i < count; i++)
         if (messages[i].handle) {
@@ -224,11 +224,10 @@ static int gather(mpi_side *side, const snow_message *messages, int count) {
     return asked;
 }
 
-/* Bytes received.  Only into a large type may more than an int's have come, and
- * only there they are counted as the basic elements that they are: SimGrid
- * cannot. */
+/* The bytes received. Only with a large type they may exceed an int, and only
+ * there they are counted as basic elements: SimGrid does not support that. */
 static size_t count_bytes(const mpi_slot *slot, const MPI_Status *status) {
-    MPI_Status copy = *status; /* SimGrid wants it without const */
+    MPI_Status copy = *status; /* SimGrid needs it without const */
     MPI_Count many = 0;
     int some = 0;
     if (slot->large)
@@ -238,9 +237,9 @@ static size_t count_bytes(const mpi_slot *slot, const MPI_Status *status) {
     return (size_t)(slot->large ? many : some);
 }
 
-/* A message is done: its slot is spare, its length known. */
-static void finish(mpi_side *side, snow_message *message,
-                   const MPI_Status *status) {
+/* Completes a message: its slot is spare, its length known. */
+static void complete_message(mpi_side *side, snow_message *message,
+                             const MPI_Status *status) {
     mpi_slot *slot = slot_of(side, message);
     if (slot->receives)
         message->bytes = count_bytes(slot, status);
@@ -248,24 +247,24 @@ static void finish(mpi_side *side, snow_message *message,
     message->handle = NULL;
 }
 
-/* Waits for one of the first `asked` requests, which it has in *found where MPI
- * tells; its error is in *error.  Errors: of the watch. */
+/* Waits for one of the first `asked` requests, and sets *found if MPI reports
+ * it; *error is its error. Errors: of the watchdog. */
 static snow_status await(mpi_side *side, int asked, int *found,
                          MPI_Status *done, int *error) {
     *found = -1;
 #ifdef SMPI_H
     *error = MPI_Waitany(asked, side->requests, found, done);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 #else
-    bool busy = side->meanwhile != NULL; /* as long as there is a piece */
-    snow_status status = snow_watch_begin(side->watch);
-    while (status == SNOW_OK) {
+    bool busy = side->meanwhile != NULL; /* while there is work */
+    snow_status status = snow_watchdog_begin(side->watchdog);
+    while (status == SNOW_STATUS_OK) {
         int there = 0;
         *error = MPI_Testany(asked, side->requests, found, &there, done);
         if (*error != MPI_SUCCESS || there)
-            return SNOW_OK;
+            return SNOW_STATUS_OK;
         busy = busy && side->meanwhile(side->meanwhile_user);
-        status = snow_watch_turn(side->watch, side->peers, asked);
+        status = snow_watchdog_turn(side->watchdog, side->peers, asked);
     }
     side->failed = true;
     return status;
@@ -276,16 +275,16 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
                             int *which) {
     mpi_side *side = self;
     snow_status status = make_room(side, count);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         return status;
-    int asked = gather(side, messages, count), found, error;
+    int asked = collect_requests(side, messages, count), found, error;
     if (!asked) {
         *which = -1;
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     }
     MPI_Status done;
     status = await(side, asked, &found, &done, &error);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         return status;
     if (error != MPI_SUCCESS) {
         bool known = found >= 0 && found < asked;
@@ -294,28 +293,28 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
             known ? slot_of(side, &messages[side->places[found]])->peer : -1);
     }
     *which = side->places[found];
-    finish(side, &messages[*which], &done);
-    return SNOW_OK;
+    complete_message(side, &messages[*which], &done);
+    return SNOW_STATUS_OK;
 }
 
-/* One after another: all must be done anyway, and MPI then says which failed.
- */
+/* One after another: all must complete anyway, and MPI then reports which
+ * failed. */
 static snow_status wait_all(void *self, snow_message *messages, int count) {
     mpi_side *side = self;
     snow_status status = make_room(side, 1);
-    for (int i = 0; i < count && status == SNOW_OK; i++) {
+    for (int i = 0; i < count && status == SNOW_STATUS_OK; i++) {
         if (!messages[i].handle)
             continue;
         MPI_Status done;
         int found, error;
-        gather(side, &messages[i], 1);
+        collect_requests(side, &messages[i], 1);
         status = await(side, 1, &found, &done, &error);
-        if (status != SNOW_OK)
+        if (status != SNOW_STATUS_OK)
             return status;
         if (error != MPI_SUCCESS)
             return fail_side(side, error, "exchange messages with",
                              side->peers[0]);
-        finish(side, &messages[i], &done);
+        complete_message(side, &messages[i], &done);
     }
     return status;
 }
@@ -326,13 +325,13 @@ static double seconds(void *self) {
 }
 
 #ifndef SMPI_H
-static void occupy(void *self, snow_meanwhile_fn *meanwhile, void *user) {
+static void occupy(void *self, snow_idle_fn *meanwhile, void *user) {
     mpi_side *side = self;
     side->meanwhile = meanwhile;
     side->meanwhile_user = user;
 }
 
-/* Messages move while any call looks for some. */
+/* Any test of a message lets all messages progress. */
 static void progress(void *self) {
     mpi_side *side = self;
     int there = 0;
@@ -342,7 +341,7 @@ static void progress(void *self) {
 #endif
 
 #ifdef SMPI_H
-/* In a simulation work takes the time that it is told to. */
+/* In a simulation work takes the given time. */
 static void work(void *self, double length) {
     (void)self;
     smpi_execute(length);
@@ -350,16 +349,16 @@ static void work(void *self, double length) {
 #else
 static void limit_waits(void *self, double length) {
     mpi_side *side = self;
-    snow_watch_limit(side->watch, length);
+    snow_watchdog_limit(side->watchdog, length);
 }
 #endif
 
 /* --- the communicator ------------------------------------------------------
  */
 
-/* A duplicate keeps our messages apart from the caller's.  In SimGrid it takes
- * time of the square of the ranks, and whoever simulates has no other messages:
- * there the group itself is ours. */
+/* A duplicate separates our messages from the caller's. In SimGrid that takes
+ * time quadratic in the number of ranks, and simulations send no other
+ * messages: there the group itself is used. */
 static int take_group(MPI_Comm group, MPI_Comm *ours) {
 #ifdef SMPI_H
     *ours = group;
@@ -377,7 +376,7 @@ static void drop_group(MPI_Comm *ours) {
 #endif
 }
 
-/* Messages that nobody waited for are given up: nothing comes into a buffer
+/* Cancels messages that were not waited for: nothing may arrive in a buffer
  * that the caller is about to free. */
 static void give_up(mpi_slot *slot) {
     if (slot->request == MPI_REQUEST_NULL)
@@ -390,8 +389,8 @@ static void give_up(mpi_slot *slot) {
     MPI_Wait(&slot->request, MPI_STATUS_IGNORE);
 }
 
-/* A group that has failed is left to MPI's end: to free it is collective, peers
- * may be gone, and which of its requests there still are is not known. */
+/* A group that has failed is left alone: freeing it is collective, peers may
+ * have ended, and the state of its requests is unknown. */
 static void end(void *self) {
     mpi_side *side = self;
     int finalized = 0;
@@ -402,7 +401,7 @@ static void end(void *self) {
         drop_group(&side->group);
     }
 #ifndef SMPI_H
-    snow_watch_free(side->watch, !finalized && !side->failed);
+    snow_watchdog_free(side->watchdog, !finalized && !side->failed);
 #endif
     snow_context_release(side->context, side->slots);
     snow_context_release(side->context, side->requests);
@@ -416,36 +415,36 @@ static snow_status check_group(snow_context *context, MPI_Comm group) {
     MPI_Initialized(&initialized);
     MPI_Finalized(&finalized);
     if (!initialized || finalized)
-        return snow_context_fail(context, SNOW_BAD_USAGE,
-                                 "MPI is not running; make communicators "
+        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                 "MPI is not running: create communicators "
                                  "between MPI_Init and MPI_Finalize");
     if (group == MPI_COMM_NULL)
-        return snow_context_fail(context, SNOW_BAD_USAGE,
-                                 "MPI_COMM_NULL is no group; give the "
-                                 "communicator of those who render");
+        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                 "MPI_COMM_NULL is not a group: give the "
+                                 "communicator of the rendering ranks");
     int error = MPI_Comm_test_inter(group, &between);
     if (error != MPI_SUCCESS)
-        return fail_mpi(context, error, "look at the group", -1);
+        return fail_mpi(context, error, "query the group", -1);
     if (between)
-        return snow_context_fail(context, SNOW_BAD_USAGE,
-                                 "an intercommunicator is no single group; "
+        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                 "an intercommunicator is not a single group: "
                                  "merge it with MPI_Intercomm_merge");
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static void remark_threads(snow_context *context) {
     int level = MPI_THREAD_SINGLE;
     MPI_Query_thread(&level);
     if (level < MPI_THREAD_FUNNELED)
-        snow_context_remark(context, "this MPI was started without support "
-                                     "for threads; if it misbehaves, start it "
-                                     "with MPI_Init_thread and "
-                                     "MPI_THREAD_FUNNELED");
+        snow_context_warn(context, "this MPI was started without support "
+                                   "for threads; if it misbehaves, start it "
+                                   "with MPI_Init_thread and "
+                                   "MPI_THREAD_FUNNELED");
 }
 
 /* This rank's objects over `ours`. */
-static snow_status equip(snow_context *context, MPI_Comm ours,
-                         mpi_side **out_side, snow_comm **out) {
+static snow_status make_communicator(snow_context *context, MPI_Comm ours,
+                                     mpi_side **out_side, snow_comm **out) {
     static const snow_comm_ops ops = {.size = sizeof ops,
                                       .send = send_bytes,
                                       .receive = receive_bytes,
@@ -465,61 +464,62 @@ static snow_status equip(snow_context *context, MPI_Comm ours,
     MPI_Comm_size(ours, &ranks);
     mpi_side *side = snow_context_allocate(context, sizeof *side);
     if (!side)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     *side = (mpi_side){.context = context, .group = ours};
     snow_status status = snow_comm_new(context, &ops, side, rank, ranks, out);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         snow_context_release(context, side);
     else
         *out_side = side;
     return status;
 }
 
-/* Nobody goes on with ranks that lack theirs. */
+/* Agrees on the status, so that no rank continues without the others. */
 static snow_status agree(snow_context *context, MPI_Comm ours,
                          snow_status status) {
     int worst = (int)status;
     int error = MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, ours);
     if (error != MPI_SUCCESS)
         return fail_mpi(context, error, "agree on a new communicator", -1);
-    if (status == SNOW_OK && worst != SNOW_OK)
+    if (status == SNOW_STATUS_OK && worst != SNOW_STATUS_OK)
         return snow_context_fail(context, (snow_status)worst,
                                  "another rank: %s",
-                                 snow_status_text((snow_status)worst));
+                                 snow_status_description((snow_status)worst));
     return (snow_status)worst;
 }
 
-snow_status snow_comm_mpi(snow_context *context, MPI_Comm group,
-                          snow_comm **out) {
+snow_status snow_comm_new_mpi(snow_context *context, MPI_Comm group,
+                              snow_comm **out) {
     MPI_Comm ours;
     mpi_side *side = NULL;
     snow_comm *comm = NULL;
     snow_status status = check_group(context, group);
-    if (status != SNOW_OK)
+    if (status != SNOW_STATUS_OK)
         return status;
     int error = take_group(group, &ours);
     if (error != MPI_SUCCESS)
         return fail_mpi(context, error, "duplicate the group", -1);
     MPI_Comm_set_errhandler(ours, MPI_ERRORS_RETURN);
-    status = agree(context, ours, equip(context, ours, &side, &comm));
+    status =
+        agree(context, ours, make_communicator(context, ours, &side, &comm));
 #ifndef SMPI_H
-    if (status == SNOW_OK)
-        status =
-            agree(context, ours, snow_watch_new(context, ours, &side->watch));
+    if (status == SNOW_STATUS_OK)
+        status = agree(context, ours,
+                       snow_watchdog_new(context, ours, &side->watchdog));
 #endif
-    if (status != SNOW_OK) {
+    if (status != SNOW_STATUS_OK) {
         if (comm)
-            snow_comm_free(comm); /* and the duplicate with it */
+            snow_comm_free(comm); /* frees the duplicate too */
         else
             drop_group(&ours);
         return status;
     }
     remark_threads(context);
     *out = comm;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-snow_status snow_comm_mpi_fortran(snow_context *context, MPI_Fint group,
-                                  snow_comm **out) {
-    return snow_comm_mpi(context, MPI_Comm_f2c(group), out);
+snow_status snow_comm_new_mpi_fortran(snow_context *context, MPI_Fint group,
+                                      snow_comm **out) {
+    return snow_comm_new_mpi(context, MPI_Comm_f2c(group), out);
 }

@@ -1,4 +1,4 @@
-/* recipe/keys.c - each key of a recipe, and how JSON becomes its field. */
+/* recipe/keys.c - the keys of a recipe, and how JSON becomes their fields. */
 #include "recipe/keys.h"
 
 #include <assert.h>
@@ -65,12 +65,12 @@ static json_t *write_int(const recipe_key *key, const void *field) {
     return json_integer(*(const int *)field);
 }
 
-/* A number that is not told where it is 0. */
+/* A number that is omitted if it is 0. */
 static json_t *write_told_int(const recipe_key *key, const void *field) {
     return *(const int *)field ? write_int(key, field) : NULL;
 }
 
-/* int64_t and, of numbers from 0 on, uint64_t. */
+/* int64_t and, for numbers from 0 on, uint64_t. */
 static bool read_long(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
     return read_whole(key, value, field, wrong);
@@ -96,7 +96,7 @@ static json_t *write_flag(const recipe_key *key, const void *field) {
     return *(const bool *)field ? json_true() : NULL;
 }
 
-/* A flag in an int. */
+/* A bool that is stored in an int. */
 static bool read_switch(const recipe_key *key, const json_t *value, void *field,
                         char wrong[WRONG_BYTES]) {
     bool flag;
@@ -144,7 +144,7 @@ static json_t *write_told_reals(const recipe_key *key, const void *field) {
     return numbers[0] != 0 ? write_reals(key, field) : NULL;
 }
 
-/* Of numbers that are NaN where they are not told. */
+/* For numbers that are NaN if not given. */
 static json_t *write_place(const recipe_key *key, const void *field) {
     const double *numbers = field;
     return isnan(numbers[0]) ? NULL : write_reals(key, field);
@@ -199,12 +199,12 @@ static json_t *write_crop(const recipe_key *key, const void *field) {
                      (json_int_t)c[5]);
 }
 
-/* [[a, b, c, d], ...]; planes without a direction are none. */
+/* [[a, b, c, d], ...]; a plane of zeros is not a plane. */
 static bool read_clip(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
-    double planes[SNOW_CLIPS_MOST][4] = {{0}};
+    double planes[SNOW_CLIPS_MAX][4] = {{0}};
     size_t count = json_array_size(value);
-    bool good = count > 0 && count <= SNOW_CLIPS_MOST;
+    bool good = count > 0 && count <= SNOW_CLIPS_MAX;
     for (size_t n = 0; n < count && good; n++) {
         const json_t *plane = json_array_get(value, n);
         good = json_array_size(plane) == 4;
@@ -225,7 +225,7 @@ static json_t *write_clip(const recipe_key *key, const void *field) {
     (void)key;
     const double *p = field;
     json_t *list = json_array();
-    for (int n = 0; n < SNOW_CLIPS_MOST; n++, p += 4)
+    for (int n = 0; n < SNOW_CLIPS_MAX; n++, p += 4)
         if (p[0] != 0 || p[1] != 0 || p[2] != 0)
             json_array_append_new(
                 list, json_pack("[f,f,f,f]", p[0], p[1], p[2], p[3]));
@@ -235,7 +235,7 @@ static json_t *write_clip(const recipe_key *key, const void *field) {
     return NULL;
 }
 
-/* Width and height, which follow each other. */
+/* Width and height, which follow each other in the record. */
 static bool read_size(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]) {
     int64_t sides[3];
@@ -270,13 +270,13 @@ static json_t *write_text(const recipe_key *key, const void *field) {
     return text ? json_string(text) : NULL;
 }
 
-/* Labels of a mask, which are kept as a text. */
+/* Labels of a mask, stored as text. */
 static bool read_labels(const recipe_key *key, const json_t *value, void *field,
                         char wrong[WRONG_BYTES]) {
-    snow_label_range ranges[SNOW_LABELS_MOST];
+    snow_label_range ranges[SNOW_LABELS_MAX];
     size_t count;
     const char *text = json_string_value(value);
-    if (!text || !snow_labels_read(text, ranges, SNOW_LABELS_MOST, &count))
+    if (!text || !snow_labels_parse(text, ranges, SNOW_LABELS_MAX, &count))
         return refuse(wrong, "a text of whole numbers and ranges such as "
                              "\"1,4-7\"");
     return read_text(key, value, field, wrong);
@@ -286,7 +286,7 @@ static json_t *write_labels(const recipe_key *key, const void *field) {
     return write_text(key, field);
 }
 
-/* "a, b or c" behind "must be ". */
+/* Lists names, "a, b or c", after "must be ". */
 static bool refuse_name(const recipe_key *key, char wrong[WRONG_BYTES]) {
     size_t at = (size_t)snprintf(wrong, WRONG_BYTES, "must be one of");
     for (int i = 0; key->name_of(i) && at < WRONG_BYTES; i++)
@@ -295,7 +295,7 @@ static bool refuse_name(const recipe_key *key, char wrong[WRONG_BYTES]) {
     return false;
 }
 
-/* A text that must be known; it is kept as it is. */
+/* A text that must be a known name; it is stored as text. */
 static bool read_known(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
     const char *text = json_string_value(value);
@@ -327,8 +327,8 @@ static json_t *write_told_name(const recipe_key *key, const void *field) {
     return value ? json_string(key->name_of(value)) : NULL;
 }
 
-/* Between the library's tables, of enumerations and of plain indices, and those
- * of the rows. */
+/* Adapters between the library's tables, of enumerations and of plain indices,
+ * and the rows. */
 #define NAMES(word)                                    \
     static const char *word##_name(int value) {        \
         return snow_##word##_name((snow_##word)value); \
@@ -352,7 +352,7 @@ static const char *view_name(int value) {
     return snow_view_name((size_t)value);
 }
 
-static int find(const char *(*name_of)(int value), const char *name) {
+static int find_name(const char *(*name_of)(int value), const char *name) {
     for (int i = 0; name_of(i); i++)
         if (strcmp(name_of(i), name) == 0)
             return i;
@@ -360,16 +360,16 @@ static int find(const char *(*name_of)(int value), const char *name) {
 }
 
 static int view_named(const char *name) {
-    return find(view_name, name);
+    return find_name(view_name, name);
 }
 
-/* Types begin with one that is none. */
+/* The first type is "none". */
 static const char *type_name(int value) {
-    return value > SNOW_FLOAT64 ? NULL : snow_type_name((snow_type)value);
+    return value > SNOW_TYPE_FLOAT64 ? NULL : snow_type_name((snow_type)value);
 }
 
 static int type_named(const char *name) {
-    snow_type type = snow_type_named(name);
+    snow_type type = snow_type_from_name(name);
     return type == SNOW_TYPE_NONE ? -1 : (int)type;
 }
 
@@ -383,7 +383,7 @@ static const char *shade_name(int value) {
 }
 
 static int shade_named(const char *name) {
-    return find(shade_name, name);
+    return find_name(shade_name, name);
 }
 
 static const char *endian_name(int value) {
@@ -392,7 +392,7 @@ static const char *endian_name(int value) {
 }
 
 static int endian_named(const char *name) {
-    return find(endian_name, name);
+    return find_name(endian_name, name);
 }
 
 typedef struct unit_fields {
@@ -418,7 +418,8 @@ static json_t *write_unit(const recipe_key *key, const void *field) {
                          : NULL;
 }
 
-/* The value of mode iso follows the mode, and is told beside it alone. */
+/* The value of mode iso follows the mode in the record, and is written only
+ * with it. */
 typedef struct iso_fields {
     snow_mode mode;
     double iso;
@@ -426,7 +427,7 @@ typedef struct iso_fields {
 
 static_assert(offsetof(snow_settings, iso) - offsetof(snow_settings, mode) ==
                   offsetof(iso_fields, iso),
-              "the record's fields lie as they are read");
+              "the fields of the record have the same order");
 
 static bool read_iso(const recipe_key *key, const json_t *value, void *field,
                      char wrong[WRONG_BYTES]) {
@@ -451,13 +452,13 @@ static bool read_percent(const json_t *value, double *out) {
 
 /* Range, low and high follow each other in the record. */
 typedef struct range_fields {
-    snow_range_kind kind;
+    snow_range kind;
     double low, high;
 } range_fields;
 
 static_assert(offsetof(snow_recipe, high) - offsetof(snow_recipe, range) ==
                   offsetof(range_fields, high),
-              "the record's fields lie as they are read");
+              "the fields of the record have the same order");
 
 static bool read_range(const recipe_key *key, const json_t *value, void *field,
                        char wrong[WRONG_BYTES]) {
@@ -502,10 +503,10 @@ static json_t *write_range(const recipe_key *key, const void *field) {
     }
 }
 
-/* A count and the points behind it. */
+/* A count followed by the points. */
 typedef struct point_fields {
     size_t count;
-    snow_opacity_point points[SNOW_RECIPE_POINTS];
+    snow_opacity_point points[SNOW_RECIPE_POINTS_MAX];
 } point_fields;
 
 static_assert(offsetof(snow_recipe, opacities) -
@@ -514,7 +515,7 @@ static_assert(offsetof(snow_recipe, opacities) -
                   offsetof(snow_recipe, gradient_opacities) -
                           offsetof(snow_recipe, gradient_opacity_count) ==
                       offsetof(point_fields, points),
-              "the record's fields lie as they are read");
+              "the fields of the record have the same order");
 
 static bool read_point(const json_t *pair, const snow_opacity_point *before,
                        snow_opacity_point *out) {
@@ -534,14 +535,14 @@ static bool read_points(const recipe_key *key, const json_t *value, void *field,
     (void)key;
     point_fields *points = field;
     size_t count = json_array_size(value);
-    bool good = count > 0 && count <= SNOW_RECIPE_POINTS;
+    bool good = count > 0 && count <= SNOW_RECIPE_POINTS_MAX;
     for (size_t i = 0; i < count && good; i++)
         good =
             read_point(json_array_get(value, i),
                        i ? &points->points[i - 1] : NULL, &points->points[i]);
     if (!good)
         return refuse(wrong, "[[value, opacity], ...], up to 256 of them, "
-                             "values that do not fall, opacities 0 to 1");
+                             "values that do not decrease, opacities 0 to 1");
     points->count = count;
     return true;
 }
@@ -622,16 +623,16 @@ const recipe_key recipe_keys[] = {
     MADE("size", size, width, 1, 32768, 2),
     MADE("background", color, image, 0, 1, 3),
     {"bits", read_bits, write_told_int, AT(image.bits), 8, 16, 0, NULL, NULL},
-    NAME("mode", settings.mode, mode_name, snow_mode_named),
+    NAME("mode", settings.mode, mode_name, snow_mode_from_name),
     {"iso", read_iso, write_iso, AT(settings.mode), 0, 0, 0, NULL, NULL},
     REAL("threshold", settings.threshold, 0, 255),
-    NAME("encoding", settings.encoding, encoding_name, snow_encoding_named),
-    NAME("method", settings.method, method_name, snow_method_named),
-    NAME("kernel", settings.kernel, kernel_name, snow_kernel_named),
+    NAME("encoding", settings.encoding, encoding_name, snow_encoding_from_name),
+    NAME("method", settings.method, method_name, snow_method_from_name),
+    NAME("kernel", settings.kernel, kernel_name, snow_kernel_from_name),
     {"footprint", read_int, write_told_int, AT(settings.footprint), 2, 9, 0,
      NULL, NULL},
-    KNOWN("preset", preset, preset_name, snow_preset_named),
-    KNOWN("colormap", colormap, colormap_name, snow_colormap_named),
+    KNOWN("preset", preset, preset_name, snow_preset_from_name),
+    KNOWN("colormap", colormap, colormap_name, snow_colormap_from_name),
     TEXT("tf", tf),
     MADE("log", flag, log, 0, 0, 0),
     MADE("opacity", points, opacity_count, 0, 0, 0),
@@ -644,13 +645,13 @@ const recipe_key recipe_keys[] = {
     REAL("diffuse", settings.diffuse, 0, 1),
     REAL("specular", settings.specular, 0, 1),
     REAL("shininess", settings.shininess, 0, 1000),
-    NAME("quality", settings.quality, quality_name, snow_quality_named),
+    NAME("quality", settings.quality, quality_name, snow_quality_from_name),
     KNOWN("view", view, view_name, view_named),
     REAL("azimuth", azimuth, 0, 0),
     REAL("elevation", elevation, 0, 0),
     REAL("roll", roll, 0, 0),
     REAL("zoom", zoom, 1e-6, 1e6),
-    REAL("perspective", fov, 0, SNOW_FOV_MOST),
+    REAL("perspective", fov, 0, SNOW_FOV_MAX),
     {"position", read_reals, write_place, AT(position), 0, 0, 3, NULL, NULL},
     {"target", read_reals, write_place, AT(target), 0, 0, 3, NULL, NULL},
     {"up", read_reals, write_place, AT(up), 0, 0, 3, NULL, NULL},
@@ -660,7 +661,7 @@ const recipe_key recipe_keys[] = {
     {"threads", read_int, write_told_int, AT(settings.threads), 1, 4096, 0,
      NULL, NULL},
     MADE("deterministic", switch, settings.deterministic, 0, 0, 0),
-    NAME("isa", settings.isa, isa_name, snow_isa_named),
+    NAME("isa", settings.isa, isa_name, snow_isa_from_name),
     {"dims", read_longs, write_told_longs, AT(data.dims), 1, 9e15, 3, NULL,
      NULL},
     {"type", read_name, write_told_name, AT(data.type), 0, 0, 0, type_name,

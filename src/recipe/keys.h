@@ -1,23 +1,23 @@
-/* recipe/keys.h - the keys of a recipe: one table, by which it is read and
- * written.  A row tells where its value lies in the record and how it is taken
- * from JSON and put there. */
+/* recipe/keys.h - the keys of a recipe: one table for reading and writing.  A
+ * row gives the position of the value in the record and its conversion from and
+ * to JSON. */
 #ifndef SNOW_RECIPE_KEYS_H
 #define SNOW_RECIPE_KEYS_H
 
 #include <jansson.h>
 #include <snowglass/recipe.h>
 
-/* Room for the end of a message: "must be ...". */
+/* Size of the end of a message: "must be ...". */
 #define WRONG_BYTES 1024
 
 typedef struct recipe_key recipe_key;
 
-/* Takes a value into its field (of `recipe`, at the key's offset).  False where
- * it does not fit: `wrong` then says what it must be. */
+/* Stores a value in its field (of `recipe`, at the key's offset).  Returns
+ * false if it is invalid: `wrong` then says what it must be. */
 typedef bool key_read(const recipe_key *key, const json_t *value, void *field,
                       char wrong[WRONG_BYTES]);
 
-/* The value of a field, a new reference; NULL where nothing is to be said. */
+/* The value of a field, a new reference; NULL to omit the key. */
 typedef json_t *key_write(const recipe_key *key, const void *field);
 
 struct recipe_key {
@@ -25,9 +25,10 @@ struct recipe_key {
     key_read *read;
     key_write *write;
     size_t field;     /* offset in snow_recipe */
-    double low, high; /* of numbers; both 0: any finite one */
+    double low, high; /* of numbers; both 0: any finite number */
     int count;        /* of arrays */
-    /* Of names: name of a value (NULL past the last), and back (-1). */
+    /* For names: the name of a value (NULL past the last), and the value of a
+     * name (-1: unknown). */
     const char *(*name_of)(int value);
     int (*named)(const char *name);
 };

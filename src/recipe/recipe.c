@@ -1,8 +1,8 @@
-/* recipe/recipe.c - recipes read, written, and applied.
+/* recipe/recipe.c - reads, writes and applies recipes.
  *
- * Texts of a record that was read lie in its JSON tree, which is kept beside
- * it.  jansson takes its memory from malloc: to tell it another allocator would
- * change it for the whole process. */
+ * Texts of a record that was read belong to its JSON tree, which is kept with
+ * it.  jansson allocates with malloc: setting another allocator would change it
+ * for the whole process. */
 #include "recipe/keys.h"
 
 #include <snowglass/tf.h>
@@ -38,36 +38,36 @@ static snow_status take_key(snow_context *context, const char *source,
     char wrong[WRONG_BYTES];
     const recipe_key *key = key_named(name);
     if (!key)
-        return snow_context_fail(context, SNOW_BAD_INPUT,
-                                 "%s: \"%.64s\" is no key of a recipe; take "
+        return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
+                                 "%s: \"%.64s\" is not a key of a recipe; use "
                                  "the tool's long options without dashes",
                                  source, name);
     if (key->read(key, value, (char *)out + key->field, wrong))
-        return SNOW_OK;
-    return snow_context_fail(context, SNOW_BAD_INPUT, "%s: \"%s\" %s", source,
-                             name, wrong);
+        return SNOW_STATUS_OK;
+    return snow_context_fail(context, SNOW_STATUS_BAD_INPUT, "%s: \"%s\" %s",
+                             source, name, wrong);
 }
 
-/* A window and a level are another way to write a range. */
+/* A window and a level are another way to give a range. */
 static snow_status take_window(snow_context *context, const char *source,
                                json_t *tree, snow_recipe *out) {
     json_t *window = json_object_get(tree, "window");
     json_t *level = json_object_get(tree, "level");
     if (!window && !level)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     double half = json_number_value(window) / 2;
     double low = json_number_value(level) - half;
     double high = json_number_value(level) + half;
     if (!json_is_number(window) || !json_is_number(level) || !(low < high) ||
         !isfinite(low) || !isfinite(high) || out->range != SNOW_RANGE_AUTO)
-        return snow_context_fail(context, SNOW_BAD_INPUT,
-                                 "%s: \"window\" (above 0) and \"level\" go "
-                                 "together, without \"range\"",
+        return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
+                                 "%s: \"window\" (above 0) and \"level\" must "
+                                 "be given together, without \"range\"",
                                  source);
     out->range = SNOW_RANGE_VALUES;
     out->low = low;
     out->high = high;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status take_tree(snow_context *context, const char *source,
@@ -75,38 +75,38 @@ static snow_status take_tree(snow_context *context, const char *source,
     const char *name;
     json_t *value;
     if (!json_is_object(tree))
-        return snow_context_fail(context, SNOW_BAD_INPUT,
-                                 "%s: a recipe is one JSON object; begin it "
-                                 "with {",
-                                 source);
+        return snow_context_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "%s: a recipe must be one JSON object; begin it with {", source);
     json_object_foreach(tree, name, value) {
-        snow_status status = SNOW_OK;
+        snow_status status = SNOW_STATUS_OK;
         if (strcmp(name, "window") != 0 && strcmp(name, "level") != 0)
             status = take_key(context, source, name, value, out);
-        if (status != SNOW_OK)
+        if (status != SNOW_STATUS_OK)
             return status;
     }
     return take_window(context, source, tree, out);
 }
 
 /* Takes over the tree. */
-static snow_status finish(snow_context *context, const char *source,
-                          json_t *tree, const json_error_t *error,
-                          snow_recipe *out) {
+static snow_status finish_recipe(snow_context *context, const char *source,
+                                 json_t *tree, const json_error_t *error,
+                                 snow_recipe *out) {
     snow_recipe recipe;
     if (!tree)
-        return snow_context_fail(context, SNOW_BAD_INPUT,
-                                 "%s: line %d is no JSON: %s; correct it",
-                                 source, error->line, error->text);
+        return snow_context_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "%s: line %d is not valid JSON: %s; correct it", source,
+            error->line, error->text);
     snow_recipe_init(&recipe);
     snow_status status = take_tree(context, source, tree, &recipe);
-    if (status != SNOW_OK) {
+    if (status != SNOW_STATUS_OK) {
         json_decref(tree);
         return status;
     }
     recipe.owned = tree;
     *out = recipe;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_recipe_parse(snow_context *context, const char *name,
@@ -114,7 +114,7 @@ snow_status snow_recipe_parse(snow_context *context, const char *name,
                               snow_recipe *out) {
     json_error_t error;
     json_t *tree = json_loadb(text, bytes, JSON_REJECT_DUPLICATES, &error);
-    return finish(context, name, tree, &error, out);
+    return finish_recipe(context, name, tree, &error, out);
 }
 
 snow_status snow_recipe_load(snow_context *context, const char *path,
@@ -122,11 +122,10 @@ snow_status snow_recipe_load(snow_context *context, const char *path,
     json_error_t error;
     json_t *tree = json_load_file(path, JSON_REJECT_DUPLICATES, &error);
     if (!tree && json_error_code(&error) == json_error_cannot_open_file)
-        return snow_context_fail(context, SNOW_BAD_INPUT,
-                                 "%s: cannot be opened; name a recipe that can "
-                                 "be read",
+        return snow_context_fail(context, SNOW_STATUS_BAD_INPUT,
+                                 "%s: cannot be opened; name a readable recipe",
                                  path);
-    return finish(context, path, tree, &error, out);
+    return finish_recipe(context, path, tree, &error, out);
 }
 
 /* --- writing -------------------------------------------------------------- */
@@ -144,18 +143,19 @@ snow_status snow_recipe_write(snow_context *context, const snow_recipe *recipe,
     size_t bytes = failed ? 0 : json_dumpb(tree, text, room, flags);
     json_decref(tree);
     if (!bytes)
-        return snow_context_fail(context, SNOW_NO_MEMORY,
-                                 "no memory for the text of a recipe; close "
-                                 "other programs");
+        return snow_context_fail(
+            context, SNOW_STATUS_NO_MEMORY,
+            "out of memory for the text of a recipe; close other programs");
     if (room)
         text[bytes < room ? bytes : 0] = 0;
     *length = bytes;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* --- what it says --------------------------------------------------------- */
+/* --- applying
+ * ---------------------------------------------------------------- */
 
-void snow_recipe_look(const snow_recipe *recipe, snow_look *out) {
+void snow_recipe_get_look(const snow_recipe *recipe, snow_look *out) {
     *out = (snow_look){.preset = recipe->preset,
                        .colormap = recipe->colormap,
                        .range = recipe->range,
@@ -172,19 +172,20 @@ void snow_recipe_look(const snow_recipe *recipe, snow_look *out) {
     }
 }
 
-static bool take_place(const double told[3], double out[3]) {
-    if (isnan(told[0]))
+static bool take_place(const double given[3], double out[3]) {
+    if (isnan(given[0]))
         return false;
-    memcpy(out, told, 3 * sizeof *out);
+    memcpy(out, given, 3 * sizeof *out);
     return true;
 }
 
-snow_status snow_recipe_view(snow_context *context, const snow_recipe *recipe,
-                             const snow_view *usual, snow_view *out) {
+snow_status snow_recipe_get_view(snow_context *context,
+                                 const snow_recipe *recipe,
+                                 const snow_view *usual, snow_view *out) {
     snow_view view = *usual;
     if (recipe->view) {
-        snow_status status = snow_view_named(context, recipe->view, &view);
-        if (status != SNOW_OK)
+        snow_status status = snow_view_from_name(context, recipe->view, &view);
+        if (status != SNOW_STATUS_OK)
             return status;
     }
     view.width = recipe->width;
@@ -198,14 +199,14 @@ snow_status snow_recipe_view(snow_context *context, const snow_recipe *recipe,
     view.has_target = take_place(recipe->target, view.target);
     view.has_up = take_place(recipe->up, view.upward);
     if (view.has_position && recipe->view)
-        return snow_context_fail(context, SNOW_BAD_USAGE,
-                                 "\"position\" and \"view\" both say where "
-                                 "the camera is; leave one of the two out");
+        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                 "\"position\" and \"view\" both place the "
+                                 "camera; give only one of them");
     *out = view;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Millimetres in a unit of length; 0 where it is none. */
+/* Millimetres in a unit of length; 0 if it is not a length. */
 static double length_of_mm(const char *unit) {
     static const struct {
         const char *unit;
@@ -218,20 +219,20 @@ static double length_of_mm(const char *unit) {
     return 0;
 }
 
-snow_status snow_recipe_settings(snow_context *context,
-                                 const snow_recipe *recipe, const char *unit,
-                                 snow_settings *out) {
+snow_status snow_recipe_get_settings(snow_context *context,
+                                     const snow_recipe *recipe,
+                                     const char *unit, snow_settings *out) {
     snow_settings settings = recipe->settings;
     if (recipe->opacity_per_mm) {
         settings.opacity_length = length_of_mm(unit);
         if (settings.opacity_length == 0)
-            return snow_context_fail(context, SNOW_BAD_USAGE,
-                                     "the volume's unit '%s' is no length; "
-                                     "take opacities per voxel",
+            return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                     "the volume's unit '%s' is not a length; "
+                                     "use opacities per voxel",
                                      unit);
     }
     *out = settings;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
@@ -241,33 +242,33 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
     snow_settings settings;
     snow_tf *tf = NULL;
     if (recipe->depth)
-        return snow_context_fail(context, SNOW_BAD_USAGE,
-                                 "\"depth\" is for pictures of files; leave it "
-                                 "out of a recipe for a simulation");
-    snow_recipe_look(recipe, &look);
-    snow_status status = snow_view_named(context, "+z", &usual);
-    if (status == SNOW_OK && recipe->tf)
-        status = snow_tf_load(context, recipe->tf, &tf);
-    if (status == SNOW_OK && tf)
+        return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
+                                 "\"depth\" is for pictures of files; remove "
+                                 "it from a recipe for a simulation");
+    snow_recipe_get_look(recipe, &look);
+    snow_status status = snow_view_from_name(context, "+z", &usual);
+    if (status == SNOW_STATUS_OK && recipe->tf)
+        status = snow_look_load(context, recipe->tf, &tf);
+    if (status == SNOW_STATUS_OK && tf)
         look.points = snow_tf_points(tf);
-    if (status == SNOW_OK)
-        status = snow_recipe_view(context, recipe, &usual, &view);
-    if (status == SNOW_OK)
-        status = snow_recipe_settings(context, recipe, "", &settings);
-    if (status == SNOW_OK && tf && look.points->per_mm &&
+    if (status == SNOW_STATUS_OK)
+        status = snow_recipe_get_view(context, recipe, &usual, &view);
+    if (status == SNOW_STATUS_OK)
+        status = snow_recipe_get_settings(context, recipe, "", &settings);
+    if (status == SNOW_STATUS_OK && tf && look.points->per_mm &&
         !recipe->opacity_per_voxel)
         settings.opacity_length = length_of_mm("");
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_look(insitu, &look);
     snow_tf_free(tf);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_view(insitu, &view);
-    if (status == SNOW_OK)
+    if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_settings(insitu, &settings);
-    if (status == SNOW_OK)
-        status =
-            snow_insitu_set_marks(insitu, recipe->legend, recipe->time_label);
-    if (status == SNOW_OK && recipe->output)
+    if (status == SNOW_STATUS_OK)
+        status = snow_insitu_set_annotations(insitu, recipe->legend,
+                                             recipe->time_label);
+    if (status == SNOW_STATUS_OK && recipe->output)
         status = snow_insitu_set_output(insitu, recipe->output, &recipe->image);
     return status;
 }
@@ -276,9 +277,9 @@ snow_status snow_recipe_apply_file(snow_insitu *insitu, const char *path) {
     snow_recipe recipe;
     snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
     snow_status status = snow_recipe_load(context, path, &recipe);
-    if (status == SNOW_OK) {
+    if (status == SNOW_STATUS_OK) {
         status = snow_recipe_apply(&recipe, insitu);
         snow_recipe_clear(&recipe);
     }
-    return snow_insitu_set_failure(insitu, status);
+    return snow_insitu_set_error(insitu, status);
 }

@@ -1,5 +1,5 @@
-/* simd/isa.c - which instruction sets the machine offers, and which one a
- * picture uses when none is asked for. */
+/* simd/isa.c - finds the instruction sets of the machine, and chooses the
+ * default for a picture. */
 #include "simd/isa.h"
 
 #include <snowglass/snowglass.h>
@@ -21,7 +21,7 @@ const char *snow_isa_name(snow_isa isa) {
     return (int)isa < LEVELS ? names[isa] : NULL;
 }
 
-int snow_isa_named(const char *name) {
+int snow_isa_from_name(const char *name) {
     for (int i = 0; i < LEVELS; i++)
         if (strcmp(name, names[i]) == 0)
             return i;
@@ -53,7 +53,7 @@ static bool has_avx512(void) {
 }
 #endif
 
-/* NEON is part of every 64-bit ARM, and what the scalar twin becomes there. */
+/* NEON is part of every 64-bit ARM; the scalar code compiles to it there. */
 static bool has_neon(void) {
 #if defined(__aarch64__)
     return true;

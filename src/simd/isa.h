@@ -1,16 +1,16 @@
-/* simd/isa.h - which instruction set the kernels of a picture use.
+/* simd/isa.h - the instruction set of a picture's kernels.
  *
- * A kernel is one template, instantiated once for each level in one file that
- * needs no special compiler flags; a record of function pointers holds the
- * instances and is picked by level:
+ * A kernel is one template, instantiated once for each instruction set in one
+ * file that needs no special compiler flags. A record of function pointers
+ * holds the instances:
  *
- *   scalar   plain C in vectors of 4 floats, which the compiler carries to
- *            SSE2 or NEON: the twin that runs anywhere
+ *   scalar   plain C in vectors of 4 floats, which the compiler translates to
+ *            SSE2 or NEON; runs on any machine
  *   avx2     AVX2 and FMA, 8 floats (2013 and later)
  *   avx512   AVX-512 F, BW, VL, DQ, VBMI and VBMI2, 16 floats (2019 and later)
  *
  * avx2 and avx512 round alike, so their pictures have the same bits; scalar
- * multiplies and adds in two roundings. */
+ * rounds after both multiplication and addition. */
 #ifndef SNOW_ISA_H
 #define SNOW_ISA_H
 
@@ -24,10 +24,10 @@
 #define SNOW_HAS_AVX 0
 #endif
 
-/* Whether this machine runs a level; AUTO and SCALAR always. */
+/* Whether this machine has an instruction set; AUTO and SCALAR always. */
 bool snow_isa_runs(snow_isa isa);
 
-/* The level that AUTO stands for here; any other level is itself. */
+/* The instruction set that AUTO means here; others are returned unchanged. */
 snow_isa snow_isa_resolve(snow_isa isa);
 
 #endif

@@ -1,5 +1,5 @@
-/* simd/vec_avx2.h - the vector vocabulary for AVX2 with FMA.
- * simd/select.h says what the words mean. */
+/* simd/vec_avx2.h - the vector operations for AVX2 with FMA. simd/select.h
+ * describes them. */
 #ifndef SNOW_VEC_AVX2_H
 #define SNOW_VEC_AVX2_H
 
@@ -65,19 +65,19 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha4(snow_avx2_vec v) {
     return _mm256_permute_ps(v, 0xFF);
 }
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_evens2(snow_avx2_vec a,
-                                                snow_avx2_vec b) {
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_deinterleave2(snow_avx2_vec a,
+                                                       snow_avx2_vec b) {
     __m256d low = _mm256_unpacklo_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
     return _mm256_castpd_ps(_mm256_permute4x64_pd(low, 0xD8));
 }
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_evens4(snow_avx2_vec a,
-                                                snow_avx2_vec b) {
+SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_deinterleave4(snow_avx2_vec a,
+                                                       snow_avx2_vec b) {
     return _mm256_permute2f128_ps(a, b, 0x20);
 }
 
-SNOW_AVX2_INLINE void snow_avx2_weave2(snow_avx2_vec a, snow_avx2_vec b,
-                                       float *p) {
+SNOW_AVX2_INLINE void snow_avx2_interleave2(snow_avx2_vec a, snow_avx2_vec b,
+                                            float *p) {
     __m256d low = _mm256_unpacklo_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
     __m256d high = _mm256_unpackhi_pd(_mm256_castps_pd(a), _mm256_castps_pd(b));
     _mm256_storeu_ps(p,
@@ -86,19 +86,19 @@ SNOW_AVX2_INLINE void snow_avx2_weave2(snow_avx2_vec a, snow_avx2_vec b,
                      _mm256_castpd_ps(_mm256_permute2f128_pd(low, high, 0x31)));
 }
 
-SNOW_AVX2_INLINE void snow_avx2_weave4(snow_avx2_vec a, snow_avx2_vec b,
-                                       float *p) {
+SNOW_AVX2_INLINE void snow_avx2_interleave4(snow_avx2_vec a, snow_avx2_vec b,
+                                            float *p) {
     _mm256_storeu_ps(p, _mm256_permute2f128_ps(a, b, 0x20));
     _mm256_storeu_ps(p + 8, _mm256_permute2f128_ps(a, b, 0x31));
 }
 
-SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_fold4(snow_avx2_vec v) {
+SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_hadd4(snow_avx2_vec v) {
     return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(v),
                                        _mm256_extractf128_ps(v, 1));
 }
 
-SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_fold2(snow_avx2_vec v) {
-    __m128 sum = (__m128)snow_avx2_fold4(v);
+SNOW_AVX2_INLINE snow_scalar_vec snow_avx2_hadd2(snow_avx2_vec v) {
+    __m128 sum = (__m128)snow_avx2_hadd4(v);
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
@@ -109,7 +109,7 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_gather4(const float *p,
         _mm_loadu_ps(p + (size_t)n[1] * 4), 1);
 }
 
-/* The pair of floats with number n[i], twice. */
+/* The pair of floats at index n[i], twice. */
 SNOW_AVX2_INLINE __m256d snow_avx2_pair(const float *p, const uint32_t *n,
                                         int i) {
     return _mm256_broadcast_sd(
@@ -153,7 +153,7 @@ SNOW_AVX2_INLINE void snow_avx2_expand16(const uint16_t *p, uint32_t bits,
     }
 }
 
-/* As told in simd/select.h. */
+/* See simd/select.h. */
 #define SNOW_AVX2_NUMBERS(bits_of_number, type)                               \
     SNOW_AVX2_INLINE void snow_avx2_numbers##bits_of_number(                  \
         const type *p, uint32_t bits, float scale, float start, float *out) { \
@@ -173,7 +173,7 @@ SNOW_AVX2_INLINE unsigned snow_avx2_windows(const uint64_t *low,
                                             unsigned shift, uint64_t within,
                                             uint64_t *out) {
     __m128i right = _mm_cvtsi32_si128((int)shift);
-    __m128i left = _mm_cvtsi32_si128((int)(64 - shift)); /* 64 leaves none */
+    __m128i left = _mm_cvtsi32_si128((int)(64 - shift)); /* 64 gives 0 */
     __m256i wanted = _mm256_set1_epi64x((long long)within);
     unsigned found = 0;
     for (int i = 0; i < 8; i += 4) {
@@ -255,18 +255,18 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_halves(const float *low,
                                 _mm_loadu_ps(high), 1);
 }
 
-SNOW_AVX2_INLINE void snow_avx2_twins2(const float *p, const int64_t *at,
-                                       snow_avx2_vec *left,
-                                       snow_avx2_vec *right) {
+SNOW_AVX2_INLINE void snow_avx2_load_pairs2(const float *p, const int64_t *at,
+                                            snow_avx2_vec *left,
+                                            snow_avx2_vec *right) {
     __m256d a = _mm256_castps_pd(snow_avx2_halves(p + at[0], p + at[2]));
     __m256d b = _mm256_castps_pd(snow_avx2_halves(p + at[1], p + at[3]));
     *left = _mm256_castpd_ps(_mm256_unpacklo_pd(a, b));
     *right = _mm256_castpd_ps(_mm256_unpackhi_pd(a, b));
 }
 
-SNOW_AVX2_INLINE void snow_avx2_twins4(const float *p, const int64_t *at,
-                                       snow_avx2_vec *left,
-                                       snow_avx2_vec *right) {
+SNOW_AVX2_INLINE void snow_avx2_load_pairs4(const float *p, const int64_t *at,
+                                            snow_avx2_vec *left,
+                                            snow_avx2_vec *right) {
     *left = snow_avx2_halves(p + at[0], p + at[1]);
     *right = snow_avx2_halves(p + at[0] + 4, p + at[1] + 4);
 }
@@ -289,7 +289,7 @@ SNOW_AVX2_INLINE uint64_t snow_avx2_least4(snow_avx2_vec v) {
         _mm_packus_epi32(two, _mm_setzero_si128()));
 }
 
-/* What is not above is 0 when the other is taken off. */
+/* Saturated subtraction gives 0 where a is not above b. */
 SNOW_AVX2_INLINE unsigned snow_avx2_above16(const uint16_t *a,
                                             const uint16_t *b) {
     __m256i more =
@@ -304,7 +304,8 @@ SNOW_AVX2_INLINE unsigned snow_avx2_above32(const uint16_t *a,
     return snow_avx2_above16(a, b) | snow_avx2_above16(a + 16, b + 16) << 4;
 }
 
-SNOW_AVX2_INLINE void snow_avx2_turn64(const uint8_t *bytes, uint64_t *out) {
+SNOW_AVX2_INLINE void snow_avx2_transpose64(const uint8_t *bytes,
+                                            uint64_t *out) {
     __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)bytes);
     __m256i high =
         _mm256_loadu_si256((const __m256i *)(const void *)(bytes + 32));
@@ -320,7 +321,7 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sqrt(snow_avx2_vec v) {
     return _mm256_sqrt_ps(v);
 }
 
-/* k is in the last bits of the float, and shifted into the exponent. */
+/* k is in the last bits of the float, and is shifted into the exponent. */
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_power2(snow_avx2_vec v) {
     __m256i k =
         _mm256_add_epi32(_mm256_castps_si256(v), _mm256_set1_epi32(127));
@@ -366,7 +367,7 @@ SNOW_AVX2_INLINE void snow_avx2_scatter4(float *p, const uint32_t *n,
     _mm_storeu_ps(p + (size_t)n[1] * 4, _mm256_extractf128_ps(v, 1));
 }
 
-/* Four numbers of 64 bits, in each of which a float is or is not. */
+/* Four 64-bit values: a bit for each with a set bit. */
 SNOW_AVX2_INLINE unsigned snow_avx2_any_of(__m256d v) {
     const __m256i numbers = _mm256_set1_epi32(0x7fffffff);
     __m256i none =
@@ -375,7 +376,7 @@ SNOW_AVX2_INLINE unsigned snow_avx2_any_of(__m256d v) {
     return (unsigned)_mm256_movemask_pd(_mm256_castsi256_pd(none)) ^ 15;
 }
 
-SNOW_AVX2_INLINE unsigned snow_avx2_some4(const float *p) {
+SNOW_AVX2_INLINE unsigned snow_avx2_nonzero4(const float *p) {
     unsigned bits = 0;
     for (int i = 0; i < 16; i += 4, p += 16) {
         __m256d a = _mm256_castps_pd(_mm256_loadu_ps(p));
@@ -396,7 +397,7 @@ SNOW_AVX2_INLINE unsigned snow_avx2_some2(const float *p) {
     return bits;
 }
 
-/* Eight bits at a time: as bytes all of ones they pick bytes of 0 to 7. */
+/* Eight bits at a time: expanded to bytes they select from the bytes 0 to 7. */
 SNOW_AVX2_INLINE int snow_avx2_list(uint64_t bits, uint32_t *n) {
     uint32_t *const begin = n;
     for (int at = 0; at < 64; at += 8, bits >>= 8) {

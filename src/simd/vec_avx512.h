@@ -1,5 +1,5 @@
-/* simd/vec_avx512.h - the vector vocabulary for AVX-512 of 2019 (Ice Lake).
- * simd/select.h says what the words mean. */
+/* simd/vec_avx512.h - the vector operations for AVX-512 of 2019 (Ice Lake).
+ * simd/select.h describes them. */
 #ifndef SNOW_VEC_AVX512_H
 #define SNOW_VEC_AVX512_H
 
@@ -75,15 +75,15 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha4(snow_avx512_vec v) {
     return _mm512_permute_ps(v, 0xFF);
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_evens2(snow_avx512_vec a,
-                                                      snow_avx512_vec b) {
+SNOW_AVX512_INLINE snow_avx512_vec
+snow_avx512_deinterleave2(snow_avx512_vec a, snow_avx512_vec b) {
     return _mm512_castpd_ps(_mm512_permutex2var_pd(
         _mm512_castps_pd(a), _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14),
         _mm512_castps_pd(b)));
 }
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_evens4(snow_avx512_vec a,
-                                                      snow_avx512_vec b) {
+SNOW_AVX512_INLINE snow_avx512_vec
+snow_avx512_deinterleave4(snow_avx512_vec a, snow_avx512_vec b) {
     return _mm512_castpd_ps(_mm512_permutex2var_pd(
         _mm512_castps_pd(a), _mm512_setr_epi64(0, 1, 4, 5, 8, 9, 12, 13),
         _mm512_castps_pd(b)));
@@ -98,31 +98,31 @@ SNOW_AVX512_INLINE void snow_avx512_interleave(snow_avx512_vec a,
                      _mm512_castpd_ps(_mm512_permutex2var_pd(x, high, y)));
 }
 
-SNOW_AVX512_INLINE void snow_avx512_weave2(snow_avx512_vec a, snow_avx512_vec b,
-                                           float *p) {
+SNOW_AVX512_INLINE void snow_avx512_interleave2(snow_avx512_vec a,
+                                                snow_avx512_vec b, float *p) {
     snow_avx512_interleave(a, b, _mm512_setr_epi64(0, 8, 1, 9, 2, 10, 3, 11),
                            _mm512_setr_epi64(4, 12, 5, 13, 6, 14, 7, 15), p);
 }
 
-SNOW_AVX512_INLINE void snow_avx512_weave4(snow_avx512_vec a, snow_avx512_vec b,
-                                           float *p) {
+SNOW_AVX512_INLINE void snow_avx512_interleave4(snow_avx512_vec a,
+                                                snow_avx512_vec b, float *p) {
     snow_avx512_interleave(a, b, _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
                            _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15), p);
 }
 
-SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold4(snow_avx512_vec v) {
+SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_hadd4(snow_avx512_vec v) {
     __m256 half =
         _mm256_add_ps(_mm512_castps512_ps256(v), _mm512_extractf32x8_ps(v, 1));
     return (snow_scalar_vec)_mm_add_ps(_mm256_castps256_ps128(half),
                                        _mm256_extractf128_ps(half, 1));
 }
 
-SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_fold2(snow_avx512_vec v) {
-    __m128 sum = (__m128)snow_avx512_fold4(v);
+SNOW_AVX512_INLINE snow_scalar_vec snow_avx512_hadd2(snow_avx512_vec v) {
+    __m128 sum = (__m128)snow_avx512_hadd4(v);
     return (snow_scalar_vec)_mm_add_ps(sum, _mm_movehl_ps(sum, sum));
 }
 
-/* Puts the 16 bytes of an entry into a place. */
+/* Inserts the 16 bytes of an entry at a position. */
 #define SNOW_AVX512_FOUR(v, place, p, n) \
     _mm512_insertf32x4(v, _mm_loadu_ps((p) + 4 * (size_t)(n)), place)
 
@@ -297,9 +297,10 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_runs(const float *p,
     return _mm512_insertf32x4(v, _mm_loadu_ps(p + at[3]), 3);
 }
 
-SNOW_AVX512_INLINE void snow_avx512_twins2(const float *p, const int64_t *at,
-                                           snow_avx512_vec *left,
-                                           snow_avx512_vec *right) {
+SNOW_AVX512_INLINE void snow_avx512_load_pairs2(const float *p,
+                                                const int64_t *at,
+                                                snow_avx512_vec *left,
+                                                snow_avx512_vec *right) {
     __m512d a = _mm512_castps_pd(snow_avx512_runs(p, at));
     __m512d b = _mm512_castps_pd(snow_avx512_runs(p, at + 4));
     const __m512i even = _mm512_setr_epi64(0, 2, 4, 6, 8, 10, 12, 14);
@@ -308,9 +309,10 @@ SNOW_AVX512_INLINE void snow_avx512_twins2(const float *p, const int64_t *at,
     *right = _mm512_castpd_ps(_mm512_permutex2var_pd(a, odd, b));
 }
 
-SNOW_AVX512_INLINE void snow_avx512_twins4(const float *p, const int64_t *at,
-                                           snow_avx512_vec *left,
-                                           snow_avx512_vec *right) {
+SNOW_AVX512_INLINE void snow_avx512_load_pairs4(const float *p,
+                                                const int64_t *at,
+                                                snow_avx512_vec *left,
+                                                snow_avx512_vec *right) {
     *left = snow_avx512_runs(p, at);
     *right = snow_avx512_runs(p + 4, at);
 }
@@ -340,8 +342,8 @@ SNOW_AVX512_INLINE unsigned snow_avx512_above32(const uint16_t *a,
     return _mm512_test_epi64_mask(more, more);
 }
 
-SNOW_AVX512_INLINE void snow_avx512_turn64(const uint8_t *bytes,
-                                           uint64_t *out) {
+SNOW_AVX512_INLINE void snow_avx512_transpose64(const uint8_t *bytes,
+                                                uint64_t *out) {
     __m512i all = _mm512_loadu_si512(bytes);
     for (int n = 0; n < 8; n++)
         out[n] = _mm512_test_epi8_mask(all, _mm512_set1_epi8((char)(1 << n)));
@@ -351,7 +353,7 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sqrt(snow_avx512_vec v) {
     return _mm512_sqrt_ps(v);
 }
 
-/* k is in the last bits of the float, and shifted into the exponent. */
+/* k is in the last bits of the float, and is shifted into the exponent. */
 SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_power2(snow_avx512_vec v) {
     __m512i k =
         _mm512_add_epi32(_mm512_castps_si512(v), _mm512_set1_epi32(127));
@@ -403,12 +405,12 @@ SNOW_AVX512_INLINE void snow_avx512_scatter4(float *p, const uint32_t *n,
     _mm_storeu_ps(p + (size_t)n[3] * 4, _mm512_extractf32x4_ps(v, 3));
 }
 
-/* A bit for each of eight numbers of 64 bits: without signs, is it 0? */
+/* A bit for each of eight 64-bit values that is not 0, ignoring signs. */
 SNOW_AVX512_INLINE unsigned snow_avx512_any_of(__m512i v) {
     return _mm512_test_epi64_mask(v, _mm512_set1_epi32(0x7fffffff));
 }
 
-/* Eight pixels: halves in the order a0 b0 a1 b1 ..., then in theirs. */
+/* Eight pixels: halves in the order a0 b0 a1 b1 ..., then reordered. */
 SNOW_AVX512_INLINE unsigned snow_avx512_some_of_8(const float *p) {
     const __m512i order = _mm512_setr_epi64(0, 2, 4, 6, 1, 3, 5, 7);
     __m512i a = _mm512_loadu_si512(p), b = _mm512_loadu_si512(p + 16);
@@ -417,7 +419,7 @@ SNOW_AVX512_INLINE unsigned snow_avx512_some_of_8(const float *p) {
     return snow_avx512_any_of(_mm512_permutexvar_epi64(order, both));
 }
 
-SNOW_AVX512_INLINE unsigned snow_avx512_some4(const float *p) {
+SNOW_AVX512_INLINE unsigned snow_avx512_nonzero4(const float *p) {
     return snow_avx512_some_of_8(p) | snow_avx512_some_of_8(p + 32) << 8;
 }
 
@@ -454,8 +456,8 @@ SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_next2(const float *p,
         _mm512_maskz_expand_pd((__mmask8)bits, _mm512_loadu_pd(p)));
 }
 
-SNOW_AVX512_INLINE int snow_avx512_squeeze2(const float *p, unsigned bits,
-                                            float *out) {
+SNOW_AVX512_INLINE int snow_avx512_compress2(const float *p, unsigned bits,
+                                             float *out) {
     const __mmask8 here = (__mmask8)bits;
     __m512d v = _mm512_maskz_loadu_pd(here, p);
     _mm512_storeu_pd(out, _mm512_maskz_compress_pd(here, v));

@@ -1,6 +1,6 @@
-/* simd/vec_scalar.h - the vector vocabulary for machines of any kind: vectors
- * of 4 floats that the compiler carries to SSE2, NEON or plain instructions.
- * simd/select.h says what the words mean. */
+/* simd/vec_scalar.h - the vector operations for any machine: vectors of 4
+ * floats that the compiler translates to SSE2, NEON or plain instructions.
+ * simd/select.h describes them. */
 #ifndef SNOW_VEC_SCALAR_H
 #define SNOW_VEC_SCALAR_H
 
@@ -52,7 +52,7 @@ snow_scalar_fnma(snow_scalar_vec a, snow_scalar_vec b, snow_scalar_vec c) {
     return c - a * b;
 }
 
-/* Picks a's bits where the mask is set, else b's. */
+/* Selects a's bits where the mask is set, else b's. */
 static inline snow_scalar_vec snow_scalar_choose(snow_scalar_mask mask,
                                                  snow_scalar_vec a,
                                                  snow_scalar_vec b) {
@@ -78,34 +78,34 @@ static inline snow_scalar_vec snow_scalar_alpha4(snow_scalar_vec v) {
     return (snow_scalar_vec){v[3], v[3], v[3], v[3]};
 }
 
-static inline snow_scalar_vec snow_scalar_evens2(snow_scalar_vec a,
-                                                 snow_scalar_vec b) {
+static inline snow_scalar_vec snow_scalar_deinterleave2(snow_scalar_vec a,
+                                                        snow_scalar_vec b) {
     return (snow_scalar_vec){a[0], a[1], b[0], b[1]};
 }
 
-static inline snow_scalar_vec snow_scalar_evens4(snow_scalar_vec a,
-                                                 snow_scalar_vec b) {
+static inline snow_scalar_vec snow_scalar_deinterleave4(snow_scalar_vec a,
+                                                        snow_scalar_vec b) {
     (void)b;
     return a;
 }
 
-static inline void snow_scalar_weave2(snow_scalar_vec a, snow_scalar_vec b,
-                                      float *p) {
+static inline void snow_scalar_interleave2(snow_scalar_vec a, snow_scalar_vec b,
+                                           float *p) {
     snow_scalar_store(p, (snow_scalar_vec){a[0], a[1], b[0], b[1]});
     snow_scalar_store(p + 4, (snow_scalar_vec){a[2], a[3], b[2], b[3]});
 }
 
-static inline void snow_scalar_weave4(snow_scalar_vec a, snow_scalar_vec b,
-                                      float *p) {
+static inline void snow_scalar_interleave4(snow_scalar_vec a, snow_scalar_vec b,
+                                           float *p) {
     snow_scalar_store(p, a);
     snow_scalar_store(p + 4, b);
 }
 
-static inline snow_scalar_vec snow_scalar_fold2(snow_scalar_vec v) {
+static inline snow_scalar_vec snow_scalar_hadd2(snow_scalar_vec v) {
     return (snow_scalar_vec){v[0] + v[2], v[1] + v[3], 0, 0};
 }
 
-static inline snow_scalar_vec snow_scalar_fold4(snow_scalar_vec v) {
+static inline snow_scalar_vec snow_scalar_hadd4(snow_scalar_vec v) {
     return v;
 }
 
@@ -148,7 +148,7 @@ static inline void snow_scalar_expand16(const uint16_t *p, uint32_t bits,
     }
 }
 
-/* As told in simd/select.h. */
+/* See simd/select.h. */
 #define SNOW_SCALAR_NUMBERS(bits_of_number, type)                             \
     static inline void snow_scalar_numbers##bits_of_number(                   \
         const type *p, uint32_t bits, float scale, float start, float *out) { \
@@ -163,7 +163,7 @@ SNOW_SCALAR_NUMBERS(8, uint8_t)
 SNOW_SCALAR_NUMBERS(16, uint16_t)
 #undef SNOW_SCALAR_NUMBERS
 
-/* As told in simd/select.h; in two steps, since a shift by 64 is none. */
+/* See simd/select.h; in two steps, since a shift by 64 is undefined. */
 static inline unsigned snow_scalar_windows(const uint64_t *low,
                                            const uint64_t *high, unsigned shift,
                                            uint64_t within, uint64_t *out) {
@@ -212,18 +212,18 @@ static inline void snow_scalar_spread4(const float *p, uint64_t bits, int count,
 }
 
 /* By adding neighbouring groups of bits (Wilkes, Wheeler and Gill 1957). */
-static inline void snow_scalar_twins2(const float *p, const int64_t *at,
-                                      snow_scalar_vec *left,
-                                      snow_scalar_vec *right) {
+static inline void snow_scalar_load_pairs2(const float *p, const int64_t *at,
+                                           snow_scalar_vec *left,
+                                           snow_scalar_vec *right) {
     snow_scalar_vec a = snow_scalar_load(p + at[0]);
     snow_scalar_vec b = snow_scalar_load(p + at[1]);
     *left = (snow_scalar_vec){a[0], a[1], b[0], b[1]};
     *right = (snow_scalar_vec){a[2], a[3], b[2], b[3]};
 }
 
-static inline void snow_scalar_twins4(const float *p, const int64_t *at,
-                                      snow_scalar_vec *left,
-                                      snow_scalar_vec *right) {
+static inline void snow_scalar_load_pairs4(const float *p, const int64_t *at,
+                                           snow_scalar_vec *left,
+                                           snow_scalar_vec *right) {
     *left = snow_scalar_load(p + *at);
     *right = snow_scalar_load(p + *at + 4);
 }
@@ -241,7 +241,7 @@ static inline int snow_scalar_any_less(snow_scalar_vec a, snow_scalar_vec b) {
     return (less[0] | less[1] | less[2] | less[3]) != 0;
 }
 
-/* A sum with 1.5 * 2^23 has no fraction. */
+/* A sum with 1.5 * 2^23 has no fraction bits. */
 static inline uint64_t snow_scalar_least4(snow_scalar_vec v) {
     float a = v[0] < v[1] ? v[0] : v[1], b = v[2] < v[3] ? v[2] : v[3];
     float least = a < b ? a : b;
@@ -257,7 +257,8 @@ static inline unsigned snow_scalar_above32(const uint16_t *a,
     return above;
 }
 
-static inline void snow_scalar_turn64(const uint8_t *bytes, uint64_t *out) {
+static inline void snow_scalar_transpose64(const uint8_t *bytes,
+                                           uint64_t *out) {
     for (int n = 0; n < 8; n++) {
         out[n] = 0;
         for (int m = 0; m < 64; m++)
@@ -270,7 +271,7 @@ static inline snow_scalar_vec snow_scalar_sqrt(snow_scalar_vec v) {
                              __builtin_sqrtf(v[2]), __builtin_sqrtf(v[3])};
 }
 
-/* k is in the last bits of the float, and shifted into the exponent. */
+/* k is in the last bits of the float, and is shifted into the exponent. */
 static inline snow_scalar_vec snow_scalar_power2(snow_scalar_vec v) {
     typedef unsigned bits __attribute__((vector_size(16)));
     return (snow_scalar_vec)(((bits)v + 127) << 23);
@@ -309,8 +310,8 @@ static inline void snow_scalar_scatter4(float *p, const uint32_t *n,
     snow_scalar_store(p + (size_t)n[0] * 4, v);
 }
 
-/* As two words each, without their signs. */
-static inline unsigned snow_scalar_some4(const float *p) {
+/* As two words each, ignoring their signs. */
+static inline unsigned snow_scalar_nonzero4(const float *p) {
     const uint64_t numbers = 0x7fffffff7fffffff;
     unsigned bits = 0;
     for (int i = 0; i < 16; i++) {

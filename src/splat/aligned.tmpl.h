@@ -1,17 +1,18 @@
 /* splat/aligned.tmpl.h - the inner loops of splatting where the slice's axes
- * lie along the image's.  Define before including:
+ * are parallel to the image's. Define before including:
  *
  *   SPLAT_CHANNELS  floats of a sample and of a pixel: 2 or 4
  *   SPLAT_ROW       name of the function
  *   SPLAT_STAMP     name of its helper
  *
- * All are undefined at the end.  Original splatting and the three encodings
- * run through these same loops, and the order of additions to a pixel is that
- * of the voxels: an encoding cannot change a bit. */
+ * All are undefined at the end.  Splatting without encoding and the three
+ * encodings use these same loops, and additions to a pixel are in the order of
+ * the voxels: an encoding cannot change a bit. */
 
 /* Adds one voxel: the product of a run of taps along x and one along y. */
-static inline void SPLAT_STAMP(snow_sheet *sheet, const snow_taps *taps_x,
-                               int64_t x, const snow_taps *taps_y, int64_t y,
+static inline void SPLAT_STAMP(snow_sheet *sheet,
+                               const snow_footprint_table *taps_x, int64_t x,
+                               const snow_footprint_table *taps_y, int64_t y,
                                const float *sample) {
     const float *weights_x = taps_x->weights + taps_x->offset[x];
     const float *weights_y = taps_y->weights + taps_y->offset[y];
@@ -39,7 +40,7 @@ static inline void SPLAT_STAMP(snow_sheet *sheet, const snow_taps *taps_x,
 static void SPLAT_ROW(const snow_splatter *splatter, snow_sheet *sheet,
                       int64_t row, const snow_span *spans, size_t count,
                       const float *samples) {
-    const snow_taps *u = &splatter->taps_u, *v = &splatter->taps_v;
+    const snow_footprint_table *u = &splatter->taps_u, *v = &splatter->taps_v;
     if (!v->count[row])
         return;
     for (size_t s = 0; s < count; s++) {

@@ -1,7 +1,7 @@
-/* splat/dense.c - a slice spread out; see splat/dense.h.
+/* splat/dense.c - decompresses a slice; see splat/dense.h.
  *
- * Between slices only what differs is touched: a row remembers its extent, the
- * span beyond which it is zeros, and gaps are cleared no further. */
+ * From slice to slice only what differs is written: a row keeps its extent, the
+ * span outside of which it is zero, and only gaps within are cleared. */
 #include "splat/dense.h"
 
 #include <string.h>
@@ -48,11 +48,11 @@ static bool same_shape(const snow_dense_shape *a, const snow_dense_shape *b) {
 snow_status snow_dense_make(snow_context *context,
                             const snow_dense_shape *shape, snow_dense *d) {
     if (same_shape(&d->shape, shape))
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     size_t rows = (size_t)shape->rows;
     size_t samples = row_floats(shape) * all_rows(shape) * sizeof(float);
     size_t map_row = map_words(shape) * sizeof(uint32_t);
-    d->shape = (snow_dense_shape){0}; /* of no use if memory ends */
+    d->shape = (snow_dense_shape){0}; /* invalid if memory runs out */
     SNOW_TRY(
         snow_reserve(context, &d->samples, &d->samples_capacity, 0, samples));
     SNOW_TRY(snow_reserve(context, &d->row_bits, &d->bits_capacity, 0,
@@ -66,7 +66,7 @@ snow_status snow_dense_make(snow_context *context,
     d->stride = row_floats(shape);
     d->words = map_words(shape);
     d->shape = *shape;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_dense_fini(snow_context *context, snow_dense *d) {
@@ -99,7 +99,7 @@ void snow_dense_begin(snow_dense *d) {
     d->c1 = d->r1 = 0;
 }
 
-/* Clears columns begin .. end - 1 of a row, if that is any. */
+/* Clears columns begin .. end - 1 of a row, if there are any. */
 static void clear(float *row, size_t begin, size_t end, size_t channels) {
     if (begin < end)
         memset(row + begin * channels, 0,

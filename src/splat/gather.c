@@ -4,21 +4,21 @@
 
 #include <math.h>
 
-/* Pixels and windows by which bounds are taken too wide, so that rounding
- * loses nothing; the map of reached windows decides. */
+/* Pixels and windows added to bounds, so that rounding loses nothing; the map
+ * of reached windows decides. */
 #define SLACK 1e-3
 
-#define CHUNK SNOW_GATHER_CHUNK /* pixels whose places are found at once */
+#define CHUNK SNOW_GATHER_CHUNK /* pixels located at once */
 
 /* The alpha of an opaque pixel. */
 #define OPAQUE (1 - 0x1p-22f)
 
 #if SNOW_HAS_AVX
-/* Runs of set bits, from pixel `begin` on (a multiple of 16) and before `end`
- * and the image's edge; returns their number. */
+/* Runs of set bits from pixel `begin` (a multiple of 16) to before `end` and
+ * the image's edge; returns their number. */
 static int find_runs(const uint16_t *reached, int begin, int end, int width,
                      snow_run *runs) {
-    int count = 0, open = -1; /* where the run began that is still open */
+    int count = 0, open = -1; /* start of the run that is still open */
     for (int x = begin; x < end; x += CHUNK) {
         unsigned bits = reached[x / CHUNK];
         if (x + CHUNK > width)
@@ -42,8 +42,8 @@ static int find_runs(const uint16_t *reached, int begin, int end, int width,
     return count;
 }
 
-/* Keeps what was stored from being kept in registers as well: weights are
- * spread for nothing where they are loaded. */
+/* Forces stored values to be loaded again rather than kept in registers: a load
+ * spreads weights at no cost. */
 #define THROUGH_MEMORY __asm__("" ::: "memory")
 
 #define SELECT_AVX2
@@ -127,44 +127,44 @@ snow_status snow_places_make(snow_context *context, int width,
     places->u = places->rest_v + pixels;
     places->v = places->u + 4 * pixels;
     places->reached = (uint16_t *)(void *)(places->v + 4 * pixels);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_gatherer_make(snow_context *context, const snow_placement *p,
                                snow_kernel kernel, int support, int channels,
                                snow_isa isa, snow_gatherer *g, bool *serves) {
-    snow_taper u = snow_taper_make(kernel, support,
-                                   hypot(p->inverse[0][0], p->inverse[0][1]));
-    snow_taper v = snow_taper_make(kernel, support,
-                                   hypot(p->inverse[1][0], p->inverse[1][1]));
+    snow_scaled_kernel u = snow_scaled_kernel_make(
+        kernel, support, hypot(p->inverse[0][0], p->inverse[0][1]));
+    snow_scaled_kernel v = snow_scaled_kernel_make(
+        kernel, support, hypot(p->inverse[1][0], p->inverse[1][1]));
     *serves = false;
-    if (!snow_phases_serve(&u) || !snow_phases_serve(&v))
-        return SNOW_OK;
-    int taps_u = snow_taper_taps(&u);
+    if (!snow_kernel_table_serve(&u) || !snow_kernel_table_serve(&v))
+        return SNOW_STATUS_OK;
+    int taps_u = snow_scaled_kernel_taps(&u);
     g->placement = p;
     g->gather = pick(isa, channels, taps_u);
     g->shape = (snow_dense_shape){.columns = p->columns,
                                   .rows = p->rows,
                                   .channels = channels,
                                   .taps_u = taps_u,
-                                  .taps_v = snow_taper_taps(&v),
+                                  .taps_v = snow_scaled_kernel_taps(&v),
                                   .padded_u = (taps_u + 3) / 4 * 4};
     if (!g->gather || !snow_dense_serves(&g->shape))
-        return SNOW_OK;
-    SNOW_TRY(snow_phases_make(context, &u, &g->phases_u));
-    SNOW_TRY(snow_phases_make(context, &v, &g->phases_v));
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_kernel_table_make(context, &u, &g->phases_u));
+    SNOW_TRY(snow_kernel_table_make(context, &v, &g->phases_v));
     g->cubic = g->phases_u.cubic && g->phases_v.cubic;
     *serves = true;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_gatherer_fini(snow_context *context, snow_gatherer *g) {
-    snow_phases_fini(context, &g->phases_u);
-    snow_phases_fini(context, &g->phases_v);
+    snow_kernel_table_fini(context, &g->phases_u);
+    snow_kernel_table_fini(context, &g->phases_v);
     *g = (snow_gatherer){0};
 }
 
-/* Where on the image voxel (0, 0) of a slice lies. */
+/* Image position of voxel (0, 0) of a slice. */
 static void slice_origin(const snow_placement *p, int64_t slice,
                          double origin[2]) {
     for (int i = 0; i < 2; i++)
@@ -233,8 +233,8 @@ int snow_gather_row(const snow_gatherer *g, const snow_dense *d, int64_t slice,
     return g->gather(g, d, &line, places, pixels, runs);
 }
 
-/* Whether any of so many floats is that of an opaque pixel's alpha; without a
- * branch, for the compiler to make vectors of. */
+/* Whether any of `count` floats is the alpha of an opaque pixel; without a
+ * branch, so that the compiler can vectorize it. */
 static bool any_opaque(const float *floats, int count) {
     int any = 0;
     for (int n = 0; n < count; n++)

@@ -1,23 +1,24 @@
 /* splat/gather.tmpl.h - the inner loops of splatting in gather form, for one
- * level.  Define before including, after a level was selected:
+ * instruction set. Include simd/select.h first, and define:
  *
  *   GATHER_CHANNELS  floats of a sample and of a pixel: 2 or 4
- *   LOCAL(word)      the name of a function; LOCAL(row) is the one of use
+ *   LOCAL(word)      the name of a function; LOCAL(row) is the public one
  *   B(word)          the block of voxels (splat/words.h) that is gathered at
  *                    once: 4 voxels, or 2 of four channels
  *   BLOCK_VOXELS     those 4 or 2
  *
  * GATHER_CHANNELS, LOCAL, B and BLOCK_VOXELS are undefined at the end.
  *
- * Pixels go in chunks of 16 whatever the level, counted from the image's edge:
- * a chunk's place is a double, and what its lanes add to it is small.  First
- * all pixels of the row find their windows and phases, then the reached ones
- * their weights, up to 16 at a time, and then they gather:
+ * Pixels are processed in chunks of 16 for every instruction set, counted from
+ * the image's edge: a chunk's position is a double, and the offsets of its
+ * lanes are small. First the windows and phases of all pixels of the row are
+ * found, then the weights of the reached ones, up to 16 at a time, and then
+ * they are gathered:
  *
  *   acc = sum over rows j of v_j * block(row j)      whole blocks
  *   pixel = fold(u * acc)                            weights u spread out
  *
- * Weights go through memory, where they are spread for nothing by loading. */
+ * Weights go through memory, because a load spreads them at no cost. */
 
 /* Weights of four voxels at a phase, for all `padded` voxels of a row. */
 static inline __attribute__((always_inline)) TARGET void
@@ -31,7 +32,8 @@ LOCAL(weights)(const float *table, int padded, float rest, float *weights) {
     }
 }
 
-/* Sums one pixel, but for folding; `taps` rows, `blocks` blocks a row. */
+/* Sums one pixel, except for the horizontal sum; `taps` rows, `blocks` blocks a
+ * row. */
 static inline __attribute__((always_inline)) TARGET B(block)
     LOCAL(sum)(const float *window, size_t stride, const float *u,
                const float *v, int taps, int blocks) {
@@ -62,8 +64,8 @@ LOCAL(pixel)(const float *window, size_t stride, const float *u, const float *v,
 #endif
 }
 
-/* Pixels first .. end - 1 of a row, their weights out of the tables, 16 at
- * most. */
+/* Pixels first .. end - 1 of a row, at most 16, with weights from the tables.
+ */
 static inline __attribute__((always_inline)) TARGET void
 LOCAL(tabled)(const snow_gatherer *g, const snow_dense *d, const snow_places *p,
               int first, int end, int taps, int blocks, int padded_u,
@@ -85,7 +87,7 @@ LOCAL(tabled)(const snow_gatherer *g, const snow_dense *d, const snow_places *p,
      pixels + (size_t)(first + n) * GATHER_CHANNELS);
 }
 
-/* The same for a run of any length, whose weights are there already. */
+/* The same for a run of any length, with weights computed already. */
 static inline __attribute__((always_inline)) TARGET void
 LOCAL(cubic)(const snow_dense *d, const snow_places *p, snow_run run, int taps,
              int blocks, float *pixels) {
@@ -109,7 +111,7 @@ LOCAL(cubic)(const snow_dense *d, const snow_places *p, snow_run run, int taps,
      taps, blocks, pixels + (size_t)n * GATHER_CHANNELS);
 }
 
-/* A run of pixels, the usual numbers of taps as constants. */
+/* A run of pixels; the usual numbers of taps are constants. */
 static TARGET void LOCAL(run)(const snow_gatherer *g, const snow_dense *d,
                               const snow_places *p, snow_run run,
                               float *pixels) {
@@ -151,8 +153,8 @@ LOCAL(cubics)(const float (*cubics)[4], V(vec) phase, float *weights) {
     V(store_fours)(weights, w[0], w[1], w[2], w[3]);
 }
 
-/* Finds the places of a chunk that begins at pixel x; returns which of its
- * pixels are reached, the first one lowest. */
+/* Locates the pixels of a chunk that begins at pixel x; returns the mask of
+ * those that are reached, the first one lowest. */
 static inline __attribute__((always_inline)) TARGET unsigned
 LOCAL(locate)(const snow_gatherer *g, const snow_dense *d,
               const snow_line *line, int x, const snow_places *p, bool cubic) {
@@ -171,7 +173,8 @@ LOCAL(locate)(const snow_gatherer *g, const snow_dense *d,
         V(vec) floor_u = V(floor)(at_u), floor_v = V(floor)(at_v);
         V(ints) i = V(add_int)(V(to_ints)(floor_u), (int)whole_u);
         V(ints) j = V(add_int)(V(to_ints)(floor_v), (int)whole_v);
-        /* Windows out of the slice become those at its ends: empty ones. */
+        /* Windows outside of the slice become those at its ends, which are
+         * empty. */
         i = V(clamp)(i, 0, last_u);
         j = V(clamp)(j, 0, last_v);
         unsigned bits = V(bits)(d->reached, (int)d->words, i, j);
@@ -197,7 +200,7 @@ LOCAL(locate)(const snow_gatherer *g, const snow_dense *d,
     return reached;
 }
 
-/* The same of the pixels that are open. */
+/* The same for the pixels whose bits in `open` are set. */
 static inline __attribute__((always_inline)) TARGET uint16_t
 LOCAL(wanted)(const snow_gatherer *g, const snow_dense *d,
               const snow_line *line, int x, const snow_places *p, bool cubic) {

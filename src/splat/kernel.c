@@ -1,24 +1,24 @@
-/* splat/kernel.c - the kernels of splat/kernel.h, in double, and their tables.
- */
+/* splat/kernel.c - the kernels of splat/kernel.h in double precision, and their
+ * tables. */
 #include "splat/kernel.h"
 
 #include <limits.h>
 #include <math.h>
 #include <string.h>
 
-#define EDGE 1e-5 /* distances that count as on an edge, voxels */
+#define EDGE 1e-5 /* distances to an edge that count as 0, voxels */
 #define CELLS_PER_VOXEL 256
 #define CELLS_PER_VOXEL_KINKED 1024 /* supports of 2: see below */
 #define MARGIN_CELLS 2              /* empty cells on either side of a table */
 
-/* No table has more cells on either side of its middle: a kernel that is wide
- * enough to need them is smooth at this pitch, and places in the table stay far
- * below 2^24, where a float would miss a cell. */
+/* The most cells on either side of a table's middle. A kernel wide enough to
+ * need more is smooth at this pitch, and positions in the table stay far below
+ * 2^24, where a float would miss a cell. */
 #define HALF_CELLS_MOST 32768
 
-/* From this width on the sum over all integer shifts is the integral: what
- * Poisson's formula adds is 2 / (pi w)^2 of it for the linear B-spline, 5e-5,
- * and less for the others.  The sum itself would cost w K terms. */
+/* From this width on the integral replaces the sum over all integer shifts. By
+ * Poisson's formula they differ by 2 / (pi w)^2 of it for the linear B-spline,
+ * 5e-5, and by less for the others. The sum itself would cost w K terms. */
 #define WIDE_ENOUGH 64
 
 /* The centred B-spline of order K (degree K - 1), by de Boor's recursion over
@@ -83,7 +83,7 @@ const char *snow_kernel_name(snow_kernel kernel) {
     return (int)kernel < KERNEL_COUNT ? kernels[kernel].name : NULL;
 }
 
-int snow_kernel_named(const char *name) {
+int snow_kernel_from_name(const char *name) {
     for (int i = 0; i < KERNEL_COUNT; i++)
         if (strcmp(name, kernels[i].name) == 0)
             return i;
@@ -107,58 +107,66 @@ static double variance_of(snow_kernel kernel, double support) {
     }
 }
 
-snow_taper snow_taper_make(snow_kernel kernel, int support, double rho) {
-    return snow_taper_make_level(kernel, support, rho, 1);
+snow_scaled_kernel snow_scaled_kernel_make(snow_kernel kernel, int support,
+                                           double rho) {
+    return snow_scaled_kernel_make_level(kernel, support, rho, 1);
 }
 
-snow_taper snow_taper_make_level(snow_kernel kernel, int support, double rho,
-                                 double fine) {
+snow_scaled_kernel snow_scaled_kernel_make_level(snow_kernel kernel,
+                                                 int support, double rho,
+                                                 double fine) {
     double pixel = (rho * rho - 1) / (12 * variance_of(kernel, support));
     double wide = sqrt(fmax(1, fine * fine + pixel));
-    return (snow_taper){kernel, support, wide * support / 2, wide};
+    return (snow_scaled_kernel){kernel, support, wide * support / 2, wide};
 }
 
-bool snow_taper_covers(const snow_taper *taper, double t) {
-    return t >= -taper->half - EDGE && t < taper->half - EDGE;
+bool snow_scaled_kernel_covers(const snow_scaled_kernel *scaled_kernel,
+                               double t) {
+    return t >= -scaled_kernel->half - EDGE && t < scaled_kernel->half - EDGE;
 }
 
-double snow_taper_reach(const snow_taper *taper) {
-    return taper->half + 2 * EDGE;
+double snow_scaled_kernel_reach(const snow_scaled_kernel *scaled_kernel) {
+    return scaled_kernel->half + 2 * EDGE;
 }
 
-/* b(t / w), 0 outside of the support. */
-static double value_at(const snow_taper *taper, double t) {
-    if (!snow_taper_covers(taper, t))
+/* b(t / w); 0 outside the support. */
+static double value_at(const snow_scaled_kernel *scaled_kernel, double t) {
+    if (!snow_scaled_kernel_covers(scaled_kernel, t))
         return 0;
-    return kernels[taper->kernel].value(taper->support, t / taper->wide);
+    return kernels[scaled_kernel->kernel].value(scaled_kernel->support,
+                                                t / scaled_kernel->wide);
 }
 
-double snow_taper_weight(const snow_taper *taper, double t) {
-    double value = value_at(taper, t), sum = 0;
+double snow_scaled_kernel_weight(const snow_scaled_kernel *scaled_kernel,
+                                 double t) {
+    double value = value_at(scaled_kernel, t), sum = 0;
     if (value <= 0)
         return 0;
-    if (taper->kernel == SNOW_KERNEL_BOX)
-        return snow_taper_box(taper, t);
-    if (taper->wide >= WIDE_ENOUGH)
+    if (scaled_kernel->kernel == SNOW_KERNEL_BOX)
+        return snow_scaled_kernel_box(scaled_kernel, t);
+    if (scaled_kernel->wide >= WIDE_ENOUGH)
         return value /
-               (taper->wide * kernels[taper->kernel].area(taper->support));
-    double first = ceil(-taper->half - EDGE - t);
-    for (double n = first; t + n < taper->half - EDGE; n++)
-        sum += value_at(taper, t + n);
+               (scaled_kernel->wide *
+                kernels[scaled_kernel->kernel].area(scaled_kernel->support));
+    double first = ceil(-scaled_kernel->half - EDGE - t);
+    for (double n = first; t + n < scaled_kernel->half - EDGE; n++)
+        sum += value_at(scaled_kernel, t + n);
     return value / sum;
 }
 
-void snow_taper_spread(const snow_taper *taper, double t, int first, int count,
-                       float *weights) {
+void snow_scaled_kernel_spread(const snow_scaled_kernel *scaled_kernel,
+                               double t, int first, int count, float *weights) {
     double sum = 0, values[SNOW_PHASE_TAPS_MOST];
     for (int n = 0; n < count; n++)
-        sum += values[n] = value_at(taper, t - (first + n));
+        sum += values[n] = value_at(scaled_kernel, t - (first + n));
     for (int n = 0; n < count; n++)
         weights[n] = (float)(values[n] / sum);
 }
 
-float snow_taper_box(const snow_taper *taper, double t) {
-    double from_left = t + taper->half + EDGE, width = 2 * taper->half;
+float snow_scaled_kernel_box(const snow_scaled_kernel *scaled_kernel,
+                             double t) {
+    double from_left = t + scaled_kernel->half + EDGE,
+           width = 2 * scaled_kernel->half;
     if (from_left < 0 || from_left >= width)
         return 0;
     /* Shifted copies of the point begin at its fraction and end at width. */
@@ -166,65 +174,73 @@ float snow_taper_box(const snow_taper *taper, double t) {
     return (float)(1 / ceil(width - fraction));
 }
 
-int snow_taper_taps(const snow_taper *taper) {
-    return (int)fmin(ceil(2 * taper->half - EDGE), INT_MAX);
+int snow_scaled_kernel_taps(const snow_scaled_kernel *scaled_kernel) {
+    return (int)fmin(ceil(2 * scaled_kernel->half - EDGE), INT_MAX);
 }
 
-double snow_taper_phase_reach(const snow_taper *taper) {
-    return taper->half + EDGE - (snow_taper_taps(taper) - 1);
+double snow_scaled_kernel_phase_reach(const snow_scaled_kernel *scaled_kernel) {
+    return scaled_kernel->half + EDGE -
+           (snow_scaled_kernel_taps(scaled_kernel) - 1);
 }
 
-void snow_taper_phase(const snow_taper *taper, double phase, double *weights) {
+void snow_scaled_kernel_phase(const snow_scaled_kernel *scaled_kernel,
+                              double phase, double *weights) {
     double sum = 0;
-    int taps = snow_taper_taps(taper);
+    int taps = snow_scaled_kernel_taps(scaled_kernel);
     double below_one = fmin(phase, 1 - 1e-9); /* 1 is the end of the phases */
     for (int n = 0; n < taps; n++) {
-        double from_left = below_one + (taps - 1 - n), width = 2 * taper->half;
-        double t = from_left - taper->half - EDGE;
-        weights[n] =
-            from_left < width
-                ? kernels[taper->kernel].value(taper->support, t / taper->wide)
-                : 0;
+        double from_left = below_one + (taps - 1 - n),
+               width = 2 * scaled_kernel->half;
+        double t = from_left - scaled_kernel->half - EDGE;
+        weights[n] = from_left < width
+                         ? kernels[scaled_kernel->kernel].value(
+                               scaled_kernel->support, t / scaled_kernel->wide)
+                         : 0;
         sum += weights[n];
     }
     for (int n = 0; n < taps; n++)
         weights[n] /= sum;
 }
 
-bool snow_taper_same(const snow_taper *a, const snow_taper *b) {
+bool snow_scaled_kernel_same(const snow_scaled_kernel *a,
+                             const snow_scaled_kernel *b) {
     return a->kernel == b->kernel && a->support == b->support &&
            a->half == b->half && a->wide == b->wide;
 }
 
-snow_status snow_taper_table_make(snow_context *context,
-                                  const snow_taper *taper,
-                                  snow_taper_table *out) {
-    if (out->cells && snow_taper_same(taper, &out->made_for))
-        return SNOW_OK;
-    /* A wide kernel is smooth: fewer cells per voxel serve it as well.  A
-     * widened one of support 2 has steep kinks within cells, where the number
-     * of voxels in reach changes. */
-    int most = taper->support == 2 ? CELLS_PER_VOXEL_KINKED : CELLS_PER_VOXEL;
-    double fine = fmax(most / taper->wide, 4);
-    size_t cells = 2 * (size_t)fmin(ceil(taper->half * fine), HALF_CELLS_MOST);
-    double scale = (double)cells / (2 * taper->half);
+snow_status
+snow_scaled_kernel_table_make(snow_context *context,
+                              const snow_scaled_kernel *scaled_kernel,
+                              snow_scaled_kernel_table *out) {
+    if (out->cells && snow_scaled_kernel_same(scaled_kernel, &out->made_for))
+        return SNOW_STATUS_OK;
+    /* A wide kernel is smooth: fewer cells per voxel suffice. A widened one of
+     * support 2 has steep kinks within cells, where the number of voxels in
+     * reach changes. */
+    int most =
+        scaled_kernel->support == 2 ? CELLS_PER_VOXEL_KINKED : CELLS_PER_VOXEL;
+    double fine = fmax(most / scaled_kernel->wide, 4);
+    size_t cells =
+        2 * (size_t)fmin(ceil(scaled_kernel->half * fine), HALF_CELLS_MOST);
+    double scale = (double)cells / (2 * scaled_kernel->half);
     size_t all = cells + 2 * MARGIN_CELLS;
     SNOW_TRY(snow_reserve(context, &out->cells, &out->capacity, 0,
                           all * sizeof *out->cells));
-    snow_taper_cell *table = out->cells;
+    snow_scaled_kernel_cell *table = out->cells;
     memset(table, 0, all * sizeof *table);
-    /* A little inside the ends, where a half-open kernel has its values. */
-    double inside = taper->half - 2 * EDGE, weight = 0;
+    /* A little inside the ends, where a half-open kernel is not 0. */
+    double inside = scaled_kernel->half - 2 * EDGE, weight = 0;
     for (size_t c = 0; c <= cells; c++) {
-        double t = (double)c / scale - taper->half;
-        double next = snow_taper_weight(taper, fmin(fmax(t, -inside), inside));
+        double t = (double)c / scale - scaled_kernel->half;
+        double next = snow_scaled_kernel_weight(scaled_kernel,
+                                                fmin(fmax(t, -inside), inside));
         if (c > 0)
-            table[MARGIN_CELLS + c - 1] =
-                (snow_taper_cell){(float)weight, (float)(next - weight)};
+            table[MARGIN_CELLS + c - 1] = (snow_scaled_kernel_cell){
+                (float)weight, (float)(next - weight)};
         weight = next;
     }
-    out->shift = (float)(taper->half + MARGIN_CELLS / scale);
+    out->shift = (float)(scaled_kernel->half + MARGIN_CELLS / scale);
     out->scale = (float)scale;
-    out->made_for = *taper;
-    return SNOW_OK;
+    out->made_for = *scaled_kernel;
+    return SNOW_STATUS_OK;
 }

@@ -1,7 +1,7 @@
 /* splat/kernel.h - reconstruction kernels along one grid axis (model, point 7).
  *
- * A kernel b has a support of K voxels.  Where a pixel is wider than a voxel
- * it is widened by a factor w (anti-aliasing after Swan et al. 1997):
+ * A kernel b has a support of K voxels.  If a pixel is wider than a voxel, the
+ * kernel is widened by a factor w (anti-aliasing after Swan et al. 1997):
  *
  *   w = sqrt(1 + max(0, rho^2 - 1) / (12 V))
  *
@@ -15,8 +15,8 @@
  *   gauss    exp(-t^2 / 2 s^2), s = K/8   K^2/64   4
  *   box      1                            K^2/12   2
  *
- * The support is half open: distances within 1e-5 of an edge count as on it,
- * so that rounding does not decide at grid-aligned views. */
+ * The support is half open: distances within 1e-5 of an edge count as on it, so
+ * that rounding has no effect in grid-aligned views. */
 #ifndef SNOW_KERNEL_H
 #define SNOW_KERNEL_H
 
@@ -26,92 +26,101 @@
 
 #define SNOW_FOOTPRINT_MOST 9
 
-/* Most voxels in reach along an axis that weights by phase are made for. */
+/* The most voxels in reach along an axis for which weights by phase exist. */
 #define SNOW_PHASE_TAPS_MOST 64
 
 /* A kernel of one view and grid axis. */
-typedef struct snow_taper {
+typedef struct snow_scaled_kernel {
     snow_kernel kernel;
     int support; /* K, voxels */
     double half; /* w K / 2: half the widened support, voxels */
     double wide; /* w */
-} snow_taper;
+} snow_scaled_kernel;
 
-/* The support that a kernel has when none is asked for. */
+/* The default support of a kernel. */
 int snow_kernel_default_support(snow_kernel kernel);
 
 /* A kernel for pixels that are `rho` voxels wide along the axis. */
-snow_taper snow_taper_make(snow_kernel kernel, int support, double rho);
+snow_scaled_kernel snow_scaled_kernel_make(snow_kernel kernel, int support,
+                                           double rho);
 
-/* The same for voxels that are means of others (levels.h), whose step is `fine`
- * of theirs, 1 or less.  The variance of a mean and of its kernel together is
- * that of the kernel on the others, if it can be:
+/* The same for voxels that are means of others (render/mipmap.h), whose step is
+ * `fine` of theirs, 1 or less. The variance of a mean and its kernel together
+ * equals that of the kernel on the others, if possible:
  *
- *   w = sqrt(max(1, fine^2 + (rho^2 - 1) / (12 V)))
- */
-snow_taper snow_taper_make_level(snow_kernel kernel, int support, double rho,
-                                 double fine);
+ *   w = sqrt(max(1, fine^2 + (rho^2 - 1) / (12 V))) */
+snow_scaled_kernel snow_scaled_kernel_make_level(snow_kernel kernel,
+                                                 int support, double rho,
+                                                 double fine);
 
-/* Whether distance t (voxels) lies in the half-open support, and a distance
- * beyond which none does. */
-bool snow_taper_covers(const snow_taper *taper, double t);
-double snow_taper_reach(const snow_taper *taper);
+/* Whether distance t (voxels) is within the half-open support, and a distance
+ * beyond which none is. */
+bool snow_scaled_kernel_covers(const snow_scaled_kernel *scaled_kernel,
+                               double t);
+double snow_scaled_kernel_reach(const snow_scaled_kernel *scaled_kernel);
 
-/* The weight of a voxel at distance t, in double: the definition. */
-double snow_taper_weight(const snow_taper *taper, double t);
+/* The weight of a voxel at distance t, in double precision: the definition. */
+double snow_scaled_kernel_weight(const snow_scaled_kernel *scaled_kernel,
+                                 double t);
 
-/* In gather form: the voxels in reach of a point at grid position u are i to
- * i + taps - 1 with i = floor(s), s = u + reach; its phase is s - i.  How many
- * voxels are in reach at most, `reach`, and their weights at a phase of 0 to 1
- * (not for the box, nor above SNOW_PHASE_TAPS_MOST voxels). */
-int snow_taper_taps(const snow_taper *taper);
-double snow_taper_phase_reach(const snow_taper *taper);
-void snow_taper_phase(const snow_taper *taper, double phase, double *weights);
+/* For the gather form: the voxels in reach of a point at grid position u are i
+ * to i + taps - 1 with i = floor(s), s = u + reach; its phase is s - i. These
+ * give the number of voxels in reach at most, reach, and the weights at a phase
+ * of 0 to 1 (not for the box, nor above SNOW_PHASE_TAPS_MOST voxels). */
+int snow_scaled_kernel_taps(const snow_scaled_kernel *scaled_kernel);
+double snow_scaled_kernel_phase_reach(const snow_scaled_kernel *scaled_kernel);
+void snow_scaled_kernel_phase(const snow_scaled_kernel *scaled_kernel,
+                              double phase, double *weights);
 
-/* Weights of the voxels at first, first + 1 ... for a point at `t`, all in one:
- * what snow_taper_weight gives, but for rounding.  None but these may be in
- * reach; there are SNOW_PHASE_TAPS_MOST at most. */
-void snow_taper_spread(const snow_taper *taper, double t, int first, int count,
-                       float *weights);
+/* Weights of the voxels at first, first + 1 ... for a point at `t`, all at
+ * once. They equal snow_scaled_kernel_weight up to rounding. No other voxels
+ * may be in reach; there are SNOW_PHASE_TAPS_MOST at most. */
+void snow_scaled_kernel_spread(const snow_scaled_kernel *scaled_kernel,
+                               double t, int first, int count, float *weights);
 
 /* The weight as a table: cell c spans the distances from c / scale - shift and
- * holds the weight at its beginning and the rise to its end.  Smooth kernels
- * are met to about 1e-5 of their peak, and kinks at 0 and at the ends fall
- * between cells.  Where a widened tent or cut Gauss gains or loses a voxel in
- * reach its weight has a kink or small jump within a cell: 4e-4 at most.  Not
+ * holds the weight at its beginning and the rise to its end. Smooth kernels are
+ * accurate to about 1e-5 of their peak, and kinks at 0 and at the ends fall
+ * between cells. Where a widened tent or cut Gauss gains or loses a voxel in
+ * reach its weight has a kink or small jump within a cell: 4e-4 at most. Not
  * for the box, which jumps. */
-typedef struct snow_taper_cell {
+typedef struct snow_scaled_kernel_cell {
     float weight, rise;
-} snow_taper_cell;
+} snow_scaled_kernel_cell;
 
-typedef struct snow_taper_table {
-    snow_taper_cell *cells;
+typedef struct snow_scaled_kernel_table {
+    snow_scaled_kernel_cell *cells;
     float shift;     /* half the support and a margin of empty cells, voxels */
     float scale;     /* cells per voxel */
     size_t capacity; /* of cells, bytes */
-    snow_taper made_for;
-} snow_taper_table;
+    snow_scaled_kernel made_for;
+} snow_scaled_kernel_table;
 
-/* Whether two tapers are one. */
-bool snow_taper_same(const snow_taper *a, const snow_taper *b);
+/* Whether two scaled kernels are equal. */
+bool snow_scaled_kernel_same(const snow_scaled_kernel *a,
+                             const snow_scaled_kernel *b);
 
-/* Makes the table unless it is made for this kernel already; the record begins
- * as zeros.  Errors: SNOW_NO_MEMORY.  Free with snow_release(context,
- * table->cells). */
-snow_status snow_taper_table_make(snow_context *context,
-                                  const snow_taper *taper,
-                                  snow_taper_table *table);
+/* Makes the table unless it is for this kernel already; the record begins as
+ * zeros. Errors: SNOW_STATUS_NO_MEMORY. Free with snow_release(context,
+ * table->cells).
+ */
+snow_status
+snow_scaled_kernel_table_make(snow_context *context,
+                              const snow_scaled_kernel *scaled_kernel,
+                              snow_scaled_kernel_table *table);
 
-/* The weight at t by the table; |t| may pass the support by a few EDGE. */
-static inline float snow_taper_look_up(const snow_taper_table *table, float t) {
+/* The weight at distance t, from the table; |t| may exceed the support by a few
+ * EDGE. */
+static inline float
+snow_scaled_kernel_look_up(const snow_scaled_kernel_table *table, float t) {
     float place = (t + table->shift) * table->scale;
     int cell = (int)place;
-    snow_taper_cell c = table->cells[cell];
+    snow_scaled_kernel_cell c = table->cells[cell];
     return c.weight + (place - (float)cell) * c.rise;
 }
 
-/* The weight of a box in closed form: one over the number of voxels whose
- * support holds the point. */
-float snow_taper_box(const snow_taper *taper, double t);
+/* The weight of a box in closed form: the reciprocal of the number of voxels
+ * whose support contains the point. */
+float snow_scaled_kernel_box(const snow_scaled_kernel *scaled_kernel, double t);
 
 #endif

@@ -1,18 +1,20 @@
-/* splat/oblique.tmpl.h - the inner loops of splatting where a voxel's
- * footprint is a parallelogram.  Define before including:
+/* splat/oblique.tmpl.h - the inner loops of splatting where a voxel's footprint
+ * is a parallelogram.  Define before including:
  *
  *   SPLAT_CHANNELS       floats of a sample and of a pixel: 2 or 4
  *   SPLAT_WEIGHT(s,u,v)  weight at (u, v) voxels from the centre, splatter s
  *   SPLAT_ROW            name of the function
- *   SPLAT_THROW          name of its helper
+ *   SPLAT_SCATTER        name of its helper
  *
  * All are undefined at the end.  As in splat/aligned.tmpl.h, every method and
- * encoding runs through these loops, in the order of the voxels. */
+ * encoding uses these loops, in the order of the voxels. */
 
-/* Adds one voxel whose centre is at pixel position (x, y).  Positions are
- * doubles up to the distance from the centre, which is small. */
-static inline void SPLAT_THROW(const snow_splatter *splatter, snow_sheet *sheet,
-                               double x, double y, const float *sample) {
+/* Adds one voxel whose centre is at pixel position (x, y). Positions are
+ * doubles up to the computation of the distance from the centre, which is
+ * small. */
+static inline void SPLAT_SCATTER(const snow_splatter *splatter,
+                                 snow_sheet *sheet, double x, double y,
+                                 const float *sample) {
     const snow_oblique_axis *u = &splatter->oblique_u;
     const snow_oblique_axis *v = &splatter->oblique_v;
     const float step_u = (float)u->step, step_v = (float)v->step;
@@ -52,8 +54,8 @@ static void SPLAT_ROW(const snow_splatter *splatter, snow_sheet *sheet,
     for (size_t s = 0; s < count; s++) {
         int64_t end = (int64_t)spans[s].column + spans[s].length;
         for (int64_t column = spans[s].column; column < end; column++) {
-            SPLAT_THROW(splatter, sheet, x + (double)column * p->step_u[0],
-                        y + (double)column * p->step_u[1], samples);
+            SPLAT_SCATTER(splatter, sheet, x + (double)column * p->step_u[0],
+                          y + (double)column * p->step_u[1], samples);
             samples += SPLAT_CHANNELS;
         }
     }
@@ -62,4 +64,4 @@ static void SPLAT_ROW(const snow_splatter *splatter, snow_sheet *sheet,
 #undef SPLAT_CHANNELS
 #undef SPLAT_WEIGHT
 #undef SPLAT_ROW
-#undef SPLAT_THROW
+#undef SPLAT_SCATTER

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* Pixels from (x0, y0) up to (x1, y1), not included. */
+/* Pixels from (x0, y0) up to, but not including, (x1, y1). */
 typedef struct frame_of_pixels {
     int x0, y0, x1, y1;
 } frame_of_pixels;
@@ -12,7 +12,7 @@ static void follow_rays(const snow_placement *p, snow_pixel_ray *rays) {
     for (int y = 0; y < p->height; y++)
         for (int x = 0; x < p->width; x++, rays++) {
             double ray[3];
-            snow_eye_ray(&p->eye, x + 0.5, y + 0.5, ray);
+            snow_perspective_ray(&p->eye, x + 0.5, y + 0.5, ray);
             rays->slope[0] = ray[0] / ray[2];
             rays->slope[1] = ray[1] / ray[2];
             rays->side = ray[2] > 0 ? 1 : -1;
@@ -21,67 +21,71 @@ static void follow_rays(const snow_placement *p, snow_pixel_ray *rays) {
         }
 }
 
-snow_status snow_eye_splatter_init(snow_context *context,
-                                   const snow_placement *p, snow_kernel kernel,
-                                   int support, int channels,
-                                   snow_eye_splatter *out) {
+snow_status snow_perspective_splatter_init(snow_context *context,
+                                           const snow_placement *p,
+                                           snow_kernel kernel, int support,
+                                           int channels,
+                                           snow_perspective_splatter *out) {
     uint64_t pixels = (uint64_t)p->width * (uint64_t)p->height;
-    snow_eye_splatter s = {.placement = p,
-                           .kernel = kernel,
-                           .support = support,
-                           .channels = channels};
+    snow_perspective_splatter s = {.placement = p,
+                                   .kernel = kernel,
+                                   .support = support,
+                                   .channels = channels};
     s.rays = snow_allocate_array(context, pixels, sizeof *s.rays);
     if (!s.rays)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     follow_rays(p, s.rays);
     *out = s;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-void snow_eye_splatter_fini(snow_context *context, snow_eye_splatter *s) {
+void snow_perspective_splatter_fini(snow_context *context,
+                                    snow_perspective_splatter *s) {
     snow_release(context, s->rays);
     snow_release(context, s->table[0].cells);
     snow_release(context, s->table[1].cells);
-    *s = (snow_eye_splatter){0};
+    *s = (snow_perspective_splatter){0};
 }
 
 /* The kernel along one axis, and its table. */
-static snow_status widen(snow_context *context, snow_eye_splatter *s, int axis,
-                         double width) {
-    snow_taper taper = snow_taper_make(s->kernel, s->support, width);
-    s->taper[axis] = taper;
+static snow_status widen(snow_context *context, snow_perspective_splatter *s,
+                         int axis, double width) {
+    snow_scaled_kernel scaled_kernel =
+        snow_scaled_kernel_make(s->kernel, s->support, width);
+    s->scaled_kernel[axis] = scaled_kernel;
     if (s->kernel == SNOW_KERNEL_BOX)
-        return SNOW_OK;
-    return snow_taper_table_make(context, &taper, &s->table[axis]);
+        return SNOW_STATUS_OK;
+    return snow_scaled_kernel_table_make(context, &scaled_kernel,
+                                         &s->table[axis]);
 }
 
-snow_status snow_eye_splatter_begin_slice(snow_context *context,
-                                          snow_eye_splatter *s, int64_t slice,
-                                          bool *seen) {
+snow_status snow_perspective_splatter_begin_slice(snow_context *context,
+                                                  snow_perspective_splatter *s,
+                                                  int64_t slice, bool *seen) {
     double width[2];
     s->height = (double)slice - s->placement->eye.at[2];
     *seen = fabs(s->height) > SNOW_EDGE_ON;
     if (!*seen)
-        return SNOW_OK;
-    snow_eye_pixel_width(s->placement, (double)slice, width);
+        return SNOW_STATUS_OK;
+    snow_perspective_pixel_width(s->placement, (double)slice, width);
     SNOW_TRY(widen(context, s, 0, width[0]));
     return widen(context, s, 1, width[1]);
 }
 
 /* The pixels that a footprint can reach: those of the quadrangle of its
- * corners, or all where one of these is not in front of the camera. */
-static frame_of_pixels reach_of(const snow_eye_splatter *s,
+ * corners, or all if one of these is not in front of the camera. */
+static frame_of_pixels reach_of(const snow_perspective_splatter *s,
                                 const snow_sheet *sheet, double u, double v) {
-    const snow_eye *eye = &s->placement->eye;
-    double reach_u = snow_taper_reach(&s->taper[0]);
-    double reach_v = snow_taper_reach(&s->taper[1]);
+    const snow_perspective *eye = &s->placement->eye;
+    double reach_u = snow_scaled_kernel_reach(&s->scaled_kernel[0]);
+    double reach_v = snow_scaled_kernel_reach(&s->scaled_kernel[1]);
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
     for (int corner = 0; corner < 4; corner++) {
         double step[3] = {u + (corner & 1 ? reach_u : -reach_u) - eye->at[0],
                           v + (corner & 2 ? reach_v : -reach_v) - eye->at[1],
                           s->height};
         double pixel[2];
-        if (!snow_eye_sees(eye, step, pixel))
+        if (!snow_perspective_sees(eye, step, pixel))
             return (frame_of_pixels){0, 0, sheet->width, sheet->height};
         for (int i = 0; i < 2; i++) {
             low[i] = fmin(low[i], pixel[i]);
@@ -101,19 +105,20 @@ static void mark(snow_sheet *sheet, const frame_of_pixels *f) {
     sheet->y1 = f->y1 > sheet->y1 ? f->y1 : sheet->y1;
 }
 
-/* The weight at distance t along an axis, 0 outside of the kernel. */
-static inline float weight_at(const snow_eye_splatter *s, int axis, double t) {
-    const snow_taper *taper = &s->taper[axis];
-    if (!snow_taper_covers(taper, t))
+/* The weight at distance t along an axis; 0 outside the kernel. */
+static inline float weight_at(const snow_perspective_splatter *s, int axis,
+                              double t) {
+    const snow_scaled_kernel *scaled_kernel = &s->scaled_kernel[axis];
+    if (!snow_scaled_kernel_covers(scaled_kernel, t))
         return 0;
-    return taper->kernel == SNOW_KERNEL_BOX
-               ? snow_taper_box(taper, t)
-               : snow_taper_look_up(&s->table[axis], (float)t);
+    return scaled_kernel->kernel == SNOW_KERNEL_BOX
+               ? snow_scaled_kernel_box(scaled_kernel, t)
+               : snow_scaled_kernel_look_up(&s->table[axis], (float)t);
 }
 
 /* Adds one voxel's footprint to the sheet. */
-static void throw_voxel(const snow_eye_splatter *s, snow_sheet *sheet, double u,
-                        double v, const float *sample) {
+static void scatter_voxel(const snow_perspective_splatter *s, snow_sheet *sheet,
+                          double u, double v, const float *sample) {
     frame_of_pixels f = reach_of(s, sheet, u, v);
     const double *eye = s->placement->eye.at;
     double from_u = eye[0] - u, from_v = eye[1] - v;
@@ -137,13 +142,14 @@ static void throw_voxel(const snow_eye_splatter *s, snow_sheet *sheet, double u,
     }
 }
 
-void snow_eye_splat_row(const snow_eye_splatter *s, snow_sheet *sheet,
-                        int64_t row, const snow_span *spans, size_t count,
-                        const float *samples) {
+void snow_perspective_splat_row(const snow_perspective_splatter *s,
+                                snow_sheet *sheet, int64_t row,
+                                const snow_span *spans, size_t count,
+                                const float *samples) {
     for (size_t n = 0; n < count; n++) {
         int64_t end = (int64_t)spans[n].column + spans[n].length;
         for (int64_t column = spans[n].column; column < end; column++) {
-            throw_voxel(s, sheet, (double)column, (double)row, samples);
+            scatter_voxel(s, sheet, (double)column, (double)row, samples);
             samples += s->channels;
         }
     }

@@ -1,5 +1,5 @@
 /* splat/splat.c - the footprints of one view (figure 2 of the paper), and the
- * sheet that they fall on. */
+ * sheet that they are added to. */
 #include "splat/splat.h"
 
 #include <math.h>
@@ -17,17 +17,17 @@
 
 static inline float table_weight(const snow_splatter *splatter, float u,
                                  float v) {
-    return snow_taper_look_up(&splatter->table_u, u) *
-           snow_taper_look_up(&splatter->table_v, v);
+    return snow_scaled_kernel_look_up(&splatter->table_u, u) *
+           snow_scaled_kernel_look_up(&splatter->table_v, v);
 }
 
 static inline float box_weight(const snow_splatter *splatter, float u,
                                float v) {
-    return snow_taper_box(&splatter->along_u, (double)u) *
-           snow_taper_box(&splatter->along_v, (double)v);
+    return snow_scaled_kernel_box(&splatter->along_u, (double)u) *
+           snow_scaled_kernel_box(&splatter->along_v, (double)v);
 }
 
-/* As fmin and fmax, but inline: no NaN comes here. */
+/* As fmin and fmax, but inline; there are no NaNs here. */
 static inline double smaller(double a, double b) {
     return a < b ? a : b;
 }
@@ -39,38 +39,38 @@ static inline double larger(double a, double b) {
 #define SPLAT_CHANNELS 2
 #define SPLAT_WEIGHT table_weight
 #define SPLAT_ROW oblique_grey
-#define SPLAT_THROW throw_grey
+#define SPLAT_SCATTER scatter_grey
 #include "splat/oblique.tmpl.h"
 
 #define SPLAT_CHANNELS 4
 #define SPLAT_WEIGHT table_weight
 #define SPLAT_ROW oblique_rgba
-#define SPLAT_THROW throw_rgba
+#define SPLAT_SCATTER scatter_rgba
 #include "splat/oblique.tmpl.h"
 
 #define SPLAT_CHANNELS 2
 #define SPLAT_WEIGHT box_weight
 #define SPLAT_ROW oblique_box_grey
-#define SPLAT_THROW throw_box_grey
+#define SPLAT_SCATTER scatter_box_grey
 #include "splat/oblique.tmpl.h"
 
 #define SPLAT_CHANNELS 4
 #define SPLAT_WEIGHT box_weight
 #define SPLAT_ROW oblique_box_rgba
-#define SPLAT_THROW throw_box_rgba
+#define SPLAT_SCATTER scatter_box_rgba
 #include "splat/oblique.tmpl.h"
 
-/* Pixels by which the far end of a slice may be off its image axis in a view
- * that counts as aligned. */
+/* Pixels by which the far end of a slice may deviate from its image axis in an
+ * aligned view. */
 #define ALIGNED 1e-6
 
-/* An axis counts as upright where going right moves along it this many times
- * less than going down. */
+/* An axis counts as upright if its change per pixel to the right is less than
+ * this fraction of its change per pixel down. */
 #define UPRIGHT 1e-12
 
-/* Whether steps along u move along one image axis only, and along v along the
- * other: u along `axis` (0 x, 1 y).  Where voxels are smaller than pixels the
- * tolerance shrinks with them, for a table divides by their steps. */
+/* Whether steps along u move along one image axis only, and steps along v along
+ * the other: u along `axis` (0 x, 1 y). If voxels are smaller than pixels the
+ * tolerance shrinks with them, since a table divides by their steps. */
 static bool lies_along(const snow_placement *p, int axis) {
     double step = fmin(fabs(p->step_u[axis]), fabs(p->step_v[1 - axis]));
     return fabs(p->step_u[1 - axis]) * (double)p->columns +
@@ -79,11 +79,11 @@ static bool lies_along(const snow_placement *p, int axis) {
 }
 
 static snow_oblique_axis oblique_axis(const double inverse[2],
-                                      const snow_taper *taper) {
+                                      const snow_scaled_kernel *scaled_kernel) {
     snow_oblique_axis axis = {inverse[0], inverse[1], 0, INFINITY};
     if (fabs(axis.step) > UPRIGHT * fabs(axis.rise)) {
         axis.lean = -axis.rise / axis.step;
-        axis.extent = snow_taper_reach(taper) / fabs(axis.step);
+        axis.extent = snow_scaled_kernel_reach(scaled_kernel) / fabs(axis.step);
     }
     return axis;
 }
@@ -94,9 +94,10 @@ static snow_status make_aligned(snow_context *context, int channels,
     int across = s->transposed ? p->height : p->width;
     int down = s->transposed ? p->width : p->height;
     s->splat_row = channels == 2 ? aligned_grey : aligned_rgba;
-    SNOW_TRY(
-        snow_taps_make(context, &s->along_u, p->columns, across, &s->taps_u));
-    return snow_taps_make(context, &s->along_v, p->rows, down, &s->taps_v);
+    SNOW_TRY(snow_footprint_table_make(context, &s->along_u, p->columns, across,
+                                       &s->taps_u));
+    return snow_footprint_table_make(context, &s->along_v, p->rows, down,
+                                     &s->taps_v);
 }
 
 static snow_status make_oblique(snow_context *context, int channels,
@@ -106,24 +107,25 @@ static snow_status make_oblique(snow_context *context, int channels,
     s->oblique_v = oblique_axis(p->inverse[1], &s->along_v);
     if (s->along_u.kernel == SNOW_KERNEL_BOX) {
         s->splat_row = channels == 2 ? oblique_box_grey : oblique_box_rgba;
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     }
     s->splat_row = channels == 2 ? oblique_grey : oblique_rgba;
-    SNOW_TRY(snow_taper_table_make(context, &s->along_u, &s->table_u));
-    return snow_taper_table_make(context, &s->along_v, &s->table_v);
+    SNOW_TRY(snow_scaled_kernel_table_make(context, &s->along_u, &s->table_u));
+    return snow_scaled_kernel_table_make(context, &s->along_v, &s->table_v);
 }
 
 snow_status snow_splatter_make(snow_context *context, const snow_placement *p,
                                snow_kernel kernel, int support, int channels,
                                snow_splatter *s) {
     s->placement = p;
-    s->along_u = snow_taper_make(kernel, support,
-                                 hypot(p->inverse[0][0], p->inverse[0][1]));
-    s->along_v = snow_taper_make(kernel, support,
-                                 hypot(p->inverse[1][0], p->inverse[1][1]));
+    s->along_u = snow_scaled_kernel_make(
+        kernel, support, hypot(p->inverse[0][0], p->inverse[0][1]));
+    s->along_v = snow_scaled_kernel_make(
+        kernel, support, hypot(p->inverse[1][0], p->inverse[1][1]));
     for (int i = 0; i < 2; i++)
-        s->reach[i] = fabs(p->step_u[i]) * snow_taper_reach(&s->along_u) +
-                      fabs(p->step_v[i]) * snow_taper_reach(&s->along_v);
+        s->reach[i] =
+            fabs(p->step_u[i]) * snow_scaled_kernel_reach(&s->along_u) +
+            fabs(p->step_v[i]) * snow_scaled_kernel_reach(&s->along_v);
     s->transposed = lies_along(p, 1);
     s->aligned = s->transposed || lies_along(p, 0);
     return s->aligned ? make_aligned(context, channels, s)
@@ -131,8 +133,8 @@ snow_status snow_splatter_make(snow_context *context, const snow_placement *p,
 }
 
 void snow_splatter_fini(snow_context *context, snow_splatter *s) {
-    snow_taps_fini(context, &s->taps_u);
-    snow_taps_fini(context, &s->taps_v);
+    snow_footprint_table_fini(context, &s->taps_u);
+    snow_footprint_table_fini(context, &s->taps_v);
     snow_release(context, s->table_u.cells);
     snow_release(context, s->table_v.cells);
     *s = (snow_splatter){0};
@@ -146,10 +148,10 @@ void snow_splatter_begin_slice(snow_splatter *s, int64_t slice) {
         return;
     int u = s->transposed ? 1 : 0, v = 1 - u;
     const int pixels[2] = {p->width, p->height};
-    snow_taps_place(&s->taps_u, &s->along_u, p->columns, pixels[u],
-                    s->origin[u], p->step_u[u]);
-    snow_taps_place(&s->taps_v, &s->along_v, p->rows, pixels[v], s->origin[v],
-                    p->step_v[v]);
+    snow_footprint_table_place(&s->taps_u, &s->along_u, p->columns, pixels[u],
+                               s->origin[u], p->step_u[u]);
+    snow_footprint_table_place(&s->taps_v, &s->along_v, p->rows, pixels[v],
+                               s->origin[v], p->step_v[v]);
 }
 
 /* Marks the pixels that a voxel of the current slice can reach. */
@@ -180,7 +182,7 @@ void snow_splatter_rows(const snow_splatter *s, const snow_sheet *sheet,
     *end = p->rows;
     if (fabs(step) * (double)p->rows < ALIGNED)
         return;
-    /* A pixel more on either side is of no matter, one less would be. */
+    /* One extra pixel on either side does no harm; one less would. */
     double low = sheet->top - s->origin[1] - s->reach[1] - larger(across, 0);
     double high =
         sheet->bottom - s->origin[1] + s->reach[1] - smaller(across, 0);
@@ -214,5 +216,5 @@ snow_status snow_sheet_begin(snow_context *context, const snow_placement *image,
     sheet->top = top;
     sheet->bottom = bottom;
     snow_sheet_unmark(sheet);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }

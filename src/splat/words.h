@@ -1,7 +1,7 @@
-/* splat/words.h - the words that splatting in gather form needs beyond
- * simd/select.h: whole numbers, and blocks of voxels.
+/* splat/words.h - the vector operations that splatting in gather form needs
+ * beyond simd/select.h: integers, and blocks of voxels.
  *
- *   V(ints)          as many 32-bit whole numbers as a vector has floats
+ *   V(ints)          as many 32-bit integers as a vector has floats
  *   V(lanes)()       0, 1, 2 ...
  *   V(floor)(v), V(to_ints)(v) (towards 0), V(to_floats)(i)
  *   V(add_int)(i, n), V(times)(i, n), V(clamp)(i, low, high)
@@ -13,8 +13,8 @@
  *   V(bits)(map, words, i, j)    bit i of row j, rows of `words` words, of all
  *                                lanes as a mask, the first lane lowest
  *
- * A block is what a footprint's row is gathered in: 8 or 16 floats, of which
- * the 16 are a pair of vectors below AVX-512.  B(word) says which:
+ * A footprint's row is gathered in blocks of 8 or 16 floats; below AVX-512, 16
+ * floats are a pair of vectors. B(word) selects the type:
  *
  *   B(block)               the type
  *   B(load)(p), B(scale)(s, b), B(more)(s, b, c) is s b + c
@@ -73,7 +73,7 @@ SNOW_AVX2_INLINE void snow_avx2_store_ints(int32_t *p, __m256i i) {
     _mm256_storeu_si256((__m256i *)(void *)p, i);
 }
 
-/* Lane 4 l + k of what is dealt is lane 2 k + l: transposing within halves then
+/* Lane 4 l + k of the result is lane 2 k + l: transposing within halves then
  * leaves lanes 2 k and 2 k + 1 in vector k. */
 SNOW_AVX2_INLINE __m256 snow_avx2_deal(__m256 v) {
     return _mm256_permutevar8x32_ps(v,
@@ -147,7 +147,7 @@ SNOW_AVX512_INLINE void snow_avx512_store_ints(int32_t *p, __m512i i) {
     _mm512_storeu_si512(p, i);
 }
 
-/* As above, in quarters: lane 4 l + k of what is dealt is lane 4 k + l. */
+/* The same for quarters: lane 4 l + k of the result is lane 4 k + l. */
 SNOW_AVX512_INLINE __m512 snow_avx512_deal(__m512 v) {
     return _mm512_permutexvar_ps(
         _mm512_setr_epi32(0, 4, 8, 12, 1, 5, 9, 13, 2, 6, 10, 14, 3, 7, 11, 15),

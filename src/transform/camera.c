@@ -1,7 +1,8 @@
-/* transform/camera.c - where the camera of a view stands (model, point 2): by
- * its name and angles, or by points of the world.
+/* transform/camera.c - the camera of a view (model, point 2), given by name and
+ * angles, or by points in world space.
  *
- * All is told from the target, which falls on the middle of the picture. */
+ * All positions are relative to the target, which is shown in the middle of the
+ * picture. */
 #include "base/vec3.h"
 #include "transform/transform.h"
 
@@ -10,30 +11,31 @@
 
 #define RADIAN 0.017453292519943295769 /* pi / 180 */
 
-/* Sine of the angle below which two directions count as one. */
+/* Sine of the angle below which two directions count as parallel. */
 #define ALONG 1e-6
 
 static snow_status check_numbers(snow_context *context, const snow_view *view) {
     if (view->width < 1 || view->width > 32768 || view->height < 1 ||
         view->height > 32768)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "an image of %dx%d pixels is not possible; take 1 to "
-                         "32768 a side",
-                         view->width, view->height);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "invalid image size %dx%d: each side must be 1 to 32768 pixels",
+            view->width, view->height);
     if (!(view->zoom > 0) || !isfinite(view->zoom))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "zoom is %g; take a number above 0", view->zoom);
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid zoom %g: must be a number above 0",
+                         view->zoom);
     if (view->fov != 0 &&
-        !(view->fov >= SNOW_FOV_LEAST && view->fov <= SNOW_FOV_MOST))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "a field of view of %g degrees is not possible; take "
-                         "%g to %g, or 0 for a parallel projection",
-                         view->fov, SNOW_FOV_LEAST, (double)SNOW_FOV_MOST);
+        !(view->fov >= SNOW_FOV_MIN && view->fov <= SNOW_FOV_MAX))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid field of view of %g degrees: must be %g to "
+                         "%g, or 0 for a parallel projection",
+                         view->fov, SNOW_FOV_MIN, (double)SNOW_FOV_MAX);
     if (!isfinite(view->azimuth) || !isfinite(view->elevation) ||
         !isfinite(view->roll))
-        return snow_fail(context, SNOW_BAD_USAGE,
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "a camera angle is not a finite number");
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status check_view(snow_context *context, const snow_view *view) {
@@ -41,13 +43,13 @@ static snow_status check_view(snow_context *context, const snow_view *view) {
     if (!(fabs(snow_length(view->back) - 1) <= 1e-6) ||
         !(fabs(snow_length(view->up) - 1) <= 1e-6) ||
         !(fabs(snow_dot(view->back, view->up)) <= 1e-6))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "back and up must be unit vectors at right angles; "
-                         "begin with snow_view_named");
-    return SNOW_OK;
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid view: back and up must be perpendicular unit "
+                         "vectors; begin with snow_view_from_name");
+    return SNOW_STATUS_OK;
 }
 
-/* The middle of the voxel boxes as a step from the target. */
+/* The vector from the target to the middle of the voxel boxes. */
 static void middle_from_target(const snow_volume_info *info,
                                const snow_view *view, double step[3]) {
     for (int i = 0; i < 3; i++) {
@@ -61,13 +63,14 @@ static void middle_from_target(const snow_volume_info *info,
     }
 }
 
-/* From the target, or the middle, to the position: `back`, and its length. */
+/* The vector from the target, or the middle, to the position: `back`, and its
+ * length. */
 static snow_status look_back(snow_context *context,
                              const snow_volume_info *info,
                              const snow_view *view, snow_camera *out) {
     snow_view aimed = *view;
     double step[3];
-    aimed.has_target = true; /* at the position */
+    aimed.has_target = true; /* with the position as target */
     memcpy(aimed.target, view->position, sizeof aimed.target);
     middle_from_target(info, &aimed, step);
     for (int i = 0; i < 3; i++)
@@ -76,16 +79,16 @@ static snow_status look_back(snow_context *context,
     out->distance = snow_length(out->back);
     if (!(out->distance > 1e-9 * snow_volume_radius(info)) ||
         !isfinite(out->distance))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "the camera's position is %s; move one of them",
-                         view->has_target
-                             ? "its target"
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "the camera's position is %s: they must differ; move one of them",
+            view->has_target ? "its target"
                              : "the middle of the volume, its target");
     snow_normalize(out->back);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* What of `upward` is at right angles to the line of sight. */
+/* The component of `upward` perpendicular to the line of sight. */
 static bool straighten(const double upward[3], const double back[3],
                        double up[3]) {
     double length = snow_length(upward), unit[3];
@@ -107,17 +110,17 @@ static snow_status look_up(snow_context *context, const snow_view *view,
     static const double z[3] = {0, 0, 1}, y[3] = {0, 1, 0};
     if (view->has_up) {
         if (straighten(view->upward, out->back, out->up))
-            return SNOW_OK;
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "up is %g,%g,%g, which is no direction or the line of "
-                         "sight; take another",
+            return SNOW_STATUS_OK;
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "invalid up vector %g,%g,%g: must be finite, not zero "
+                         "and not parallel to the line of sight",
                          view->upward[0], view->upward[1], view->upward[2]);
     }
     if (!view->has_position)
         memcpy(out->up, view->up, sizeof out->up);
     else if (!straighten(z, out->back, out->up))
         straighten(y, out->back, out->up);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static bool are_finite(const snow_view *view) {
@@ -128,10 +131,10 @@ static bool are_finite(const snow_view *view) {
     return good;
 }
 
-/* Distance and pitch.  The cone of the usual field of view touches the sphere
- * of radius R, and is R / cos(fov / 2) wide where the target is. */
-static void measure(const snow_volume_info *info, const snow_view *view,
-                    snow_camera *out) {
+/* Distance and pitch. The cone of the default field of view touches the sphere
+ * of radius R, and is R / cos(fov / 2) wide at the target. */
+static void measure_distance(const snow_volume_info *info,
+                             const snow_view *view, snow_camera *out) {
     double side = view->zoom * fmin(view->width, view->height);
     double radius = snow_volume_radius(info), half = view->fov / 2 * RADIAN;
     if (view->fov > 0 && view->has_position) {
@@ -142,8 +145,8 @@ static void measure(const snow_volume_info *info, const snow_view *view,
     out->pitch = 2 * radius / side / cos(half);
 }
 
-/* A voxel beside or behind an eye would be seen at all places at once.  The
- * usual eye is farther than R from the middle, and sees none. */
+/* A voxel beside or behind the eye has no place in the picture. The default eye
+ * is farther than R from the middle, in front of all voxels. */
 static snow_status check_front(snow_context *context,
                                const snow_volume_info *info,
                                const snow_camera *camera) {
@@ -156,12 +159,12 @@ static snow_status check_front(snow_context *context,
             fabs(snow_dot(step, camera->back)) * (double)info->dims[axis] / 2;
     }
     if (camera->distance == 0 || nearest > 1e-6 * camera->distance)
-        return SNOW_OK;
-    return snow_fail(context, SNOW_BAD_USAGE,
-                     "a part of the volume is beside or behind the camera, "
-                     "which is %g from its target; move it %g farther away, or "
-                     "leave perspective out",
-                     camera->distance, -nearest + 1e-3 * camera->distance);
+        return SNOW_STATUS_OK;
+    return snow_fail(
+        context, SNOW_STATUS_BAD_USAGE,
+        "a part of the volume is beside or behind the camera, which is %g from "
+        "its target; move it %g farther away, or use a parallel projection",
+        camera->distance, -nearest + 1e-3 * camera->distance);
 }
 
 snow_status snow_camera_make(snow_context *context,
@@ -171,8 +174,9 @@ snow_status snow_camera_make(snow_context *context,
     double middle[3];
     SNOW_TRY(check_view(context, view));
     if (!are_finite(view))
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "the camera's position or target is not finite");
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "invalid camera: position and target must be finite numbers");
     memcpy(c.back, view->back, sizeof c.back);
     if (view->has_position)
         SNOW_TRY(look_back(context, info, view, &c));
@@ -180,12 +184,12 @@ snow_status snow_camera_make(snow_context *context,
     snow_cross(c.up, c.back, c.right);
     snow_frame_turn(c.right, c.up, c.back, view->azimuth, view->elevation,
                     view->roll);
-    measure(info, view, &c);
+    measure_distance(info, view, &c);
     middle_from_target(info, view, middle);
     c.middle[0] = snow_dot(middle, c.right);
     c.middle[1] = snow_dot(middle, c.up);
     c.middle[2] = snow_dot(middle, c.back);
     SNOW_TRY(check_front(context, info, &c));
     *out = c;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }

@@ -1,7 +1,8 @@
 /* transform/clip.c - see clip.h.
  *
- * Where a border falls between pixels moves one way only from slice to slice,
- * rounding included: each step from a slice's number to a pixel is monotone. */
+ * From slice to slice a border moves over the pixels in one direction only,
+ * even with rounding, since each operation from slice number to pixel is
+ * monotone. */
 #include "transform/clip.h"
 
 #include "volume/volume.h"
@@ -12,9 +13,9 @@
 void snow_clip_make(const snow_volume *volume, const snow_placement *whole,
                     snow_clip *out) {
     const int axes[3] = {whole->u_axis, whole->v_axis, whole->slice_axis};
-    snow_part part;
+    snow_extent part;
     *out = (snow_clip){0};
-    snow_volume_get_part(volume, &part);
+    snow_volume_get_extent(volume, &part);
     bool none = !part.count[0] || !part.count[1] || !part.count[2];
     for (int n = 0; n < 3; n++) {
         out->stored[n] = part.stored[axes[n]];
@@ -72,18 +73,19 @@ void snow_clip_lattice(const snow_clip *clip, int axis,
     range[1] = first_on_lattice(lattice, clip->high[axis], slice);
 }
 
-/* The same in perspective: the eye sees position `at` of the slice at
- * eye + (at - eye) / step of slice k0. */
-static int first_on_scaled(const snow_scaled_axis *axis, double at,
+/* The same in perspective: position `at` of the slice appears at eye + (at -
+ * eye) / step of slice k0. */
+static int first_on_scaled(const snow_perspective_shear_axis *axis, double at,
                            double step) {
     double seen = axis->eye + (at - axis->eye) / step;
     return within(ceil(seen / axis->pitch) - (double)axis->first, axis->count);
 }
 
-void snow_clip_scaled(const snow_clip *clip, int axis,
-                      const snow_scaled *scaled, double slice, int range[2]) {
-    const snow_scaled_axis *of = axis == 0 ? &scaled->u : &scaled->v;
-    double step = snow_scaled_step(scaled, slice);
+void snow_clip_perspective_shear(const snow_clip *clip, int axis,
+                                 const snow_perspective_shear *scaled,
+                                 double slice, int range[2]) {
+    const snow_perspective_shear_axis *of = axis == 0 ? &scaled->u : &scaled->v;
+    double step = snow_perspective_shear_step(scaled, slice);
     range[0] = first_on_scaled(of, clip->low[axis], step);
     range[1] = first_on_scaled(of, clip->high[axis], step);
 }
@@ -91,13 +93,13 @@ void snow_clip_scaled(const snow_clip *clip, int axis,
 /* --- the picture ----------------------------------------------------------
  */
 
-/* How far u or v moves back from slice to slice along a ray. */
+/* The shift of a ray along u or v from slice to slice, negated. */
 static double slope_of(const snow_placement *p, int axis) {
     const double *row = p->inverse[axis];
     return row[0] * p->step_slice[0] + row[1] * p->step_slice[1];
 }
 
-/* Grid position on a slice of the ray through a place in the picture. */
+/* Grid position where the ray through a point of the picture meets a slice. */
 static double position_of(const snow_placement *p, int axis, double slice,
                           double x, double y) {
     if (!p->perspective) {
@@ -106,7 +108,7 @@ static double position_of(const snow_placement *p, int axis, double slice,
         return zero - slice * slope_of(p, axis);
     }
     double ray[3];
-    snow_eye_ray(&p->eye, x, y, ray);
+    snow_perspective_ray(&p->eye, x, y, ray);
     return p->eye.at[axis] + (slice - p->eye.at[2]) * (ray[axis] / ray[2]);
 }
 
@@ -126,12 +128,12 @@ void snow_clip_pixels(const snow_clip *clip, const snow_placement *whole,
     }
 }
 
-void snow_clip_sight(const snow_placement *p, snow_sight *out) {
+void snow_clip_viewer(const snow_placement *p, snow_viewer *out) {
     const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
     double away = p->nearest_first ? 1 : -1;
     const double along[3] = {-slope_of(p, 0) * away, -slope_of(p, 1) * away,
                              away};
-    *out = (snow_sight){.perspective = p->perspective};
+    *out = (snow_viewer){.perspective = p->perspective};
     for (int n = 0; n < 3; n++) {
         out->along[axes[n]] = along[n];
         out->eye[axes[n]] = p->eye.at[n];

@@ -1,16 +1,16 @@
-/* transform/placement.c - a volume before the camera: the slice axis, the
- * order of slices, and the affine map from voxels to pixels. */
+/* transform/placement.c - the placement of a volume before the camera: the
+ * slice axis, the order of slices, and the affine map from voxels to pixels. */
 #include "base/vec3.h"
-#include "transform/eye.h"
+#include "transform/perspective.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A pixel wider than this many voxels along an axis is refused: distances in
+/* Pixels wider than this many voxels along an axis are rejected: distances in
  * voxels are floats in the inner loops. */
 #define WIDEST_PIXEL 1e9
 
-/* Two axes whose cosines differ by less are equally good. */
+/* Two axes whose cosines differ by less than this are equally good. */
 #define AXIS_TIE 1e-6
 
 /* Column `axis` of the matrix: the world step from one voxel to the next. */
@@ -44,8 +44,8 @@ static void slice_normal(const snow_volume_info *info, int axis,
     snow_normalize(normal);
 }
 
-/* The cosine, without its sign, between the line of sight and the normal of
- * the slices along an axis. */
+/* The absolute cosine between the line of sight and the normal of the slices
+ * along an axis. */
 static double axis_cosine(const snow_volume_info *info, int axis,
                           const double back[3]) {
     double normal[3];
@@ -53,7 +53,7 @@ static double axis_cosine(const snow_volume_info *info, int axis,
     return fabs(snow_dot(normal, back));
 }
 
-/* The axis along which slices are seen most from the front. */
+/* The axis whose slices face the viewer most. */
 static int choose_axis(const snow_volume_info *info, const double back[3]) {
     double best = -1;
     int chosen = 2;
@@ -77,7 +77,7 @@ static void cut_along(const snow_volume_info *info, int slice_axis,
     p->slices = info->dims[p->slice_axis];
 }
 
-/* The ray's length between two slice planes, and which side is near. */
+/* Sets the ray's length between two slice planes, and which side is near. */
 static void measure_path(const snow_volume_info *info, snow_placement *p) {
     double normal[3], step[3];
     slice_normal(info, p->slice_axis, normal);
@@ -102,7 +102,7 @@ static void place_slices(const snow_volume_info *info,
     steps[p->u_axis] = p->step_u;
     steps[p->v_axis] = p->step_v;
     steps[p->slice_axis] = p->step_slice;
-    /* The target falls on the image's middle. */
+    /* The target is shown in the image's middle. */
     p->origin[0] = p->width / 2.0 + camera->middle[0] / pitch;
     p->origin[1] = p->height / 2.0 - camera->middle[1] / pitch;
     for (int axis = 0; axis < 3; axis++) {
@@ -130,7 +130,7 @@ static bool invert_slice_map(snow_placement *p) {
     return true;
 }
 
-/* The camera of a view, and a placement with nothing else in it. */
+/* The camera of a view, and a placement that is otherwise empty. */
 static snow_status place_camera(snow_context *context,
                                 const snow_volume_info *info,
                                 const snow_view *view, snow_camera *camera,
@@ -141,24 +141,26 @@ static snow_status place_camera(snow_context *context,
     memcpy(p->right, camera->right, sizeof p->right);
     memcpy(p->up, camera->up, sizeof p->up);
     memcpy(p->back, camera->back, sizeof p->back);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-static snow_status place(snow_context *context, const snow_volume_info *info,
-                         const snow_view *view, const snow_camera *camera,
-                         int slice_axis, snow_placement *p) {
+static snow_status place_volume(snow_context *context,
+                                const snow_volume_info *info,
+                                const snow_view *view,
+                                const snow_camera *camera, int slice_axis,
+                                snow_placement *p) {
     cut_along(info, slice_axis, p);
     measure_path(info, p);
     place_slices(info, camera, p);
     bool fits = isfinite(p->path) && isfinite(p->origin[0]) &&
                 isfinite(p->origin[1]) && invert_slice_map(p);
     if (fits && view->fov > 0)
-        fits = snow_eye_place(info, camera, p);
+        fits = snow_perspective_place(info, camera, p);
     if (fits)
-        return SNOW_OK;
-    return snow_fail(context, SNOW_BAD_INPUT,
-                     "voxels of %gx%gx%g cannot be seen at zoom %g: they "
-                     "are too flat or too large; give --spacing",
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "voxels of %gx%gx%g cannot be shown at zoom %g: they are "
+                     "too flat or too large; give --spacing",
                      info->spacing[0], info->spacing[1], info->spacing[2],
                      view->zoom);
 }
@@ -170,9 +172,9 @@ snow_status snow_placement_make(snow_context *context,
     snow_camera camera;
     SNOW_TRY(place_camera(context, info, view, &camera, &p));
     int slice_axis = choose_axis(info, p.back);
-    SNOW_TRY(place(context, info, view, &camera, slice_axis, &p));
+    SNOW_TRY(place_volume(context, info, view, &camera, slice_axis, &p));
     *out = p;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_placement_make_along(snow_context *context,
@@ -182,14 +184,14 @@ snow_status snow_placement_make_along(snow_context *context,
     snow_placement p;
     snow_camera camera;
     SNOW_TRY(place_camera(context, info, view, &camera, &p));
-    SNOW_TRY(place(context, info, view, &camera, slice_axis, &p));
+    SNOW_TRY(place_volume(context, info, view, &camera, slice_axis, &p));
     *out = p;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-/* Axes a and b are equally good where their cosines are equal: on a plane that
- * the line of sight misses by asin((cos a - cos b) / sqrt 2), for normals at
- * right angles. */
+/* Axes a and b are equally good where their cosines are equal: on a plane whose
+ * angle to the line of sight is asin((cos a - cos b) / sqrt 2), for
+ * perpendicular normals. */
 void snow_placement_shares(const snow_volume_info *info,
                            const snow_placement *placement, double shares[3]) {
     const double width = sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);

@@ -3,12 +3,12 @@
 
 #include <math.h>
 
-/* The longest side of an intermediate image, pixels: far above what a view of
- * 32,768 pixels needs, which is at most about twice as many. */
+/* The longest side of an intermediate image, pixels: far more than a view of
+ * 32,768 pixels needs, which is at most about twice its size. */
 #define LONGEST_SIDE (1 << 20)
 
-/* The least and the greatest of a linear function c + a x + b y over the
- * corners of [0, width] x [0, height]. */
+/* The minimum and maximum of a linear function c + a x + b y over the corners
+ * of [0, width] x [0, height]. */
 static void range_over(double c, double a, double b, double width,
                        double height, double range[2]) {
     range[0] = c + fmin(0, a * width) + fmin(0, b * height);
@@ -23,7 +23,7 @@ static bool make_lattice(const snow_placement *p, int64_t voxels, double reach,
     double shift = (double)(p->slices - 1) * out->slope;
     double low = fmin(0, shift) - reach;
     double high = fmax(0, shift) + (double)voxels - 1 + reach;
-    /* The warp reads two pixels beyond the one it is in. */
+    /* The warp reads two pixels beyond the pixel of its place. */
     double from = fmax(low, seen[0] - 3 * pitch) / pitch;
     double to = fmin(high, seen[1] + 3 * pitch) / pitch;
     if (!(from <= to)) {
@@ -68,9 +68,10 @@ snow_status snow_shear_make(snow_context *context,
             scale * (zero + (row[0] + row[1]) / 2) - (double)lattice->first;
     }
     if (!fits)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "the intermediate image would be too large; take "
-                         "method footprint or a smaller zoom");
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "the intermediate image is too large: the limit is 1048576 pixels "
+            "a side; use the method footprint or a smaller zoom");
     *out = shear;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }

@@ -1,15 +1,14 @@
-/* transform/shear.h - a parallel view as a shear and a warp (Lacroute and
- * Levoy 1994, in the affine form of their section 2).
+/* transform/shear.h - a parallel view as a shear and a warp (Lacroute and Levoy
+ * 1994, in the affine form of their section 2).
  *
- * Slice k, moved by (k * slope_u, k * slope_v) voxels in its own plane, lies on
- * slice 0 as the viewer sees it.  Sheets of slices so moved are sampled on one
- * lattice, the intermediate image, and composited there; one affine warp takes
- * the result to the picture:
+ * Slice k, sheared by (k * slope_u, k * slope_v) voxels in its own plane, is
+ * aligned with slice 0 for the viewer. The sheets of sheared slices are sampled
+ * on one lattice, the intermediate image, and composited there; one affine warp
+ * maps the result to the picture:
  *
  *   slice k      .  .  .  .            lattice of the intermediate image,
  *   slice 1    .  .  .  .       --->   2 pixels a voxel:  ' ' ' ' ' ' ' ' '
- *   slice 0   .  .  .  .                                 (P / 2 - k * slope)
- */
+ *   slice 0   .  .  .  .                                 (P / 2 - k * slope) */
 #ifndef SNOW_SHEAR_H
 #define SNOW_SHEAR_H
 
@@ -22,30 +21,30 @@
  */
 typedef struct snow_lattice {
     int phases; /* pixels a voxel, 1 or 2 */
-    int stride; /* voxels a pixel, 2 only where phases is 1 */
+    int stride; /* voxels a pixel; 2 only if phases is 1 */
     double slope;
     int64_t first; /* a multiple of phases */
-    int count;     /* pixels, 0 when nothing is in view */
+    int count;     /* pixels; 0 if nothing is in view */
 } snow_lattice;
 
 typedef struct snow_shear {
     snow_lattice u, v;
-    /* Pixel (x, y) of the picture, whose centre is at (x + 1/2, y + 1/2), is
-     * at start + x * along_x + y * along_y in pixels of the intermediate image,
-     * whose samples are at whole numbers. */
+    /* Pixel (x, y) of the picture, whose centre is at (x + 1/2, y + 1/2), maps
+     * to start + x * along_x + y * along_y in pixels of the intermediate image,
+     * whose samples are at integers. */
     double start[2], along_x[2], along_y[2];
 } snow_shear;
 
-/* How an intermediate image is asked for, along u and v. */
+/* Options of an intermediate image, along u and v. */
 typedef struct snow_shear_options {
     int phases[2], stride[2];
     double reach[2]; /* of the kernel, voxels */
 } snow_shear_options;
 
 /* The part of the lattice that both holds voxels and is in view, with a border
- * of SNOW_SHEAR_BORDER pixels that are empty or out of view: the two that a
- * warp reads beyond its place, and what it keeps away from the ends.  Errors:
- * SNOW_BAD_USAGE (an intermediate image beyond all measure). */
+ * of SNOW_SHEAR_BORDER pixels that are empty or out of view: two that a warp
+ * reads beyond its place, and its distance from the ends. Errors:
+ * SNOW_STATUS_BAD_USAGE (the intermediate image is too large). */
 #define SNOW_SHEAR_BORDER 5
 snow_status snow_shear_make(snow_context *context,
                             const snow_placement *placement,

@@ -1,6 +1,6 @@
-/* transform/view.c - views by name, and how a camera is turned.
+/* transform/view.c - views by name, and rotations of the camera.
  *
- * In the RAS world anterior is +y, left -x, superior +z.  A frame is right,
+ * In RAS world space anterior is +y, left -x, superior +z. A frame is right,
  * up, back, with back pointing from the target to the camera. */
 #include "base/vec3.h"
 #include "transform/transform.h"
@@ -42,21 +42,21 @@ static void set_view(const struct named_view *named, snow_view *out) {
     memcpy(out->up, named->up, sizeof out->up);
 }
 
-snow_status snow_view_named(snow_context *context, const char *name,
-                            snow_view *out) {
+snow_status snow_view_from_name(snow_context *context, const char *name,
+                                snow_view *out) {
     for (size_t i = 0; i < VIEW_COUNT; i++)
         if (snow_same_name(name, views[i].name)) {
             set_view(&views[i], out);
-            return SNOW_OK;
+            return SNOW_STATUS_OK;
         }
-    return snow_fail(context, SNOW_BAD_USAGE,
-                     "there is no view '%s'; take anterior, posterior, left, "
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "unknown view '%s': must be anterior, posterior, left, "
                      "right, superior, inferior, iso, +x, -x, +y, -y, +z or -z",
                      name);
 }
 
 void snow_view_default(const snow_volume *volume, snow_view *out) {
-    bool medical = snow_volume_describe(volume)->medical;
+    bool medical = snow_volume_get_info(volume)->medical;
     const char *name = medical ? "anterior" : "+z";
     for (size_t i = 0; i < VIEW_COUNT; i++)
         if (strcmp(name, views[i].name) == 0)
@@ -65,7 +65,7 @@ void snow_view_default(const snow_volume *volume, snow_view *out) {
 
 double snow_view_zoom_for_voxels(const snow_volume *volume, int width,
                                  int height) {
-    const snow_volume_info *info = snow_volume_describe(volume);
+    const snow_volume_info *info = snow_volume_get_info(volume);
     double voxel =
         fmin(info->spacing[0], fmin(info->spacing[1], info->spacing[2]));
     return 2 * snow_volume_radius(info) / (voxel * fmin(width, height));
@@ -92,7 +92,7 @@ static void turn_of(double degrees, double *cosine, double *sine) {
     }
 }
 
-/* Turns a towards b, and b away from a. */
+/* Rotates a towards b, and b away from a. */
 static void turn_pair(double a[3], double b[3], double degrees) {
     double c, s;
     turn_of(degrees, &c, &s);

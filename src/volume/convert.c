@@ -27,18 +27,18 @@ typedef struct conversion {
  * the last double before the power of two. */
 static void set_limits(conversion *c) {
     static const double limits[][2] = {
-        [SNOW_INT8] = {INT8_MIN, INT8_MAX},
-        [SNOW_UINT8] = {0, UINT8_MAX},
-        [SNOW_INT16] = {INT16_MIN, INT16_MAX},
-        [SNOW_UINT16] = {0, UINT16_MAX},
-        [SNOW_INT32] = {INT32_MIN, INT32_MAX},
-        [SNOW_UINT32] = {0, UINT32_MAX},
-        [SNOW_INT64] = {-0x1p63, 0x1p63 - 1024},
-        [SNOW_UINT64] = {0, 0x1p64 - 2048},
-        [SNOW_FLOAT32] = {-0x1.fffffep127, 0x1.fffffep127},
-        [SNOW_FLOAT64] = {-INFINITY, INFINITY},
+        [SNOW_TYPE_INT8] = {INT8_MIN, INT8_MAX},
+        [SNOW_TYPE_UINT8] = {0, UINT8_MAX},
+        [SNOW_TYPE_INT16] = {INT16_MIN, INT16_MAX},
+        [SNOW_TYPE_UINT16] = {0, UINT16_MAX},
+        [SNOW_TYPE_INT32] = {INT32_MIN, INT32_MAX},
+        [SNOW_TYPE_UINT32] = {0, UINT32_MAX},
+        [SNOW_TYPE_INT64] = {-0x1p63, 0x1p63 - 1024},
+        [SNOW_TYPE_UINT64] = {0, 0x1p64 - 2048},
+        [SNOW_TYPE_FLOAT32] = {-0x1.fffffep127, 0x1.fffffep127},
+        [SNOW_TYPE_FLOAT64] = {-INFINITY, INFINITY},
     };
-    c->integer = c->type != SNOW_FLOAT32 && c->type != SNOW_FLOAT64;
+    c->integer = c->type != SNOW_TYPE_FLOAT32 && c->type != SNOW_TYPE_FLOAT64;
     c->least = limits[c->type][0];
     c->most = limits[c->type][1];
 }
@@ -55,7 +55,7 @@ static double fit(conversion *c, double value) {
             c->first_lost = value;
         return 0;
     }
-    if (c->type == SNOW_FLOAT32)
+    if (c->type == SNOW_TYPE_FLOAT32)
         kept = (double)(float)wanted;
     c->rounded += (kept != wanted && !isnan(wanted)) ||
                   (c->wide && fabs(value) >= 0x1p53);
@@ -66,7 +66,7 @@ static void store(snow_type type, const double *values, int64_t first,
                   size_t count, void *voxels) {
     switch (type) {
 #define NARROW(name, c_type, text)             \
-    case SNOW_##name: {                        \
+    case SNOW_TYPE_##name: {                   \
         c_type *to = (c_type *)voxels + first; \
         for (size_t i = 0; i < count; i++)     \
             to[i] = (c_type)values[i];         \
@@ -107,9 +107,9 @@ static bool is_plain(const snow_volume_info *info) {
 
 /* The least type, not below the native one, that holds the data values. */
 static snow_type exact_type(const snow_volume *volume) {
-    static const snow_type order[] = {SNOW_INT8,   SNOW_UINT8, SNOW_INT16,
-                                      SNOW_UINT16, SNOW_INT32, SNOW_UINT32,
-                                      SNOW_FLOAT32};
+    static const snow_type order[] = {
+        SNOW_TYPE_INT8,  SNOW_TYPE_UINT8,  SNOW_TYPE_INT16,  SNOW_TYPE_UINT16,
+        SNOW_TYPE_INT32, SNOW_TYPE_UINT32, SNOW_TYPE_FLOAT32};
     snow_type native = volume->info.type;
     if (is_plain(&volume->info))
         return native;
@@ -122,30 +122,30 @@ static snow_type exact_type(const snow_volume *volume) {
         if (!c.lost && !c.rounded)
             return c.type;
     }
-    return SNOW_FLOAT64;
+    return SNOW_TYPE_FLOAT64;
 }
 
 /* range[0] .. range[1] onto all that an integer type holds. */
 static snow_status set_range(const snow_volume *volume, const double range[2],
                              conversion *c) {
     if (!c->integer || snow_type_size(c->type) > 4)
-        return snow_fail(volume->context, SNOW_BAD_USAGE,
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                          "values are spread over the integers of 8, 16 and 32 "
                          "bits only; leave out the range to keep them in %s",
                          snow_type_name(c->type));
     if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
-        return snow_fail(volume->context, SNOW_BAD_USAGE,
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                          "%g to %g is no range to be spread; give a lower and "
                          "a higher value",
                          range[0], range[1]);
     c->slope = (c->most - c->least) / (range[1] - range[0]);
     c->shift = c->least - c->slope * range[0];
     c->clamps = true;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 static snow_status refuse(const snow_volume *volume, const conversion *c) {
-    return snow_fail(volume->context, SNOW_BAD_USAGE,
+    return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                      "%lld values such as %g do not fit %s; %s",
                      (long long)c->lost, c->first_lost, snow_type_name(c->type),
                      isnan(c->first_lost)
@@ -170,8 +170,8 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
     snow_volume_info info = volume->info;
     conversion c = {.type = type,
                     .slope = 1,
-                    .wide =
-                        info.type == SNOW_INT64 || info.type == SNOW_UINT64};
+                    .wide = info.type == SNOW_TYPE_INT64 ||
+                            info.type == SNOW_TYPE_UINT64};
     snow_volume *made;
     SNOW_TRY(snow_volume_need_voxels(volume));
     if (!type)
@@ -193,5 +193,5 @@ snow_status snow_volume_convert(const snow_volume *volume, snow_type type,
     }
     report(volume, &c, range);
     *out = made;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }

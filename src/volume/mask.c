@@ -8,7 +8,6 @@
  * from the native one alone, not from the values, so that all parts of a volume
  * have the same. */
 #include "volume/mask.h"
-#include "volume/stream.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -56,12 +55,12 @@ static bool read_range(const char **text, snow_label_range *out) {
     return true;
 }
 
-bool snow_labels_read(const char *text, snow_label_range *ranges, size_t room,
-                      size_t *count) {
-    snow_label_range read[SNOW_LABELS_MOST];
+bool snow_labels_parse(const char *text, snow_label_range *ranges, size_t room,
+                       size_t *count) {
+    snow_label_range read[SNOW_LABELS_MAX];
     size_t n = 0;
     do {
-        if (n == room || n == SNOW_LABELS_MOST || !read_range(&text, &read[n]))
+        if (n == room || n == SNOW_LABELS_MAX || !read_range(&text, &read[n]))
             return false;
         n++;
     } while (*text++ == ',');
@@ -76,15 +75,15 @@ bool snow_labels_read(const char *text, snow_label_range *ranges, size_t room,
 
 /* Whether more than sizes of voxels is told.  A file that says nothing of its
  * place is at 0 along the world's axes. */
-static bool tells_place(const snow_volume_info *info) {
-    bool told = info->medical;
+static bool has_place(const snow_volume_info *info) {
+    bool given = info->medical;
     for (int row = 0; row < 3; row++) {
-        told |= info->matrix[row][3] != 0;
+        given |= info->matrix[row][3] != 0;
         for (int axis = 0; axis < 3; axis++)
-            told |= row == axis ? info->matrix[row][axis] < 0
-                                : info->matrix[row][axis] != 0;
+            given |= row == axis ? info->matrix[row][axis] < 0
+                                 : info->matrix[row][axis] != 0;
     }
-    return told;
+    return given;
 }
 
 static void place_of(const snow_volume_info *info, const int64_t at[3],
@@ -126,13 +125,13 @@ static snow_status check_place(snow_context *context,
     double p[3], q[3];
     const double *spacing = volume->spacing;
     double least = fmin(fmin(spacing[0], spacing[1]), spacing[2]);
-    if (!tells_place(volume) || !tells_place(mask) ||
+    if (!has_place(volume) || !has_place(mask) ||
         volume->medical != mask->medical ||
         find_difference(volume, mask, at) <= PLACE_TOLERANCE * least)
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     place_of(volume, at, p);
     place_of(mask, at, q);
-    return snow_fail(context, SNOW_BAD_INPUT,
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                      "the mask lies elsewhere: its voxel %lld,%lld,%lld is at "
                      "%g,%g,%g of the world, the volume's at %g,%g,%g; "
                      "resample it onto the volume's grid",
@@ -140,12 +139,12 @@ static snow_status check_place(snow_context *context,
                      q[1], q[2], p[0], p[1], p[2]);
 }
 
-static snow_status check_grid(snow_context *context,
-                              const snow_volume_info *volume,
-                              const snow_volume_info *mask) {
+snow_status snow_mask_check_grid(snow_context *context,
+                                 const snow_volume_info *volume,
+                                 const snow_volume_info *mask) {
     const int64_t *v = volume->dims, *m = mask->dims;
     if (memcmp(v, m, sizeof volume->dims) != 0)
-        return snow_fail(context, SNOW_BAD_INPUT,
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the mask has %lldx%lldx%lld voxels and the volume "
                          "%lldx%lldx%lld; resample it onto the volume's grid",
                          (long long)m[0], (long long)m[1], (long long)m[2],
@@ -161,7 +160,7 @@ static snow_status check_grid(snow_context *context,
 
 /* Planes over voxel indices: outside where [0] x + [1] y + [2] z > [3]. */
 typedef struct index_planes {
-    double planes[SNOW_CLIPS_MOST][4];
+    double planes[SNOW_CLIPS_MAX][4];
     int count;
 } index_planes;
 
@@ -220,10 +219,10 @@ static void clip_values(const index_planes *planes, const int64_t dims[3],
 
 /* --- voxels --------------------------------------------------------------- */
 
-/* The type that holds all values of another, and NaN. */
-static snow_type masked_type(snow_type type) {
-    return snow_type_size(type) <= 2 || type == SNOW_FLOAT32 ? SNOW_FLOAT32
-                                                             : SNOW_FLOAT64;
+snow_type snow_masked_type(snow_type type) {
+    return snow_type_size(type) <= 2 || type == SNOW_TYPE_FLOAT32
+               ? SNOW_TYPE_FLOAT32
+               : SNOW_TYPE_FLOAT64;
 }
 
 /* Which of a mask's values are inside. */
@@ -256,7 +255,7 @@ static bool is_inside(inside *in, double value) {
 /* Native values, or NaN, in the type of the masked volume. */
 static void store(snow_volume *made, int64_t first, size_t count,
                   const double *values) {
-    if (made->info.type == SNOW_FLOAT64) {
+    if (made->info.type == SNOW_TYPE_FLOAT64) {
         memcpy((double *)made->owned + first, values, count * sizeof *values);
         return;
     }
@@ -297,25 +296,14 @@ static bool leave_out(const snow_volume *volume, const snow_volume *mask,
     return any;
 }
 
-/* What is left out of a volume: by a mask on its grid, NULL where there is
- * none, and by planes. */
-typedef struct cuts {
-    const snow_volume *mask;
-    const snow_label_range *labels;
-    size_t label_count;
-    const double *planes;
-    size_t plane_count;
-} cuts;
-
-/* *any: whether a voxel is left. */
-static snow_status apply(const snow_volume *volume, const cuts *by, bool *any,
-                         snow_volume **out) {
+snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
+                            bool *any, snow_volume **out) {
     inside in = {.labels = by->labels, .count = by->label_count, .last = NAN};
     index_planes planes =
         index_planes_of(&volume->info, by->planes, by->plane_count);
     snow_volume_info info = volume->info;
     snow_volume *made;
-    info.type = masked_type(info.type);
+    info.type = snow_masked_type(info.type);
     SNOW_TRY(snow_volume_new(volume->context, &info, &made));
     made->is_part = volume->is_part;
     made->part = volume->part;
@@ -324,139 +312,41 @@ static snow_status apply(const snow_volume *volume, const cuts *by, bool *any,
     memcpy(made->patient, volume->patient, sizeof made->patient);
     *any = leave_out(volume, by->mask, &in, &planes, made);
     *out = made;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
                              const snow_label_range *labels, size_t count,
                              snow_volume **out) {
-    const cuts by = {.mask = mask, .labels = labels, .label_count = count};
+    const snow_cuts by = {.mask = mask, .labels = labels, .label_count = count};
     bool any;
     SNOW_TRY(snow_volume_need_voxels(volume));
     SNOW_TRY(snow_volume_need_voxels(mask));
-    SNOW_TRY(check_grid(volume->context, &volume->info, &mask->info));
-    return apply(volume, &by, &any, out);
+    SNOW_TRY(snow_mask_check_grid(volume->context, &volume->info, &mask->info));
+    return snow_mask_apply(volume, &by, &any, out);
 }
 
 snow_status snow_volume_clip(const snow_volume *volume, const double *planes,
                              size_t count, snow_volume **out) {
-    const cuts by = {.planes = planes, .plane_count = count};
+    const snow_cuts by = {.planes = planes, .plane_count = count};
     bool any;
     SNOW_TRY(snow_volume_need_voxels(volume));
-    if (count > SNOW_CLIPS_MOST)
-        return snow_fail(volume->context, SNOW_BAD_USAGE,
+    if (count > SNOW_CLIPS_MAX)
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                          "%zu planes are too many to clip by; give up to %d",
-                         count, SNOW_CLIPS_MOST);
-    return apply(volume, &by, &any, out);
+                         count, SNOW_CLIPS_MAX);
+    return snow_mask_apply(volume, &by, &any, out);
 }
 
-/* --- files ---------------------------------------------------------------- */
-
-/* A volume and its mask, on the way to be opened. */
-typedef struct opening {
-    snow_context *context;
-    const char *path;
-    const char *mask_path;       /* NULL: planes alone */
-    bool stream;                 /* the volume comes as one */
-    snow_volume_options options; /* of the volume, without mask */
-    snow_volume_options mask;    /* of the mask */
-    snow_volume_info grid;       /* of the whole mask */
-    snow_label_range labels[SNOW_LABELS_MOST];
-    size_t count;
-    double clip[SNOW_CLIPS_MOST][4];
-} opening;
+/* --- options -------------------------------------------------------------- */
 
 bool snow_mask_asked(const snow_volume_options *options) {
     if (!options)
         return false;
     bool clips = false;
-    for (int n = 0; n < SNOW_CLIPS_MOST; n++)
+    for (int n = 0; n < SNOW_CLIPS_MAX; n++)
         clips |= is_plane(options->clip[n]);
     return options->mask || options->labels || clips;
-}
-
-static bool is_cropped(const snow_volume_options *options) {
-    static const int64_t none[3][2];
-    return memcmp(options->crop, none, sizeof none) != 0;
-}
-
-/* What the options say by themselves. */
-static snow_status begin(opening *o, const snow_volume_options *options) {
-    o->options = *options;
-    o->options.mask = o->options.labels = NULL;
-    memset(o->options.clip, 0, sizeof o->options.clip);
-    memcpy(o->clip, options->clip, sizeof o->clip);
-    if (!options->mask && !options->labels)
-        return SNOW_OK;
-    if (!options->mask)
-        return snow_fail(o->context, SNOW_BAD_USAGE,
-                         "--labels: these are of a mask; give --mask FILE "
-                         "beside it");
-    if (options->labels && !snow_labels_read(options->labels, o->labels,
-                                             SNOW_LABELS_MOST, &o->count))
-        return snow_fail(o->context, SNOW_BAD_USAGE,
-                         "--labels %.64s: is no list of labels; give up to %d "
-                         "whole numbers and ranges, such as 1,4-7",
-                         options->labels, SNOW_LABELS_MOST);
-    o->mask_path = options->mask;
-    memcpy(o->mask.spacing, options->spacing, sizeof options->spacing);
-    if (snow_source_is_stream(o->mask_path))
-        return snow_fail(o->context, SNOW_BAD_USAGE,
-                         "%s: a mask is read from a file; write it to one",
-                         o->mask_path);
-    o->stream = snow_source_is_stream(o->path);
-    if (o->stream && is_cropped(options))
-        return snow_fail(o->context, SNOW_BAD_USAGE,
-                         "--crop: with a mask both must be files; write the "
-                         "volume to one");
-    return SNOW_OK;
-}
-
-/* A header alone, without the remarks that its reading makes too. */
-static snow_status look(snow_context *context, const char *path,
-                        const snow_volume_options *options,
-                        snow_volume_info *out) {
-    snow_notice_fn *notice = context->notice;
-    context->notice = NULL;
-    snow_status status = snow_volume_inspect(context, path, options, out);
-    context->notice = notice;
-    return status;
-}
-
-static snow_status compare(const opening *o, const snow_volume_info *volume) {
-    snow_status status = check_grid(o->context, volume, &o->grid);
-    if (status != SNOW_OK)
-        snow_fail_within(o->context, status, "%s", o->mask_path);
-    return status;
-}
-
-/* Options that a file may need are those of the volume. */
-static snow_status look_at_mask(opening *o) {
-    char why[512];
-    snow_status status = look(o->context, o->mask_path, &o->mask, &o->grid);
-    if (status != SNOW_BAD_USAGE)
-        return status;
-    snprintf(why, sizeof why, "%.500s", o->context->message);
-    return snow_fail(o->context, status,
-                     "%s (not for a mask: snowglass convert makes a .nrrd of "
-                     "it)",
-                     why);
-}
-
-/* Boxes of two grids are the same box only if the grids are the same, so the
- * whole ones are compared.  A stream is compared when it was read. */
-static snow_status look_at_both(opening *o) {
-    snow_volume_options whole = o->options;
-    snow_volume_info info;
-    SNOW_TRY(look_at_mask(o));
-    if (o->grid.times > 1)
-        o->mask.time = o->options.time;
-    memcpy(o->mask.crop, o->options.crop, sizeof o->mask.crop);
-    if (o->stream)
-        return SNOW_OK;
-    memset(whole.crop, 0, sizeof whole.crop);
-    SNOW_TRY(look(o->context, o->path, &whole, &info));
-    return compare(o, &info);
 }
 
 void snow_mask_remark(snow_context *context, const snow_volume_options *options,
@@ -469,73 +359,4 @@ void snow_mask_remark(snow_context *context, const snow_volume_options *options,
     else
         snow_notify(context, "--clip: no voxel is left; these are beyond "
                              "A x + B y + C z = D of the world");
-}
-
-/* An empty picture must not pass for one of an empty volume.  A box may be
- * empty, as that of a rank often is; who reads all boxes looks at all. */
-static void note_empty(const opening *o, const snow_volume *mask,
-                       snow_volume *volume) {
-    snow_volume_measures m = {.min = NAN, .max = NAN};
-    snow_volume_options options = o->options;
-    options.mask = o->mask_path;
-    if (mask)
-        snow_volume_measure(mask, &m);
-    volume->emptied = true;
-    volume->mask_range[0] = m.min;
-    volume->mask_range[1] = m.max;
-    if (!is_cropped(&options))
-        snow_mask_remark(o->context, &options, volume->mask_range);
-}
-
-static snow_status leave_out_of(const opening *o, const snow_volume *volume,
-                                const snow_volume *mask, snow_volume **out) {
-    const cuts by = {mask, o->labels, o->count, o->clip[0], SNOW_CLIPS_MOST};
-    bool any;
-    SNOW_TRY(apply(volume, &by, &any, out));
-    if (!any)
-        note_empty(o, mask, *out);
-    return SNOW_OK;
-}
-
-static snow_status read_mask(const opening *o, const snow_volume *volume,
-                             snow_volume **out) {
-    snow_volume *mask = NULL;
-    if (o->mask_path && o->stream)
-        SNOW_TRY(compare(o, &volume->info));
-    if (o->mask_path)
-        SNOW_TRY(snow_volume_open(o->context, o->mask_path, &o->mask, &mask));
-    snow_status status = leave_out_of(o, volume, mask, out);
-    snow_volume_close(mask);
-    return status;
-}
-
-static snow_status open_both(opening *o, snow_volume_info *info,
-                             snow_volume **out) {
-    snow_volume *volume;
-    if (o->mask_path)
-        SNOW_TRY(look_at_both(o));
-    if (!out) {
-        SNOW_TRY(snow_volume_inspect(o->context, o->path, &o->options, info));
-        info->type = masked_type(info->type);
-        return SNOW_OK;
-    }
-    SNOW_TRY(snow_volume_open(o->context, o->path, &o->options, &volume));
-    snow_status status = read_mask(o, volume, out);
-    snow_volume_close(volume);
-    return status;
-}
-
-snow_status snow_mask_open(snow_context *context, const char *path,
-                           const snow_volume_options *options,
-                           snow_volume_info *info, snow_volume **out) {
-    opening *o = snow_allocate_clear(context, sizeof *o);
-    if (!o)
-        return SNOW_NO_MEMORY;
-    o->context = context;
-    o->path = path;
-    snow_status status = begin(o, options);
-    if (status == SNOW_OK)
-        status = open_both(o, info, out);
-    snow_release(context, o);
-    return status;
 }

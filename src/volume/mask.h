@@ -1,23 +1,39 @@
-/* volume/mask.h - volumes that are opened with a mask or clipped. */
+/* volume/mask.h - volumes without the voxels that a mask or planes leave out.
+ */
 #ifndef SNOW_MASK_H
 #define SNOW_MASK_H
 
 #include "volume/volume.h"
 
+/* What is left out of a volume: by a mask on its grid, NULL where there is
+ * none, and by planes. */
+typedef struct snow_cuts {
+    const snow_volume *mask;
+    const snow_label_range *labels;
+    size_t label_count;
+    const double *planes; /* four numbers each */
+    size_t plane_count;
+} snow_cuts;
+
+/* The type that holds all values of another, and NaN. */
+snow_type snow_masked_type(snow_type type);
+
+/* Whether mask and volume have the same voxels.  Errors: SNOW_STATUS_BAD_INPUT
+ * (other sizes, another place). */
+snow_status snow_mask_check_grid(snow_context *context,
+                                 const snow_volume_info *volume,
+                                 const snow_volume_info *mask);
+
+/* The volume without what is cut off; *any: whether a voxel is left. */
+snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
+                            bool *any, snow_volume **out);
+
 /* Whether the options name a mask, labels of one, or planes; options may be
  * NULL. */
 bool snow_mask_asked(const snow_volume_options *options);
 
-/* As snow_volume_open with options that name these; where `out` is NULL, as
- * snow_volume_inspect.  Headers of both are compared before any voxel is read.
- * Errors: also SNOW_BAD_INPUT (another grid; whatever is wrong with the mask),
- * SNOW_BAD_USAGE (labels without a mask, or that are none). */
-snow_status snow_mask_open(snow_context *context, const char *path,
-                           const snow_volume_options *options,
-                           snow_volume_info *info, snow_volume **out);
-
-/* Tells that no voxel is left of a volume that was opened with these options,
- * by a mask of these values, or by planes alone. */
+/* Notifies that no voxel is left of a volume that was opened with these
+ * options, by a mask of these values, or by planes alone. */
 void snow_mask_remark(snow_context *context, const snow_volume_options *options,
                       const double mask_range[2]);
 

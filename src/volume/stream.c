@@ -6,6 +6,8 @@
  * file that was replaced in between is noticed by its sizes at the latest. */
 #include "volume/stream.h"
 
+#include "base/monitor.h"
+#include "io/source.h"
 #include "volume/mask.h"
 
 #include <math.h>
@@ -16,6 +18,7 @@
 
 /* What is needed to open a slab; the texts of the options follow behind. */
 struct snow_stream {
+    snow_open_fn *open;
     snow_volume_options options; /* with texts of its own */
     uint64_t slab_bytes;         /* of voxels of a slab, ghosts included */
     double seconds;              /* of reading */
@@ -25,12 +28,12 @@ struct snow_stream {
                                     not known */
     bool told_empty;             /* that nothing is left */
     bool measured;               /* `range` is known */
-    snow_volume_measures range;
+    snow_volume_statistics range;
     char *path;
     /* Remarks of reading, each of which is told once: a sum for each. */
-    snow_notice_fn *notice;
+    snow_warning_fn *notice;
     void *notice_user;
-    uint64_t told[REMARKS_MOST];
+    uint64_t given[REMARKS_MOST];
     int told_count;
 };
 
@@ -40,30 +43,30 @@ struct snow_stream {
 /* --- opening --------------------------------------------------------------
  */
 
-static void tell_once(void *user, const char *text) {
+static void warn_once(void *user, const char *text) {
     snow_stream *stream = user;
     uint64_t sum = 1469598103934665603U; /* FNV-1a */
     for (const char *at = text; *at; at++)
         sum = (sum ^ (unsigned char)*at) * 1099511628211U;
     for (int n = 0; n < stream->told_count; n++)
-        if (stream->told[n] == sum)
+        if (stream->given[n] == sum)
             return;
     if (stream->told_count == REMARKS_MOST)
         return;
-    stream->told[stream->told_count++] = sum;
+    stream->given[stream->told_count++] = sum;
     if (stream->notice)
         stream->notice(stream->notice_user, text);
 }
 
-/* Begins and ends telling through tell_once. */
+/* Begins and ends telling through warn_once. */
 static void listen_once(snow_context *context, snow_stream *stream) {
     stream->notice = context->notice;
     stream->notice_user = context->notice_user;
-    snow_context_set_notice(context, tell_once, stream);
+    snow_context_set_warning(context, warn_once, stream);
 }
 
 static void listen_again(snow_context *context, const snow_stream *stream) {
-    snow_context_set_notice(context, stream->notice, stream->notice_user);
+    snow_context_set_warning(context, stream->notice, stream->notice_user);
 }
 
 /* Moves a text behind the record. */
@@ -89,7 +92,7 @@ static snow_status new_stream(snow_context *context, const char *path,
                    text_bytes(options->mask) + text_bytes(options->labels);
     snow_stream *stream = snow_allocate_clear(context, bytes);
     if (!stream)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     char *at = (char *)(stream + 1);
     stream->options = *options;
     stream->options.dataset = keep(options->dataset, &at);
@@ -100,21 +103,18 @@ static snow_status new_stream(snow_context *context, const char *path,
     keep(path, &at);
     stream->slab_bytes = slab_bytes ? slab_bytes : SLAB_BYTES;
     *out = stream;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-void snow_stream_free(snow_context *context, snow_stream *stream) {
-    snow_release(context, stream);
-}
-
-snow_status snow_volume_stream(snow_context *context, const char *path,
-                               const snow_volume_options *options,
-                               uint64_t slab_bytes, snow_volume **out) {
+snow_status snow_stream_open(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             uint64_t slab_bytes, snow_open_fn *open,
+                             snow_volume **out) {
     static const snow_volume_options none;
     snow_volume_info info;
     snow_stream *stream;
     if (snow_source_is_stream(path))
-        return snow_fail(context, SNOW_BAD_USAGE,
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "%s: can be read once only, and a volume that stays "
                          "in its file is read several times; write it to a "
                          "file",
@@ -122,40 +122,29 @@ snow_status snow_volume_stream(snow_context *context, const char *path,
     SNOW_TRY(new_stream(context, path, options ? options : &none, slab_bytes,
                         &stream));
     listen_once(context, stream);
-    snow_status status = snow_volume_inspect(context, path, options, &info);
+    snow_status status = open(context, path, options, &info, NULL);
     listen_again(context, stream);
     snow_volume *volume = NULL;
-    if (status == SNOW_OK) {
+    if (status == SNOW_STATUS_OK) {
         volume = snow_allocate_clear(context, sizeof *volume);
-        status = volume ? SNOW_OK : SNOW_NO_MEMORY;
+        status = volume ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
     }
-    if (status != SNOW_OK) {
-        snow_stream_free(context, stream);
+    if (status != SNOW_STATUS_OK) {
+        snow_release(context, stream);
         return status;
     }
     volume->context = context;
     volume->info = info;
+    stream->open = open;
     volume->stream = stream;
+    volume->path = stream->path;
     snow_volume_freeze(volume);
     *out = volume;
-    return SNOW_OK;
-}
-
-const char *snow_stream_path(const snow_volume *volume) {
-    return volume->stream->path;
+    return SNOW_STATUS_OK;
 }
 
 double snow_volume_read_seconds(const snow_volume *volume) {
     return volume->stream ? volume->stream->seconds : 0;
-}
-
-snow_status snow_volume_need_voxels(const snow_volume *volume) {
-    if (!volume->stream)
-        return SNOW_OK;
-    return snow_fail(volume->context, SNOW_BAD_USAGE,
-                     "%s: its voxels stay in the file, and this needs them all "
-                     "at once; open it with snow_volume_open",
-                     volume->stream->path);
 }
 
 /* --- slabs ----------------------------------------------------------------
@@ -211,13 +200,13 @@ uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut) {
 
 /* What must be alike for one picture to be made of all slabs. */
 static snow_status compare(const snow_volume *volume, const snow_volume *slab,
-                           const snow_part *part, int64_t slices) {
+                           const snow_extent *part, int64_t slices) {
     const snow_volume_info *a = &volume->info, *b = &slab->info;
     if (a->type == b->type && a->slope == b->slope &&
         a->intercept == b->intercept && a->dims[0] == b->dims[0] &&
         a->dims[1] == b->dims[1] && b->dims[2] == slices)
-        return SNOW_OK;
-    return snow_fail(volume->context, SNOW_BAD_INPUT,
+        return SNOW_STATUS_OK;
+    return snow_fail(volume->context, SNOW_STATUS_BAD_INPUT,
                      "%s: slices from %lld on have another type, scale or size "
                      "than the volume; was the file replaced while it was "
                      "read?",
@@ -234,11 +223,13 @@ static bool may_remark(const snow_volume_options *options) {
 static snow_status open_slab(snow_context *context, snow_stream *stream,
                              const snow_volume_options *options,
                              snow_volume **out) {
+    snow_volume_info info;
     double begin = snow_seconds();
     listen_once(context, stream);
     if (!may_remark(options))
-        snow_context_set_notice(context, NULL, NULL);
-    snow_status status = snow_volume_open(context, stream->path, options, out);
+        snow_context_set_warning(context, NULL, NULL);
+    snow_status status =
+        stream->open(context, stream->path, options, &info, out);
     listen_again(context, stream);
     stream->seconds += snow_seconds() - begin;
     return status;
@@ -252,25 +243,25 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     int64_t from = first > ghosts ? first - ghosts : 0;
     int64_t end = first + count + ghosts;
     end = end < dims[2] ? end : dims[2];
-    snow_part part = {.dims = {dims[0], dims[1], dims[2]},
-                      .stored = {0, 0, from},
-                      .first = {0, 0, first},
-                      .count = {dims[0], dims[1], count}};
+    snow_extent part = {.dims = {dims[0], dims[1], dims[2]},
+                        .stored = {0, 0, from},
+                        .first = {0, 0, first},
+                        .count = {dims[0], dims[1], count}};
     snow_volume_options options = volume->stream->options;
     options.crop[2][1] = options.crop[2][0] + end;
     options.crop[2][0] += from;
     snow_volume *slab;
     SNOW_TRY(open_slab(context, volume->stream, &options, &slab));
     snow_status status = compare(volume, slab, &part, end - from);
-    if (status == SNOW_OK)
-        status = snow_volume_set_part(slab, &part);
-    if (status != SNOW_OK) {
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_set_extent(slab, &part);
+    if (status != SNOW_STATUS_OK) {
         snow_volume_close(slab);
         return status;
     }
     snow_volume_set_whole(slab, &volume->info);
     *out = slab;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* What a mask or planes have left of the slabs that one visit has read. */
@@ -282,7 +273,7 @@ static void note_empty(const snow_volume *slab, snow_stream *stream) {
 }
 
 /* As of a volume in memory: of one that is cropped nothing is said. */
-static void tell_empty(const snow_volume *volume) {
+static void warn_empty(const snow_volume *volume) {
     static const int64_t none[3][2];
     snow_stream *stream = volume->stream;
     const snow_volume_options *options = &stream->options;
@@ -306,45 +297,83 @@ static void drop_slab(snow_volume *slab) {
     snow_volume_close(slab);
 }
 
-static snow_status visit_slab(const snow_volume *volume, int64_t first,
-                              int64_t count, int64_t ghosts,
-                              snow_slab_fn *visit, void *user) {
-    snow_volume *slab;
-    SNOW_TRY(read_slab(volume, first, count, ghosts, &slab));
-    note_empty(slab, volume->stream);
-    snow_status status = visit(slab, user);
-    drop_slab(slab);
-    return status;
+void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
+                     snow_slabs *slabs) {
+    snow_stream *stream = volume->stream;
+    *slabs = (snow_slabs){.volume = volume, .cut = *cut};
+    if (!stream)
+        return;
+    slabs->count = slab_slices(volume, cut);
+    slabs->next = slabs->nearest = cut->from / slabs->count * slabs->count;
+    stream->left = false;
+    stream->mask_range[0] = stream->mask_range[1] = NAN;
 }
 
-static snow_status visit_slabs(const snow_volume *volume,
-                               const snow_slab_cut *cut, snow_slab_fn *visit,
-                               void *user) {
-    int64_t all = volume->info.dims[2], count = slab_slices(volume, cut);
-    int64_t nearest = cut->from / count * count;
-    for (int64_t first = nearest; first < all; first += count)
-        SNOW_TRY(visit_slab(volume, first,
-                            all - first < count ? all - first : count,
-                            cut->ghosts, visit, user));
-    for (int64_t first = nearest - count; first >= 0; first -= count)
-        SNOW_TRY(visit_slab(volume, first, count, cut->ghosts, visit, user));
-    return SNOW_OK;
+static void drop_present(snow_slabs *slabs) {
+    if (slabs->number) /* the progress is that of the whole again */
+        snow_monitor_whole(slabs->volume->context->monitor, slabs->whole);
+    if (slabs->slab)
+        drop_slab(slabs->slab);
+    slabs->slab = NULL;
+}
+
+/* Whether a slab of a file is left, from `next` on. */
+static bool any_left(snow_slabs *slabs) {
+    if (!slabs->falls && slabs->next >= slabs->volume->info.dims[2]) {
+        slabs->falls = true;
+        slabs->next = slabs->nearest - slabs->count;
+    }
+    return !slabs->falls || slabs->next >= 0;
+}
+
+snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
+    const snow_volume *volume = slabs->volume;
+    drop_present(slabs);
+    *slab = NULL;
+    if (!volume->stream) {
+        *slab = slabs->begun ? NULL : volume;
+        slabs->begun = true;
+        return SNOW_STATUS_OK;
+    }
+    if (!any_left(slabs)) {
+        warn_empty(volume);
+        return SNOW_STATUS_OK;
+    }
+    int64_t all = volume->info.dims[2], left = all - slabs->next;
+    slabs->whole =
+        snow_monitor_divide(volume->context->monitor, (double)slabs->number++,
+                            (double)((all + slabs->count - 1) / slabs->count));
+    SNOW_TRY(read_slab(volume, slabs->next,
+                       left < slabs->count ? left : slabs->count,
+                       slabs->cut.ghosts, &slabs->slab));
+    slabs->next += slabs->falls ? -slabs->count : slabs->count;
+    note_empty(slabs->slab, volume->stream);
+    *slab = slabs->slab;
+    return SNOW_STATUS_OK;
+}
+
+void snow_slabs_close(snow_slabs *slabs) {
+    snow_context *context = slabs->volume->context;
+    if (!slabs->volume->stream)
+        return;
+    drop_present(slabs);
+    snow_release(context, context->spare);
+    context->spare = NULL;
 }
 
 snow_status snow_slabs_visit(const snow_volume *volume,
                              const snow_slab_cut *cut, snow_slab_fn *visit,
                              void *user) {
-    snow_stream *stream = volume->stream;
-    if (!stream)
-        return visit(volume, user);
-    stream->left = false;
-    stream->mask_range[0] = stream->mask_range[1] = NAN;
-    snow_status status = visit_slabs(volume, cut, visit, user);
-    if (status == SNOW_OK)
-        tell_empty(volume);
-    snow_context *context = volume->context;
-    snow_release(context, context->spare);
-    context->spare = NULL;
+    snow_slabs slabs;
+    const snow_volume *slab;
+    snow_slabs_open(volume, cut, &slabs);
+    snow_status status = snow_slabs_next(&slabs, &slab);
+    while (status == SNOW_STATUS_OK && slab) {
+        status = visit(slab, user);
+        if (status == SNOW_STATUS_OK)
+            status = snow_slabs_next(&slabs, &slab);
+    }
+    snow_slabs_close(&slabs);
     return status;
 }
 
@@ -353,32 +382,33 @@ snow_status snow_slabs_visit(const snow_volume *volume,
 
 /* `user` is what is known so far; NaN where nothing is. */
 static snow_status measure_slab(const snow_volume *slab, void *user) {
-    snow_volume_measures *range = user, here;
-    snow_volume_measure(slab, &here);
+    snow_volume_statistics *range = user, here;
+    snow_volume_get_statistics(slab, &here);
+    SNOW_TRY(snow_monitor_status(slab->context->monitor));
     range->voxels += here.voxels;
     range->finite += here.finite;
     range->min = fmin(range->min, here.min);
     range->max = fmax(range->max, here.max);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_volume_range(const snow_volume *volume,
-                              snow_volume_measures *out) {
+                              snow_volume_statistics *out) {
     static const snow_slab_cut cut = {.step = 1};
-    snow_volume_measures range = {.min = NAN, .max = NAN};
+    snow_volume_statistics range = {.min = NAN, .max = NAN};
     if (volume->stream && volume->stream->measured) {
         *out = volume->stream->range;
-        return SNOW_OK;
+        return SNOW_STATUS_OK;
     }
     SNOW_TRY(snow_slabs_visit(volume, &cut, measure_slab, &range));
     if (volume->stream)
         snow_stream_note_range(volume, &range);
     *out = range;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_stream_note_range(const snow_volume *volume,
-                            const snow_volume_measures *range) {
+                            const snow_volume_statistics *range) {
     volume->stream->range = *range;
     volume->stream->measured = true;
 }

@@ -3,7 +3,7 @@
  * and dropped, as often as they are wanted.
  *
  *   z   0 .... a ..... b ..... c
- *       | slab 0 |g|               g: ghost layers (volume.h, snow_part), for
+ *       | slab 0 |g|               g: ghost layers (volume.h, snow_extent), for
  *              |g| slab 1 |g|         what is computed of neighbours
  *                       |g| slab 2
  *
@@ -13,6 +13,19 @@
 #define SNOW_STREAM_H
 
 #include "volume/volume.h"
+
+/* Opens a file with options: reads the volume, or where `out` is NULL its
+ * header alone. */
+typedef snow_status snow_open_fn(snow_context *context, const char *path,
+                                 const snow_volume_options *options,
+                                 snow_volume_info *info, snow_volume **out);
+
+/* As snow_volume_open_streamed; slabs are boxes of the file that `open` reads.
+ */
+snow_status snow_stream_open(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             uint64_t slab_bytes, snow_open_fn *open,
+                             snow_volume **out);
 
 /* How a volume is to be cut. */
 typedef struct snow_slab_cut {
@@ -25,12 +38,31 @@ typedef struct snow_slab_cut {
                        rising, then those below it, falling */
 } snow_slab_cut;
 
-/* Is handed a slab, which is a part of the volume (or the volume itself), and
- * gone after the call. */
-typedef snow_status snow_slab_fn(const snow_volume *slab, void *user);
+/* A walk over all slabs. */
+typedef struct snow_slabs {
+    const snow_volume *volume;
+    snow_slab_cut cut;
+    int64_t count, nearest; /* slices of a slab; the first that is read */
+    int64_t next;           /* the next slab's first slice */
+    bool begun, falls;
+    int64_t number;          /* of slabs so far */
+    snow_monitor_part whole; /* the progress outside of the present slab */
+    snow_volume *slab;       /* the present one; NULL: the volume in memory */
+} snow_slabs;
 
-/* Hands out all slabs.  Errors: of the function, which ends it; of
- * snow_volume_open; SNOW_BAD_INPUT (the file is another one by now). */
+void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
+                     snow_slabs *slabs);
+
+/* The next slab, which is a part of the volume (or the volume itself), and gone
+ * when the next is asked for; NULL after the last one.  Errors: those of
+ * snow_volume_open; SNOW_STATUS_BAD_INPUT (the file is another one by now). */
+snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab);
+
+void snow_slabs_close(snow_slabs *slabs);
+
+/* Hands all of them to a function.  Errors: those of snow_slabs_next, and of
+ * the function, which ends it. */
+typedef snow_status snow_slab_fn(const snow_volume *slab, void *user);
 snow_status snow_slabs_visit(const snow_volume *volume,
                              const snow_slab_cut *cut, snow_slab_fn *visit,
                              void *user);
@@ -41,25 +73,15 @@ uint64_t snow_slab_bytes(const snow_volume *volume, const snow_slab_cut *cut);
 /* " under the limit of 300.0 MiB", where there is one. */
 void snow_print_limit(const snow_context *context, char text[64]);
 
-/* All of snow_volume_measure but the sums.  Of a volume in its file slabs are
- * read, unless the range is known; of a part it is that of the part.  Errors:
- * as snow_slabs_visit. */
+/* All of snow_volume_get_statistics but the sums.  Of a volume in its file
+ * slabs are read, unless the range is known; of a part it is that of the part.
+ * Errors: as snow_slabs_visit. */
 snow_status snow_volume_range(const snow_volume *volume,
-                              snow_volume_measures *out);
+                              snow_volume_statistics *out);
 
 /* Makes known the range of a volume in its file, as snow_volume_range finds it.
  */
 void snow_stream_note_range(const snow_volume *volume,
-                            const snow_volume_measures *range);
-
-/* For what needs all voxels at once.  Errors: SNOW_BAD_USAGE (these stay in
- * their file). */
-snow_status snow_volume_need_voxels(const snow_volume *volume);
-
-/* Of a volume that stays in its file. */
-const char *snow_stream_path(const snow_volume *volume);
-
-/* NULL is accepted. */
-void snow_stream_free(snow_context *context, snow_stream *stream);
+                            const snow_volume_statistics *range);
 
 #endif

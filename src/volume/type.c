@@ -11,7 +11,7 @@ _Static_assert(CHAR_BIT == 8 && sizeof(float) == 4 && sizeof(double) == 8,
 size_t snow_type_size(snow_type type) {
     switch (type) {
 #define TYPE_SIZE(name, c_type, text) \
-    case SNOW_##name:                 \
+    case SNOW_TYPE_##name:            \
         return sizeof(c_type);
         SNOW_TYPE_MAP(TYPE_SIZE)
 #undef TYPE_SIZE
@@ -26,7 +26,7 @@ size_t snow_type_size(snow_type type) {
 const char *snow_type_name(snow_type type) {
     switch (type) {
 #define TYPE_NAME(name, c_type, text) \
-    case SNOW_##name:                 \
+    case SNOW_TYPE_##name:            \
         return text;
         SNOW_TYPE_MAP(TYPE_NAME)
 #undef TYPE_NAME
@@ -37,16 +37,16 @@ const char *snow_type_name(snow_type type) {
 }
 
 /* Exact: the many spellings of NRRD and raw names are those readers' matter. */
-snow_type snow_type_named(const char *name) {
+snow_type snow_type_from_name(const char *name) {
     static const struct {
         const char *name;
         snow_type type;
     } names[] = {
-#define TYPE_NAMED(name, c_type, text) {text, SNOW_##name},
+#define TYPE_NAMED(name, c_type, text) {text, SNOW_TYPE_##name},
         SNOW_TYPE_MAP(TYPE_NAMED)
 #undef TYPE_NAMED
-            {"float", SNOW_FLOAT32},
-        {"double", SNOW_FLOAT64},
+            {"float", SNOW_TYPE_FLOAT32},
+        {"double", SNOW_TYPE_FLOAT64},
     };
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(name, names[i].name))

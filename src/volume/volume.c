@@ -1,9 +1,8 @@
-/* volume/volume.c - making, checking, reading and closing a volume.
+/* volume/volume.c - making, checking and closing a volume.
  *
  * What a header says is checked here, in one place, before any voxel gets its
  * memory: every reader goes through snow_volume_new. */
 #include "volume/volume.h"
-#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -57,34 +56,34 @@ snow_status snow_volume_info_check(snow_context *context,
     double inverse[3][3];
     const int64_t *dims = info->dims;
     if (!snow_type_size(info->type))
-        return snow_fail(context, SNOW_BAD_INPUT,
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the scalar type is not known; give one of int8 to "
                          "float64");
     if (dims[0] < 1 || dims[1] < 1 || dims[2] < 1)
-        return snow_fail(context, SNOW_BAD_INPUT,
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "a volume of %lldx%lldx%lld voxels is empty; every "
                          "size must be at least 1",
                          (long long)dims[0], (long long)dims[1],
                          (long long)dims[2]);
     if (!snow_volume_count(dims, info->type, &voxels, &bytes))
-        return snow_fail(context, SNOW_BAD_INPUT,
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "a volume of %lldx%lldx%lld voxels is larger than any "
                          "file; check the sizes",
                          (long long)dims[0], (long long)dims[1],
                          (long long)dims[2]);
     if (!matrix_is_finite(info->matrix) ||
         !snow_matrix_invert3(info->matrix, inverse))
-        return snow_fail(context, SNOW_BAD_INPUT,
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "the spacing or the directions of the axes are zero, "
                          "not finite or in one plane; correct them in the "
                          "header");
     if (!isfinite(info->slope) || !isfinite(info->intercept) ||
         info->slope == 0)
-        return snow_fail(context, SNOW_BAD_INPUT,
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "slope %g and intercept %g make no values; correct "
                          "them in the header",
                          info->slope, info->intercept);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* A volume over given voxels; info is already checked. */
@@ -92,13 +91,13 @@ static snow_status wrap(snow_context *context, const snow_volume_info *info,
                         const void *voxels, snow_volume **out) {
     snow_volume *volume = snow_allocate_clear(context, sizeof *volume);
     if (!volume)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     volume->context = context;
     volume->info = *info;
     volume->voxels = voxels;
     snow_volume_info_measure(&volume->info);
     *out = volume;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 /* Room for voxels: the last slab's where that is large enough, for new pages
@@ -123,21 +122,21 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
     snow_volume_count(info->dims, info->type, &count, &bytes);
     void *voxels = take_voxels(context, bytes);
     if (!voxels)
-        return SNOW_NO_MEMORY;
+        return SNOW_STATUS_NO_MEMORY;
     snow_volume *volume;
     snow_status status = wrap(context, info, voxels, &volume);
-    if (status != SNOW_OK) {
+    if (status != SNOW_STATUS_OK) {
         snow_release(context, voxels);
         return status;
     }
     volume->owned = voxels;
     snow_volume_freeze(volume);
     *out = volume;
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
 void snow_volume_freeze(snow_volume *volume) {
-    volume->serial = ++volume->context->serials;
+    volume->generation = ++volume->context->generations;
 }
 
 /* Whether `count` voxels from `first` on lie within `room` from `begin` on;
@@ -149,7 +148,7 @@ static bool lies_within(int64_t first, int64_t count, int64_t begin,
 }
 
 static snow_status check_part(const snow_volume *volume,
-                              const snow_part *part) {
+                              const snow_extent *part) {
     bool none = !part->count[0] || !part->count[1] || !part->count[2];
     for (int axis = 0; axis < 3; axis++) {
         int64_t stored = volume->info.dims[axis];
@@ -158,32 +157,42 @@ static snow_status check_part(const snow_volume *volume,
             (!none && !lies_within(part->first[axis], part->count[axis],
                                    part->stored[axis], stored)))
             return snow_fail(
-                volume->context, SNOW_BAD_USAGE,
+                volume->context, SNOW_STATUS_BAD_USAGE,
                 "along axis %d a part of %lld voxels from %lld, stored as %lld "
                 "from %lld, does not lie in %lld voxels; correct its boxes",
                 axis, (long long)part->count[axis],
                 (long long)part->first[axis], (long long)stored,
                 (long long)part->stored[axis], (long long)part->dims[axis]);
     }
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-snow_status snow_volume_set_part(snow_volume *volume, const snow_part *part) {
+snow_status snow_volume_need_voxels(const snow_volume *volume) {
+    if (!volume->stream)
+        return SNOW_STATUS_OK;
+    return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
+                     "%s: its voxels stay in the file, and this needs them all "
+                     "at once; open it with snow_volume_open",
+                     volume->path);
+}
+
+snow_status snow_volume_set_extent(snow_volume *volume,
+                                   const snow_extent *part) {
     SNOW_TRY(snow_volume_need_voxels(volume));
     SNOW_TRY(check_part(volume, part));
     volume->part = *part;
     volume->is_part = true;
-    if (volume->serial) /* what was encoded of it was of other slices */
+    if (volume->generation) /* what was encoded of it was of other slices */
         snow_volume_freeze(volume);
-    return SNOW_OK;
+    return SNOW_STATUS_OK;
 }
 
-void snow_volume_get_part(const snow_volume *volume, snow_part *out) {
+void snow_volume_get_extent(const snow_volume *volume, snow_extent *out) {
     if (volume->is_part) {
         *out = volume->part;
         return;
     }
-    *out = (snow_part){0};
+    *out = (snow_extent){0};
     memcpy(out->dims, volume->info.dims, sizeof out->dims);
     memcpy(out->count, volume->info.dims, sizeof out->count);
 }
@@ -221,11 +230,11 @@ snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
 
 /* Voxels of the caller come without a file: no source is checked against the
  * sizes, whose truth is the caller's word. */
-snow_status snow_volume_share(snow_context *context,
-                              const snow_volume_info *info, const void *voxels,
-                              snow_volume **out) {
+snow_status snow_volume_wrap(snow_context *context,
+                             const snow_volume_info *info, const void *voxels,
+                             snow_volume **out) {
     if (!voxels)
-        return snow_fail(context, SNOW_BAD_USAGE,
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "there are no voxels to share; give their address");
     static const double zero[4][4];
     snow_volume_info own = snow_volume_info_default("memory");
@@ -239,81 +248,21 @@ snow_status snow_volume_share(snow_context *context,
     memcpy(own.unit, info->unit, sizeof own.unit);
     own.unit[sizeof own.unit - 1] = 0;
     snow_status status = snow_volume_info_check(context, &own);
-    if (status != SNOW_OK)
-        return SNOW_BAD_USAGE; /* the caller's, not a file's */
+    if (status != SNOW_STATUS_OK)
+        return SNOW_STATUS_BAD_USAGE; /* the caller's, not a file's */
     return wrap(context, &own, voxels, out);
-}
-
-/* The bytes are held against the source before the voxels get their memory: a
- * header of 400 bytes must not cost gigabytes. */
-snow_status snow_volume_read(snow_source *source,
-                             const snow_volume_options *options,
-                             bool big_endian, uint64_t skip,
-                             snow_volume_info *info, snow_volume **out) {
-    snow_context *context = snow_source_context(source);
-    snow_window window;
-    uint64_t all;
-    SNOW_TRY(snow_window_lay(context, options, info, &window));
-    /* More than 64 bits can count: expect refuses it with its usual words. */
-    if (!snow_add_u64(skip, window.all, &all))
-        all = UINT64_MAX;
-    SNOW_TRY(snow_source_expect(source, all, "the voxels"));
-    if (!out)
-        return SNOW_OK;
-    const snow_file_part part = {&window, 0, window.all};
-    snow_volume *volume;
-    SNOW_TRY(snow_volume_new(context, info, &volume));
-    snow_status status = snow_source_skip(source, skip, "the voxels");
-    if (status == SNOW_OK)
-        status = snow_file_part_read(source, &part, volume->owned);
-    if (status == SNOW_OK)
-        status = snow_source_finish(source);
-    if (status != SNOW_OK) {
-        snow_volume_close(volume);
-        return status;
-    }
-    snow_volume_order_bytes(volume, big_endian);
-    *out = volume;
-    return SNOW_OK;
-}
-
-void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
-    const int64_t *dims = volume->info.dims;
-    if (big_endian != snow_machine_big_endian())
-        snow_swap_bytes(volume->owned, (uint64_t)(dims[0] * dims[1] * dims[2]),
-                        snow_type_size(volume->info.type));
-}
-
-/* Told even for step 0: a picture of one of many steps must not pass for all
- * there is, unless the others come too. */
-snow_status snow_volume_pick_time(snow_context *context, const char *what,
-                                  const snow_volume_options *options,
-                                  snow_volume_info *info) {
-    if (options->time < 0 || options->time >= info->times)
-        return snow_fail(context, SNOW_BAD_USAGE,
-                         "there is no %s %lld; the file has %lld, counted from "
-                         "0",
-                         what, (long long)options->time,
-                         (long long)info->times);
-    info->time = options->time;
-    if (info->times > 1 && !options->each_time)
-        snow_notify(context,
-                    "%s %lld of %lld (counted from 0) is taken; --time N takes "
-                    "another",
-                    what, (long long)info->time, (long long)info->times);
-    return SNOW_OK;
 }
 
 /* Shared voxels are not owned and stay. */
 void snow_volume_close(snow_volume *volume) {
     if (volume) {
-        snow_stream_free(volume->context, volume->stream);
+        snow_release(volume->context, volume->stream);
         snow_release(volume->context, volume->owned);
         snow_release(volume->context, volume);
     }
 }
 
-const snow_volume_info *snow_volume_describe(const snow_volume *volume) {
+const snow_volume_info *snow_volume_get_info(const snow_volume *volume) {
     return &volume->info;
 }
 

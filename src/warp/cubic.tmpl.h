@@ -1,14 +1,14 @@
-/* warp/cubic.tmpl.h - Catmull-Rom mixtures of a group of pixels.  Define before
- * including, with simd/select.h's words in force:
+/* warp/cubic.tmpl.h - Catmull-Rom interpolation of a group of pixels. Include
+ * simd/select.h first, and define:
  *
  *   WARP_CHANNELS  floats of a pixel: 2 or 4; a multiple of LANES / 4
- *   WARP_FOLD      V(fold2) or V(fold4), as WARP_CHANNELS
+ *   WARP_HADD      V(hadd2) or V(hadd4), for WARP_CHANNELS
  *   WARP_NAME      names of the functions: (_mix)
  *
- * WARP_FOLD is undefined at the end.  The taps along x are neighbours in
- * memory, so a line of them is one run of 4 * WARP_CHANNELS floats: lines are
- * added up with their weights along y first, then the pixels of the run with
- * theirs along x.  Sums are by halves, so that they do not depend on LANES. */
+ * WARP_HADD is undefined at the end. The taps along x are contiguous in memory,
+ * so a line of them is one run of 4 * WARP_CHANNELS floats. Lines are added up
+ * with their weights along y first, then the pixels of the run with theirs
+ * along x. Sums are computed by halves, so that they do not depend on LANES. */
 
 #define WARP_VECTORS (4 * WARP_CHANNELS / LANES)
 
@@ -25,7 +25,7 @@ WARP_NAME(_pixel)(const float *run, size_t stride, const float *along_y,
     for (int half = WARP_VECTORS / 2; half; half /= 2)
         for (int n = 0; n < half; n++)
             part[n] = V(add)(part[n], part[n + half]);
-    return WARP_FOLD(part[0]);
+    return WARP_HADD(part[0]);
 }
 
 /* Weights along x in all lanes, as cubic polynomials of the fraction. */
@@ -46,7 +46,7 @@ WARP_NAME(_along_x)(float fraction, V(vec) part[WARP_VECTORS]) {
 }
 
 TARGET static inline __attribute__((always_inline)) void
-WARP_NAME(_mix)(const snow_plane *plane, const warp_group *group,
+WARP_NAME(_mix)(const snow_intermediate_view *plane, const warp_group *group,
                 float *pixels) {
     float along_y[4][GROUP];
     for (int m = 0; m < 4; m++)
@@ -67,4 +67,4 @@ WARP_NAME(_mix)(const snow_plane *plane, const warp_group *group,
 }
 
 #undef WARP_VECTORS
-#undef WARP_FOLD
+#undef WARP_HADD

@@ -1,22 +1,21 @@
-/* warp/lines.tmpl.h - lines of the picture out of the intermediate image, in
- * groups of pixels.  Define before including, with simd/select.h's words in
- * force:
+/* warp/lines.tmpl.h - resamples lines of the picture from the intermediate
+ * image, in groups of pixels. Include simd/select.h first, and define:
  *
  *   WARP_CHANNELS  floats of a pixel: 2 or 4
  *   WARP_BEFORE    lines and columns that are read before a pixel's place
- *   WARP_NAME      names of the functions: of a line whose places are a number
- *                  of steps apart, and (_places) of any places; (_mix) is what
- *                  makes pixels of the places of a group
+ *   WARP_NAME      names of the functions: for a line whose places are a number
+ *                  of steps apart, and (_places) for any places; (_mix)
+ *                  interpolates the pixels of a group at their places
  *
- * All are undefined at the end.  Places become offsets and fractions in loops
- * that the compiler carries to vectors. */
+ * All are undefined at the end. Places become offsets and fractions in loops
+ * that the compiler vectorizes. */
 
-/* Fills what a group's places (x, y) say; those beyond `count` are places of
- * others. */
+/* Computes a group's offsets and fractions from its places (x, y); beyond
+ * `count` they are copies. */
 TARGET static inline __attribute__((always_inline)) void
-WARP_NAME(_place)(const snow_plane *plane, const int64_t *x, const int64_t *y,
-                  int count, warp_group *group) {
-    const int32_t stride = (int32_t)plane->stride; /* shear.c: up to 2^23 */
+WARP_NAME(_place)(const snow_intermediate_view *plane, const int64_t *x,
+                  const int64_t *y, int count, warp_group *group) {
+    const int32_t stride = (int32_t)plane->stride; /* below 2^23 */
     const int64_t before = WARP_BEFORE * (stride + WARP_CHANNELS);
     for (int n = 0; n < GROUP; n++)
         group->at[n] = (int64_t)(int32_t)(y[n] >> 32) * stride +
@@ -29,10 +28,12 @@ WARP_NAME(_place)(const snow_plane *plane, const int64_t *x, const int64_t *y,
         group->at[n] = group->at[0];
 }
 
-/* Asks the cache for what the pixels of a group read: lines of the picture may
- * run across those of the plane, where no run of addresses is to be guessed. */
+/* Prefetches what the pixels of a group read: lines of the picture may run
+ * across those of the intermediate image, where the hardware prefetcher fails.
+ */
 TARGET static inline __attribute__((always_inline)) void
-WARP_NAME(_fetch)(const snow_plane *plane, const int64_t *x, const int64_t *y) {
+WARP_NAME(_fetch)(const snow_intermediate_view *plane, const int64_t *x,
+                  const int64_t *y) {
     const int32_t stride = (int32_t)plane->stride;
     for (int n = 0; n < GROUP; n++) {
         const float *at = plane->pixels +
@@ -43,11 +44,11 @@ WARP_NAME(_fetch)(const snow_plane *plane, const int64_t *x, const int64_t *y) {
     }
 }
 
-/* A group's pixels, of which `count` are written, held to the laws of
- * premultiplied ones. */
+/* A group's pixels, of which `count` are written, clamped to valid
+ * premultiplied values. */
 TARGET static inline __attribute__((always_inline)) void
-WARP_NAME(_group)(const snow_plane *plane, const int64_t *x, const int64_t *y,
-                  int count, float *pixels) {
+WARP_NAME(_group)(const snow_intermediate_view *plane, const int64_t *x,
+                  const int64_t *y, int count, float *pixels) {
     const V(vec) zero = V(set1)(0), one = V(set1)(1);
     float mixtures[WARP_CHANNELS * GROUP];
     warp_group group;
@@ -65,7 +66,7 @@ WARP_NAME(_group)(const snow_plane *plane, const int64_t *x, const int64_t *y,
                (size_t)(count * WARP_CHANNELS) * sizeof *pixels);
 }
 
-TARGET static void WARP_NAME()(const snow_plane *plane,
+TARGET static void WARP_NAME()(const snow_intermediate_view *plane,
                                const snow_warp_line *line, int first, int count,
                                float *pixels) {
     int64_t x[GROUP], y[GROUP], steps[2][GROUP];
@@ -93,7 +94,7 @@ TARGET static void WARP_NAME()(const snow_plane *plane,
     }
 }
 
-TARGET static void WARP_NAME(_places)(const snow_plane *plane,
+TARGET static void WARP_NAME(_places)(const snow_intermediate_view *plane,
                                       const int64_t (*places)[2], int count,
                                       float *pixels) {
     for (int n = 0; n < count; n += GROUP) {

@@ -1,16 +1,16 @@
 /* warp/perspective.c - lines of the picture in perspective.
  *
- * Along a line of the picture both places in the intermediate image are
- * quotients of linear functions with one denominator: a division a pixel. */
-#include "warp/blocks.h"
+ * Along a line of the picture both coordinates in the intermediate image are
+ * quotients of linear functions with the same denominator: one division a
+ * pixel. */
+#include "warp/empty.h"
 
 #include <math.h>
 #include <string.h>
 
-#define CHUNK 16 /* pixels that are warped, or left out, together */
+#define CHUNK 16 /* pixels that are warped or skipped together */
 
-/* Cuts [*low, *high] to the numbers x for which zero + x * slope is at least
- * 0. */
+/* Narrows [*low, *high] to the numbers x with zero + x * slope >= 0. */
 static void cut_below(double zero, double slope, double *low, double *high) {
     double root = -zero / slope;
     if (slope > 0)
@@ -21,10 +21,10 @@ static void cut_below(double zero, double slope, double *low, double *high) {
         *high = *low - 1;
 }
 
-/* The pixels of a line whose place is within the plane, rounding included: the
- * plane's border is wider than half a pixel. */
-static void cut_line(const snow_plane *plane, double line[3][2], int before,
-                     double *low, double *high) {
+/* The pixels of a line whose place is within the intermediate image, rounding
+ * included: its border is wider than half a pixel. */
+static void cut_line(const snow_intermediate_view *plane, double line[3][2],
+                     int before, double *low, double *high) {
     const int sides[2] = {plane->width, plane->height};
     cut_below(line[2][0], line[2][1], low, high);
     for (int i = 0; i < 2; i++) {
@@ -42,11 +42,12 @@ static inline void place_pixel(double line[3][2], int x, int64_t place[2]) {
     place[1] = (int64_t)((line[1][0] + x * line[1][1]) * scale);
 }
 
-/* Pixels x .. x + count - 1 of a line, which lie within the plane. */
+/* Pixels x .. x + count - 1 of a line, which are within the intermediate image.
+ */
 static void warp_run(const snow_blocks *blocks, double line[3][2],
                      snow_warp_places_fn *warp, int x, int count,
                      float *pixels) {
-    const snow_plane *plane = blocks->plane;
+    const snow_intermediate_view *plane = blocks->plane;
     int64_t places[CHUNK][2];
     place_pixel(line, x, places[0]);
     place_pixel(line, x + count - 1, places[count - 1]);
@@ -59,8 +60,8 @@ static void warp_run(const snow_blocks *blocks, double line[3][2],
     warp(plane, (const int64_t(*)[2])places, count, pixels);
 }
 
-/* Pixels first .. last of a line, of which there is one, in chunks. */
-static void warp_runs(const snow_plane *plane, double line[3][2],
+/* Pixels first .. last of a line, at least one, in chunks. */
+static void warp_runs(const snow_intermediate_view *plane, double line[3][2],
                       snow_warp_places_fn *warp, int first, int last,
                       float *pixels) {
     const snow_blocks blocks = snow_blocks_of(plane);
@@ -70,9 +71,10 @@ static void warp_runs(const snow_plane *plane, double line[3][2],
                  pixels + (size_t)(x * plane->channels));
 }
 
-void snow_warp_row_seen(const snow_plane *plane, const snow_scaled *scaled,
-                        snow_filter filter, snow_warp_places_fn *warp, int y,
-                        int from, int to, float *pixels) {
+void snow_warp_row_perspective(const snow_intermediate_view *plane,
+                               const snow_perspective_shear *scaled,
+                               snow_filter filter, snow_warp_places_fn *warp,
+                               int y, int from, int to, float *pixels) {
     double line[3][2], low = from, high = to - 1;
     size_t pixel = (size_t)plane->channels;
     for (int i = 0; i < 3; i++) {

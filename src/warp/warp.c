@@ -1,9 +1,10 @@
-/* warp/warp.c - lines of the picture, and the resampling for each level.
+/* warp/warp.c - lines of the picture, and the resampling for each instruction
+ * set.
  *
- * Catmull-Rom's cubic (Keys 1981, a = -1/2) keeps what a bilinear warp blurs;
- * it may swing beyond its data beside an edge, so that results are held to 0
- * <= colour <= alpha <= 1, which premultiplied pictures obey. */
-#include "warp/blocks.h"
+ * Catmull-Rom's cubic (Keys 1981, a = -1/2) preserves detail that a bilinear
+ * warp blurs. It may overshoot beside an edge, so results are clamped to 0 <=
+ * colour <= alpha <= 1, which valid premultiplied pixels satisfy. */
+#include "warp/empty.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,41 +19,40 @@ static const float catmull_rom[4][4] = {
 
 #include "simd/vec_scalar.h"
 
-/* The part of a place below one, in 24 bits: what a float holds. */
+/* The fraction of a place in 24 bits, the precision of a float. */
 static inline float fraction_of(int64_t place) {
     return (float)(int32_t)((uint32_t)place >> 8) * 0x1p-24f;
 }
 
 #define GROUP 16
 
-/* A line of the picture that crosses more lines of the plane than this a pixel
- * (1/4) is not read ahead of by the processor itself. */
+/* The hardware does not prefetch a line of the picture that crosses more lines
+ * of the intermediate image than this per pixel (1/4). */
 #define ACROSS (INT64_C(1) << 30)
 
-/* Where the pixels of a group lie. */
+/* The places of the pixels of a group. */
 typedef struct warp_group {
-    int64_t at[GROUP];       /* the first one that is read, in floats from the
-                                plane's first */
+    int64_t at[GROUP];       /* offset of the first float read */
     float across[2 * GROUP]; /* fractions of GROUP pixels; a vector of them */
-    float down[2 * GROUP];   /* may be read from each on */
+    float down[2 * GROUP];   /* may be read from any index */
 } warp_group;
 
 #define SELECT_SCALAR
 #include "simd/select.h"
 
-#include "warp/levels.h"
+#include "warp/warp_isa.h"
 #if SNOW_HAS_AVX
 #define SELECT_AVX2
 #include "simd/select.h"
 
-#include "warp/levels.h"
+#include "warp/warp_isa.h"
 #define SELECT_AVX512
 #include "simd/select.h"
 
-#include "warp/levels.h"
+#include "warp/warp_isa.h"
 #endif
 
-/* Both functions of a level. */
+/* Both functions of an instruction set. */
 typedef struct warp_pair {
     snow_warp_fn *line;
     snow_warp_places_fn *places;
@@ -88,8 +88,8 @@ snow_warp_places_fn *snow_warp_places_of(snow_isa isa, snow_filter filter,
     return pair_of(isa, filter, channels).places;
 }
 
-/* Cuts [*low, *high] to the numbers x for which place + x * step is within
- * [least, most]. */
+/* Narrows [*low, *high] to the numbers x with place + x * step within [least,
+ * most]. */
 static void cut_range(double place, double step, double least, double most,
                       double *low, double *high) {
     if (step == 0) {
@@ -106,7 +106,7 @@ static int64_t fixed(double x) {
     return (int64_t)floor(x * 0x1p32 + 0.5);
 }
 
-/* Pixels of the picture that are warped, or left out, together. */
+/* Pixels of the picture that are warped or skipped together. */
 #define RUN GROUP
 
 static void place_of(const snow_warp_line *line, int x, int64_t place[2]) {
@@ -114,13 +114,15 @@ static void place_of(const snow_warp_line *line, int x, int64_t place[2]) {
     place[1] = line->start[1] + x * line->step[1];
 }
 
-/* Pixels first .. last of a line, of which there is one, within the plane. */
-static void warp_runs(const snow_plane *plane, const snow_warp_line *line,
-                      snow_warp_fn *warp, int first, int last, float *pixels) {
+/* Pixels first .. last of a line, at least one, within the intermediate image.
+ */
+static void warp_runs(const snow_intermediate_view *plane,
+                      const snow_warp_line *line, snow_warp_fn *warp, int first,
+                      int last, float *pixels) {
     size_t pixel = (size_t)plane->channels;
     const snow_blocks blocks = snow_blocks_of(plane);
     int64_t ends[2][2];
-    int begun = first; /* of pixels that are still to be warped */
+    int begun = first; /* first pixel not yet warped */
     for (int x = first; x <= last; x += RUN) {
         int end = x + RUN <= last ? x + RUN : last + 1;
         place_of(line, x, ends[0]);
@@ -138,7 +140,7 @@ static void warp_runs(const snow_plane *plane, const snow_warp_line *line,
              pixels + (size_t)begun * pixel);
 }
 
-void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
+void snow_warp_row(const snow_intermediate_view *plane, const snow_shear *shear,
                    snow_filter filter, snow_warp_fn *warp, int y, int from,
                    int to, float *pixels) {
     int before = filter == SNOW_CATMULL_ROM ? 1 : 0, after = before + 1;
@@ -147,7 +149,7 @@ void snow_warp_row(const snow_plane *plane, const snow_shear *shear,
     snow_warp_line line;
     for (int axis = 0; axis < 2; axis++) {
         double start = shear->start[axis] + y * shear->along_y[axis];
-        /* Half a pixel inside, for rounding; the plane's border is wider. */
+        /* Half a pixel inside, for rounding; the image's border is wider. */
         cut_range(start, shear->along_x[axis], before + 0.5,
                   sides[axis] - 1.5 - after, &low, &high);
         line.step[axis] = fixed(shear->along_x[axis]);

@@ -39,7 +39,7 @@ run 0 "a field that is not there" "$DRIVER" "$PLUGIN" look.json vertex f.raw
 says "channel 'grid' has no field 'w'"
 echo '{"colourmap": "hot"}' >look.json
 run 0 "a wrong recipe" "$DRIVER" "$PLUGIN" look.json vertex f.raw
-says '"colourmap" is no key of a recipe'
+says '"colourmap" is not a key of a recipe'
 echo '{"input": "v"}' >look.json
 run 0 "a recipe that names the environment's way" env SNOWGLASS_VERBOSE=1 \
     SNOWGLASS_RECIPE="$WORK/look.json" "$DRIVER" "$PLUGIN" no.json vertex f.raw

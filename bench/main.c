@@ -1,0 +1,23 @@
+/* bench/main.c - the program snowglass-bench, which `snowglass bench` starts.
+ */
+#include "bench.h"
+#include "interrupt.h"
+#include "log.h"
+#include "start.h"
+
+/* What is no business of all ranks is that of the first. */
+static int run(int argc, char **argv) {
+    if (!bench_for_all(argc, argv) && !launch_talks())
+        return SNOW_STATUS_OK;
+    int done = bench_main(argc, argv);
+    return done == SNOW_STATUS_OK ? finish_stdout() : done;
+}
+
+int tool_run(int argc, char **argv, const launch *how) {
+    launch_begin(how);
+    interrupt_install();
+    int done = launch_agree(run(argc, argv));
+    if (launch_ranks() > 1) /* whose launcher ends all with the first to fail */
+        interrupt_mute();
+    return done;
+}

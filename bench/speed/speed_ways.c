@@ -1,0 +1,155 @@
+/* bench/speed/speed_ways.c - the ways to make a picture that are compared, as
+ * data: a new one is a line here. */
+#include "speed.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Bounds: what scatters the exact sum may differ from it by rounding only.
+ * What samples it on the slices' own grid and warps has to stay near it, nearer
+ * where the look is translucent: an opaque surface turns a small error of place
+ * into one of colour.  High is held against the exact picture of the volume
+ * with the mean of each two slices between them; that picture's normals are
+ * gradients of the finer volume, not means of normals, so that with Phong's
+ * model it is not quite what high is meant to be: the finer the detail, the
+ * less (42.7 dB for the translucent engine phantom of 512x512x512).  What it is
+ * meant to be, the tests hold it against.
+ *
+ * Draft has the tent kernel, and the exact picture and the baselines that it is
+ * compared with have it too. */
+#define EXACT {{60, 60}, {60, 60}}, 1e-3
+#define NORMAL {{55, 45}, {55, 45}}, 1
+#define HIGH {{55, 45}, {40, 36}}, 1
+#define DRAFT {{36, 30}, {36, 30}}, 1
+
+#define CUBIC SNOW_KERNEL_BSPLINE, 4
+#define TENT SNOW_KERNEL_TENT, 2
+#define WAY(method, encoding, quality) \
+    SNOW_METHOD_##method, SNOW_ENCODING_##encoding, SNOW_QUALITY_##quality
+
+/* clang-format off */
+const speed_way speed_ways[] = {
+    {"original", WAY(ORIGINAL, AUTO, NORMAL), CUBIC, EXACT, "original"},
+    {"tested", WAY(TESTED, AUTO, NORMAL), CUBIC, EXACT, "tested"},
+    {"footprint crs", WAY(FOOTPRINT, CRS, NORMAL), CUBIC, EXACT,
+     "footprint, CRS"},
+    {"footprint bitmap", WAY(FOOTPRINT, BITMAP, NORMAL), CUBIC, EXACT,
+     "footprint, bit-map"},
+    {"footprint rle", WAY(FOOTPRINT, RLE, NORMAL), CUBIC, EXACT,
+     "footprint, RLE"},
+    {"shear-warp normal", WAY(SHEAR_WARP, AUTO, NORMAL), CUBIC, NORMAL,
+     "shear-warp, normal"},
+    {"shear-warp normal crs", WAY(SHEAR_WARP, CRS, NORMAL), CUBIC, NORMAL, NULL},
+    {"shear-warp normal bitmap", WAY(SHEAR_WARP, BITMAP, NORMAL), CUBIC, NORMAL,
+     NULL},
+    {"shear-warp normal rle", WAY(SHEAR_WARP, RLE, NORMAL), CUBIC, NORMAL, NULL},
+    {"shear-warp high", WAY(SHEAR_WARP, AUTO, HIGH), CUBIC, HIGH, NULL},
+    {"original", WAY(ORIGINAL, AUTO, NORMAL), TENT, EXACT, NULL},
+    {"tested", WAY(TESTED, AUTO, NORMAL), TENT, EXACT, NULL},
+    {"shear-warp draft", WAY(SHEAR_WARP, AUTO, DRAFT), TENT, DRAFT,
+     "shear-warp, draft (tent)"},
+};
+/* clang-format on */
+
+#define WAYS (int)(sizeof speed_ways / sizeof speed_ways[0])
+
+const int speed_way_count = WAYS;
+
+_Static_assert(WAYS <= SPEED_WAYS_MOST, "a session has room for all ways");
+
+bool speed_is_baseline(const speed_way *way) {
+    return way->method == SNOW_METHOD_ORIGINAL ||
+           way->method == SNOW_METHOD_TESTED;
+}
+
+/* --- the words of --only ---------------------------------------------------
+ */
+
+static const struct {
+    const char *word;
+    speed_kind kind;
+    int value;
+} words[] = {
+    {"translucent", SPEED_LOOK, SPEED_TRANSLUCENT},
+    {"opaque", SPEED_LOOK, SPEED_OPAQUE},
+    {"grey", SPEED_COLOR, false},
+    {"rgba", SPEED_COLOR, true},
+    {"unshaded", SPEED_SHADE, SNOW_SHADE_NONE},
+    {"phong", SPEED_SHADE, SNOW_SHADE_PHONG},
+    {"original", SPEED_METHOD, SNOW_METHOD_ORIGINAL},
+    {"tested", SPEED_METHOD, SNOW_METHOD_TESTED},
+    {"footprint", SPEED_METHOD, SNOW_METHOD_FOOTPRINT},
+    {"shear-warp", SPEED_METHOD, SNOW_METHOD_SHEAR_WARP},
+    {"auto", SPEED_ENCODING, SNOW_ENCODING_AUTO},
+    {"crs", SPEED_ENCODING, SNOW_ENCODING_CRS},
+    {"bitmap", SPEED_ENCODING, SNOW_ENCODING_BITMAP},
+    {"rle", SPEED_ENCODING, SNOW_ENCODING_RLE},
+    {"draft", SPEED_QUALITY, SNOW_QUALITY_DRAFT},
+    {"normal", SPEED_QUALITY, SNOW_QUALITY_NORMAL},
+    {"high", SPEED_QUALITY, SNOW_QUALITY_HIGH},
+    {"bspline", SPEED_KERNEL, SNOW_KERNEL_BSPLINE},
+    {"tent", SPEED_KERNEL, SNOW_KERNEL_TENT},
+};
+
+#define WORDS (sizeof words / sizeof words[0])
+
+static bool take_word(const char *word, size_t length, speed_filter *out) {
+    for (size_t i = 0; i < WORDS; i++)
+        if (strlen(words[i].word) == length &&
+            strncmp(words[i].word, word, length) == 0) {
+            out->taken[words[i].kind] |= 1u << words[i].value;
+            return true;
+        }
+    fprintf(stderr, "snowglass: bench: --only knows no '%.*s'; choose from:",
+            (int)length, word);
+    for (size_t i = 0; i < WORDS; i++)
+        fprintf(stderr, " %s", words[i].word);
+    fprintf(stderr, "\n");
+    return false;
+}
+
+bool speed_filter_read(const char *text, speed_filter *out) {
+    *out = (speed_filter){{0}};
+    while (text) {
+        size_t length = strcspn(text, ",");
+        if (!take_word(text, length, out))
+            return false;
+        text = text[length] ? text + length + 1 : NULL;
+    }
+    return true;
+}
+
+bool speed_filter_takes(const speed_filter *filter, speed_kind kind,
+                        int value) {
+    unsigned taken = filter->taken[kind];
+    return !taken || taken >> value & 1;
+}
+
+/* A kind that a way does not have (the quality of a footprint) restricts it
+ * not. */
+static bool passes(const speed_filter *filter, bool sweep,
+                   const speed_way *way) {
+    if (sweep && !way->charted)
+        return false;
+    return speed_filter_takes(filter, SPEED_METHOD, (int)way->method) &&
+           speed_filter_takes(filter, SPEED_KERNEL, (int)way->kernel) &&
+           (speed_is_baseline(way) ||
+            speed_filter_takes(filter, SPEED_ENCODING, (int)way->encoding)) &&
+           (way->method != SNOW_METHOD_SHEAR_WARP ||
+            speed_filter_takes(filter, SPEED_QUALITY, (int)way->quality));
+}
+
+bool speed_way_taken(const speed_filter *filter, bool sweep, int index) {
+    const speed_way *way = &speed_ways[index];
+    bool others = false, kin = false;
+    if (!passes(filter, sweep, way))
+        return false;
+    for (int i = 0; i < WAYS; i++) {
+        const speed_way *other = &speed_ways[i];
+        if (speed_is_baseline(other) || !passes(filter, sweep, other))
+            continue;
+        others = true;
+        kin = kin || other->kernel == way->kernel;
+    }
+    return !speed_is_baseline(way) || kin || !others;
+}

@@ -1,0 +1,340 @@
+/* bench/tables/figures.c - figures 11 and 12 of the paper, measured: the nodes'
+ * work is done and timed, one node after another; the network between them is
+ * modelled (snow_comm_run_simulated).
+ *
+ * Each node holds a slab, the paper's equal ones, encodes it, splats it, and
+ * the local images are combined at node 0.  Reading is not timed.  The SP2 is
+ * this machine made slower by one factor, chosen so that the original splatting
+ * takes on one node what it took there (Table 2), with a network of 35 MB/s and
+ * 40 us. */
+#include "figures.h"
+#include "chart.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define IMAGE_SIDE 256 /* of the paper's pictures, section 5.2 */
+#define FOOTPRINT 2
+#define RUNS_MOST 99
+#define NODES_MOST 32
+#define TOLERANCE (0.5 / 255)
+
+const int figure_nodes[FIGURE_NODES] = {1, 2, 4, 8, 16, 32};
+const bench_way figure_ways[FIGURE_WAYS] = {BENCH_ORIGINAL, BENCH_CRS,
+                                            BENCH_BITMAP, BENCH_RLE};
+const char *const figure_way_names[FIGURE_WAYS] = {"original", "crs", "bitmap",
+                                                   "rle"};
+const figure_volume figure_volumes[FIGURE_VOLUMES] = {
+    {BENCH_HEAD, "Head", 30, 7.102},
+    {BENCH_ENGINE, "Engine", 30, 5.518},
+};
+const figure_cluster figure_clusters[FIGURE_CLUSTERS] = {
+    {"sp2-paper",
+     "SP2, equal slabs, the paper's tree",
+     {40e-6, 35e6, 10e-6, 0},
+     SNOW_PARTITION_EQUAL,
+     SNOW_COMBINE_TREE},
+    {"sp2",
+     "SP2, slabs by count, auto",
+     {40e-6, 35e6, 10e-6, 0},
+     SNOW_PARTITION_COUNTED,
+     SNOW_COMBINE_AUTO},
+    {"today",
+     "100 Gb/s, slabs by count, auto",
+     {1e-6, 12.5e9, 0.3e-6, 1},
+     SNOW_PARTITION_COUNTED,
+     SNOW_COMBINE_AUTO},
+};
+
+/* One picture by some nodes. */
+typedef struct figure_job {
+    const bench_volume *volume;
+    const figure_volume *paper;
+    bench_way way;
+    const figure_cluster *cluster;
+    const snow_image *expected; /* NULL: keep the picture instead */
+    snow_image *kept;
+    double seconds, largest;
+} figure_job;
+
+/* Which slices are the node's.  The original splatting works on all voxels, so
+ * its slabs are equal by any measure. */
+static snow_status plan(snow_comm *comm, const figure_job *job,
+                        snow_extent *mine) {
+    snow_context *context = snow_comm_context(comm);
+    snow_extent parts[NODES_MOST];
+    snow_volume *whole;
+    snow_transfer *transfer = NULL;
+    snow_status status =
+        snow_volume_wrap(context, snow_volume_get_info(job->volume->volume),
+                         snow_volume_voxels(job->volume->volume), &whole);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    status = snow_transfer_new_for_volume(whole, &bench_linear_look, &transfer);
+    if (status == SNOW_STATUS_OK)
+        status = snow_ranks_partition(whole, transfer, job->paper->threshold,
+                                      job->way == BENCH_ORIGINAL
+                                          ? SNOW_PARTITION_EQUAL
+                                          : job->cluster->cut,
+                                      2, snow_comm_size(comm), parts, NULL);
+    if (status == SNOW_STATUS_OK)
+        *mine = parts[snow_comm_rank(comm)];
+    snow_transfer_free(transfer);
+    snow_volume_close(whole);
+    return status;
+}
+
+/* The slab of a node.  One without slices holds one that is not its own. */
+static snow_status open_slab(snow_comm *comm, const figure_job *job,
+                             snow_volume **out) {
+    snow_volume_info info = *snow_volume_get_info(job->volume->volume);
+    const char *voxels = snow_volume_voxels(job->volume->volume);
+    snow_extent part;
+    snow_status status = plan(comm, job, &part);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    bool none = part.count[2] == 0;
+    memset(part.stored, 0, sizeof part.stored);
+    part.stored[2] = none ? 0 : part.first[2];
+    info.dims[2] = none ? 1 : part.count[2];
+    for (int row = 0; row < 3; row++)
+        info.matrix[row][3] += info.matrix[row][2] * (double)part.stored[2];
+    size_t slice =
+        (size_t)(info.dims[0] * info.dims[1]) * snow_type_size(info.type);
+    status = snow_volume_wrap(snow_comm_context(comm), &info,
+                              voxels + (size_t)part.stored[2] * slice, out);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_set_extent(*out, &part);
+    return status;
+}
+
+/* As in Table 2: a voxel a pixel, no shading, plain loops, one thread. */
+static snow_status settle(const figure_job *job, snow_context *context,
+                          snow_view *view, snow_settings *settings) {
+    snow_status status = snow_view_from_name(context, "+z", view);
+    view->width = view->height = IMAGE_SIDE;
+    view->zoom =
+        snow_view_zoom_for_voxels(job->volume->volume, IMAGE_SIDE, IMAGE_SIDE);
+    snow_settings_init(settings);
+    settings->kernel = SNOW_KERNEL_GAUSS;
+    settings->footprint = FOOTPRINT;
+    settings->shade = SNOW_SHADE_NONE;
+    settings->isa = SNOW_ISA_SCALAR;
+    settings->threads = 1;
+    settings->threshold = job->paper->threshold;
+    bench_way_settings(job->way, settings);
+    return status;
+}
+
+/* What a node needs for its pictures. */
+typedef struct figure_node {
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    snow_view view;
+    snow_settings settings;
+} figure_node;
+
+static snow_status equip(snow_comm *comm, const figure_job *job,
+                         figure_node *node) {
+    snow_context *context = snow_comm_context(comm);
+    snow_status status = open_slab(comm, job, &node->volume);
+    if (status == SNOW_STATUS_OK)
+        status = snow_transfer_new_for_volume(node->volume, &bench_linear_look,
+                                              &node->transfer);
+    if (status == SNOW_STATUS_OK)
+        status = snow_frame_new(context, &node->frame);
+    if (status == SNOW_STATUS_OK)
+        status = settle(job, context, &node->view, &node->settings);
+    return snow_comm_agree_status(comm, status);
+}
+
+static snow_status render(snow_comm *comm, const figure_job *job,
+                          figure_node *node, snow_image **image) {
+    const snow_ranks_options how = {.size = sizeof how,
+                                    .combining = job->cluster->combining};
+    return snow_ranks_render(node->frame, comm, node->volume, node->transfer,
+                             &node->view, &node->settings, &how, image);
+}
+
+/* The second picture is timed: the first one makes room.  Nodes begin together,
+ * since they have just agreed. */
+static snow_status time_picture(snow_comm *comm, figure_job *job,
+                                figure_node *node) {
+    snow_image *image = NULL;
+    snow_status status = render(comm, job, node, &image);
+    snow_image_free(image);
+    image = NULL;
+    status = snow_comm_agree_status(comm, status);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    double start = snow_comm_seconds(comm);
+    status = render(comm, job, node, &image);
+    if (snow_comm_rank(comm) != 0 || status != SNOW_STATUS_OK)
+        return status;
+    job->seconds = snow_comm_seconds(comm) - start;
+    snow_image_difference difference;
+    if (!job->expected) {
+        /* The picture goes with its context: its pixels are copied. */
+        memcpy(snow_image_pixels(job->kept), snow_image_pixels(image),
+               (size_t)IMAGE_SIDE * IMAGE_SIDE * 2 * sizeof(float));
+    } else {
+        status = snow_image_compare(image, job->expected, &difference);
+        job->largest = difference.largest;
+    }
+    snow_image_free(image);
+    return status;
+}
+
+static snow_status be_node(snow_comm *comm, void *user) {
+    figure_job *job = user;
+    figure_node node = {0};
+    snow_status status = equip(comm, job, &node);
+    if (status == SNOW_STATUS_OK)
+        status = time_picture(comm, job, &node);
+    snow_frame_free(node.frame);
+    snow_transfer_free(node.transfer);
+    snow_volume_close(node.volume);
+    return status;
+}
+
+/* The median of some runs. */
+static snow_status measure(snow_context *context, const snow_network *network,
+                           int nodes, int runs, figure_job *job,
+                           double *seconds) {
+    double values[RUNS_MOST];
+    for (int run = 0; run < runs; run++) {
+        snow_status status =
+            snow_comm_run_simulated(context, nodes, network, be_node, job);
+        if (status != SNOW_STATUS_OK)
+            return status;
+        values[run] = job->seconds;
+    }
+    *seconds = bench_median(values, runs);
+    return SNOW_STATUS_OK;
+}
+
+/* All node counts of a way on a cluster.  The picture of one node is what the
+ * others are held against. */
+static snow_status measure_way(snow_context *context, int runs,
+                               const snow_network *network, figure_job *job,
+                               double *seconds, double *largest) {
+    job->expected = NULL;
+    for (int n = 0; n < FIGURE_NODES; n++) {
+        snow_status status =
+            measure(context, network, figure_nodes[n], runs, job, &seconds[n]);
+        if (status != SNOW_STATUS_OK)
+            return status;
+        job->expected = job->kept;
+        if (job->largest > *largest)
+            *largest = job->largest;
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status measure_cluster(snow_context *context, int runs, int cluster,
+                                   figure_job *job, figure_times *times) {
+    snow_network network = figure_clusters[cluster].network;
+    job->cluster = &figure_clusters[cluster];
+    snow_status status = SNOW_STATUS_OK;
+    if (network.slowness == 0) { /* what one node of ours takes, first */
+        snow_network ours = network;
+        ours.slowness = 1;
+        job->way = BENCH_ORIGINAL;
+        job->expected = NULL;
+        double seconds;
+        status = measure(context, &ours, 1, runs, job, &seconds);
+        if (status == SNOW_STATUS_OK)
+            network.slowness = job->paper->paper_seconds / seconds;
+    }
+    times->slowness[cluster] = network.slowness;
+    for (int way = 0; way < FIGURE_WAYS && status == SNOW_STATUS_OK; way++) {
+        job->way = figure_ways[way];
+        status = measure_way(context, runs, &network, job,
+                             times->seconds[cluster][way], &times->largest);
+    }
+    return status;
+}
+
+static snow_status measure_volume(snow_context *context,
+                                  const bench_options *options,
+                                  const figure_volume *paper,
+                                  bench_volume *volume, figure_times *times) {
+    figure_job job = {.volume = volume, .paper = paper};
+    times->source = volume->source;
+    snow_status status =
+        snow_transfer_sparse_ratio(volume->transfer, volume->volume,
+                                   paper->threshold, &times->sparse_ratio);
+    if (status == SNOW_STATUS_OK)
+        status = snow_image_new(context, IMAGE_SIDE, IMAGE_SIDE, 2, &job.kept);
+    for (int c = 0; c < FIGURE_CLUSTERS && status == SNOW_STATUS_OK; c++)
+        status = measure_cluster(context, options->runs, c, &job, times);
+    snow_image_free(job.kept);
+    if (status == SNOW_STATUS_OK && times->largest > TOLERANCE) {
+        fprintf(stderr,
+                "snowglass: bench: %s: the nodes' picture is %g off that of "
+                "one; nothing is printed\n",
+                volume->name, times->largest);
+        return SNOW_STATUS_DIFFERENT;
+    }
+    return status;
+}
+
+double figure_speedup(const figure_times *times, int figure, int cluster,
+                      int way, int nodes) {
+    double one = times->seconds[cluster][figure == 11 ? 0 : way][0];
+    return one / times->seconds[cluster][way][nodes];
+}
+
+/* For a test: the phantom, an eighth as long along each side. */
+static snow_status open_tiny(snow_context *context,
+                             const bench_options *options, bench_set set,
+                             bench_volume *out) {
+    bench_source source = *bench_source_of(set);
+    for (int axis = 0; axis < 3; axis++)
+        source.options.dims[axis] = axis < 2 ? 32 : 14;
+    snow_status status = bench_source_open(context, &source, options, out);
+    if (status == SNOW_STATUS_OK)
+        status = snow_transfer_new_for_volume(out->volume, &bench_linear_look,
+                                              &out->transfer);
+    return status;
+}
+
+static int run_figure(snow_context *context, const bench_options *options,
+                      int figure) {
+    bench_volume volumes[FIGURE_VOLUMES] = {{0}};
+    figure_times times[FIGURE_VOLUMES] = {{0}};
+    snow_status status = SNOW_STATUS_OK;
+    if (options->chart && chart_check(options->chart) != SNOW_STATUS_OK)
+        return SNOW_STATUS_BAD_OUTPUT;
+    for (int i = 0; i < FIGURE_VOLUMES && status == SNOW_STATUS_OK; i++) {
+        const figure_volume *paper = &figure_volumes[i];
+        status =
+            options->quick
+                ? open_tiny(context, options, paper->set, &volumes[i])
+                : bench_volume_open(context, paper->set, options, &volumes[i]);
+        if (status == SNOW_STATUS_OK)
+            status =
+                measure_volume(context, options, paper, &volumes[i], &times[i]);
+    }
+    int code = status == SNOW_STATUS_DIFFERENT ? SNOW_STATUS_FAILED
+               : status == SNOW_STATUS_OK      ? SNOW_STATUS_OK
+                                               : bench_fail(context, status);
+    if (code == SNOW_STATUS_OK && options->chart)
+        code = (int)figure_chart(options, figure, times);
+    if (code == SNOW_STATUS_OK && options->json)
+        code = figure_print_json(options, figure, times);
+    else if (code == SNOW_STATUS_OK)
+        figure_print(options, figure, times);
+    for (int i = 0; i < FIGURE_VOLUMES; i++)
+        bench_volume_close(&volumes[i]);
+    return code;
+}
+
+int bench_figure11(snow_context *context, const bench_options *options) {
+    return run_figure(context, options, 11);
+}
+
+int bench_figure12(snow_context *context, const bench_options *options) {
+    return run_figure(context, options, 12);
+}

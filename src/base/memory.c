@@ -1,0 +1,125 @@
+/* base/memory.c - all allocation.
+ *
+ * Every block is preceded by a header of one alignment unit, so that its size
+ * is known when it is freed and the context can count its memory:
+ *
+ *   raw ... | header { raw, bytes } pad | block, aligned to 64 ...
+ */
+#include "base/base.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define ALIGNMENT 64
+
+typedef struct block_header {
+    void *raw;    /* what the allocator returned */
+    size_t bytes; /* asked for by the caller */
+} block_header;
+
+static_assert(sizeof(block_header) <= ALIGNMENT, "the header fits its unit");
+
+static block_header *header_of(void *block) {
+    return (block_header *)(void *)((char *)block - ALIGNMENT);
+}
+
+/* Whether so many bytes more are allowed; the context is locked. */
+static bool may_hold(const snow_context *context, size_t bytes) {
+    return !context->limit || (bytes <= context->limit &&
+                               context->bytes <= context->limit - bytes);
+}
+
+/* A block from the caller's allocator, which need not be safe for threads. */
+static void *allocate_counted(snow_context *context, size_t bytes,
+                              size_t with_header, uint64_t *held) {
+    pthread_mutex_lock(&context->lock);
+    void *raw = NULL;
+    if (may_hold(context, bytes))
+        raw = context->allocator.allocate(context->allocator.user, with_header);
+    if (raw)
+        context->bytes += bytes;
+    if (context->bytes > context->peak)
+        context->peak = context->bytes;
+    *held = context->bytes;
+    pthread_mutex_unlock(&context->lock);
+    return raw;
+}
+
+void *snow_allocate(snow_context *context, size_t bytes) {
+    size_t extra = 2 * ALIGNMENT;
+    uint64_t held = 0;
+    char *raw = NULL;
+    if (bytes <= SIZE_MAX - extra)
+        raw = allocate_counted(context, bytes, bytes + extra, &held);
+    if (!raw) {
+        snow_fail(context, SNOW_STATUS_NO_MEMORY,
+                  "out of memory: %zu bytes more are needed (%llu are "
+                  "allocated%s); %s",
+                  bytes, (unsigned long long)held,
+                  context->limit ? " under a limit" : "",
+                  context->limit
+                      ? "raise it or use a smaller volume"
+                      : "close other programs or use a smaller volume");
+        return NULL;
+    }
+    char *block = raw + extra - (uintptr_t)raw % ALIGNMENT;
+    *header_of(block) = (block_header){raw, bytes};
+    return block;
+}
+
+void *snow_allocate_clear(snow_context *context, size_t bytes) {
+    void *block = snow_allocate(context, bytes);
+    if (block)
+        memset(block, 0, bytes);
+    return block;
+}
+
+void *snow_allocate_array(snow_context *context, uint64_t count, size_t size) {
+    uint64_t bytes;
+    if (!snow_mul_u64(count, size, &bytes) || bytes > SIZE_MAX) {
+        snow_fail(context, SNOW_STATUS_NO_MEMORY,
+                  "%llu times %zu bytes exceed the address space; use a "
+                  "smaller volume or picture",
+                  (unsigned long long)count, size);
+        return NULL;
+    }
+    return snow_allocate(context, (size_t)bytes);
+}
+
+snow_status snow_reserve(snow_context *context, void *block_pointer,
+                         size_t *capacity, size_t keep, size_t bytes) {
+    if (bytes <= *capacity)
+        return SNOW_STATUS_OK;
+    size_t wanted = *capacity + *capacity / 2;
+    if (wanted < bytes)
+        wanted = bytes;
+    void *grown = snow_allocate(context, wanted);
+    if (!grown)
+        return SNOW_STATUS_NO_MEMORY;
+    void *old;
+    memcpy(&old, block_pointer, sizeof old);
+    if (keep)
+        memcpy(grown, old, keep);
+    snow_release(context, old);
+    memcpy(block_pointer, &grown, sizeof grown);
+    *capacity = wanted;
+    return SNOW_STATUS_OK;
+}
+
+void snow_release(snow_context *context, void *block) {
+    if (!block)
+        return;
+    block_header header = *header_of(block);
+    pthread_mutex_lock(&context->lock);
+    context->bytes -= header.bytes;
+    context->allocator.release(context->allocator.user, header.raw);
+    pthread_mutex_unlock(&context->lock);
+}
+
+void *snow_context_allocate(snow_context *context, size_t bytes) {
+    return snow_allocate(context, bytes);
+}
+
+void snow_context_release(snow_context *context, void *block) {
+    snow_release(context, block);
+}

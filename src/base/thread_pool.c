@@ -1,0 +1,315 @@
+/* base/thread_pool.c - a pool of threads for each context.
+ *
+ * A call is a batch of items. The caller stores the work, wakes as many
+ * sleepers as it wants, and processes items like the others; a thread that
+ * finds no more items leaves the batch, and the caller waits for the last one.
+ * No thread spins: on a loaded machine a spinning thread takes the time of the
+ * one that it waits for.
+ *
+ * A batch may stay open behind the calls (snow_parallel_begin). Threads process
+ * its items one by one, while no call has items. */
+#include "base/thread_pool.h"
+
+#include "base/affinity.h"
+
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+typedef struct snow_pool snow_pool;
+
+/* A thread of the pool; its index is that of the worker. */
+typedef struct pool_thread {
+    snow_pool *pool;
+    pthread_t id;
+    int worker;
+    bool asleep;
+    bool affinity; /* kept off a processor until it has work */
+} pool_thread;
+
+/* Batches change under the lock, except for `next`, and are constant while any
+ * thread processes items. */
+struct snow_pool {
+    pid_t owner; /* the process that owns the threads */
+    pthread_mutex_t lock;
+    pthread_cond_t wake, rest;
+    pool_thread *threads; /* worker n is threads[n - 1] */
+    int count, capacity;
+    bool quit;
+    snow_affinity affinity;
+    snow_batch call;  /* of snow_parallel */
+    snow_batch *open; /* of snow_parallel_begin, or NULL */
+};
+
+/* Memory of the context itself, not counted among its objects' memory. */
+static void *allocate_uncounted(snow_context *context, size_t bytes) {
+    void *block = context->allocator.allocate(context->allocator.user, bytes);
+    if (block)
+        memset(block, 0, bytes);
+    return block;
+}
+
+static void give_back(snow_context *context, void *block) {
+    if (block)
+        context->allocator.release(context->allocator.user, block);
+}
+
+/* Processes or skips one item; false if none is left. */
+static bool take_item(snow_batch *batch, int worker) {
+    int64_t item = atomic_fetch_add(&batch->next, 1);
+    if (item >= batch->items)
+        return false;
+    if (batch->skips &&
+        snow_monitor_item(batch->monitor, worker, item, batch->items))
+        return true;
+    batch->work(batch->job, item, worker);
+    return true;
+}
+
+/* The batch with items for a worker (under the lock), or NULL. */
+static snow_batch *batch_for(snow_pool *pool, int worker) {
+    snow_batch *const batches[] = {&pool->call, pool->open};
+    for (int n = 0; n < 2; n++)
+        if (batches[n] && worker < batches[n]->wanted &&
+            atomic_load(&batches[n]->next) < batches[n]->items)
+            return batches[n];
+    return NULL;
+}
+
+/* A thread's share of a batch (under the lock, which it releases meanwhile). */
+static void work_along(pool_thread *self, snow_batch *batch) {
+    snow_pool *pool = self->pool;
+    const snow_affinity affinity = pool->affinity;
+    bool still_apart = self->affinity;
+    batch->busy++;
+    pthread_mutex_unlock(&pool->lock);
+    if (still_apart)
+        still_apart = !snow_affinity_release(&affinity);
+    while (take_item(batch, self->worker) && batch == &pool->call)
+        continue;
+    pthread_mutex_lock(&pool->lock);
+    self->affinity = still_apart;
+    if (--batch->busy == 0)
+        pthread_cond_signal(&pool->rest);
+}
+
+/* The life of a thread: asleep until a batch needs it. */
+static void *run_thread(void *argument) {
+    pool_thread *self = argument;
+    snow_pool *pool = self->pool;
+    pthread_mutex_lock(&pool->lock);
+    while (!pool->quit) {
+        snow_batch *batch = batch_for(pool, self->worker);
+        if (batch) {
+            work_along(self, batch);
+            continue;
+        }
+        self->asleep = true;
+        pthread_cond_wait(&pool->wake, &pool->lock);
+        self->asleep = false;
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return NULL;
+}
+
+/* A child of fork() has the pool's memory but not its threads, and perhaps a
+ * lock that nobody will release: it does not use them. */
+static bool is_mine(const snow_pool *pool) {
+    return pool->owner == getpid();
+}
+
+static snow_pool *pool_of(snow_context *context) {
+    if (context->pool && is_mine(context->pool))
+        return context->pool;
+    snow_pool *pool = allocate_uncounted(context, sizeof *pool);
+    if (!pool)
+        return NULL;
+    if (pthread_mutex_init(&pool->lock, NULL) ||
+        pthread_cond_init(&pool->wake, NULL) ||
+        pthread_cond_init(&pool->rest, NULL)) {
+        give_back(context, pool);
+        return NULL;
+    }
+    pool->owner = getpid();
+    context->pool = pool;
+    return pool;
+}
+
+/* Makes threads until there are `count`, as far as the system permits. */
+static void add_threads(snow_context *context, snow_pool *pool, int count) {
+    if (count > pool->capacity) {
+        /* Threads keep their records' addresses: the records must not move. */
+        if (pool->count)
+            snow_pool_free(context);
+        pool = pool_of(context);
+        pool_thread *threads =
+            pool ? allocate_uncounted(context, (size_t)count * sizeof *threads)
+                 : NULL;
+        if (!threads)
+            return;
+        give_back(context, pool->threads);
+        pool->threads = threads;
+        pool->capacity = count;
+    }
+    for (; pool->count < count; pool->count++) {
+        pool_thread *thread = &pool->threads[pool->count];
+        *thread = (pool_thread){.pool = pool, .worker = pool->count + 1};
+        if (pthread_create(&thread->id, NULL, run_thread, thread))
+            return;
+    }
+}
+
+/* The pool with threads for the given number of workers, or as many as there
+ * are; NULL: none at all. While a batch is open its threads do not change. */
+static snow_pool *pool_for(snow_context *context, int threads) {
+    snow_pool *pool = pool_of(context);
+    if (!pool || threads < 2 || pool->open)
+        return pool;
+    add_threads(context, pool, threads - 1);
+    return context->pool;
+}
+
+static void fill_batch(snow_batch *batch, snow_monitor *monitor, int threads,
+                       int64_t items, snow_work_fn *work, void *job) {
+    batch->monitor = monitor;
+    batch->skips = false;
+    batch->work = work;
+    batch->job = job;
+    batch->items = items;
+    batch->wanted = threads;
+    atomic_store(&batch->next, 0);
+}
+
+/* Wakes the threads that the batch needs (under the lock). */
+static void wake_threads(snow_pool *pool, const snow_batch *batch) {
+    bool affinity = snow_affinity_begin(&pool->affinity);
+    for (int n = 0; affinity && n < pool->count && n < batch->wanted - 1; n++) {
+        pool_thread *thread = &pool->threads[n];
+        if (thread->asleep &&
+            snow_affinity_keep(&pool->affinity, thread->id, thread->worker))
+            thread->affinity = true;
+    }
+    pthread_cond_broadcast(&pool->wake);
+}
+
+/* The caller is worker 0. */
+static void take_all(snow_batch *batch) {
+    while (take_item(batch, 0))
+        continue;
+}
+
+#define ASK_NANOSECONDS 2000000
+
+/* Waits for the pool's threads for a while, and asks whether to stop (under the
+ * lock, which is left meanwhile). */
+static void rest_and_ask(snow_pool *pool, snow_monitor *monitor) {
+    struct timespec until;
+    clock_gettime(CLOCK_REALTIME, &until);
+    until.tv_nsec += ASK_NANOSECONDS;
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_nsec -= 1000000000;
+        until.tv_sec++;
+    }
+    pthread_cond_timedwait(&pool->rest, &pool->lock, &until);
+    pthread_mutex_unlock(&pool->lock);
+    (void)snow_monitor_look(monitor, 0);
+    pthread_mutex_lock(&pool->lock);
+}
+
+/* Waits until the pool's threads have finished their items (under the lock). */
+static void close_batch(snow_pool *pool, snow_batch *batch) {
+    while (batch->busy) {
+        if (batch->monitor && batch->monitor->stop)
+            rest_and_ask(pool, batch->monitor);
+        else
+            pthread_cond_wait(&pool->rest, &pool->lock);
+    }
+    batch->items = 0;
+    snow_affinity_end(&pool->affinity);
+}
+
+/* Without threads. */
+static void do_alone(snow_monitor *monitor, int64_t items, snow_work_fn *work,
+                     void *job) {
+    for (int64_t item = 0; item < items; item++) {
+        if (snow_monitor_item(monitor, 0, item, items))
+            return;
+        work(job, item, 0);
+    }
+}
+
+static void do_together(snow_pool *pool, snow_monitor *monitor, int threads,
+                        int64_t items, snow_work_fn *work, void *job) {
+    pthread_mutex_lock(&pool->lock);
+    fill_batch(&pool->call, monitor, threads, items, work, job);
+    pool->call.skips = monitor != NULL;
+    wake_threads(pool, &pool->call);
+    pthread_mutex_unlock(&pool->lock);
+    take_all(&pool->call);
+    pthread_mutex_lock(&pool->lock);
+    close_batch(pool, &pool->call);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+snow_status snow_parallel(snow_context *context, int threads, int64_t items,
+                          snow_work_fn *work, void *job) {
+    snow_monitor *monitor = context->monitor;
+    if (threads > items)
+        threads = (int)items;
+    snow_pool *pool = threads > 1 ? pool_for(context, threads) : NULL;
+    snow_monitor_batch(monitor);
+    if (pool && pool->count)
+        do_together(pool, monitor, threads, items, work, job);
+    else
+        do_alone(monitor, items, work, job);
+    snow_monitor_batch(monitor);
+    return snow_monitor_status(monitor);
+}
+
+void snow_parallel_begin(snow_context *context, int threads, int64_t items,
+                         snow_work_fn *work, void *job, snow_batch *batch) {
+    if (threads > items)
+        threads = (int)items;
+    snow_pool *pool = threads > 1 ? pool_for(context, threads) : NULL;
+    batch->busy = 0;
+    fill_batch(batch, context->monitor, threads, items, work, job);
+    if (!pool || !pool->count || pool->open)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->open = batch;
+    wake_threads(pool, batch);
+    pthread_mutex_unlock(&pool->lock);
+}
+
+bool snow_parallel_step(snow_batch *batch) {
+    return take_item(batch, 0);
+}
+
+void snow_parallel_end(snow_context *context, snow_batch *batch) {
+    snow_pool *pool = context->pool;
+    take_all(batch);
+    if (!pool || !is_mine(pool) || pool->open != batch)
+        return;
+    pthread_mutex_lock(&pool->lock);
+    close_batch(pool, batch);
+    pool->open = NULL;
+    pthread_mutex_unlock(&pool->lock);
+}
+
+void snow_pool_free(snow_context *context) {
+    snow_pool *pool = context->pool;
+    if (!pool || !is_mine(pool))
+        return;
+    pthread_mutex_lock(&pool->lock);
+    pool->quit = true;
+    pthread_cond_broadcast(&pool->wake);
+    pthread_mutex_unlock(&pool->lock);
+    for (int n = 0; n < pool->count; n++)
+        pthread_join(pool->threads[n].id, NULL);
+    pthread_cond_destroy(&pool->rest);
+    pthread_cond_destroy(&pool->wake);
+    pthread_mutex_destroy(&pool->lock);
+    give_back(context, pool->threads);
+    give_back(context, pool);
+    context->pool = NULL;
+}

@@ -1,0 +1,24 @@
+/* classify/count_interesting.h - counts interesting voxels by blocks, for the
+ * partition of a volume (decompose/partition.h). */
+#ifndef SNOW_CLASSIFY_COUNT_INTERESTING_H
+#define SNOW_CLASSIFY_COUNT_INTERESTING_H
+
+#include "classify/classify.h"
+#include "decompose/partition.h"
+
+/* Adds the interesting voxels that a volume owns to block counts. The grid of
+ * the counts is the volume's own, or that of the volume it is a part of.
+ * Errors: SNOW_STATUS_BAD_USAGE (a row of 2^32 voxels or more),
+ * SNOW_STATUS_NO_MEMORY. */
+snow_status snow_count_interesting_blocks(const snow_volume *volume,
+                                          const snow_transfer *transfer,
+                                          double threshold, snow_isa isa,
+                                          snow_block_counts *tally);
+
+/* The total number of interesting voxels. Errors: as above. */
+snow_status snow_count_interesting(const snow_volume *volume,
+                                   const snow_transfer *transfer,
+                                   double threshold, snow_isa isa,
+                                   int64_t *out);
+
+#endif

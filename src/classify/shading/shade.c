@@ -1,0 +1,149 @@
+/* classify/shading/shade.c - Phong's model on gradients of the native values,
+ * for kept voxels only (the paper's outlook in section 6; model, point 4).
+ *
+ *   colour = min(1, c (ambient + diffuse n.l) + specular (n.h)^shininess)
+ *
+ * The normal n is W g / |W g| for an index gradient g, so n.l is g.(W^T l) / |W
+ * g|: only scalars leave index space. */
+#include "base/exp_log.h"
+#include "base/vec3.h"
+#include "classify/classify.h"
+#include "simd/isa.h"
+
+#include <math.h>
+#include <string.h>
+
+/* out = W^T v, where W is the inverse transpose and `inverse` the inverse. */
+static void to_index(double inverse[3][3], const double v[3], double out[3]) {
+    for (int i = 0; i < 3; i++)
+        out[i] = snow_dot(inverse[i], v);
+}
+
+bool snow_light_of(const snow_placement *placement,
+                   const snow_settings *settings, double light[3],
+                   double half[3]) {
+    double right[3], up[3];
+    memcpy(right, placement->right, sizeof right);
+    memcpy(up, placement->up, sizeof up);
+    memcpy(light, placement->back, 3 * sizeof *light);
+    snow_frame_turn(right, up, light, settings->light_azimuth,
+                    settings->light_elevation, 0);
+    for (int i = 0; i < 3; i++)
+        half[i] = light[i] + placement->back[i];
+    if (!(snow_length(half) > 1e-9))
+        return false;
+    snow_normalize(half);
+    return true;
+}
+
+int snow_whole_shininess(double shininess) {
+    bool whole = shininess <= 1024 && shininess == floor(shininess);
+    return whole ? (int)shininess : -1;
+}
+
+snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
+                             const snow_placement *placement,
+                             const snow_settings *settings, snow_shader *out) {
+    snow_shader shader = {
+        .volume = volume,
+        .placement = placement,
+        .ambient = settings->ambient,
+        .diffuse = settings->diffuse,
+        .specular = settings->specular,
+        .shininess = settings->shininess,
+        .whole = snow_whole_shininess(settings->shininess),
+        .isa = snow_isa_resolve(settings->isa),
+    };
+    double inverse[3][3], light[3], half[3];
+    if (!snow_matrix_invert3(volume->info.matrix, inverse))
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "the volume's matrix is singular: it must be invertible for "
+            "shading; correct the volume's orientation and spacing");
+    if (!snow_light_of(placement, settings, light, half))
+        shader.specular = 0;
+    to_index(inverse, light, shader.light);
+    to_index(inverse, half, shader.half);
+    to_index(inverse, placement->back, shader.viewer);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            shader.metric[i][j] = snow_dot(inverse[i], inverse[j]);
+    *out = shader;
+    return SNOW_STATUS_OK;
+}
+
+/* Voxels shaded at once: their gradients stay in the first-level cache. */
+#define SHADE_BLOCK SNOW_SHADE_BLOCK
+
+/* Invisible contributions become 0. The far side of a highlight has powers that
+ * are subnormal as floats; splatting them takes twice as long. */
+#define UNSEEN 1e-20
+
+/* A colour under a factor and white light. */
+static inline float shaded(float color, double factor, double white) {
+    double sum = factor * (double)color + white;
+    sum = sum > UNSEEN ? sum : 0;
+    return (float)(sum < 1 ? sum : 1);
+}
+
+/* The order matters, so a blank line keeps the two from being sorted. */
+#define SELECT_SCALAR
+#include "simd/select.h"
+
+#include "classify/shading/shade.tmpl.h"
+#if SNOW_HAS_AVX
+#define SELECT_AVX2
+#include "simd/select.h"
+
+#include "classify/shading/shade.tmpl.h"
+#define SELECT_AVX512
+#include "simd/select.h"
+
+#include "classify/shading/shade.tmpl.h"
+#endif
+
+typedef void shade_block_fn(const snow_shader *shader,
+                            const double gradients[3][SHADE_BLOCK], int count,
+                            int channels, float *samples);
+
+static shade_block_fn *block_of(snow_isa isa) {
+#if SNOW_HAS_AVX
+    if (isa == SNOW_ISA_AVX512)
+        return shade_block_avx512;
+    if (isa == SNOW_ISA_AVX2)
+        return shade_block_avx2;
+#endif
+    (void)isa;
+    return shade_block_scalar;
+}
+
+void snow_shade_row_block(const snow_shader *shader, int channels,
+                          snow_row_block *row_block) {
+    const snow_placement *p = shader->placement;
+    const snow_volume *volume = shader->volume;
+    shade_block_fn *shade_block = block_of(shader->isa);
+    double gradients[3][SHADE_BLOCK];
+    memset(gradients, 0, sizeof gradients);
+    snow_gradient_row row = {.volume = volume, .axis = p->u_axis};
+    row.at[p->slice_axis] = row_block->slice;
+    size_t n = 0;
+    for (int64_t line = 0; line < row_block->rows; line++) {
+        row.at[p->v_axis] = row_block->first_row + line;
+        while (n < row_block->row_end[line]) {
+            size_t count = row_block->row_end[line] - n;
+            count = count < SHADE_BLOCK ? count : SHADE_BLOCK;
+            snow_gradients_of_row(&row, row_block->columns + n, count,
+                                  SHADE_BLOCK, gradients[0]);
+            shade_block(shader, (const double(*)[SHADE_BLOCK])gradients,
+                        (int)count, channels,
+                        row_block->samples + n * (size_t)channels);
+            n += count;
+        }
+    }
+}
+
+void snow_shade_gradients(const snow_shader *shader,
+                          const double gradients[3][SNOW_SHADE_BLOCK],
+                          int count, int channels, float *samples) {
+    block_of(shader->isa)(shader, gradients, count, channels, samples);
+}

@@ -1,0 +1,474 @@
+/* decompose/redistribute.c - plans and executes the redistribution of voxels
+ * between ranks.
+ *
+ * All ranks know the boxes of all. Rank a compares its own boxes with every
+ * wanted box to find what it sends; rank b compares all boxes with its wanted
+ * one to find what it receives. Both list the parts of a message in the same
+ * order, that of the sender's boxes, and pack them one after another, x
+ * fastest. The work of a rank grows with its own boxes times ranks, plus the
+ * boxes of all. */
+#include "decompose/redistribute.h"
+
+#include <string.h>
+
+/* A part of a message, or of the copy within a rank: voxels of one box. */
+typedef struct portion {
+    int brick; /* of the sender's boxes */
+    snow_box box;
+} portion;
+
+/* Portions of one message.  Offset and count are in voxels of the buffer that
+ * holds all messages of its direction. */
+typedef struct block_message {
+    int rank; /* of the other side */
+    size_t first, portions;
+    int64_t offset, count;
+} block_message;
+
+/* All that is sent, received, or kept. */
+typedef struct traffic {
+    portion *portions;
+    size_t portion_count, portion_bytes;
+    block_message *block_messages;
+    size_t block_message_count, block_message_bytes;
+    int64_t voxels;
+    char *buffer;
+    size_t buffer_bytes;
+} traffic;
+
+struct snow_voxels {
+    snow_comm *comm;
+    snow_context *context;
+    snow_box wanted;
+    traffic sent, received, kept;
+    snow_message *messages; /* those received, then those sent */
+    size_t message_bytes;
+    size_t ready; /* bytes of a value that buffers and messages fit; the same on
+                     all ranks */
+};
+
+/* Every rank's boxes, while planning. */
+typedef struct box_table {
+    int ranks, most;  /* boxes of a rank */
+    snow_box *held;   /* [rank * most + n]; missing ones are empty */
+    snow_box *wanted; /* [rank] */
+} box_table;
+
+/* --- copying -------------------------------------------------------------- */
+
+/* Side of the blocks in which strided voxels are copied: at most 16 * 16 cache
+ * lines, whichever axis is the fastest in memory. */
+#define TILE 16
+
+/* Voxels of one box, count[0] along x and so on; steps are in values. */
+typedef struct copy_params {
+    const char *from;
+    char *to;
+    int64_t from_step[3], to_step[3], count[3];
+} copy_params;
+
+#define COPY_VALUES(bits)                                                   \
+    static void copy_##bits(const copy_params *o) {                         \
+        for (int64_t z = 0; z < o->count[2]; z++)                           \
+            for (int64_t y = 0; y < o->count[1]; y++) {                     \
+                const uint##bits##_t *from =                                \
+                    (const uint##bits##_t *)(const void *)o->from +         \
+                    z * o->from_step[2] + y * o->from_step[1];              \
+                uint##bits##_t *to = (uint##bits##_t *)(void *)o->to +      \
+                                     z * o->to_step[2] + y * o->to_step[1]; \
+                for (int64_t x = 0; x < o->count[0]; x++)                   \
+                    to[x] = from[x * o->from_step[0]];                      \
+            }                                                               \
+    }
+COPY_VALUES(8)
+COPY_VALUES(16)
+COPY_VALUES(32)
+COPY_VALUES(64)
+
+static void copy_block(const copy_params *o, size_t value) {
+    switch (value) {
+    case 1:
+        copy_8(o);
+        break;
+    case 2:
+        copy_16(o);
+        break;
+    case 4:
+        copy_32(o);
+        break;
+    default:
+        copy_64(o);
+        break;
+    }
+}
+
+/* Rows that are contiguous in memory. */
+static void copy_rows(const copy_params *o, size_t value) {
+    int64_t bytes = (int64_t)value;
+    for (int64_t z = 0; z < o->count[2]; z++)
+        for (int64_t y = 0; y < o->count[1]; y++)
+            memcpy(o->to + (z * o->to_step[2] + y * o->to_step[1]) * bytes,
+                   o->from +
+                       (z * o->from_step[2] + y * o->from_step[1]) * bytes,
+                   (size_t)(o->count[0] * bytes));
+}
+
+/* The block of a copy that begins at `at`. */
+static copy_params block_at(const copy_params *o, const int64_t at[3],
+                            size_t value) {
+    copy_params block = *o;
+    for (int i = 0; i < 3; i++) {
+        int64_t left = o->count[i] - at[i];
+        block.from += at[i] * o->from_step[i] * (int64_t)value;
+        block.to += at[i] * o->to_step[i] * (int64_t)value;
+        block.count[i] = left < TILE ? left : TILE;
+    }
+    return block;
+}
+
+static void copy(const copy_params *o, size_t value) {
+    if (o->from_step[0] == 1) {
+        copy_rows(o, value);
+        return;
+    }
+    int64_t at[3];
+    for (at[2] = 0; at[2] < o->count[2]; at[2] += TILE)
+        for (at[1] = 0; at[1] < o->count[1]; at[1] += TILE)
+            for (at[0] = 0; at[0] < o->count[0]; at[0] += TILE) {
+                copy_params block = block_at(o, at, value);
+                copy_block(&block, value);
+            }
+}
+
+void snow_brick_copy(const snow_brick *brick, size_t value, const snow_box *box,
+                     const snow_box *whole, void *dense) {
+    copy_params o = {
+        .from = brick->voxels,
+        .to = dense,
+        .to_step = {1, whole->count[0], whole->count[0] * whole->count[1]}};
+    for (int i = 0; i < 3; i++) {
+        int64_t bytes = (int64_t)value;
+        o.from_step[i] = brick->stride[i];
+        o.count[i] = box->count[i];
+        o.from +=
+            (box->first[i] - brick->box.first[i]) * o.from_step[i] * bytes;
+        o.to += (box->first[i] - whole->first[i]) * o.to_step[i] * bytes;
+    }
+    copy(&o, value);
+}
+
+/* --- planning ------------------------------------------------------------- */
+
+snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out) {
+    snow_context *context = snow_comm_context(comm);
+    snow_voxels *voxels = snow_allocate_clear(context, sizeof *voxels);
+    if (!voxels)
+        return SNOW_STATUS_NO_MEMORY;
+    voxels->comm = comm;
+    voxels->context = context;
+    *out = voxels;
+    return SNOW_STATUS_OK;
+}
+
+static void free_traffic(snow_context *context, traffic *t) {
+    snow_release(context, t->portions);
+    snow_release(context, t->block_messages);
+    snow_release(context, t->buffer);
+}
+
+void snow_voxels_clear(snow_voxels *voxels) {
+    free_traffic(voxels->context, &voxels->sent);
+    free_traffic(voxels->context, &voxels->received);
+    free_traffic(voxels->context, &voxels->kept);
+    snow_release(voxels->context, voxels->messages);
+    *voxels = (snow_voxels){.comm = voxels->comm, .context = voxels->context};
+}
+
+void snow_voxels_free(snow_voxels *voxels) {
+    if (!voxels)
+        return;
+    snow_voxels_clear(voxels);
+    snow_release(voxels->context, voxels);
+}
+
+static void clear_traffic(traffic *t) {
+    t->portion_count = t->block_message_count = 0;
+    t->voxels = 0;
+}
+
+/* Drops the plan; buffers are kept. */
+static void clear_plan(snow_voxels *voxels) {
+    clear_traffic(&voxels->sent);
+    clear_traffic(&voxels->received);
+    clear_traffic(&voxels->kept);
+    voxels->ready = 0;
+}
+
+static void free_box_table(snow_context *context, box_table *c) {
+    snow_release(context, c->held);
+    snow_release(context, c->wanted);
+}
+
+static snow_status make_box_table(snow_context *context, box_table *c) {
+    uint64_t boxes;
+    if (!snow_mul_u64((uint64_t)c->ranks, (uint64_t)c->most, &boxes))
+        boxes = UINT64_MAX;
+    c->wanted =
+        snow_allocate_array(context, (uint64_t)c->ranks, sizeof *c->wanted);
+    c->held = snow_allocate_array(context, boxes, sizeof *c->held);
+    return c->wanted && c->held ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
+/* Collective. Shares all boxes. Ranks with fewer than the maximum send empty
+ * ones. */
+static snow_status take_box_table(snow_comm *comm, const snow_box *held,
+                                  int count, const snow_box *wanted,
+                                  box_table *c) {
+    snow_context *context = snow_comm_context(comm);
+    int64_t most = count;
+    SNOW_TRY(snow_comm_reduce_ints(comm, &most, 1, SNOW_MAX));
+    c->ranks = snow_comm_size(comm);
+    c->most = most > 0 ? (int)most : 1;
+    size_t bytes = (size_t)c->most * sizeof *held;
+    snow_status status = make_box_table(context, c);
+    snow_box *mine = snow_allocate_clear(context, bytes);
+    if (!mine)
+        status = SNOW_STATUS_NO_MEMORY;
+    else if (count > 0)
+        memcpy(mine, held, (size_t)count * sizeof *held);
+    status = snow_comm_agree_status(comm, status);
+    if (status == SNOW_STATUS_OK)
+        status = snow_comm_allgather(comm, mine, bytes, c->held);
+    if (status == SNOW_STATUS_OK)
+        status = snow_comm_allgather(comm, wanted, sizeof *wanted, c->wanted);
+    snow_release(context, mine);
+    return status;
+}
+
+static snow_status add_portion(snow_context *context, traffic *t, int brick,
+                               const snow_box *box) {
+    size_t size = sizeof *t->portions, n = t->portion_count;
+    SNOW_TRY(snow_reserve(context, &t->portions, &t->portion_bytes, n * size,
+                          (n + 1) * size));
+    t->portions[t->portion_count++] = (portion){brick, *box};
+    return SNOW_STATUS_OK;
+}
+
+/* Adds a message: the voxels of a wanted box that a rank holds, in the order of
+ * its boxes. */
+static snow_status add_block_message(snow_context *context, traffic *t,
+                                     int rank, const snow_box *held, int count,
+                                     const snow_box *wanted) {
+    block_message p = {
+        .rank = rank, .first = t->portion_count, .offset = t->voxels};
+    snow_box box;
+    for (int n = 0; n < count; n++) {
+        if (!snow_box_intersect(&held[n], wanted, &box))
+            continue;
+        SNOW_TRY(add_portion(context, t, n, &box));
+        p.portions++;
+        p.count += snow_box_voxels(&box);
+    }
+    if (!p.portions)
+        return SNOW_STATUS_OK;
+    size_t size = sizeof *t->block_messages, n = t->block_message_count;
+    SNOW_TRY(snow_reserve(context, &t->block_messages, &t->block_message_bytes,
+                          n * size, (n + 1) * size));
+    t->block_messages[t->block_message_count++] = p;
+    t->voxels += p.count;
+    return SNOW_STATUS_OK;
+}
+
+/* Beginning with the next rank, so that not all send to the same one at a time.
+ */
+static snow_status make_block_messages(snow_voxels *voxels,
+                                       const box_table *c) {
+    int me = snow_comm_rank(voxels->comm);
+    const snow_box *mine = c->held + (size_t)me * (size_t)c->most;
+    for (int step = 0; step < c->ranks; step++) {
+        int to = (me + step) % c->ranks;
+        int from = (me - step + c->ranks) % c->ranks;
+        traffic *out = step ? &voxels->sent : &voxels->kept;
+        SNOW_TRY(add_block_message(voxels->context, out, to, mine, c->most,
+                                   &c->wanted[to]));
+        if (step)
+            SNOW_TRY(add_block_message(voxels->context, &voxels->received, from,
+                                       c->held + (size_t)from * (size_t)c->most,
+                                       c->most, &voxels->wanted));
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Rejects boxes of this rank that overlap any other: it would not be known
+ * which voxel is right. */
+static snow_status check_overlap(snow_voxels *voxels, const box_table *c) {
+    size_t most = (size_t)c->most, all = (size_t)c->ranks * most;
+    size_t first = (size_t)snow_comm_rank(voxels->comm) * most;
+    snow_box box;
+    for (size_t i = first; i < first + most; i++)
+        for (size_t j = 0; j < all; j++)
+            if (i != j && snow_box_intersect(&c->held[i], &c->held[j], &box))
+                return snow_fail(
+                    voxels->context, SNOW_STATUS_BAD_USAGE,
+                    "voxel (%lld, %lld, %lld) belongs to two ranks, also to "
+                    "rank %lld: boxes must not overlap; leave ghost voxels out "
+                    "of them",
+                    (long long)box.first[0], (long long)box.first[1],
+                    (long long)box.first[2], (long long)(j / most));
+    return SNOW_STATUS_OK;
+}
+
+/* Boxes do not overlap, so a count shows whether all is there. */
+static snow_status check_whole(const snow_voxels *voxels) {
+    int64_t found = voxels->kept.voxels + voxels->received.voxels;
+    int64_t wanted = snow_box_voxels(&voxels->wanted);
+    if (found == wanted)
+        return SNOW_STATUS_OK;
+    const int64_t *first = voxels->wanted.first, *count = voxels->wanted.count;
+    return snow_fail(
+        voxels->context, SNOW_STATUS_BAD_USAGE,
+        "no rank holds %lld of the %lld voxels from (%lld, %lld, %lld) to "
+        "(%lld, %lld, %lld): every voxel of the grid must belong to a rank",
+        (long long)(wanted - found), (long long)wanted, (long long)first[0],
+        (long long)first[1], (long long)first[2],
+        (long long)(first[0] + count[0] - 1),
+        (long long)(first[1] + count[1] - 1),
+        (long long)(first[2] + count[2] - 1));
+}
+
+/* Plans what this rank can plan without the others. */
+static snow_status plan_alone(snow_voxels *voxels, const box_table *c) {
+    SNOW_TRY(make_block_messages(voxels, c));
+    SNOW_TRY(check_whole(voxels));
+    size_t messages =
+        voxels->sent.block_message_count + voxels->received.block_message_count;
+    return snow_reserve(voxels->context, &voxels->messages,
+                        &voxels->message_bytes, 0,
+                        messages * sizeof *voxels->messages);
+}
+
+snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
+                             int count, const snow_box *wanted) {
+    clear_plan(voxels);
+    voxels->wanted = *wanted;
+    box_table c = {0};
+    snow_status status = take_box_table(voxels->comm, held, count, wanted, &c);
+    /* Before counting, since overlaps would spoil it on other ranks. */
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_comm_agree_status(voxels->comm, check_overlap(voxels, &c));
+    if (status == SNOW_STATUS_OK)
+        status = snow_comm_agree_status(voxels->comm, plan_alone(voxels, &c));
+    free_box_table(voxels->context, &c);
+    if (status != SNOW_STATUS_OK)
+        clear_plan(voxels);
+    return status;
+}
+
+int64_t snow_voxels_sent(const snow_voxels *voxels) {
+    return voxels->sent.voxels;
+}
+
+/* --- moving --------------------------------------------------------------- */
+
+static snow_status reserve_buffer(snow_context *context, traffic *t,
+                                  size_t value) {
+    uint64_t bytes;
+    if (!snow_mul_u64((uint64_t)t->voxels, value, &bytes))
+        bytes = UINT64_MAX;
+    return snow_reserve(context, &t->buffer, &t->buffer_bytes, 0,
+                        (size_t)bytes);
+}
+
+/* Collective if values are larger than any before: the size so far is the same
+ * on all ranks. */
+static snow_status make_ready(snow_voxels *voxels, size_t value) {
+    if (value <= voxels->ready)
+        return SNOW_STATUS_OK;
+    snow_status status = reserve_buffer(voxels->context, &voxels->sent, value);
+    if (status == SNOW_STATUS_OK)
+        status = reserve_buffer(voxels->context, &voxels->received, value);
+    SNOW_TRY(snow_comm_agree_status(voxels->comm, status));
+    voxels->ready = value;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status start_receiving(snow_voxels *voxels, size_t value) {
+    traffic *t = &voxels->received;
+    for (size_t n = 0; n < t->block_message_count; n++) {
+        const block_message *p = &t->block_messages[n];
+        SNOW_TRY(snow_comm_receive(voxels->comm,
+                                   t->buffer + (size_t)p->offset * value,
+                                   (size_t)p->count * value, p->rank,
+                                   SNOW_TAG_VOXELS, &voxels->messages[n]));
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status start_sending(snow_voxels *voxels, const snow_brick *bricks,
+                                 size_t value) {
+    traffic *t = &voxels->sent;
+    snow_message *messages =
+        voxels->messages + voxels->received.block_message_count;
+    for (size_t n = 0; n < t->block_message_count; n++) {
+        const block_message *p = &t->block_messages[n];
+        char *first = t->buffer + (size_t)p->offset * value, *at = first;
+        for (size_t i = p->first; i < p->first + p->portions; i++) {
+            const portion *part = &t->portions[i];
+            snow_brick_copy(&bricks[part->brick], value, &part->box, &part->box,
+                            at);
+            at += (size_t)snow_box_voxels(&part->box) * value;
+        }
+        SNOW_TRY(snow_comm_send(voxels->comm, first, (size_t)(at - first),
+                                p->rank, SNOW_TAG_VOXELS, &messages[n]));
+    }
+    return SNOW_STATUS_OK;
+}
+
+static void keep_own(const snow_voxels *voxels, const snow_brick *bricks,
+                     size_t value, void *dense) {
+    const traffic *t = &voxels->kept;
+    for (size_t i = 0; i < t->portion_count; i++)
+        snow_brick_copy(&bricks[t->portions[i].brick], value,
+                        &t->portions[i].box, &voxels->wanted, dense);
+}
+
+/* Copies the voxels of a message to their places. */
+static void unpack(const snow_voxels *voxels, const block_message *p,
+                   size_t value, void *dense) {
+    const traffic *t = &voxels->received;
+    const char *at = t->buffer + (size_t)p->offset * value;
+    for (size_t i = p->first; i < p->first + p->portions; i++) {
+        const snow_box *box = &t->portions[i].box;
+        snow_brick packed = {
+            *box, at, {1, box->count[0], box->count[0] * box->count[1]}};
+        snow_brick_copy(&packed, value, box, &voxels->wanted, dense);
+        at += (size_t)snow_box_voxels(box) * value;
+    }
+}
+
+/* Unpacks messages as they arrive, while others are in flight. */
+static snow_status finish_receiving(snow_voxels *voxels, size_t value,
+                                    void *dense) {
+    int count = (int)voxels->received.block_message_count;
+    for (int left = count, which; left > 0; left--) {
+        SNOW_TRY(
+            snow_comm_wait_any(voxels->comm, voxels->messages, count, &which));
+        if (which < 0)
+            break;
+        unpack(voxels, &voxels->received.block_messages[which], value, dense);
+    }
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_voxels_move(snow_voxels *voxels, const snow_brick *bricks,
+                             size_t value, void *dense) {
+    SNOW_TRY(make_ready(voxels, value));
+    SNOW_TRY(start_receiving(voxels, value));
+    SNOW_TRY(start_sending(voxels, bricks, value));
+    keep_own(voxels, bricks, value, dense);
+    SNOW_TRY(finish_receiving(voxels, value, dense));
+    return snow_comm_wait_all(
+        voxels->comm, voxels->messages + voxels->received.block_message_count,
+        (int)voxels->sent.block_message_count);
+}

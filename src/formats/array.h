@@ -1,0 +1,71 @@
+/* formats/array.h - arrays of voxels with regular strides in a source, in any
+ * order of axes; for the readers of formats that hold arrays.
+ *
+ * An array's bytes begin at the source's position.  Voxel (x, y, z) begins at
+ * byte
+ *
+ *     first + x * step[0] + y * step[1] + z * step[2]
+ *
+ * which covers C and Fortran order, interleaved channels, time steps before and
+ * after, and records with other data between them. */
+#ifndef SNOW_FORMATS_ARRAY_H
+#define SNOW_FORMATS_ARRAY_H
+
+#include "formats/format.h"
+
+/* How one value is stored.  A type that the library lacks becomes the next
+ * larger one that holds all of its values exactly. */
+typedef enum snow_coding {
+    SNOW_CODING_PLAIN, /* as info->type */
+    SNOW_CODING_HALF,  /* IEEE 754 binary16; float32 */
+    SNOW_CODING_BOOL   /* one byte, true unless 0; uint8 of 0 and 1 */
+} snow_coding;
+
+typedef struct snow_array {
+    snow_coding coding;
+    bool big_endian;
+    uint64_t step[3]; /* strides in bytes; see above */
+    uint64_t first;
+    uint64_t
+        all;   /* size of the data in bytes; the source is read to their end */
+    bool more; /* the file continues after the data: the source is left at their
+                  end, not finished */
+} snow_array;
+
+/* Bytes of a stored value. */
+size_t snow_coding_size(snow_coding coding, snow_type type);
+
+/* Computes the strides along each of `rank` nested axes, the first one fastest
+ * with values of `value` bytes, and the size of all.  Returns false if a size
+ * is below 1 or a product exceeds 63 bits. */
+bool snow_array_steps(const int64_t *sizes, int rank, uint64_t value,
+                      uint64_t *steps, uint64_t *all);
+
+/* Completes a reader, as snow_volume_read: applies the options' box, checks
+ * that the source can hold the bytes, and makes the volume unless `out` is
+ * NULL.  Reads the voxels in the memory order of all volumes, and finishes the
+ * source unless more follows.  Errors: SNOW_STATUS_BAD_INPUT,
+ * SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
+snow_status snow_array_read(snow_source *source,
+                            const snow_volume_options *options,
+                            const snow_array *array, snow_volume_info *info,
+                            snow_volume **out);
+
+/* The same for decimal numbers in text, with `channels` per voxel, one of which
+ * is used.  What follows them stays in the source, which is not finished. */
+snow_status snow_array_read_text(snow_source *source,
+                                 const snow_volume_options *options,
+                                 int64_t channels, int64_t channel,
+                                 snow_volume_info *info, snow_volume **out);
+
+/* Converts an IEEE 754 binary16 number; exact. */
+float snow_half_to_float(uint16_t half);
+
+/* For readers of voxels with several values: selects the options' channel,
+ * which must be below `channels`, and reports the choice if there are several.
+ * Errors: SNOW_STATUS_BAD_USAGE if the channel does not exist. */
+snow_status snow_volume_pick_channel(snow_context *context,
+                                     const snow_volume_options *options,
+                                     int64_t channels, int64_t *out);
+
+#endif

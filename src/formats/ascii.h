@@ -1,0 +1,20 @@
+/* formats/ascii.h - voxels as decimal numbers in text, for the readers of
+ * formats that use them. */
+#ifndef SNOW_FORMATS_ASCII_H
+#define SNOW_FORMATS_ASCII_H
+
+#include "formats/format.h"
+
+/* Writes the number that a word represents to `at`, which needs no alignment.
+ * Returns false if it is not a value of the type: exactly for integers, by
+ * range for floats. */
+bool snow_store_number(snow_type type, const char *word, void *at);
+
+/* Reads the numbers of a part, as if each stood in its bytes, and the blanks
+ * after them, and stores those of the box in `voxels`.  With `commas`, commas
+ * separate like blanks.  Errors: SNOW_STATUS_BAD_INPUT for too few numbers, and
+ * for words that are not a number of the type. */
+snow_status snow_read_numbers(snow_source *source, snow_type type, bool commas,
+                              const snow_file_part *part, void *voxels);
+
+#endif

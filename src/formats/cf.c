@@ -1,0 +1,147 @@
+/* formats/cf.c - coordinates and missing values by the Climate and Forecast
+ * conventions (cf.h). */
+#include "formats/cf.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Coordinates are often written as floats: steps may differ by this share. */
+#define EVEN 1e-3
+
+cf_values snow_cf_values_default(void) {
+    return (cf_values){.scale = 1};
+}
+
+/* Degrees east and degrees north are one unit here; "m" and others stay. */
+static void take_unit(const char *text, char unit[64]) {
+    if (!strncmp(text, "degree", 6))
+        text = "degrees";
+    size_t length = strlen(text) < 64 ? strlen(text) : 63;
+    memcpy(unit, text, length);
+    unit[length] = 0;
+}
+
+void snow_cf_measure(const double *coordinates, int64_t count,
+                     const char *units, cf_axis *out) {
+    *out = (cf_axis){.even = true};
+    double first = coordinates[0], last = coordinates[count - 1];
+    double step = count > 1 ? (last - first) / (double)(count - 1) : 0;
+    if (!isfinite(first) || !isfinite(step) || step == 0)
+        return;
+    out->given = true;
+    out->first = first;
+    out->step = step;
+    for (int64_t i = 1; i < count; i++) {
+        double gap = coordinates[i] - coordinates[i - 1];
+        if (!(fabs(gap - step) <= EVEN * fabs(step)))
+            out->even = false;
+    }
+    take_unit(units, out->unit);
+}
+
+/* An axis with another unit cannot be compared with the others: a month is not
+ * longer than a degree. */
+void snow_cf_place(snow_context *context, const cf_axis axes[3],
+                   snow_volume_info *info) {
+    const cf_axis *x = &axes[0];
+    double usual = x->given ? fabs(x->step) : 1;
+    for (int i = 0; i < 3; i++) {
+        const cf_axis *axis = &axes[i];
+        bool same = axis->given && !strcmp(axis->unit, x->unit);
+        info->matrix[i][i] = same ? axis->step : usual;
+        info->matrix[i][3] = same ? axis->first : 0;
+        if (same && !axis->even)
+            snow_notify(context,
+                        "coordinates along %c are not evenly spaced; their "
+                        "mean distance, %g, is used",
+                        "xyz"[i], axis -> step);
+        if (axis->given && !same && info->dims[i] > 1)
+            snow_notify(context,
+                        "%c has another unit than x (\"%s\"); the spacing of x "
+                        "is used for it, --spacing sets another",
+                        "xyz"[i], axis -> unit);
+    }
+    if (x->given && strlen(x->unit) < sizeof info->unit)
+        memcpy(info->unit, x->unit, strlen(x->unit) + 1);
+}
+
+static snow_type float_type(snow_type type) {
+    switch (type) {
+    case SNOW_TYPE_INT8:
+    case SNOW_TYPE_UINT8:
+    case SNOW_TYPE_INT16:
+    case SNOW_TYPE_UINT16:
+        return SNOW_TYPE_FLOAT32;
+    case SNOW_TYPE_INT32:
+    case SNOW_TYPE_UINT32:
+        return SNOW_TYPE_FLOAT64;
+    default:
+        return type;
+    }
+}
+
+void snow_cf_apply(const cf_values *values, snow_volume_info *info) {
+    if (values->fills)
+        info->type = float_type(info->type);
+    info->slope = values->scale;
+    info->intercept = values->offset;
+}
+
+static bool is_fill(const cf_values *values, double value) {
+    for (int i = 0; i < values->fills; i++)
+        if (value == values->fill[i])
+            return true;
+    return false;
+}
+
+/* Stores one voxel of a type that has NaN. */
+static void put(snow_type type, void *voxels, int64_t i, double value) {
+    if (type == SNOW_TYPE_FLOAT32)
+        ((float *)voxels)[i] = (float)value;
+    else
+        ((double *)voxels)[i] = value;
+}
+
+/* Floats are compared as they were rounded: a fill value of 1e20 differs from
+ * its float. */
+static void blank(const cf_values *values, const snow_volume *from,
+                  snow_volume *to) {
+    const int64_t *dims = to->info.dims;
+    cf_values narrow = *values;
+    for (int i = 0; i < narrow.fills && from->info.type == SNOW_TYPE_FLOAT32;
+         i++)
+        narrow.fill[i] = (double)(float)narrow.fill[i];
+    for (int64_t i = 0; i < dims[0] * dims[1] * dims[2]; i++) {
+        double value = snow_volume_native(from, i);
+        if (is_fill(&narrow, value))
+            put(to->info.type, to->owned, i, NAN);
+        else if (to != from)
+            put(to->info.type, to->owned, i, value);
+    }
+}
+
+snow_status snow_cf_blank(const cf_values *values, snow_volume **volume) {
+    snow_volume *old = *volume, *made = old;
+    snow_volume_info info = old->info;
+    if (!values->fills)
+        return SNOW_STATUS_OK;
+    info.type = float_type(info.type);
+    if (info.type != SNOW_TYPE_FLOAT32 && info.type != SNOW_TYPE_FLOAT64) {
+        snow_notify(old->context, "missing values are kept as they are: no "
+                                  "type holds both NaN and 64-bit integers");
+        return SNOW_STATUS_OK;
+    }
+    if (info.type != old->info.type) {
+        snow_status status = snow_volume_new(old->context, &info, &made);
+        if (status != SNOW_STATUS_OK) {
+            snow_volume_close(old);
+            *volume = NULL;
+            return status;
+        }
+    }
+    blank(values, old, made);
+    if (made != old)
+        snow_volume_close(old);
+    *volume = made;
+    return SNOW_STATUS_OK;
+}

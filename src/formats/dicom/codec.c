@@ -1,0 +1,263 @@
+/* formats/dicom/codec.c - checks the headers of compressed frames, and decodes
+ * run lengths, which need no library.
+ *
+ * A codec makes as many words as its own header says; GDCM then copies as many
+ * as the image has.  So the headers of JPEG and JPEG-LS (ITU T.81, B.2.2; T.87,
+ * C.2.2) and of JPEG 2000 (T.800, A.5.1) must agree with the image's before
+ * GDCM sees them. */
+#include "formats/dicom/dicom.h"
+
+#include <string.h>
+
+/* What a codec's header says. */
+typedef struct packed_head {
+    uint32_t columns, rows, samples;
+    int bits;
+    bool unlike; /* components differ in size or depth */
+} packed_head;
+
+static uint32_t big(const unsigned char *at, int bytes) {
+    uint32_t value = 0;
+    for (int i = 0; i < bytes; i++)
+        value = value << 8 | at[i];
+    return value;
+}
+
+/* Start of a frame in JPEG: SOF0 to SOF15 except for tables (C4, C8, CC), and
+ * SOF55 of JPEG-LS. */
+static bool is_frame_marker(int marker) {
+    return (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 &&
+            marker != 0xc8 && marker != 0xcc) ||
+           marker == 0xf7;
+}
+
+/* Walks the segments up to the start of the frame. */
+static bool read_jpeg(const unsigned char *bytes, size_t size,
+                      packed_head *out) {
+    size_t at = 2;
+    if (size < 4 || bytes[0] != 0xff || bytes[1] != 0xd8)
+        return false;
+    while (at + 10 <= size && bytes[at] == 0xff) {
+        int marker = bytes[at + 1];
+        if (marker == 0xff) { /* padding */
+            at++;
+            continue;
+        }
+        if (is_frame_marker(marker)) {
+            *out = (packed_head){.bits = bytes[at + 4],
+                                 .rows = big(bytes + at + 5, 2),
+                                 .columns = big(bytes + at + 7, 2),
+                                 .samples = bytes[at + 9]};
+            return true;
+        }
+        at += 2 + (size_t)big(bytes + at + 2, 2);
+    }
+    return false;
+}
+
+/* What libjpeg may warn about, after which GDCM ends the process. */
+typedef struct jpeg_signs {
+    bool jfif, version; /* JFIF's segment; its version is not 1 */
+    bool transform;     /* Adobe's, with an unknown transform */
+} jpeg_signs;
+
+static void read_sign(int marker, const unsigned char *data, size_t length,
+                      jpeg_signs *signs) {
+    if (marker == 0xe0 && length >= 14 && !memcmp(data, "JFIF", 5)) {
+        signs->jfif = true;
+        signs->version |= data[5] != 1;
+    } else if (marker == 0xee && length >= 12 && !memcmp(data, "Adobe", 5))
+        signs->transform = data[11] > 1;
+}
+
+/* Adobe's transform is used if there are three components, and no JFIF that
+ * defines them. */
+static bool warns(const jpeg_signs *signs, uint32_t samples) {
+    return signs->version || (signs->transform && samples == 3 && !signs->jfif);
+}
+
+/* Whether the segments are intact up to the start of the scan, including
+ * Huffman tables if the frame needs them: otherwise GDCM ends the process.
+ * JPEG-LS (`ls`) needs no tables, and does not use libjpeg. */
+static bool has_scan(const unsigned char *bytes, size_t size, bool ls,
+                     uint32_t samples) {
+    bool tables = false;
+    jpeg_signs signs = {false, false, false};
+    for (size_t at = 2; at + 4 <= size && bytes[at] == 0xff;) {
+        int marker = bytes[at + 1];
+        if (marker == 0xff) {
+            at++;
+            continue;
+        }
+        size_t length = (size_t)big(bytes + at + 2, 2);
+        bool bare = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd9);
+        if (bare || length < 2 || length > size - at - 2)
+            return false;
+        read_sign(marker, bytes + at + 4, length - 2, &signs);
+        tables |= marker == 0xc4;
+        if (marker == 0xf7 && !ls)
+            return false;
+        if (marker == 0xda)
+            return ls || (tables && !warns(&signs, samples));
+        at += 2 + length;
+    }
+    return false;
+}
+
+/* Whether components have one depth and are not subsampled, as the caller
+ * expects. `siz` is the marker's segment at its length; `room` counts from
+ * there. */
+static bool are_alike(const unsigned char *siz, size_t room, uint32_t samples) {
+    if (samples > (room - 38) / 3)
+        return false;
+    for (uint32_t n = 0; n < samples; n++) {
+        const unsigned char *of = siz + 38 + 3 * (size_t)n;
+        if (of[0] != siz[38] || of[1] != 1 || of[2] != 1)
+            return false;
+    }
+    return true;
+}
+
+/* A bare code stream, or one in the boxes of a file, which are skipped: SIZ
+ * follows its start. */
+static bool read_jpeg2000(const unsigned char **bytes, size_t *size,
+                          packed_head *out) {
+    static const unsigned char start[4] = {0xff, 0x4f, 0xff, 0x51};
+    for (size_t at = 0; at + 45 <= *size && at < 4096; at++)
+        if (!memcmp(*bytes + at, start, 4)) {
+            const unsigned char *siz = *bytes + at + 4;
+            uint32_t x1 = big(siz + 4, 4), y1 = big(siz + 8, 4);
+            uint32_t x0 = big(siz + 12, 4), y0 = big(siz + 16, 4);
+            *out = (packed_head){.columns = x1 - x0,
+                                 .rows = y1 - y0,
+                                 .samples = big(siz + 36, 2),
+                                 .bits = (siz[38] & 0x7f) + 1};
+            *bytes += at;
+            *size -= at;
+            out->unlike = !are_alike(siz, *size - 4, out->samples);
+            return x1 > x0 && y1 > y0;
+        }
+    return false;
+}
+
+/* Markers of JPEG 2000 without a segment (T.800, A.1.2). */
+static bool is_bare_marker(int marker) {
+    return (marker >= 0xff30 && marker <= 0xff3f) || marker == 0xff4f ||
+           marker == 0xff92 || marker == 0xff93 || marker == 0xffd9;
+}
+
+/* Whether the segments are intact up to the data of the first tile, with a
+ * coding style (COD) of sufficient length: GDCM walks them unchecked. */
+static bool has_tile(const unsigned char *bytes, size_t size) {
+    for (size_t at = 0; at + 4 <= size;) {
+        int marker = (int)big(bytes + at, 2);
+        size_t length = (size_t)big(bytes + at + 2, 2);
+        at += 2;
+        if (marker == 0xff93)
+            return true;
+        if (is_bare_marker(marker))
+            continue;
+        if (length < (marker == 0xff52 ? 12 : 2) || length > size - at)
+            return false;
+        at += length;
+    }
+    return false;
+}
+
+static bool is_jpeg_ls(const char *syntax) {
+    return !strncmp(syntax, "1.2.840.10008.1.2.4.8", 21);
+}
+
+static bool is_jpeg2000(const char *syntax) {
+    return !strncmp(syntax, "1.2.840.10008.1.2.4.9", 21);
+}
+
+snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
+                                    const dicom_image *image,
+                                    const unsigned char **bytes, size_t *size) {
+    packed_head head;
+    bool known = is_jpeg2000(syntax) ? read_jpeg2000(bytes, size, &head)
+                                     : read_jpeg(*bytes, *size, &head);
+    bool same = known && head.columns == (uint32_t)image->columns &&
+                head.rows == (uint32_t)image->rows &&
+                head.samples == (uint32_t)image->samples &&
+                head.bits <= image->allocated &&
+                (head.bits > 8) == (image->allocated > 8);
+    if (same && head.unlike)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "its compressed colours differ in size or depth, which is not "
+            "supported; decompress it, for example with gdcmconv --raw");
+    if (same &&
+        (is_jpeg2000(syntax)
+             ? has_tile(*bytes, *size)
+             : has_scan(*bytes, *size, is_jpeg_ls(syntax), head.samples)))
+        return SNOW_STATUS_OK;
+    if (known && !same)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "its compressed pixels are %lux%lu of %lu values with %d bits but "
+            "its header says %lldx%lld of %d with %d; it is damaged",
+            (unsigned long)head.columns, (unsigned long)head.rows,
+            (unsigned long)head.samples, head.bits, (long long)image->columns,
+            (long long)image->rows, image->samples, image->allocated);
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "its compressed pixels do not begin like those of the "
+                     "transfer syntax %s; it is damaged",
+                     syntax);
+}
+
+/* Decodes one segment: a byte n from 0 to 127 stands before n + 1 others, one
+ * from 129 on before a byte that is repeated 257 - n times. */
+static bool unpack_segment(const unsigned char *in, size_t size,
+                           unsigned char *out, size_t step, size_t count) {
+    size_t at = 0, made = 0;
+    while (made < count) {
+        if (at >= size)
+            return false;
+        int n = in[at++];
+        size_t run = n < 128 ? (size_t)n + 1 : (size_t)(257 - n);
+        size_t taken = n < 128 ? run : 1;
+        if (n == 128)
+            continue;
+        if (taken > size - at)
+            return false;
+        run = run < count - made ? run : count - made;
+        for (size_t i = 0; i < run; i++)
+            out[step * (made + i)] = in[n < 128 ? at + i : at];
+        at += taken;
+        made += run;
+    }
+    return true;
+}
+
+/* Sixteen numbers come first: the number of segments, and the offset of each.
+ * The high byte of a sample comes before the low one. */
+bool snow_dicom_unpack_runs(const dicom_image *image,
+                            const unsigned char *bytes, size_t size,
+                            unsigned char *out) {
+    size_t word = (size_t)image->allocated / 8;
+    size_t segments = word * (size_t)image->samples;
+    size_t area = (size_t)(image->columns * image->rows);
+    uint32_t begin[17];
+    if (size < 64 || segments > 15)
+        return false;
+    for (size_t i = 0; i < 16; i++)
+        begin[i] = (uint32_t)bytes[4 * i] | (uint32_t)bytes[4 * i + 1] << 8 |
+                   (uint32_t)bytes[4 * i + 2] << 16 |
+                   (uint32_t)bytes[4 * i + 3] << 24;
+    if (begin[0] != segments)
+        return false;
+    begin[segments + 1] = (uint32_t)size;
+    for (size_t i = 0; i < segments; i++) {
+        size_t from = begin[i + 1], end = begin[i + 2];
+        size_t sample = i / word, byte = i % word;
+        if (snow_machine_big_endian() == false)
+            byte = word - 1 - byte;
+        if (from < 64 || from > end || end > size ||
+            !unpack_segment(bytes + from, end - from,
+                            out + sample * area * word + byte, word, area))
+            return false;
+    }
+    return true;
+}

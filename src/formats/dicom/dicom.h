@@ -1,0 +1,278 @@
+/* formats/dicom/dicom.h - the parts of the DICOM reader.
+ *
+ *   files   files.c    which files belong together
+ *     |
+ *   parse   parse.c    a file's elements
+ *     |
+ *   header  header.c   a file's image, and its frames
+ *     |
+ *   series  series.c   which frames form a volume, their order and positions
+ *     |
+ *   voxels  voxels.c   frames scaled and put in place
+ *     |
+ *   pixels  palette.c  the brightness of palette colours
+ *           pixels.c   a frame's words, plain or compressed
+ *           codec.c    the headers of compressed ones, checked before GDCM
+ *
+ * Positions are in LPS and mm, as in DICOM, up to the matrix, which is RAS.
+ * GDCM sees nothing but compressed pixels. */
+#ifndef SNOW_FORMATS_DICOM_DICOM_H
+#define SNOW_FORMATS_DICOM_DICOM_H
+
+#include "formats/format.h"
+#include "io/folder.h"
+#include "io/seekable.h"
+
+/* What distinguishes images at one position; the first difference counts:
+ * indices of time, then other variations, then the order of acquisition. */
+enum {
+    DICOM_KEY_TIME,    /* temporal position */
+    DICOM_KEY_TRIGGER, /* ms within the heartbeat */
+    DICOM_KEY_ECHO,    /* ms */
+    DICOM_KEY_B_VALUE, /* s/mm^2, of diffusion */
+    DICOM_KEY_ACQUISITION,
+    DICOM_KEY_INSTANCE,
+    DICOM_KEYS
+};
+
+/* One file with an image, as described by its header. */
+typedef struct dicom_image {
+    char *path; /* in the list of files; NULL for the file that was given */
+    char series[65], instance[65], photometric[17], modality[17];
+    char patient[256]; /* UTF-8; "" if missing */
+    int64_t columns, rows, frames;
+    int64_t series_number;
+    int samples, allocated, stored, high;
+    bool is_signed, planes; /* samples of a pixel are not interleaved */
+    bool pads;              /* stored values within padding are not data */
+    double padding[2];
+} dicom_image;
+
+/* An image of a slice: a file, or a part of one. */
+typedef struct dicom_frame {
+    const dicom_image *image;
+    int64_t number; /* within its file, from 0 */
+    bool placed;    /* the next three are given */
+    double position[3], row[3],
+        column[3];   /* centre of the first pixel; along a row, down a column */
+    double pixel[2]; /* mm from column to column, from row to row */
+    bool measured;   /* they are given */
+    bool guessed;  /* depth is needed to place frames but missing; 1 is used */
+    bool unscaled; /* a slope of 0 was ignored */
+    double depth;  /* given mm from slice to slice, signed; 0: none */
+    double thickness;
+    double slope, intercept;
+    double keys[DICOM_KEYS];
+} dicom_frame;
+
+/* --- parse.c --------------------------------------------------------
+ */
+
+/* Of the progress of reading a series, one part in so many is headers. */
+#define DICOM_HEADER_SHARE 4
+
+#define DICOM_TAG_PIXELS 0x7fe00010u
+#define DICOM_TAG_ITEM 0xfffee000u
+
+/* Whether the bytes begin a DICOM file, with its mark at byte 128 or
+ * without. */
+bool snow_dicom_probe(const unsigned char *bytes, size_t size);
+
+/* An element, an item or a fragment: `length` bytes of the store from `at` on.
+ * Elements in it follow on the list; `next` is the first that does not belong
+ * to it. */
+typedef struct dicom_element {
+    uint32_t tag; /* group << 16 | element */
+    uint32_t length;
+    uint64_t at;
+    size_t next;
+    bool words; /* VR OW */
+} dicom_element;
+
+/* A file whose elements are known; their values are read on request. */
+typedef struct dicom_reader {
+    snow_context *context;
+    snow_seekable *store; /* outlives the reader */
+    dicom_element *elements;
+    size_t count, room;
+    char syntax[65];
+    char class_known[65]; /* SOP class, from the file's beginning */
+    bool big_endian;
+    bool packed;          /* the pixels are fragments */
+    bool has_pixels;      /* if they were not requested: they follow */
+    uint32_t pixel_bytes; /* then, for plain ones */
+    const dicom_element *frames, *shared; /* functional groups, or NULL */
+    size_t last_item; /* groups of the last requested frame; 0: none */
+    int64_t last_frame;
+    /* Positions of frames in slices or mm from the first, computed once. */
+    double *offsets;
+    enum { DICOM_UNSOUGHT, DICOM_NO_OFFSETS, DICOM_SLICES, DICOM_MM } offset_in;
+    unsigned char
+        *inflated; /* the elements of a deflated file, and their store */
+    snow_source *inner;
+    snow_seekable *inner_store;
+} dicom_reader;
+
+/* Parses a file up to its pixels, or including them.  Errors:
+ * SNOW_STATUS_BAD_INPUT (a value longer than the file, too deeply nested
+ * sequences, compressed pixels without an end), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_open(snow_context *context, snow_seekable *store,
+                            bool pixels, dicom_reader *out);
+void snow_dicom_close(dicom_reader *reader);
+
+/* Finds the first element with a tag from list index `begin` up to `end`, not
+ * within others; an item of a sequence counts from 0; NULL if there is none. */
+const dicom_element *snow_dicom_find(const dicom_reader *reader, size_t begin,
+                                     size_t end, uint32_t tag);
+const dicom_element *snow_dicom_item(const dicom_reader *reader,
+                                     const dicom_element *sequence,
+                                     int64_t number);
+
+/* The place of a value: an element of the file itself, or of the first item of
+ * a sequence.  A sequence is searched among the functional groups of a frame
+ * (from 0), then among those that all frames share, then in the file itself. */
+typedef struct dicom_place {
+    int64_t frame;
+    uint32_t sequence; /* 0: none */
+    uint32_t tag;
+} dicom_place;
+
+/* Copies up to `room` bytes of a value as stored; returns their number, 0 if
+ * there is no such value. */
+size_t snow_dicom_value(dicom_reader *reader, dicom_place place, void *out,
+                        size_t room);
+
+/* --- series.c ------------------------------------------------------- */
+
+/* Frames of one series that match, in the order of the list. */
+typedef struct dicom_group {
+    size_t first, count;
+} dicom_group;
+
+/* Sorts frames so that those of a group are adjacent, groups in the order of
+ * series numbers; `groups` has room for `count`.  Returns the number of
+ * groups. */
+size_t snow_dicom_group(dicom_frame *frames, size_t count, dicom_group *groups);
+
+/* Slice z of the volume lies between two of its positions. */
+typedef struct dicom_slice {
+    size_t low, high; /* positions */
+    double weight;    /* of the high one */
+} dicom_slice;
+
+/* How the frames of a group form a volume: `places` of `times` frames each, in
+ * the order of the frames, and slices at them or between them. */
+typedef struct dicom_stack {
+    snow_context *context;
+    const dicom_frame
+        *frames; /* of one group, in the order of positions, then times */
+    size_t places, times;
+    dicom_slice *slices; /* NULL: one at each position */
+    size_t slice_count;
+    bool placed; /* the matrix refers to a patient */
+    double matrix[4][4];
+    double gap_least, gap_most, gap; /* mm between positions; between slices */
+    bool given;                      /* gap is given */
+} dicom_stack;
+
+/* Orders the frames of a group and finds the positions of its slices.  Gives no
+ * warnings.  Free with snow_dicom_stack_free.  Errors: SNOW_STATUS_BAD_INPUT (a
+ * missing slice, too many images at a position, slices that lie beside one
+ * another), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_stack(snow_context *context, dicom_frame *frames,
+                             size_t count, dicom_stack *out);
+void snow_dicom_stack_free(dicom_stack *stack);
+
+/* --- files.c -------------------------------------------------------- */
+
+/* True when a file of the list looks like DICOM; slices of other formats by
+ * their names are not looked at. */
+bool snow_dicom_among(snow_context *context, const snow_folder *files,
+                      snow_format_finder *find);
+
+/* As a format's read, for all DICOM files of the list. */
+snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info, snow_volume **out);
+
+/* --- header.c -------------------------------------------------------
+ */
+
+/* Reads the header; rows is 0 if there is no image.  Errors:
+ * SNOW_STATUS_BAD_INPUT (invalid sizes). */
+snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
+                                  dicom_image *out);
+
+/* Describes one of its frames. */
+void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
+                           int64_t number, dicom_frame *out);
+
+/* --- pixels.c -------------------------------------------------------
+ */
+
+/* The layout of a frame's words; a codec may differ from the header. */
+typedef struct dicom_words {
+    int size;         /* bytes of a word: 1, 2 or 4 */
+    int stored, high; /* bits of a value; the highest one, from 0 */
+    bool is_signed;
+    bool planes; /* one plane per sample, not interleaved */
+} dicom_words;
+
+/* Bytes of a frame: columns * rows * samples words. */
+uint64_t snow_dicom_frame_bytes(const dicom_image *image);
+
+/* Reads a frame's words in the machine's byte order into `out`, of the size
+ * above. Errors: SNOW_STATUS_BAD_INPUT (truncated, damaged, or an unknown
+ * compression), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_read_words(dicom_reader *reader,
+                                  const dicom_image *image, int64_t number,
+                                  void *out, dicom_words *words);
+
+/* --- palette.c ------------------------------------------------------
+ */
+
+/* Brightness, 0 to 255 in whole steps, of `count` stored values from `first`
+ * on; values outside have that of the nearest. */
+typedef struct dicom_palette {
+    int64_t first;
+    size_t count;
+    float *levels; /* of the context; NULL: no palette */
+} dicom_palette;
+
+/* Reads the palette of a file that has one.  Errors: SNOW_STATUS_BAD_INPUT
+ * (missing or not supported), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_dicom_palette_read(dicom_reader *reader,
+                                    const dicom_image *image,
+                                    dicom_palette *out);
+
+/* --- codec.c --------------------------------------------------------
+ */
+
+/* Checks that the compressed bytes of a frame match the image, by their own
+ * header, and begin in a way that codecs accept; narrows them to the code
+ * stream.  Errors: SNOW_STATUS_BAD_INPUT. */
+snow_status snow_dicom_check_packed(snow_context *context, const char *syntax,
+                                    const dicom_image *image,
+                                    const unsigned char **bytes, size_t *size);
+
+/* Decodes run lengths (PS3.5, annex G) as planes of bytes; returns false if
+ * they do not match the image. */
+bool snow_dicom_unpack_runs(const dicom_image *image,
+                            const unsigned char *bytes, size_t size,
+                            unsigned char *out);
+
+/* --- voxels.c ------------------------------------------------------- */
+
+/* The source of frames: the given file, or files by their paths. */
+typedef struct dicom_input {
+    snow_context *context;
+    snow_seekable *store; /* of images without a path */
+} dicom_input;
+
+/* Makes the volume of a stack, for a time step and box. */
+snow_status snow_dicom_read_stack(const dicom_input *input,
+                                  const dicom_stack *stack,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info, snow_volume **out);
+
+#endif

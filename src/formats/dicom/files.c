@@ -1,0 +1,465 @@
+/* formats/dicom/files.c - selects the files of a volume: one file with those of
+ * its series beside it, or all of a folder, of which one series is chosen.
+ *
+ * A folder is one level deep.  Files that are not DICOM, and those without an
+ * image (reports, indices), are ignored.  A damaged file, or one named like
+ * DICOM, is not ignored, as it may be a slice. */
+#include "formats/dicom/dicom.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Enough bytes to recognise DICOM. */
+#define PROBE_BYTES 4096
+
+/* The size of the smallest DICOM file: the bytes before the mark, and the
+ * mark. */
+#define HEAD_BYTES 132
+
+/* Opens a file and reads its first bytes; *got is 0 if there are none. */
+static snow_status probe(snow_context *context, const char *path, bool *is,
+                         size_t *got) {
+    unsigned char bytes[PROBE_BYTES];
+    snow_source *source;
+    *is = false;
+    *got = 0;
+    SNOW_TRY(snow_source_open(context, path, &source));
+    snow_status status = snow_source_peek(source, bytes, sizeof bytes, got);
+    *is = status == SNOW_STATUS_OK && snow_dicom_probe(bytes, *got);
+    snow_source_close(source);
+    return status;
+}
+
+/* A file that cannot be read does not count as DICOM. */
+static bool is_dicom(snow_context *context, const char *path) {
+    bool is;
+    size_t got;
+    return probe(context, path, &is, &got) == SNOW_STATUS_OK && is;
+}
+
+bool snow_dicom_among(snow_context *context, const snow_folder *files,
+                      snow_format_finder *find) {
+    for (size_t i = 0; i < files->count; i++) {
+        const snow_format *format = find(files->paths[i]);
+        if ((!format || format == &snow_format_dicom) &&
+            is_dicom(context, files->paths[i]))
+            return true;
+    }
+    return false;
+}
+
+/* The most series that a note lists; a disk can have hundreds. */
+#define MOST_LISTED 12
+
+typedef struct collection {
+    snow_context *context;
+    dicom_image **images; /* one block each: frames point to them */
+    size_t image_count, image_room;
+    dicom_frame *frames;
+    size_t frame_count, frame_room;
+    size_t copies;     /* files with the same image as another */
+    size_t scraps;     /* files too short for DICOM that may have been slices */
+    const char *scrap; /* the first of them */
+} collection;
+
+static void free_collection(collection *c) {
+    for (size_t i = 0; i < c->image_count; i++)
+        snow_release(c->context, c->images[i]);
+    snow_release(c->context, c->images);
+    snow_release(c->context, c->frames);
+}
+
+static bool is_copy(const collection *c, const dicom_image *image) {
+    for (size_t i = 0; i < c->image_count && *image->instance; i++)
+        if (!strcmp(c->images[i]->instance, image->instance))
+            return true;
+    return false;
+}
+
+static snow_status add_frames(collection *c, dicom_reader *reader,
+                              const dicom_image *image) {
+    for (int64_t n = 0; n < image->frames; n++) {
+        SNOW_TRY(snow_reserve(c->context, &c->frames, &c->frame_room,
+                              c->frame_count * sizeof *c->frames,
+                              (c->frame_count + 1) * sizeof *c->frames));
+        snow_dicom_read_frame(reader, image, n, &c->frames[c->frame_count++]);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* If `series` is given, images of others are left out. */
+static snow_status add_image(collection *c, dicom_reader *reader, char *path,
+                             const char *series) {
+    dicom_image image;
+    SNOW_TRY(snow_dicom_read_image(c->context, reader, &image));
+    if (!image.rows || (series && strcmp(image.series, series) != 0))
+        return SNOW_STATUS_OK;
+    if (is_copy(c, &image)) {
+        c->copies++;
+        return SNOW_STATUS_OK;
+    }
+    SNOW_TRY(snow_reserve(c->context, &c->images, &c->image_room,
+                          c->image_count * sizeof *c->images,
+                          (c->image_count + 1) * sizeof *c->images));
+    dicom_image *kept = snow_allocate(c->context, sizeof *kept);
+    if (!kept)
+        return SNOW_STATUS_NO_MEMORY;
+    *kept = image;
+    kept->path = path;
+    c->images[c->image_count++] = kept;
+    return add_frames(c, reader, kept);
+}
+
+static snow_status add_store(collection *c, snow_seekable *store, char *path,
+                             const char *series) {
+    dicom_reader reader;
+    SNOW_TRY(snow_dicom_open(c->context, store, false, &reader));
+    snow_status status = add_image(c, &reader, path, series);
+    snow_dicom_close(&reader);
+    return status;
+}
+
+static snow_status add_path(collection *c, char *path, const char *series) {
+    snow_source *source;
+    snow_seekable *store = NULL;
+    SNOW_TRY(snow_source_open(c->context, path, &source));
+    snow_status status = snow_seekable_open(source, &store);
+    if (status == SNOW_STATUS_OK)
+        status = add_store(c, store, path, series);
+    if (status != SNOW_STATUS_OK)
+        snow_fail_in_file(c->context, status, path);
+    snow_seekable_close(store);
+    snow_source_close(source);
+    return status;
+}
+
+static const char *name_of(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Whether a file may be a slice, by its name: "IM_0004", "1.2.840.4",
+ * "4.dcm". */
+static bool may_be_slice(const char *path) {
+    const char *dot = strrchr(name_of(path), '.');
+    return !dot || (dot[1] >= '0' && dot[1] <= '9') ||
+           snow_format_has_name(&snow_format_dicom, path);
+}
+
+/* A file that is not DICOM, perhaps truncated, or that cannot be read. */
+static snow_status add_scrap(collection *c, const char *path,
+                             snow_status status, size_t bytes) {
+    bool named = snow_format_has_name(&snow_format_dicom, path);
+    if (status == SNOW_STATUS_OK && named)
+        status =
+            snow_fail(c->context, SNOW_STATUS_BAD_INPUT,
+                      "is named like DICOM but is not; it may be a truncated "
+                      "slice: get it again, or remove it from the folder");
+    if (status == SNOW_STATUS_NO_MEMORY || named) {
+        snow_fail_in_file(c->context, status, path);
+        return status;
+    }
+    if ((status != SNOW_STATUS_OK || bytes < HEAD_BYTES) &&
+        may_be_slice(path) && !c->scraps++)
+        c->scrap = name_of(path);
+    return SNOW_STATUS_OK;
+}
+
+/* Adds the images of a file, if there are any. */
+static snow_status add_file(collection *c, char *path, const char *series) {
+    bool is;
+    size_t bytes;
+    snow_status status = probe(c->context, path, &is, &bytes);
+    return is ? add_path(c, path, series) : add_scrap(c, path, status, bytes);
+}
+
+static void warn_scraps(const collection *c) {
+    if (c->scraps)
+        snow_notify(
+            c->context,
+            "%zu file%s beside the images (%.60s%s) cannot be read or %s too "
+            "short to be DICOM; slices of the volume may be missing",
+            c->scraps, c->scraps > 1 ? "s" : "", c->scrap,
+            c->scraps > 1 ? ", ..." : "", c->scraps > 1 ? "are" : "is");
+}
+
+/* --- choice ----------------------------------------------------------------
+ */
+
+/* The frames of the collection in groups. */
+typedef struct choice {
+    collection *c;
+    dicom_group *groups;
+    size_t count;
+} choice;
+
+static const dicom_image *image_of(const choice *all, size_t index) {
+    return all->c->frames[all->groups[index].first].image;
+}
+
+/* One line: "0 CT 512x512x20, 1 MR ...". */
+static void list_series(const choice *all, size_t taken, char *out,
+                        size_t room) {
+    size_t used = 0;
+    for (size_t i = 0; i < all->count && used < room; i++) {
+        const dicom_image *image = image_of(all, i);
+        if (i == MOST_LISTED) {
+            snprintf(out + used, room - used, ", and %zu more", all->count - i);
+            return;
+        }
+        used += (size_t)snprintf(
+            out + used, room - used, "%s%zu: %s%s%lldx%lld, %zu image%s%s",
+            i ? "; " : "", i, image->modality, *image->modality ? " " : "",
+            (long long)image->columns, (long long)image->rows,
+            all->groups[i].count, all->groups[i].count > 1 ? "s" : "",
+            i == taken ? " (taken)" : "");
+    }
+}
+
+/* Parses an index below `count`; a UID has points in it. */
+static bool is_index(const char *text, size_t count, size_t *out) {
+    int64_t value;
+    if (strchr(text, '.') || !snow_parse_int64(text, &value) || value < 0 ||
+        (uint64_t)value >= count)
+        return false;
+    *out = (size_t)value;
+    return true;
+}
+
+/* The largest group that `series` allows, a UID or NULL; `count` if it allows
+ * none. */
+static size_t largest(const choice *all, const char *series) {
+    size_t best = all->count;
+    for (size_t i = 0; i < all->count; i++)
+        if ((!series || !strcmp(image_of(all, i)->series, series)) &&
+            (best == all->count ||
+             all->groups[i].count > all->groups[best].count))
+            best = i;
+    return best;
+}
+
+static snow_status choose_group(const choice *all, const char *series,
+                                size_t *out) {
+    char text[1024];
+    size_t taken = all->count;
+    if (!series || !is_index(series, all->count, &taken))
+        taken = largest(all, series);
+    list_series(all, taken, text, sizeof text);
+    if (taken == all->count)
+        return snow_fail(all->c->context, SNOW_STATUS_BAD_USAGE,
+                         "--series %.64s: there is no such series; it has %zu: "
+                         "%s",
+                         series, all->count, text);
+    if (all->count > 1 && !series)
+        snow_notify(all->c->context,
+                    "has %zu series of images: %s; --series selects another by "
+                    "its number or UID",
+                    all->count, text);
+    *out = taken;
+    return SNOW_STATUS_OK;
+}
+
+/* Makes the volume of the selected group. */
+static snow_status read_chosen(collection *c, snow_seekable *store,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    size_t taken = 0;
+    const dicom_input input = {c->context, store};
+    choice all = {.c = c};
+    all.groups =
+        snow_allocate_array(c->context, c->frame_count, sizeof *all.groups);
+    if (!all.groups)
+        return SNOW_STATUS_NO_MEMORY;
+    all.count = snow_dicom_group(c->frames, c->frame_count, all.groups);
+    snow_status status = choose_group(&all, options->series, &taken);
+    dicom_stack stack;
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_dicom_stack(c->context, c->frames + all.groups[taken].first,
+                             all.groups[taken].count, &stack);
+    if (status == SNOW_STATUS_OK) {
+        status = snow_dicom_read_stack(&input, &stack, options, info, out);
+        snow_dicom_stack_free(&stack);
+    }
+    snow_release(c->context, all.groups);
+    return status;
+}
+
+snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info, snow_volume **out) {
+    collection c = {.context = context};
+    snow_status status = SNOW_STATUS_OK;
+    for (size_t i = 0; i < files->count && status == SNOW_STATUS_OK; i++) {
+        snow_monitor_report(context->monitor, SNOW_STAGE_READ, (double)i,
+                            (double)files->count * DICOM_HEADER_SHARE);
+        status = add_file(&c, files->paths[i], NULL);
+    }
+    if (status == SNOW_STATUS_OK)
+        warn_scraps(&c);
+    if (status == SNOW_STATUS_OK && !c.frame_count)
+        status = snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                           "its DICOM files have no images; subfolders are not "
+                           "read, so name the one with the images");
+    if (status == SNOW_STATUS_OK && c.copies)
+        snow_notify(context,
+                    "%zu file%s with the same image as another file %s ignored",
+                    c.copies, c.copies > 1 ? "s" : "",
+                    c.copies > 1 ? "are" : "is");
+    if (status == SNOW_STATUS_OK)
+        status = read_chosen(&c, NULL, options, info, out);
+    free_collection(&c);
+    return status;
+}
+
+/* --- one file --------------------------------------------------------------
+ */
+
+/* Lists the files of the folder that a path is in, including itself; an empty
+ * list if it cannot be read. */
+static void list_siblings(snow_context *context, const char *path,
+                          snow_folder *out) {
+    const char *slash = strrchr(path, '/');
+    size_t length = slash ? (size_t)(slash - path) + 1 : 0;
+    char *folder = snow_allocate_clear(context, length + 2);
+    *out = (snow_folder){.context = context};
+    if (!folder)
+        return;
+    memcpy(folder, slash ? path : ".", slash ? length : 1);
+    if (snow_folder_list(context, folder, out) != SNOW_STATUS_OK)
+        *out = (snow_folder){.context = context};
+    snow_release(context, folder);
+}
+
+/* Adds the images of the same series in the folder, except the given file,
+ * which is there already.  One that cannot be read may be a slice; a warning
+ * reports it. */
+static void add_siblings(collection *c, const char *path, snow_folder *files) {
+    const char *series = c->images[0]->series;
+    const char *first = NULL;
+    size_t unread = 0;
+    for (size_t i = 0; i < files->count; i++) {
+        char *file = files->paths[i];
+        if (strcmp(name_of(file), name_of(path)) == 0)
+            continue;
+        snow_status status = add_file(c, file, series);
+        if (status != SNOW_STATUS_OK && !unread++)
+            first = name_of(file);
+    }
+    if (unread)
+        snow_notify(c->context,
+                    "%zu file%s beside it cannot be read (%.60s%s); slices of "
+                    "the volume may be missing",
+                    unread, unread > 1 ? "s" : "", first,
+                    unread > 1 ? ", ..." : "");
+    warn_scraps(c);
+}
+
+/* Of a stack with several times, keeps the one that contains the given file;
+ * returns false if none does. */
+static bool keep_its_time(dicom_stack *stack, dicom_frame *frames) {
+    size_t times = stack->times, count = stack->places * times, time = times;
+    for (size_t i = 0; i < count; i++)
+        if (!frames[i].image->path)
+            time = i % times;
+    if (time == times)
+        return false;
+    for (size_t i = 0; i < stack->places; i++)
+        frames[i] = frames[i * times + time];
+    stack->times = 1;
+    return true;
+}
+
+/* Whether the frames of the folder's files form one volume with the given
+ * one. */
+static bool gather_stack(collection *c, dicom_stack *out) {
+    dicom_group *groups =
+        snow_allocate_array(c->context, c->frame_count, sizeof *groups);
+    if (!groups)
+        return false;
+    bool made = false;
+    size_t count = snow_dicom_group(c->frames, c->frame_count, groups);
+    for (size_t i = 0; i < count && !made; i++) {
+        dicom_frame *frames = c->frames + groups[i].first;
+        if (snow_dicom_stack(c->context, frames, groups[i].count, out) !=
+            SNOW_STATUS_OK)
+            continue;
+        made = keep_its_time(out, frames);
+        if (!made)
+            snow_dicom_stack_free(out);
+    }
+    snow_release(c->context, groups);
+    return made;
+}
+
+/* Reads the volume that a slice belongs to.  *done is false if there is none,
+ * and the slice is shown alone. */
+static snow_status read_with_siblings(collection *c, snow_source *source,
+                                      snow_seekable *store,
+                                      const snow_volume_options *options,
+                                      snow_volume_info *info, snow_volume **out,
+                                      bool *done) {
+    const dicom_input input = {c->context, store};
+    const dicom_frame alone = c->frames[0];
+    snow_folder files;
+    dicom_stack stack;
+    snow_status status = SNOW_STATUS_OK;
+    const char *path = snow_source_name(source);
+    list_siblings(c->context, path, &files);
+    add_siblings(c, path, &files);
+    *done = false;
+    if (c->frame_count > 1 && gather_stack(c, &stack)) {
+        *done = stack.places > 1;
+        if (*done) {
+            snow_notify(
+                c->context,
+                "is one of %zu slices of a series in its folder; all are used",
+                stack.places);
+            status = snow_dicom_read_stack(&input, &stack, options, info, out);
+        }
+        snow_dicom_stack_free(&stack);
+    } else if (c->frame_count > 1) {
+        snow_notify(c->context,
+                    "is used alone: the slices of its series in its folder do "
+                    "not form a volume; open the folder to see why");
+    }
+    c->frames[0] = alone;
+    c->frame_count = 1;
+    snow_folder_free(&files);
+    return status;
+}
+
+static snow_status read_dicom(snow_source *source,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    collection c = {.context = context};
+    snow_seekable *store;
+    SNOW_TRY(snow_seekable_open(source, &store));
+    bool done = false;
+    snow_status status = add_store(&c, store, NULL, NULL);
+    if (status == SNOW_STATUS_OK && !c.frame_count)
+        status = snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                           "is a DICOM file without an image; open one with "
+                           "an image, or their folder");
+    if (status == SNOW_STATUS_OK && c.frame_count == 1 && c.frames[0].placed &&
+        *c.images[0]->series && snow_source_has_siblings(source))
+        status =
+            read_with_siblings(&c, source, store, options, info, out, &done);
+    if (status == SNOW_STATUS_OK && !done)
+        status = read_chosen(&c, store, options, info, out);
+    free_collection(&c);
+    snow_seekable_close(store);
+    return status;
+}
+
+const snow_format snow_format_dicom = {
+    .name = "dicom",
+    .text = "DICOM: a folder, a slice of a series, frames in one file (.dcm)",
+    .suffixes = {".dcm", ".dcm.gz", ".dicom", ".ima"},
+    .probe = snow_dicom_probe,
+    .crops = true,
+    .series = true,
+    .channels = true,
+    .read = read_dicom,
+};

@@ -1,0 +1,285 @@
+/* formats/dicom/pixels.c - reads the words of a frame from the file, or
+ * decompresses them from fragments (PS3.5, annex A).
+ *
+ * Fragments are assigned to frames by the table before them, or one each, or
+ * all to a single frame; otherwise a frame begins with a fragment that begins
+ * like a code stream. */
+#include "formats/dicom/dicom.h"
+
+#include "base/module.h"
+#include "formats/dicom/gdcm_bridge.h"
+
+#include <string.h>
+
+#define RUN_LENGTHS "1.2.840.10008.1.2.5"
+
+uint64_t snow_dicom_frame_bytes(const dicom_image *image) {
+    return (uint64_t)image->columns * (uint64_t)image->rows *
+           ((uint64_t)image->samples * (uint64_t)image->allocated / 8);
+}
+
+/* --- plain ------------------------------------------------------------------
+ */
+
+static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
+                              const dicom_element *pixels, int64_t number,
+                              unsigned char *out) {
+    uint64_t bytes = snow_dicom_frame_bytes(image);
+    uint64_t first = (uint64_t)number * bytes;
+    if (first + bytes > pixels->length ||
+        snow_seekable_read(reader->store, pixels->at + first, out,
+                           (size_t)bytes) < bytes)
+        return snow_fail(
+            reader->context, SNOW_STATUS_BAD_INPUT,
+            "is truncated or damaged: its pixels have %lu bytes, but %lld "
+            "frames of %lldx%lld need %llu; get the file again",
+            (unsigned long)pixels->length, (long long)image->frames,
+            (long long)image->columns, (long long)image->rows,
+            (unsigned long long)(bytes * (uint64_t)image->frames));
+    size_t size = (size_t)image->allocated / 8;
+    /* bytes that were written as words are swapped like them */
+    if (size == 1 && pixels->words && reader->big_endian)
+        snow_swap_bytes(out, bytes / 2, 2);
+    else if (reader->big_endian != snow_machine_big_endian())
+        snow_swap_bytes(out, bytes / size, size);
+    return SNOW_STATUS_OK;
+}
+
+/* --- compressed
+ * ------------------------------------------------------------- */
+
+/* Fragments first .. first + count - 1 of the pixels; the table is 0. */
+typedef struct span {
+    int64_t first, count;
+} span;
+
+static int64_t count_fragments(const dicom_reader *reader,
+                               const dicom_element *pixels) {
+    size_t at = (size_t)(pixels - reader->elements) + 1;
+    int64_t count = (int64_t)(pixels->next - at);
+    return count > 0 ? count - 1 : 0;
+}
+
+static const dicom_element *fragment(const dicom_element *pixels,
+                                     int64_t index) {
+    return pixels + 1 + index;
+}
+
+/* Finds the beginning of a frame in the table, which counts from its own
+ * end. */
+static bool table_entry(dicom_reader *reader, const dicom_element *pixels,
+                        int64_t number, uint64_t *out) {
+    unsigned char bytes[4];
+    const dicom_element *table = fragment(pixels, 0);
+    if ((uint64_t)number * 4 + 4 > table->length ||
+        snow_seekable_read(reader->store, table->at + (uint64_t)number * 4,
+                           bytes, 4) < 4)
+        return false;
+    uint64_t offset = 0;
+    for (int i = 0; i < 4; i++)
+        offset |= (uint64_t)bytes[reader->big_endian ? 3 - i : i] << 8 * i;
+    /* from the item after the table, whose header has 8 bytes */
+    *out = table->at + table->length + offset + 8;
+    return true;
+}
+
+static bool begins_stream(dicom_reader *reader, const dicom_element *at) {
+    unsigned char bytes[12];
+    if (snow_seekable_read(reader->store, at->at, bytes, 12) < 12)
+        return false;
+    return (bytes[0] == 0xff && (bytes[1] == 0xd8 || bytes[1] == 0x4f)) ||
+           !memcmp(bytes + 4, "jP  \r\n\x87\n", 8);
+}
+
+/* Whether fragment `index` is the first of frame `number`, or of the frame
+ * reached by counting. */
+static bool begins_frame(dicom_reader *reader, const dicom_element *pixels,
+                         int64_t index, int64_t number, bool table) {
+    uint64_t at;
+    if (table)
+        return table_entry(reader, pixels, number, &at) &&
+               fragment(pixels, index)->at == at;
+    return begins_stream(reader, fragment(pixels, index));
+}
+
+static bool find_span(dicom_reader *reader, const dicom_image *image,
+                      const dicom_element *pixels, int64_t number, span *out) {
+    int64_t count = count_fragments(reader, pixels), frame = -1;
+    uint64_t ignored;
+    if (image->frames == 1 || count == image->frames) {
+        *out = image->frames == 1 ? (span){1, count} : (span){number + 1, 1};
+        return count > 0;
+    }
+    if (count < image->frames)
+        return false;
+    bool table = table_entry(reader, pixels, image->frames - 1, &ignored);
+    *out = (span){0, 0};
+    for (int64_t i = 1; i <= count; i++) {
+        if (begins_frame(reader, pixels, i, frame + 1, table))
+            frame++;
+        if (frame == number && !out->count)
+            out->first = i;
+        out->count += frame == number;
+    }
+    return out->count > 0;
+}
+
+/* Concatenates the fragments of a frame. */
+static snow_status gather(dicom_reader *reader, const dicom_element *pixels,
+                          span where, unsigned char **out, size_t *size) {
+    uint64_t all = 0;
+    for (int64_t i = 0; i < where.count; i++)
+        all += fragment(pixels, where.first + i)->length;
+    unsigned char *bytes = snow_allocate_array(reader->context, all, 1);
+    if (!bytes)
+        return SNOW_STATUS_NO_MEMORY;
+    *size = 0;
+    for (int64_t i = 0; i < where.count; i++) {
+        const dicom_element *part = fragment(pixels, where.first + i);
+        *size += snow_seekable_read(reader->store, part->at, bytes + *size,
+                                    part->length);
+    }
+    *out = bytes;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status fail_unpack(dicom_reader *reader) {
+    return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
+                     "its pixels cannot be decompressed (transfer syntax %s); "
+                     "it is truncated or damaged",
+                     reader->syntax);
+}
+
+#if SNOW_HAVE_GDCM
+
+/* The codecs of GDCM that are used: JPEG, JPEG-LS and JPEG 2000 of one
+ * component or colour. */
+static bool is_known(const char *syntax) {
+    static const char *const known[] = {".50", ".51", ".57", ".70", ".80",
+                                        ".81", ".90", ".91", NULL};
+    static const char common[] = "1.2.840.10008.1.2.4";
+    if (strncmp(syntax, common, sizeof common - 1) != 0)
+        return false;
+    for (const char *const *end = known; *end; end++)
+        if (!strcmp(syntax + sizeof common - 1, *end))
+            return true;
+    return false;
+}
+
+#if SNOW_LOADS
+static snow_status find_codec(snow_context *context, gdcm_codec **out) {
+    const snow_module *module;
+    SNOW_TRY(snow_module_load(context, "gdcm", &module));
+    *out = module->unpack;
+    return SNOW_STATUS_OK;
+}
+#else
+static snow_status find_codec(snow_context *context, gdcm_codec **out) {
+    (void)context;
+    *out = snow_gdcm_unpack;
+    return SNOW_STATUS_OK;
+}
+#endif
+
+static snow_status unpack(dicom_reader *reader, const dicom_image *image,
+                          const unsigned char *bytes, size_t size, void *out,
+                          dicom_words *words) {
+    gdcm_codec *codec;
+    if (!is_known(reader->syntax))
+        return snow_fail(
+            reader->context, SNOW_STATUS_BAD_INPUT,
+            "its pixels are compressed in an unsupported way (transfer syntax "
+            "%.64s); decompress it, for example with gdcmconv --raw",
+            reader->syntax);
+    if (strncmp(image->photometric, "YBR_FULL", 8) == 0)
+        return snow_fail(
+            reader->context, SNOW_STATUS_BAD_INPUT,
+            "its colours are %.16s, compressed in transfer syntax %.64s, which "
+            "is not supported; convert it to RGB, for example with gdcmconv",
+            image->photometric, reader->syntax);
+    SNOW_TRY(snow_dicom_check_packed(reader->context, reader->syntax, image,
+                                     &bytes, &size));
+    SNOW_TRY(find_codec(reader->context, &codec));
+    gdcm_frame frame = {.syntax = reader->syntax,
+                        .photometric = image->photometric,
+                        .columns = (unsigned)image->columns,
+                        .rows = (unsigned)image->rows,
+                        .samples = image->samples,
+                        .planes = words->planes,
+                        .allocated = image->allocated,
+                        .stored = image->stored,
+                        .high = image->high,
+                        .is_signed = image->is_signed};
+    if (!codec(&frame, bytes, size, out, (size_t)snow_dicom_frame_bytes(image)))
+        return fail_unpack(reader);
+    words->stored = frame.stored;
+    words->high = frame.high;
+    words->is_signed = frame.is_signed;
+    words->planes = frame.planes;
+    return SNOW_STATUS_OK;
+}
+
+#else
+
+static snow_status unpack(dicom_reader *reader, const dicom_image *image,
+                          const unsigned char *bytes, size_t size, void *out,
+                          dicom_words *words) {
+    (void)image;
+    (void)bytes;
+    (void)size;
+    (void)out;
+    (void)words;
+    return snow_fail(
+        reader->context, SNOW_STATUS_BAD_INPUT,
+        "this build cannot read compressed DICOM images (transfer syntax "
+        "%.64s): it lacks GDCM; install libgdcm-dev and g++, and build again",
+        reader->syntax);
+}
+
+#endif
+
+static snow_status read_packed(dicom_reader *reader, const dicom_image *image,
+                               const dicom_element *pixels, int64_t number,
+                               unsigned char *out, dicom_words *words) {
+    span where;
+    unsigned char *bytes;
+    size_t size;
+    if (!find_span(reader, image, pixels, number, &where))
+        return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
+                         "has %lld compressed pieces of pixels, but frame %lld "
+                         "of %lld is not among them; it is damaged",
+                         (long long)count_fragments(reader, pixels),
+                         (long long)number, (long long)image->frames);
+    SNOW_TRY(gather(reader, pixels, where, &bytes, &size));
+    snow_status status = SNOW_STATUS_OK;
+    if (strcmp(reader->syntax, RUN_LENGTHS) != 0)
+        status = unpack(reader, image, bytes, size, out, words);
+    else if (snow_dicom_unpack_runs(image, bytes, size, out))
+        words->planes = true;
+    else
+        status = fail_unpack(reader);
+    snow_release(reader->context, bytes);
+    return status;
+}
+
+snow_status snow_dicom_read_words(dicom_reader *reader,
+                                  const dicom_image *image, int64_t number,
+                                  void *out, dicom_words *words) {
+    const dicom_element *pixels =
+        snow_dicom_find(reader, 0, reader->count, DICOM_TAG_PIXELS);
+    *words = (dicom_words){.size = image->allocated / 8,
+                           .stored = image->stored,
+                           .high = image->high,
+                           .is_signed = image->is_signed,
+                           .planes = image->planes};
+    if (!pixels)
+        return snow_fail(reader->context, SNOW_STATUS_BAD_INPUT,
+                         "has no pixels; it is truncated");
+    if (!reader->packed)
+        return read_plain(reader, image, pixels, number, out);
+    SNOW_TRY(read_packed(reader, image, pixels, number, out, words));
+    if (words->stored < 1 || words->stored > image->allocated ||
+        words->high < words->stored - 1 || words->high >= image->allocated)
+        return fail_unpack(reader);
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,443 @@
+/* formats/dicom/voxels.c - decodes frames, crops them to the box, scales them
+ * if each has its own scale, and stacks them.
+ *
+ * A stored value is the bits from the highest stored one down, in a word of 8,
+ * 16 or 32 (PS3.5, 8.1.1); other bits, such as old overlays, are dropped.
+ * Values stay as stored, with one scale for all.  They become floats if there
+ * is padding, which becomes NaN, if slices differ in scale, and if slices are
+ * interpolated. Palette colours are replaced by their brightness; of YBR_FULL
+ * the first sample is the brightness.
+ *
+ * A file stays open until another is needed. */
+#include "formats/dicom/dicom.h"
+
+#include "formats/array.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The box of one frame, as doubles. */
+typedef struct plane {
+    const dicom_frame *frame;
+    double *values;
+} plane;
+
+typedef struct decoder {
+    const dicom_input *input;
+    const dicom_image *image; /* the image whose file is open; NULL: none */
+    snow_source *source;      /* NULL: the given file's store is read */
+    snow_seekable *store;
+    dicom_reader reader;
+    dicom_palette palette; /* of the open file */
+    unsigned char *bytes;  /* of a frame */
+    dicom_words words;
+    const snow_region *window;
+    int64_t channel;
+    bool scales; /* each frame has its own slope and intercept */
+    plane planes[2];
+} decoder;
+
+/* --- a file ----------------------------------------------------------------
+ */
+
+static void close_image(decoder *d) {
+    if (d->image)
+        snow_dicom_close(&d->reader);
+    snow_release(d->input->context, d->palette.levels);
+    d->palette = (dicom_palette){0};
+    if (d->source) {
+        snow_seekable_close(d->store);
+        snow_source_close(d->source);
+    }
+    d->image = NULL;
+    d->source = NULL;
+    d->store = NULL;
+}
+
+static bool has_palette(const dicom_image *image) {
+    return strcmp(image->photometric, "PALETTE COLOR") == 0;
+}
+
+/* Opens the file of an image and keeps it open. */
+static snow_status open_image(decoder *d, const dicom_image *image) {
+    snow_context *context = d->input->context;
+    if (d->image == image)
+        return SNOW_STATUS_OK;
+    close_image(d);
+    d->store = image->path ? NULL : d->input->store;
+    if (image->path) {
+        SNOW_TRY(snow_source_open(context, image->path, &d->source));
+        SNOW_TRY(snow_seekable_open(d->source, &d->store));
+    }
+    SNOW_TRY(snow_dicom_open(context, d->store, true, &d->reader));
+    d->image = image;
+    return has_palette(image)
+               ? snow_dicom_palette_read(&d->reader, image, &d->palette)
+               : SNOW_STATUS_OK;
+}
+
+/* --- a frame ---------------------------------------------------------------
+ */
+
+/* How the bits of a word form a value. */
+typedef struct bits {
+    uint32_t mask, sign; /* of the value, after shifting it down */
+    int shift;
+} bits;
+
+static bits bits_of(const dicom_words *words) {
+    uint32_t mask =
+        words->stored == 32 ? UINT32_MAX : ((uint32_t)1 << words->stored) - 1;
+    return (bits){mask, words->is_signed ? mask ^ mask >> 1 : 0,
+                  words->high + 1 - words->stored};
+}
+
+static double value_of(uint32_t word, bits b) {
+    int64_t value = word >> b.shift & b.mask;
+    return (double)(b.sign ? (value ^ (int64_t)b.sign) - (int64_t)b.sign
+                           : value);
+}
+
+static uint32_t word_at(const unsigned char *at, int size) {
+    uint16_t s;
+    uint32_t l;
+    if (size == 1)
+        return *at;
+    if (size == 2) {
+        memcpy(&s, at, 2);
+        return s;
+    }
+    memcpy(&l, at, 4);
+    return l;
+}
+
+/* Padding may lie outside the range of the stored bits: then the whole word is
+ * compared with the header. */
+static bool is_padding(const dicom_image *image, double value, uint32_t word,
+                       int size) {
+    if (value >= image->padding[0] && value <= image->padding[1])
+        return true;
+    return size == 2 && word == (uint16_t)(int32_t)image->padding[0];
+}
+
+static double brightness_of(const dicom_palette *palette, double value) {
+    double at = value - (double)palette->first;
+    double last = (double)(palette->count - 1);
+    at = at > 0 ? (at < last ? at : last) : 0;
+    return (double)palette->levels[(size_t)at];
+}
+
+/* Reads a row of the box from its first word on; words are `step` bytes
+ * apart. */
+static void take_row(const decoder *d, const dicom_frame *frame,
+                     const unsigned char *at, size_t step, double *out) {
+    bits b = bits_of(&d->words);
+    int size = d->words.size;
+    bool pads = frame->image->pads;
+    double slope = d->scales ? frame->slope : 1;
+    double intercept = d->scales ? frame->intercept : 0;
+    for (int64_t x = 0; x < d->window->count[0]; x++, at += step) {
+        uint32_t word = word_at(at, size);
+        double value = value_of(word, b);
+        if (pads && is_padding(frame->image, value, word, size))
+            out[x] = NAN;
+        else if (d->palette.levels)
+            out[x] = brightness_of(&d->palette, value);
+        else
+            out[x] = slope * value + intercept;
+    }
+}
+
+/* Errors name the file that contains the frame. */
+static snow_status take_words(decoder *d, const dicom_frame *frame) {
+    const char *path = frame->image->path;
+    snow_status status = open_image(d, frame->image);
+    if (status == SNOW_STATUS_OK)
+        status = snow_dicom_read_words(&d->reader, frame->image, frame->number,
+                                       d->bytes, &d->words);
+    if (status != SNOW_STATUS_OK && path)
+        snow_fail_in_file(d->input->context, status, path);
+    return status;
+}
+
+static snow_status take_frame(decoder *d, const dicom_frame *frame,
+                              double *out) {
+    SNOW_TRY(take_words(d, frame));
+    const snow_region *w = d->window;
+    const dicom_image *image = frame->image;
+    size_t size = (size_t)d->words.size;
+    size_t samples = (size_t)image->samples, columns = (size_t)image->columns;
+    size_t area = columns * (size_t)image->rows;
+    size_t step = d->words.planes ? size : size * samples;
+    size_t apart = d->words.planes ? area * size : size;
+    const unsigned char *at = d->bytes + (size_t)d->channel * apart;
+    for (int64_t y = 0; y < w->count[1]; y++) {
+        size_t first =
+            (size_t)(w->first[1] + y) * columns + (size_t)w->first[0];
+        take_row(d, frame, at + first * step, step, out + y * w->count[0]);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Reads a frame's values; the last two frames are kept, since interpolated
+ * slices use the same ones again. */
+static snow_status fetch(decoder *d, const dicom_frame *frame,
+                         const double **out) {
+    for (int i = 0; i < 2; i++)
+        if (d->planes[i].frame == frame) {
+            *out = d->planes[i].values;
+            return SNOW_STATUS_OK;
+        }
+    plane oldest = d->planes[0];
+    d->planes[0] = d->planes[1];
+    oldest.frame = NULL;
+    d->planes[1] = oldest;
+    SNOW_TRY(take_frame(d, frame, oldest.values));
+    d->planes[1].frame = frame;
+    *out = oldest.values;
+    return SNOW_STATUS_OK;
+}
+
+/* --- the volume ------------------------------------------------------------
+ */
+
+/* Stores integers in their type; returns false if one does not fit. */
+#define PUT_WHOLE(type, least, most)                        \
+    for (size_t i = 0; i < count; i++) {                    \
+        if (!(values[i] >= (least) && values[i] <= (most))) \
+            return false;                                   \
+        ((type *)to)[i] = (type)values[i];                  \
+    }                                                       \
+    return true
+
+static bool put(snow_type type, const double *values, size_t count, void *to) {
+    switch (type) {
+    case SNOW_TYPE_INT8:
+        PUT_WHOLE(int8_t, INT8_MIN, INT8_MAX);
+    case SNOW_TYPE_UINT8:
+        PUT_WHOLE(uint8_t, 0, UINT8_MAX);
+    case SNOW_TYPE_INT16:
+        PUT_WHOLE(int16_t, INT16_MIN, INT16_MAX);
+    case SNOW_TYPE_UINT16:
+        PUT_WHOLE(uint16_t, 0, UINT16_MAX);
+    case SNOW_TYPE_INT32:
+        PUT_WHOLE(int32_t, INT32_MIN, INT32_MAX);
+    case SNOW_TYPE_UINT32:
+        PUT_WHOLE(uint32_t, 0, UINT32_MAX);
+    case SNOW_TYPE_FLOAT32:
+        for (size_t i = 0; i < count; i++)
+            ((float *)to)[i] = (float)values[i];
+        return true;
+    default:
+        memcpy(to, values, count * sizeof *values);
+        return true;
+    }
+}
+
+/* Interpolates linearly between two positions; a missing value stays
+ * missing. */
+static void blend(const double *low, const double *high, double weight,
+                  size_t count, double *out) {
+    for (size_t i = 0; i < count; i++)
+        out[i] = (1 - weight) * low[i] + weight * high[i];
+}
+
+/* Makes slice `z` of the whole volume. */
+static snow_status fill_slice(decoder *d, const dicom_stack *stack, int64_t z,
+                              snow_volume *volume, double *mixed, void *to) {
+    size_t count = (size_t)(d->window->count[0] * d->window->count[1]);
+    size_t time = (size_t)volume->info.time;
+    dicom_slice slice = {(size_t)z, (size_t)z, 0};
+    if (stack->slices)
+        slice = stack->slices[z];
+    const dicom_frame *frames = stack->frames + time;
+    const double *low = NULL, *high = NULL, *values;
+    if (slice.weight < 1)
+        SNOW_TRY(fetch(d, frames + slice.low * stack->times, &low));
+    if (slice.weight > 0)
+        SNOW_TRY(fetch(d, frames + slice.high * stack->times, &high));
+    values = low ? low : high;
+    if (low && high) {
+        blend(low, high, slice.weight, count, mixed);
+        values = mixed;
+    }
+    if (!put(volume->info.type, values, count, to))
+        return snow_fail(volume->context, SNOW_STATUS_BAD_INPUT,
+                         "its compressed pixels have values that its header's "
+                         "type cannot hold; it is damaged");
+    return SNOW_STATUS_OK;
+}
+
+static snow_status fill_volume(decoder *d, const dicom_stack *stack,
+                               snow_volume *volume) {
+    snow_context *context = volume->context;
+    size_t count = (size_t)(d->window->count[0] * d->window->count[1]);
+    double *block = snow_allocate_array(context, count, 3 * sizeof *block);
+    d->bytes = snow_allocate_array(
+        context, snow_dicom_frame_bytes(stack->frames->image), 1);
+    snow_status status =
+        block && d->bytes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+    d->planes[0].values = block;
+    d->planes[1].values = block ? block + count : NULL;
+    unsigned char *to = volume->owned;
+    size_t bytes = count * snow_type_size(volume->info.type);
+    double slices = (double)d->window->count[2];
+    for (int64_t z = 0; z < d->window->count[2] && status == SNOW_STATUS_OK;
+         z++) {
+        snow_monitor_report(context->monitor, SNOW_STAGE_READ,
+                            (double)z + slices / (DICOM_HEADER_SHARE - 1),
+                            slices * DICOM_HEADER_SHARE /
+                                (DICOM_HEADER_SHARE - 1));
+        status = fill_slice(d, stack, d->window->first[2] + z, volume,
+                            block + 2 * count, to + (size_t)z * bytes);
+    }
+    close_image(d);
+    snow_release(context, d->bytes);
+    snow_release(context, block);
+    return status;
+}
+
+/* Whether the frames have more than one scale, and any has padding. */
+static void survey(const dicom_stack *stack, bool *scales, bool *pads) {
+    *scales = *pads = false;
+    for (size_t i = 0; i < stack->places * stack->times; i++) {
+        const dicom_frame *frame = &stack->frames[i];
+        *scales |= frame->slope != stack->frames[0].slope ||
+                   frame->intercept != stack->frames[0].intercept;
+        *pads |= frame->image->pads;
+    }
+}
+
+static snow_status stored_type(snow_context *context, const dicom_image *image,
+                               snow_type *out) {
+    bool is_signed = image->is_signed;
+    if (image->allocated == 8)
+        *out = is_signed ? SNOW_TYPE_INT8 : SNOW_TYPE_UINT8;
+    else if (image->allocated == 16)
+        *out = is_signed ? SNOW_TYPE_INT16 : SNOW_TYPE_UINT16;
+    else if (image->allocated == 32)
+        *out = is_signed ? SNOW_TYPE_INT32 : SNOW_TYPE_UINT32;
+    else
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "pixels of %d bits are not supported, only 8, 16 and 32",
+            image->allocated);
+    if (image->stored < 1 || image->high < image->stored - 1 ||
+        image->high >= image->allocated)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "claims %d of %d bits stored, up to number %d; it is damaged",
+            image->stored, image->allocated, image->high);
+    return SNOW_STATUS_OK;
+}
+
+/* Gives all warnings about a volume, each once. */
+static void remark(snow_context *context, const dicom_stack *stack) {
+    const dicom_frame *first = stack->frames;
+    bool unscaled = false;
+    for (size_t i = 0; i < stack->places * stack->times; i++)
+        unscaled |= first[i].unscaled;
+    if (!first->measured)
+        snow_notify(context, "the size of a pixel is missing or invalid; 1 mm "
+                             "is used, --spacing sets another");
+    if (stack->slice_count > 1 && (!stack->given || first->guessed))
+        snow_notify(context,
+                    "the distance of the slices is missing; %g mm is used, "
+                    "--spacing sets another",
+                    stack->gap);
+    if (stack->slices)
+        snow_notify(context,
+                    "its %zu slices lie %g to %g mm apart; they are resampled "
+                    "to %zu, one every %g mm",
+                    stack->places, stack->gap_least, stack->gap_most,
+                    stack->slice_count, stack->gap);
+    else if (stack->placed &&
+             stack->gap_most - stack->gap_least > 1e-3 * stack->gap)
+        snow_notify(context,
+                    "its slices lie %g to %g mm apart; their mean distance, %g "
+                    "mm, is used",
+                    stack->gap_least, stack->gap_most, stack->gap);
+    if (!strcmp(first->image->photometric, "MONOCHROME1"))
+        snow_notify(
+            context,
+            first->slope == -1
+                ? "high stored values are dark (MONOCHROME1); they are inverted"
+                : "is MONOCHROME1, high values dark; the values are kept, as a "
+                  "rescale defines them");
+    if (unscaled)
+        snow_notify(context, "a rescale slope of 0 is not possible; 1 is used");
+}
+
+/* Colours are selected with --channel, except palette colours. */
+static snow_status check_colors(snow_context *context,
+                                const dicom_image *image) {
+    bool ybr = strcmp(image->photometric, "YBR_FULL") == 0;
+    if (image->samples != 1 && !ybr && strcmp(image->photometric, "RGB") != 0)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "its colours are %.16s with %d values per pixel, which is not "
+            "supported; convert it to RGB, for example with gdcmconv",
+            image->photometric, image->samples);
+    if (image->samples == 1 && has_palette(image))
+        snow_notify(context, "its values are palette colours; their brightness "
+                             "is used, 0 to 255");
+    if (ybr && image->samples > 1)
+        snow_notify(context,
+                    "its colours are YBR_FULL; channel 0 is the brightness");
+    return SNOW_STATUS_OK;
+}
+
+static snow_status describe(const dicom_input *input, const dicom_stack *stack,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, decoder *d) {
+    snow_context *context = input->context;
+    const dicom_frame *first = stack->frames;
+    const dicom_image *image = first->image;
+    bool pads;
+    *info = snow_volume_info_default("dicom");
+    SNOW_TRY(stored_type(context, image, &info->type));
+    SNOW_TRY(check_colors(context, image));
+    survey(stack, &d->scales, &pads);
+    if (pads || d->scales || stack->slices)
+        info->type =
+            image->allocated > 16 ? SNOW_TYPE_FLOAT64 : SNOW_TYPE_FLOAT32;
+    else if (has_palette(image))
+        info->type = SNOW_TYPE_UINT8;
+    info->dims[0] = image->columns;
+    info->dims[1] = image->rows;
+    info->dims[2] = (int64_t)stack->slice_count;
+    info->times = (int64_t)stack->times;
+    bool plain = d->scales || has_palette(image);
+    info->slope = plain ? 1 : first->slope;
+    info->intercept = plain ? 0 : first->intercept;
+    info->medical = stack->placed;
+    memcpy(info->unit, "mm", 3);
+    memcpy(info->matrix, stack->matrix, sizeof info->matrix);
+    remark(context, stack);
+    SNOW_TRY(snow_volume_pick_channel(context, options, image->samples,
+                                      &d->channel));
+    return snow_volume_pick_time(context, "volume", options, info);
+}
+
+snow_status snow_dicom_read_stack(const dicom_input *input,
+                                  const dicom_stack *stack,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info, snow_volume **out) {
+    snow_region window;
+    snow_volume *volume;
+    decoder d = {.input = input, .window = &window};
+    SNOW_TRY(describe(input, stack, options, info, &d));
+    SNOW_TRY(snow_region_lay_out(input->context, options, info, &window));
+    if (!out)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_volume_new(input->context, info, &volume));
+    snow_status status = fill_volume(&d, stack, volume);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    memcpy(volume->patient, stack->frames->image->patient,
+           sizeof volume->patient);
+    *out = volume;
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,85 @@
+/* formats/format.h - a volume format, and what readers share.
+ *
+ * To add a format: write formats/NAME.c with one snow_format record, and name
+ * the record in the table of formats/table.c.  Nothing else. */
+#ifndef SNOW_FORMATS_FORMAT_H
+#define SNOW_FORMATS_FORMAT_H
+
+#include "io/source.h"
+#include "io/writer.h"
+#include "volume/volume.h"
+
+/* A volume format.  `read` gets the source at its first byte (gzip undone) and
+ * makes the volume; its messages need not name the file, and its options are
+ * never NULL; `probe` says whether the first `size` bytes look like the
+ * format; `write` may be NULL.
+ *
+ * A format that `crops` reads no more than the box of its options: it lays a
+ * window (volume/region.h) before the volume, and where `out` is NULL it stops
+ * there, with all but the voxels in *info.  Other formats read all, and are
+ * cropped afterwards; they leave *info alone. */
+typedef struct snow_format {
+    const char *name;        /* "nrrd" */
+    const char *text;        /* one line for people */
+    const char *suffixes[8]; /* ".nrrd", ".nhdr", NULL */
+    bool (*probe)(const unsigned char *bytes, size_t size);
+    bool crops;
+    bool slices;   /* a folder or a pattern of its files is a volume */
+    bool sets;     /* heeds the option that chooses a data set */
+    bool channels; /* heeds the option that chooses a channel */
+    bool series;   /* heeds the option that chooses a series */
+    snow_status (*read)(snow_source *source, const snow_volume_options *options,
+                        snow_volume_info *info, snow_volume **out);
+    snow_status (*write)(const snow_volume *volume, const char *path,
+                         snow_writer *writer);
+} snow_format;
+
+extern const snow_format snow_format_raw;
+extern const snow_format snow_format_nrrd;
+extern const snow_format snow_format_nifti;
+extern const snow_format snow_format_metaimage;
+extern const snow_format snow_format_npy;
+extern const snow_format snow_format_mrc;
+extern const snow_format snow_format_vtk;
+extern const snow_format snow_format_vti;
+extern const snow_format snow_format_tiff;
+extern const snow_format snow_format_png;
+extern const snow_format snow_format_hdf5;
+extern const snow_format snow_format_netcdf;
+extern const snow_format snow_format_dicom;
+extern const snow_format snow_format_den;
+extern const snow_format snow_format_zarr;
+
+/* The usual end of a binary reader whose time steps follow one another behind
+ * `skip` bytes: lays the window, checks that the source can hold all, makes the
+ * volume unless `out` is NULL, reads it, swaps bytes when `big_endian` differs
+ * from the machine, finishes the source. */
+snow_status snow_volume_read(snow_source *source,
+                             const snow_volume_options *options,
+                             bool big_endian, uint64_t skip,
+                             snow_volume_info *info, snow_volume **out);
+
+/* Swaps the bytes of the voxels as read when the file's order is not the
+ * machine's. */
+void snow_volume_order_bytes(snow_volume *volume, bool big_endian);
+
+/* For a reader that has set info->times: takes the time step of the options
+ * into info->time and tells the listener when there are several.  `what` the
+ * format calls one: "time step", or "volume" where it need not be time.
+ * Errors: SNOW_STATUS_BAD_USAGE when there is no such step. */
+snow_status snow_volume_pick_time(snow_context *context, const char *what,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info);
+
+/* Whether a file name ends as those of the format do. */
+bool snow_format_has_name(const snow_format *format, const char *name);
+
+/* As snow_format_of_name; handed to readers of many files. */
+typedef const snow_format *snow_format_finder(const char *name);
+
+/* The format whose files begin like these bytes; the one of a file name; NULL
+ * when there is none. */
+const snow_format *snow_format_of_bytes(const void *bytes, size_t size);
+const snow_format *snow_format_of_name(const char *name);
+
+#endif

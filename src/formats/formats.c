@@ -1,0 +1,413 @@
+/* formats/formats.c - selects the reader for a file and applies the options
+ * that all formats share.
+ *
+ * The first bytes decide, then the name; sizes from the user make everything
+ * else raw data.  The file's name is added to every message here, so that
+ * readers need not do it. */
+#include "formats/image_series.h"
+#include "formats/masked.h"
+#include "formats/zarr/zarr.h"
+#include "io/folder.h"
+#include "phantom/phantom.h"
+#include "volume/mask.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PHANTOM "phantom:"
+
+/* A suffix counts only while the user has not described the bytes: .img and
+ * .bin mean many things. */
+static const snow_format *choose(const char *name, const void *bytes,
+                                 size_t size,
+                                 const snow_volume_options *options) {
+    const snow_format *format = snow_format_of_bytes(bytes, size);
+    if (!format && !options->dims[0])
+        format = snow_format_of_name(name);
+    return format ? format : &snow_format_raw;
+}
+
+/* True if an option describes raw data. */
+static bool looks_raw(const snow_volume_options *options) {
+    return options->dims[0] || options->dims[1] || options->dims[2] ||
+           options->type || options->endian || options->offset;
+}
+
+/* Checks the options' values, before the format is known. */
+static snow_status check_options(snow_context *context,
+                                 const snow_volume_options *options) {
+    for (int i = 0; i < 3; i++) {
+        double spacing = options->spacing[i];
+        if (!(spacing >= 0) || !isfinite(spacing))
+            return snow_fail(
+                context, SNOW_STATUS_BAD_USAGE,
+                "--spacing: %g is not a length; give three lengths above 0",
+                spacing);
+        if (options->dims[i] < 0)
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "--dims: %lld is not a number of voxels; give "
+                             "three sizes of at least 1",
+                             (long long)options->dims[i]);
+    }
+    if (options->time < 0)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "time step %lld is invalid; they count from 0",
+                         (long long)options->time);
+    return SNOW_STATUS_OK;
+}
+
+/* Scales the columns of the matrix to the spacing that the user gave. */
+static snow_status replace_spacing(snow_context *context,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info) {
+    snow_volume_info changed = *info;
+    for (int j = 0; j < 3; j++)
+        for (int i = 0; i < 3 && options->spacing[j] > 0; i++)
+            changed.matrix[i][j] *= options->spacing[j] / info->spacing[j];
+    /* The file's own matrix was checked, so only the option can be wrong. */
+    if (snow_volume_info_check(context, &changed) != SNOW_STATUS_OK)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--spacing %gx%gx%g makes voxels too small, too large "
+                         "or too flat to compute with; give lengths in "
+                         "another unit",
+                         options->spacing[0], options->spacing[1],
+                         options->spacing[2]);
+    snow_volume_info_measure(&changed);
+    *info = changed;
+    return SNOW_STATUS_OK;
+}
+
+/* Applies the options for all formats: first the spacing, then the offset of
+ * the box, which is a multiple of the spacing. */
+static snow_status finish_info(snow_context *context,
+                               const snow_volume_options *options,
+                               snow_volume_info *info) {
+    snow_volume_info_measure(info);
+    SNOW_TRY(replace_spacing(context, options, info));
+    const int64_t first[3] = {options->crop[0][0], options->crop[1][0],
+                              options->crop[2][0]};
+    *info = snow_volume_info_of_box(info, first, info->dims);
+    return SNOW_STATUS_OK;
+}
+
+/* Crops a volume that was read as a whole. */
+static snow_status crop_volume(const snow_volume_options *options,
+                               snow_volume **volume) {
+    snow_context *context = (*volume)->context;
+    snow_volume_info info = (*volume)->info;
+    int64_t time = info.time, times = info.times;
+    snow_region region;
+    snow_volume *box;
+    info.time = 0;
+    info.times = 1;
+    SNOW_TRY(snow_region_lay_out(context, options, &info, &region));
+    const snow_file_part all = {&region, 0, region.all};
+    if (snow_file_part_is_all(&all))
+        return SNOW_STATUS_OK;
+    info.time = time;
+    info.times = times;
+    SNOW_TRY(snow_volume_new(context, &info, &box));
+    snow_file_part_copy(&all, (*volume)->voxels, box->owned);
+    snow_volume_close(*volume);
+    *volume = box;
+    return SNOW_STATUS_OK;
+}
+
+/* For a format that cannot stop after the header, or in the middle. */
+static snow_status read_whole(const snow_format *format, snow_source *source,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_volume *volume;
+    SNOW_TRY(format->read(source, options, info, &volume));
+    snow_status status = crop_volume(options, &volume);
+    if (status == SNOW_STATUS_OK)
+        *info = volume->info;
+    if (status == SNOW_STATUS_OK && out)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
+}
+
+/* An option that a format ignores must not seem to work. */
+static snow_status check_choice(snow_context *context,
+                                const snow_format *format,
+                                const snow_volume_options *options) {
+    if (options->dataset && !format->sets)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--dataset %.200s: files of the format %s have a "
+                         "single data set; remove the option",
+                         options->dataset, format->name);
+    if (options->channel && !format->channels)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "channel %lld does not exist; files of the format %s "
+                         "have one value per voxel, so remove --channel",
+                         (long long)options->channel, format->name);
+    if (options->series && !format->series)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--series %.64s: files of the format %s have no "
+                         "series; remove the option",
+                         options->series, format->name);
+    return SNOW_STATUS_OK;
+}
+
+/* Options for raw data are refused with other formats, not ignored: they could
+ * contradict the header. */
+static snow_status read_with(const snow_format *format, snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    if (format != &snow_format_raw && looks_raw(options))
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "this is a file of the format %s, whose header has sizes and type; "
+            "remove --dims, --type, --endian and --offset",
+            format->name);
+    SNOW_TRY(check_choice(context, format, options));
+    snow_volume *volume = NULL;
+    SNOW_TRY(
+        format->crops
+            ? format->read(source, options, info, out ? &volume : NULL)
+            : read_whole(format, source, options, info, out ? &volume : NULL));
+    snow_status status = finish_info(context, options, info);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    if (out) {
+        volume->info = *info;
+        *out = volume;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* An empty file has its own message: each format would miss something else. */
+static snow_status read_source(snow_source *source,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    unsigned char bytes[SNOW_PEEK_BYTES];
+    size_t size;
+    SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
+    if (!size)
+        return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,
+                         "is empty; get or write the file again");
+    return read_with(choose(snow_source_name(source), bytes, size, options),
+                     source, options, info, out);
+}
+
+/* A failure's message with the file's name, as one line of printable text
+ * whatever a header quoted in it contains. */
+static snow_status name_failure(snow_context *context, snow_status status,
+                                const char *name) {
+    snow_fail_in_file(context, status, name);
+    for (char *at = context->message; *at; at++)
+        if ((unsigned char)*at < ' ' || *at == 127)
+            *at = '?';
+    return status;
+}
+
+static const snow_volume_options no_options;
+
+/* Owns the source from here on: it is closed on every return, after the message
+ * has taken its name. */
+static snow_status open_source(snow_source *source,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    snow_volume_info given;
+    snow_status status = check_options(context, options);
+    if (status == SNOW_STATUS_OK)
+        status = read_source(source, options, &given, out);
+    if (status == SNOW_STATUS_OK)
+        *info = given;
+    else
+        name_failure(context, status, snow_source_name(source));
+    snow_source_close(source);
+    return status;
+}
+
+/* A phantom is not a file; of the options only sizes, spacing and box apply.
+ * The seed is not among the options and is 0 here. */
+static snow_status open_phantom(snow_context *context, const char *name,
+                                const snow_volume_options *options,
+                                snow_volume_info *info, snow_volume **out) {
+    SNOW_TRY(check_options(context, options));
+    if (options->type || options->endian || options->offset || options->time ||
+        options->channel || options->dataset || options->series)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            PHANTOM "%s: a phantom has its own type; remove --type, --endian, "
+                    "--offset, --time, --channel, --dataset and --series",
+            name);
+    snow_volume *volume = NULL;
+    snow_volume_info given;
+    SNOW_TRY(snow_phantom_make(context, name, options, 0, &given,
+                               out ? &volume : NULL));
+    snow_status status = finish_info(context, options, &given);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    *info = given;
+    if (out) {
+        volume->info = given;
+        *out = volume;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Reads a folder or a pattern: a Zarr array, or files with one slice each. */
+static snow_status read_folder(snow_context *context, const char *path,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    if (!snow_zarr_is(path))
+        return snow_stack_read(context, path, options, snow_format_of_name,
+                               info, out);
+    SNOW_TRY(check_choice(context, &snow_format_zarr, options));
+    return snow_zarr_read_folder(context, path, options, info, out);
+}
+
+/* Applies the options for all formats to files in a folder. */
+static snow_status open_stack(snow_context *context, const char *path,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_volume *volume = NULL;
+    snow_volume_info given;
+    snow_status status = check_options(context, options);
+    if (status == SNOW_STATUS_OK && looks_raw(options))
+        status =
+            snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                      "files in a folder have headers with sizes and type; "
+                      "remove --dims, --type, --endian and --offset");
+    if (status == SNOW_STATUS_OK)
+        status =
+            read_folder(context, path, options, &given, out ? &volume : NULL);
+    if (status == SNOW_STATUS_OK)
+        status = finish_info(context, options, &given);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return name_failure(context, status, path);
+    }
+    *info = given;
+    if (out) {
+        volume->info = given;
+        *out = volume;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* The path of a data set in "file.h5:/path", if this is not a file but its
+ * first part is; otherwise NULL. */
+static const char *data_set_in(const char *path) {
+    const char *found = NULL;
+    for (const char *at = path; (at = strstr(at, ":/")); at++)
+        found = at;
+    if (!found || snow_is_there(path, strlen(path)) ||
+        !snow_is_there(path, (size_t)(found - path)))
+        return NULL;
+    return found + 1;
+}
+
+static snow_status open_path(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out);
+
+static snow_status open_inside(snow_context *context, const char *path,
+                               const char *inside,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    snow_volume_options own = *options;
+    if (own.dataset)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "%s: names a data set, as --dataset does; give only one of them",
+            path);
+    own.dataset = inside;
+    size_t length = (size_t)(inside - 1 - path);
+    char *file = snow_allocate(context, length + 1);
+    if (!file)
+        return SNOW_STATUS_NO_MEMORY;
+    memcpy(file, path, length);
+    file[length] = 0;
+    snow_status status = open_path(context, file, &own, info, out);
+    snow_release(context, file);
+    return status;
+}
+
+/* The prefix has priority over a file of that name: "./phantom:x" still opens
+ * one. */
+static snow_status open_path(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    if (!options)
+        options = &no_options;
+    if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
+        return open_phantom(context, path + strlen(PHANTOM), options, info,
+                            out);
+    const char *inside = data_set_in(path);
+    if (inside)
+        return open_inside(context, path, inside, options, info, out);
+    if (snow_is_folder(path) || snow_is_pattern(path))
+        return open_stack(context, path, options, info, out);
+    snow_source *source;
+    snow_status status = snow_source_open(context, path, &source);
+    if (status != SNOW_STATUS_OK)
+        return name_failure(context, status,
+                            strcmp(path, "-") ? path : "standard input");
+    return open_source(source, options, info, out);
+}
+
+static snow_status open_any(snow_context *context, const char *path,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    if (snow_mask_asked(options))
+        return snow_masked_open(context, path, options, open_path, info, out);
+    return open_path(context, path, options, info, out);
+}
+
+/* A slab of a picture is read under the picture's monitor. */
+snow_status snow_volume_open(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             snow_volume **out) {
+    snow_monitor monitor;
+    snow_volume_info info;
+    snow_monitor_begin_reading(context, &monitor);
+    return snow_monitor_end(&monitor,
+                            open_any(context, path, options, &info, out));
+}
+
+snow_status snow_volume_inspect(snow_context *context, const char *path,
+                                const snow_volume_options *options,
+                                snow_volume_info *out) {
+    return open_any(context, path, options, out, NULL);
+}
+
+snow_status snow_volume_open_streamed(snow_context *context, const char *path,
+                                      const snow_volume_options *options,
+                                      uint64_t slab_bytes, snow_volume **out) {
+    return snow_stream_open(context, path, options, slab_bytes, open_any, out);
+}
+
+snow_status snow_volume_open_memory(snow_context *context, const char *name,
+                                    const void *bytes, size_t size,
+                                    const snow_volume_options *options,
+                                    snow_volume **out) {
+    snow_monitor monitor;
+    snow_source *source;
+    snow_volume_info info;
+    if (snow_mask_asked(options))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "%s: bytes in memory have no file of a mask beside "
+                         "them; open them and take snow_volume_mask or "
+                         "snow_volume_clip",
+                         name);
+    snow_monitor_begin_reading(context, &monitor);
+    snow_status status =
+        snow_source_open_memory(context, name, bytes, size, &source);
+    if (status != SNOW_STATUS_OK)
+        status = name_failure(context, status, name);
+    else
+        status =
+            open_source(source, options ? options : &no_options, &info, out);
+    return snow_monitor_end(&monitor, status);
+}

@@ -1,0 +1,216 @@
+/* formats/hdf5/driver.c - lets libhdf5 read the bytes of a source.
+ *
+ * A driver of our own serves libhdf5's requests.  So a file, a fuzzer's bytes
+ * and a decompressed gzip stream are all the same, and links in a file lead to
+ * no other files.
+ *
+ * libhdf5 has global state; if it was built thread-safe, as Debian's is, it
+ * protects that itself.  The only state changed here, the error handler,
+ * belongs to the calling thread and is restored. */
+#include "formats/hdf5/hdf5.h"
+
+#if SNOW_HAVE_HDF5
+
+#include "io/seekable.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* The only name that the driver opens. */
+#define NAME "source"
+
+/* Bytes that may be missing, except of voxels. */
+#define BEHIND_MOST ((size_t)1 << 20)
+
+struct hdf5_file {
+    snow_context *context;
+    snow_seekable *bytes;
+    hid_t driver, access, id;
+    H5E_auto2_t heard; /* the error handler to restore */
+    void *heard_data;
+};
+
+/* The record of an open file; it begins with libhdf5's own. */
+typedef struct hdf5_handle {
+    H5FD_t base;
+    snow_context *context;
+    snow_seekable *bytes;
+    haddr_t end; /* of the address space that libhdf5 uses */
+} hdf5_handle;
+
+/* Passed to the driver in the access properties, which copy it. */
+typedef struct hdf5_pass {
+    snow_context *context;
+    snow_seekable *bytes;
+} hdf5_pass;
+
+static H5FD_t *open_handle(const char *name, unsigned flags, hid_t access,
+                           haddr_t most) {
+    const hdf5_pass *pass = H5Pget_driver_info(access);
+    (void)most;
+    if (!pass || strcmp(name, NAME) != 0 || (flags & H5F_ACC_RDWR))
+        return NULL;
+    hdf5_handle *handle = snow_allocate_clear(pass->context, sizeof *handle);
+    if (!handle)
+        return NULL;
+    handle->context = pass->context;
+    handle->bytes = pass->bytes;
+    return &handle->base;
+}
+
+static herr_t close_handle(H5FD_t *base) {
+    hdf5_handle *handle = (hdf5_handle *)base;
+    snow_release(handle->context, handle);
+    return 0;
+}
+
+/* A file is one source. */
+static int compare_handles(const H5FD_t *a, const H5FD_t *b) {
+    const hdf5_handle *x = (const hdf5_handle *)a;
+    const hdf5_handle *y = (const hdf5_handle *)b;
+    return (x->bytes > y->bytes) - (x->bytes < y->bytes);
+}
+
+static herr_t query(const H5FD_t *base, unsigned long *flags) {
+    (void)base;
+    *flags = H5FD_FEAT_DATA_SIEVE;
+    return 0;
+}
+
+static haddr_t get_end(const H5FD_t *base, H5FD_mem_t type) {
+    (void)type;
+    return ((const hdf5_handle *)base)->end;
+}
+
+static herr_t set_end(H5FD_t *base, H5FD_mem_t type, haddr_t end) {
+    (void)type;
+    ((hdf5_handle *)base)->end = end;
+    return 0;
+}
+
+static haddr_t get_size(const H5FD_t *base, H5FD_mem_t type) {
+    (void)type;
+    return snow_seekable_size(((const hdf5_handle *)base)->bytes);
+}
+
+/* Addresses beyond the end of the file read as zeros, as with libhdf5's own
+ * drivers, except for voxels, which are missing.  The size is limited to what a
+ * structure of the format needs: a damaged length may be 4 GB. */
+static herr_t read_bytes(H5FD_t *base, H5FD_mem_t type, hid_t transfer,
+                         haddr_t from, size_t size, void *bytes) {
+    const hdf5_handle *handle = (const hdf5_handle *)base;
+    (void)transfer;
+    size_t got = snow_seekable_read(handle->bytes, from, bytes, size);
+    if (got < size && (type == H5FD_MEM_DRAW || size - got > BEHIND_MOST))
+        return -1;
+    memset((unsigned char *)bytes + got, 0, size - got);
+    return 0;
+}
+
+static herr_t write_nothing(H5FD_t *base, H5FD_mem_t type, hid_t transfer,
+                            haddr_t at, size_t size, const void *bytes) {
+    (void)base;
+    (void)type;
+    (void)transfer;
+    (void)at;
+    (void)size;
+    (void)bytes;
+    return -1;
+}
+
+static const H5FD_class_t driver = {
+#if H5_VERSION_GE(1, 13, 2)
+    .version = H5FD_CLASS_VERSION,
+    .value = (H5FD_class_value_t)(H5FD_RESERVED_ENTRIES_MAX + 77),
+#endif
+    .name = "snowglass",
+    .maxaddr = INT64_MAX,
+    .fc_degree = H5F_CLOSE_STRONG,
+    .fapl_size = sizeof(hdf5_pass),
+    .open = open_handle,
+    .close = close_handle,
+    .cmp = compare_handles,
+    .query = query,
+    .get_eoa = get_end,
+    .set_eoa = set_end,
+    .get_eof = get_size,
+    .read = read_bytes,
+    .write = write_nothing,
+    .fl_map = H5FD_FLMAP_SINGLE,
+};
+
+/* The innermost error says what is wrong with the file. */
+static herr_t take_complaint(unsigned depth, const H5E_error2_t *error,
+                             void *text) {
+    if (depth == 0 && error->desc)
+        snprintf(text, 200, "%s", error->desc);
+    return 0;
+}
+
+snow_status snow_hdf5_fail(snow_context *context, const char *what) {
+    char why[200] = "no reason given";
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_complaint, why);
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "%s (libhdf5: %s); the file may be truncated or damaged, "
+                     "so get or write it again",
+                     what, why);
+}
+
+static snow_status open_file(hdf5_file *file) {
+    const hdf5_pass pass = {file->context, file->bytes};
+    file->driver = H5FDregister(&driver);
+    file->access = H5Pcreate(H5P_FILE_ACCESS);
+    if (file->driver < 0 || file->access < 0 ||
+        H5Pset_driver(file->access, file->driver, &pass) < 0 ||
+        H5Pset_fclose_degree(file->access, H5F_CLOSE_STRONG) < 0)
+        return snow_hdf5_fail(file->context, "libhdf5 accepts no driver");
+    file->id = H5Fopen(NAME, H5F_ACC_RDONLY, file->access);
+    return file->id >= 0
+               ? SNOW_STATUS_OK
+               : snow_hdf5_fail(file->context, "cannot be opened as HDF5");
+}
+
+snow_status snow_hdf5_open(snow_source *source, hdf5_file **out) {
+    snow_context *context = snow_source_context(source);
+    hdf5_file *file = snow_allocate_clear(context, sizeof *file);
+    if (!file)
+        return SNOW_STATUS_NO_MEMORY;
+    file->context = context;
+    file->driver = file->access = file->id = H5I_INVALID_HID;
+    H5Eget_auto2(H5E_DEFAULT, &file->heard, &file->heard_data);
+    H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+    snow_status status = snow_seekable_open(source, &file->bytes);
+    if (status == SNOW_STATUS_OK)
+        status = open_file(file);
+    if (status != SNOW_STATUS_OK) {
+        snow_hdf5_close(file);
+        return status;
+    }
+    *out = file;
+    return SNOW_STATUS_OK;
+}
+
+void snow_hdf5_close(hdf5_file *file) {
+    if (!file)
+        return;
+    if (file->id >= 0)
+        H5Fclose(file->id);
+    if (file->access >= 0)
+        H5Pclose(file->access);
+    if (file->driver >= 0)
+        H5FDunregister(file->driver);
+    H5Eclear2(H5E_DEFAULT);
+    H5Eset_auto2(H5E_DEFAULT, file->heard, file->heard_data);
+    snow_seekable_close(file->bytes);
+    snow_release(file->context, file);
+}
+
+hid_t snow_hdf5_id(const hdf5_file *file) {
+    return file->id;
+}
+
+uint64_t snow_hdf5_size(const hdf5_file *file) {
+    return snow_seekable_size(file->bytes);
+}
+
+#endif

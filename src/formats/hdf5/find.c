@@ -1,0 +1,176 @@
+/* formats/hdf5/find.c - selects the data set of an HDF5 file that is the
+ * volume.
+ *
+ * By default it is the only numeric array with three axes or more.  If there
+ * are several, the user selects one from a list. */
+#include "formats/hdf5/hdf5.h"
+
+#if SNOW_HAVE_HDF5
+
+#include <stdio.h>
+#include <string.h>
+
+/* The results of a search through the file. */
+typedef struct survey {
+    int axes;     /* the fewest axes wanted */
+    long objects; /* objects visited */
+    long found;
+    char first[HDF5_NAME_BYTES]; /* path of the first match */
+    char list[800];              /* all matches, as far as they fit */
+} survey;
+
+static snow_type integer_type(size_t size, bool is_signed) {
+    static const snow_type types[4][2] = {{SNOW_TYPE_UINT8, SNOW_TYPE_INT8},
+                                          {SNOW_TYPE_UINT16, SNOW_TYPE_INT16},
+                                          {SNOW_TYPE_UINT32, SNOW_TYPE_INT32},
+                                          {SNOW_TYPE_UINT64, SNOW_TYPE_INT64}};
+    for (size_t i = 0; i < 4; i++)
+        if (size <= (size_t)1 << i)
+            return types[i][is_signed];
+    return SNOW_TYPE_NONE;
+}
+
+/* The smallest type that holds every value; libhdf5 converts other types.
+ * Enumerations, also booleans, are read as numbers. */
+static snow_type type_of(hid_t type) {
+    size_t size = H5Tget_size(type);
+    switch (H5Tget_class(type)) {
+    case H5T_INTEGER:
+        return integer_type(size, H5Tget_sign(type) == H5T_SGN_2);
+    case H5T_FLOAT:
+        return size <= 4 ? SNOW_TYPE_FLOAT32 : SNOW_TYPE_FLOAT64;
+    case H5T_ENUM: {
+        hid_t base = H5Tget_super(type);
+        snow_type found = base < 0 ? SNOW_TYPE_NONE : type_of(base);
+        if (found == SNOW_TYPE_INT8 && H5Tget_nmembers(type) == 2)
+            found = SNOW_TYPE_UINT8; /* false and true */
+        if (base >= 0)
+            H5Tclose(base);
+        return found;
+    }
+    default:
+        return SNOW_TYPE_NONE;
+    }
+}
+
+/* Reads sizes and type; returns false if it is not a numeric array. */
+static bool describe(hid_t id, hdf5_set *out) {
+    hid_t type = H5Dget_type(id), space = H5Dget_space(id);
+    int axes = space < 0 ? -1 : H5Sget_simple_extent_ndims(space);
+    out->type = type < 0 ? SNOW_TYPE_NONE : type_of(type);
+    bool right = out->type && axes >= 1 && axes <= HDF5_MOST_AXES &&
+                 H5Sget_simple_extent_dims(space, out->sizes, NULL) == axes;
+    out->axes = axes;
+    out->id = id;
+    if (type >= 0)
+        H5Tclose(type);
+    if (space >= 0)
+        H5Sclose(space);
+    return right;
+}
+
+/* "4x3x2", x first. */
+static void spell_sizes(const hdf5_set *set, char *text, size_t room) {
+    size_t used = 0;
+    for (int i = set->axes - 1; i >= 0 && used < room; i--)
+        used += (size_t)snprintf(text + used, room - used, "%s%llu",
+                                 i == set->axes - 1 ? "" : "x",
+                                 (unsigned long long)set->sizes[i]);
+}
+
+/* In a volume of three axes none has the size 1. */
+static bool is_wanted(const survey *s, const hdf5_set *set) {
+    if (set->axes < s->axes)
+        return false;
+    for (int i = 0; i < s->axes; i++)
+        if (set->sizes[set->axes - 1 - i] < 2)
+            return false;
+    return true;
+}
+
+static void note(survey *s, const char *name, const hdf5_set *set) {
+    char sizes[128];
+    size_t used = strlen(s->list);
+    if (!s->found++)
+        snprintf(s->first, sizeof s->first, "/%s", name);
+    spell_sizes(set, sizes, sizeof sizes);
+    if (used + strlen(name) + strlen(sizes) + 8 < sizeof s->list)
+        snprintf(s->list + used, sizeof s->list - used, "%s/%s (%s)",
+                 used ? ", " : "", name, sizes);
+    else if (used + 4 < sizeof s->list &&
+             strcmp(s->list + used - 3, "...") != 0)
+        memcpy(s->list + used, " ...", 5);
+}
+
+/* A positive result ends the visit. */
+static herr_t look(hid_t file, const char *name, const H5O_info_t *info,
+                   void *user) {
+    survey *s = user;
+    hdf5_set set;
+    if (++s->objects > HDF5_MOST_OBJECTS)
+        return 1;
+    if (info->type != H5O_TYPE_DATASET || strlen(name) + 2 > HDF5_NAME_BYTES)
+        return 0;
+    hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
+    if (id < 0)
+        return 0;
+    if (describe(id, &set) && is_wanted(s, &set))
+        note(s, name, &set);
+    H5Dclose(id);
+    return 0;
+}
+
+/* Finds all volumes of the file; if there are none, images with two axes. */
+static snow_status find_only(snow_context *context, hid_t file, survey *s) {
+    for (s->axes = 3; s->axes >= 2 && !s->found; s->axes--) {
+        s->objects = 0;
+        if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, look, s,
+                      H5O_INFO_BASIC) < 0)
+            return snow_hdf5_fail(context, "its groups cannot be listed");
+    }
+    if (s->found == 1)
+        return SNOW_STATUS_OK;
+    if (!s->found)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "has no numeric array with three axes; choose another "
+                         "file, or a data set with --dataset");
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "holds %ld volumes; choose one with --dataset: %s",
+                     s->found, s->list);
+}
+
+snow_status snow_hdf5_find(snow_context *context, hid_t file, const char *asked,
+                           hdf5_set *out) {
+    survey s = {0};
+    if (!asked) {
+        SNOW_TRY(find_only(context, file, &s));
+        asked = s.first;
+    }
+    if (strlen(asked) + 2 > HDF5_NAME_BYTES)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--dataset: the path is longer than any in a file");
+    hid_t id = H5Dopen2(file, asked, H5P_DEFAULT);
+    if (id < 0) {
+        if (find_only(context, file, &s) == SNOW_STATUS_OK || *s.list)
+            return snow_fail(
+                context, SNOW_STATUS_BAD_USAGE,
+                "--dataset %.200s: there is no such data set; the file has %s",
+                asked, s.list);
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "--dataset %.200s: there is no such data set; "
+                         "check the path",
+                         asked);
+    }
+    if (!describe(id, out)) {
+        H5Dclose(id);
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "%.200s is not a numeric array with one to five axes; "
+                         "choose another with --dataset",
+                         asked);
+    }
+    snprintf(out->path, sizeof out->path, "%s%s", *asked == '/' ? "" : "/",
+             asked);
+    return SNOW_STATUS_OK;
+}
+
+#endif

@@ -1,0 +1,322 @@
+/* formats/hdf5/grid.c - the geometry of an HDF5 data set, from attributes on
+ * which programs have agreed:
+ *
+ *     element_size_um     size of a voxel in micrometres, z y x
+ *     voxel_size, spacing the same, without a unit
+ *     resolution, offset  the same and the first voxel, in nanometres
+ *     openPMD             gridSpacing and others of the group, by axisLabels
+ *     NetCDF-4            coordinates by dimension scales, units; scale_factor,
+ *                         add_offset and _FillValue of the values
+ *
+ * Without any of them voxels are 1 x 1 x 1. */
+#include "formats/hdf5/hdf5.h"
+
+#if SNOW_HAVE_HDF5
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* The most data sets that use one scale. */
+#define MOST_USES 65536
+
+/* Reads up to `most` numbers of an attribute; returns how many there are, 0 if
+ * it is missing or has other values. */
+static int read_numbers(hid_t object, const char *name, int most, double *out) {
+    if (H5Aexists(object, name) <= 0)
+        return 0;
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    if (attribute < 0)
+        return 0;
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    H5T_class_t kind = H5Tget_class(type);
+    hssize_t count = H5Sget_simple_extent_npoints(space);
+    bool right = (kind == H5T_INTEGER || kind == H5T_FLOAT) && count >= 1 &&
+                 count <= most &&
+                 H5Aread(attribute, H5T_NATIVE_DOUBLE, out) >= 0;
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return right ? (int)count : 0;
+}
+
+/* Reads a text of fixed length; "" if it is missing.  Texts of variable length
+ * are ignored: they are in the file's global heap, and libhdf5 1.10 crashes if
+ * that is damaged, as fuzzing shows at once. */
+static void read_text(hid_t object, const char *name, char *out, size_t room) {
+    *out = 0;
+    if (H5Aexists(object, name) <= 0)
+        return;
+    hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    if (attribute < 0)
+        return;
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
+        size < room && H5Sget_simple_extent_npoints(space) == 1 &&
+        H5Aread(attribute, type, out) >= 0)
+        out[size] = 0;
+    else
+        *out = 0;
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(attribute);
+}
+
+static bool all_above_0(const double *values) {
+    for (int i = 0; i < 3; i++)
+        if (!(values[i] > 0) || !isfinite(values[i]))
+            return false;
+    return true;
+}
+
+/* Uses three numbers z y x of the data set. */
+static bool place_by_size(const hdf5_set *set, snow_volume_info *info) {
+    static const struct {
+        const char *name, *unit;
+    } sizes[] = {{"element_size_um", "um"},
+                 {"resolution", "nm"},
+                 {"voxel_size", ""},
+                 {"spacing", ""}};
+    double size[3], offset[3];
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+        if (read_numbers(set->id, sizes[i].name, 3, size) != 3 ||
+            !all_above_0(size))
+            continue;
+        for (int a = 0; a < 3; a++)
+            info->matrix[a][a] = size[2 - a];
+        memcpy(info->unit, sizes[i].unit, strlen(sizes[i].unit) + 1);
+        if (read_numbers(set->id, "offset", 3, offset) == 3)
+            for (int a = 0; a < 3; a++)
+                if (isfinite(offset[a]))
+                    info->matrix[2 - a][3] = offset[a];
+        return true;
+    }
+    return false;
+}
+
+/* The axis x y z that a label names, or -1. */
+static int axis_of(const char *label) {
+    return label[1] ? -1 : *label >= 'x' && *label <= 'z' ? *label - 'x' : -1;
+}
+
+/* Reads the letters of the axes in the order of the array, three of fixed
+ * length. */
+static bool read_labels(hid_t group, int order[3]) {
+    char text[3 * 8 + 1] = "";
+    if (H5Aexists(group, "axisLabels") <= 0)
+        return false;
+    hid_t attribute = H5Aopen(group, "axisLabels", H5P_DEFAULT);
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    size_t size = H5Tget_size(type);
+    bool right = H5Tget_class(type) == H5T_STRING &&
+                 H5Tis_variable_str(type) == 0 && size <= 8 &&
+                 H5Sget_simple_extent_npoints(space) == 3 &&
+                 H5Aread(attribute, type, text) >= 0;
+    int seen = 0;
+    for (size_t i = 0; i < 3 && right; i++) {
+        char label[9] = "";
+        memcpy(label, text + i * size, size);
+        order[i] = axis_of(label);
+        right = order[i] >= 0;
+        seen |= right ? 1 << order[i] : 0;
+    }
+    H5Sclose(space);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return right && seen == 7;
+}
+
+/* openPMD (openpmd.org, 1.1.0): the group of a mesh, or the data set itself,
+ * has spacing and offset in the order of the labels.  That is the order of the
+ * array, with the fastest axis last.  The labels assign x, y and z of the
+ * world. */
+static bool place_by_mesh(hid_t object, const hdf5_set *set,
+                          snow_volume_info *info) {
+    int order[3];
+    double spacing[3], offset[3] = {0}, unit = 1, position[3] = {0};
+    if (read_numbers(object, "gridSpacing", 3, spacing) != 3 ||
+        !all_above_0(spacing) || !read_labels(object, order))
+        return false;
+    read_numbers(object, "gridGlobalOffset", 3, offset);
+    read_numbers(set->id, "position", 3, position);
+    if (read_numbers(object, "gridUnitSI", 1, &unit) == 1 && unit == 1)
+        memcpy(info->unit, "m", 2);
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            info->matrix[a][b] = order[2 - b] == a ? spacing[2 - b] : 0;
+    for (int b = 0; b < 3; b++) {
+        double first = offset[b] + position[b] * spacing[b];
+        info->matrix[order[b]][3] = isfinite(first) ? first : 0;
+    }
+    return true;
+}
+
+/* Reads the coordinates of a dimension scale, if it has one for each index. */
+static snow_status read_scale(snow_context *context, hid_t scale, hsize_t count,
+                              cf_axis *out) {
+    char name[64], units[64];
+    hid_t space = H5Dget_space(scale);
+    hssize_t points = H5Sget_simple_extent_npoints(space);
+    H5Sclose(space);
+    read_text(scale, "NAME", name, sizeof name);
+    read_text(scale, "units", units, sizeof units);
+    if (points < 1 || (hsize_t)points != count ||
+        points > CF_MOST_COORDINATES ||
+        !strncmp(name, "This is a netCDF dimension but not", 34))
+        return SNOW_STATUS_OK;
+    double *values = snow_allocate_array(context, count, sizeof *values);
+    if (!values)
+        return SNOW_STATUS_NO_MEMORY;
+    if (H5Dread(scale, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                values) >= 0)
+        snow_cf_measure(values, points, units, out);
+    snow_release(context, values);
+    return SNOW_STATUS_OK;
+}
+
+/* The state of a walk over the file's scales. */
+typedef struct scales {
+    snow_context *context;
+    const hdf5_set *set;
+    haddr_t address;    /* address of the data set */
+    long objects;       /* objects visited */
+    snow_status status; /* the walk ends if memory does */
+    cf_axis axes[3];
+} scales;
+
+/* An entry of a scale's REFERENCE_LIST: the data set and axis that use it. */
+typedef struct scale_use {
+    hobj_ref_t set;
+    int axis;
+} scale_use;
+
+/* Assigns the scale to the axes of the data set that use it. */
+static void use_scale(scales *s, hid_t scale, const scale_use *uses,
+                      hssize_t count) {
+    for (hssize_t i = 0; i < count && s->status == SNOW_STATUS_OK; i++) {
+        int from_end = s->set->axes - 1 - uses[i].axis;
+        if (uses[i].set == s->address && uses[i].axis >= 0 && from_end >= 0 &&
+            from_end < 3)
+            s->status =
+                read_scale(s->context, scale, s->set->sizes[uses[i].axis],
+                           &s->axes[from_end]);
+    }
+}
+
+/* Whether entries of this type are a reference and a number within their size:
+ * libhdf5 converts others without checking their bounds. */
+static bool is_use(hid_t type) {
+    size_t size = H5Tget_size(type);
+    if (H5Tget_class(type) != H5T_COMPOUND || H5Tget_nmembers(type) != 2)
+        return false;
+    for (unsigned i = 0; i < 2; i++) {
+        hid_t member = H5Tget_member_type(type, i);
+        size_t at = H5Tget_member_offset(type, i);
+        bool right = member >= 0 && at <= size &&
+                     H5Tget_size(member) <= size - at &&
+                     H5Tget_class(member) == (i ? H5T_INTEGER : H5T_REFERENCE);
+        if (member >= 0)
+            H5Tclose(member);
+        if (!right)
+            return false;
+    }
+    return true;
+}
+
+static void read_uses(scales *s, hid_t scale) {
+    hid_t attribute = H5Aopen(scale, "REFERENCE_LIST", H5P_DEFAULT);
+    if (attribute < 0)
+        return;
+    hid_t kind = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    hid_t type = H5Tcreate(H5T_COMPOUND, sizeof(scale_use));
+    H5Tinsert(type, "dataset", offsetof(scale_use, set), H5T_STD_REF_OBJ);
+    H5Tinsert(type, "dimension", offsetof(scale_use, axis), H5T_NATIVE_INT);
+    hssize_t count = H5Sget_simple_extent_npoints(space);
+    if (is_use(kind) && count >= 1 && count <= MOST_USES) {
+        scale_use *uses =
+            snow_allocate_array(s->context, (uint64_t)count, sizeof *uses);
+        if (!uses)
+            s->status = SNOW_STATUS_NO_MEMORY;
+        else if (H5Aread(attribute, type, uses) >= 0)
+            use_scale(s, scale, uses, count);
+        snow_release(s->context, uses);
+    }
+    H5Tclose(type);
+    H5Tclose(kind);
+    H5Sclose(space);
+    H5Aclose(attribute);
+}
+
+static herr_t look_at_scale(hid_t file, const char *name,
+                            const H5O_info_t *info, void *user) {
+    scales *s = user;
+    char kind[32];
+    if (++s->objects > HDF5_MOST_OBJECTS)
+        return 1;
+    if (info->type != H5O_TYPE_DATASET)
+        return 0;
+    hid_t id = H5Dopen2(file, name, H5P_DEFAULT);
+    if (id < 0)
+        return 0;
+    read_text(id, "CLASS", kind, sizeof kind);
+    if (!strcmp(kind, "DIMENSION_SCALE") && H5Aexists(id, "REFERENCE_LIST") > 0)
+        read_uses(s, id);
+    H5Dclose(id);
+    return s->status != SNOW_STATUS_OK;
+}
+
+/* NetCDF-4 and h5py: axes and scales refer to each other.  The references of
+ * the scales are read, because those of the axes are in the global heap, where
+ * libhdf5 crashes if it is damaged. */
+static snow_status place_by_scales(snow_context *context, hid_t file,
+                                   const hdf5_set *set,
+                                   snow_volume_info *info) {
+    scales s = {.context = context, .set = set};
+    H5O_info_t about;
+    if (H5Aexists(set->id, "DIMENSION_LIST") <= 0 ||
+        H5Oget_info2(set->id, &about, H5O_INFO_BASIC) < 0)
+        return SNOW_STATUS_OK;
+    s.address = about.addr;
+    if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, look_at_scale, &s,
+                  H5O_INFO_BASIC) < 0)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(s.status);
+    if (s.axes[0].given || s.axes[1].given || s.axes[2].given)
+        snow_cf_place(context, s.axes, info);
+    return SNOW_STATUS_OK;
+}
+
+static void read_values(const hdf5_set *set, cf_values *out) {
+    static const char *const fills[] = {"_FillValue", "missing_value"};
+    double value;
+    if (read_numbers(set->id, "scale_factor", 1, &value) == 1 &&
+        isfinite(value) && value != 0)
+        out->scale = value;
+    if (read_numbers(set->id, "add_offset", 1, &value) == 1 && isfinite(value))
+        out->offset = value;
+    for (int i = 0; i < 2; i++)
+        if (read_numbers(set->id, fills[i], 1, &value) == 1 &&
+            (!out->fills || value != out->fill[0]))
+            out->fill[out->fills++] = value;
+}
+
+snow_status snow_hdf5_place(snow_context *context, hid_t file,
+                            const hdf5_set *set, snow_volume_info *info,
+                            cf_values *values) {
+    char group[HDF5_NAME_BYTES];
+    *values = snow_cf_values_default();
+    read_values(set, values);
+    if (place_by_size(set, info) || place_by_mesh(set->id, set, info))
+        return SNOW_STATUS_OK;
+    memcpy(group, set->path, sizeof group);
+    char *slash = strrchr(group, '/');
+    slash[slash == group] = 0;
+    hid_t parent = H5Oopen(file, group, H5P_DEFAULT);
+    bool placed = parent >= 0 && place_by_mesh(parent, set, info);
+    if (parent >= 0)
+        H5Oclose(parent);
+    return placed ? SNOW_STATUS_OK : place_by_scales(context, file, set, info);
+}
+
+#endif

@@ -1,0 +1,236 @@
+/* formats/hdf5/hdf5.c - data sets of HDF5 files, including NetCDF-4.
+ *
+ * The last axis is x, the ones before y and z, then channel and time, as with
+ * NumPy.  For a box libhdf5 reads only the chunks that it touches. */
+#include "formats/hdf5/hdf5.h"
+#include "formats/array.h"
+#include "formats/features.h"
+
+#include <string.h>
+
+static bool probe_hdf5(const unsigned char *bytes, size_t size) {
+    static const unsigned char magic[8] = "\x89HDF\r\n\x1a\n";
+    /* A user block may come first, of 512 bytes times a power of two. */
+    for (size_t at = 0; at + 8 <= size; at = at ? 2 * at : 512)
+        if (!memcmp(bytes + at, magic, 8))
+            return true;
+    return false;
+}
+
+#if SNOW_HAVE_HDF5 && !SNOW_LOADS
+
+/* Voxels that a file may have beyond those that deflate can compress into it:
+ * chunks that were never written are not in the file. */
+#define UNWRITTEN_BYTES ((uint64_t)256 << 20)
+
+static hid_t native_type(snow_type type) {
+    switch (type) {
+    case SNOW_TYPE_INT8:
+        return H5T_NATIVE_INT8;
+    case SNOW_TYPE_UINT8:
+        return H5T_NATIVE_UINT8;
+    case SNOW_TYPE_INT16:
+        return H5T_NATIVE_INT16;
+    case SNOW_TYPE_UINT16:
+        return H5T_NATIVE_UINT16;
+    case SNOW_TYPE_INT32:
+        return H5T_NATIVE_INT32;
+    case SNOW_TYPE_UINT32:
+        return H5T_NATIVE_UINT32;
+    case SNOW_TYPE_INT64:
+        return H5T_NATIVE_INT64;
+    case SNOW_TYPE_UINT64:
+        return H5T_NATIVE_UINT64;
+    case SNOW_TYPE_FLOAT32:
+        return H5T_NATIVE_FLOAT;
+    default:
+        return H5T_NATIVE_DOUBLE;
+    }
+}
+
+/* Data in other files would be missing, or could be read from anywhere; data
+ * with a filter that is not installed cannot be read. */
+static snow_status check_storage(snow_context *context, hid_t set) {
+    hid_t plan = H5Dget_create_plist(set);
+    if (plan < 0)
+        return snow_hdf5_fail(context, "its storage is not described");
+    bool elsewhere =
+        H5Pget_layout(plan) == H5D_VIRTUAL || H5Pget_external_count(plan) > 0;
+    int filters = H5Pget_nfilters(plan), missing = 0;
+    for (int i = 0; i < filters && !missing; i++) {
+        unsigned flags, config;
+        size_t count = 0;
+        H5Z_filter_t filter = H5Pget_filter2(plan, (unsigned)i, &flags, &count,
+                                             NULL, 0, NULL, &config);
+        if (filter > 0 && H5Zfilter_avail(filter) <= 0)
+            missing = filter;
+    }
+    H5Pclose(plan);
+    if (elsewhere)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "its voxels are in other files; copy them into one "
+                         "with h5repack");
+    if (missing)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "its voxels are compressed by filter %d, which libhdf5 lacks; "
+            "install its plugin, or copy the file with h5repack -f GZIP=1",
+            missing);
+    return SNOW_STATUS_OK;
+}
+
+/* MINC scales each slice by tables of its own, which are not supported. */
+static snow_status refuse_minc(snow_context *context, hid_t file) {
+    if (H5Lexists(file, "minc-2.0", H5P_DEFAULT) <= 0)
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "is a MINC file, whose values are scaled slice by slice; "
+                     "convert it with mnc2nii");
+}
+
+/* The meaning of each axis, and the requested channel and time. */
+static snow_status pick(snow_context *context, const hdf5_set *set,
+                        const snow_volume_options *options,
+                        snow_volume_info *info, hsize_t start[HDF5_MOST_AXES]) {
+    int64_t size[HDF5_MOST_AXES], channel;
+    for (int i = 0; i < HDF5_MOST_AXES; i++) {
+        size[i] = i < set->axes ? (int64_t)set->sizes[set->axes - 1 - i] : 1;
+        if (size[i] < 1)
+            return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                             "%.200s is empty; choose another with --dataset",
+                             set->path);
+    }
+    bool channels = set->axes == 5;
+    memcpy(info->dims, size, sizeof info->dims);
+    info->type = set->type;
+    info->times = channels ? size[4] : size[3];
+    SNOW_TRY(snow_volume_pick_channel(context, options, channels ? size[3] : 1,
+                                      &channel));
+    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    memset(start, 0, HDF5_MOST_AXES * sizeof *start);
+    if (set->axes >= 4)
+        start[0] = (hsize_t)info->time;
+    if (channels)
+        start[1] = (hsize_t)channel;
+    return SNOW_STATUS_OK;
+}
+
+/* Reads the box as a hyperslab of the data set. */
+static snow_status read_slab(const hdf5_set *set, const snow_region *region,
+                             hsize_t start[HDF5_MOST_AXES],
+                             snow_volume *volume) {
+    hsize_t count[HDF5_MOST_AXES] = {1, 1, 1, 1, 1};
+    for (int i = 0; i < 3 && i < set->axes; i++) {
+        start[set->axes - 1 - i] = (hsize_t)region->first[i];
+        count[set->axes - 1 - i] = (hsize_t)region->count[i];
+    }
+    hid_t space = H5Dget_space(set->id);
+    hid_t memory = H5Screate_simple(set->axes, count, NULL);
+    bool read = space >= 0 && memory >= 0 &&
+                H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count,
+                                    NULL) >= 0 &&
+                H5Dread(set->id, native_type(set->type), memory, space,
+                        H5P_DEFAULT, volume->owned) >= 0;
+    snow_status status =
+        read ? SNOW_STATUS_OK
+             : snow_hdf5_fail(volume->context, "its voxels cannot be read");
+    if (memory >= 0)
+        H5Sclose(memory);
+    if (space >= 0)
+        H5Sclose(space);
+    return status;
+}
+
+/* Impossible sizes are refused before memory is allocated. */
+static snow_status check_size(snow_context *context, const hdf5_file *file,
+                              const snow_region *region) {
+    uint64_t most;
+    if (!snow_mul_u64(snow_hdf5_size(file), SNOW_DEFLATE_RATIO, &most) ||
+        !snow_add_u64(most, UNWRITTEN_BYTES, &most) || region->all <= most)
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "claims %llu bytes of voxels, which its %llu bytes cannot "
+                     "hold; it is truncated or damaged",
+                     (unsigned long long)region->all,
+                     (unsigned long long)snow_hdf5_size(file));
+}
+
+static snow_status read_set(snow_context *context, const hdf5_file *file,
+                            const hdf5_set *set,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    hsize_t start[HDF5_MOST_AXES];
+    snow_region region;
+    cf_values values;
+    SNOW_TRY(check_storage(context, set->id));
+    SNOW_TRY(pick(context, set, options, info, start));
+    SNOW_TRY(snow_hdf5_place(context, snow_hdf5_id(file), set, info, &values));
+    SNOW_TRY(snow_region_lay_out(context, options, info, &region));
+    SNOW_TRY(check_size(context, file, &region));
+    snow_volume *volume = NULL;
+    if (out) {
+        SNOW_TRY(snow_volume_new(context, info, &volume));
+        snow_status status = read_slab(set, &region, start, volume);
+        if (status != SNOW_STATUS_OK) {
+            snow_volume_close(volume);
+            return status;
+        }
+        SNOW_TRY(snow_cf_blank(&values, &volume));
+        *out = volume;
+    }
+    snow_cf_apply(&values, info);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status read_hdf5(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    hdf5_file *file;
+    hdf5_set set;
+    *info = snow_volume_info_default("hdf5");
+    SNOW_TRY(snow_hdf5_open(source, &file));
+    snow_status status = refuse_minc(context, snow_hdf5_id(file));
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_hdf5_find(context, snow_hdf5_id(file), options->dataset, &set);
+    if (status == SNOW_STATUS_OK) {
+        status = read_set(context, file, &set, options, info, out);
+        H5Dclose(set.id);
+    }
+    snow_hdf5_close(file);
+    return status;
+}
+
+#elif SNOW_LOADS && SNOW_HAVE_HDF5
+
+static snow_status read_hdf5(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    return snow_read_by_module("hdf5", source, options, info, out);
+}
+
+#else
+
+static snow_status read_hdf5(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    (void)options;
+    (void)info;
+    (void)out;
+    return snow_fail_unbuilt(snow_source_context(source), "HDF5",
+                             "libhdf5-dev");
+}
+
+#endif
+
+const snow_format snow_format_hdf5 = {
+    .name = "hdf5",
+    .text = "HDF5 and NetCDF-4 (.h5, .hdf5, .nc), one data set of them",
+    .suffixes = {".h5", ".hdf5", ".hdf", ".nc4", ".h5.gz"},
+    .probe = probe_hdf5,
+    .crops = true,
+    .sets = true,
+    .channels = true,
+    .read = read_hdf5,
+};

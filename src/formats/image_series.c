@@ -1,0 +1,227 @@
+/* formats/image_series.c - reads a folder or a pattern of files with one slice
+ * each.
+ *
+ * The files' own reader makes a volume of one slice from each, cropped in x and
+ * y; these are stacked.  Files outside the box along z are not opened.  A
+ * missing number among the names is a missing slice, and refused.  If any file
+ * is DICOM, formats/dicom/files.c reads them. */
+#include "formats/image_series.h"
+#include "formats/dicom/dicom.h"
+#include "io/folder.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What all files have in common, from the first file. */
+typedef struct stack {
+    snow_context *context;
+    snow_format_finder *find;
+    const snow_format *format;
+    const snow_folder *files;    /* the files of the format, in order */
+    snow_volume_options options; /* options for a slice */
+    snow_volume_info first;      /* the first slice, uncropped */
+    snow_volume_info slice;      /* of each slice */
+} stack;
+
+/* The format whose names the file has, if files of it are slices. */
+static const snow_format *slice_format(const stack *s, const char *path) {
+    const snow_format *format = s->find(path);
+    return format && format->slices ? format : NULL;
+}
+
+static snow_status refuse_empty(snow_context *context, const char *path) {
+    char name[256];
+    if (snow_is_folder(path) && snow_folder_below(path, name, sizeof name))
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                         "has no slices itself, only folders such as %s; "
+                         "name one of them",
+                         name);
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "names no slices; give a folder or a pattern of .tif, "
+                     ".png or DICOM files");
+}
+
+/* Keeps the files whose names belong to slices: folders also hold notes and
+ * tables.  All must have one format. */
+static snow_status choose_files(stack *s, const char *path,
+                                snow_folder *files) {
+    size_t kept = 0, others = 0;
+    for (size_t i = 0; i < files->count; i++) {
+        const snow_format *format = slice_format(s, files->paths[i]);
+        if (!format)
+            continue;
+        if (!s->format)
+            s->format = format;
+        if (format == s->format)
+            files->paths[kept++] = files->paths[i];
+        else
+            others++;
+    }
+    if (others)
+        return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
+                         "has %zu files of %s among others; give a pattern "
+                         "that matches one kind, such as \"folder/*.tif\"",
+                         kept, s->format->name);
+    if (!kept)
+        return refuse_empty(s->context, path);
+    files->count = kept;
+    s->files = files;
+    return SNOW_STATUS_OK;
+}
+
+/* Numbers may begin anywhere but must have equal steps. */
+static snow_status check_numbers(const stack *s) {
+    char *const *paths = s->files->paths;
+    int64_t step = 0;
+    for (size_t i = 1; i < s->files->count; i++) {
+        int64_t a = snow_last_number(paths[i - 1]);
+        int64_t b = snow_last_number(paths[i]);
+        if (a < 0 || b < 0)
+            return SNOW_STATUS_OK; /* names without numbers have no gaps */
+        if (i == 1)
+            step = b - a;
+        if (b - a != step)
+            return snow_fail(
+                s->context, SNOW_STATUS_BAD_INPUT,
+                "its files are not numbered in equal steps (%s, then %s); add "
+                "the missing slices, or give a pattern that matches the others",
+                paths[i - 1], paths[i]);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Opens a file; messages begin with its name. */
+static snow_status read_file(const stack *s, size_t index,
+                             snow_volume_info *info, snow_volume **out) {
+    snow_source *source;
+    SNOW_TRY(snow_source_open(s->context, s->files->paths[index], &source));
+    snow_status status = s->format->read(source, &s->options, info, out);
+    if (status != SNOW_STATUS_OK)
+        snow_fail_in_file(s->context, status, snow_source_name(source));
+    snow_source_close(source);
+    return status;
+}
+
+static snow_status refuse_unlike(const stack *s, size_t index,
+                                 const snow_volume_info *info) {
+    const snow_volume_info *first = &s->first;
+    return snow_fail(
+        s->context, SNOW_STATUS_BAD_INPUT,
+        "%s: has %lldx%lldx%lld voxels of %s, but the first slice has "
+        "%lldx%lldx%lld of %s; all slices of a volume must be alike",
+        s->files->paths[index], (long long)info->dims[0],
+        (long long)info->dims[1], (long long)info->dims[2],
+        snow_type_name(info->type), (long long)first->dims[0],
+        (long long)first->dims[1], (long long)first->dims[2],
+        snow_type_name(first->type));
+}
+
+/* If a slice cannot be cropped like the first it has another size; the message
+ * reports that, not the box. */
+static snow_status explain(stack *s, size_t index) {
+    snow_volume_info info;
+    memset(s->options.crop, 0, sizeof s->options.crop);
+    SNOW_TRY(read_file(s, index, &info, NULL));
+    return refuse_unlike(s, index, &info);
+}
+
+/* A file with several slices would be a volume of its own, perhaps a time
+ * step. */
+static snow_status look_at_first(stack *s) {
+    SNOW_TRY(read_file(s, 0, &s->first, NULL));
+    s->slice = s->first;
+    if (s->first.dims[2] == 1 && s->first.times == 1) {
+        if (s->first.matrix[0][0] != 1 && s->first.matrix[2][2] == 1)
+            snow_notify(s->context, "the distance of the slices is unknown; 1 "
+                                    "is used, --spacing sets another");
+        return SNOW_STATUS_OK;
+    }
+    return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
+                     "%s: has %lld slices, so it is a volume of its own; open "
+                     "one file at a time",
+                     s->files->paths[0],
+                     (long long)(s->first.dims[2] * s->first.times));
+}
+
+/* Warnings are given for the first slice only: each slice has the same. */
+static snow_status read_slices(stack *s, int64_t first, snow_volume *volume) {
+    size_t bytes = (size_t)(s->slice.dims[0] * s->slice.dims[1]) *
+                   snow_type_size(s->slice.type);
+    snow_warning_fn *notice = s->context->notice;
+    snow_status status = SNOW_STATUS_OK;
+    s->context->notice = NULL;
+    for (int64_t z = 0; z < volume->info.dims[2] && status == SNOW_STATUS_OK;
+         z++) {
+        snow_volume_info info;
+        snow_volume *slice = NULL;
+        snow_monitor_part whole = snow_monitor_divide(
+            s->context->monitor, (double)z, (double)volume->info.dims[2]);
+        status = read_file(s, (size_t)(first + z), &info, &slice);
+        snow_monitor_whole(s->context->monitor, whole);
+        if (status == SNOW_STATUS_BAD_USAGE ||
+            (status == SNOW_STATUS_OK &&
+             (info.type != s->slice.type ||
+              memcmp(info.dims, s->slice.dims, sizeof info.dims) != 0)))
+            status = explain(s, (size_t)(first + z));
+        if (status == SNOW_STATUS_OK)
+            memcpy((unsigned char *)volume->owned + (size_t)z * bytes,
+                   slice->voxels, bytes);
+        snow_volume_close(slice);
+    }
+    s->context->notice = notice;
+    return status;
+}
+
+/* The box is applied to all slices along z, then each slice is cropped alike.
+ * The first slice gives the size for a box without an end. */
+static snow_status read_stack(stack *s, const snow_volume_options *options,
+                              snow_volume_info *info, snow_volume **out) {
+    snow_region window;
+    if (options->series)
+        return snow_fail(
+            s->context, SNOW_STATUS_BAD_USAGE,
+            "--series %.64s: only DICOM files have series; remove the option",
+            options->series);
+    s->options = *options;
+    memset(s->options.crop, 0, sizeof s->options.crop);
+    SNOW_TRY(check_numbers(s));
+    SNOW_TRY(look_at_first(s));
+    *info = s->slice;
+    info->dims[2] = (int64_t)s->files->count;
+    SNOW_TRY(snow_region_lay_out(s->context, options, info, &window));
+    if (!out)
+        return SNOW_STATUS_OK;
+    for (int i = 0; i < 2; i++) {
+        s->options.crop[i][0] = window.first[i];
+        s->options.crop[i][1] = window.first[i] + window.count[i];
+        s->slice.dims[i] = window.count[i];
+    }
+    snow_volume *volume;
+    SNOW_TRY(snow_volume_new(s->context, info, &volume));
+    snow_status status = read_slices(s, window.first[2], volume);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    *out = volume;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_stack_read(snow_context *context, const char *path,
+                            const snow_volume_options *options,
+                            snow_format_finder *find, snow_volume_info *info,
+                            snow_volume **out) {
+    snow_folder files;
+    stack s = {.context = context, .find = find};
+    SNOW_TRY(snow_folder_list(context, path, &files));
+    snow_status status;
+    if (snow_dicom_among(context, &files, find)) {
+        status = snow_dicom_read_files(context, &files, options, info, out);
+    } else {
+        status = choose_files(&s, path, &files);
+        if (status == SNOW_STATUS_OK)
+            status = read_stack(&s, options, info, out);
+    }
+    snow_folder_free(&files);
+    return status;
+}

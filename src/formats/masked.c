@@ -1,0 +1,182 @@
+/* formats/masked.c - a volume and its mask, both from files. */
+#include "formats/masked.h"
+#include "io/source.h"
+#include "volume/mask.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A volume and its mask, on the way to be opened. */
+typedef struct opening {
+    snow_context *context;
+    snow_open_fn *open;
+    const char *path;
+    const char *mask_path;       /* NULL: planes alone */
+    bool stream;                 /* the volume comes as one */
+    snow_volume_options options; /* of the volume, without mask */
+    snow_volume_options mask;    /* of the mask */
+    snow_volume_info grid;       /* of the whole mask */
+    snow_label_range labels[SNOW_LABELS_MAX];
+    size_t count;
+    double clip[SNOW_CLIPS_MAX][4];
+} opening;
+
+static bool is_cropped(const snow_volume_options *options) {
+    static const int64_t none[3][2];
+    return memcmp(options->crop, none, sizeof none) != 0;
+}
+
+/* What the options say by themselves. */
+static snow_status begin(opening *o, const snow_volume_options *options) {
+    o->options = *options;
+    o->options.mask = o->options.labels = NULL;
+    memset(o->options.clip, 0, sizeof o->options.clip);
+    memcpy(o->clip, options->clip, sizeof o->clip);
+    if (!options->mask && !options->labels)
+        return SNOW_STATUS_OK;
+    if (!options->mask)
+        return snow_fail(o->context, SNOW_STATUS_BAD_USAGE,
+                         "--labels: these are of a mask; give --mask FILE "
+                         "beside it");
+    if (options->labels && !snow_labels_parse(options->labels, o->labels,
+                                              SNOW_LABELS_MAX, &o->count))
+        return snow_fail(o->context, SNOW_STATUS_BAD_USAGE,
+                         "--labels %.64s: is no list of labels; give up to %d "
+                         "whole numbers and ranges, such as 1,4-7",
+                         options->labels, SNOW_LABELS_MAX);
+    o->mask_path = options->mask;
+    memcpy(o->mask.spacing, options->spacing, sizeof options->spacing);
+    if (snow_source_is_stream(o->mask_path))
+        return snow_fail(o->context, SNOW_STATUS_BAD_USAGE,
+                         "%s: a mask is read from a file; write it to one",
+                         o->mask_path);
+    o->stream = snow_source_is_stream(o->path);
+    if (o->stream && is_cropped(options))
+        return snow_fail(o->context, SNOW_STATUS_BAD_USAGE,
+                         "--crop: with a mask both must be files; write the "
+                         "volume to one");
+    return SNOW_STATUS_OK;
+}
+
+/* A header alone, without the remarks that its reading makes too. */
+static snow_status look(const opening *o, const char *path,
+                        const snow_volume_options *options,
+                        snow_volume_info *out) {
+    snow_context *context = o->context;
+    snow_warning_fn *notice = context->notice;
+    context->notice = NULL;
+    snow_status status = o->open(context, path, options, out, NULL);
+    context->notice = notice;
+    return status;
+}
+
+static snow_status compare(const opening *o, const snow_volume_info *volume) {
+    snow_status status = snow_mask_check_grid(o->context, volume, &o->grid);
+    if (status != SNOW_STATUS_OK)
+        snow_fail_within(o->context, status, "%s", o->mask_path);
+    return status;
+}
+
+/* Options that a file may need are those of the volume. */
+static snow_status look_at_mask(opening *o) {
+    char why[512];
+    snow_status status = look(o, o->mask_path, &o->mask, &o->grid);
+    if (status != SNOW_STATUS_BAD_USAGE)
+        return status;
+    snprintf(why, sizeof why, "%.500s", o->context->message);
+    return snow_fail(o->context, status,
+                     "%s (not for a mask: snowglass convert makes a .nrrd of "
+                     "it)",
+                     why);
+}
+
+/* Boxes of two grids are the same box only if the grids are the same, so the
+ * whole ones are compared.  A stream is compared when it was read. */
+static snow_status look_at_both(opening *o) {
+    snow_volume_options whole = o->options;
+    snow_volume_info info;
+    SNOW_TRY(look_at_mask(o));
+    if (o->grid.times > 1)
+        o->mask.time = o->options.time;
+    memcpy(o->mask.crop, o->options.crop, sizeof o->mask.crop);
+    if (o->stream)
+        return SNOW_STATUS_OK;
+    memset(whole.crop, 0, sizeof whole.crop);
+    SNOW_TRY(look(o, o->path, &whole, &info));
+    return compare(o, &info);
+}
+
+/* An empty picture must not pass for one of an empty volume.  A box may be
+ * empty, as that of a rank often is; who reads all boxes looks at all. */
+static void note_empty(const opening *o, const snow_volume *mask,
+                       snow_volume *volume) {
+    snow_volume_statistics m = {.min = NAN, .max = NAN};
+    snow_volume_options options = o->options;
+    options.mask = o->mask_path;
+    if (mask)
+        snow_volume_get_statistics(mask, &m);
+    volume->emptied = true;
+    volume->mask_range[0] = m.min;
+    volume->mask_range[1] = m.max;
+    if (!is_cropped(&options))
+        snow_mask_remark(o->context, &options, volume->mask_range);
+}
+
+static snow_status leave_out_of(const opening *o, const snow_volume *volume,
+                                const snow_volume *mask, snow_volume **out) {
+    const snow_cuts by = {mask, o->labels, o->count, o->clip[0],
+                          SNOW_CLIPS_MAX};
+    bool any;
+    SNOW_TRY(snow_mask_apply(volume, &by, &any, out));
+    if (!any)
+        note_empty(o, mask, *out);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status read_mask(const opening *o, const snow_volume *volume,
+                             snow_volume **out) {
+    snow_volume_info info;
+    snow_volume *mask = NULL;
+    if (o->mask_path && o->stream)
+        SNOW_TRY(compare(o, &volume->info));
+    if (o->mask_path)
+        SNOW_TRY(o->open(o->context, o->mask_path, &o->mask, &info, &mask));
+    snow_status status = leave_out_of(o, volume, mask, out);
+    snow_volume_close(mask);
+    return status;
+}
+
+static snow_status open_both(opening *o, snow_volume_info *info,
+                             snow_volume **out) {
+    snow_volume_info whole;
+    snow_volume *volume;
+    if (o->mask_path)
+        SNOW_TRY(look_at_both(o));
+    if (!out) {
+        SNOW_TRY(o->open(o->context, o->path, &o->options, info, NULL));
+        info->type = snow_masked_type(info->type);
+        return SNOW_STATUS_OK;
+    }
+    SNOW_TRY(o->open(o->context, o->path, &o->options, &whole, &volume));
+    snow_status status = read_mask(o, volume, out);
+    snow_volume_close(volume);
+    return status;
+}
+
+snow_status snow_masked_open(snow_context *context, const char *path,
+                             const snow_volume_options *options,
+                             snow_open_fn *open, snow_volume_info *info,
+                             snow_volume **out) {
+    opening *o = snow_allocate_clear(context, sizeof *o);
+    if (!o)
+        return SNOW_STATUS_NO_MEMORY;
+    o->context = context;
+    o->open = open;
+    o->path = path;
+    snow_status status = begin(o, options);
+    if (status == SNOW_STATUS_OK)
+        status = open_both(o, info, out);
+    snow_release(context, o);
+    return status;
+}

@@ -1,0 +1,350 @@
+/* formats/netcdf/header.c - reads the header of a classic NetCDF file.
+ *
+ * Each list gives its length; memory for the entries is allocated only if the
+ * file has room for so many. */
+#include "formats/netcdf/netcdf.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Tags before the lists. */
+enum { DIMENSIONS = 10, VARIABLES = 11, ATTRIBUTES = 12 };
+
+/* The format's numbers of types. */
+enum {
+    BYTE = 1,
+    CHAR,
+    SHORT,
+    INT,
+    FLOAT,
+    DOUBLE,
+    UBYTE,
+    USHORT,
+    UINT,
+    INT64,
+    UINT64
+};
+
+/* A position in the header; `status` is the first error, after which nothing
+ * more is read. */
+typedef struct cursor {
+    snow_context *context;
+    snow_seekable *bytes;
+    uint64_t at;
+    int wide; /* bytes of a count: 4 or 8 */
+    snow_status status;
+} cursor;
+
+static void refuse(cursor *c, const char *reason) {
+    if (c->status == SNOW_STATUS_OK)
+        c->status = snow_fail(c->context, SNOW_STATUS_BAD_INPUT, "%s", reason);
+}
+
+static void take(cursor *c, void *out, size_t size) {
+    memset(out, 0, size);
+    if (c->status != SNOW_STATUS_OK)
+        return;
+    if (snow_seekable_read(c->bytes, c->at, out, size) < size)
+        refuse(c, "its NetCDF header is truncated; get the file again");
+    c->at += size;
+}
+
+static uint64_t take_number(cursor *c, int size) {
+    unsigned char bytes[8];
+    uint64_t value = 0;
+    take(c, bytes, (size_t)size);
+    for (int i = 0; i < size; i++)
+        value = value << 8 | bytes[i];
+    return value;
+}
+
+/* A count or size, never below 0. */
+static int64_t take_count(cursor *c) {
+    uint64_t value = take_number(c, c->wide);
+    if (value > (uint64_t)INT64_MAX || (c->wide == 4 && value > INT32_MAX)) {
+        refuse(c, "its NetCDF header has a count below 0; it is damaged");
+        return 0;
+    }
+    return c->status == SNOW_STATUS_OK ? (int64_t)value : 0;
+}
+
+/* Bytes up to the next multiple of four. */
+static void skip(cursor *c, uint64_t size) {
+    uint64_t whole;
+    if (!snow_add_u64(size, 3, &whole) ||
+        !snow_add_u64(c->at, whole / 4 * 4, &c->at))
+        refuse(c, "its NetCDF header is longer than any file; it is damaged");
+}
+
+static void take_name(cursor *c, char name[NETCDF_NAME_BYTES]) {
+    int64_t length = take_count(c);
+    *name = 0;
+    if (length >= NETCDF_NAME_BYTES) {
+        refuse(c, "its NetCDF header has a name of more than 256 letters; it "
+                  "is damaged");
+        return;
+    }
+    uint64_t begin = c->at;
+    take(c, name, (size_t)length);
+    name[length] = 0;
+    c->at = begin;
+    skip(c, (uint64_t)length);
+}
+
+/* The count of a list with that tag; 0 for one that is absent.  Entries have at
+ * least `least` bytes. */
+static int64_t take_list(cursor *c, unsigned tag, uint64_t least) {
+    uint64_t found = take_number(c, 4);
+    int64_t count = take_count(c);
+    uint64_t size = snow_seekable_size(c->bytes);
+    if (c->status == SNOW_STATUS_OK && found != tag && (found || count))
+        refuse(c, "its NetCDF header is invalid; it is damaged");
+    if (c->status == SNOW_STATUS_OK && (uint64_t)count > size / least)
+        refuse(c, "its NetCDF header lists more than the file can hold; it is "
+                  "damaged");
+    return c->status == SNOW_STATUS_OK ? count : 0;
+}
+
+static uint64_t type_bytes(uint64_t type) {
+    static const uint64_t bytes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    return type <= UINT64 ? bytes[type] : 0;
+}
+
+static snow_type type_of(uint64_t type) {
+    static const snow_type types[] = {
+        SNOW_TYPE_NONE,    SNOW_TYPE_INT8,  SNOW_TYPE_NONE,
+        SNOW_TYPE_INT16,   SNOW_TYPE_INT32, SNOW_TYPE_FLOAT32,
+        SNOW_TYPE_FLOAT64, SNOW_TYPE_UINT8, SNOW_TYPE_UINT16,
+        SNOW_TYPE_UINT32,  SNOW_TYPE_INT64, SNOW_TYPE_UINT64};
+    return type <= UINT64 ? types[type] : SNOW_TYPE_NONE;
+}
+
+/* The value at the cursor as a double; the position stays. */
+static double value_of(cursor *c, uint64_t type) {
+    uint64_t begin = c->at, bits = take_number(c, (int)type_bytes(type));
+    uint32_t low = (uint32_t)bits;
+    float narrow;
+    double wide;
+    c->at = begin;
+    switch (type) {
+    case BYTE:
+        return (int8_t)bits;
+    case SHORT:
+        return (int16_t)bits;
+    case INT:
+        return (int32_t)bits;
+    case INT64:
+        return (double)(int64_t)bits;
+    case FLOAT:
+        memcpy(&narrow, &low, sizeof narrow);
+        return (double)narrow;
+    case DOUBLE:
+        memcpy(&wide, &bits, sizeof wide);
+        return wide;
+    default:
+        return (double)bits;
+    }
+}
+
+static void keep_fill(cf_values *values, double fill) {
+    if (values->fills < 2)
+        values->fill[values->fills++] = fill;
+}
+
+/* Stores an attribute of a variable. */
+static void keep_attribute(cursor *c, const char *name, uint64_t type,
+                           int64_t count, netcdf_variable *v) {
+    char text[64] = "";
+    if (type == CHAR && count < (int64_t)sizeof text) {
+        uint64_t begin = c->at;
+        take(c, text, (size_t)count);
+        text[count] = 0;
+        c->at = begin;
+        if (!strcmp(name, "units"))
+            memcpy(v->units, text, sizeof text);
+        /* Version 1 has no unsigned bytes; they are marked this way. */
+        if (!strcmp(name, "_Unsigned") && !strcmp(text, "true"))
+            v->is_unsigned = true;
+    }
+    if (type == CHAR || count != 1)
+        return;
+    double value = value_of(c, type);
+    if (!strcmp(name, "scale_factor") && isfinite(value) && value != 0)
+        v->values.scale = value;
+    else if (!strcmp(name, "add_offset") && isfinite(value))
+        v->values.offset = value;
+    else if (!strcmp(name, "_FillValue") || !strcmp(name, "missing_value"))
+        keep_fill(&v->values, value);
+}
+
+/* Reads the attributes of a variable, or, for NULL, of the file. */
+static void take_attributes(cursor *c, netcdf_header *header,
+                            netcdf_variable *v) {
+    char name[NETCDF_NAME_BYTES];
+    int64_t count = take_list(c, ATTRIBUTES, 12);
+    for (int64_t i = 0; i < count && c->status == SNOW_STATUS_OK; i++) {
+        take_name(c, name);
+        uint64_t type = take_number(c, 4), bytes;
+        int64_t values = take_count(c);
+        if (c->status == SNOW_STATUS_OK && !type_bytes(type))
+            refuse(c, "its NetCDF header has an unknown type; it is damaged");
+        if (c->status != SNOW_STATUS_OK)
+            return;
+        if (v)
+            keep_attribute(c, name, type, values, v);
+        else if (!strcmp(name, "minc_version"))
+            header->minc = true;
+        if (!snow_mul_u64((uint64_t)values, type_bytes(type), &bytes))
+            bytes = UINT64_MAX - 8;
+        skip(c, bytes);
+    }
+}
+
+static void take_dimensions(cursor *c, netcdf_header *header) {
+    int64_t count = take_list(c, DIMENSIONS, 8);
+    if (c->status != SNOW_STATUS_OK)
+        return;
+    header->dimensions = snow_allocate_array(c->context, (uint64_t)count,
+                                             sizeof *header->dimensions);
+    if (!header->dimensions) {
+        c->status = SNOW_STATUS_NO_MEMORY;
+        return;
+    }
+    header->dimension_count = count;
+    for (int64_t i = 0; i < count; i++) {
+        netcdf_dimension *d = &header->dimensions[i];
+        take_name(c, d->name);
+        d->size = take_count(c);
+        d->records = d->size == 0;
+    }
+}
+
+/* Reads the variable's axes, and computes the bytes per index along each axis,
+ * except that of the records. */
+static void take_axes(cursor *c, const netcdf_header *header,
+                      netcdf_variable *v) {
+    v->axes = take_count(c);
+    v->bytes = 1;
+    for (int64_t i = 0; i < v->axes && c->status == SNOW_STATUS_OK; i++) {
+        int64_t index = take_count(c);
+        if (c->status == SNOW_STATUS_OK && index >= header->dimension_count)
+            refuse(c, "a variable has a dimension that does not exist; the "
+                      "file is damaged");
+        if (c->status != SNOW_STATUS_OK)
+            return;
+        const netcdf_dimension *d = &header->dimensions[index];
+        if (i < NETCDF_MOST_AXES)
+            v->axis[i] = index;
+        if (d->records && i == 0)
+            v->records = true;
+        else if (d->records)
+            refuse(c, "a variable has the records not as its first dimension; "
+                      "the file is damaged");
+        else if (!snow_mul_u64(v->bytes, (uint64_t)d->size, &v->bytes) ||
+                 v->bytes > (uint64_t)INT64_MAX / 8)
+            refuse(c, "a variable is too large for any file; it is damaged");
+    }
+}
+
+static snow_type unsigned_type(snow_type type) {
+    return type == SNOW_TYPE_INT8    ? SNOW_TYPE_UINT8
+           : type == SNOW_TYPE_INT16 ? SNOW_TYPE_UINT16
+           : type == SNOW_TYPE_INT32 ? SNOW_TYPE_UINT32
+                                     : type;
+}
+
+static void take_variable(cursor *c, netcdf_header *header,
+                          netcdf_variable *v) {
+    memset(v, 0, sizeof *v);
+    v->values = snow_cf_values_default();
+    take_name(c, v->name);
+    take_axes(c, header, v);
+    take_attributes(c, header, v);
+    uint64_t type = take_number(c, 4);
+    v->type = type_of(type);
+    if (v->is_unsigned)
+        v->type = unsigned_type(v->type);
+    if (c->status == SNOW_STATUS_OK && !type_bytes(type))
+        refuse(c, "its NetCDF header has an unknown type; it is damaged");
+    v->bytes *= type_bytes(type);
+    take_count(c); /* the size, which is wrong in some files */
+    v->begin = take_number(c, header->version == 1 ? 4 : 8);
+}
+
+static void take_variables(cursor *c, netcdf_header *header) {
+    int64_t count = take_list(c, VARIABLES, 28);
+    if (c->status != SNOW_STATUS_OK)
+        return;
+    header->variables = snow_allocate_array(c->context, (uint64_t)count,
+                                            sizeof *header->variables);
+    if (!header->variables) {
+        c->status = SNOW_STATUS_NO_MEMORY;
+        return;
+    }
+    for (int64_t i = 0; i < count && c->status == SNOW_STATUS_OK; i++) {
+        take_variable(c, header, &header->variables[i]);
+        header->variable_count = i + 1;
+    }
+}
+
+/* Parts of a record begin at multiples of four, except if a record has only one
+ * variable. */
+static void measure_records(cursor *c, netcdf_header *header) {
+    uint64_t sum = 0, first = UINT64_MAX;
+    const netcdf_variable *only = NULL;
+    int count = 0;
+    for (int64_t i = 0; i < header->variable_count; i++) {
+        const netcdf_variable *v = &header->variables[i];
+        if (!v->records)
+            continue;
+        only = v;
+        count++;
+        if (v->begin < first)
+            first = v->begin;
+        if (!snow_add_u64(sum, (v->bytes + 3) / 4 * 4, &sum) ||
+            sum > (uint64_t)INT64_MAX)
+            refuse(c, "a record is too large for any file; it is damaged");
+    }
+    header->record_bytes = count == 1 ? only->bytes : sum;
+    if (header->records >= 0 || c->status != SNOW_STATUS_OK)
+        return;
+    /* A program that still writes does not give the number of records. */
+    uint64_t size = snow_seekable_size(c->bytes);
+    header->records = header->record_bytes && first < size
+                          ? (int64_t)((size - first) / header->record_bytes)
+                          : 0;
+}
+
+snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
+                                    netcdf_header *out) {
+    cursor c = {.context = context, .bytes = bytes, .wide = 4};
+    unsigned char magic[4];
+    *out = (netcdf_header){.context = context};
+    take(&c, magic, sizeof magic);
+    out->version = magic[3];
+    if (memcmp(magic, "CDF", 3) != 0 ||
+        (out->version != 1 && out->version != 2 && out->version != 5))
+        refuse(&c, "is not a NetCDF file of version 1, 2 or 5, although its "
+                   "name says so; get it again");
+    if (out->version == 5)
+        c.wide = 8;
+    uint64_t records = take_number(&c, c.wide);
+    bool streaming = records == (c.wide == 4 ? UINT32_MAX : UINT64_MAX);
+    if (!streaming && records > (uint64_t)INT64_MAX)
+        refuse(&c, "its NetCDF header has a count below 0; it is damaged");
+    out->records = streaming ? -1 : (int64_t)records;
+    take_dimensions(&c, out);
+    take_attributes(&c, out, NULL);
+    take_variables(&c, out);
+    measure_records(&c, out);
+    for (int64_t i = 0; i < out->dimension_count && c.status == SNOW_STATUS_OK;
+         i++)
+        if (out->dimensions[i].records)
+            out->dimensions[i].size = out->records;
+    return c.status;
+}
+
+void snow_netcdf_free_header(netcdf_header *header) {
+    snow_release(header->context, header->dimensions);
+    snow_release(header->context, header->variables);
+}

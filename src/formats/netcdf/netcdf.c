@@ -1,0 +1,280 @@
+/* formats/netcdf/netcdf.c - variables of classic NetCDF files: .nc.  NetCDF-4
+ * files are HDF5, and read as such.
+ *
+ * The last dimension is x, the ones before y and z, then channel and time, as
+ * with HDF5.  Coordinates and missing values follow the Climate and Forecast
+ * conventions. */
+#include "formats/netcdf/netcdf.h"
+#include "formats/array.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool probe_netcdf(const unsigned char *bytes, size_t size) {
+    return size >= 4 && !memcmp(bytes, "CDF", 3) &&
+           (bytes[3] == 1 || bytes[3] == 2 || bytes[3] == 5);
+}
+
+/* Size of a variable's axis, counted from the end: 0 is x. */
+static int64_t size_of(const netcdf_header *header, const netcdf_variable *v,
+                       int64_t axis) {
+    return axis < v->axes ? header->dimensions[v->axis[v->axes - 1 - axis]].size
+                          : 1;
+}
+
+/* Whether a variable could be a volume, by its last axes. */
+static bool is_volume(const netcdf_header *header, const netcdf_variable *v,
+                      int axes) {
+    if (!v->type || v->axes < axes || v->axes > NETCDF_MOST_AXES)
+        return false;
+    for (int i = 0; i < axes; i++)
+        if (size_of(header, v, i) < 2)
+            return false;
+    return true;
+}
+
+/* Appends the name of a variable and its sizes to the list. */
+static void note(const netcdf_header *header, const netcdf_variable *v,
+                 char *list, size_t room) {
+    size_t used = strlen(list);
+    char sizes[128] = "";
+    for (int64_t i = 0, at = 0; i < v->axes && at < 100; i++)
+        at += snprintf(sizes + at, sizeof sizes - (size_t)at, "%s%lld",
+                       i ? "x" : "", (long long)size_of(header, v, i));
+    if (used + strlen(v->name) + strlen(sizes) + 8 < room)
+        snprintf(list + used, room - used, "%s%s (%s)", used ? ", " : "",
+                 v->name, sizes);
+}
+
+/* The only variable with three axes or, if there is none, with two. */
+static snow_status find_only(const netcdf_header *header, char *list,
+                             size_t room, const netcdf_variable **out) {
+    int found = 0;
+    for (int axes = 3; axes >= 2 && !found; axes--)
+        for (int64_t i = 0; i < header->variable_count; i++)
+            if (is_volume(header, &header->variables[i], axes)) {
+                *out = &header->variables[i];
+                note(header, *out, list, room);
+                found++;
+            }
+    if (found == 1)
+        return SNOW_STATUS_OK;
+    if (!found)
+        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                         "has no numeric variable with three dimensions; "
+                         "choose another file");
+    return snow_fail(header->context, SNOW_STATUS_BAD_USAGE,
+                     "holds %d volumes; choose one with --dataset: %s", found,
+                     list);
+}
+
+static snow_status find(const netcdf_header *header, const char *asked,
+                        const netcdf_variable **out) {
+    char list[800] = "";
+    snow_status status = find_only(header, list, sizeof list, out);
+    if (!asked)
+        return status;
+    if (*asked == '/') /* the same name as in NetCDF-4 */
+        asked++;
+    for (int64_t i = 0; i < header->variable_count; i++)
+        if (!strcmp(header->variables[i].name, asked)) {
+            *out = &header->variables[i];
+            if ((*out)->type && (*out)->axes >= 1 &&
+                (*out)->axes <= NETCDF_MOST_AXES)
+                return SNOW_STATUS_OK;
+            return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                             "%.100s is not a numeric array with one to five "
+                             "dimensions; choose another with --dataset",
+                             asked);
+        }
+    return snow_fail(header->context, SNOW_STATUS_BAD_USAGE,
+                     "--dataset %.200s: there is no such variable; the file "
+                     "has %s",
+                     asked, *list ? list : "none that is a volume");
+}
+
+/* Computes the strides of all axes, the fastest first, and all bytes from the
+ * beginning of the file to the variable's end. */
+static bool lay_out(const netcdf_header *header, const netcdf_variable *v,
+                    uint64_t steps[NETCDF_MOST_AXES], uint64_t *end) {
+    int64_t sizes[NETCDF_MOST_AXES];
+    uint64_t bytes;
+    int axes = (int)v->axes, inner = axes - (v->records ? 1 : 0);
+    for (int i = 0; i < axes; i++)
+        sizes[i] = size_of(header, v, i);
+    if (!snow_array_steps(sizes, inner, snow_type_size(v->type), steps, &bytes))
+        return false;
+    for (int i = axes; i < NETCDF_MOST_AXES; i++)
+        steps[i] = 0;
+    if (v->records) {
+        uint64_t before;
+        steps[axes - 1] = header->record_bytes;
+        if (sizes[axes - 1] < 1 ||
+            !snow_mul_u64((uint64_t)sizes[axes - 1] - 1, header->record_bytes,
+                          &before) ||
+            !snow_add_u64(bytes, before, &bytes))
+            return false;
+    }
+    return snow_add_u64(bytes, v->begin, end) && *end <= (uint64_t)INT64_MAX;
+}
+
+/* The coordinate variable of a dimension has its name and is its only axis;
+ * NULL if there is none. */
+static const netcdf_variable *coordinates_of(const netcdf_header *header,
+                                             int64_t dimension) {
+    for (int64_t i = 0; i < header->variable_count; i++) {
+        const netcdf_variable *v = &header->variables[i];
+        if (v->axes == 1 && v->axis[0] == dimension && v->type &&
+            !strcmp(v->name, header->dimensions[dimension].name))
+            return v;
+    }
+    return NULL;
+}
+
+/* Reads the variable's values as data into an array of that size; returns false
+ * if they are truncated. */
+static bool read_coordinates(const netcdf_header *header,
+                             const netcdf_variable *v, snow_seekable *bytes,
+                             const snow_volume *line, double *out) {
+    size_t size = snow_type_size(v->type), count = (size_t)line->info.dims[0];
+    uint64_t step = v->records ? header->record_bytes : size;
+    unsigned char *at = line->owned;
+    for (size_t i = 0; i < count; i++, at += size)
+        if (snow_seekable_read(bytes, v->begin + i * step, at, size) < size)
+            return false;
+    if (!snow_machine_big_endian())
+        snow_swap_bytes(line->owned, count, size);
+    snow_volume_natives(line, 0, count, out);
+    for (size_t i = 0; i < count; i++)
+        out[i] = out[i] * v->values.scale + v->values.offset;
+    return true;
+}
+
+/* A volume of one row serves to convert the values to doubles. */
+static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
+                             int64_t dimension, cf_axis *out) {
+    int64_t count = header->dimensions[dimension].size;
+    const netcdf_variable *v = coordinates_of(header, dimension);
+    if (!v || count < 1 || count > CF_MOST_COORDINATES ||
+        (uint64_t)count > snow_seekable_size(bytes))
+        return SNOW_STATUS_OK;
+    snow_volume_info info = snow_volume_info_default("netcdf");
+    snow_volume *line;
+    info.dims[0] = count;
+    info.type = v->type;
+    SNOW_TRY(snow_volume_new(header->context, &info, &line));
+    double *values =
+        snow_allocate_array(header->context, (uint64_t)count, sizeof *values);
+    if (values && read_coordinates(header, v, bytes, line, values))
+        snow_cf_measure(values, count, v->units, out);
+    snow_release(header->context, values);
+    snow_volume_close(line);
+    return values ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
+/* Fills info, and finds where the voxels are. */
+static snow_status describe(const netcdf_header *header,
+                            const netcdf_variable *v, snow_seekable *bytes,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_array *array) {
+    uint64_t steps[NETCDF_MOST_AXES];
+    cf_axis axes[3] = {{0}};
+    int64_t channel;
+    if (!lay_out(header, v, steps, &array->all))
+        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                         "%.100s is empty or too large for any file; choose "
+                         "another with --dataset",
+                         v->name);
+    bool channels = v->axes == 5;
+    for (int i = 0; i < 3; i++) {
+        info->dims[i] = size_of(header, v, i);
+        array->step[i] = steps[i];
+        if (i < v->axes)
+            SNOW_TRY(
+                read_axis(header, bytes, v->axis[v->axes - 1 - i], &axes[i]));
+    }
+    info->type = v->type;
+    info->times = size_of(header, v, channels ? 4 : 3);
+    SNOW_TRY(snow_volume_pick_channel(header->context, options,
+                                      channels ? size_of(header, v, 3) : 1,
+                                      &channel));
+    SNOW_TRY(
+        snow_volume_pick_time(header->context, "time step", options, info));
+    array->first = v->begin + (uint64_t)info->time * steps[channels ? 4 : 3];
+    if (channels)
+        array->first += (uint64_t)channel * steps[3];
+    array->big_endian = true;
+    array->more = true;
+    if (axes[0].given || axes[1].given || axes[2].given)
+        snow_cf_place(header->context, axes, info);
+    return SNOW_STATUS_OK;
+}
+
+/* Reads from the source if it is still before the bytes, otherwise from the
+ * part that was kept. */
+static snow_status read_array(snow_source *source, snow_seekable *bytes,
+                              const snow_volume_options *options,
+                              const snow_array *array, snow_volume_info *info,
+                              snow_volume **out) {
+    snow_source *held = NULL;
+    if (snow_seekable_held(bytes)) {
+        SNOW_TRY(snow_source_open_memory(
+            snow_source_context(source), snow_source_name(source),
+            snow_seekable_held(bytes), (size_t)snow_seekable_size(bytes),
+            &held));
+        source = held;
+    }
+    snow_status status = snow_array_read(source, options, array, info, out);
+    snow_source_close(held);
+    return status;
+}
+
+static snow_status read_file(snow_source *source, snow_seekable *bytes,
+                             const snow_volume_options *options,
+                             const netcdf_header *header,
+                             snow_volume_info *info, snow_volume **out) {
+    const netcdf_variable *v;
+    snow_array array = {0};
+    if (header->minc)
+        return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
+                         "is a MINC file, whose values are scaled slice by "
+                         "slice; convert it with mnc2nii");
+    SNOW_TRY(find(header, options->dataset, &v));
+    SNOW_TRY(describe(header, v, bytes, options, info, &array));
+    snow_volume *volume = NULL;
+    SNOW_TRY(
+        read_array(source, bytes, options, &array, info, out ? &volume : NULL));
+    if (out) {
+        SNOW_TRY(snow_cf_blank(&v->values, &volume));
+        *out = volume;
+    }
+    snow_cf_apply(&v->values, info);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status read_netcdf(snow_source *source,
+                               const snow_volume_options *options,
+                               snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    snow_seekable *bytes;
+    netcdf_header header;
+    *info = snow_volume_info_default("netcdf");
+    SNOW_TRY(snow_seekable_open(source, &bytes));
+    snow_status status = snow_netcdf_read_header(context, bytes, &header);
+    if (status == SNOW_STATUS_OK)
+        status = read_file(source, bytes, options, &header, info, out);
+    snow_netcdf_free_header(&header);
+    snow_seekable_close(bytes);
+    return status;
+}
+
+const snow_format snow_format_netcdf = {
+    .name = "netcdf",
+    .text = "NetCDF, classic (.nc, .cdf), one variable of them",
+    .suffixes = {".nc", ".cdf", ".nc.gz"},
+    .probe = probe_netcdf,
+    .crops = true,
+    .sets = true,
+    .channels = true,
+    .read = read_netcdf,
+};

@@ -1,0 +1,156 @@
+/* formats/nrrd/grid.c - selects the spatial axes of an NRRD array and places
+ * the samples.
+ *
+ * Up to three axes are spatial, and one after them may be time (or a list of
+ * volumes), of which one step is read.  Axes with one sample may be ignored
+ * anywhere, since the order of the samples does not depend on them:
+ *
+ *   sizes 1 64 64 20 5, kinds stub domain domain domain time
+ *         -  x  y  z t */
+#include "formats/nrrd/nrrd.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The selected axes, by index. */
+typedef struct axis_choice {
+    int space[NRRD_MOST_AXES];
+    int spaces;
+    int time; /* -1: none */
+} axis_choice;
+
+/* A direction in space is more reliable than a kind: some files call spatial
+ * axes "list" or nothing at all. */
+static nrrd_role role_of(const nrrd_header *header, const nrrd_axis *axis) {
+    if (axis->directed) {
+        const double *step = axis->direction;
+        bool only_time =
+            step[0] == 0 && step[1] == 0 && step[2] == 0 && step[3] != 0;
+        return only_time ? NRRD_AXIS_TIME : NRRD_AXIS_SPACE;
+    }
+    /* "none" among the directions, and no kind that says more. */
+    if (header->directions && axis->role != NRRD_AXIS_TIME)
+        return NRRD_AXIS_VALUES;
+    return axis->role == NRRD_AXIS_UNKNOWN ? NRRD_AXIS_SPACE : axis->role;
+}
+
+/* Ignores spatial axes of one sample, the last first, while there are more than
+ * three. */
+static void drop_flat_axes(const nrrd_header *header, axis_choice *choice) {
+    for (int i = choice->spaces; i-- > 0 && choice->spaces > 3;) {
+        if (header->axes[choice->space[i]].size > 1)
+            continue;
+        for (int k = i + 1; k < choice->spaces; k++)
+            choice->space[k - 1] = choice->space[k];
+        choice->spaces--;
+    }
+}
+
+/* A time step must be contiguous, so time comes last; components between or
+ * before the voxels are not supported. */
+static snow_status choose_axes(snow_context *context, const nrrd_header *header,
+                               axis_choice *out) {
+    *out = (axis_choice){.time = -1};
+    for (int i = 0; i < header->dimension; i++) {
+        nrrd_role role = role_of(header, &header->axes[i]);
+        if (role != NRRD_AXIS_SPACE && header->axes[i].size == 1)
+            continue;
+        if (role == NRRD_AXIS_VALUES)
+            return snow_fail(
+                context, SNOW_STATUS_BAD_INPUT,
+                "axis %d has %lld values for each voxel (a vector, a colour or "
+                "an unknown kind); extract one as a volume",
+                i, (long long)header->axes[i].size);
+        /* Spatial axes after time would be scattered in the file. */
+        if (out->time >= 0)
+            return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                             "axis %d, time or a list of volumes, is not the "
+                             "last one; reorder the axes",
+                             out->time);
+        if (role == NRRD_AXIS_TIME)
+            out->time = i;
+        else
+            out->space[out->spaces++] = i;
+    }
+    drop_flat_axes(header, out);
+    if (out->spaces > 3)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "has %d axes, and the meaning of the 4th is unknown; add \"kinds: "
+            "domain domain domain time\", or extract a volume",
+            out->spaces);
+    return SNOW_STATUS_OK;
+}
+
+/* A direction of length 1 for each missing column, orthogonal to the others. */
+static void complete_columns(double m[4][4], int given) {
+    if (given == 1) {
+        int least = 0;
+        for (int i = 1; i < 3; i++)
+            if (fabs(m[i][0]) < fabs(m[least][0]))
+                least = i;
+        double axis[3] = {least == 0, least == 1, least == 2};
+        for (int i = 0; i < 3; i++) {
+            int a = (i + 1) % 3, b = (i + 2) % 3;
+            m[i][1] = axis[a] * m[b][0] - axis[b] * m[a][0];
+        }
+        double length = hypot(hypot(m[0][1], m[1][1]), m[2][1]);
+        for (int i = 0; i < 3 && length > 0; i++)
+            m[i][1] /= length;
+    }
+    for (int i = 0; i < 3; i++) {
+        int a = (i + 1) % 3, b = (i + 2) % 3;
+        m[i][2] = m[a][0] * m[b][1] - m[b][0] * m[a][1];
+    }
+    double length = hypot(hypot(m[0][2], m[1][2]), m[2][2]);
+    for (int i = 0; i < 3 && length > 0; i++)
+        m[i][2] /= length;
+}
+
+/* Axis j of the volume is the j-th spatial axis in the file's order; without
+ * directions it runs along world axis j. */
+static void fill_matrix(const nrrd_header *header, const axis_choice *choice,
+                        double m[4][4]) {
+    for (int j = 0; j < choice->spaces; j++) {
+        const nrrd_axis *axis = &header->axes[choice->space[j]];
+        for (int i = 0; i < 3; i++) {
+            m[i][j] = i == j ? axis->spacing : 0;
+            if (axis->directed)
+                m[i][j] = axis->direction[i];
+        }
+    }
+    if (header->directions && choice->spaces > 0 && choice->spaces < 3)
+        complete_columns(m, choice->spaces);
+    for (int i = 0; i < 3; i++) {
+        m[i][3] = header->origin[i];
+        if (i < choice->spaces) /* 0 if there are directions or an origin */
+            m[i][3] += header->axes[choice->space[i]].first;
+        for (int j = 0; j < 4; j++)
+            /* + 0 removes negative zeros. */
+            m[i][j] = m[i][j] * header->turn[i] + 0.0;
+    }
+}
+
+/* The matrix is checked before the time step: an error of the file comes before
+ * one of the options. */
+snow_status snow_nrrd_lay_out(snow_context *context, const nrrd_header *header,
+                              const snow_volume_options *options,
+                              snow_volume_info *info, snow_region *region) {
+    axis_choice choice;
+    SNOW_TRY(choose_axes(context, header, &choice));
+    info->type = header->type;
+    info->medical = header->medical;
+    memcpy(info->unit, header->unit, sizeof info->unit);
+    for (int i = 0; i < choice.spaces; i++)
+        info->dims[i] = header->axes[choice.space[i]].size;
+    if (choice.time >= 0)
+        info->times = header->axes[choice.time].size;
+    fill_matrix(header, &choice, info->matrix);
+    SNOW_TRY(snow_volume_info_check(context, info));
+    SNOW_TRY(snow_volume_pick_time(context, "time step", options, info));
+    SNOW_TRY(snow_region_lay_out(context, options, info, region));
+    if (header->turn[2] < 0)
+        snow_notify(context, "the world is left-handed; z is flipped, so that "
+                             "nothing is mirrored");
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,76 @@
+/* formats/nrrd/write.c - writes NRRD files with header and raw voxels in one.
+ *
+ * Source: "Definition of NRRD File Format", teem.sourceforge.net/nrrd. Numbers
+ * have 17 digits, enough to restore every double. */
+#include "formats/write.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* NRRD's names of the scalar types, which all its readers know. */
+static const char *type_name(snow_type type) {
+    switch (type) {
+    case SNOW_TYPE_FLOAT32:
+        return "float";
+    case SNOW_TYPE_FLOAT64:
+        return "double";
+    default:
+        return snow_type_name(type); /* int8, uint8, ... */
+    }
+}
+
+/* "(x,y,z)" of one column of the matrix. */
+static int print_vector(char *text, size_t room, const double m[4][4],
+                        int column) {
+    const double vector[3] = {m[0][column], m[1][column], m[2][column]};
+    text[0] = '(';
+    int used = 1 + snow_print_numbers(text + 1, room - 1, vector, 3, ",");
+    return used + snprintf(text + used, room - (size_t)used, ")");
+}
+
+/* Space directions and origin; the caller's buffer is large enough. */
+static int print_geometry(char *text, size_t room,
+                          const snow_volume_info *info) {
+    const char *unit = info->unit;
+    int used =
+        snprintf(text, room, "space%s\nspace directions:",
+                 info->medical ? ": right-anterior-superior" : " dimension: 3");
+    for (int j = 0; j < 4; j++) {
+        used += snprintf(text + used, room - (size_t)used, "%s",
+                         j < 3 ? " " : "\nspace origin: ");
+        used += print_vector(text + used, room - (size_t)used, info->matrix, j);
+    }
+    used += snprintf(text + used, room - (size_t)used, "\n");
+    if (*unit && !strpbrk(unit, "\"\\\r\n"))
+        used +=
+            snprintf(text + used, room - (size_t)used,
+                     "space units: \"%s\" \"%s\" \"%s\"\n", unit, unit, unit);
+    return used;
+}
+
+snow_status snow_nrrd_write(const snow_volume *volume, const char *path,
+                            snow_writer *writer) {
+    const snow_volume_info *info = &volume->info;
+    char text[2048];
+    if (info->slope != 1 || info->intercept != 0)
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
+                         "%s: NRRD cannot hold slope %g and intercept %g; "
+                         "write .nii or .mha",
+                         path, info->slope, info->intercept);
+    int used = snprintf(text, sizeof text,
+                        "NRRD0004\n"
+                        "type: %s\n"
+                        "dimension: 3\n"
+                        "sizes: %lld %lld %lld\n",
+                        type_name(info->type), (long long)info->dims[0],
+                        (long long)info->dims[1], (long long)info->dims[2]);
+    used += print_geometry(text + used, sizeof text - (size_t)used, info);
+    used += snprintf(text + used, sizeof text - (size_t)used,
+                     "kinds: domain domain domain\n"
+                     "encoding: raw\n"
+                     "%s"
+                     "\n",
+                     snow_type_size(info->type) > 1 ? "endian: little\n" : "");
+    SNOW_TRY(snow_writer_write(writer, text, (size_t)used));
+    return snow_write_voxels(volume, writer);
+}

@@ -1,0 +1,185 @@
+/* formats/raw.c - raw voxels without a header, described by the user.
+ *
+ * Missing options are taken from the file's name, where archives of volumes put
+ * them: engine_256x256x110_uint8.raw, head_64x64x93_u16le.raw.gz. */
+#include "formats/unsupported.h"
+#include "formats/write.h"
+
+#include <ctype.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The name without folders, whose names mean other things. */
+static const char *base_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Parses a word "256x256x110". */
+static bool parse_dims(const char *word, size_t length, int64_t dims[3]) {
+    int64_t found[3];
+    const char *at = word, *end = word + length;
+    for (int i = 0; i < 3; i++) {
+        if (i && (at == end || *at++ != 'x'))
+            return false;
+        /* Nine digits cannot overflow; no volume has longer sides. */
+        int digits = 0;
+        for (found[i] = 0; digits < 9 && at < end; digits++, at++) {
+            if (!isdigit((unsigned char)*at))
+                break;
+            found[i] = found[i] * 10 + (*at - '0');
+        }
+        if (!found[i])
+            return false;
+    }
+    if (at != end)
+        return false;
+    memcpy(dims, found, sizeof found);
+    return true;
+}
+
+/* Parses a type with or without byte order: "uint8", "u16be", "f32". */
+static bool parse_type(const char *word, size_t length, snow_type *type,
+                       snow_endian *endian) {
+    static const char *const brief[][2] = {
+        {"i8", "int8"},     {"u8", "uint8"},      {"i16", "int16"},
+        {"u16", "uint16"},  {"i32", "int32"},     {"u32", "uint32"},
+        {"i64", "int64"},   {"u64", "uint64"},    {"f32", "float32"},
+        {"f64", "float64"}, {"s8", "int8"},       {"s16", "int16"},
+        {"s32", "int32"},   {"ushort", "uint16"}, {"short", "int16"},
+        {"uchar", "uint8"},
+    };
+    char text[16];
+    if (length >= sizeof text)
+        return false;
+    for (size_t i = 0; i < length; i++)
+        text[i] = (char)tolower((unsigned char)word[i]);
+    text[length] = 0;
+    snow_endian order = SNOW_ENDIAN_DEFAULT;
+    if (snow_has_suffix(text, "be"))
+        order = SNOW_ENDIAN_BIG;
+    else if (snow_has_suffix(text, "le") && !snow_has_suffix(text, "double"))
+        order = SNOW_ENDIAN_LITTLE;
+    if (order)
+        text[length - 2] = 0;
+    const char *name = text;
+    for (size_t i = 0; i < sizeof brief / sizeof *brief; i++)
+        if (!strcmp(text, brief[i][0]))
+            name = brief[i][1];
+    if (!snow_type_from_name(name))
+        return false;
+    *type = snow_type_from_name(name);
+    *endian = order;
+    return true;
+}
+
+/* Fills missing options from the words of the name. */
+static void read_name(snow_context *context, const char *path,
+                      snow_volume_options *options) {
+    snow_volume_options found = {0};
+    for (const char *word = base_name(path); *word;) {
+        size_t length = strcspn(word, "_.- ");
+        if (!found.dims[0])
+            parse_dims(word, length, found.dims);
+        if (!found.type)
+            parse_type(word, length, &found.type, &found.endian);
+        word += length;
+        word += strspn(word, "_.- ");
+    }
+    bool dims = !options->dims[0] && found.dims[0];
+    bool type = !options->type && found.type;
+    if (dims)
+        memcpy(options->dims, found.dims, sizeof found.dims);
+    if (type)
+        options->type = found.type;
+    /* "u16be" gives the byte order even if the type is given, if it is the
+     * same. */
+    bool endian =
+        !options->endian && found.endian && options->type == found.type;
+    if (endian)
+        options->endian = found.endian;
+    if (dims || type || endian)
+        snow_notify(
+            context, "%s: read as %lldx%lldx%lld %s, %s endian, by its name",
+            path, (long long)options->dims[0], (long long)options->dims[1],
+            (long long)options->dims[2], snow_type_name(options->type),
+            options->endian == SNOW_ENDIAN_BIG ? "big" : "little");
+}
+
+/* Sizes or the type are missing: the user forgot them if the file is meant as
+ * raw data; otherwise no reader knows the file. */
+static snow_status refuse_unspecified(snow_source *source,
+                                      const snow_volume_options *options) {
+    const char *name = snow_source_name(source);
+    snow_context *context = snow_source_context(source);
+    unsigned char bytes[SNOW_PEEK_BYTES];
+    size_t size;
+    SNOW_TRY(snow_source_peek(source, bytes, sizeof bytes, &size));
+    const char *stranger = snow_stranger(bytes, size);
+    if (stranger)
+        return snow_fail(context, SNOW_STATUS_BAD_INPUT, "%s", stranger);
+    bool meant = options->dims[0] || options->type || options->endian ||
+                 options->offset || snow_has_suffix(name, ".raw") ||
+                 snow_has_suffix(name, ".raw.gz");
+    return snow_fail(context,
+                     meant ? SNOW_STATUS_BAD_USAGE : SNOW_STATUS_BAD_INPUT,
+                     "has an unknown format; if it is raw data, give --dims "
+                     "XxYxZ and --type (uint8, int16, float32, ...)");
+}
+
+/* The bytes can only be too few, which snow_volume_read checks; too many are
+ * reported. */
+static snow_status read_raw(snow_source *source,
+                            const snow_volume_options *options,
+                            snow_volume_info *info, snow_volume **out) {
+    snow_context *context = snow_source_context(source);
+    snow_volume_options all = *options;
+    if (!all.dims[0] || !all.type || !all.endian)
+        read_name(context, snow_source_name(source), &all);
+    if (!all.dims[0] || !all.dims[1] || !all.dims[2] || !all.type)
+        return refuse_unspecified(source, &all);
+    /* Gzip data are decompressed by now, with unknown length.  A compressed
+     * file whose first bytes are damaged would be shown as noise. */
+    if (snow_has_suffix(snow_source_name(source), ".gz") &&
+        snow_source_remaining(source) >= 0)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "is not gzip, although its name says so; get it again, or rename "
+            "it if the voxels are not compressed");
+    *info = snow_volume_info_default("raw");
+    memcpy(info->dims, all.dims, sizeof info->dims);
+    info->type = all.type;
+    SNOW_TRY(snow_volume_pick_time(context, "time step", &all, info));
+    return snow_volume_read(source, &all, all.endian == SNOW_ENDIAN_BIG,
+                            all.offset, info, out);
+}
+
+/* No probe: any bytes can be raw data, so that it is never found, only left. */
+/* A name alone cannot bring the voxels back: the remark gives the options that
+ * do.  A scaling is refused, since dropped it would change every value. */
+static snow_status write_raw(const snow_volume *volume, const char *path,
+                             snow_writer *writer) {
+    const snow_volume_info *info = &volume->info;
+    if (info->slope != 1 || info->intercept != 0)
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
+                         "%s: raw data cannot say slope %g and intercept %g; "
+                         "write .nii or .mha",
+                         path, info->slope, info->intercept);
+    SNOW_TRY(snow_write_voxels(volume, writer));
+    snow_notify(volume->context,
+                "%s: raw data keep no sizes; open it with --dims "
+                "%lldx%lldx%lld --type %s --spacing %gx%gx%g",
+                path, (long long)info->dims[0], (long long)info->dims[1],
+                (long long)info->dims[2], snow_type_name(info->type),
+                info->spacing[0], info->spacing[1], info->spacing[2]);
+    return SNOW_STATUS_OK;
+}
+
+const snow_format snow_format_raw = {
+    .name = "raw",
+    .text = "raw voxels, described by options (.raw, .raw.gz, any name)",
+    .suffixes = {".raw", ".raw.gz", ".bin", ".bin.gz"},
+    .crops = true,
+    .read = read_raw,
+    .write = write_raw,
+};

@@ -1,0 +1,327 @@
+/* formats/tiff/page.c - reads a page of a TIFF file, by libtiff.  The buffers
+ * for voxels are ours, and compared with what the file can hold before they are
+ * allocated. */
+#include "formats/tiff/tiff.h"
+
+#if SNOW_HAVE_TIFF
+
+#include "formats/array.h"
+
+#include <string.h>
+
+/* --- the layout of a page ----------------------------------------------------
+ * */
+
+static snow_type integer_type(uint16_t bits, bool is_signed) {
+    switch (bits) {
+    case 8:
+        return is_signed ? SNOW_TYPE_INT8 : SNOW_TYPE_UINT8;
+    case 16:
+        return is_signed ? SNOW_TYPE_INT16 : SNOW_TYPE_UINT16;
+    case 24:
+    case 32:
+        return is_signed ? SNOW_TYPE_INT32 : SNOW_TYPE_UINT32;
+    case 64:
+        return is_signed ? SNOW_TYPE_INT64 : SNOW_TYPE_UINT64;
+    default:
+        return SNOW_TYPE_NONE;
+    }
+}
+
+static bool parse_type(uint16_t bits, uint16_t format, tiff_page *page) {
+    page->coding = TIFF_PLAIN;
+    page->type = SNOW_TYPE_NONE;
+    if (format == SAMPLEFORMAT_IEEEFP) {
+        if (bits == 16)
+            page->coding = TIFF_HALF;
+        page->type = bits == 16 || bits == 32 ? SNOW_TYPE_FLOAT32
+                     : bits == 64             ? SNOW_TYPE_FLOAT64
+                                              : SNOW_TYPE_NONE;
+    } else if (bits == 1) {
+        page->coding = TIFF_BIT;
+        page->type = SNOW_TYPE_UINT8;
+    } else if (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT ||
+               format == SAMPLEFORMAT_VOID) {
+        if (bits == 24)
+            page->coding = TIFF_TRIPLE;
+        page->type = integer_type(bits, format == SAMPLEFORMAT_INT);
+    }
+    return page->type != SNOW_TYPE_NONE;
+}
+
+/* Subsampled or logarithmic colours are not the values of a volume.  JPEG
+ * colours are converted to RGB. */
+static bool has_values(TIFF *tiff, uint16_t photometric, uint16_t compression) {
+    if (photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG)
+        return TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+    return photometric != PHOTOMETRIC_YCBCR &&
+           photometric != PHOTOMETRIC_LOGL && photometric != PHOTOMETRIC_LOGLUV;
+}
+
+static uint16_t short_field(TIFF *tiff, uint32_t tag) {
+    uint16_t value = 0;
+    return TIFFGetFieldDefaulted(tiff, tag, &value) ? value : 0;
+}
+
+snow_status snow_tiff_describe(snow_tiff *file, tiff_page *out) {
+    TIFF *tiff = file->tiff;
+    uint32_t width = 0, height = 0, depth = 1;
+    tiff_page page = {0};
+    TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &width);
+    TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &height);
+    TIFFGetField(tiff, TIFFTAG_IMAGEDEPTH, &depth);
+    page.width = width;
+    page.height = height;
+    page.samples = short_field(tiff, TIFFTAG_SAMPLESPERPIXEL);
+    page.bits = short_field(tiff, TIFFTAG_BITSPERSAMPLE);
+    page.compression = short_field(tiff, TIFFTAG_COMPRESSION);
+    page.separate =
+        page.samples > 1 &&
+        short_field(tiff, TIFFTAG_PLANARCONFIG) == PLANARCONFIG_SEPARATE;
+    uint16_t format = short_field(tiff, TIFFTAG_SAMPLEFORMAT);
+    if (!parse_type(page.bits, format, &page))
+        return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                         "has values of %u bits in format %u, which is not "
+                         "supported; write integers of 8 to 64 bits or floats",
+                         page.bits, format);
+    if (width < 1 || height < 1 || depth > 1 || page.samples < 1)
+        return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                         "its pages have no valid size or depth for slices; "
+                         "write it again with one slice per page");
+    if (!has_values(tiff, short_field(tiff, TIFFTAG_PHOTOMETRIC),
+                    page.compression))
+        return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                         "its colours are stored as luminance and chrominance; "
+                         "write it again as grey or RGB");
+    *out = page;
+    return SNOW_STATUS_OK;
+}
+
+/* Most codecs have a longest run for their shortest code; for others only an
+ * implausible ratio is refused. */
+uint64_t snow_tiff_least(const tiff_page *page, uint64_t bytes) {
+    switch (page->compression) {
+    case COMPRESSION_NONE:
+        return bytes;
+    case COMPRESSION_PACKBITS:
+        return bytes / 64;
+    case COMPRESSION_LZW:
+        return bytes / 4096;
+    case COMPRESSION_DEFLATE:
+    case COMPRESSION_ADOBE_DEFLATE:
+        return bytes / SNOW_DEFLATE_RATIO;
+    default:
+        return bytes >> 16;
+    }
+}
+
+/* --- voxels ----------------------------------------------------------------
+ */
+
+/* A rectangle of decoded pixels with `samples` values each, whose first is the
+ * page's pixel (x, y). */
+typedef struct tiff_block {
+    const unsigned char *bytes;
+    int64_t x, y, width, height;
+    int64_t samples;
+    uint64_t row_bytes;
+} tiff_block;
+
+static void put_bits(const unsigned char *row, uint64_t first, uint64_t step,
+                     int64_t count, unsigned char *out) {
+    for (int64_t i = 0; i < count; i++) {
+        uint64_t bit = first + (uint64_t)i * step;
+        out[i] = row[bit / 8] >> (7 - bit % 8) & 1;
+    }
+}
+
+/* In the machine's byte order, as from libtiff, and sign extended. */
+static void put_triple(const unsigned char *at, bool is_signed,
+                       unsigned char *out) {
+    bool big = snow_machine_big_endian();
+    uint32_t value = (uint32_t)at[big ? 0 : 2] << 16 | (uint32_t)at[1] << 8 |
+                     at[big ? 2 : 0];
+    if (is_signed && (value & 0x800000))
+        value |= 0xff000000;
+    memcpy(out, &value, sizeof value);
+}
+
+static void put_value(const tiff_page *page, const unsigned char *at,
+                      unsigned char *out) {
+    uint16_t half;
+    float wide;
+    switch (page->coding) {
+    case TIFF_HALF:
+        memcpy(&half, at, sizeof half);
+        wide = snow_half_to_float(half);
+        memcpy(out, &wide, sizeof wide);
+        break;
+    case TIFF_TRIPLE:
+        put_triple(at, page->type == SNOW_TYPE_INT32, out);
+        break;
+    default:
+        memcpy(out, at, page->bits / 8);
+    }
+}
+
+/* Copies one sample of a row's pixels from `first` on. */
+static void put_row(const tiff_page *page, const tiff_block *block,
+                    const unsigned char *row, int64_t first, int64_t sample,
+                    int64_t count, unsigned char *out) {
+    size_t size = page->bits / 8, wide = snow_type_size(page->type);
+    uint64_t at = (uint64_t)(first * block->samples + sample);
+    if (page->coding == TIFF_BIT) {
+        put_bits(row, at, (uint64_t)block->samples, count, out);
+        return;
+    }
+    row += at * size;
+    if (page->coding == TIFF_PLAIN && block->samples == 1) {
+        memcpy(out, row, (size_t)count * size);
+        return;
+    }
+    for (int64_t i = 0; i < count; i++)
+        put_value(page, row + (uint64_t)(i * block->samples) * size,
+                  out + (size_t)i * wide);
+}
+
+/* Copies the part of a block that is in the box. */
+static void put_block(const tiff_page *page, const tiff_block *block,
+                      int64_t sample, const snow_region *w,
+                      unsigned char *slice) {
+    size_t wide = snow_type_size(page->type);
+    int64_t left = block->x > w->first[0] ? block->x : w->first[0];
+    int64_t right = w->first[0] + w->count[0];
+    if (right > block->x + block->width)
+        right = block->x + block->width;
+    for (int64_t y = block->y; y < block->y + block->height; y++) {
+        int64_t row = y - w->first[1];
+        if (row < 0 || row >= w->count[1] || left >= right)
+            continue;
+        put_row(page, block,
+                block->bytes + (uint64_t)(y - block->y) * block->row_bytes,
+                left - block->x, sample, right - left,
+                slice +
+                    (size_t)(row * w->count[0] + left - w->first[0]) * wide);
+    }
+}
+
+/* Allocates memory for a strip or tile, if the file can hold one. */
+static snow_status make_buffer(const snow_tiff *file, const tiff_page *page,
+                               uint64_t size, unsigned char **out) {
+    if (!size || snow_tiff_least(page, size) > snow_seekable_size(file->bytes))
+        return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                         "has strips or tiles of %llu bytes, more than the "
+                         "file can hold; it is damaged",
+                         (unsigned long long)size);
+    *out = snow_allocate_array(file->context, size, 1);
+    return *out ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
+/* Strips are rows of full width. */
+static snow_status read_strips(snow_tiff *file, const tiff_page *page,
+                               int64_t sample, const snow_region *w,
+                               unsigned char *buffer, unsigned char *slice) {
+    TIFF *tiff = file->tiff;
+    uint32_t rows = 0;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &rows);
+    if (rows < 1 || rows > page->height)
+        rows = (uint32_t)page->height;
+    int64_t first = w->first[1] / rows * rows;
+    uint64_t row_bytes = TIFFScanlineSize64(tiff);
+    for (int64_t y = first; y < w->first[1] + w->count[1]; y += rows) {
+        int64_t height = page->height - y < rows ? page->height - y : rows;
+        uint32_t strip = TIFFComputeStrip(
+            tiff, (uint32_t)y, page->separate ? (uint16_t)sample : 0);
+        tmsize_t wanted = (tmsize_t)((uint64_t)height * row_bytes);
+        if (TIFFReadEncodedStrip(tiff, strip, buffer, wanted) != wanted)
+            return snow_tiff_fail(file);
+        const tiff_block block = {buffer,   0,
+                                  y,        page->width,
+                                  height,   page->separate ? 1 : page->samples,
+                                  row_bytes};
+        put_block(page, &block, page->separate ? 0 : sample, w, slice);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status read_tiles(snow_tiff *file, const tiff_page *page,
+                              int64_t sample, const snow_region *w,
+                              unsigned char *buffer, unsigned char *slice) {
+    TIFF *tiff = file->tiff;
+    uint32_t wide = 0, high = 0;
+    tmsize_t size = (tmsize_t)TIFFTileSize64(tiff);
+    TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &wide);
+    TIFFGetField(tiff, TIFFTAG_TILELENGTH, &high);
+    if (wide < 1 || high < 1)
+        return snow_tiff_fail(file);
+    for (int64_t y = w->first[1] / high * high; y < w->first[1] + w->count[1];
+         y += high)
+        for (int64_t x = w->first[0] / wide * wide;
+             x < w->first[0] + w->count[0]; x += wide) {
+            uint32_t tile =
+                TIFFComputeTile(tiff, (uint32_t)x, (uint32_t)y, 0,
+                                page->separate ? (uint16_t)sample : 0);
+            if (TIFFReadEncodedTile(tiff, tile, buffer, size) != size)
+                return snow_tiff_fail(file);
+            const tiff_block block = {buffer,
+                                      x,
+                                      y,
+                                      wide,
+                                      high,
+                                      page->separate ? 1 : page->samples,
+                                      TIFFTileRowSize64(tiff)};
+            put_block(page, &block, page->separate ? 0 : sample, w, slice);
+        }
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_tiff_read_page(snow_tiff *file, const tiff_page *page,
+                                int64_t sample, const snow_region *region,
+                                unsigned char *slice) {
+    bool tiled = TIFFIsTiled(file->tiff);
+    unsigned char *buffer;
+    *file->complaint = 0;
+    SNOW_TRY(make_buffer(file, page,
+                         tiled ? TIFFTileSize64(file->tiff)
+                               : TIFFStripSize64(file->tiff),
+                         &buffer));
+    snow_status status =
+        tiled ? read_tiles(file, page, sample, region, buffer, slice)
+              : read_strips(file, page, sample, region, buffer, slice);
+    snow_release(file->context, buffer);
+    return status;
+}
+
+/* Reads rows directly from the bytes, which have the file's byte order. */
+snow_status snow_tiff_read_raw(snow_tiff *file, const tiff_page *page,
+                               int64_t index, int64_t sample,
+                               const snow_region *region,
+                               unsigned char *slice) {
+    uint64_t *offsets = NULL;
+    uint64_t row_bytes = TIFFScanlineSize64(file->tiff);
+    unsigned char *buffer;
+    if (!TIFFGetField(file->tiff, TIFFTAG_STRIPOFFSETS, &offsets) || !offsets)
+        return snow_tiff_fail(file);
+    SNOW_TRY(make_buffer(file, page, row_bytes, &buffer));
+    snow_status status = SNOW_STATUS_OK;
+    for (int64_t y = region->first[1];
+         y < region->first[1] + region->count[1] && status == SNOW_STATUS_OK;
+         y++) {
+        uint64_t at =
+            *offsets + (uint64_t)(index * page->height + y) * row_bytes;
+        if (snow_seekable_read(file->bytes, at, buffer, (size_t)row_bytes) <
+            row_bytes)
+            status = snow_tiff_fail(file);
+        else if (TIFFIsByteSwapped(file->tiff))
+            snow_swap_bytes(buffer, (uint64_t)(page->width * page->samples),
+                            page->bits / 8);
+        const tiff_block block = {buffer,        0,        y, page->width, 1,
+                                  page->samples, row_bytes};
+        if (status == SNOW_STATUS_OK)
+            put_block(page, &block, sample, region, slice);
+    }
+    snow_release(file->context, buffer);
+    return status;
+}
+
+#endif

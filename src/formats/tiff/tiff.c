@@ -1,0 +1,303 @@
+/* formats/tiff/tiff.c - TIFF files whose pages are slices: .tif.
+ *
+ * Pages are slices from z = 0 on.  Descriptions by ImageJ and OME give the
+ * order of channels, slices and times, and the size of a voxel.  Values are
+ * read as stored: neither palettes nor "white is zero" change them.  Bits
+ * become uint8 of 0 and 1, half floats float32, 24-bit integers 32-bit ones. */
+#include "formats/tiff/tiff.h"
+#include "formats/array.h"
+#include "formats/features.h"
+
+#include <math.h>
+#include <string.h>
+
+#if SNOW_HAVE_TIFF && !SNOW_LOADS
+
+/* More of one slice are read as slices; see take_for_slices. */
+#define MOST_CHANNELS 7
+
+/* How the file's images form volumes. */
+typedef struct tiff_plan {
+    tiff_page page;
+    tiff_shape shape;
+    int64_t images; /* pages, or the images that ImageJ wrote after the first */
+    bool raw;       /* the latter */
+    /* Distances, in images, of channels, slices and times. */
+    int64_t channel_step, slice_step, time_step;
+    int64_t channels, slices, times;
+} tiff_plan;
+
+/* Whether the page is a thumbnail of another. */
+static bool is_reduced(TIFF *tiff) {
+    uint32_t kind = 0;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
+    return (kind & FILETYPE_REDUCEDIMAGE) != 0;
+}
+
+static bool same_page(const tiff_page *a, const tiff_page *b) {
+    return a->width == b->width && a->height == b->height &&
+           a->samples == b->samples && a->type == b->type &&
+           a->bits == b->bits && a->coding == b->coding;
+}
+
+/* Advances to the next page that counts; *got is false after the last.  The
+ * result does not distinguish an end from a damaged page; libtiff's error
+ * does. */
+static snow_status next_page(snow_tiff *file, bool *got) {
+    do {
+        *file->complaint = 0;
+        *got = TIFFReadDirectory(file->tiff) != 0;
+        if (!*got)
+            return *file->complaint ? snow_tiff_fail(file) : SNOW_STATUS_OK;
+    } while (is_reduced(file->tiff));
+    return SNOW_STATUS_OK;
+}
+
+/* Counts the pages, which must be alike: the first that differs is named. */
+static snow_status count_pages(snow_tiff *file, tiff_plan *plan) {
+    bool got;
+    for (plan->images = 1;; plan->images++) {
+        tiff_page page;
+        SNOW_TRY(next_page(file, &got));
+        if (!got)
+            return SNOW_STATUS_OK;
+        SNOW_TRY(snow_tiff_describe(file, &page));
+        if (!same_page(&page, &plan->page))
+            return snow_fail(
+                file->context, SNOW_STATUS_BAD_INPUT,
+                "page %lld has %lldx%lld pixels of %s, but the first has "
+                "%lldx%lld of %s; all slices of a volume must be alike",
+                (long long)plan->images, (long long)page.width,
+                (long long)page.height, snow_type_name(page.type),
+                (long long)plan->page.width, (long long)plan->page.height,
+                snow_type_name(plan->page.type));
+    }
+}
+
+/* ImageJ writes one page followed by all images if they exceed 4 GB. */
+static void find_raw(tiff_plan *plan) {
+    plan->raw = plan->images == 1 && plan->shape.imagej &&
+                plan->shape.images > 1 && plan->page.coding == TIFF_PLAIN &&
+                plan->page.compression == COMPRESSION_NONE &&
+                !plan->page.separate;
+    if (plan->raw)
+        plan->images = plan->shape.images;
+}
+
+/* Programs often call slices times, or channels, of which ImageJ shows at most
+ * seven: a volume of one slice is hardly meant. */
+static void take_for_slices(snow_context *context, tiff_plan *plan) {
+    bool times = plan->times > 1;
+    bool channels = plan->times == 1 && plan->channels > MOST_CHANNELS;
+    if (plan->slices > 1 || (!times && !channels))
+        return;
+    int64_t *count = times ? &plan->times : &plan->channels;
+    snow_notify(context, "its %lld %s of one slice are read as slices",
+                (long long)*count, times ? "times" : "channels");
+    plan->slice_step = times ? plan->time_step : plan->channel_step;
+    plan->slices = *count;
+    *count = 1;
+}
+
+/* Channels, slices and times by the description, if their product is the number
+ * of images; otherwise all are slices. */
+static void share_images(snow_context *context, tiff_plan *plan) {
+    const tiff_shape *shape = &plan->shape;
+    int64_t c = shape->channels ? shape->channels : 1;
+    int64_t z = shape->slices ? shape->slices : 1;
+    int64_t t = shape->frames ? shape->frames : 1;
+    uint64_t all;
+    /* OME counts the samples of a pixel as channels too. */
+    if (!shape->imagej && plan->page.samples > 1 && c % plan->page.samples == 0)
+        c /= plan->page.samples;
+    bool right = snow_mul_u64((uint64_t)c, (uint64_t)z, &all) &&
+                 snow_mul_u64(all, (uint64_t)t, &all) &&
+                 all == (uint64_t)plan->images && (c > 1 || z > 1 || t > 1);
+    if (!right) {
+        c = t = 1;
+        z = plan->images;
+    }
+    int64_t step = 1;
+    for (const char *at = right ? shape->order + 2 : "CZT"; *at; at++) {
+        if (*at == 'C') {
+            plan->channel_step = step;
+            step *= c;
+        } else if (*at == 'Z') {
+            plan->slice_step = step;
+            step *= z;
+        } else {
+            plan->time_step = step;
+            step *= t;
+        }
+    }
+    plan->channels = c;
+    plan->slices = z;
+    plan->times = t;
+    take_for_slices(context, plan);
+}
+
+/* ImageJ stores pixels per unit of length where others store those per inch on
+ * paper, which have no meaning here. */
+static void place(snow_tiff *file, tiff_plan *plan, snow_volume_info *info) {
+    tiff_shape *shape = &plan->shape;
+    float x = 0, y = 0;
+    if (shape->imagej && TIFFGetField(file->tiff, TIFFTAG_XRESOLUTION, &x) &&
+        TIFFGetField(file->tiff, TIFFTAG_YRESOLUTION, &y)) {
+        shape->spacing[0] = 1 / (double)x;
+        shape->spacing[1] = 1 / (double)y;
+    }
+    for (int i = 0; i < 3; i++)
+        if (shape->spacing[i] > 0 && isfinite(shape->spacing[i]))
+            info->matrix[i][i] = shape->spacing[i];
+    memcpy(info->unit, shape->unit, sizeof info->unit);
+}
+
+static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
+                             snow_volume_info *info) {
+    char *text = NULL;
+    SNOW_TRY(snow_tiff_describe(file, &plan->page));
+    TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
+    snow_tiff_read_text(text, &plan->shape);
+    place(file, plan, info);
+    SNOW_TRY(count_pages(file, plan));
+    find_raw(plan);
+    share_images(file->context, plan);
+    info->dims[0] = plan->page.width;
+    info->dims[1] = plan->page.height;
+    info->dims[2] = plan->slices;
+    info->type = plan->page.type;
+    info->times = plan->times;
+    return SNOW_STATUS_OK;
+}
+
+/* Checks that the file can hold all pixels of all images, compressed or not. */
+static snow_status check_size(const snow_tiff *file, const tiff_plan *plan) {
+    const tiff_page *page = &plan->page;
+    uint64_t bits;
+    bool counts =
+        snow_mul_u64((uint64_t)page->width, (uint64_t)page->height, &bits) &&
+        snow_mul_u64(bits, (uint64_t)page->samples, &bits) &&
+        snow_mul_u64(bits, (uint64_t)plan->images, &bits) &&
+        snow_mul_u64(bits, page->bits, &bits);
+    uint64_t size = snow_seekable_size(file->bytes);
+    if (counts && snow_tiff_least(page, bits / 8) <= size)
+        return SNOW_STATUS_OK;
+    return snow_fail(file->context, SNOW_STATUS_BAD_INPUT,
+                     "claims %lld images of %lldx%lld pixels, which its %llu "
+                     "bytes cannot hold; it is truncated or damaged",
+                     (long long)plan->images, (long long)page->width,
+                     (long long)page->height, (unsigned long long)size);
+}
+
+/* Reads a page with its own layout: samples may be interleaved in one page and
+ * in planes in the next, with another compression. */
+static snow_status read_page(snow_tiff *file, const tiff_plan *plan,
+                             int64_t sample, const snow_region *region,
+                             unsigned char *slice) {
+    tiff_page page;
+    SNOW_TRY(snow_tiff_describe(file, &page));
+    if (!same_page(&page, &plan->page))
+        return snow_tiff_fail(file);
+    return snow_tiff_read_page(file, &page, sample, region, slice);
+}
+
+/* Walks the pages from the first on, since each gives the position of the next;
+ * those in the box are read into their slices. */
+static snow_status read_pages(snow_tiff *file, const tiff_plan *plan,
+                              int64_t first, int64_t sample,
+                              const snow_region *region, snow_volume *volume) {
+    size_t slice_bytes = (size_t)(region->count[0] * region->count[1]) *
+                         snow_type_size(volume->info.type);
+    int64_t at = 0;
+    bool got = TIFFSetDirectory(file->tiff, 0) != 0;
+    for (int64_t z = 0; z < region->count[2]; z++) {
+        int64_t wanted = first + (region->first[2] + z) * plan->slice_step;
+        unsigned char *slice =
+            (unsigned char *)volume->owned + (size_t)z * slice_bytes;
+        if (plan->raw) {
+            SNOW_TRY(snow_tiff_read_raw(file, &plan->page, wanted, sample,
+                                        region, slice));
+            continue;
+        }
+        for (; at < wanted && got; at++)
+            SNOW_TRY(next_page(file, &got));
+        if (!got)
+            return snow_tiff_fail(file);
+        SNOW_TRY(read_page(file, plan, sample, region, slice));
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Channels are samples of a pixel or pages of their own. */
+static snow_status read_open(snow_tiff *file,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    tiff_plan plan = {0};
+    int64_t channel;
+    snow_region region;
+    SNOW_TRY(make_plan(file, &plan, info));
+    SNOW_TRY(check_size(file, &plan));
+    SNOW_TRY(snow_volume_pick_channel(
+        file->context, options, plan.channels * plan.page.samples, &channel));
+    SNOW_TRY(snow_volume_pick_time(file->context, "time step", options, info));
+    SNOW_TRY(snow_region_lay_out(file->context, options, info, &region));
+    if (!out)
+        return SNOW_STATUS_OK;
+    int64_t first = info->time * plan.time_step +
+                    channel / plan.page.samples * plan.channel_step;
+    snow_volume *volume;
+    SNOW_TRY(snow_volume_new(file->context, info, &volume));
+    snow_status status = read_pages(
+        file, &plan, first, channel % plan.page.samples, &region, volume);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(volume);
+        return status;
+    }
+    *out = volume;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status read_tiff(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    snow_tiff file;
+    *info = snow_volume_info_default("tiff");
+    snow_status status = snow_tiff_open(source, &file);
+    if (status == SNOW_STATUS_OK)
+        status = read_open(&file, options, info, out);
+    snow_tiff_close(&file);
+    return status;
+}
+
+#elif SNOW_LOADS && SNOW_HAVE_TIFF
+
+static snow_status read_tiff(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    return snow_read_by_module("tiff", source, options, info, out);
+}
+
+#else
+
+static snow_status read_tiff(snow_source *source,
+                             const snow_volume_options *options,
+                             snow_volume_info *info, snow_volume **out) {
+    (void)options;
+    (void)info;
+    (void)out;
+    return snow_fail_unbuilt(snow_source_context(source), "TIFF",
+                             "libtiff-dev");
+}
+
+#endif
+
+const snow_format snow_format_tiff = {
+    .name = "tiff",
+    .text = "TIFF, BigTIFF: pages, a folder or a pattern of files (.tif)",
+    .suffixes = {".tif", ".tiff", ".btf", ".tif.gz", ".tiff.gz"},
+    .probe = snow_tiff_probe,
+    .crops = true,
+    .channels = true,
+    .slices = true,
+    .read = read_tiff,
+};

@@ -1,0 +1,47 @@
+/* formats/write.c - what the formats' `write` members share. */
+#include "formats/write.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Voxels turned around at a time on machines of the other byte order. */
+#define CHUNK_BYTES 4096
+
+/* Straight from the volume on little-endian machines: no copy of what may be
+ * gigabytes. */
+snow_status snow_write_voxels(const snow_volume *volume, snow_writer *writer) {
+    int64_t voxels;
+    uint64_t bytes;
+    size_t size = snow_type_size(volume->info.type);
+    snow_volume_count(volume->info.dims, volume->info.type, &voxels, &bytes);
+    if (!snow_machine_big_endian())
+        return snow_writer_write(writer, volume->voxels, (size_t)bytes);
+    const unsigned char *at = volume->voxels;
+    while (bytes) {
+        unsigned char chunk[CHUNK_BYTES];
+        size_t some = bytes < CHUNK_BYTES ? (size_t)bytes : CHUNK_BYTES;
+        memcpy(chunk, at, some);
+        snow_swap_bytes(chunk, some / size, size);
+        SNOW_TRY(snow_writer_write(writer, chunk, some));
+        at += some;
+        bytes -= some;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* printf goes by the locale of the program around the library; files do not. */
+int snow_print_numbers(char *text, size_t room, const double *values, int count,
+                       const char *between) {
+    int used = 0;
+    for (int i = 0; i < count; i++) {
+        if (i)
+            used += snprintf(text + used, room - (size_t)used, "%s", between);
+        char *number = text + used;
+        /* Adding 0 makes -0, of which files need not tell, 0. */
+        used += snprintf(number, room - (size_t)used, "%.17g", values[i] + 0.0);
+        char *comma = strchr(number, ',');
+        if (comma)
+            *comma = '.';
+    }
+    return used;
+}

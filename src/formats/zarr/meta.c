@@ -1,0 +1,498 @@
+/* formats/zarr/meta.c - reads the metadata of an array: .zarray of version 2,
+ * zarr.json of version 3.
+ *
+ * All contents of these files are validated.  After snow_zarr_describe all
+ * sizes are at least 1, and the bytes of a chunk and of all values fit 63
+ * bits. */
+#include "formats/zarr/zarr.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* More than any metadata have; parsed JSON takes many times the size of its
+ * text. */
+#define MOST_JSON_BYTES ((uint64_t)4 << 20)
+
+snow_status snow_zarr_fail(const zarr_store *store, const char *path,
+                           const char *format, ...) {
+    char text[1024];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return snow_fail(store->context, SNOW_STATUS_BAD_INPUT, "%s%s%s%s%s",
+                     store->folder, *store->folder && *path ? "/" : "", path,
+                     *store->folder || *path ? ": " : "", text);
+}
+
+/* --- files of JSON ----------------------------------------------------------
+ */
+
+/* jansson reads integers above INT64_MAX, for example fill values of uint64,
+ * only as real numbers, and only on request. */
+static json_t *parse(const char *text, size_t size, json_error_t *error) {
+    json_t *tree = json_loadb(text, size, 0, error);
+    if (!tree && json_error_code(error) == json_error_numeric_overflow)
+        tree = json_loadb(text, size, JSON_DECODE_INT_AS_REAL, error);
+    return tree;
+}
+
+static snow_status parse_file(const zarr_store *store, const zarr_file *file,
+                              json_t **out) {
+    if (file->size > MOST_JSON_BYTES)
+        return snow_fail(store->context, SNOW_STATUS_BAD_INPUT,
+                         "%s: has %llu bytes, too many for the metadata of an "
+                         "array; check what it is",
+                         file->name, (unsigned long long)file->size);
+    char *text = snow_allocate(store->context, (size_t)file->size);
+    if (!text)
+        return SNOW_STATUS_NO_MEMORY;
+    json_error_t error;
+    snow_status status =
+        snow_zarr_read(file, 0, (unsigned char *)text, (size_t)file->size);
+    json_t *tree = NULL;
+    if (status == SNOW_STATUS_OK)
+        tree = parse(text, (size_t)file->size, &error);
+    snow_release(store->context, text);
+    if (status == SNOW_STATUS_OK && !json_is_object(tree)) {
+        status = snow_fail(store->context, SNOW_STATUS_BAD_INPUT,
+                           "%s: line %d is not valid JSON: %.100s; correct it",
+                           file->name, tree ? 1 : error.line,
+                           tree ? "an object in braces expected" : error.text);
+        json_decref(tree);
+    }
+    if (status == SNOW_STATUS_OK)
+        *out = tree;
+    return status;
+}
+
+/* *out stays NULL if there is no file. */
+static snow_status load(const zarr_store *store, const char *path,
+                        const char *name, json_t **out) {
+    char whole[ZARR_PATH_BYTES];
+    zarr_file file;
+    if (!snow_zarr_join(path, name, whole))
+        return snow_zarr_fail(store, "",
+                              "a path is longer than %d letters; "
+                              "move the folder up",
+                              ZARR_PATH_BYTES);
+    SNOW_TRY(snow_zarr_open(store, whole, &file));
+    snow_status status =
+        file.is_there ? parse_file(store, &file, out) : SNOW_STATUS_OK;
+    snow_zarr_close(&file);
+    return status;
+}
+
+/* Version 3 has all metadata in one file. */
+static snow_status look_at_3(const zarr_store *store, const char *path,
+                             zarr_node *node) {
+    const char *type =
+        json_string_value(json_object_get(node->meta, "node_type"));
+    bool is_array = type && !strcmp(type, "array");
+    if (!is_array && !(type && !strcmp(type, "group")))
+        return snow_zarr_fail(store, path,
+                              "zarr.json has no node_type \"array\" or "
+                              "\"group\"; correct it");
+    node->version = 3;
+    node->kind = is_array ? ZARR_ARRAY : ZARR_GROUP;
+    node->attributes = json_incref(json_object_get(node->meta, "attributes"));
+    return SNOW_STATUS_OK;
+}
+
+/* Attributes of an array are optional, so errors in them (perhaps NaN without
+ * quotes) do not prevent reading it.  Those of a group say what it is. */
+static snow_status look_at_2(const zarr_store *store, const char *path,
+                             zarr_node *node) {
+    json_t *group = NULL;
+    SNOW_TRY(load(store, path, ".zarray", &node->meta));
+    node->version = 2;
+    node->kind = node->meta ? ZARR_ARRAY : ZARR_NOTHING;
+    snow_status status = load(store, path, ".zattrs", &node->attributes);
+    if (node->kind == ZARR_ARRAY && status == SNOW_STATUS_BAD_INPUT) {
+        snow_notify(store->context, "its attributes are ignored: %s",
+                    store->context->message);
+        return SNOW_STATUS_OK;
+    }
+    SNOW_TRY(status);
+    if (node->kind == ZARR_ARRAY)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(load(store, path, ".zgroup", &group));
+    if (group || node->attributes)
+        node->kind = ZARR_GROUP;
+    json_decref(group);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_zarr_look(const zarr_store *store, const char *path,
+                           zarr_node *out) {
+    zarr_node node = {ZARR_NOTHING, 0, NULL, NULL};
+    snow_status status = load(store, path, "zarr.json", &node.meta);
+    if (status == SNOW_STATUS_OK)
+        status = node.meta ? look_at_3(store, path, &node)
+                           : look_at_2(store, path, &node);
+    if (status != SNOW_STATUS_OK)
+        snow_zarr_forget(&node);
+    else
+        *out = node;
+    return status;
+}
+
+void snow_zarr_forget(zarr_node *node) {
+    json_decref(node->meta);
+    json_decref(node->attributes);
+    *node = (zarr_node){ZARR_NOTHING, 0, NULL, NULL};
+}
+
+/* --- sizes and types --------------------------------------------------------
+ */
+
+/* Sizes of at least 1 for each axis. */
+static bool take_sizes(const json_t *list, int axes, int64_t *out) {
+    if (json_array_size(list) != (size_t)axes)
+        return false;
+    for (int i = 0; i < axes; i++) {
+        double size = json_number_value(json_array_get(list, (size_t)i));
+        if (!(size >= 1 && size < 0x1p53))
+            return false;
+        out[i] = (int64_t)size;
+    }
+    return true;
+}
+
+static snow_status take_shape(const zarr_store *store, const char *path,
+                              const json_t *list, zarr_array *array) {
+    size_t axes = json_array_size(list);
+    if (axes < 1 || axes > ZARR_MOST_AXES)
+        return snow_zarr_fail(store, path,
+                              "has %zu axes, but only 1 to %d are supported; "
+                              "choose another array with --dataset",
+                              axes, ZARR_MOST_AXES);
+    array->axes = (int)axes;
+    if (!take_sizes(list, array->axes, array->sizes))
+        return snow_zarr_fail(store, path,
+                              "has an axis without a size of at least 1: it "
+                              "is empty or damaged; choose another array with "
+                              "--dataset");
+    return SNOW_STATUS_OK;
+}
+
+/* After this no product overflows. */
+static snow_status check_bytes(const zarr_store *store, const char *path,
+                               const zarr_array *array) {
+    uint64_t steps[ZARR_MOST_AXES], all;
+    for (int i = 0; i < array->axes; i++)
+        if (array->file[i] % array->chunk[i])
+            return snow_zarr_fail(store, path,
+                                  "has chunks of %lld in shards of %lld, which "
+                                  "are not a multiple; correct zarr.json",
+                                  (long long)array->chunk[i],
+                                  (long long)array->file[i]);
+    if (snow_array_steps(array->sizes, array->axes, 8, steps, &all) &&
+        snow_array_steps(array->file, array->axes, 8, steps, &all))
+        return SNOW_STATUS_OK;
+    return snow_zarr_fail(store, path,
+                          "has sizes too large for any array; it is damaged");
+}
+
+static snow_type type_of(char kind, size_t width) {
+    static const snow_type types[2][4] = {
+        {SNOW_TYPE_INT8, SNOW_TYPE_INT16, SNOW_TYPE_INT32, SNOW_TYPE_INT64},
+        {SNOW_TYPE_UINT8, SNOW_TYPE_UINT16, SNOW_TYPE_UINT32,
+         SNOW_TYPE_UINT64}};
+    if (kind == 'f')
+        return width == 8                 ? SNOW_TYPE_FLOAT64
+               : width == 2 || width == 4 ? SNOW_TYPE_FLOAT32
+                                          : SNOW_TYPE_NONE;
+    if (kind == 'b')
+        return width == 1 ? SNOW_TYPE_UINT8 : SNOW_TYPE_NONE;
+    for (size_t i = 0; i < 4; i++)
+        if ((kind == 'i' || kind == 'u') && width == (size_t)1 << i)
+            return types[kind == 'u'][i];
+    return SNOW_TYPE_NONE;
+}
+
+static snow_status take_type(const zarr_store *store, const char *path,
+                             char kind, size_t width, const char *given,
+                             zarr_array *array) {
+    array->type = type_of(kind, width);
+    array->width = width;
+    array->values = kind == 'b'                 ? SNOW_CODING_BOOL
+                    : kind == 'f' && width == 2 ? SNOW_CODING_HALF
+                                                : SNOW_CODING_PLAIN;
+    if (array->type)
+        return SNOW_STATUS_OK;
+    return snow_zarr_fail(
+        store, path,
+        "has the unsupported type \"%.40s\"; convert the values to one of "
+        "bool, int8 to uint64, float16 to float64",
+        given ? given : "(several in one)");
+}
+
+/* --- version 2 --------------------------------------------------------------
+ */
+
+/* "<f8": the byte order, the kind, the number of bytes. */
+static snow_status take_dtype(const zarr_store *store, const char *path,
+                              const json_t *meta, zarr_array *array) {
+    const char *given = json_string_value(json_object_get(meta, "dtype"));
+    bool right = given && strlen(given) == 3 && strchr("<>|", *given) &&
+                 given[2] >= '1' && given[2] <= '8';
+    array->big_endian = right && *given == '>';
+    return take_type(store, path, right ? given[1] : '?',
+                     right ? (size_t)(given[2] - '0') : 0, given, array);
+}
+
+/* Filters come before the compressor, in the order of writing. */
+static snow_status take_coders_2(const zarr_store *store, const char *path,
+                                 const json_t *meta, zarr_array *array) {
+    const json_t *filters = json_object_get(meta, "filters");
+    const json_t *packer = json_object_get(meta, "compressor");
+    for (size_t i = 0; i <= json_array_size(filters); i++) {
+        bool last = i == json_array_size(filters);
+        const json_t *coder = last ? packer : json_array_get(filters, i);
+        const char *name = json_string_value(json_object_get(coder, "id"));
+        if (last && (!coder || json_is_null(coder)))
+            break;
+        SNOW_TRY(snow_zarr_add_coder(store, path, name ? name : "(none)", coder,
+                                     array, &array->coding));
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status take_order(const zarr_store *store, const char *path,
+                              const json_t *meta, zarr_array *array) {
+    const char *order = json_string_value(json_object_get(meta, "order"));
+    bool fortran = order && !strcmp(order, "F");
+    if (!fortran && !(order && !strcmp(order, "C")))
+        return snow_zarr_fail(
+            store, path,
+            "has no valid order; it must be \"C\" or \"F\": correct .zarray");
+    for (int i = 0; i < array->axes; i++)
+        array->order[i] = fortran ? array->axes - 1 - i : i;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status take_separator(const zarr_store *store, const char *path,
+                                  const json_t *given, char usual,
+                                  zarr_array *array) {
+    const char *text = json_string_value(given);
+    array->separator = text ? *text : usual;
+    if (!given || (text && (!strcmp(text, ".") || !strcmp(text, "/"))))
+        return SNOW_STATUS_OK;
+    return snow_zarr_fail(store, path,
+                          "has a chunk separator that is neither \".\" nor "
+                          "\"/\"; correct it");
+}
+
+static snow_status describe_2(const zarr_store *store, const char *path,
+                              const json_t *meta, zarr_array *array) {
+    const json_t *version = json_object_get(meta, "zarr_format");
+    if (version && json_number_value(version) != 2)
+        return snow_zarr_fail(
+            store, path,
+            ".zarray has version %g, but only 2 is supported; convert it",
+            json_number_value(version));
+    SNOW_TRY(take_shape(store, path, json_object_get(meta, "shape"), array));
+    if (!take_sizes(json_object_get(meta, "chunks"), array->axes, array->chunk))
+        return snow_zarr_fail(
+            store, path, "lacks a chunk size for some axes; correct .zarray");
+    memcpy(array->file, array->chunk, sizeof array->file);
+    SNOW_TRY(take_dtype(store, path, meta, array));
+    SNOW_TRY(take_order(store, path, meta, array));
+    SNOW_TRY(take_separator(
+        store, path, json_object_get(meta, "dimension_separator"), '.', array));
+    return take_coders_2(store, path, meta, array);
+}
+
+/* --- version 3 --------------------------------------------------------------
+ */
+
+/* An extension is a name, or an object with one. */
+static const char *name_of(const json_t *extension) {
+    const char *name = json_string_value(
+        json_is_object(extension) ? json_object_get(extension, "name")
+                                  : extension);
+    return name ? name : "(none)";
+}
+
+/* "uint16": the letters give the kind, the number after them the bits. */
+static snow_status take_data_type(const zarr_store *store, const char *path,
+                                  const json_t *meta, zarr_array *array) {
+    static const char *const kinds[] = {"int", "uint", "float"};
+    const char *given = name_of(json_object_get(meta, "data_type"));
+    if (!strcmp(given, "bool"))
+        return take_type(store, path, 'b', 1, given, array);
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        size_t letters = strlen(kinds[i]);
+        int64_t bits;
+        if (!strncmp(given, kinds[i], letters) &&
+            snow_parse_int64(given + letters, &bits) && bits >= 8 &&
+            bits <= 64 && bits % 8 == 0)
+            return take_type(store, path, *kinds[i], (size_t)bits / 8, given,
+                             array);
+    }
+    return take_type(store, path, '?', 0, given, array);
+}
+
+/* The names of files: "c/0/1/2", or as in version 2. */
+static snow_status take_keys(const zarr_store *store, const char *path,
+                             const json_t *meta, zarr_array *array) {
+    const json_t *keys = json_object_get(meta, "chunk_key_encoding");
+    const char *name = name_of(keys);
+    array->prefixed = !strcmp(name, "default");
+    if (!array->prefixed && strcmp(name, "v2") != 0)
+        return snow_zarr_fail(store, path,
+                              "uses the unknown chunk key encoding \"%.40s\"; "
+                              "copy the array with \"default\"",
+                              name);
+    const json_t *given =
+        json_object_get(json_object_get(keys, "configuration"), "separator");
+    return take_separator(store, path, given, array->prefixed ? '/' : '.',
+                          array);
+}
+
+/* A permutation: axis order[i] of the array is axis i of a chunk. */
+static snow_status take_transposition(const zarr_store *store, const char *path,
+                                      const json_t *given, zarr_array *array) {
+    const json_t *list = json_object_get(given, "order");
+    unsigned seen = 0;
+    int order[ZARR_MOST_AXES];
+    for (int i = 0; i < array->axes; i++) {
+        const json_t *axis = json_array_get(list, (size_t)i);
+        json_int_t number =
+            json_is_integer(axis) ? json_integer_value(axis) : -1;
+        if (number >= 0 && number < array->axes)
+            seen |= 1U << number;
+        order[i] = (int)number;
+    }
+    if (seen + 1 != 1U << array->axes)
+        return snow_zarr_fail(store, path,
+                              "has a transpose codec that is not a permutation "
+                              "of its axes; correct zarr.json");
+    for (int i = 0; i < array->axes; i++)
+        order[i] = array->order[order[i]];
+    memcpy(array->order, order, sizeof order);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status take_endian(const zarr_store *store, const char *path,
+                               const json_t *given, zarr_array *array) {
+    const char *text = json_string_value(json_object_get(given, "endian"));
+    array->big_endian = text && !strcmp(text, "big");
+    if (array->width == 1 || array->big_endian ||
+        (text && !strcmp(text, "little")))
+        return SNOW_STATUS_OK;
+    return snow_zarr_fail(store, path,
+                          "has no valid byte order; it must be \"little\" or "
+                          "\"big\": correct zarr.json");
+}
+
+/* The index of a shard: plain, with or without a checksum. */
+static snow_status take_index(const zarr_store *store, const char *path,
+                              const json_t *given, zarr_array *array) {
+    const json_t *codecs = json_object_get(given, "index_codecs");
+    const char *place =
+        json_string_value(json_object_get(given, "index_location"));
+    array->sharded = true;
+    array->index_first = place && !strcmp(place, "start");
+    size_t count = json_array_size(codecs);
+    const json_t *bytes = json_array_get(codecs, 0);
+    const char *endian = json_string_value(
+        json_object_get(json_object_get(bytes, "configuration"), "endian"));
+    array->index_summed =
+        count == 2 && !strcmp(name_of(json_array_get(codecs, 1)), "crc32c");
+    if ((count == 1 || array->index_summed) &&
+        !strcmp(name_of(bytes), "bytes") && !(endian && !strcmp(endian, "big")))
+        return SNOW_STATUS_OK;
+    return snow_zarr_fail(store, path,
+                          "has an index of its shards with other codecs than "
+                          "bytes and crc32c; copy the array with these");
+}
+
+/* Reads the codecs of a list; `inner` is true within a shard. */
+static snow_status take_codecs(const zarr_store *store, const char *path,
+                               const json_t *list, bool inner,
+                               zarr_array *array) {
+    bool has_bytes = false;
+    for (size_t i = 0; i < json_array_size(list); i++) {
+        const json_t *codec = json_array_get(list, i);
+        const json_t *given = json_object_get(codec, "configuration");
+        const char *name = name_of(codec);
+        if (!strcmp(name, "transpose") && !has_bytes) {
+            SNOW_TRY(take_transposition(store, path, given, array));
+        } else if (!strcmp(name, "bytes") && !has_bytes) {
+            SNOW_TRY(take_endian(store, path, given, array));
+            has_bytes = true;
+        } else if (!strcmp(name, "sharding_indexed") && !inner &&
+                   json_array_size(list) == 1) {
+            if (!take_sizes(json_object_get(given, "chunk_shape"), array->axes,
+                            array->chunk))
+                return snow_zarr_fail(store, path,
+                                      "lacks a chunk size in its shards for "
+                                      "some axes; correct zarr.json");
+            SNOW_TRY(take_index(store, path, given, array));
+            return take_codecs(store, path, json_object_get(given, "codecs"),
+                               true, array);
+        } else {
+            SNOW_TRY(snow_zarr_add_coder(store, path, name, given, array,
+                                         &array->coding));
+        }
+    }
+    return has_bytes ? SNOW_STATUS_OK
+                     : snow_zarr_fail(store, path,
+                                      "has no codec \"bytes\"; correct "
+                                      "zarr.json");
+}
+
+static snow_status describe_3(const zarr_store *store, const char *path,
+                              const json_t *meta, zarr_array *array) {
+    const json_t *grid = json_object_get(meta, "chunk_grid");
+    SNOW_TRY(take_shape(store, path, json_object_get(meta, "shape"), array));
+    const json_t *chunks =
+        json_object_get(json_object_get(grid, "configuration"), "chunk_shape");
+    if (strcmp(name_of(grid), "regular") != 0 ||
+        !take_sizes(chunks, array->axes, array->file))
+        return snow_zarr_fail(
+            store, path,
+            "does not have a regular chunk grid; copy the array with one");
+    memcpy(array->chunk, array->file, sizeof array->chunk);
+    for (int i = 0; i < array->axes; i++)
+        array->order[i] = i;
+    SNOW_TRY(take_data_type(store, path, meta, array));
+    SNOW_TRY(take_keys(store, path, meta, array));
+    return take_codecs(store, path, json_object_get(meta, "codecs"), false,
+                       array);
+}
+
+/* --- both -------------------------------------------------------------------
+ */
+
+/* Reads the names of axes, as xarray and version 3 store them. */
+static void take_names(const zarr_node *node, zarr_array *array) {
+    const json_t *list =
+        node->version == 3
+            ? json_object_get(node->meta, "dimension_names")
+            : json_object_get(node->attributes, "_ARRAY_DIMENSIONS");
+    if (json_array_size(list) != (size_t)array->axes)
+        return;
+    for (int i = 0; i < array->axes; i++) {
+        const char *name = json_string_value(json_array_get(list, (size_t)i));
+        if (name && strlen(name) < ZARR_NAME_BYTES)
+            memcpy(array->names[i], name, strlen(name) + 1);
+    }
+}
+
+snow_status snow_zarr_describe(const zarr_store *store, const char *path,
+                               const zarr_node *node, zarr_array *out) {
+    zarr_array array = {.version = node->version};
+    memcpy(array.path, path, strlen(path) + 1);
+    SNOW_TRY(node->version == 3 ? describe_3(store, path, node->meta, &array)
+                                : describe_2(store, path, node->meta, &array));
+    SNOW_TRY(check_bytes(store, path, &array));
+    SNOW_TRY(snow_zarr_take_fill(
+        store, json_object_get(node->meta, "fill_value"), &array));
+    take_names(node, &array);
+    *out = array;
+    return SNOW_STATUS_OK;
+}

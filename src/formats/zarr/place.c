@@ -1,0 +1,295 @@
+/* formats/zarr/place.c - finds which axes are x, y, z, channel and time, and
+ * the positions of voxels.
+ *
+ * Axes of an image have names (OME-NGFF 0.3 and later) or are t, c, z, y, x.
+ * Those of other arrays have the names from xarray or version 3, or are, from
+ * the last one on, x, y, z, time, or x, y, z, channel, time. */
+#include "formats/zarr/zarr.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- roles ------------------------------------------------------------------
+ */
+
+static int role_of_name(const char *name) {
+    static const struct {
+        const char *name;
+        int role;
+    } names[] = {{"x", ZARR_X},
+                 {"y", ZARR_Y},
+                 {"z", ZARR_Z},
+                 {"c", ZARR_CHANNEL},
+                 {"channel", ZARR_CHANNEL},
+                 {"t", ZARR_TIME},
+                 {"time", ZARR_TIME}};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (snow_same_name(name, names[i].name))
+            return names[i].role;
+    return -1;
+}
+
+/* For names that are all known and unique. */
+static bool assign_names(const zarr_array *array, zarr_roles *out) {
+    zarr_roles roles = {{-1, -1, -1, -1, -1}};
+    for (int i = 0; i < array->axes; i++) {
+        int role = role_of_name(array->names[i]);
+        if (role < 0 || roles.axis[role] >= 0)
+            return false;
+        roles.axis[role] = i;
+    }
+    *out = roles;
+    return true;
+}
+
+/* From the last axis on.  Further axes in front must have one entry. */
+static void assign_places(const zarr_array *array, zarr_roles *out) {
+    static const int few[] = {ZARR_X, ZARR_Y, ZARR_Z, ZARR_TIME};
+    static const int many[] = {ZARR_X, ZARR_Y, ZARR_Z, ZARR_CHANNEL, ZARR_TIME};
+    int axes = array->axes;
+    *out = (zarr_roles){{-1, -1, -1, -1, -1}};
+    for (int i = 0; i < axes && i < (axes > 4 ? 5 : 4); i++)
+        out->axis[axes > 4 ? many[i] : few[i]] = axes - 1 - i;
+}
+
+/* Before version 0.3 all axes exist. */
+static const char *axis_name(const zarr_found *found, int axis) {
+    static const char usual[5][2] = {"t", "c", "z", "y", "x"};
+    const json_t *axes = json_object_get(found->image, "axes");
+    const json_t *own = json_array_get(axes, (size_t)axis);
+    if (!axes)
+        return found->array.axes == 5 ? usual[axis] : NULL;
+    return json_string_value(json_is_object(own) ? json_object_get(own, "name")
+                                                 : own);
+}
+
+/* Spatial axes with other names are z, y, x in this order, as far as these are
+ * free. */
+static int role_of_kind(const zarr_found *found, int axis,
+                        const zarr_roles *roles) {
+    const json_t *own =
+        json_array_get(json_object_get(found->image, "axes"), (size_t)axis);
+    const char *kind = json_string_value(json_object_get(own, "type"));
+    if (!kind)
+        return -1;
+    if (!strcmp(kind, "channel") && roles->axis[ZARR_CHANNEL] < 0)
+        return ZARR_CHANNEL;
+    if (!strcmp(kind, "time") && roles->axis[ZARR_TIME] < 0)
+        return ZARR_TIME;
+    for (int role = ZARR_X; role <= ZARR_Z && !strcmp(kind, "space"); role++)
+        if (roles->axis[role] < 0)
+            return role;
+    return -1;
+}
+
+/* Names have priority, then kinds from the last axis on. */
+static snow_status assign_image(const zarr_store *store, zarr_found *found,
+                                zarr_roles *out) {
+    zarr_array *array = &found->array;
+    const json_t *axes = json_object_get(found->image, "axes");
+    int role_of[ZARR_MOST_AXES];
+    *out = (zarr_roles){{-1, -1, -1, -1, -1}};
+    if (axes ? json_array_size(axes) != (size_t)array->axes : array->axes != 5)
+        return snow_zarr_fail(
+            store, array->path,
+            "has %d axes, but its image %zu; correct one of them", array->axes,
+            axes ? json_array_size(axes) : 5);
+    for (int i = 0; i < array->axes; i++) {
+        const char *name = axis_name(found, i);
+        role_of[i] = name ? role_of_name(name) : -1;
+        if (role_of[i] >= 0 && out->axis[role_of[i]] >= 0)
+            role_of[i] = -1;
+        if (role_of[i] >= 0)
+            out->axis[role_of[i]] = i;
+        snprintf(array->names[i], ZARR_NAME_BYTES, "%.30s", name ? name : "?");
+    }
+    for (int i = array->axes - 1; i >= 0; i--) {
+        int role = role_of[i] < 0 ? role_of_kind(found, i, out) : -1;
+        if (role >= 0)
+            out->axis[role] = i;
+    }
+    return SNOW_STATUS_OK;
+}
+
+static bool has_role(const zarr_roles *roles, int axis) {
+    for (int role = 0; role < ZARR_ROLES; role++)
+        if (roles->axis[role] == axis)
+            return true;
+    return false;
+}
+
+snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
+                             zarr_roles *out) {
+    zarr_array *array = &found->array;
+    if (found->image)
+        SNOW_TRY(assign_image(store, found, out));
+    else if (!assign_names(array, out))
+        assign_places(array, out);
+    for (int i = 0; i < array->axes; i++)
+        if (!has_role(out, i) && array->sizes[i] > 1)
+            return snow_zarr_fail(store, array->path,
+                                  "has %lld entries along axis %d%s%s%s, which "
+                                  "no option selects; save a part of the array "
+                                  "with only the axes t, c, z, y, x",
+                                  (long long)array->sizes[i], i,
+                                  *array->names[i] ? " (" : "", array->names[i],
+                                  *array->names[i] ? ")" : "");
+    for (int role = 0; role < ZARR_ROLES; role++)
+        if (out->axis[role] >= 0 && !*array->names[out->axis[role]])
+            snprintf(array->names[out->axis[role]], ZARR_NAME_BYTES, "%c",
+                     "xyzct"[role]);
+    return SNOW_STATUS_OK;
+}
+
+/* --- transformations --------------------------------------------------------
+ */
+
+typedef struct placement {
+    double scale[ZARR_MOST_AXES], shift[ZARR_MOST_AXES];
+    bool given;
+} placement;
+
+/* Reads one number for each axis: finite, and for a scale not 0. */
+static snow_status read_vector(const zarr_store *store, const zarr_array *array,
+                               const json_t *list, const char *what,
+                               double *out) {
+    bool right = json_array_size(list) == (size_t)array->axes;
+    bool is_scale = !strcmp(what, "scale");
+    for (int i = 0; i < array->axes && right; i++) {
+        const json_t *number = json_array_get(list, (size_t)i);
+        out[i] = json_number_value(number);
+        right = json_is_number(number) && isfinite(out[i]) &&
+                (!is_scale || out[i] < 0 || out[i] > 0);
+    }
+    if (right)
+        return SNOW_STATUS_OK;
+    return snow_zarr_fail(store, array->path,
+                          "has a coordinate transformation whose %s is not "
+                          "%d numbers%s; correct the attributes of its image",
+                          what, array->axes, is_scale ? " other than 0" : "");
+}
+
+/* Each transformation applies to the result of those before it. */
+static snow_status transform(const zarr_store *store, const zarr_array *array,
+                             const json_t *owner, placement *place) {
+    const json_t *list = json_object_get(owner, "coordinateTransformations");
+    double values[ZARR_MOST_AXES];
+    for (size_t k = 0; k < json_array_size(list); k++) {
+        const json_t *one = json_array_get(list, k);
+        const char *kind = json_string_value(json_object_get(one, "type"));
+        bool is_scale = kind && !strcmp(kind, "scale");
+        if (is_scale || (kind && !strcmp(kind, "translation"))) {
+            SNOW_TRY(read_vector(store, array, json_object_get(one, kind), kind,
+                                 values));
+            for (int i = 0; i < array->axes; i++) {
+                place->scale[i] *= is_scale ? values[i] : 1;
+                place->shift[i] = is_scale ? place->shift[i] * values[i]
+                                           : place->shift[i] + values[i];
+            }
+            place->given = true;
+        } else if (!kind || strcmp(kind, "identity") != 0) {
+            snow_notify(store->context,
+                        "the coordinate transformation \"%.40s\" is ignored",
+                        kind ? kind : "?");
+        }
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Metres in a unit of length by its UDUNITS-2 name, which OME-NGFF uses, and
+ * our name for it; NULL for others. */
+static const char *unit_name(const char *unit, double *metres) {
+    static const struct {
+        const char *name, *own;
+        double metres;
+    } units[] = {
+        {"angstrom", "angstrom", 1e-10}, {"picometer", "pm", 1e-12},
+        {"nanometer", "nm", 1e-9},       {"micrometer", "um", 1e-6},
+        {"micron", "um", 1e-6},          {"millimeter", "mm", 1e-3},
+        {"centimeter", "cm", 1e-2},      {"meter", "m", 1},
+        {"kilometer", "km", 1e3},
+    };
+    for (size_t i = 0; unit && i < sizeof units / sizeof *units; i++)
+        if (!strcmp(unit, units[i].name) || !strcmp(unit, units[i].own)) {
+            *metres = units[i].metres;
+            return units[i].own;
+        }
+    return NULL;
+}
+
+/* All lengths in the unit of x, or else of the first axis that has one. */
+static void take_units(const zarr_found *found, const zarr_roles *roles,
+                       double factor[3], snow_volume_info *info) {
+    const json_t *axes = json_object_get(found->image, "axes");
+    double first = 0;
+    for (int role = ZARR_X; role <= ZARR_Z; role++) {
+        double metres = 0;
+        factor[role] = 1;
+        if (roles->axis[role] < 0)
+            continue;
+        const json_t *axis = json_array_get(axes, (size_t)roles->axis[role]);
+        const char *unit = json_string_value(json_object_get(axis, "unit"));
+        const char *own = unit_name(unit, &metres);
+        if (!*info->unit && unit)
+            snprintf(info->unit, sizeof info->unit, "%.15s", own ? own : unit);
+        if (!(first > 0))
+            first = metres;
+        if (metres > 0)
+            factor[role] = metres / first;
+    }
+}
+
+/* Before version 0.4 levels have no scale: it is the ratio of their size to
+ * that of the finest level, if that exists. */
+static snow_status compare_sizes(const zarr_store *store,
+                                 const zarr_found *found, placement *place) {
+    const zarr_array *array = &found->array;
+    const char *own = snow_zarr_level_path(found->image, (size_t)found->index);
+    const char *other = snow_zarr_level_path(found->image, 0);
+    char path[ZARR_PATH_BYTES];
+    size_t length = strlen(array->path) - strlen(own);
+    zarr_node node;
+    if (!found->index || !other ||
+        length + strlen(other) >= ZARR_PATH_BYTES / 2)
+        return SNOW_STATUS_OK;
+    snprintf(path, sizeof path, "%.*s%s", (int)length, array->path, other);
+    SNOW_TRY(snow_zarr_look(store, path, &node));
+    const json_t *shape = json_object_get(node.meta, "shape");
+    bool is_like = node.kind == ZARR_ARRAY &&
+                   json_array_size(shape) == (size_t)array->axes;
+    for (int i = 0; i < array->axes && is_like; i++) {
+        double size = json_number_value(json_array_get(shape, (size_t)i));
+        double times = size / (double)array->sizes[i];
+        if (times >= 1 && times <= 1e6) {
+            place->scale[i] = times;
+            place->shift[i] = (times - 1) / 2;
+        }
+    }
+    snow_zarr_forget(&node);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
+                            const zarr_roles *roles, snow_volume_info *info) {
+    placement place = {.given = false};
+    double factor[3];
+    if (!found->image)
+        return SNOW_STATUS_OK;
+    for (int i = 0; i < ZARR_MOST_AXES; i++)
+        place.scale[i] = 1;
+    SNOW_TRY(transform(store, &found->array, found->level, &place));
+    if (!place.given)
+        SNOW_TRY(compare_sizes(store, found, &place));
+    SNOW_TRY(transform(store, &found->array, found->image, &place));
+    take_units(found, roles, factor, info);
+    for (int role = ZARR_X; role <= ZARR_Z; role++) {
+        int axis = roles->axis[role];
+        /* A 2-D image is as deep as its pixels are wide. */
+        info->matrix[role][role] = axis >= 0 ? place.scale[axis] * factor[role]
+                                             : fabs(info->matrix[0][0]);
+        info->matrix[role][3] =
+            axis >= 0 ? place.shift[axis] * factor[role] : 0;
+    }
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,232 @@
+/* formats/zarr/store.c - opens the files of a Zarr array by their names.
+ *
+ * A chunk that was never written has no file, so that nothing at a name is an
+ * answer.  Names come from numbers and from checked paths: none leads out of
+ * the store, but for links that the owner of the folder has made. */
+#include "base/monitor.h"
+#include "formats/zarr/zarr.h"
+#include "io/folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The most names in one folder: a plate has hundreds of wells. */
+#define MOST_NAMES 10000
+
+bool snow_zarr_join(const char *path, const char *name, char *out) {
+    const char *slash = *path && *name ? "/" : "";
+    int size = snprintf(out, ZARR_PATH_BYTES, "%s%s%s", path, slash, name);
+    return size >= 0 && size < ZARR_PATH_BYTES;
+}
+
+/* --- records in memory ------------------------------------------------------
+ */
+
+typedef struct record {
+    const char *name;
+    size_t letters;
+    const unsigned char *bytes;
+    size_t size;
+} record;
+
+/* Reads the record at *at, and moves it to the next; returns false at the end,
+ * or if a record is truncated. */
+static bool next_record(const zarr_store *store, size_t *at, record *out) {
+    const unsigned char *begin = store->records + *at;
+    size_t left = store->size - *at;
+    if (!left || left < (size_t)begin[0] + 5)
+        return false;
+    const unsigned char *count = begin + 1 + begin[0];
+    size_t size = (size_t)count[0] | (size_t)count[1] << 8 |
+                  (size_t)count[2] << 16 | (size_t)count[3] << 24;
+    if (size > left - begin[0] - 5)
+        return false;
+    *out = (record){(const char *)begin + 1, begin[0], count + 4, size};
+    *at += begin[0] + 5 + size;
+    return true;
+}
+
+static void open_record(const zarr_store *store, const char *name,
+                        zarr_file *out) {
+    record r;
+    for (size_t at = 0; next_record(store, &at, &r);)
+        if (strlen(name) == r.letters && !memcmp(name, r.name, r.letters)) {
+            out->is_there = true;
+            out->bytes = r.bytes;
+            out->size = r.size;
+            return;
+        }
+}
+
+/* --- files ------------------------------------------------------------------
+ */
+
+static snow_status fail_by_errno(const zarr_file *file) {
+    char why[128] = "";
+    strerror_r(errno, why, sizeof why);
+    return snow_fail(file->store->context, SNOW_STATUS_BAD_INPUT,
+                     "%s: cannot be opened: %s; check its permissions",
+                     file->name, why);
+}
+
+/* Checks the kind first, since opening a device can have side effects. */
+static snow_status open_file(zarr_file *out) {
+    struct stat about;
+    if (stat(out->name, &about))
+        return errno == ENOENT || errno == ENOTDIR ? SNOW_STATUS_OK
+                                                   : fail_by_errno(out);
+    if (!S_ISREG(about.st_mode))
+        return snow_fail(out->store->context, SNOW_STATUS_BAD_INPUT,
+                         "%s: is not a regular file, which is required here; "
+                         "copy the array again",
+                         out->name);
+    out->descriptor =
+        open(out->name, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    if (out->descriptor < 0)
+        return fail_by_errno(out);
+    if (fstat(out->descriptor, &about) || !S_ISREG(about.st_mode)) {
+        snow_status status = fail_by_errno(out);
+        snow_zarr_close(out);
+        return status;
+    }
+    out->is_there = true;
+    out->size = (uint64_t)about.st_size;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_zarr_open(const zarr_store *store, const char *name,
+                           zarr_file *out) {
+    *out = (zarr_file){.store = store, .descriptor = -1};
+    snprintf(out->name, sizeof out->name, "%s%s%s", store->folder,
+             *store->folder && *name ? "/" : "", name);
+    if (*store->folder)
+        return open_file(out);
+    open_record(store, name, out);
+    return SNOW_STATUS_OK;
+}
+
+void snow_zarr_close(zarr_file *file) {
+    if (file->descriptor >= 0)
+        close(file->descriptor);
+    file->descriptor = -1;
+}
+
+snow_status snow_zarr_read(const zarr_file *file, uint64_t first,
+                           unsigned char *bytes, size_t count) {
+    if (file->bytes) {
+        memcpy(bytes, file->bytes + first, count);
+        return SNOW_STATUS_OK;
+    }
+    for (size_t done = 0; done < count;) {
+        ssize_t got =
+            pread(file->descriptor, bytes + done,
+                  snow_monitor_chunk(file->store->context, count - done),
+                  (off_t)(first + done));
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0)
+            return snow_fail(file->store->context, SNOW_STATUS_BAD_INPUT,
+                             "%s: cannot be read to the end; check the disk",
+                             file->name);
+        done += (size_t)got;
+        file->store->context->bytes_read += (uint64_t)got;
+        SNOW_TRY(snow_monitor_read(file->store->context, (uint64_t)got));
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- names in a folder ------------------------------------------------------
+ */
+
+typedef struct name_list {
+    char (*names)[256];
+    size_t capacity, count;
+} name_list;
+
+static snow_status add_name(const zarr_store *store, name_list *list,
+                            const char *name, size_t letters) {
+    if (!letters || *name == '.' || letters >= 256)
+        return SNOW_STATUS_OK;
+    if (list->count == MOST_NAMES)
+        return snow_fail(store->context, SNOW_STATUS_BAD_INPUT,
+                         "has more than %d folders in one; name an array with "
+                         "--dataset",
+                         MOST_NAMES);
+    SNOW_TRY(snow_reserve(store->context, &list->names, &list->capacity,
+                          list->count * sizeof *list->names,
+                          (list->count + 1) * sizeof *list->names));
+    memcpy(list->names[list->count], name, letters);
+    list->names[list->count++][letters] = 0;
+    return SNOW_STATUS_OK;
+}
+
+static bool is_listed(const name_list *list, const char *name, size_t letters) {
+    for (size_t i = 0; i < list->count; i++)
+        if (!strncmp(list->names[i], name, letters) && !list->names[i][letters])
+            return true;
+    return false;
+}
+
+/* Folders are not stored: they are prefixes of names. */
+static snow_status list_records(const zarr_store *store, const char *path,
+                                name_list *list) {
+    size_t length = strlen(path);
+    record r;
+    for (size_t at = 0; next_record(store, &at, &r);) {
+        size_t skip = length ? length + 1 : 0;
+        if (r.letters <= skip || memcmp(r.name, path, length) != 0 ||
+            (length && r.name[length] != '/'))
+            continue;
+        const char *slash = memchr(r.name + skip, '/', r.letters - skip);
+        size_t letters = slash ? (size_t)(slash - r.name) - skip : 0;
+        if (!is_listed(list, r.name + skip, letters))
+            SNOW_TRY(add_name(store, list, r.name + skip, letters));
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status list_folder(const zarr_store *store, const char *path,
+                               name_list *list) {
+    char folder[2 * ZARR_PATH_BYTES];
+    snprintf(folder, sizeof folder, "%s/%s", store->folder, path);
+    DIR *stream = opendir(folder);
+    if (!stream)
+        return snow_fail(store->context, SNOW_STATUS_BAD_INPUT,
+                         "%s: the folder cannot be opened; check its "
+                         "permissions",
+                         folder);
+    snow_status status = SNOW_STATUS_OK;
+    for (const struct dirent *entry;
+         status == SNOW_STATUS_OK && (entry = readdir(stream));) {
+        struct stat about;
+        if (!fstatat(dirfd(stream), entry->d_name, &about, 0) &&
+            S_ISDIR(about.st_mode))
+            status =
+                add_name(store, list, entry->d_name, strlen(entry->d_name));
+    }
+    closedir(stream);
+    return status;
+}
+
+static int compare_names(const void *a, const void *b) {
+    return snow_name_compare(a, b);
+}
+
+snow_status snow_zarr_visit(const zarr_store *store, const char *path,
+                            zarr_visit_fn *visit, void *user) {
+    name_list list = {0};
+    snow_status status = *store->folder ? list_folder(store, path, &list)
+                                        : list_records(store, path, &list);
+    if (status == SNOW_STATUS_OK && list.count)
+        qsort(list.names, list.count, sizeof *list.names, compare_names);
+    for (size_t i = 0; i < list.count && status == SNOW_STATUS_OK; i++)
+        status = visit(user, list.names[i]);
+    snow_release(store->context, list.names);
+    return status;
+}

@@ -1,0 +1,165 @@
+/* insitu/internal.h - the inside of snowglass/insitu.h, which three files
+ * share: insitu.c is told things, data.c takes voxels, draw.c makes pictures of
+ * them. */
+#ifndef SNOW_INSITU_INTERNAL_H
+#define SNOW_INSITU_INTERNAL_H
+
+#include <snowglass/extend.h>
+#include <snowglass/insitu.h>
+#include <snowglass/snowglass.h>
+
+#define SNOW_INSITU_MESSAGE 512
+
+/* Leaves a function when a call in it fails. */
+#define INSITU_TRY(call)                         \
+    do {                                         \
+        snow_status insitu_try_status = (call);  \
+        if (insitu_try_status != SNOW_STATUS_OK) \
+            return insitu_try_status;            \
+    } while (0)
+
+/* A brick of this rank as it was told; without a type until its voxels are. */
+typedef struct snow_insitu_brick {
+    snow_box box; /* empty: there is none of this number */
+    snow_halo halo;
+    snow_type type;
+    const void *voxels;
+    int64_t stride[3];
+} snow_insitu_brick;
+
+/* A look with its texts and points, which live as long as it. */
+typedef struct snow_own_look {
+    snow_look look;
+    snow_points points; /* of the look, over the block */
+    void *point_block;
+    char preset[64], colormap[64], name[64];
+    snow_opacity_point *opacities, *gradients;
+} snow_own_look;
+
+/* Of the last picture. */
+typedef struct snow_insitu_seconds {
+    double update, look, render, encode, draw, write, step;
+} snow_insitu_seconds;
+
+/* How the voxels of a picture are held; `planned` and `exchanged` are the same
+ * on all ranks. */
+typedef struct snow_insitu_layout {
+    bool planned, exchanged, recut;
+    snow_degradation lowering; /* that pictures of these voxels are made with */
+    int64_t layers[3];         /* ghost voxels around the owned box */
+    snow_box owned;            /* what this rank draws; may be empty */
+    snow_box stored; /* with its ghosts; of one voxel where owned is empty */
+    int recut_axis;  /* of slabs, -1: bricks */
+} snow_insitu_layout;
+
+struct snow_insitu {
+    snow_comm *comm;
+    snow_context *context;
+    bool owns_comm, owns_context;
+    snow_warning_fn *notice;
+    void *notice_user;
+    char message[SNOW_INSITU_MESSAGE];
+    snow_status given; /* of the first setter that failed since the last
+                         collective call; message is its */
+
+    /* As told. */
+    snow_volume_info whole; /* dims 0 until there is a grid */
+    snow_insitu_brick *bricks;
+    size_t brick_bytes;
+    int brick_count;
+    snow_ghosts ghosts;
+    snow_balance balance;
+    snow_own_look look;
+    snow_view view;
+    bool has_view;
+    snow_settings settings;
+    snow_ranks_options how;
+    char *pattern; /* NULL: no output */
+    snow_image_options form;
+    bool legend, step_label; /* drawn over them */
+    double limit_seconds;
+    uint64_t limit_bytes, outer_bytes; /* the latter the context's own */
+
+    /* The voxels taken last. */
+    snow_insitu_layout layout;
+    bool changed; /* bricks or sharing, since they were planned with */
+    snow_type type;
+    snow_voxels *voxels;
+    snow_box *boxes;  /* every rank's bricks united, where they are boxes */
+    bool boxes_known; /* these are there, of the bricks as they are */
+    snow_box *held;   /* the bricks' boxes, and the bricks, in one order */
+    snow_brick *moved;
+    size_t boxes_bytes, held_bytes, moved_bytes;
+    int held_count;
+    char *dense;
+    size_t dense_bytes;
+    bool copied;
+    snow_volume *volume; /* NULL: none yet */
+    bool taken;          /* an update has succeeded */
+
+    /* Pictures of them. */
+    snow_frame *frame;
+    snow_transfer *transfer; /* NULL: to be chosen */
+
+    /* The limits: the same on all ranks. */
+    snow_degradation lowering;
+    int64_t to_skip;                       /* pictures still to be left out */
+    bool left_out;                         /* the last update was */
+    double cost[SNOW_DEGRADATION_SKIPPED]; /* seconds when last drawn so */
+
+    /* Figures. */
+    snow_insitu_seconds seconds;
+    uint64_t sent_before; /* bytes, before the step */
+    int64_t pictures, skipped;
+    snow_degradation last_lowering;
+};
+
+/* Makes a list that a record has at least so long: *block has room for *bytes,
+ * of which the first `keep` stay.  On failure nothing changes. */
+snow_status snow_insitu_reserve(snow_insitu *insitu, void *block_pointer,
+                                size_t *room, size_t keep, size_t bytes);
+
+/* For setters: the first failure is the one that is passed on; `refuse` is one
+ * of SNOW_STATUS_BAD_USAGE with that message. */
+snow_status snow_insitu_answer(snow_insitu *insitu, snow_status status);
+snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...)
+    SNOW_PRINTF(2, 3);
+
+/* Frees what a look holds (look.c). */
+void snow_insitu_free_look(snow_context *context, snow_own_look *look);
+
+/* A remark, on rank 0. */
+void snow_insitu_report(snow_insitu *insitu, const char *format, ...)
+    SNOW_PRINTF(2, 3);
+
+/* Collective: whatever setters found wrong on any rank.  To be called before
+ * all else in a collective call. */
+snow_status snow_insitu_begin(snow_insitu *insitu);
+
+/* Ends a collective call: keeps its message. */
+snow_status snow_insitu_end(snow_insitu *insitu, snow_status status);
+
+/* Frees what pictures need, to be made again when there is more memory. */
+void snow_insitu_forget(snow_insitu *insitu);
+
+/* The view of the picture: as told, or the default one. */
+snow_view snow_insitu_view(const snow_insitu *insitu);
+
+/* The path of a step's picture; false where it is too long. */
+bool snow_insitu_path(const snow_insitu *insitu, int64_t step, char *out,
+                      size_t room);
+
+/* View and settings of pictures of the voxels last taken, lowered for limits
+ * (data.c). */
+void snow_insitu_lowered(const snow_insitu *insitu, snow_view *view,
+                         snow_settings *settings);
+
+/* Collective: the voxels, as they are now, become the ranks' parts of a volume
+ * (data.c). */
+snow_status snow_insitu_take(snow_insitu *insitu);
+
+/* Collective: refuses a view, settings or limits that differ from rank to rank
+ * (data.c). */
+snow_status snow_insitu_check(snow_insitu *insitu);
+
+#endif

@@ -1,0 +1,224 @@
+/* io/filter_blocks.c - the filter stage that unpacks a sequence of zlib streams
+ * (RFC 1950) of known sizes, as in VTK's XML files.
+ *
+ * Since the sizes precede the data, skipped blocks need not be unpacked: a
+ * block is skipped by its packed size. */
+#include "io/filter.h"
+#include "io/source.h"
+
+#include <zlib.h>
+
+/* Bytes of a stream besides its data: header, check sum, last bits. */
+#define STREAM_SLACK 64
+
+typedef struct blocks_filter {
+    snow_filter_stage filter;
+    z_stream stream;
+    snow_blocks blocks;
+    uint64_t next;   /* next block to begin */
+    uint64_t packed; /* bytes of the current block not yet consumed */
+    uint64_t left;   /* unpacked bytes that it has still to return */
+    bool damaged;    /* a jump failed: the position is unknown */
+} blocks_filter;
+
+static voidpf allocate_for_zlib(voidpf context, uInt count, uInt size) {
+    return snow_allocate_array(context, count, size);
+}
+
+static void release_for_zlib(voidpf context, voidpf block) {
+    snow_release(context, block);
+}
+
+static uint64_t size_of(const blocks_filter *filter, uint64_t block) {
+    return block + 1 == filter->blocks.count ? filter->blocks.last
+                                             : filter->blocks.whole;
+}
+
+static snow_status fail_block(const blocks_filter *filter, const char *why) {
+    return snow_fail(filter->filter.context, SNOW_STATUS_BAD_INPUT,
+                     "%s: block %llu of its compressed data is damaged (%s); "
+                     "fetch or write the file again",
+                     filter->filter.name,
+                     (unsigned long long)(filter->next ? filter->next - 1 : 0),
+                     why);
+}
+
+static void begin_block(blocks_filter *filter) {
+    filter->left = size_of(filter, filter->next);
+    filter->packed = filter->blocks.packed[filter->next];
+    filter->next++;
+    inflateReset(&filter->stream);
+}
+
+/* Runs inflate once on the buffered bytes below that belong to the block. */
+static snow_status inflate_some(blocks_filter *filter, int *answer) {
+    snow_filter_stage *below = filter->filter.below;
+    SNOW_TRY(snow_filter_stage_fill(below, 1));
+    size_t some = below->end - below->begin;
+    if (some > filter->packed)
+        some = (size_t)filter->packed;
+    if (!some)
+        return fail_block(filter, "it ends too early");
+    filter->stream.next_in = below->buffer + below->begin;
+    filter->stream.avail_in = (uInt)some;
+    *answer = inflate(&filter->stream, Z_NO_FLUSH);
+    some -= filter->stream.avail_in;
+    snow_filter_stage_drop(below, some);
+    filter->packed -= some;
+    if (*answer == Z_MEM_ERROR)
+        return SNOW_STATUS_NO_MEMORY;
+    if (*answer != Z_OK && *answer != Z_STREAM_END && *answer != Z_BUF_ERROR)
+        return fail_block(filter, filter->stream.msg ? filter->stream.msg
+                                                     : "the data are invalid");
+    return SNOW_STATUS_OK;
+}
+
+/* The check sum follows the last byte: inflate must consume it, and return no
+ * more bytes. */
+static snow_status end_block(blocks_filter *filter, int answer) {
+    unsigned char none;
+    while (answer != Z_STREAM_END) {
+        filter->stream.next_out = &none;
+        filter->stream.avail_out = 1;
+        SNOW_TRY(inflate_some(filter, &answer));
+        if (!filter->stream.avail_out)
+            return fail_block(filter, "it is longer than its declared size");
+    }
+    if (filter->packed)
+        return fail_block(filter, "its packed size is wrong");
+    return SNOW_STATUS_OK;
+}
+
+/* Reads some bytes of the current block. */
+static snow_status pull_block(blocks_filter *filter, void *bytes, size_t size,
+                              size_t *got) {
+    uInt wanted = size > 1u << 30 ? 1u << 30 : (uInt)size;
+    if (wanted > filter->left)
+        wanted = (uInt)filter->left;
+    filter->stream.next_out = bytes;
+    filter->stream.avail_out = wanted;
+    int answer = Z_OK;
+    while (filter->stream.avail_out && answer != Z_STREAM_END)
+        SNOW_TRY(inflate_some(filter, &answer));
+    *got = wanted - filter->stream.avail_out;
+    filter->left -= *got;
+    if (answer == Z_STREAM_END && filter->left)
+        return fail_block(filter, "it is shorter than its declared size");
+    return filter->left ? SNOW_STATUS_OK : end_block(filter, answer);
+}
+
+static snow_status pull_blocks(snow_filter_stage *base, void *bytes,
+                               size_t size, size_t *got) {
+    blocks_filter *filter = (blocks_filter *)base;
+    *got = 0;
+    if (filter->damaged)
+        return fail_block(filter, "it cannot be skipped");
+    while (!filter->left && filter->next < filter->blocks.count)
+        begin_block(filter);
+    return filter->left ? pull_block(filter, bytes, size, got) : SNOW_STATUS_OK;
+}
+
+/* Drops bytes of the stage below; false if it has fewer. */
+static bool drop_below(snow_filter_stage *below, uint64_t size) {
+    while (size) {
+        if (below->begin == below->end && below->jump) {
+            int64_t remaining = snow_filter_stage_remaining(below);
+            if (remaining >= 0 && (uint64_t)remaining >= size &&
+                below->jump(below, size)) {
+                below->taken += size;
+                return true;
+            }
+        }
+        if (snow_filter_stage_fill(below, 1) != SNOW_STATUS_OK ||
+            below->begin == below->end)
+            return false;
+        uint64_t some = below->end - below->begin;
+        if (some > size)
+            some = size;
+        snow_filter_stage_drop(below, (size_t)some);
+        size -= some;
+    }
+    return true;
+}
+
+/* Skips the rest of the current block, then whole blocks without unpacking,
+ * then a part of one. The bytes in between are not buffered here, as for every
+ * jump. */
+static bool jump_blocks(snow_filter_stage *base, uint64_t count) {
+    blocks_filter *filter = (blocks_filter *)base;
+    while (count) {
+        if (!filter->left && filter->next < filter->blocks.count &&
+            size_of(filter, filter->next) <= count) {
+            count -= size_of(filter, filter->next);
+            if (!drop_below(base->below, filter->blocks.packed[filter->next++]))
+                filter->damaged = true;
+        } else {
+            unsigned char scratch[4096];
+            size_t got,
+                some = sizeof scratch < count ? sizeof scratch : (size_t)count;
+            if (pull_blocks(base, scratch, some, &got) != SNOW_STATUS_OK ||
+                !got)
+                filter->damaged = true;
+            else
+                count -= got;
+        }
+        if (filter->damaged)
+            return false;
+    }
+    return true;
+}
+
+static void end_blocks(snow_filter_stage *base) {
+    blocks_filter *filter = (blocks_filter *)base;
+    inflateEnd(&filter->stream);
+    snow_release(base->context, filter->blocks.packed);
+}
+
+/* Adds up all packed and all unpacked bytes; false if they are impossible. */
+static bool sum_block_sizes(const snow_filter_stage *below,
+                            const snow_blocks *blocks, uint64_t *unpacked) {
+    uint64_t packed = 0, most;
+    for (uint64_t i = 0; i < blocks->count; i++)
+        if (!snow_add_u64(packed, blocks->packed[i], &packed))
+            return false;
+    return blocks->whole && blocks->last &&
+           packed <= snow_filter_stage_limit(below) &&
+           snow_mul_u64(blocks->count - 1, blocks->whole, unpacked) &&
+           snow_add_u64(*unpacked, blocks->last, unpacked) &&
+           *unpacked <= (uint64_t)INT64_MAX &&
+           snow_mul_u64(blocks->count, STREAM_SLACK, &most) &&
+           snow_add_u64(packed, most, &most) &&
+           (!snow_mul_u64(most, SNOW_DEFLATE_RATIO, &most) ||
+            *unpacked <= most);
+}
+
+snow_status snow_filter_stage_open_blocks(snow_filter_stage *below,
+                                          const snow_blocks *blocks,
+                                          snow_filter_stage **out) {
+    uint64_t unpacked;
+    if (!sum_block_sizes(below, blocks, &unpacked))
+        return snow_fail(below->context, SNOW_STATUS_BAD_INPUT,
+                         "%s: its compressed blocks are larger than the file; "
+                         "it is truncated or damaged",
+                         below->name);
+    blocks_filter *filter =
+        snow_filter_stage_allocate(below->context, sizeof *filter);
+    if (!filter)
+        return SNOW_STATUS_NO_MEMORY;
+    filter->stream.zalloc = allocate_for_zlib;
+    filter->stream.zfree = release_for_zlib;
+    filter->stream.opaque = below->context;
+    if (inflateInit2(&filter->stream, 15) != Z_OK) {
+        snow_release(below->context, filter);
+        return SNOW_STATUS_NO_MEMORY; /* snow_allocate set the message */
+    }
+    filter->filter.name = below->name;
+    filter->filter.below = below;
+    filter->filter.pull = pull_blocks;
+    filter->filter.jump = jump_blocks;
+    filter->filter.fini = end_blocks;
+    filter->filter.size = (int64_t)unpacked;
+    filter->blocks = *blocks;
+    *out = &filter->filter;
+    return SNOW_STATUS_OK;
+}

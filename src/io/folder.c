@@ -1,0 +1,249 @@
+/* io/folder.c - lists the files of a folder or a pattern, in an order that does
+ * not depend on the machine: names are compared by character, numbers in them
+ * by value. */
+#include "io/folder.h"
+
+#include <ctype.h>
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* More files than any image series has. */
+#define MOST_FILES ((size_t)1 << 24)
+
+/* The most digits that cannot overflow. */
+#define MOST_DIGITS 18
+
+bool snow_is_there(const char *path, size_t length) {
+    char whole[4096];
+    struct stat about;
+    if (length >= sizeof whole)
+        return false;
+    memcpy(whole, path, length);
+    whole[length] = 0;
+    return stat(whole, &about) == 0;
+}
+
+bool snow_is_folder(const char *path) {
+    struct stat about;
+    return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+/* The begin of the last component of a path. */
+static const char *last_part(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The length of "%d", "%5d" or "%05d"; 0 for other text. */
+static size_t number_letters(const char *text) {
+    if (*text != '%')
+        return 0;
+    size_t digits = strspn(text + 1, "0123456789");
+    return digits <= 2 && text[1 + digits] == 'd' ? digits + 2 : 0;
+}
+
+bool snow_is_pattern(const char *path) {
+    struct stat about;
+    const char *part = last_part(path);
+    bool signs = strpbrk(part, "*?") != NULL;
+    for (const char *at = part; *at && !signs; at++)
+        signs = number_letters(at) > 0;
+    return signs && stat(path, &about) != 0;
+}
+
+/* The depth of recursion is the number of '*' and numbers in the pattern. */
+static bool fits(const char *pattern, const char *name) {
+    for (; *pattern; pattern++, name++) {
+        size_t letters = number_letters(pattern);
+        if (*pattern == '*') {
+            for (; *name; name++)
+                if (fits(pattern + 1, name))
+                    return true;
+            return fits(pattern + 1, name);
+        }
+        if (letters) {
+            size_t digits = strspn(name, "0123456789");
+            for (size_t some = digits; some; some--)
+                if (fits(pattern + letters, name + some))
+                    return true;
+            return false;
+        }
+        if (!*name || (*pattern != '?' && *pattern != *name))
+            return false;
+    }
+    return !*name;
+}
+
+/* Numbers by their value, other characters by their code; equal numbers of
+ * different length by length, so that the order is unique. */
+int snow_name_compare(const char *a, const char *b) {
+    while (*a && *b) {
+        if (isdigit((unsigned char)*a) && isdigit((unsigned char)*b)) {
+            size_t zeros_a = strspn(a, "0"), zeros_b = strspn(b, "0");
+            const char *x = a + zeros_a, *y = b + zeros_b;
+            size_t digits_a = strspn(x, "0123456789");
+            size_t digits_b = strspn(y, "0123456789");
+            if (digits_a != digits_b)
+                return digits_a < digits_b ? -1 : 1;
+            int order = strncmp(x, y, digits_a);
+            if (order || zeros_a != zeros_b)
+                return order ? order : zeros_a < zeros_b ? -1 : 1;
+            a = x + digits_a;
+            b = y + digits_b;
+        } else if (*a != *b) {
+            return (unsigned char)*a < (unsigned char)*b ? -1 : 1;
+        } else {
+            a++;
+            b++;
+        }
+    }
+    return *a ? 1 : *b ? -1 : 0;
+}
+
+static int compare_paths(const void *a, const void *b) {
+    return snow_name_compare(*(char *const *)a, *(char *const *)b);
+}
+
+/* Collected names one after another, each with its NUL. */
+typedef struct names {
+    char *block;
+    size_t used, capacity, count;
+} names;
+
+static snow_status add_name(snow_context *context, names *all,
+                            const char *folder, size_t folder_length,
+                            const char *name) {
+    size_t length = strlen(name) + 1;
+    SNOW_TRY(snow_reserve(context, &all->block, &all->capacity, all->used,
+                          all->used + folder_length + length));
+    char *path = all->block + all->used;
+    memcpy(path, folder, folder_length);
+    memcpy(path + folder_length, name, length);
+    struct stat about;
+    if (stat(path, &about) || !S_ISREG(about.st_mode))
+        return SNOW_STATUS_OK; /* not stored: the next name overwrites it */
+    all->used += folder_length + length;
+    all->count++;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status collect_names(snow_context *context, DIR *stream,
+                                 const char *folder, size_t folder_length,
+                                 const char *pattern, names *all) {
+    for (;;) {
+        errno = 0;
+        const struct dirent *entry = readdir(stream);
+        if (!entry && errno)
+            return snow_fail(
+                context, SNOW_STATUS_BAD_INPUT,
+                "cannot read the folder to its end; check the disk");
+        if (!entry)
+            return SNOW_STATUS_OK;
+        if (*entry->d_name == '.' ||
+            (*pattern && !fits(pattern, entry->d_name)))
+            continue;
+        SNOW_TRY(add_name(context, all, folder, folder_length, entry->d_name));
+        if (all->count > MOST_FILES)
+            return snow_fail(
+                context, SNOW_STATUS_BAD_INPUT,
+                "has more than %zu files; give a pattern that matches fewer",
+                MOST_FILES);
+    }
+}
+
+/* Makes the caller's list: pointers, followed by the names. */
+static snow_status make_list(snow_context *context, const names *all,
+                             snow_folder *out) {
+    char **paths =
+        snow_allocate(context, all->count * sizeof *paths + all->used);
+    if (!paths)
+        return SNOW_STATUS_NO_MEMORY;
+    char *at = (char *)(paths + all->count);
+    if (all->used)
+        memcpy(at, all->block, all->used);
+    for (size_t i = 0; i < all->count; i++) {
+        paths[i] = at;
+        at += strlen(at) + 1;
+    }
+    qsort(paths, all->count, sizeof *paths, compare_paths);
+    *out = (snow_folder){context, paths, all->count};
+    return SNOW_STATUS_OK;
+}
+
+static snow_status list_at(snow_context *context, char *folder,
+                           const char *pattern, snow_folder *out) {
+    DIR *stream = opendir(*folder ? folder : ".");
+    if (!stream)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "cannot open the folder; check its name and permissions");
+    size_t length = strlen(folder);
+    if (length && folder[length - 1] != '/')
+        folder[length++] = '/';
+    names all = {0};
+    snow_status status =
+        collect_names(context, stream, folder, length, pattern, &all);
+    closedir(stream);
+    if (status == SNOW_STATUS_OK)
+        status = make_list(context, &all, out);
+    snow_release(context, all.block);
+    return status;
+}
+
+/* The last component of a path may be a pattern; all before it is the folder.
+ */
+snow_status snow_folder_list(snow_context *context, const char *path,
+                             snow_folder *out) {
+    bool whole = snow_is_folder(path);
+    const char *pattern = whole ? "" : last_part(path);
+    size_t length = whole ? strlen(path) : (size_t)(pattern - path);
+    char *folder = snow_allocate(context, length + 2);
+    if (!folder)
+        return SNOW_STATUS_NO_MEMORY;
+    memcpy(folder, path, length);
+    memset(folder + length, 0, 2);
+    snow_status status = list_at(context, folder, pattern, out);
+    snow_release(context, folder);
+    return status;
+}
+
+bool snow_folder_below(const char *path, char *name, size_t capacity) {
+    DIR *stream = opendir(path);
+    const struct dirent *entry;
+    bool found = false;
+    while (stream && (entry = readdir(stream))) {
+        struct stat about;
+        size_t size = strlen(entry->d_name) + 1;
+        if (*entry->d_name == '.' || size > capacity ||
+            (found && snow_name_compare(entry->d_name, name) > 0) ||
+            fstatat(dirfd(stream), entry->d_name, &about, 0) ||
+            !S_ISDIR(about.st_mode))
+            continue;
+        memcpy(name, entry->d_name, size);
+        found = true;
+    }
+    if (stream)
+        closedir(stream);
+    return found;
+}
+
+void snow_folder_free(snow_folder *folder) {
+    snow_release(folder->context, folder->paths);
+}
+
+int64_t snow_last_number(const char *path) {
+    const char *part = last_part(path), *end = part + strlen(part);
+    while (end > part && !isdigit((unsigned char)end[-1]))
+        end--;
+    const char *at = end;
+    while (at > part && isdigit((unsigned char)at[-1]) &&
+           end - at < MOST_DIGITS)
+        at--;
+    int64_t value = at == end ? -1 : 0;
+    for (; at < end; at++)
+        value = value * 10 + (*at - '0');
+    return value;
+}

@@ -1,0 +1,41 @@
+/* io/folder.h - the files in a folder, or those that match a pattern. */
+#ifndef SNOW_IO_FOLDER_H
+#define SNOW_IO_FOLDER_H
+
+#include "base/base.h"
+
+/* Paths in natural order: "s2" before "s10". */
+typedef struct snow_folder {
+    snow_context *context;
+    char **paths; /* one block, including the names */
+    size_t count;
+} snow_folder;
+
+/* True if the first `length` characters of a path name an existing file or
+ * folder. */
+bool snow_is_there(const char *path, size_t length);
+
+/* True if the path is a folder; or if there is no file of that name, but its
+ * last component contains a '*', a '?' or a number such as %04d. */
+bool snow_is_folder(const char *path);
+bool snow_is_pattern(const char *path);
+
+/* The regular files of a folder, or those whose names match a pattern; names
+ * that begin with a dot are omitted. May be empty. Errors:
+ * SNOW_STATUS_BAD_INPUT (the folder cannot be read), SNOW_STATUS_NO_MEMORY. */
+snow_status snow_folder_list(snow_context *context, const char *path,
+                             snow_folder *out);
+
+/* The name of the first folder in a folder, in the same order; false if there
+ * is none, or none whose name fits. */
+bool snow_folder_below(const char *path, char *name, size_t capacity);
+
+void snow_folder_free(snow_folder *folder);
+
+/* Natural order, "s2" before "s10": below, equal or above 0. */
+int snow_name_compare(const char *a, const char *b);
+
+/* The last number in a path's last component; -1 if there is none. */
+int64_t snow_last_number(const char *path);
+
+#endif

@@ -1,0 +1,16 @@
+/* io/source_internal.h - the record of a source; for source*.c, filters.c and
+ * seekable.c only. */
+#ifndef SNOW_IO_SOURCE_INTERNAL_H
+#define SNOW_IO_SOURCE_INTERNAL_H
+
+#include "io/filter.h"
+#include "io/source.h"
+
+struct snow_source {
+    snow_context *context;
+    char *name;             /* in the same block */
+    snow_filter_stage *top; /* top filter stage, which is read from */
+    bool siblings;          /* other files can be opened by name */
+};
+
+#endif

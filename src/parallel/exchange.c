@@ -1,0 +1,267 @@
+/* parallel/exchange.c - local images to pieces of the picture, and these to
+ * rank 0: lines 14 to 20 of figure 8, for any boxes in the place of slabs. */
+#include "parallel/internal.h"
+
+#include "decompose/order.h"
+#include "image/image.h"
+
+#include <string.h>
+
+/* --- the local image ------------------------------------------------------
+ */
+
+/* Tiles of tile lines y0 .. y1 - 1 of a layer that were drawn on, as pixels;
+ * what else lies among them is cleared. */
+static snow_rectangle drawn_part(const snow_shear_warp_image *image, int layer,
+                                 int y0, int y1) {
+    const unsigned char *drawn =
+        image->drawn + (size_t)layer * image->layer_tiles;
+    snow_rectangle box = {image->tiles, INT32_MAX, 0, 0};
+    for (int n = y0 * image->tiles; n < y1 * image->tiles; n++) {
+        int x = n % image->tiles, y = n / image->tiles;
+        if (!drawn[n])
+            continue;
+        box.x0 = x < box.x0 ? x : box.x0;
+        box.y0 = y < box.y0 ? y : box.y0;
+        box.x1 = x + 1 > box.x1 ? x + 1 : box.x1;
+        box.y1 = y + 1;
+    }
+    if (box.x0 >= box.x1)
+        return (snow_rectangle){0, 0, 0, 0};
+    snow_shear_warp_clear(image, layer, box.x0, box.y0, box.x1, box.y1);
+    box.x0 *= image->tile_width;
+    box.x1 *= image->tile_width;
+    box.y0 *= image->tile_height;
+    box.y1 *= image->tile_height;
+    box.x1 = box.x1 < image->width ? box.x1 : image->width;
+    box.y1 = box.y1 < image->height ? box.y1 : image->height;
+    return box;
+}
+
+/* While it is exchanged (snow_unfinished). */
+static bool draw_band(void *of) {
+    const snow_flight *p = of;
+    return snow_ranks_draw(p->ranks);
+}
+
+static bool look_at_lines(void *of, int y0, int y1, snow_rectangle *drawn) {
+    const snow_flight *p = of;
+    const snow_shear_warp_image *image = &p->picture.local.image;
+    int first = y0 / image->tile_height,
+        end = (y1 - 1) / image->tile_height + 1;
+    if (p->picture.drawing &&
+        !snow_shear_warp_drawn(p->picture.local.shear_warp, first, end))
+        return false;
+    snow_ranks_pause(p->ranks);
+    *drawn = drawn_part(image, 0, first, end);
+    return true;
+}
+
+static void end_drawing(void *of) {
+    const snow_flight *p = of;
+    snow_ranks_drain(p->ranks);
+}
+
+/* What was drawn is told where that is over. */
+static snow_local sheared_local(const snow_shear_warp_image *image,
+                                bool drawing) {
+    snow_local local = {.width = image->width,
+                        .height = image->height,
+                        .channels = image->channels,
+                        .stride = image->stride,
+                        .pixels = image->pixels,
+                        .layers = image->layers,
+                        .layer_floats = image->layer_floats};
+    memcpy(local.nodes, image->nodes, sizeof local.nodes);
+    for (int n = 0; image->width && n < image->layers && !drawing; n++)
+        local.drawn[n] =
+            drawn_part(image, n, 0, (int)image->layer_tiles / image->tiles);
+    return local;
+}
+
+/* Pixels of the picture, in ranks->images. */
+static snow_local picture_local(const snow_flight *p, const snow_job *job) {
+    const snow_view *view = job->view;
+    const snow_local_image *image = &p->picture.local;
+    snow_local local = {.width = view->width,
+                        .height = view->height,
+                        .channels = job->channels,
+                        .stride = (size_t)(view->width * job->channels),
+                        .pixels = p->ranks->images,
+                        .layers = image->layers,
+                        .layer_floats = snow_job_bytes(job) / sizeof(float)};
+    memcpy(local.nodes, image->nodes, sizeof local.nodes);
+    for (int n = 0; n < local.layers; n++)
+        local.drawn[n] = (snow_rectangle){0, 0, view->width, view->height};
+    return local;
+}
+
+/* --- the exchange ---------------------------------------------------------
+ */
+
+/* How local images of a mode are laid over one another. */
+static snow_composite_op composite_op_of(snow_mode mode) {
+    switch (mode) {
+    case SNOW_MODE_MIP:
+    case SNOW_MODE_MINIP:
+        return SNOW_COMPOSITE_MAXIMUM;
+    case SNOW_MODE_MEAN:
+    case SNOW_MODE_SUM:
+        return SNOW_COMPOSITE_SUM;
+    default:
+        return SNOW_COMPOSITE_OVER;
+    }
+}
+
+snow_status snow_flight_room(snow_flight *f, const snow_job *job, int layers) {
+    snow_ranks *r = f->ranks;
+    size_t bytes = (size_t)layers * snow_job_bytes(job);
+    SNOW_TRY(snow_reserve(job->context, &r->images, &r->images_capacity, 0,
+                          bytes + 1));
+    memset(r->images, 0, bytes);
+    f->picture.local.pixels = r->images;
+    return SNOW_STATUS_OK;
+}
+
+static const snow_placement *placement_of(const snow_flight *p,
+                                          const snow_job *job) {
+    return p->picture.pass->method->warps ? &p->picture.local.placement
+                                          : &job->placement;
+}
+
+/* An empty intermediate image is the same on all ranks. */
+static bool is_empty(const snow_flight *p) {
+    return p->picture.pass->method->warps && !p->picture.local.image.width;
+}
+
+snow_status snow_flight_prepare(snow_flight *p, const snow_job *job) {
+    const snow_placement *placement = placement_of(p, job);
+    const bool warps = p->picture.pass->method->warps;
+    snow_viewer sight;
+    if (is_empty(p))
+        return SNOW_STATUS_OK;
+    p->local = warps
+                   ? sheared_local(&p->picture.local.image, p->picture.drawing)
+                   : picture_local(p, job);
+    p->local.composite_op = composite_op_of(job->settings.mode);
+    if (warps)
+        SNOW_TRY(snow_lines_prepare(p->ranks, &p->local));
+    if (job->settings.deterministic)
+        return snow_layers_prepare(p->ranks, &p->local, placement);
+    snow_clip_viewer(placement, &sight);
+    return snow_order_boxes(job->context, p->ranks->boxes, p->ranks->ranks,
+                            &sight, p->ranks->order);
+}
+
+static void set_rounds(snow_flight *p, const snow_exchange_figures *given) {
+    snow_stats *stats = &p->picture.stats;
+    const int most = (int)(sizeof stats->radices / sizeof *stats->radices);
+    stats->rounds = given->rounds;
+    for (int i = 0; i < given->rounds && i < most; i++)
+        stats->radices[i] = given->radices[i];
+    stats->active_pixels = given->active;
+    stats->bytes_early = (uint64_t)given->early;
+    p->ranks->begin_at = given->begin_at;
+}
+
+static snow_status exchange(snow_flight *p, const snow_job *job) {
+    snow_ranks *r = p->ranks;
+    const snow_local *local = &p->local;
+    const bool warps = p->picture.pass->method->warps;
+    const snow_unfinished unfinished = {draw_band, look_at_lines, end_drawing,
+                                        p};
+    if (job->settings.deterministic)
+        return snow_layers_exchange(r, local, placement_of(p, job), &p->region);
+    const snow_exchange_params order = {
+        .width = local->width,
+        .height = local->height,
+        .channels = local->channels,
+        .pixels = local->pixels,
+        .stride = local->stride,
+        .drawn = local->drawn[0],
+        .ranks = r->order,
+        .method = p->how.combining,
+        .radix = p->how.radix,
+        .composite_op = local->composite_op,
+        .grain = warps ? local->width : 1, /* pieces of whole lines */
+        .counts = p->picture.ahead ? r->group_counts : NULL,
+        .count_groups = r->groups,
+        .unfinished = p->picture.drawing ? &unfinished : NULL};
+    SNOW_TRY(snow_exchange(r->combiner, &order, &p->region));
+    set_rounds(p, snow_exchange_get_figures(r->combiner));
+    snow_exchange_regions(r->combiner, r->firsts, r->counts);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_flight_exchange(snow_flight *p, const snow_job *job) {
+    snow_ranks *r = p->ranks;
+    snow_stats *stats = &p->picture.stats;
+    double mark = snow_ranks_clock(r), cpu = snow_flight_cpu(p);
+    if (is_empty(p))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(exchange(p, job));
+    if (p->picture.pass->method->warps)
+        SNOW_TRY(snow_lines_exchange(r, &p->picture.local.image, &p->region));
+    stats->seconds_combine += snow_ranks_clock(r) - mark;
+    stats->cpu_combine += snow_flight_cpu(p) - cpu;
+    return SNOW_STATUS_OK;
+}
+
+/* This rank's pixels to their places in its own image. */
+static void keep_pixels(const snow_flight *p, int pixel_bits,
+                        snow_image *image) {
+    const snow_ranks *r = p->ranks;
+    size_t channels = (size_t)image->channels, at = 0;
+    for (size_t n = 0; n < r->run_count; n++) {
+        const snow_pixel_run *run = &r->runs[n];
+        size_t count = (size_t)run->count * channels;
+        float *out =
+            image->pixels +
+            ((size_t)run->y * (size_t)image->width + (size_t)run->x) * channels;
+        if (pixel_bits != 8)
+            memcpy(out, r->packed + at * sizeof *out, count * sizeof *out);
+        for (size_t i = 0; pixel_bits == 8 && i < count; i++)
+            out[i] = (float)r->packed[at + i] / 255;
+        at += count;
+    }
+}
+
+static snow_status gather(snow_flight *p, const snow_job *job, int pixel_bits,
+                          snow_image *image) {
+    snow_stats *stats = &p->picture.stats;
+    if (p->how.scattered) {
+        keep_pixels(p, pixel_bits, image);
+        return SNOW_STATUS_OK;
+    }
+    const snow_gather_params params = {pixel_bits, image, p->bytes, stats};
+    double cpu = snow_flight_cpu(p);
+    snow_status status = snow_pixels_gather(p->ranks, job, &params);
+    stats->cpu_gather += snow_flight_cpu(p) - cpu;
+    return status;
+}
+
+/* Local work. */
+static snow_status make_pixels(snow_flight *p, const snow_job *job,
+                               int pixel_bits) {
+    snow_ranks *r = p->ranks;
+    snow_stats *stats = &p->picture.stats;
+    if (!p->picture.pass->method->warps)
+        return snow_pixels_copy(r, job, &p->region, pixel_bits);
+    double mark = snow_ranks_clock(r), cpu = snow_flight_cpu(p);
+    snow_status status = snow_pixels_warp(r, &p->picture.local.image, job,
+                                          &p->region, pixel_bits);
+    stats->seconds_warp += snow_ranks_clock(r) - mark;
+    stats->cpu_warp += snow_flight_cpu(p) - cpu;
+    /* Bands that were sent may not have been drawn. */
+    return status == SNOW_STATUS_OK ? snow_monitor_status(&p->picture.monitor)
+                                    : status;
+}
+
+snow_status snow_flight_deliver(snow_flight *p, const snow_job *job,
+                                int pixel_bits, snow_image *image) {
+    if (is_empty(p))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_comm_agree_status(p->ranks->comm,
+                                    make_pixels(p, job, pixel_bits)));
+    return gather(p, job, pixel_bits, image);
+}

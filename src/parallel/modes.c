@@ -1,0 +1,208 @@
+/* parallel/modes.c - modes other than over by many processors, and depths.
+ *
+ *   mip, minip   pairs (value, 1): the larger of two    bit for bit the serial
+ *   mean, sum    pairs of sums: their sum               but for rounding
+ *   iso          opaque pixels: what is in front, which is over's business
+ *   depth        pairs (depth, 1): the same
+ *
+ * A depth of over is where opacity passes 1/2, which depends on all that is in
+ * front: for these processors take turns, the nearest first, and each goes on
+ * with the alphas that the one before it left.
+ *
+ * Each processor makes the pairs of its part (render/modes/modes.h) over the
+ * whole's range, which all agree on first; they are exchanged as over's local
+ * images are, on the slices' lattice where that is how they were made, warped
+ * or copied piece by piece, and brought to rank 0, which makes colours or
+ * values of them. */
+#include "parallel/internal.h"
+
+#include "decompose/order.h"
+#include "image/image.h"
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+snow_status snow_flight_check_mode(const snow_flight *f) {
+    const snow_settings *s = &f->picture.job.settings;
+    if (s->deterministic &&
+        (s->mode == SNOW_MODE_MEAN || s->mode == SNOW_MODE_SUM))
+        return snow_fail(f->picture.job.context, SNOW_STATUS_BAD_USAGE,
+                         "mode %s of many ranks is rounded as its parts are, "
+                         "so that it cannot be deterministic; render on one",
+                         snow_mode_name(s->mode));
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_flight_agree_range(snow_flight *f) {
+    enum { MINUS_LOW, HIGH, HOLES, COUNT };
+    snow_identity_transfer *identity = &f->picture.frame->identity;
+    snow_comm *comm = f->ranks->comm;
+    double words[COUNT] = {-INFINITY, -INFINITY, 0};
+    SNOW_TRY(snow_comm_agree_status(
+        comm, snow_identity_transfer_measure(&f->picture.job, identity)));
+    if (!identity->empty) {
+        words[MINUS_LOW] = -identity->low;
+        words[HIGH] = identity->high;
+    }
+    words[HOLES] = !identity->whole;
+    SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_MAX));
+    if (!(-words[MINUS_LOW] <= words[HIGH]))
+        words[MINUS_LOW] = words[HIGH] = 0;
+    snow_identity_transfer_widen(identity, -words[MINUS_LOW], words[HIGH],
+                                 words[HOLES] == 0);
+    if (isfinite(identity->high - identity->low))
+        return SNOW_STATUS_OK;
+    return snow_fail(f->picture.job.context, SNOW_STATUS_BAD_INPUT,
+                     "values from %g to %g span more than a number holds; only "
+                     "mode over shows them",
+                     identity->low, identity->high);
+}
+
+/* --- pairs ----------------------------------------------------------------
+ */
+
+snow_status snow_flight_paint(snow_flight *f) {
+    snow_picture *p = &f->picture;
+    if (!f->gathered)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_modes_paint(p->frame, &p->job, NULL, f->gathered->pixels,
+                              &p->image));
+    if (f->how.pixel_bits == 8 && p->image->channels > 1)
+        snow_round_pixels(p->image);
+    return SNOW_STATUS_OK;
+}
+
+/* --- depths ---------------------------------------------------------------
+ */
+
+/* (depth, 1) where there is a depth. */
+static void take_depths(const snow_image *depth, float *pairs) {
+    size_t count = (size_t)depth->width * (size_t)depth->height;
+    for (size_t n = 0; n < count; n++) {
+        bool here = !isnan(depth->pixels[n]);
+        pairs[2 * n] = here ? depth->pixels[n] : 0;
+        pairs[2 * n + 1] = here;
+    }
+}
+
+static void give_depths(const snow_image *pairs, snow_image *depth) {
+    size_t count = (size_t)depth->width * (size_t)depth->height;
+    for (size_t n = 0; n < count; n++)
+        depth->pixels[n] =
+            pairs->pixels[2 * n + 1] > 0 ? pairs->pixels[2 * n] : NAN;
+}
+
+/* Depths are exchanged as pairs, each of one rank. */
+static snow_job pairs_job(const snow_flight *f) {
+    snow_job job = f->picture.pass->job;
+    job.channels = 2;
+    job.settings.mode = SNOW_MODE_OVER;
+    job.settings.deterministic = 0;
+    return job;
+}
+
+/* Local work. */
+static snow_status prepare_pairs(snow_flight *f, const snow_job *job,
+                                 snow_image **pairs) {
+    snow_picture *p = &f->picture;
+    p->local.layers = 1;
+    SNOW_TRY(snow_flight_room(f, job, 1));
+    take_depths(p->near, f->ranks->images);
+    SNOW_TRY(snow_flight_prepare(f, job));
+    if (!snow_flight_keeps(f))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(
+        snow_image_new(job->context, p->view.width, p->view.height, 2, pairs));
+    return snow_image_new(job->context, p->view.width, p->view.height, 1,
+                          &p->depth);
+}
+
+snow_status snow_flight_combine_depths(snow_flight *f) {
+    const snow_job job = pairs_job(f);
+    snow_image *pairs = NULL;
+    snow_status status =
+        snow_comm_agree_status(f->ranks->comm, prepare_pairs(f, &job, &pairs));
+    if (status == SNOW_STATUS_OK)
+        status = snow_flight_exchange(f, &job);
+    if (status == SNOW_STATUS_OK)
+        status = snow_flight_deliver(f, &job, 0, pairs);
+    if (status == SNOW_STATUS_OK && pairs)
+        give_depths(pairs, f->picture.depth);
+    snow_image_free(pairs);
+    return status;
+}
+
+/* --- depths of over -------------------------------------------------------
+ *
+ * Alphas travel through ranks->images. */
+
+static int seat_of(const snow_ranks *r) {
+    int seat = 0;
+    while (r->order[seat] != r->rank)
+        seat++;
+    return seat;
+}
+
+/* Local work: the order of the ranks, and places. */
+static snow_status prepare_turn(snow_flight *f) {
+    snow_picture *p = &f->picture;
+    snow_frame *frame = p->frame;
+    const snow_job *job = &p->pass->job;
+    snow_job alphas = *job;
+    snow_viewer sight;
+    alphas.channels = 1;
+    SNOW_TRY(snow_flight_room(f, &alphas, 1));
+    SNOW_TRY(snow_reserve(job->context, &frame->layer, &frame->layer_capacity,
+                          0, snow_job_bytes(job)));
+    SNOW_TRY(snow_image_new(job->context, p->view.width, p->view.height, 1,
+                            &p->near));
+    memset(frame->layer, 0, snow_job_bytes(job));
+    for (int64_t n = 0; n < (int64_t)p->view.width * p->view.height; n++)
+        p->near->pixels[n] = NAN;
+    p->local.pixels = frame->layer;
+    p->local.depths = p->near->pixels;
+    snow_clip_viewer(&job->placement, &sight);
+    return snow_order_boxes(job->context, f->ranks->boxes, f->ranks->ranks,
+                            &sight, f->ranks->order);
+}
+
+snow_status snow_flight_take_turn(snow_flight *f, snow_status status) {
+    snow_ranks *r = f->ranks;
+    const snow_job *job = &f->picture.pass->job;
+    size_t count = (size_t)job->view->width * (size_t)job->view->height;
+    size_t channels = (size_t)job->channels;
+    if (status == SNOW_STATUS_OK)
+        status = prepare_turn(f);
+    SNOW_TRY(snow_comm_agree_status(r->comm, status));
+    int seat = seat_of(r);
+    if (seat > 0) {
+        SNOW_TRY(snow_comm_receive(
+            r->comm, r->images, count * sizeof *r->images, r->order[seat - 1],
+            SNOW_TAG_LAYERS, &r->messages[0]));
+        SNOW_TRY(snow_comm_wait_all(r->comm, r->messages, 1));
+    }
+    for (size_t n = 0; n < count; n++)
+        f->picture.local.pixels[(n + 1) * channels - 1] = r->images[n];
+    f->turn = true;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_flight_give_turn(snow_flight *f, snow_status status) {
+    snow_ranks *r = f->ranks;
+    const snow_job *job = &f->picture.pass->job;
+    size_t count = (size_t)job->view->width * (size_t)job->view->height;
+    size_t channels = (size_t)job->channels;
+    if (!f->turn) /* no rank has drawn */
+        return status;
+    int seat = seat_of(r);
+    for (size_t n = 0; n < count; n++)
+        r->images[n] = f->picture.local.pixels[(n + 1) * channels - 1];
+    if (seat + 1 < r->ranks) {
+        SNOW_TRY(snow_comm_send(r->comm, r->images, count * sizeof *r->images,
+                                r->order[seat + 1], SNOW_TAG_LAYERS,
+                                &r->messages[0]));
+        SNOW_TRY(snow_comm_wait_all(r->comm, r->messages, 1));
+    }
+    return snow_comm_agree_status(r->comm, status);
+}

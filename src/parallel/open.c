@@ -1,0 +1,486 @@
+/* parallel/open.c - each rank gets its part of a volume (SD in figure 7): from
+ * a file of which nobody reads or stores all, or from the ranks that hold it.
+ *
+ *   shares of a file     counts of all      boxes, with ghosts
+ *   +---------+ rank 0   ..:::.             +----+----+
+ *   |---------|      1   .:####:   reduce   |  0 | 2  |   voxels move
+ *   |---------|      2   .:####:  ------->  |----+----|  ------------>
+ *   +---------+      3   ..:::.    and cut  |  1 | 3  |   ranks to ranks
+ *                                           +----+----+
+ *
+ * A share is an equal run of rows as they lie in the file.  It is no larger
+ * than the largest box will be, since that has at least the mean, and so the
+ * most that any rank stores does not rise for it.  Invariant: the owned boxes
+ * of all ranks cover the grid and do not overlap, before and after. */
+#include "parallel/open.h"
+#include "classify/gradient_opacity.h"
+#include "decompose/redistribute.h"
+#include "decompose/slab.h"
+#include "transfer/look.h"
+#include "volume/mask.h"
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A rank's box, and with its ghosts. */
+typedef struct place {
+    snow_box owned, stored;
+} place;
+
+/* A file that many open. */
+typedef struct opening {
+    snow_comm *comm;
+    snow_context *context;
+    snow_open_fn *open;
+    snow_format_name_fn *format_name;
+    const char *path;
+    snow_volume_options options;
+    snow_volume_info whole; /* of what the options ask for */
+    const snow_look *look;
+    const snow_transfer *transfer; /* in the place of the look's, or NULL */
+} opening;
+
+static snow_box whole_box(const snow_volume_info *whole) {
+    snow_box box = {{0, 0, 0}, {0, 0, 0}};
+    memcpy(box.count, whole->dims, sizeof box.count);
+    return box;
+}
+
+/* A rank without voxels stores one, since a volume has at least one. */
+static place place_box(const snow_volume_info *whole, const snow_box *owned,
+                       const int64_t layers[3]) {
+    place p = {{{0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {1, 1, 1}}};
+    if (!snow_box_voxels(owned))
+        return p;
+    p.owned = *owned;
+    for (int i = 0; i < 3; i++) {
+        int64_t first = owned->first[i], end = first + owned->count[i];
+        int64_t most = whole->dims[i] - end;
+        p.stored.first[i] = first > layers[i] ? first - layers[i] : 0;
+        end += layers[i] < most ? layers[i] : most;
+        p.stored.count[i] = end - p.stored.first[i];
+    }
+    return p;
+}
+
+static snow_status set_part(snow_volume *volume, const snow_volume_info *whole,
+                            const place *p) {
+    snow_extent part;
+    memcpy(part.dims, whole->dims, sizeof part.dims);
+    memcpy(part.stored, p->stored.first, sizeof part.stored);
+    memcpy(part.first, p->owned.first, sizeof part.first);
+    memcpy(part.count, p->owned.count, sizeof part.count);
+    SNOW_TRY(snow_volume_set_extent(volume, &part));
+    snow_volume_set_whole(volume, whole);
+    return SNOW_STATUS_OK;
+}
+
+/* Room for a part; voxels that nobody sends are 0. */
+static snow_status make_part(snow_context *context,
+                             const snow_volume_info *whole, const place *p,
+                             snow_volume **out) {
+    snow_volume *volume;
+    snow_volume_info info =
+        snow_volume_info_of_box(whole, p->stored.first, p->stored.count);
+    SNOW_TRY(snow_volume_new(context, &info, &volume));
+    if (!snow_box_voxels(&p->owned))
+        memset(volume->owned, 0, snow_type_size(info.type));
+    snow_status status = set_part(volume, whole, p);
+    if (status == SNOW_STATUS_OK)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
+}
+
+/* --- voxels that change hands --------------------------------------------- */
+
+/* What a volume answers for, as it lies in memory. */
+static snow_brick brick_of(const snow_volume *volume) {
+    snow_extent part;
+    const int64_t *dims = volume->info.dims;
+    size_t size = snow_type_size(volume->info.type);
+    snow_volume_get_extent(volume, &part);
+    snow_brick brick = {.stride = {1, dims[0], dims[0] * dims[1]}};
+    int64_t at = 0;
+    for (int i = 0; i < 3; i++) {
+        brick.box.first[i] = part.first[i];
+        brick.box.count[i] = part.count[i];
+        at += (part.first[i] - part.stored[i]) * brick.stride[i];
+    }
+    brick.voxels = volume->voxels;
+    if (snow_box_voxels(&brick.box))
+        brick.voxels = (const char *)volume->voxels + (size_t)at * size;
+    return brick;
+}
+
+/* Collective.  Fills the part `to` from the parts that all ranks hold. */
+static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
+                               const place *p, snow_volume *to) {
+    static const snow_box nothing;
+    snow_voxels *voxels = NULL;
+    const snow_brick held = brick_of(from);
+    bool any = snow_box_voxels(&p->owned) > 0;
+    snow_status status =
+        snow_comm_agree_status(comm, snow_voxels_new(comm, &voxels));
+    if (status == SNOW_STATUS_OK)
+        status =
+            snow_voxels_plan(voxels, &held.box, 1, any ? &p->stored : &nothing);
+    if (status == SNOW_STATUS_OK)
+        status = snow_voxels_move(voxels, &held,
+                                  snow_type_size(from->info.type), to->owned);
+    snow_voxels_free(voxels);
+    return status;
+}
+
+/* Collective.  Voxels that all ranks hold go where the boxes say. */
+static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
+                              const snow_partition_params *order,
+                              const snow_box *boxes, const snow_volume *held,
+                              snow_volume **out) {
+    snow_volume *volume = NULL;
+    place p = place_box(whole, &boxes[snow_comm_rank(comm)], order->layers);
+    snow_status status = snow_comm_agree_status(
+        comm, make_part(snow_comm_context(comm), whole, &p, &volume));
+    if (status == SNOW_STATUS_OK)
+        status = move_voxels(comm, held, &p, volume);
+    if (status == SNOW_STATUS_OK)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
+}
+
+/* Collective.  Cuts what all ranks hold as the order says. */
+static snow_status distribute(snow_comm *comm, const snow_volume_info *whole,
+                              const snow_partition_params *order,
+                              const snow_volume *held,
+                              const snow_transfer *transfer,
+                              snow_volume **out) {
+    snow_context *context = snow_comm_context(comm);
+    snow_box *boxes =
+        snow_allocate_array(context, (uint64_t)order->ranks, sizeof *boxes);
+    snow_status status = snow_comm_agree_status(
+        comm, boxes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
+    if (status == SNOW_STATUS_OK)
+        status = snow_partition_boxes(comm, order, held, transfer, boxes, NULL);
+    if (status == SNOW_STATUS_OK)
+        status = send_share(comm, whole, order, boxes, held, out);
+    snow_release(context, boxes);
+    return status;
+}
+
+/* --- files ---------------------------------------------------------------- */
+
+/* Opens a box of what the options ask for, which is a box itself perhaps. */
+static snow_status read_box(const opening *o, const place *p,
+                            snow_volume **out) {
+    snow_volume_options options = o->options;
+    snow_volume_info info;
+    snow_volume *volume;
+    for (int i = 0; i < 3; i++) {
+        options.crop[i][0] += p->stored.first[i];
+        options.crop[i][1] = options.crop[i][0] + p->stored.count[i];
+    }
+    SNOW_TRY(o->open(o->context, o->path, &options, &info, &volume));
+    snow_status status = set_part(volume, &o->whole, p);
+    if (status == SNOW_STATUS_OK)
+        *out = volume;
+    else
+        snow_volume_close(volume);
+    return status;
+}
+
+/* Equal runs of slices, or, with more ranks than slices, of each slice's rows;
+ * those of the last ranks may be empty. */
+static snow_box share_of(const snow_volume_info *whole, int rank, int ranks) {
+    snow_box box = whole_box(whole);
+    int slabs = ranks < whole->dims[2] ? ranks : (int)whole->dims[2];
+    int parts = ranks / slabs;
+    snow_slab z = {0, 0}, y = {0, 0};
+    if (rank < slabs * parts) {
+        z = snow_slab_equal(whole->dims[2], slabs, rank / parts);
+        y = snow_slab_equal(whole->dims[1], parts, rank % parts);
+    }
+    box.first[1] = y.first;
+    box.count[1] = y.count;
+    box.first[2] = z.first;
+    box.count[2] = z.count;
+    return box;
+}
+
+/* Collective.  Ranks that see another file of the name must not make one
+ * picture of both. */
+static snow_status compare_files(const opening *o) {
+    const snow_volume_info *w = &o->whole;
+    const int64_t facts[5] = {w->dims[0], w->dims[1], w->dims[2],
+                              (int64_t)w->type, w->times};
+    int64_t ends[10];
+    for (int i = 0; i < 5; i++) {
+        ends[i] = facts[i];
+        ends[5 + i] = -facts[i];
+    }
+    SNOW_TRY(snow_comm_reduce_ints(o->comm, ends, 10, SNOW_MIN));
+    for (int i = 0; i < 5; i++)
+        if (ends[i] != -ends[5 + i])
+            return snow_fail(o->context, SNOW_STATUS_BAD_INPUT,
+                             "%s: is not the same file on all ranks; put it "
+                             "where all see it",
+                             o->path);
+    return SNOW_STATUS_OK;
+}
+
+/* Collective.  Rank 0 has read a stream: the others get to know what it is.
+ * The format's name is a constant of each process. */
+static snow_status set_info(opening *o, const snow_volume *volume) {
+    int64_t format = -1;
+    if (volume) {
+        o->whole = volume->info;
+        while (o->format_name((size_t)++format))
+            if (!strcmp(o->format_name((size_t)format), o->whole.format))
+                break;
+    }
+    SNOW_TRY(snow_comm_broadcast(o->comm, &format, sizeof format, 0));
+    SNOW_TRY(snow_comm_broadcast(o->comm, &o->whole, sizeof o->whole, 0));
+    const char *name = o->format_name((size_t)format);
+    o->whole.format = name ? name : "memory";
+    return SNOW_STATUS_OK;
+}
+
+/* Collective.  A stream is read by rank 0, as its share; the others' shares are
+ * made later. */
+static snow_status read_stream(opening *o, snow_volume **share) {
+    snow_volume_info info;
+    snow_status status = SNOW_STATUS_OK;
+    if (snow_comm_rank(o->comm) == 0)
+        status = o->open(o->context, o->path, &o->options, &info, share);
+    SNOW_TRY(snow_comm_agree_status(o->comm, status));
+    return set_info(o, *share);
+}
+
+/* Collective.  Looks at the file, and reads it where that is the only way.
+ * Remarks are left to the reading, which makes them too. */
+static snow_status begin(opening *o, int64_t *stream, snow_volume **share) {
+    *stream = snow_source_is_stream(o->path);
+    SNOW_TRY(snow_comm_broadcast(o->comm, stream, sizeof *stream, 0));
+    if (*stream)
+        return read_stream(o, share);
+    snow_warning_fn *notice = o->context->notice;
+    o->context->notice = NULL;
+    snow_status status =
+        o->open(o->context, o->path, &o->options, &o->whole, NULL);
+    o->context->notice = notice;
+    SNOW_TRY(snow_comm_agree_status(o->comm, status));
+    return compare_files(o);
+}
+
+/* Collective.  The share of this rank, unless it has one. */
+static snow_status read_share(const opening *o, bool stream,
+                              snow_volume **share) {
+    static const int64_t no_layers[3];
+    int ranks = snow_comm_size(o->comm), rank = snow_comm_rank(o->comm);
+    snow_box box = stream ? (snow_box){{0, 0, 0}, {0, 0, 0}}
+                          : share_of(&o->whole, rank, ranks);
+    place p = place_box(&o->whole, &box, no_layers);
+    snow_status status = SNOW_STATUS_OK;
+    if (!*share)
+        status = snow_box_voxels(&box)
+                     ? read_box(o, &p, share)
+                     : make_part(o->context, &o->whole, &p, share);
+    return snow_comm_agree_status(o->comm, status);
+}
+
+/* Collective.  An empty picture must not pass for one of an empty volume: rank
+ * 0 tells that a mask or planes have left nothing of all that was read.  As of
+ * a volume in memory, nothing is said of one that is cropped. */
+static snow_status warn_empty(const opening *o, const snow_volume *read) {
+    static const int64_t none[3][2];
+    enum { LEFT, MINUS_LEAST, MOST, COUNT };
+    double ends[COUNT] = {0, -INFINITY, -INFINITY};
+    snow_extent part;
+    if (!snow_mask_asked(&o->options) ||
+        memcmp(o->options.crop, none, sizeof none) != 0)
+        return SNOW_STATUS_OK;
+    snow_volume_get_extent(read, &part);
+    if (read->emptied) {
+        ends[MINUS_LEAST] = fmax(ends[MINUS_LEAST], -read->mask_range[0]);
+        ends[MOST] = fmax(ends[MOST], read->mask_range[1]);
+    } else
+        ends[LEFT] = part.count[0] && part.count[1] && part.count[2];
+    SNOW_TRY(snow_comm_reduce_doubles(o->comm, ends, COUNT, SNOW_MAX));
+    const bool known = ends[MOST] >= -ends[MINUS_LEAST];
+    const double range[2] = {known ? -ends[MINUS_LEAST] : NAN,
+                             known ? ends[MOST] : NAN};
+    if (ends[LEFT] == 0 && snow_comm_rank(o->comm) == 0)
+        snow_mask_remark(o->context, &o->options, range);
+    return SNOW_STATUS_OK;
+}
+
+/* Collective.  By what all ranks have read. */
+static snow_status make_transfer(const opening *o, const snow_volume *read,
+                                 snow_transfer **out) {
+    if (o->transfer)
+        return SNOW_STATUS_OK;
+    return snow_transfer_new_for_ranks(o->comm, read, o->look, out);
+}
+
+/* Collective.  Equal slabs are known before anything is read. */
+static snow_status open_equal(const opening *o,
+                              const snow_partition_params *order,
+                              snow_volume **volume, snow_transfer **transfer) {
+    snow_box *boxes =
+        snow_allocate_array(o->context, (uint64_t)order->ranks, sizeof *boxes);
+    snow_status status = SNOW_STATUS_NO_MEMORY;
+    if (boxes) {
+        snow_partition_equal(&order->grid, order->ranks, boxes);
+        place p = place_box(&o->whole, &boxes[snow_comm_rank(o->comm)],
+                            order->layers);
+        status = snow_box_voxels(&p.owned)
+                     ? read_box(o, &p, volume)
+                     : make_part(o->context, &o->whole, &p, volume);
+    }
+    snow_release(o->context, boxes);
+    SNOW_TRY(snow_comm_agree_status(o->comm, status));
+    SNOW_TRY(warn_empty(o, *volume));
+    return make_transfer(o, *volume, transfer);
+}
+
+/* Collective.  By way of shares. */
+static snow_status open_shares(const opening *o,
+                               const snow_partition_params *order, bool stream,
+                               snow_volume **share, snow_volume **volume,
+                               snow_transfer **transfer) {
+    SNOW_TRY(read_share(o, stream, share));
+    if (!stream) /* of which rank 0 has read, and told, all */
+        SNOW_TRY(warn_empty(o, *share));
+    SNOW_TRY(make_transfer(o, *share, transfer));
+    if (order->ranks == 1) { /* the share is the whole */
+        *volume = *share;
+        *share = NULL;
+        return SNOW_STATUS_OK;
+    }
+    return distribute(o->comm, &o->whole, order, *share,
+                      o->transfer ? o->transfer : *transfer, volume);
+}
+
+/* What is there when it fails is freed by the caller. */
+static snow_status open_file(opening *o, const snow_view *view,
+                             const snow_settings *settings,
+                             const snow_ranks_options *how, snow_volume **share,
+                             snow_volume **volume, snow_transfer **transfer) {
+    snow_partition_params order;
+    int64_t stream;
+    SNOW_TRY(begin(o, &stream, share));
+    snow_status status = snow_partition_params_make(
+        o->context, &o->whole, view, settings, how,
+        o->transfer ? snow_transfer_has_gradient_opacity(o->transfer)
+                    : snow_look_has_gradient_opacity(o->look),
+        snow_comm_size(o->comm), &order);
+    SNOW_TRY(snow_comm_agree_status(o->comm, status));
+    if (order.cut == SNOW_PARTITION_EQUAL && !stream)
+        return open_equal(o, &order, volume, transfer);
+    return open_shares(o, &order, stream, share, volume, transfer);
+}
+
+snow_status snow_ranks_open_by(snow_open_fn *open,
+                               snow_format_name_fn *format_name,
+                               snow_comm *comm, const char *path,
+                               const snow_volume_options *options,
+                               const snow_look *look, const snow_view *view,
+                               const snow_settings *settings,
+                               const snow_ranks_options *how,
+                               snow_volume **volume, snow_transfer **transfer) {
+    opening o = {.comm = comm,
+                 .context = snow_comm_context(comm),
+                 .open = open,
+                 .format_name = format_name,
+                 .path = path,
+                 .look = look,
+                 .transfer = snow_ranks_options_known(how).transfer};
+    snow_volume *share = NULL, *part = NULL;
+    snow_transfer *function = NULL;
+    if (options)
+        o.options = *options;
+    snow_status status =
+        open_file(&o, view, settings, how, &share, &part, &function);
+    snow_volume_close(share);
+    if (status != SNOW_STATUS_OK) {
+        snow_volume_close(part);
+        snow_transfer_free(function);
+        return status;
+    }
+    *volume = part;
+    *transfer = function;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_ranks_new_transfer(snow_comm *comm, const snow_volume *volume,
+                                    const snow_look *look,
+                                    snow_transfer **out) {
+    return snow_transfer_new_for_ranks(comm, volume, look, out);
+}
+
+/* --- other views ---------------------------------------------------------- */
+
+static bool is_border(const snow_partition_params *order, int64_t slice) {
+    for (int64_t n = 0; n <= order->grid.count && order->grid.borders; n++)
+        if (order->borders[n] == slice)
+            return true;
+    return !order->grid.borders;
+}
+
+bool snow_part_serves(const snow_volume *volume,
+                      const snow_partition_params *order) {
+    snow_extent part;
+    snow_volume_get_extent(volume, &part);
+    int axis = order->grid.axis;
+    if (!part.count[0] || !part.count[1] || !part.count[2])
+        return true;
+    for (int i = 0; i < 3; i++) {
+        int64_t below = part.first[i] - part.stored[i];
+        int64_t end = part.first[i] + part.count[i];
+        int64_t above = part.stored[i] + volume->info.dims[i] - end;
+        if ((below < order->layers[i] && part.stored[i] > 0) ||
+            (above < order->layers[i] && end + above < part.dims[i]))
+            return false;
+        if (order->slabs_only && i != axis && part.count[i] != part.dims[i])
+            return false;
+    }
+    return is_border(order, part.first[axis]) &&
+           is_border(order, part.first[axis] + part.count[axis]);
+}
+
+snow_status
+snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
+                      const snow_partition_params *order, const snow_box *boxes,
+                      const snow_transfer *transfer, snow_volume **volume) {
+    snow_volume *recut;
+    SNOW_TRY(boxes ? send_share(comm, whole, order, boxes, *volume, &recut)
+                   : distribute(comm, whole, order, *volume, transfer, &recut));
+    snow_volume_close(*volume);
+    *volume = recut;
+    return SNOW_STATUS_OK;
+}
+
+snow_status
+snow_ranks_repartition(snow_comm *comm, const snow_transfer *transfer,
+                       const snow_view *view, const snow_settings *settings,
+                       const snow_ranks_options *how, snow_volume **volume) {
+    snow_volume_info whole;
+    snow_partition_params order;
+    snow_volume_whole(*volume, &whole);
+    snow_status status = snow_partition_params_make(
+        snow_comm_context(comm), &whole, view, settings, how,
+        snow_transfer_has_gradient_opacity(transfer), snow_comm_size(comm),
+        &order);
+    /* One round: 0, all serve; 1, some do not; 2, some failed. */
+    int64_t worst =
+        status != SNOW_STATUS_OK ? 2 : !snow_part_serves(*volume, &order);
+    SNOW_TRY(snow_comm_reduce_ints(comm, &worst, 1, SNOW_MAX));
+    if (worst == 0)
+        return SNOW_STATUS_OK;
+    if (worst == 2)
+        return snow_comm_agree_status(comm, status);
+    return snow_ranks_distribute(comm, &whole, &order, NULL, transfer, volume);
+}

@@ -1,0 +1,217 @@
+/* parallel/partition.c - from a picture and a number of ranks to boxes. */
+#include "parallel/partition.h"
+
+#include "classify/count_interesting.h"
+#include "render/ghosts.h"
+#include "render/settings_resolve.h"
+#include "simd/isa.h"
+
+#include <string.h>
+
+/* Slabs of fewer slices on the average are too coarse to be made equal. */
+#define LEAST_SLICES 5
+
+snow_ranks_options snow_ranks_options_known(const snow_ranks_options *how) {
+    snow_ranks_options known = {0};
+    size_t size = how ? how->size : 0;
+    if (size > 0)
+        memcpy(&known, how, size < sizeof known ? size : sizeof known);
+    return known;
+}
+
+/* By count, but for one rank, which has all, and for the method that splats
+ * every voxel. */
+static snow_partition choose_partition(const snow_partition_params *order,
+                                       snow_method method) {
+    int64_t slices = order->grid.dims[order->grid.axis];
+    if (method == SNOW_METHOD_ORIGINAL)
+        return SNOW_PARTITION_EQUAL;
+    if (order->slabs_only || order->ranks <= slices / LEAST_SLICES)
+        return SNOW_PARTITION_COUNTED;
+    return SNOW_PARTITION_BRICKS;
+}
+
+/* The groups that have slices, which come first. */
+static void set_borders(snow_partition_params *order) {
+    snow_partition_grid *grid = &order->grid;
+    int64_t slices = grid->dims[grid->axis];
+    for (int group = 0; group < SNOW_GROUPS; group++) {
+        snow_slab slab = snow_group_slab(slices, group);
+        if (!slab.count)
+            break;
+        order->borders[grid->count++] = slab.first;
+    }
+    order->borders[grid->count] = slices;
+    grid->borders = order->borders;
+}
+
+snow_status snow_partition_params_make(
+    snow_context *context, const snow_volume_info *whole, const snow_view *view,
+    const snow_settings *settings, const snow_ranks_options *asked,
+    bool gradient_factors, int ranks, snow_partition_params *out) {
+    snow_ranks_options how = snow_ranks_options_known(asked);
+    snow_settings resolved = snow_settings_known(settings);
+    snow_placement placement;
+    bool chooses =
+        how.cut == SNOW_PARTITION_AUTO || how.cut == SNOW_PARTITION_MEASURED;
+    if (how.cut < SNOW_PARTITION_AUTO || how.cut > SNOW_PARTITION_MEASURED)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "cut %d is none; take a value of snow_partition",
+                         how.cut);
+    SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
+    SNOW_TRY(snow_placement_make(context, whole, view, &placement));
+    *out = (snow_partition_params){.ranks = ranks,
+                                   .grid = {.axis = placement.slice_axis},
+                                   .threshold = resolved.threshold,
+                                   .isa = resolved.isa};
+    memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
+    SNOW_TRY(snow_ghosts_needed(context, whole, view, settings,
+                                gradient_factors, how.turns, out->layers));
+    if (resolved.deterministic)
+        set_borders(out);
+    /* Groups of slices are laid over one another as such. */
+    out->slabs_only = resolved.deterministic ||
+                      how.cut == SNOW_PARTITION_EQUAL ||
+                      how.cut == SNOW_PARTITION_COUNTED;
+    out->cut = chooses ? choose_partition(out, resolved.method) : how.cut;
+    if (out->cut == SNOW_PARTITION_BRICKS && resolved.deterministic) {
+        snow_notify(context, "bricks cannot share a deterministic picture; "
+                             "slabs are cut");
+        out->cut = SNOW_PARTITION_COUNTED;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Collective.  Local counts become those of all ranks. */
+static snow_status count_all(snow_comm *comm,
+                             const snow_partition_params *order,
+                             const snow_volume *volume,
+                             const snow_transfer *transfer,
+                             snow_block_counts *counts) {
+    size_t blocks = snow_block_counts_blocks(counts);
+    snow_status status = SNOW_STATUS_NO_MEMORY;
+    counts->counts =
+        snow_allocate_array(volume->context, blocks, sizeof *counts->counts);
+    if (counts->counts) {
+        memset(counts->counts, 0, blocks * sizeof *counts->counts);
+        status = snow_count_interesting_blocks(
+            volume, transfer, order->threshold, order->isa, counts);
+    }
+    if (!comm)
+        return status;
+    SNOW_TRY(snow_comm_agree_status(comm, status));
+    return snow_comm_reduce_ints(comm, counts->counts, blocks, SNOW_SUM);
+}
+
+static snow_status count_for_partition(snow_context *context,
+                                       const snow_partition_params *order,
+                                       const snow_block_counts *counts,
+                                       snow_box *boxes) {
+    if (order->cut == SNOW_PARTITION_COUNTED)
+        return snow_partition_counted(context, counts, order->ranks, boxes);
+    if (order->cut == SNOW_PARTITION_BRICKS)
+        return snow_partition_bricks(context, counts, order->ranks, boxes);
+    snow_partition_equal(&order->grid, order->ranks, boxes);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_partition_boxes(snow_comm *comm,
+                                 const snow_partition_params *order,
+                                 const snow_volume *volume,
+                                 const snow_transfer *transfer, snow_box *boxes,
+                                 int64_t *loads) {
+    if (order->cut == SNOW_PARTITION_EQUAL && !loads) {
+        snow_partition_equal(&order->grid, order->ranks, boxes);
+        return SNOW_STATUS_OK;
+    }
+    snow_block_counts counts =
+        order->cut == SNOW_PARTITION_BRICKS
+            ? snow_block_counts_for_bricks(&order->grid, order->ranks)
+            : snow_block_counts_for_slabs(&order->grid);
+    snow_status status = count_all(comm, order, volume, transfer, &counts);
+    if (status == SNOW_STATUS_OK)
+        status = count_for_partition(volume->context, order, &counts, boxes);
+    if (status == SNOW_STATUS_OK && loads)
+        snow_partition_loads(&counts, boxes, order->ranks, loads);
+    snow_release(volume->context, counts.counts);
+    return comm ? snow_comm_agree_status(comm, status) : status;
+}
+
+int64_t snow_partition_slices(const snow_partition_params *order) {
+    return snow_block_counts_for_slabs(&order->grid).blocks[order->grid.axis];
+}
+
+snow_status snow_partition_count(snow_comm *comm,
+                                 const snow_partition_params *order,
+                                 const snow_volume *volume,
+                                 const snow_transfer *transfer, double *costs) {
+    snow_block_counts counts = snow_block_counts_for_slabs(&order->grid);
+    snow_status status = count_all(comm, order, volume, transfer, &counts);
+    for (size_t n = 0;
+         n < snow_block_counts_blocks(&counts) && status == SNOW_STATUS_OK; n++)
+        costs[n] = (double)counts.counts[n];
+    snow_release(volume->context, counts.counts);
+    return status;
+}
+
+/* What all costs become together in whole numbers. */
+#define COST_OF_ALL 0x1p40
+
+snow_status snow_partition_costs(snow_context *context,
+                                 const snow_partition_params *order,
+                                 const double *costs, snow_box *boxes) {
+    snow_block_counts counts = snow_block_counts_for_slabs(&order->grid);
+    size_t slices = snow_block_counts_blocks(&counts);
+    double sum = 0;
+    counts.counts = snow_allocate_array(context, slices, sizeof *counts.counts);
+    if (!counts.counts)
+        return SNOW_STATUS_NO_MEMORY;
+    for (size_t n = 0; n < slices; n++)
+        sum += costs[n];
+    for (size_t n = 0; n < slices; n++)
+        counts.counts[n] =
+            sum > 0 ? (int64_t)(costs[n] / sum * COST_OF_ALL + 0.5) : 0;
+    snow_status status =
+        snow_partition_counted(context, &counts, order->ranks, boxes);
+    snow_release(context, counts.counts);
+    return status;
+}
+
+snow_status snow_ranks_partition(const snow_volume *volume,
+                                 const snow_transfer *transfer,
+                                 double threshold, snow_partition cut,
+                                 int slice_axis, int ranks, snow_extent *parts,
+                                 int64_t *loads) {
+    snow_context *context = volume->context;
+    if (ranks < 1 || slice_axis < 0 || slice_axis > 2 ||
+        cut < SNOW_PARTITION_AUTO || cut > SNOW_PARTITION_BRICKS)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "cut %d for %d ranks along axis %d is none; take a "
+            "value of snow_partition, at least one rank, and axis 0 to "
+            "2",
+            cut, ranks, slice_axis);
+    const int64_t *dims = volume->info.dims;
+    snow_partition_params order = {
+        .ranks = ranks,
+        .grid = {.dims = {dims[0], dims[1], dims[2]}, .axis = slice_axis},
+        .threshold = threshold,
+        .isa = snow_isa_resolve(SNOW_ISA_AUTO)};
+    order.cut = cut ? cut : choose_partition(&order, SNOW_METHOD_SHEAR_WARP);
+    snow_box *boxes =
+        snow_allocate_array(context, (uint64_t)ranks, sizeof *boxes);
+    if (!boxes)
+        return SNOW_STATUS_NO_MEMORY;
+    snow_status status =
+        snow_partition_boxes(NULL, &order, volume, transfer, boxes, loads);
+    for (int rank = 0; rank < ranks && parts && status == SNOW_STATUS_OK;
+         rank++) {
+        memcpy(parts[rank].dims, dims, sizeof parts[rank].dims);
+        memcpy(parts[rank].stored, boxes[rank].first,
+               sizeof parts[rank].stored);
+        memcpy(parts[rank].first, boxes[rank].first, sizeof parts[rank].first);
+        memcpy(parts[rank].count, boxes[rank].count, sizeof parts[rank].count);
+    }
+    snow_release(context, boxes);
+    return status;
+}

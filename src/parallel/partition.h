@@ -1,0 +1,61 @@
+/* parallel/partition.h - which cut of a volume a picture asks for, and its
+ * boxes. */
+#ifndef SNOW_PARALLEL_PARTITION_H
+#define SNOW_PARALLEL_PARTITION_H
+
+#include "comm/comm.h"
+#include "decompose/deterministic.h"
+#include "decompose/partition.h"
+
+#include <snowglass/ranks.h>
+
+typedef struct snow_partition_params {
+    snow_partition cut; /* EQUAL, COUNTED or BRICKS */
+    int ranks;
+    snow_partition_grid grid; /* its borders are those below, of groups of
+                           slices, where pictures are to have the same bits for
+                           any number of ranks; else NULL */
+    int64_t borders[SNOW_GROUPS + 1];
+    int64_t layers[3]; /* of ghost voxels */
+    bool slabs_only;   /* along the slices' axis: boxes of another kind would
+                          not give the same bits, or were not asked for */
+    double threshold;
+    snow_isa isa;
+} snow_partition_params;
+
+/* The options that are told, NULL for none; zeros for what a caller's record,
+ * of an older version, lacks. */
+snow_ranks_options snow_ranks_options_known(const snow_ranks_options *how);
+
+/* What picture and ranks ask for; `fades` as in render/ghosts.h.  Not to be
+ * copied, for its borders. Errors: SNOW_STATUS_BAD_USAGE (view, settings,
+ * options), SNOW_STATUS_BAD_INPUT. */
+snow_status
+snow_partition_params_make(snow_context *context, const snow_volume_info *whole,
+                           const snow_view *view, const snow_settings *settings,
+                           const snow_ranks_options *how, bool gradient_factors,
+                           int ranks, snow_partition_params *out);
+
+/* The boxes of all ranks, and (unless NULL) their interesting voxels, which are
+ * 0 for equal slabs unless asked for.  Counted are the voxels that the volumes
+ * of all ranks of `comm` answer for; NULL: of this one.  Collective then.
+ * Errors: SNOW_STATUS_NO_MEMORY, those of the transport; agreed on. */
+snow_status snow_partition_boxes(snow_comm *comm,
+                                 const snow_partition_params *order,
+                                 const snow_volume *volume,
+                                 const snow_transfer *transfer, snow_box *boxes,
+                                 int64_t *loads);
+
+/* Slabs by costs of their slices, of which an order has so many.  First they
+ * are numbers of interesting voxels: collective, as above.  Cutting by them is
+ * not; the boxes are a function of the costs. */
+int64_t snow_partition_slices(const snow_partition_params *order);
+snow_status snow_partition_count(snow_comm *comm,
+                                 const snow_partition_params *order,
+                                 const snow_volume *volume,
+                                 const snow_transfer *transfer, double *costs);
+snow_status snow_partition_costs(snow_context *context,
+                                 const snow_partition_params *order,
+                                 const double *costs, snow_box *boxes);
+
+#endif

@@ -1,0 +1,345 @@
+/* parallel/render.c - the combiner of many ranks: one picture by many
+ * processors.
+ *
+ *   every rank             its part  -> local image          (lines 02 to 13)
+ *   exchange               local images -> pieces            (14 to 18)
+ *   every rank             its piece -> pixels               (the warp)
+ *   gather                 pixels -> the picture, on rank 0  (19, 20)
+ *
+ * What a rank finds wrong by itself is agreed on before anybody waits for a
+ * message of it; what all ranks find wrong alike needs no word.
+ *
+ * A local image by the sheared method along one axis is begun as soon as the
+ * picture is, and then drawn while others wait, for messages of the picture
+ * before it (pipeline.c).  From then on it needs no volume.  Where its turn
+ * comes before all of it is drawn, its parts are sent as they are done:
+ *
+ *   rank 0   draw 1 | send 1, draw 2 | send 2, draw 0
+ *   rank 1   draw 2 | send 2, draw 0 | send 0, draw 1
+ *   rank 2   draw 0 | send 0, draw 1 | send 1, draw 2     pieces are numbered
+ *                                                         as their ranks are
+ *
+ * Every rank begins behind its own piece, so that nobody gets all messages at
+ * once, and what is drawn last need not be sent.  Other local images are made
+ * when it is their picture's turn. */
+#include "parallel/internal.h"
+
+#include "image/image.h"
+#include "volume/volume.h"
+
+#include <string.h>
+
+/* --- the beginning --------------------------------------------------------
+ */
+
+/* Whether a picture is of the shear-warp method, along one axis, and not
+ * blended of several: the same on all ranks, whatever failed on this one. */
+static bool is_ahead(const snow_picture *p) {
+    double shares[3];
+    return p->job.settings.method == SNOW_METHOD_SHEAR_WARP &&
+           p->job.settings.mode == SNOW_MODE_OVER && !p->job.settings.depth &&
+           snow_job_shares(&p->job, shares) == SNOW_STATUS_OK &&
+           shares[p->job.placement.slice_axis] == 1;
+}
+
+static bool is_sum(snow_mode mode) {
+    return mode != SNOW_MODE_OVER && mode != SNOW_MODE_ISO;
+}
+
+/* What the picture is gathered in; pairs have an image of their own. */
+static snow_status make_images(snow_flight *f) {
+    snow_picture *p = &f->picture;
+    snow_context *context = p->frame->context;
+    if (f->how.pixel_bits != 0 && f->how.pixel_bits != 8)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "pixels of %d bits cannot travel; take 8, or 0 for "
+                         "floats",
+                         f->how.pixel_bits);
+    SNOW_TRY(snow_flight_check_mode(f));
+    if (is_sum(p->job.settings.mode) || !snow_flight_keeps(f))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_image_new(context, p->view.width, p->view.height,
+                            p->job.channels, &p->image));
+    if (f->how.pixel_bits != 8 || f->how.scattered)
+        return SNOW_STATUS_OK;
+    f->bytes =
+        snow_allocate_clear(context, snow_job_bytes(&p->job) / sizeof(float));
+    return f->bytes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
+}
+
+static snow_status begin(snow_picture *p, snow_status status) {
+    snow_flight *f = snow_flight_of(p);
+    f->generation = p->job.volume->generation;
+    snow_volume_get_extent(p->job.volume, &f->part);
+    p->stats.ranks = f->ranks->ranks;
+    p->begin_at = f->ranks->begin_at;
+    if (status == SNOW_STATUS_OK)
+        status = make_images(f);
+    p->ahead = is_ahead(p);
+    p->layered = p->job.settings.method == SNOW_METHOD_SHEAR_WARP &&
+                 p->job.settings.mode == SNOW_MODE_OVER && !p->ahead;
+    f->drawn_cpu = snow_flight_cpu(f);
+    return status;
+}
+
+/* --- meeting --------------------------------------------------------------
+ */
+
+/* Mixes bytes into a number of 62 bits (Fowler, Noll and Vo's hash). */
+static void mix(uint64_t *hash, const void *bytes, size_t count) {
+    const unsigned char *at = bytes;
+    for (size_t n = 0; n < count; n++)
+        *hash = (*hash ^ at[n]) * UINT64_C(1099511628211);
+}
+
+/* What must be the same on all ranks, as a number. */
+static int64_t terms_of(const snow_flight *p) {
+    const snow_job *job = &p->picture.job;
+    const snow_settings *s = &job->settings;
+    const snow_placement *place = &job->placement;
+    const int numbers[] = {
+        job->channels,      (int)s->method,    (int)s->quality,
+        (int)s->kernel,     s->footprint,      (int)s->shade,
+        s->deterministic,   place->width,      place->height,
+        (int)s->mode,       s->depth,          (int)p->how.combining,
+        p->how.radix,       p->how.pixel_bits, place->slice_axis,
+        place->perspective, p->how.scattered};
+    const double reals[] = {
+        place->back[0],    place->back[1],   place->back[2],   place->up[0],
+        place->up[1],      place->up[2],     place->path,      s->threshold,
+        s->opacity_length, s->iso,           job->view->zoom,  job->view->fov,
+        place->origin[0],  place->origin[1], place->eye.at[0], place->eye.at[1],
+        place->eye.at[2]};
+    uint64_t hash = UINT64_C(14695981039346656037);
+    mix(&hash, numbers, sizeof numbers);
+    mix(&hash, reals, sizeof reals);
+    return (int64_t)(hash >> 2);
+}
+
+/* Each voxel is one rank's own, of one whole.  All ranks find the same. */
+static snow_status check_parts(const snow_ranks *r) {
+    uint64_t voxels = 0, all = 1;
+    bool same = true;
+    for (int rank = 0; rank < r->ranks; rank++) {
+        voxels += (uint64_t)snow_box_voxels(&r->boxes[rank]);
+        same = same && memcmp(r->parts[rank].dims, r->parts[0].dims,
+                              sizeof r->parts[0].dims) == 0;
+    }
+    if (!same)
+        return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
+                         "ranks have parts of different volumes");
+    for (int axis = 0; axis < 3; axis++)
+        all *= (uint64_t)r->parts[0].dims[axis];
+    if (voxels == all)
+        return SNOW_STATUS_OK;
+    return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
+                     "%d parts of %llu voxels do not make up a volume of "
+                     "%llu; let each voxel be one rank's own",
+                     r->ranks, (unsigned long long)voxels,
+                     (unsigned long long)all);
+}
+
+/* Collective.  Every rank's part to all. */
+static snow_status share_parts(snow_ranks *r, const snow_flight *p) {
+    r->generation = 0;
+    SNOW_TRY(snow_comm_allgather(r->comm, &p->part, sizeof p->part, r->parts));
+    for (int rank = 0; rank < r->ranks; rank++) {
+        const snow_extent *part = &r->parts[rank];
+        bool none = !part->count[0] || !part->count[1] || !part->count[2];
+        for (int axis = 0; axis < 3; axis++) {
+            r->boxes[rank].first[axis] = part->first[axis];
+            r->boxes[rank].count[axis] = none ? 0 : part->count[axis];
+        }
+    }
+    SNOW_TRY(check_parts(r));
+    r->generation = p->generation;
+    return SNOW_STATUS_OK;
+}
+
+/* Whether this rank knows the parts of a picture. */
+static bool knows_parts(const snow_flight *p) {
+    return p->generation && p->ranks->generation == p->generation;
+}
+
+/* Collective.  How the ranks' own work went, and what they have counted in the
+ * picture before; parts, where one is new. */
+static snow_status synchronize_all(snow_flight *p, snow_status status,
+                                   bool *new_parts) {
+    enum { FAILED, NEW, TERMS, MINUS_TERMS, COUNT };
+    snow_ranks *r = p->ranks;
+    snow_comm *comm = r->comm;
+    const int64_t *counts;
+    int64_t words[COUNT + SNOW_COUNTS_MOST] = {status != SNOW_STATUS_OK, 1, 0,
+                                               0};
+    r->groups = snow_exchange_counts(r->combiner, &counts);
+    const size_t count_bytes = (size_t)r->groups * sizeof *counts;
+    memcpy(words + COUNT, counts, count_bytes);
+    if (status == SNOW_STATUS_OK) {
+        words[NEW] = !knows_parts(p);
+        words[TERMS] = terms_of(p);
+        words[MINUS_TERMS] = -words[TERMS];
+    }
+    SNOW_TRY(snow_comm_reduce_both(comm, words, COUNT, (size_t)r->groups));
+    memcpy(r->group_counts, words + COUNT, count_bytes);
+    if (words[FAILED])
+        return snow_comm_agree_status(comm, status);
+    if (words[TERMS] != -words[MINUS_TERMS])
+        return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
+                         "ranks were asked for different pictures; give all "
+                         "the same view and settings");
+    *new_parts = words[NEW] != 0;
+    return *new_parts ? share_parts(r, p) : SNOW_STATUS_OK;
+}
+
+static snow_status synchronize(snow_picture *p, snow_status status) {
+    snow_flight *f = snow_flight_of(p);
+    bool new_parts;
+    SNOW_TRY(synchronize_all(f, status, &new_parts));
+    return p->job.settings.mode == SNOW_MODE_OVER ? SNOW_STATUS_OK
+                                                  : snow_flight_agree_range(f);
+}
+
+/* --- places ---------------------------------------------------------------
+ */
+
+/* Where pixels come together that are not the picture yet. */
+static snow_status place_gathered(snow_flight *f) {
+    const snow_job *job = &f->picture.pass->job;
+    if (!snow_flight_keeps(f) ||
+        (!f->picture.layered && !is_sum(job->settings.mode)))
+        return SNOW_STATUS_OK;
+    if (f->gathered)
+        memset(f->gathered->pixels, 0, snow_job_bytes(job));
+    return f->gathered
+               ? SNOW_STATUS_OK
+               : snow_image_new(job->context, job->view->width,
+                                job->view->height, job->channels, &f->gathered);
+}
+
+/* A layer, or in deterministic pictures of the exact methods one for each
+ * node. */
+static snow_status place_layers(snow_flight *f) {
+    const snow_job *job = &f->picture.pass->job;
+    snow_local_image *local = &f->picture.local;
+    local->layers = 1;
+    if (job->settings.deterministic)
+        local->layers =
+            snow_group_nodes(job->placement.slices, job->slab, local->nodes);
+    if (local->layers < 0)
+        return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
+                         "parts of a deterministic picture are cut at borders "
+                         "of %d groups of slices",
+                         SNOW_GROUPS);
+    return snow_flight_room(f, job, local->layers);
+}
+
+static snow_status place(snow_picture *p, snow_status status) {
+    snow_flight *f = snow_flight_of(p);
+    const snow_job *job = &p->pass->job;
+    f->drawn_cpu = snow_flight_cpu(f);
+    if (p->pass->depth)
+        return snow_flight_take_turn(f, status);
+    SNOW_TRY(status);
+    SNOW_TRY(place_gathered(f));
+    if (p->pass->method->warps)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(place_layers(f));
+    if (!job->settings.depth || job->settings.mode != SNOW_MODE_ISO)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_image_new(job->context, p->view.width, p->view.height, 1,
+                            &p->near));
+    p->local.depths = p->near->pixels;
+    return SNOW_STATUS_OK;
+}
+
+/* --- combination ----------------------------------------------------------
+ */
+
+/* Collective.  Of a picture whose local image was begun: what it needs is
+ * prepared before the ranks meet, where this one knows all parts. */
+static snow_status synchronize_ahead(snow_flight *f, const snow_job *job,
+                                     snow_status status) {
+    bool known = knows_parts(f), new_parts;
+    if (f->picture.drawing && job->settings.deterministic)
+        snow_ranks_drain(f->ranks);
+    if (status == SNOW_STATUS_OK && known)
+        status = snow_flight_prepare(f, job);
+    SNOW_TRY(synchronize_all(f, status, &new_parts));
+    return new_parts ? snow_comm_agree_status(f->ranks->comm,
+                                              snow_flight_prepare(f, job))
+                     : SNOW_STATUS_OK;
+}
+
+/* Local work: the rest of the local image. */
+static snow_status end_local(snow_flight *f, const snow_job *job) {
+    snow_picture *p = &f->picture;
+    if (p->drawing) {
+        double mark = snow_ranks_clock(f->ranks);
+        snow_shear_warp_end(p->local.shear_warp);
+        p->drawing = false;
+        p->stats.seconds_splat += snow_ranks_clock(f->ranks) - mark;
+    }
+    p->stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;
+    SNOW_TRY(snow_monitor_status(&p->monitor));
+    return snow_flight_prepare(f, job);
+}
+
+static snow_status combine(snow_picture *p, const snow_job *job,
+                           snow_status status) {
+    snow_flight *f = snow_flight_of(p);
+    if (p->pass->depth)
+        return snow_flight_give_turn(f, status);
+    if (p->ahead)
+        SNOW_TRY(synchronize_ahead(f, job, status));
+    else {
+        if (status == SNOW_STATUS_OK)
+            status = end_local(f, job);
+        SNOW_TRY(snow_comm_agree_status(f->ranks->comm, status));
+    }
+    return snow_flight_exchange(f, job);
+}
+
+/* --- the picture ----------------------------------------------------------
+ */
+
+/* Axes' shares travel as floats, and are added up on rank 0 in the order of
+ * render/alone.c. */
+static void add_share(snow_flight *f) {
+    snow_picture *p = &f->picture;
+    size_t floats = snow_job_bytes(&p->job) / sizeof(float);
+    const snow_render_pass *next = p->pass + 1;
+    if (!p->image)
+        return;
+    for (size_t n = 0; n < floats; n++)
+        p->image->pixels[n] += p->pass->share * f->gathered->pixels[n];
+    if (f->how.pixel_bits == 8 &&
+        (next == p->passes + p->pass_count || next->depth))
+        snow_round_pixels(p->image);
+}
+
+static snow_status display(snow_picture *p, snow_status status) {
+    snow_flight *f = snow_flight_of(p);
+    const snow_job *job = &p->pass->job;
+    bool whole = !p->layered && !is_sum(job->settings.mode);
+    SNOW_TRY(status);
+    if (p->pass->depth)
+        return snow_flight_combine_depths(f);
+    SNOW_TRY(snow_flight_deliver(f, job, whole ? f->how.pixel_bits : 0,
+                                 whole ? p->image : f->gathered));
+    if (p->layered)
+        add_share(f);
+    if (is_sum(job->settings.mode))
+        return snow_comm_agree_status(f->ranks->comm, snow_flight_paint(f));
+    return p->near ? snow_flight_combine_depths(f) : SNOW_STATUS_OK;
+}
+
+static snow_status agree(snow_picture *p, snow_status status) {
+    return snow_comm_agree_status(snow_flight_of(p)->ranks->comm, status);
+}
+
+const snow_combine_ops snow_combine_ranks = {.begin = begin,
+                                             .synchronize = synchronize,
+                                             .place = place,
+                                             .combine = combine,
+                                             .display = display,
+                                             .agree = agree};

@@ -1,0 +1,218 @@
+/* render/alone.c - the combiner of one process, which has no partner: its local
+ * image is the picture.  Slabs of a file come in turn, from front to back: each
+ * is drawn on top of what the slabs in front of it have left, which is over in
+ * order; of surfaces the nearest one counts. */
+#include "image/image.h"
+#include "render/picture.h"
+#include "transfer/transfer.h"
+
+#include <math.h>
+#include <string.h>
+
+/* --- before the local image -----------------------------------------------
+ */
+
+/* What one process finds is what all find. */
+static snow_status nobody(snow_picture *p, snow_status status) {
+    (void)p;
+    return status;
+}
+
+static snow_status fail_part(const snow_picture *p, const char *what,
+                             const char *name) {
+    return snow_fail(p->job.context, SNOW_STATUS_BAD_USAGE,
+                     "%s%s of one part of many is no picture; render all parts "
+                     "with snow_ranks_render",
+                     what, name);
+}
+
+static snow_status synchronize(snow_picture *p, snow_status status) {
+    const snow_settings *s = &p->job.settings;
+    SNOW_TRY(status);
+    snow_image_free(p->frame->depth);
+    p->frame->depth = NULL;
+    if (s->mode == SNOW_MODE_OVER)
+        return s->depth && !snow_job_whole(&p->job) ? fail_part(p, "depth", "")
+                                                    : SNOW_STATUS_OK;
+    if (!snow_job_whole(&p->job))
+        return fail_part(p, "mode ", snow_mode_name(s->mode));
+    return snow_identity_transfer_measure(&p->job, &p->frame->identity);
+}
+
+/* --- places ---------------------------------------------------------------
+ */
+
+static snow_status new_depths(const snow_picture *p, snow_image **out) {
+    SNOW_TRY(
+        snow_image_new(p->job.context, p->view.width, p->view.height, 1, out));
+    for (int64_t n = 0; n < (int64_t)p->view.width * p->view.height; n++)
+        (*out)->pixels[n] = NAN;
+    return SNOW_STATUS_OK;
+}
+
+/* The frame's layer, cleared for what is drawn into it. */
+static snow_status take_layer(snow_picture *p, size_t bytes, bool clear) {
+    snow_frame *frame = p->frame;
+    SNOW_TRY(snow_reserve(frame->context, &frame->layer, &frame->layer_capacity,
+                          0, bytes));
+    if (clear)
+        memset(frame->layer, 0, bytes);
+    p->local.pixels = frame->layer;
+    return SNOW_STATUS_OK;
+}
+
+/* A shear-warp picture that is not blended is written once, and whole. */
+static snow_status make_image(snow_picture *p) {
+    bool written = p->pass->method->warps && !p->layered;
+    return p->image ? SNOW_STATUS_OK
+                    : (written ? snow_image_make : snow_image_new)(
+                          p->job.context, p->view.width, p->view.height,
+                          p->job.channels, &p->image);
+}
+
+/* Pairs become the image when they are shown. */
+static snow_status place_pairs(snow_picture *p) {
+    const snow_job *job = &p->pass->job;
+    bool warps = p->pass->method->warps;
+    size_t line = snow_job_bytes(job) / (size_t)p->view.height;
+    size_t lines = (size_t)(warps ? job->settings.threads : p->view.height);
+    return take_layer(p, line * lines, !warps);
+}
+
+/* Of surfaces a slab has an image of its own, with depths. */
+static snow_status place_surfaces(snow_picture *p) {
+    const snow_job *job = &p->pass->job;
+    SNOW_TRY(make_image(p));
+    p->local.pixels = p->image->pixels;
+    if (job->settings.depth)
+        SNOW_TRY(new_depths(p, &p->depth));
+    p->local.depths = p->depth ? p->depth->pixels : NULL;
+    if (!job->volume->stream)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(new_depths(p, &p->near));
+    p->local.depths = p->near->pixels;
+    return take_layer(p, snow_job_bytes(job), true);
+}
+
+static snow_status place_over(snow_picture *p) {
+    const snow_job *job = &p->pass->job;
+    const snow_group_node root = {SNOW_GROUP_RANKS, 0};
+    SNOW_TRY(make_image(p));
+    if (p->layered)
+        return take_layer(p, snow_job_bytes(job), false);
+    p->local.pixels = p->image->pixels;
+    p->local.layers = 1;
+    p->local.nodes[0] = root;
+    if (p->pass->method == &snow_method_groups &&
+        job->slab.count != job->placement.slices)
+        return fail_part(p, "deterministic rendering", "");
+    return SNOW_STATUS_OK;
+}
+
+static snow_status place(snow_picture *p, snow_status status) {
+    const snow_job *job = &p->pass->job;
+    SNOW_TRY(status);
+    if (p->pass->depth) {
+        SNOW_TRY(new_depths(p, &p->depth));
+        p->local.depths = p->depth->pixels;
+        return take_layer(p, snow_job_bytes(job), true);
+    }
+    if (job->settings.mode == SNOW_MODE_ISO)
+        return place_surfaces(p);
+    return job->settings.mode == SNOW_MODE_OVER ? place_over(p)
+                                                : place_pairs(p);
+}
+
+/* --- combination ----------------------------------------------------------
+ */
+
+/* What of a slab's surfaces is in front of those found so far. */
+static void take_nearer(snow_picture *p, const snow_job *part) {
+    size_t channels = (size_t)part->channels;
+    size_t count = (size_t)p->view.width * (size_t)p->view.height;
+    float *nearest = p->depth->pixels;
+    for (size_t n = 0; n < count; n++) {
+        float here = part->depths[n];
+        if (!(here < nearest[n]) && !(isnan(nearest[n]) && !isnan(here)))
+            continue;
+        nearest[n] = here;
+        memcpy(p->image->pixels + n * channels, part->pixels + n * channels,
+               channels * sizeof *part->pixels);
+    }
+    memset(part->pixels, 0, snow_job_bytes(part));
+}
+
+static snow_status combine(snow_picture *p, const snow_job *part,
+                           snow_status status) {
+    SNOW_TRY(status);
+    if (p->drawing) {
+        double mark = snow_seconds();
+        snow_shear_warp_end(p->local.shear_warp);
+        p->stats.seconds_splat += snow_seconds() - mark;
+        p->drawing = false;
+    }
+    if (p->near)
+        take_nearer(p, part);
+    return SNOW_STATUS_OK;
+}
+
+/* --- the picture ----------------------------------------------------------
+ */
+
+/* Adds share * layer to the picture. */
+static void blend(float *pixels, const float *layer, float share,
+                  size_t count) {
+    for (size_t i = 0; i < count; i++)
+        pixels[i] += share * layer[i];
+}
+
+static snow_status warp(snow_picture *p) {
+    const snow_local_image *local = &p->local;
+    if (local->image.layers > 1)
+        return fail_part(p, "deterministic rendering", "");
+    SNOW_TRY(snow_shear_warp_show(&local->image, &local->params, local->pixels,
+                                  &p->stats));
+    if (p->layered)
+        blend(p->image->pixels, local->pixels, p->pass->share,
+              snow_job_bytes(&p->job) / sizeof *local->pixels);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status paint(snow_picture *p) {
+    bool warps = p->pass->method->warps;
+    double mark = snow_seconds();
+    SNOW_TRY(snow_modes_paint(p->frame, &p->job, warps ? &p->local.image : NULL,
+                              p->local.pixels, &p->image));
+    if (warps)
+        p->stats.seconds_warp += snow_seconds() - mark;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status show(snow_picture *p) {
+    snow_mode mode = p->job.settings.mode;
+    if (mode != SNOW_MODE_OVER && mode != SNOW_MODE_ISO)
+        return paint(p);
+    return p->pass->method->warps ? warp(p) : SNOW_STATUS_OK;
+}
+
+/* Depths that only told which surface is nearest are not the frame's. */
+static snow_status display(snow_picture *p, snow_status status) {
+    SNOW_TRY(status);
+    if (p->pass->depth)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(show(p));
+    if (!p->job.settings.depth) {
+        snow_image_free(p->depth);
+        p->depth = NULL;
+    }
+    p->stats.seconds_frame = snow_seconds() - p->start;
+    p->stats.cpu_frame = snow_cpu_seconds() - p->start_cpu;
+    return SNOW_STATUS_OK;
+}
+
+const snow_combine_ops snow_combine_alone = {.begin = nobody,
+                                             .synchronize = synchronize,
+                                             .place = place,
+                                             .combine = combine,
+                                             .display = display,
+                                             .agree = nobody};

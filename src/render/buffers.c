@@ -1,0 +1,42 @@
+/* render/buffers.c - see buffers.h. */
+#include "render/buffers.h"
+
+#include "image/image.h"
+#include "render/exact/exact.h"
+#include "render/exact/exact_perspective.h"
+
+snow_status snow_buffers_new(snow_context *context, snow_frame **out) {
+    snow_frame *frame = snow_allocate_clear(context, sizeof *frame);
+    if (!frame)
+        return SNOW_STATUS_NO_MEMORY;
+    frame->context = context;
+    snow_status status = snow_exact_new(context, &frame->exact);
+    if (status == SNOW_STATUS_OK)
+        *out = frame;
+    else
+        snow_buffers_free(frame);
+    return status;
+}
+
+void snow_buffers_free(snow_frame *frame) {
+    snow_exact_free(frame->exact);
+    snow_exact_eye_free(frame->context, frame->exact_eye);
+    for (int axis = 0; axis < 3; axis++)
+        snow_shear_warp_free(frame->shear_warp[axis]);
+    for (int n = 0; n < SNOW_GROUP_RANKS; n++)
+        snow_release(frame->context, frame->spare[n]);
+    snow_release(frame->context, frame->layer);
+    snow_identity_transfer_fini(&frame->identity);
+    snow_iso_free(frame->iso);
+    snow_mipmap_free(frame->levels);
+    snow_image_free(frame->depth);
+    snow_release(frame->context, frame);
+}
+
+const snow_image *snow_frame_depth(const snow_frame *frame) {
+    return frame->depth;
+}
+
+const snow_stats *snow_frame_stats(const snow_frame *frame) {
+    return &frame->stats;
+}

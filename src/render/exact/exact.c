@@ -1,0 +1,711 @@
+/* render/exact/exact.c - the exact methods, from voxels to the local image:
+ * lines 02 to 13 of figure 8 of the paper, whose numbers stand in the comments.
+ *
+ *   original, tested   a voxel row is classified and thrown, slice by slice
+ *   footprint          the slab is encoded, and its interesting voxels thrown;
+ *                      or, where the instruction set has loops for it,
+ *                      gathered: the same sums pixel by pixel (splat/gather.h)
+ *
+ * Threads take groups of slices to encode, and bands of image rows to splat
+ * and composite: each walks all slices front to back for its band, so that no
+ * two write one pixel.  Every pixel is made by the same operations in the same
+ * order however bands are cut: the number of threads cannot change a bit. */
+#include "render/exact/exact.h"
+#include "base/base.h"
+#include "base/thread_pool.h"
+#include "composite/over.h"
+#include "render/modes/depth.h"
+#include "splat/gather.h"
+#include "splat/splat.h"
+
+#include <string.h>
+
+#define GROUP_SLICES 8     /* of one sparse matrix */
+#define GATHER_ROWS 8      /* image rows of a band where pixels gather */
+#define CLOSE_SLICES 4     /* after so many, opaque pixels are looked for */
+#define BANDS_PER_THREAD 4 /* where footprints are thrown */
+/* That slices spread out at once may take; and the part of a limit. */
+#define SPREAD_BYTES ((uint64_t)32 << 20)
+#define SPREAD_PART 8
+
+typedef enum stage { CLASSIFY, SHADE, ENCODE, SPLAT, COMPOSITE, STAGES } stage;
+
+/* What one thread works with. */
+typedef struct worker {
+    snow_row_block row_block;
+    snow_span *spans; /* of one row */
+    size_t spans_capacity;
+    snow_sheet sheet; /* throwing: a band; gathering: only its memory is used */
+    snow_splatter splatter;
+    snow_run *runs; /* gathering: of GATHER_ROWS rows */
+    size_t runs_capacity;
+    snow_places places;
+    int64_t kept; /* voxels thrown out of strips */
+    snow_status status;
+    double seconds[STAGES];
+} worker;
+
+struct snow_exact {
+    snow_context *context;
+    snow_classifier classifier;
+    snow_shader shader;
+    snow_gatherer gatherer;
+    bool gathers; /* the picture at work */
+    snow_encoding encoding;
+    snow_composite_fn *over;
+    snow_sparse *groups; /* EA, IA, PA of GROUP_SLICES slices each */
+    snow_dense *dense;   /* gathering: slices spread out */
+    uint16_t
+        *not_opaque; /* gathering: pixels that are not opaque, row by row */
+    worker *workers;
+    size_t groups_capacity, dense_capacity, not_opaque_capacity,
+        workers_capacity;                           /* bytes */
+    int64_t group_count, dense_count, worker_count; /* that were ever made */
+    int64_t groups_used, dense_used;                /* by this picture */
+    int threads, bands;
+};
+
+/* A part of a picture's work that threads share. */
+typedef struct pass {
+    snow_exact *exact;
+    const snow_job *job;
+    snow_encoding encoding;
+    int64_t first, count; /* gathering: slices from the viewer */
+} pass;
+
+snow_status snow_exact_new(snow_context *context, snow_exact **out) {
+    snow_exact *exact = snow_allocate_clear(context, sizeof *exact);
+    if (!exact)
+        return SNOW_STATUS_NO_MEMORY;
+    exact->context = context;
+    *out = exact;
+    return SNOW_STATUS_OK;
+}
+
+void snow_exact_free(snow_exact *exact) {
+    if (!exact)
+        return;
+    snow_context *context = exact->context;
+    for (int64_t n = 0; n < exact->group_count; n++)
+        snow_sparse_fini(&exact->groups[n]);
+    for (int64_t n = 0; n < exact->dense_count; n++)
+        snow_dense_fini(context, &exact->dense[n]);
+    for (int64_t n = 0; n < exact->worker_count; n++) {
+        worker *w = &exact->workers[n];
+        snow_row_block_free(context, &w->row_block);
+        snow_release(context, w->spans);
+        snow_release(context, w->sheet.pixels);
+        snow_release(context, w->runs);
+        snow_release(context, w->places.window);
+        snow_splatter_fini(context, &w->splatter);
+    }
+    snow_release(context, exact->groups);
+    snow_release(context, exact->dense);
+    snow_release(context, exact->not_opaque);
+    snow_release(context, exact->workers);
+    snow_gatherer_fini(context, &exact->gatherer);
+    snow_classifier_fini(context, &exact->classifier);
+    snow_release(context, exact);
+}
+
+/* --- preparation -----------------------------------------------------------
+ */
+
+/* Makes an array hold `wanted` records, new ones as zeros. */
+static snow_status more_records(snow_context *context, void *array_pointer,
+                                size_t *capacity, int64_t *made, int64_t wanted,
+                                size_t size) {
+    if (wanted <= *made)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_reserve(context, array_pointer, capacity,
+                          (size_t)*made * size, (size_t)wanted * size));
+    char *array;
+    memcpy(&array, array_pointer, sizeof array);
+    memset(array + (size_t)*made * size, 0, (size_t)(wanted - *made) * size);
+    *made = wanted;
+    return SNOW_STATUS_OK;
+}
+
+static int64_t smaller(int64_t a, int64_t b) {
+    return a < b ? a : b;
+}
+
+static int64_t parts_of(int64_t whole, int64_t part) {
+    return (whole + part - 1) / part;
+}
+
+static uint64_t spread_bytes(const snow_context *context) {
+    uint64_t part = context->limit / SPREAD_PART;
+    return context->limit && part < SPREAD_BYTES ? part : SPREAD_BYTES;
+}
+
+/* How the picture is cut for threads. */
+static void cut(snow_exact *exact, const snow_job *job) {
+    const snow_placement *p = &job->stored;
+    int64_t threads = job->settings.threads;
+    exact->groups_used = parts_of(job->stored_slab.count, GROUP_SLICES);
+    exact->bands = 1;
+    exact->dense_used = 0;
+    if (exact->gathers) {
+        exact->bands = (int)parts_of(p->height, GATHER_ROWS);
+        uint64_t fit = spread_bytes(exact->context) /
+                       snow_dense_bytes(&exact->gatherer.shape);
+        /* Threads wait for each other between spreading and gathering: seldom
+         * where slices are spread by the dozen.  One thread has no one to wait
+         * for, and finds a single slice in its cache. */
+        int64_t wanted = threads > 1 ? job->stored_slab.count : 1;
+        exact->dense_used = fit > 1 ? smaller(wanted, (int64_t)fit) : 1;
+    } else if (threads > 1)
+        exact->bands = (int)smaller(BANDS_PER_THREAD * threads, p->height);
+    int64_t most =
+        exact->bands > exact->groups_used ? exact->bands : exact->groups_used;
+    exact->threads = (int)smaller(threads, most);
+}
+
+static snow_status prepare_worker(snow_exact *exact, const snow_job *job,
+                                  worker *w) {
+    snow_context *context = exact->context;
+    const snow_placement *p = &job->stored;
+    w->kept = 0;
+    w->status = SNOW_STATUS_OK;
+    memset(w->seconds, 0, sizeof w->seconds);
+    SNOW_TRY(snow_row_block_make(context, p, job->channels, &w->row_block));
+    SNOW_TRY(snow_reserve(context, &w->spans, &w->spans_capacity, 0,
+                          ((size_t)p->columns / 2 + 1) * sizeof *w->spans));
+    /* Here and not where a thread needs it, so that what is taken does not
+     * depend on which thread does what. */
+    size_t row = (size_t)p->width * (size_t)job->channels;
+    if (!exact->gathers) {
+        size_t rows = (size_t)parts_of(p->height, exact->bands);
+        SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
+                              rows * row * sizeof *w->sheet.pixels));
+        return snow_splatter_make(context, p, job->settings.kernel,
+                                  job->settings.footprint, job->channels,
+                                  &w->splatter);
+    }
+    size_t runs = (size_t)p->width / 2 + 1;
+    SNOW_TRY(snow_places_make(context, p->width, &w->places));
+    SNOW_TRY(snow_reserve(context, &w->sheet.pixels, &w->sheet.capacity, 0,
+                          GATHER_ROWS * row * sizeof *w->sheet.pixels));
+    return snow_reserve(context, &w->runs, &w->runs_capacity, 0,
+                        GATHER_ROWS * runs * sizeof *w->runs);
+}
+
+static size_t open_row(const snow_job *job) {
+    return (size_t)parts_of(job->stored.width, SNOW_GATHER_CHUNK);
+}
+
+/* All pixels are open. */
+static snow_status find_not_opaque(snow_exact *exact, const snow_job *job) {
+    size_t bytes =
+        (size_t)job->stored.height * open_row(job) * sizeof *exact->not_opaque;
+    SNOW_TRY(snow_reserve(exact->context, &exact->not_opaque,
+                          &exact->not_opaque_capacity, 0, bytes));
+    memset(exact->not_opaque, 0xff, bytes);
+    return SNOW_STATUS_OK;
+}
+
+/* Loops for gathering exist for this picture, and it is the method that may
+ * use them: original and tested stay what they are compared as. */
+static snow_status choose_loops(snow_exact *exact, const snow_job *job) {
+    const snow_settings *settings = &job->settings;
+    exact->gathers = false;
+    exact->over = job->composite ? job->composite
+                                 : snow_over_pick(settings->isa, job->channels);
+    if (settings->method != SNOW_METHOD_FOOTPRINT)
+        return SNOW_STATUS_OK;
+    return snow_gatherer_make(exact->context, &job->stored, settings->kernel,
+                              settings->footprint, job->channels, settings->isa,
+                              &exact->gatherer, &exact->gathers);
+}
+
+/* Makes room and tables for a job. */
+static snow_status prepare(snow_exact *exact, const snow_job *job) {
+    snow_context *context = exact->context;
+    const snow_settings *settings = &job->settings;
+    const snow_placement *p = &job->stored;
+    snow_classify_options options = {
+        .threshold = settings->threshold,
+        .opacity_exponent = p->path / settings->opacity_length,
+        .keep_all = settings->method == SNOW_METHOD_ORIGINAL,
+        .premultiply = settings->shade == SNOW_SHADE_NONE,
+        .isa = settings->method == SNOW_METHOD_FOOTPRINT ? settings->isa
+                                                         : SNOW_ISA_SCALAR,
+    };
+    SNOW_TRY(snow_classifier_make(context, job->volume, job->transfer, &options,
+                                  &exact->classifier));
+    /* Normals are made for the voxels that are kept. */
+    SNOW_TRY(
+        snow_shader_init(context, job->volume, p, settings, &exact->shader));
+    SNOW_TRY(choose_loops(exact, job));
+    cut(exact, job);
+    SNOW_TRY(more_records(context, &exact->groups, &exact->groups_capacity,
+                          &exact->group_count, exact->groups_used,
+                          sizeof *exact->groups));
+    for (int64_t n = 0; n < exact->groups_used; n++)
+        exact->groups[n].context = context;
+    SNOW_TRY(more_records(context, &exact->workers, &exact->workers_capacity,
+                          &exact->worker_count, exact->threads,
+                          sizeof *exact->workers));
+    for (int n = 0; n < exact->threads; n++)
+        SNOW_TRY(prepare_worker(exact, job, &exact->workers[n]));
+    SNOW_TRY(more_records(context, &exact->dense, &exact->dense_capacity,
+                          &exact->dense_count, exact->dense_used,
+                          sizeof *exact->dense));
+    for (int64_t n = 0; n < exact->dense_used; n++)
+        SNOW_TRY(
+            snow_dense_make(context, &exact->gatherer.shape, &exact->dense[n]));
+    return exact->gathers ? find_not_opaque(exact, job) : SNOW_STATUS_OK;
+}
+
+/* --- work and time ---------------------------------------------------------
+ */
+
+/* Deals a pass' wall time out to the stages as its threads spent theirs. */
+static void deal_out(snow_exact *exact, double wall, snow_stats *stats) {
+    double *totals[STAGES] = {
+        [CLASSIFY] = &stats->seconds_classify,
+        [SHADE] = &stats->seconds_shade,
+        [ENCODE] = &stats->seconds_encode,
+        [SPLAT] = &stats->seconds_splat,
+        [COMPOSITE] = &stats->seconds_composite,
+    };
+    double spent[STAGES] = {0}, all = 0;
+    for (int n = 0; n < exact->threads; n++)
+        for (int s = 0; s < STAGES; s++) {
+            spent[s] += exact->workers[n].seconds[s];
+            all += exact->workers[n].seconds[s];
+            exact->workers[n].seconds[s] = 0;
+        }
+    for (int s = 0; s < STAGES && all > 0; s++)
+        *totals[s] += wall * spent[s] / all;
+}
+
+/* Does the items of a pass on the threads. */
+static snow_status run(pass *work, int64_t items, snow_work_fn *one) {
+    snow_exact *exact = work->exact;
+    double start = snow_seconds();
+    snow_status status =
+        snow_parallel(exact->context, exact->threads, items, one, work);
+    deal_out(exact, snow_seconds() - start, work->job->stats);
+    SNOW_TRY(status);
+    for (int n = 0; n < exact->threads; n++)
+        if (exact->workers[n].status != SNOW_STATUS_OK)
+            return exact->workers[n].status;
+    return SNOW_STATUS_OK;
+}
+
+/* Whether the picture is to end: the rest may be left out. */
+static bool stops(const pass *work, const worker *w) {
+    return snow_monitor_look(work->exact->context->monitor,
+                             (int)(w - work->exact->workers));
+}
+
+/* The slab's n-th slice from the viewer. */
+static int64_t nth_slice(const snow_job *job, int64_t n) {
+    snow_slab slab = job->stored_slab;
+    return slab.first + (job->stored.nearest_first ? n : slab.count - 1 - n);
+}
+
+/* Classifies and shades `rows` rows of a slice, or as many as a strip holds,
+ * from `row` on into the worker's strip. */
+static void classify_and_shade(const pass *work, worker *w, int64_t slice,
+                               int64_t row, int64_t rows) {
+    const snow_exact *exact = work->exact;
+    double mark = snow_seconds();
+    snow_classify_row_block(&exact->classifier, &work->job->stored, slice, row,
+                            smaller(rows, w->row_block.room_rows),
+                            &w->row_block);
+    snow_lap(&mark, &w->seconds[CLASSIFY]);
+    if (work->job->settings.shade == SNOW_SHADE_PHONG)
+        snow_shade_row_block(&exact->shader, work->job->channels,
+                             &w->row_block);
+    snow_lap(&mark, &w->seconds[SHADE]);
+}
+
+/* --- encoding --------------------------------------------------------------
+ */
+
+snow_encoding snow_exact_measure(const snow_classifier *classifier,
+                                 const snow_placement *p,
+                                 snow_row_block *row_block, snow_span *spans) {
+    uint64_t voxels = 0, interesting = 0, runs = 0;
+    for (int64_t slice = 0;
+         slice < p->slices &&
+         !snow_monitor_look(classifier->volume->context->monitor, 0);
+         slice += 8)
+        for (int64_t row = slice / 8 % 8; row < p->rows; row += 8) {
+            snow_classify_row_block(classifier, p, slice, row, 1, row_block);
+            voxels += (uint64_t)p->columns;
+            interesting += row_block->count;
+            runs += snow_spans_of_columns(row_block->columns, row_block->count,
+                                          spans);
+        }
+    return snow_encoding_choose(voxels, interesting, runs);
+}
+
+/* Lines 04 to 06: one slice into the sparse matrix of its group. */
+static snow_status encode_slice(const pass *work, worker *w,
+                                snow_sparse *sparse, int64_t slice) {
+    const snow_placement *p = &work->job->stored;
+    snow_row_block *row_block = &w->row_block;
+    float *samples = row_block->samples;
+    snow_status status = snow_sparse_begin_slice(sparse);
+    for (int64_t row = 0; row < p->rows && status == SNOW_STATUS_OK;
+         row += row_block->room_rows) {
+        if (stops(work, w))
+            break;
+        /* Classified straight into IA: most of what is encoded is samples. */
+        status = snow_sparse_lend(sparse,
+                                  (size_t)(row_block->room_rows * p->columns),
+                                  &row_block->samples);
+        if (status != SNOW_STATUS_OK)
+            break;
+        classify_and_shade(work, w, slice, row, p->rows - row);
+        double mark = snow_seconds();
+        status = snow_sparse_add_row_block(sparse, row_block);
+        snow_lap(&mark, &w->seconds[ENCODE]);
+    }
+    row_block->samples = samples;
+    return status == SNOW_STATUS_OK ? snow_sparse_end_slice(sparse) : status;
+}
+
+static snow_status encode_group(const pass *work, int64_t group, worker *w) {
+    const snow_job *job = work->job;
+    snow_sparse *sparse = &work->exact->groups[group];
+    SNOW_TRY(snow_sparse_begin(sparse, snow_scheme_of(work->encoding),
+                               &job->stored, job->channels));
+    int64_t first = group * GROUP_SLICES;
+    int64_t end = smaller(first + GROUP_SLICES, job->stored_slab.count);
+    for (int64_t n = first; n < end; n++)
+        SNOW_TRY(encode_slice(work, w, sparse, job->stored_slab.first + n));
+    return SNOW_STATUS_OK;
+}
+
+static void encode_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    worker *w = &work->exact->workers[number];
+    if (w->status == SNOW_STATUS_OK)
+        w->status = encode_group(work, item, w);
+}
+
+/* Sets a walk to the beginning of a slice of the volume. */
+static void walk_slice(const pass *work, int64_t slice, snow_walk *walk) {
+    int64_t n = slice - work->job->stored_slab.first;
+    snow_walk_begin(walk, &work->exact->groups[n / GROUP_SLICES],
+                    n % GROUP_SLICES);
+}
+
+/* The next row of a walk: its spans go to the worker, its samples are
+ * returned. */
+static const float *walk_row(const pass *work, snow_walk *walk, worker *w,
+                             size_t *spans) {
+    size_t voxel;
+    *spans = snow_walk_row(walk, w->spans, &voxel);
+    return walk->sparse->ia + voxel * (size_t)work->job->channels;
+}
+
+/* --- throwing footprints ---------------------------------------------------
+ */
+
+/* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
+static void scatter_encoded(const pass *work, worker *w, int64_t slice,
+                            int64_t first, int64_t end) {
+    double mark = snow_seconds();
+    snow_walk walk;
+    walk_slice(work, slice, &walk);
+    for (int64_t row = 0; row < end && !stops(work, w); row++) {
+        size_t spans;
+        const float *samples = walk_row(work, &walk, w, &spans);
+        if (row >= first)
+            snow_splat_row(&w->splatter, &w->sheet, row, w->spans, spans,
+                           samples);
+    }
+    snow_lap(&mark, &w->seconds[SPLAT]);
+}
+
+/* The same without a sparse matrix, row by row out of the volume: original
+ * splatting, where the classifier keeps every voxel, and tested splatting. */
+static void scatter_classified(const pass *work, worker *w, int64_t slice,
+                               int64_t first, int64_t end) {
+    snow_row_block *row_block = &w->row_block;
+    for (int64_t row = first; row < end && !stops(work, w);
+         row += row_block->room_rows) {
+        classify_and_shade(work, w, slice, row, end - row);
+        double mark = snow_seconds();
+        w->kept += (int64_t)row_block->count;
+        size_t begin = 0;
+        for (int64_t n = 0; n < row_block->rows; n++) {
+            size_t stop = row_block->row_end[n];
+            size_t spans = snow_spans_of_columns(row_block->columns + begin,
+                                                 stop - begin, w->spans);
+            snow_splat_row(&w->splatter, &w->sheet, row + n, w->spans, spans,
+                           row_block->samples +
+                               begin * (size_t)work->job->channels);
+            begin = stop;
+        }
+        snow_lap(&mark, &w->seconds[SPLAT]);
+    }
+}
+
+/* Line 07, from front to back: the slab's slices onto the sheet, and each
+ * sheet into the local image; for one band of its rows. */
+static snow_status scatter_band(const pass *work, int64_t band, worker *w) {
+    const snow_job *job = work->job;
+    const snow_placement *p = &job->stored;
+    int64_t bands = work->exact->bands;
+    int top = (int)(p->height * band / bands);
+    int bottom = (int)(p->height * (band + 1) / bands);
+    double mark = snow_seconds();
+    SNOW_TRY(snow_sheet_begin(work->exact->context, p, job->channels, top,
+                              bottom, &w->sheet));
+    snow_lap(&mark, &w->seconds[COMPOSITE]);
+    for (int64_t n = 0; n < job->stored_slab.count; n++) {
+        int64_t slice = nth_slice(job, n), first = 0, end = p->rows;
+        if (stops(work, w))
+            break;
+        if (bands == 1)
+            snow_monitor_report(work->exact->context->monitor,
+                                SNOW_STAGE_RENDER, (double)n,
+                                (double)job->stored_slab.count);
+        snow_splatter_begin_slice(&w->splatter, slice);
+        if (bands > 1) /* one band takes every row, as the paper does */
+            snow_splatter_rows(&w->splatter, &w->sheet, &first, &end);
+        if (job->settings.method == SNOW_METHOD_FOOTPRINT)
+            scatter_encoded(work, w, slice, first, end);
+        else
+            scatter_classified(work, w, slice, first, end);
+        mark = snow_seconds();
+        snow_job_clip_sheet(job, slice, &w->sheet);
+        snow_depth_note_sheet(job, slice, &w->sheet);
+        snow_composite_sheet(job->pixels, &w->sheet, snow_job_composite(job));
+        snow_lap(&mark, &w->seconds[COMPOSITE]);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static void scatter_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    worker *w = &work->exact->workers[number];
+    if (w->status == SNOW_STATUS_OK)
+        w->status = scatter_band(work, item, w);
+}
+
+/* --- gathering footprints --------------------------------------------------
+ */
+
+/* Lines 08 to 12, first half: the interesting voxels of one slice, out of EA
+ * and IA, to where its pixels gather them. */
+static void spread_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    worker *w = &work->exact->workers[number];
+    snow_dense *dense = &work->exact->dense[item];
+    double mark = snow_seconds();
+    snow_walk walk;
+    walk_slice(work, nth_slice(work->job, work->first + item), &walk);
+    snow_dense_begin(dense);
+    for (int64_t row = 0; row < work->job->stored.rows && !stops(work, w);
+         row++) {
+        size_t spans;
+        const float *samples = walk_row(work, &walk, w, &spans);
+        snow_dense_add_row(dense, w->spans, spans, samples);
+    }
+    snow_dense_end(dense);
+    snow_lap(&mark, &w->seconds[SPLAT]);
+}
+
+/* Opaque pixels gather no more: looked for every few slices, the same ones
+ * however many are spread at once.  Not where something else than over is laid,
+ * to which opacity is nothing. */
+static bool closes(const pass *work, int64_t n) {
+    return !work->job->composite &&
+           (work->first + n) % CLOSE_SLICES == CLOSE_SLICES - 1;
+}
+
+/* Line 13 for one row of slice n: a run of what it has gathered goes into the
+ * local image. */
+static void composite_run(const pass *work, int64_t n, int y, float *gathered,
+                          snow_run run) {
+    const snow_exact *exact = work->exact;
+    const snow_job *job = work->job;
+    int64_t slice = nth_slice(job, work->first + n);
+    int count = run.end - run.first;
+    size_t channels = (size_t)job->channels;
+    float *row = job->pixels + (size_t)y * (size_t)job->stored.width * channels;
+    float *back = gathered + (size_t)run.first * channels;
+    if (job->clip.cuts)
+        snow_clip_pixels(&job->clip, &job->placement,
+                         slice + job->clip.stored[2], run.first, y, count,
+                         job->channels, back);
+    if (job->depths)
+        snow_depth_note(job, slice, run.first, y, count, back);
+    exact->over(row + (size_t)run.first * channels, back, (size_t)count);
+    if (closes(work, n))
+        snow_gather_close(row, run, job->channels,
+                          exact->not_opaque + (size_t)y * open_row(job));
+}
+
+/* Second half and line 13, for one slice and band: pixels gather, row by row,
+ * and each row goes into the local image. */
+static void gather_slice(const pass *work, worker *w, int64_t n, int top,
+                         int bottom) {
+    const snow_exact *exact = work->exact;
+    const snow_job *job = work->job;
+    const snow_dense *dense = &exact->dense[n];
+    int64_t slice = nth_slice(job, work->first + n);
+    size_t room = w->runs_capacity / sizeof *w->runs / GATHER_ROWS;
+    size_t stride = (size_t)job->stored.width * (size_t)job->channels;
+    int first, end, counts[GATHER_ROWS];
+    snow_gather_rows(&exact->gatherer, dense, slice, &first, &end);
+    first = first > top ? first : top;
+    end = end < bottom ? end : bottom;
+    if (first >= end)
+        return;
+    double mark = snow_seconds();
+    for (int y = first; y < end; y++) {
+        size_t line = (size_t)(y - top);
+        counts[line] = snow_gather_row(
+            &exact->gatherer, dense, slice, y,
+            exact->not_opaque + (size_t)y * open_row(job), &w->places,
+            w->sheet.pixels + line * stride, w->runs + line * room);
+    }
+    snow_lap(&mark, &w->seconds[SPLAT]);
+    for (int y = first; y < end; y++) {
+        size_t line = (size_t)(y - top);
+        for (int i = 0; i < counts[line]; i++)
+            composite_run(work, n, y, w->sheet.pixels + line * stride,
+                          w->runs[line * room + (size_t)i]);
+    }
+    snow_lap(&mark, &w->seconds[COMPOSITE]);
+}
+
+static void gather_item(void *data, int64_t item, int number) {
+    pass *work = data;
+    int top = (int)item * GATHER_ROWS;
+    int bottom = (int)smaller(top + GATHER_ROWS, work->job->stored.height);
+    for (int64_t n = 0; n < work->count; n++)
+        gather_slice(work, &work->exact->workers[number], n, top, bottom);
+}
+
+/* Line 07, from front to back: some slices at a time. */
+static snow_status gather_slab(pass *work) {
+    int64_t slices = work->job->stored_slab.count;
+    for (work->first = 0; work->first < slices; work->first += work->count) {
+        work->count = smaller(work->exact->dense_used, slices - work->first);
+        snow_monitor_report(work->exact->context->monitor, SNOW_STAGE_RENDER,
+                            (double)work->first, (double)slices);
+        SNOW_TRY(run(work, work->count, spread_item));
+        SNOW_TRY(run(work, work->exact->bands, gather_item));
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- the whole -------------------------------------------------------------
+ */
+
+static snow_status prepare_tables(snow_picture *p, snow_job *job) {
+    return prepare(p->frame->exact, job);
+}
+
+static snow_status encode_slab(snow_picture *p, snow_job *job) {
+    snow_exact *exact = p->frame->exact;
+    exact->encoding = job->settings.encoding;
+    if (job->settings.method != SNOW_METHOD_FOOTPRINT)
+        return SNOW_STATUS_OK;
+    if (exact->encoding == SNOW_ENCODING_AUTO)
+        exact->encoding = snow_exact_measure(&exact->classifier, &job->stored,
+                                             &exact->workers[0].row_block,
+                                             exact->workers[0].spans);
+    job->stats->encoding = exact->encoding;
+    snow_monitor_next(exact->context->monitor, SNOW_STAGE_ENCODE, 0, 1);
+    pass work = {exact, job, exact->encoding, 0, 0};
+    return run(&work, exact->groups_used, encode_item);
+}
+
+static snow_status splat_and_composite(snow_picture *p, snow_job *job) {
+    snow_exact *exact = p->frame->exact;
+    pass work = {exact, job, exact->encoding, 0, 0};
+    if (!exact->gathers && exact->bands > 1) /* else slices are reported */
+        snow_monitor_next(exact->context->monitor, SNOW_STAGE_RENDER, 0, 1);
+    return exact->gathers ? gather_slab(&work)
+                          : run(&work, exact->bands, scatter_item);
+}
+
+/* --- counts ----------------------------------------------------------------
+ */
+
+static void count_item(void *data, int64_t item, int number) {
+    const pass *work = data;
+    const snow_exact *exact = work->exact;
+    const snow_placement *p = &work->job->stored;
+    worker *w = &exact->workers[number];
+    for (int64_t row = 0; row < p->rows; row += w->row_block.room_rows) {
+        snow_classify_row_block(
+            &exact->classifier, p, work->job->stored_slab.first + item, row,
+            smaller(p->rows - row, w->row_block.room_rows), &w->row_block);
+        w->kept += (int64_t)w->row_block.count;
+    }
+}
+
+/* Original splatting keeps every voxel, and bands keep some more than once, so
+ * nothing holds the number of interesting voxels, and they are counted here:
+ * outside of seconds_frame. */
+static snow_status count_classified(snow_exact *exact, const snow_job *job,
+                                    int64_t *count) {
+    int64_t kept = 0;
+    bool known =
+        job->settings.method == SNOW_METHOD_TESTED && exact->bands == 1;
+    if (!known) {
+        pass work = {.exact = exact, .job = job};
+        for (int n = 0; n < exact->threads; n++)
+            exact->workers[n].kept = 0;
+        snow_classify_options options = {.threshold = job->settings.threshold,
+                                         .opacity_exponent = 1};
+        SNOW_TRY(snow_classifier_make(exact->context, job->volume,
+                                      job->transfer, &options,
+                                      &exact->classifier));
+        SNOW_TRY(snow_parallel(exact->context, exact->threads,
+                               job->stored_slab.count, count_item, &work));
+    }
+    for (int n = 0; n < exact->threads; n++)
+        kept += exact->workers[n].kept;
+    *count = kept;
+    return SNOW_STATUS_OK;
+}
+
+static void count_encoded(const snow_exact *exact, snow_stats *stats) {
+    for (int64_t n = 0; n < exact->groups_used; n++) {
+        const snow_sparse *s = &exact->groups[n];
+        stats->interesting += (int64_t)s->ia_voxels;
+        stats->ea_bytes += s->ea_bytes;
+        stats->ia_bytes += s->ia_voxels * (size_t)s->channels * sizeof *s->ia;
+        stats->pa_bytes += (uint64_t)(s->filled + 1) * sizeof *s->pa;
+    }
+}
+
+snow_status snow_exact_count(snow_exact *exact, const snow_job *job) {
+    snow_stats *stats = job->stats;
+    if (job->settings.method == SNOW_METHOD_FOOTPRINT)
+        count_encoded(exact, stats);
+    else
+        SNOW_TRY(count_classified(exact, job, &stats->interesting));
+    double voxels = (double)stats->voxels;
+    stats->sparse_ratio =
+        voxels > 0 ? 1 - (double)stats->interesting / voxels : 1;
+    return SNOW_STATUS_OK;
+}
+
+/* Slabs of a volume in its file have been counted one by one. */
+static snow_status find_figures(snow_picture *p, snow_job *job) {
+    if (!job->volume->stream)
+        SNOW_TRY(snow_exact_count(p->frame->exact, job));
+    return snow_job_finish(p->frame, job);
+}
+
+const snow_render_method snow_method_exact = {
+    .classify_and_shade = prepare_tables,
+    .encode = encode_slab,
+    .splat_and_composite = splat_and_composite,
+    .figures = find_figures,
+    .slabs = true,
+};

@@ -1,0 +1,39 @@
+/* render/exact/exact.h - the methods that throw footprints onto the image
+ * itself: original, tested and footprint; figure 8 of the paper, lines 03
+ * to 13. */
+#ifndef SNOW_RENDER_EXACT_EXACT_H
+#define SNOW_RENDER_EXACT_EXACT_H
+
+#include "classify/classify.h"
+#include "encode/encode.h"
+#include "render/picture.h"
+
+/* The buffers of the stages, kept from picture to picture: a second picture of
+ * the same sizes takes no memory. */
+typedef struct snow_exact snow_exact;
+
+/* Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_exact_new(snow_context *context, snow_exact **out);
+void snow_exact_free(snow_exact *exact);
+
+/* snow_method_exact fills the local image of a job, and the seconds of its
+ * stages.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY. */
+
+/* The encoding that takes least, by density and runs on every 8th row of every
+ * 8th slice. */
+snow_encoding snow_exact_measure(const snow_classifier *classifier,
+                                 const snow_placement *placement,
+                                 snow_row_block *row_block, snow_span *spans);
+
+/* Adds the seconds since *mark to a total, and moves the mark. */
+static inline void snow_lap(double *mark, double *total) {
+    double now = snow_seconds();
+    *total += now - *mark;
+    *mark = now;
+}
+
+/* Counts of voxels and bytes, once the picture is made.  Errors:
+ * SNOW_STATUS_NO_MEMORY. */
+snow_status snow_exact_count(snow_exact *exact, const snow_job *job);
+
+#endif

@@ -1,0 +1,340 @@
+/* render/ghosts.c - how many layers of its neighbours' voxels a part needs.
+ *
+ * A part that owns voxels a to b along an axis makes the samples of sheets at
+ * grid positions [a - 1/2, b + 1/2) (section 4 of the paper, with boxes in the
+ * place of slabs).  A kernel that reaches h voxels sums voxels down to
+ * a - 1/2 - h, and a gradient, of shading or of opacity, takes one more:
+ *
+ *        a - 3   a - 2   a - 1 |  a    a + 1
+ *          o       o       o   |  *      *        h = 2: layers a - 1, a - 2,
+ *         grad   <------ h --->                   and a - 3 with shading
+ *
+ * Along the slice axis kernels do not reach; a slice half-way to the next one
+ * (quality high) does, and mode iso looks at the slice that the ray met before,
+ * where it was as many voxels aside as it is slanted.  A pixel wider than a
+ * voxel widens the kernel, and how wide it is depends on the view.
+ *
+ * A level's part needs as many of the level's voxels, and is made of twice as
+ * many of the volume's, and of those across its border. */
+#include "render/ghosts.h"
+
+#include "base/vec3.h"
+#include "render/mipmap.h"
+#include "render/settings_resolve.h"
+#include "splat/kernel.h"
+#include "transform/perspective.h"
+#include "volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+/* What is asked. */
+typedef struct question {
+    snow_context *context;
+    const snow_volume_info *whole;
+    const snow_view *view;
+    const snow_settings *settings; /* resolved */
+    bool gradients;                /* of voxels are wanted */
+} question;
+
+static void at_least(int64_t *layers, double wanted, int64_t most) {
+    if (wanted >= (double)most) /* perhaps far beyond what an integer holds */
+        *layers = most;
+    else if (wanted > (double)*layers)
+        *layers = (int64_t)wanted;
+}
+
+/* Layers for kernels of pixels that are `width` voxels wide along an axis that
+ * lies in the slices. */
+static double layers_of(const question *q, double width) {
+    const snow_settings *settings = q->settings;
+    snow_scaled_kernel scaled_kernel =
+        snow_scaled_kernel_make(settings->kernel, settings->footprint, width);
+    return floor(snow_scaled_kernel_reach(&scaled_kernel) + 0.5) + q->gradients;
+}
+
+static bool finds_surfaces(const question *q) {
+    return q->settings->mode == SNOW_MODE_ISO;
+}
+
+/* Those across slices. */
+static double layers_across(const question *q) {
+    return q->gradients + finds_surfaces(q) +
+           (q->settings->quality == SNOW_QUALITY_HIGH &&
+            q->settings->method == SNOW_METHOD_SHEAR_WARP);
+}
+
+/* The widest pixel on any slice of a placement, voxels along u and v. */
+static void widest_pixel(const snow_placement *p, double width[2]) {
+    for (int axis = 0; axis < 2; axis++)
+        width[axis] = hypot(p->inverse[axis][0], p->inverse[axis][1]);
+    if (!p->perspective)
+        return;
+    width[0] = width[1] = 0;
+    for (int64_t n = 0; n < 2 * p->slices - 1; n++) {
+        double here[2];
+        snow_perspective_pixel_width(p, (double)n / 2, here);
+        for (int axis = 0; axis < 2; axis++)
+            width[axis] = fmax(width[axis], here[axis]);
+    }
+}
+
+/* How many voxels rays go aside along u and v from slice to slice, at most. */
+static void widest_slope(const snow_placement *p, double slope[2]) {
+    for (int axis = 0; axis < 2; axis++)
+        slope[axis] = fabs(p->inverse[axis][0] * p->step_slice[0] +
+                           p->inverse[axis][1] * p->step_slice[1]);
+    if (!p->perspective)
+        return;
+    slope[0] = slope[1] = 0;
+    for (int corner = 0; corner < 4; corner++) {
+        double first[3], ray[3];
+        snow_perspective_ray(&p->eye, 0, 0, first);
+        snow_perspective_ray(&p->eye, corner % 2 ? p->width : 0,
+                             corner / 2 ? p->height : 0, ray);
+        for (int axis = 0; axis < 2; axis++)
+            slope[axis] = ray[2] * first[2] > 0
+                              ? fmax(slope[axis], fabs(ray[axis] / ray[2]))
+                              : INFINITY;
+    }
+}
+
+/* The view's own needs, with slices along one axis. */
+static void ask_placement(const question *q, const snow_placement *p,
+                          int64_t layers[3]) {
+    const int64_t *dims = q->whole->dims;
+    const int axes[2] = {p->u_axis, p->v_axis};
+    double width[2], slope[2] = {0, 0};
+    widest_pixel(p, width);
+    if (finds_surfaces(q))
+        widest_slope(p, slope);
+    for (int n = 0; n < 2; n++)
+        at_least(&layers[axes[n]], layers_of(q, width[n]) + ceil(slope[n]),
+                 dims[axes[n]] - 1);
+    at_least(&layers[p->slice_axis], layers_across(q), dims[p->slice_axis] - 1);
+}
+
+static snow_status ask_view(const question *q, int64_t layers[3]) {
+    snow_placement p;
+    double shares[3] = {0, 0, 0};
+    SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &p));
+    if (q->settings->quality == SNOW_QUALITY_HIGH)
+        snow_placement_shares(q->whole, &p, shares);
+    shares[p.slice_axis] = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        if (shares[axis] == 0)
+            continue;
+        SNOW_TRY(
+            snow_placement_make_along(q->context, q->whole, q->view, axis, &p));
+        ask_placement(q, &p, layers);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- every turn -----------------------------------------------------------
+ *
+ * On slices of unit normal n, a pixel of pitch s seen along d (|d| = 1) is
+ *
+ *   s |d x (g x n)| / |d . n|   <=   s |g x n| / |d . n|
+ *
+ * voxels wide along a grid axis whose index has the world gradient g, and so
+ * many times that as the slice is farther than the target.  The slice axis is
+ * the one of the largest |d . n|, which is at least the least of max |d . n|
+ * over all d; for axes at right angles 1 / sqrt 3. */
+
+/* World gradients of the three indices; their directions are the slices'
+ * normals. */
+static bool index_gradients(const snow_volume_info *info,
+                            double gradients[3][3]) {
+    return snow_matrix_invert3(info->matrix, gradients);
+}
+
+/* A lower bound of max |d . n| over the axes, for every unit vector d: that is
+ * at least |N d| / sqrt 3, with the normals as N's rows, and |d| = |N^-1 N d|
+ * is at most |N^-1| |N d|.  The norm is Frobenius' but for right angles, where
+ * N turns only. */
+static double least_cosine(double gradients[3][3]) {
+    double normals[3][3], skew = 0, square = 0;
+    memcpy(normals, gradients, sizeof normals);
+    for (int n = 0; n < 3; n++)
+        snow_normalize(normals[n]);
+    for (int n = 0; n < 3; n++)
+        skew = fmax(skew, fabs(snow_dot(normals[n], normals[(n + 1) % 3])));
+    if (skew < 1e-6)
+        return 0.999 / sqrt(3.0);
+    double cross[3], volume;
+    snow_cross(normals[1], normals[2], cross);
+    volume = snow_dot(normals[0], cross);
+    for (int n = 0; n < 3; n++) {
+        snow_cross(normals[(n + 1) % 3], normals[(n + 2) % 3], cross);
+        square += snow_dot(cross, cross) / (volume * volume);
+    }
+    return 1 / sqrt(3 * square);
+}
+
+/* How obliquely a slice may be seen: the least |d . n|; 0 where there is no
+ * bound.  A ray that meets the volume leaves the line of sight by an angle
+ * whose sine is `spread` at most. */
+static double least_slant(const question *q, double gradients[3][3],
+                          double spread) {
+    double cosine = least_cosine(gradients);
+    if (q->settings->quality == SNOW_QUALITY_HIGH) /* blends of axes */
+        cosine -= sqrt(2.0) * sin(SNOW_BLEND_DEGREES * 0.017453292519943295769);
+    double angle = acos(fmax(cosine, 0)) + asin(spread);
+    return angle < 1.57 ? cos(angle) : 0;
+}
+
+/* The largest |g x n| of an axis, n being normal to the slices along another.
+ */
+static double steepest(double gradients[3][3], int axis) {
+    double most = 0;
+    for (int other = 1; other < 3; other++) {
+        double normal[3], cross[3];
+        memcpy(normal, gradients[(axis + other) % 3], sizeof normal);
+        snow_normalize(normal);
+        snow_cross(gradients[axis], normal, cross);
+        most = fmax(most, snow_length(cross));
+    }
+    return most;
+}
+
+/* How many voxels along an axis rays go aside from slice to slice at most: of
+ * |g . d| / |h . d|, where h is the gradient of the slices' index. */
+static double steepest_slope(double gradients[3][3], int axis, double slant) {
+    double most = 0;
+    for (int other = 1; other < 3; other++)
+        most = fmax(most,
+                    snow_length(gradients[axis]) /
+                        (snow_length(gradients[(axis + other) % 3]) * slant));
+    return most;
+}
+
+static snow_status ask_all(const question *q, int64_t layers[3]) {
+    double gradients[3][3];
+    snow_placement checked;
+    snow_camera camera;
+    SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &checked));
+    SNOW_TRY(snow_camera_make(q->context, q->whole, q->view, &camera));
+    if (!index_gradients(q->whole, gradients))
+        return snow_fail(q->context, SNOW_STATUS_BAD_INPUT,
+                         "the volume's matrix cannot be inverted");
+    /* The volume stays within a sphere about the target. */
+    double reach = snow_length(camera.middle) + snow_volume_radius(q->whole);
+    double spread = camera.distance > 0 ? reach / camera.distance : 0;
+    double slant = least_slant(q, gradients, fmin(spread, 1));
+    double pitch = camera.pitch * (1 + spread);
+    for (int axis = 0; axis < 3; axis++) {
+        double width =
+            slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;
+        double wanted = width < 1e9 ? layers_of(q, width) : 1e9;
+        if (finds_surfaces(q))
+            wanted += ceil(steepest_slope(gradients, axis, slant));
+        int64_t most = q->whole->dims[axis] - 1;
+        at_least(&layers[axis], fmax(wanted, layers_across(q)), most);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- levels ---------------------------------------------------------------
+ */
+
+/* What a level of so many halvings needs, in voxels of the whole. */
+static snow_status ask_level(const question *q, bool any_turn,
+                             const int halvings[3], int64_t layers[3]) {
+    int64_t wanted[3] = {0, 0, 0};
+    const snow_volume_info level = snow_mipmap_info(q->whole, halvings);
+    question of_level = *q;
+    of_level.whole = &level;
+    SNOW_TRY(any_turn ? ask_all(&of_level, wanted)
+                      : ask_view(&of_level, wanted));
+    snow_mipmap_layers(q->whole, halvings, wanted);
+    for (int axis = 0; axis < 3; axis++)
+        at_least(&layers[axis], (double)wanted[axis], q->whole->dims[axis] - 1);
+    return SNOW_STATUS_OK;
+}
+
+snow_status
+snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
+                   const snow_view *view, const snow_settings *settings,
+                   bool gradient_factors, bool any_turn, int64_t layers[3]) {
+    snow_settings resolved = snow_settings_known(settings);
+    int64_t found[3] = {0, 0, 0};
+    int halvings[3] = {0, 0, 0};
+    SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
+    question q = {context, whole, view, &resolved,
+                  gradient_factors || resolved.shade == SNOW_SHADE_PHONG};
+    SNOW_TRY(any_turn ? ask_all(&q, found) : ask_view(&q, found));
+    /* Whether colours have steps is not known: then there is no level. */
+    if (snow_mipmap_serve(&resolved))
+        SNOW_TRY(snow_mipmap_wanted(context, whole, view, halvings));
+    if (halvings[0] || halvings[1] || halvings[2])
+        SNOW_TRY(ask_level(&q, any_turn, halvings, found));
+    memcpy(layers, found, sizeof found);
+    return SNOW_STATUS_OK;
+}
+
+/* --- parts ----------------------------------------------------------------
+ */
+
+static bool is_empty(const snow_volume *volume) {
+    snow_extent part;
+    snow_volume_get_extent(volume, &part);
+    return !part.count[0] || !part.count[1] || !part.count[2];
+}
+
+static snow_status check_layers(snow_context *context,
+                                const snow_volume *volume,
+                                const int64_t layers[3]) {
+    const char names[] = "xyz";
+    snow_extent part;
+    snow_volume_get_extent(volume, &part);
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t below = part.first[axis] - part.stored[axis];
+        int64_t end = part.first[axis] + part.count[axis];
+        int64_t above = part.stored[axis] + volume->info.dims[axis] - end;
+        int64_t few = below < above ? below : above;
+        bool enough_below = below >= layers[axis] || part.stored[axis] == 0;
+        bool enough_above =
+            above >= layers[axis] || end + above == part.dims[axis];
+        if (!enough_below || !enough_above)
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "this view needs %lld layers of ghost voxels "
+                             "along %c, and a part of the volume has %lld; "
+                             "open it for this view, or with more",
+                             (long long)layers[axis], names[axis],
+                             (long long)few);
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* A part without voxels of its own makes no samples. */
+static snow_status check_part(snow_context *context, const snow_volume *volume,
+                              const snow_view *view,
+                              const snow_settings *settings,
+                              bool gradient_factors, const int halvings[3]) {
+    int64_t layers[3] = {0, 0, 0};
+    snow_volume_info whole;
+    snow_volume_whole(volume, &whole);
+    if (is_empty(volume))
+        return SNOW_STATUS_OK;
+    question q = {context, &whole, view, settings,
+                  gradient_factors || settings->shade == SNOW_SHADE_PHONG};
+    SNOW_TRY(halvings ? ask_level(&q, false, halvings, layers)
+                      : ask_view(&q, layers));
+    return check_layers(context, volume, layers);
+}
+
+snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
+                              const snow_view *view,
+                              const snow_settings *settings,
+                              bool gradient_factors) {
+    return check_part(context, volume, view, settings, gradient_factors, NULL);
+}
+
+snow_status
+snow_ghosts_check_level(snow_context *context, const snow_volume *volume,
+                        const snow_view *view, const snow_settings *settings,
+                        bool gradient_factors, const int halvings[3]) {
+    return check_part(context, volume, view, settings, gradient_factors,
+                      halvings);
+}

@@ -1,0 +1,83 @@
+/* render/groups.c - deterministic pictures of the exact methods: each group of
+ * slices is drawn by itself, and groups are laid over one another by one binary
+ * tree (decompose/deterministic.h). */
+#include "render/exact/exact.h"
+
+#include <string.h>
+
+/* Lines 02 to 13. */
+static snow_status draw(snow_picture *p, snow_job *job) {
+    const snow_render_method *exact = job->placement.perspective
+                                          ? &snow_method_exact_perspective
+                                          : &snow_method_exact;
+    SNOW_TRY(exact->classify_and_shade(p, job));
+    SNOW_TRY(exact->encode(p, job));
+    SNOW_TRY(exact->splat_and_composite(p, job));
+    return job->placement.perspective ? SNOW_STATUS_OK
+                                      : snow_exact_count(p->frame->exact, job);
+}
+
+/* One group, as a slab: what is counted of it is added to what was. */
+static snow_status render_group(snow_picture *p, const snow_job *job,
+                                snow_slab slab, float *pixels) {
+    snow_stats *stats = job->stats, before = *stats;
+    snow_job group = *job;
+    group.slab = group.stored_slab = slab;
+    group.stored_slab.first -= job->clip.stored[2];
+    group.pixels = pixels;
+    stats->interesting = 0;
+    stats->ea_bytes = stats->ia_bytes = stats->pa_bytes = 0;
+    SNOW_TRY(draw(p, &group));
+    stats->interesting += before.interesting;
+    stats->ea_bytes += before.ea_bytes;
+    stats->ia_bytes += before.ia_bytes;
+    stats->pa_bytes += before.pa_bytes;
+    return SNOW_STATUS_OK;
+}
+
+bool snow_group_rises(const snow_placement *p, snow_group_node node) {
+    if (!p->perspective)
+        return p->nearest_first;
+    int middle = (2 * node.index + 1) << (node.rank - 1);
+    return p->eye.at[2] <
+           (double)snow_group_slab(p->slices, middle).first - 0.5;
+}
+
+/* A node into `pixels`, which are transparent. */
+static snow_status render_node(snow_picture *p, const snow_job *job,
+                               snow_group_node node, float *pixels) {
+    snow_frame *frame = p->frame;
+    size_t count = (size_t)job->view->width * (size_t)job->view->height;
+    size_t bytes = count * (size_t)job->channels * sizeof *pixels;
+    int64_t slices = job->placement.slices;
+    snow_slab first = snow_group_slab(slices, node.index << node.rank);
+    if (first.count == 0)
+        return SNOW_STATUS_OK; /* as all behind it */
+    if (node.rank == 0)
+        return render_group(p, job, first, pixels);
+    float **spare = &frame->spare[node.rank - 1];
+    SNOW_TRY(snow_reserve(frame->context, spare,
+                          &frame->spare_capacity[node.rank - 1], 0, bytes));
+    memset(*spare, 0, bytes);
+    bool rises = snow_group_rises(&job->placement, node);
+    snow_group_node near = {node.rank - 1, 2 * node.index + !rises};
+    snow_group_node far = {node.rank - 1, 2 * node.index + rises};
+    SNOW_TRY(render_node(p, job, near, pixels));
+    SNOW_TRY(render_node(p, job, far, *spare));
+    snow_over_row(pixels, *spare, count, job->channels);
+    return SNOW_STATUS_OK;
+}
+
+/* All nodes of the local image. */
+static snow_status draw_nodes(snow_picture *p, snow_job *job) {
+    size_t floats = snow_job_bytes(job) / sizeof *job->pixels;
+    for (int n = 0; n < p->local.layers; n++)
+        SNOW_TRY(render_node(p, job, p->local.nodes[n],
+                             job->pixels + (size_t)n * floats));
+    return SNOW_STATUS_OK;
+}
+
+const snow_render_method snow_method_groups = {
+    .splat_and_composite = draw_nodes,
+    .slabs = true,
+};

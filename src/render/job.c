@@ -1,0 +1,194 @@
+/* render/job.c - see job.h. */
+#include "render/job.h"
+
+#include "classify/count_interesting.h"
+#include "classify/gradient_opacity.h"
+#include "render/ghosts.h"
+#include "transfer/transfer.h"
+
+#include <string.h>
+
+/* Slab `part` of `parts` of the slices that the volume answers for. */
+static void cut_slab(snow_job *job, int parts, int part) {
+    snow_clip *clip = &job->clip;
+    snow_clip_make(job->volume, &job->placement, clip);
+    snow_clip_placement(clip, &job->placement, &job->stored);
+    job->slab = snow_slab_equal(clip->count[2], parts, part);
+    job->stored_slab = job->slab;
+    job->slab.first += clip->first[2];
+    job->stored_slab.first += clip->first[2] - clip->stored[2];
+    job->all = job->slab.count == clip->count[2];
+}
+
+/* A deterministic picture is one of whole slices. */
+static snow_status check_part(const snow_job *job) {
+    if (!job->volume->is_part)
+        return SNOW_STATUS_OK;
+    if (job->settings.deterministic && job->clip.cuts)
+        return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
+                         "deterministic pictures are made of slabs along %c; "
+                         "this part of the volume is none",
+                         "xyz"[job->placement.slice_axis]);
+    return snow_ghosts_check(job->context, job->volume, job->view,
+                             &job->settings,
+                             snow_transfer_has_gradient_opacity(job->transfer));
+}
+
+/* Voxels that stay in their file are read by the encoding (shear_warp/stream.c)
+ * or slab by slab (parts.c), and not otherwise. */
+static snow_status check_stream(const snow_job *job, int parts) {
+    if (!job->volume->stream || parts == 1)
+        return SNOW_STATUS_OK;
+    return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
+                     "slabs: a volume whose voxels stay in their file is "
+                     "rendered as a whole; open it with snow_volume_open");
+}
+
+/* What the kernel has to know of a level. */
+static void set_level(const snow_volume *volume, snow_placement *p) {
+    if (volume->fine[0] == 0)
+        return;
+    p->fine[0] = volume->fine[p->u_axis];
+    p->fine[1] = volume->fine[p->v_axis];
+}
+
+static snow_status place(snow_job *job, int parts, int part) {
+    snow_volume_info whole;
+    snow_volume_whole(job->volume, &whole);
+    SNOW_TRY(snow_settings_resolve(job->context, &job->volume->info,
+                                   &job->settings));
+    SNOW_TRY(
+        snow_placement_make(job->context, &whole, job->view, &job->placement));
+    set_level(job->volume, &job->placement);
+    if (job->settings.method == SNOW_METHOD_SHEAR_WARP &&
+        !snow_shear_warp_fits(&job->placement, &job->settings))
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    SNOW_TRY(check_stream(job, parts));
+    cut_slab(job, parts, part);
+    return check_part(job);
+}
+
+snow_status snow_job_begin(snow_context *context, const snow_request *request,
+                           snow_stats *stats, snow_job *job) {
+    *stats = (snow_stats){.ranks = 1};
+    *job = (snow_job){
+        .context = context,
+        .volume = request->volume,
+        .transfer = request->transfer,
+        .view = request->view,
+        .settings = snow_settings_known(request->settings),
+        .channels = request->transfer->grey ? 2 : 4,
+        .stats = stats,
+    };
+    return place(job, request->parts, request->part);
+}
+
+bool snow_job_whole(const snow_job *job) {
+    const snow_placement *p = &job->placement;
+    const int64_t *count = job->clip.count;
+    return job->all && count[0] == p->columns && count[1] == p->rows &&
+           count[2] == p->slices;
+}
+
+void snow_job_clip_sheet(const snow_job *job, int64_t slice,
+                         snow_sheet *sheet) {
+    if (!job->clip.cuts || sheet->x0 >= sheet->x1)
+        return;
+    for (int y = sheet->y0; y < sheet->y1; y++)
+        snow_clip_pixels(
+            &job->clip, &job->placement, slice + job->clip.stored[2], sheet->x0,
+            y, sheet->x1 - sheet->x0, job->channels,
+            sheet->pixels + ((size_t)(y - sheet->top) * (size_t)sheet->width +
+                             (size_t)sheet->x0) *
+                                (size_t)job->channels);
+}
+
+snow_status snow_job_shear_warp_params(const snow_job *job, int axis,
+                                       snow_placement *placement,
+                                       snow_shear_warp_params *params) {
+    snow_volume_info whole;
+    snow_volume_whole(job->volume, &whole);
+    SNOW_TRY(snow_placement_make_along(job->context, &whole, job->view, axis,
+                                       placement));
+    set_level(job->volume, placement);
+    *params = (snow_shear_warp_params){.volume = job->volume,
+                                       .transfer = job->transfer,
+                                       .view = job->view,
+                                       .settings = &job->settings,
+                                       .placement = placement,
+                                       .slab = job->slab,
+                                       .channels = job->channels,
+                                       .composite = job->composite};
+    snow_clip_make(job->volume, placement, &params->clip);
+    if (job->all)
+        params->slab =
+            (snow_slab){params->clip.first[2], params->clip.count[2]};
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_job_shares(const snow_job *job, double shares[3]) {
+    snow_volume_info info;
+    double left = 1;
+    shares[0] = shares[1] = shares[2] = 0;
+    shares[job->placement.slice_axis] = 1;
+    if (job->settings.quality != SNOW_QUALITY_HIGH)
+        return SNOW_STATUS_OK;
+    snow_volume_whole(job->volume, &info);
+    snow_placement_shares(&info, &job->placement, shares);
+    for (int axis = 0; axis < 3; axis++) {
+        snow_placement placement;
+        if (shares[axis] == 0 || axis == job->placement.slice_axis)
+            continue;
+        SNOW_TRY(snow_placement_make_along(job->context, &info, job->view, axis,
+                                           &placement));
+        set_level(job->volume, &placement);
+        if (!snow_shear_warp_fits(&placement, &job->settings)) {
+            left -= shares[axis];
+            shares[axis] = 0;
+        }
+    }
+    for (int axis = 0; axis < 3; axis++)
+        shares[axis] /= left;
+    return SNOW_STATUS_OK;
+}
+
+/* --- figures --------------------------------------------------------------
+ */
+
+static bool has_ghosts(const snow_clip *clip) {
+    return memcmp(clip->size, clip->count, sizeof clip->size) != 0;
+}
+
+/* Where neighbours' voxels are encoded too, for what their kernels reach: the
+ * part's own are counted, when they were encoded anew. */
+static snow_status count_own(snow_frame *frame, const snow_job *job) {
+    snow_stats *stats = job->stats;
+    const int64_t *count = job->clip.count;
+    if (stats->encoded || job->settings.method != SNOW_METHOD_SHEAR_WARP)
+        SNOW_TRY(snow_count_interesting(
+            job->volume, job->transfer, job->settings.threshold,
+            job->settings.isa, &frame->own_interesting));
+    stats->voxels = count[0] * count[1] * count[2];
+    stats->interesting = frame->own_interesting;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
+    snow_stats *stats = job->stats;
+    stats->method = job->settings.method;
+    stats->footprint = job->settings.footprint;
+    stats->slice_axis = job->placement.slice_axis;
+    stats->threads = job->settings.threads;
+    stats->isa = job->settings.isa;
+    stats->quality = job->settings.quality;
+    stats->kernel = job->settings.kernel;
+    stats->voxels = job->stored.columns * job->stored.rows * job->slab.count;
+    if (stats->method == SNOW_METHOD_FOOTPRINT)
+        stats->encoded = 1; /* for every picture */
+    if (has_ghosts(&job->clip) && job->all)
+        SNOW_TRY(count_own(frame, job));
+    if (stats->voxels > 0)
+        stats->sparse_ratio =
+            1 - (double)stats->interesting / (double)stats->voxels;
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,120 @@
+/* render/job.h - the plan of a picture (line 01 of figure 8): settings made
+ * definite, the camera, and the part of the volume that is drawn.  It is made
+ * once and then only read, but for the places of its pixels. */
+#ifndef SNOW_RENDER_JOB_H
+#define SNOW_RENDER_JOB_H
+
+#include "base/base.h"
+#include "composite/over.h"
+#include "decompose/slab.h"
+#include "render/mipmap.h"
+#include "render/modes/isosurface.h"
+#include "render/modes/modes.h"
+#include "render/settings_resolve.h"
+#include "render/shear_warp/shear_warp.h"
+#include "splat/splat.h"
+#include "transform/clip.h"
+
+#include <snowglass/render.h>
+
+typedef struct snow_exact snow_exact;         /* render/exact/exact.h */
+typedef struct snow_exact_eye snow_exact_eye; /* exact_perspective.h */
+typedef struct snow_ranks snow_ranks;         /* parallel/internal.h */
+typedef struct snow_load_balance
+    snow_load_balance; /* parallel/load_balance.h */
+
+/* Buffers of the methods, kept from picture to picture. */
+struct snow_frame {
+    snow_context *context;
+    snow_stats stats;
+    snow_exact *exact;
+    snow_exact_eye *exact_eye; /* in perspective; NULL until needed */
+    /* Made when first used; one for each axis where a picture is blended of
+     * several, else the first. */
+    snow_shear_warp *shear_warp[3];
+    float *layer; /* local pixels that are not the picture's */
+    size_t layer_capacity;
+    float *spare[SNOW_GROUP_RANKS]; /* pictures of groups, to be combined */
+    size_t spare_capacity[SNOW_GROUP_RANKS];
+    int64_t own_interesting;         /* of the part that was encoded last */
+    snow_identity_transfer identity; /* of modes other than over */
+    snow_mode_colors mode_colors;
+    snow_iso *iso;           /* of mode iso; NULL until needed */
+    snow_image *depth;       /* of the last picture; NULL: not asked for */
+    snow_mipmap *levels;     /* of the volume; NULL until needed */
+    snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
+    snow_load_balance *work; /* of the same */
+};
+
+/* What one picture is made from; lives as long as the call that makes it. */
+typedef struct snow_job {
+    snow_context *context;
+    const snow_volume *volume;
+    const snow_transfer *transfer;
+    const snow_view *view;
+    snow_settings settings;   /* resolved, but perhaps for the encoding */
+    snow_placement placement; /* of the whole that the volume is a part of */
+    snow_clip clip;           /* what of it the part has and answers for */
+    snow_slab slab;           /* slices of the whole that are drawn */
+    bool all;                 /* these are all that the part answers for */
+    /* The same for the exact methods, which see the stored voxels only. */
+    snow_placement stored;
+    snow_slab stored_slab;
+    int channels;
+    snow_composite_fn *composite; /* in the place of over; NULL: over */
+    float *pixels; /* the local image: transparent, to be filled */
+    float
+        *depths; /* of its pixels (render/modes/depth.h); NULL: not asked for */
+    snow_stats *stats;
+} snow_job;
+
+/* What a picture is to be made of: slab `part` of `parts` (decompose/slab.h) of
+ * the slices that the volume answers for. */
+typedef struct snow_request {
+    const snow_volume *volume;
+    const snow_transfer *transfer;
+    const snow_view *view;
+    const snow_settings *settings; /* of the caller, or resolved */
+    int parts, part;
+} snow_request;
+
+/* Settings, camera and part.  Fills a job as far as it gets: method and slice
+ * axis are known where settings and view are right. */
+snow_status snow_job_begin(snow_context *context, const snow_request *request,
+                           snow_stats *stats, snow_job *job);
+
+/* Whether the job draws all voxels that there are: one part of one is that. */
+bool snow_job_whole(const snow_job *job);
+
+/* What the shear-warp method wants, with slices along an axis: those of the
+ * job's slab, or all that the volume answers for.  `placement` is filled and
+ * must last as long as the order. */
+snow_status snow_job_shear_warp_params(const snow_job *job, int axis,
+                                       snow_placement *placement,
+                                       snow_shear_warp_params *params);
+
+/* The axes' shares in the picture; only the job's own has one but in quality
+ * high.  One that the method cannot draw leaves its share to the others. */
+snow_status snow_job_shares(const snow_job *job, double shares[3]);
+
+/* What was chosen for the picture, and how much of it is interesting, when its
+ * method has counted. */
+snow_status snow_job_finish(snow_frame *frame, const snow_job *job);
+
+/* How sheets get into the local image. */
+static inline snow_composite_fn *snow_job_composite(const snow_job *job) {
+    return job->composite ? job->composite
+                          : snow_over_pick(SNOW_ISA_SCALAR, job->channels);
+}
+
+/* Clears what a sheet of slice `slice` of the stored ones holds of samples that
+ * are not the part's. */
+void snow_job_clip_sheet(const snow_job *job, int64_t slice, snow_sheet *sheet);
+
+/* Bytes of the local pixels. */
+static inline size_t snow_job_bytes(const snow_job *job) {
+    return (size_t)job->view->width * (size_t)job->view->height *
+           (size_t)job->channels * sizeof(float);
+}
+
+#endif

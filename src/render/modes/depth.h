@@ -1,0 +1,21 @@
+/* render/modes/depth.h - how far away a picture is: world distances from the
+ * target's plane along the camera's line of sight. */
+#ifndef SNOW_RENDER_MODES_DEPTH_H
+#define SNOW_RENDER_MODES_DEPTH_H
+
+#include "render/job.h"
+
+/* The depth of index position (u, v, k) of a placement is
+ * of[0] u + of[1] v + of[2] k + of[3]. */
+void snow_depth_place(const snow_job *job, double of[4]);
+
+/* Notes where opacity passes 1/2 before a row of a sheet is laid behind what
+ * the local image holds: of `count` pixels from (x, y) on; `sheet` is the first
+ * one's.  What a sheet adds grows evenly from half a slice before it to half a
+ * slice behind, so that an opaque one is where its slice is. */
+void snow_depth_note(const snow_job *job, int64_t slice, int x, int y,
+                     int count, const float *sheet);
+void snow_depth_note_sheet(const snow_job *job, int64_t slice,
+                           const snow_sheet *sheet);
+
+#endif

@@ -1,0 +1,392 @@
+/* render/modes/modes.c - from a job to a picture in a mode other than over: the
+ * ramp, a local image of pairs by the picture's method, and what they mean. */
+#include "render/modes/modes.h"
+#include "base/thread_pool.h"
+#include "composite/projection.h"
+#include "image/image.h"
+#include "render/job.h"
+#include "transfer/transfer.h"
+#include "transform/perspective.h"
+#include "volume/stream.h"
+
+#include <math.h>
+#include <string.h>
+
+/* --- the ramp --------------------------------------------------------------
+ */
+
+void snow_identity_transfer_fini(snow_identity_transfer *identity) {
+    snow_transfer_free(identity->transfer);
+    *identity = (snow_identity_transfer){0};
+}
+
+/* The range of the finite values; 0 to 0 where there are none. */
+static snow_status measure(snow_context *context, const snow_volume *volume,
+                           snow_identity_transfer *identity) {
+    snow_volume_statistics figures;
+    SNOW_TRY(snow_volume_range(volume, &figures));
+    identity->whole = figures.finite == figures.voxels;
+    identity->empty = !figures.finite;
+    identity->low = figures.finite ? figures.min : 0;
+    identity->high = figures.finite ? figures.max : 0;
+    if (isfinite(identity->high - identity->low))
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
+                     "values from %g to %g span more than a number holds; only "
+                     "mode over shows them",
+                     identity->low, identity->high);
+}
+
+static snow_status make_transfer(snow_context *context,
+                                 snow_identity_transfer *identity) {
+    double low = identity->low, high = identity->high,
+           inverted = identity->inverted;
+    const snow_color_point colors[] = {
+        {low, inverted, inverted, inverted},
+        {high, 1 - inverted, 1 - inverted, 1 - inverted}};
+    /* A step belongs to its own value: what ends at the highest ends just
+     * beyond it.  Infinities are outside. */
+    double beyond = nextafter(high, INFINITY);
+    double from =
+        identity->steps ? fmin(fmax(identity->level, low), beyond) : low;
+    if (identity->sparse && inverted > 0)
+        beyond = high;
+    else if (identity->sparse)
+        from = nextafter(low, INFINITY);
+    const snow_opacity_point finite[] = {
+        {from, 0}, {from, 1}, {beyond, 1}, {beyond, 0}};
+    const snow_opacity_point above[] = {{low, inverted}, {high, 1 - inverted}};
+    bool grows = identity->sparse && !identity->solid;
+    return snow_transfer_new(context, colors, 2, grows ? above : finite,
+                             grows ? 2 : 4, &identity->transfer);
+}
+
+snow_status snow_identity_transfer_measure(snow_job *job,
+                                           snow_identity_transfer *identity) {
+    snow_identity_transfer made = {.generation = job->volume->generation};
+    if (made.generation && identity->generation == made.generation)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(measure(job->context, job->volume, &made));
+    snow_identity_transfer_fini(identity);
+    *identity = made;
+    return SNOW_STATUS_OK;
+}
+
+void snow_identity_transfer_widen(snow_identity_transfer *identity, double low,
+                                  double high, bool whole) {
+    if (identity->low != low || identity->high != high) {
+        snow_transfer_free(identity->transfer);
+        identity->transfer = NULL;
+    }
+    identity->low = low;
+    identity->high = high;
+    identity->whole = whole;
+    identity->empty = false;
+}
+
+/* Makes the transfer function of a ramp that is measured, unless it is there
+ * already. */
+static snow_status
+prepare_identity_transfer(const snow_job *job,
+                          const snow_identity_transfer *wanted,
+                          snow_identity_transfer *identity) {
+    snow_identity_transfer made = *identity;
+    if (identity->transfer && identity->generation &&
+        identity->inverted == wanted->inverted &&
+        identity->sparse == wanted->sparse &&
+        identity->solid == wanted->solid && identity->steps == wanted->steps &&
+        identity->level == wanted->level)
+        return SNOW_STATUS_OK;
+    made.inverted = wanted->inverted;
+    made.sparse = wanted->sparse;
+    made.solid = wanted->solid;
+    made.steps = wanted->steps;
+    made.level = wanted->level;
+    SNOW_TRY(make_transfer(job->context, &made));
+    snow_transfer_free(identity->transfer);
+    *identity = made;
+    return SNOW_STATUS_OK;
+}
+
+/* A little below, as the pictures of iso (isosurface.c). */
+snow_status snow_identity_transfer_above(snow_job *job,
+                                         snow_identity_transfer *identity) {
+    double margin = 2e-6 * (identity->high - identity->low) +
+                    2e-9 * fabs(job->settings.iso);
+    const snow_identity_transfer wanted = {.steps = true,
+                                           .level = job->settings.iso - margin};
+    return prepare_identity_transfer(job, &wanted, identity);
+}
+
+/* The ramp of a picture of pairs; what the sheared method cannot do is left to
+ * footprints. */
+static snow_status choose_identity_transfer(snow_job *job,
+                                            snow_identity_transfer *identity) {
+    bool holes =
+        job->settings.method == SNOW_METHOD_SHEAR_WARP && !identity->whole;
+    if (holes)
+        job->settings.method = SNOW_METHOD_FOOTPRINT;
+    const snow_identity_transfer wanted = {
+        .inverted = job->settings.mode == SNOW_MODE_MINIP,
+        .sparse = job->settings.method == SNOW_METHOD_SHEAR_WARP,
+        .solid = job->placement.perspective};
+    return prepare_identity_transfer(job, &wanted, identity);
+}
+
+/* --- from pairs to a picture -----------------------------------------------
+ */
+
+typedef struct finish_job {
+    const snow_job *job;
+    const snow_identity_transfer *identity;
+    const snow_mode_colors *colors;
+    const snow_shear_warp_image
+        *shear_warp; /* that pairs are warped from; or NULL */
+    float *pairs;    /* of all lines; or one for each worker */
+    snow_image *image;
+    double share; /* of a sum: of the weights in its unit */
+    double least; /* weights of a ray that does not miss */
+    bool weigh;   /* pairs are to be weighted with the ray's length */
+} finish_job;
+
+/* Colours of numbers 0 to 1 at equal steps.  Between two of them colours are
+ * linear but where a control point lies. */
+static void fill_colors(const snow_job *job,
+                        const snow_identity_transfer *identity,
+                        snow_mode_colors *colors) {
+    const snow_transfer *transfer = job->transfer;
+    double range = identity->high - identity->low;
+    colors->from = identity->inverted ? identity->high : identity->low;
+    colors->range = identity->inverted ? -range : range;
+    memset(colors->nonlinear, 0, sizeof colors->nonlinear);
+    for (int n = 0; n <= SNOW_MODE_COLORS; n++) {
+        double part = (double)n / SNOW_MODE_COLORS, rgb[3];
+        snow_transfer_color(transfer, colors->from + part * colors->range, rgb);
+        for (int c = 0; c < 3; c++)
+            colors->rgb[n][c] = (float)rgb[c];
+    }
+    for (size_t n = 0; n < transfer->color_count; n++) {
+        double part =
+            (transfer->colors[n].value - colors->from) / colors->range;
+        double cell = floor(part * SNOW_MODE_COLORS);
+        bool steps =
+            (n > 0 &&
+             transfer->colors[n - 1].value == transfer->colors[n].value) ||
+            (n + 1 < transfer->color_count &&
+             transfer->colors[n + 1].value == transfer->colors[n].value);
+        if (!steps && (part == 0 || part == 1)) /* just where numbers end */
+            continue;
+        if (!(cell >= -1 && cell <= SNOW_MODE_COLORS)) /* or no range */
+            continue;
+        for (double near = cell - 1; near <= cell + 1; near++)
+            if (near >= 0 && near < SNOW_MODE_COLORS)
+                colors->nonlinear[(int)near] = true;
+    }
+}
+
+/* The first `count` parts of the colour of a number 0 to 1; 1, the end of the
+ * last cell, is as common as 0. */
+static inline void find_color(const snow_transfer *transfer,
+                              const snow_mode_colors *colors, float number,
+                              int count, float *rgb) {
+    float place = number * SNOW_MODE_COLORS;
+    int cell =
+        (int)place < SNOW_MODE_COLORS ? (int)place : SNOW_MODE_COLORS - 1;
+    if (!colors->nonlinear[cell]) {
+        const float *a = colors->rgb[cell], *b = colors->rgb[cell + 1];
+        float part = place - (float)cell;
+        for (int c = 0; c < count; c++)
+            rgb[c] = part < 1 ? a[c] + part * (b[c] - a[c]) : b[c];
+        return;
+    }
+    double exact[3];
+    snow_transfer_color(transfer, colors->from + (double)number * colors->range,
+                        exact);
+    for (int c = 0; c < count; c++)
+        rgb[c] = (float)exact[c];
+}
+
+/* (value of 0 to 1, hit) to a colour, opaque; where nothing was hit the picture
+ * stays transparent. */
+static inline void color_pixels(const finish_job *f, const float *pairs,
+                                int count, int channels, float *pixels) {
+    for (int x = 0; x < count; x++, pairs += 2, pixels += channels) {
+        if (!(pairs[1] >= SNOW_WEIGHT_ENOUGH))
+            continue;
+        find_color(f->job->transfer, f->colors, pairs[0] / pairs[1],
+                   channels - 1, pixels);
+        pixels[channels - 1] = 1;
+    }
+}
+
+static void color_line(const finish_job *f, const float *pairs, int count,
+                       float *pixels) {
+    if (f->image->channels == 2)
+        color_pixels(f, pairs, count, 2, pixels);
+    else
+        color_pixels(f, pairs, count, 4, pixels);
+}
+
+/* (sum of weighted values, of weights) to the mean or the sum in data units. */
+static void value_line(const finish_job *f, const float *pairs, int count,
+                       float *pixels) {
+    double low = f->identity->low, range = f->identity->high - f->identity->low;
+    bool mean = f->job->settings.mode == SNOW_MODE_MEAN;
+    for (int x = 0; x < count; x++, pairs += 2) {
+        double weights = (double)pairs[1]; /* rounding may leave the range */
+        double values = (double)pairs[0] > 0 ? (double)pairs[0] : 0;
+        values = values < weights ? values : weights;
+        if (!(weights >= f->least))
+            pixels[x] = NAN;
+        else if (mean)
+            pixels[x] = (float)(low + range * (values / weights));
+        else
+            pixels[x] = (float)(f->share * (low * weights + range * values));
+    }
+}
+
+/* Sums of a line in perspective, of which each ray has its own length from
+ * slice to slice. */
+static void weigh_line(const finish_job *f, int y, int count, float *pairs) {
+    const snow_perspective *eye = &f->job->placement.eye;
+    for (int x = 0; x < count; x++, pairs += 2) {
+        double ray[3];
+        snow_perspective_ray(eye, x + 0.5, y + 0.5, ray);
+        double path =
+            snow_perspective_path(eye, eye->at[0] + ray[0] / ray[2],
+                                  eye->at[1] + ray[1] / ray[2], eye->at[2] + 1);
+        float share = (float)(path / f->job->settings.opacity_length);
+        for (int n = 0; n < 2; n++) /* 0 stays 0 beside a slice's plane */
+            pairs[n] = pairs[n] != 0 ? pairs[n] * share : 0;
+    }
+}
+
+static void finish_line(void *of, int64_t y, int worker) {
+    const finish_job *f = of;
+    int width = f->image->width;
+    size_t at = (size_t)y * (size_t)width;
+    float *pixels = f->image->pixels + at * (size_t)f->image->channels;
+    float *pairs = f->pairs + 2 * at;
+    if (f->shear_warp) {
+        pairs = f->pairs + 2 * (size_t)worker * (size_t)width;
+        memset(pairs, 0, 2 * (size_t)width * sizeof *pairs);
+        if (f->shear_warp->width > 0)
+            snow_shear_warp_warp(f->shear_warp, (int)y, 0, width, pairs);
+    }
+    if (f->weigh)
+        weigh_line(f, (int)y, width, pairs);
+    if (f->image->channels == 1)
+        value_line(f, pairs, width, pixels);
+    else
+        color_line(f, pairs, width, pixels);
+}
+
+/* A ray misses where the weights of all its sheets add up to less than half of
+ * one.  In perspective a sum's pairs hold lengths already, and half a sheet is
+ * that of the ray to the target. */
+static snow_status finish(snow_frame *frame, const snow_job *job,
+                          const snow_shear_warp_image *drawn, float *pairs,
+                          snow_image *image) {
+    double path = job->placement.path / job->settings.opacity_length;
+    bool shear_warp = job->settings.method == SNOW_METHOD_SHEAR_WARP;
+    bool seen = job->placement.perspective;
+    bool weighed = job->settings.mode == SNOW_MODE_SUM && seen;
+    double slices = shear_warp ? (double)job->placement.slices : 1;
+    if (image->channels > 1)
+        fill_colors(job, &frame->identity, &frame->mode_colors);
+    finish_job f = {.job = job,
+                    .identity = &frame->identity,
+                    .colors = &frame->mode_colors,
+                    .shear_warp = drawn,
+                    .pairs = pairs,
+                    .image = image,
+                    .share = (weighed ? 1 : path) * slices,
+                    .least = SNOW_WEIGHT_ENOUGH * (weighed ? path : 1) / slices,
+                    .weigh = weighed && shear_warp};
+    return snow_parallel(job->context, job->settings.threads, image->height,
+                         finish_line, &f);
+}
+
+snow_status snow_modes_paint(snow_frame *frame, const snow_job *job,
+                             const snow_shear_warp_image *drawn, float *pairs,
+                             snow_image **out) {
+    snow_mode mode = job->settings.mode;
+    bool values = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
+    snow_image *image = NULL;
+    SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
+                            values ? 1 : job->channels, &image));
+    snow_status status = finish(frame, job, drawn, pairs, image);
+    if (status == SNOW_STATUS_OK)
+        *out = image;
+    else
+        snow_image_free(image);
+    return status;
+}
+
+/* --- a picture -------------------------------------------------------------
+ */
+
+snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
+                                    snow_job *pairs) {
+    SNOW_TRY(choose_identity_transfer(job, &frame->identity));
+    *pairs = *job;
+    pairs->transfer = frame->identity.transfer;
+    pairs->channels = 2;
+    pairs->settings.shade = SNOW_SHADE_NONE;
+    pairs->settings.threshold = 0;
+    pairs->settings.deterministic = 0; /* of one part, by the scalar loops */
+    if (pairs->settings.quality == SNOW_QUALITY_HIGH)
+        pairs->settings.quality = SNOW_QUALITY_NORMAL;
+    pairs->composite = snow_projection_op_of(job->settings.mode);
+    return SNOW_STATUS_OK;
+}
+
+/* --- values as colours -----------------------------------------------------
+ */
+
+void snow_image_value_range(const snow_image *values, double *low,
+                            double *high) {
+    size_t count = (size_t)values->width * (size_t)values->height;
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (size_t n = 0; n < count; n++) {
+        *low = fmin(*low, (double)values->pixels[n]);
+        *high = fmax(*high, (double)values->pixels[n]);
+    }
+    if (!(*low <= *high)) {
+        *low = 0;
+        *high = 1;
+    }
+}
+
+snow_status snow_image_apply_colormap(const snow_image *values,
+                                      const snow_transfer *transfer, double low,
+                                      double high, snow_image **out) {
+    snow_image *image = NULL;
+    snow_transfer_hint hint = {0, 0};
+    double first, last;
+    snow_transfer_domain(transfer, &first, &last);
+    size_t channels = transfer->grey ? 2 : 4;
+    if (values->channels != 1 || !(low <= high))
+        return snow_fail(values->context, SNOW_STATUS_BAD_USAGE,
+                         "%d channels cannot be painted from %g to %g; take a "
+                         "picture of mode mean or sum and a range that rises",
+                         values->channels, low, high);
+    SNOW_TRY(snow_image_new(values->context, values->width, values->height,
+                            (int)channels, &image));
+    size_t count = (size_t)values->width * (size_t)values->height;
+    for (size_t n = 0; n < count; n++) {
+        double value = (double)values->pixels[n], rgba[4];
+        if (isnan(value))
+            continue;
+        double part = high > low ? (value - low) / (high - low) : 0.5;
+        snow_transfer_near(transfer,
+                           first + fmin(fmax(part, 0), 1) * (last - first),
+                           &hint, rgba);
+        for (size_t c = 0; c + 1 < channels; c++)
+            image->pixels[n * channels + c] = (float)rgba[c];
+        image->pixels[n * channels + channels - 1] = 1;
+    }
+    *out = image;
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,78 @@
+/* render/modes/modes.h - pictures other than over (model, point 8): mip, minip,
+ * mean, sum.
+ *
+ * They are over's pictures of another look.  A ramp is a transfer function
+ * whose grey is the data value itself, carried from the volume's own range to 0
+ * to 1, and whose opacity says which voxels there are:
+ *
+ *   every finite one  opacity 1: for the exact methods, whose sheets add up
+ *                     weights beside weighted values
+ *   those above 0     for the sheared method, which knows what the weights of
+ *                     a whole grid add up to: a voxel of value 0 adds nothing.
+ *                     In perspective their opacity is 1, too, elsewhere grey
+ *
+ * so that classification, the three encodings and splatting serve as they are,
+ * and a sheet's pixel is (weighted values, weights).  composite/projection.h
+ * tells how sheets become a local image of such pairs; here they become
+ * colours, or values in data units. */
+#ifndef SNOW_RENDER_MODES_MODES_H
+#define SNOW_RENDER_MODES_MODES_H
+
+#include "base/base.h"
+
+#include <snowglass/render.h>
+#include <stdbool.h>
+
+/* Kept for as long as volume and mode stay. */
+typedef struct snow_identity_transfer {
+    uint64_t generation; /* of the volume; 0: of none */
+    bool inverted;       /* 1 is the smallest value: of minip */
+    bool sparse;         /* voxels of 0 are left out */
+    bool solid;          /* and those that are not are opaque all the same */
+    bool steps;          /* and those below `level`: of iso */
+    double level;
+    bool whole; /* every voxel is finite */
+    bool empty; /* none is */
+    double low, high;
+    snow_transfer *transfer;
+} snow_identity_transfer;
+
+/* Colours of values from one end of a range to the other. */
+#define SNOW_MODE_COLORS 256
+typedef struct snow_mode_colors {
+    double from, range;
+    float rgb[SNOW_MODE_COLORS + 1][3];
+    bool nonlinear[SNOW_MODE_COLORS]; /* a control point is near: look there */
+} snow_mode_colors;
+
+void snow_identity_transfer_fini(snow_identity_transfer *identity);
+
+struct snow_job;
+
+/* Finds the range of a job's volume, unless the ramp has it already. */
+snow_status snow_identity_transfer_measure(struct snow_job *job,
+                                           snow_identity_transfer *identity);
+
+/* Makes it that of a whole that the job's volume is a part of. */
+void snow_identity_transfer_widen(snow_identity_transfer *identity, double low,
+                                  double high, bool whole);
+
+/* For mode iso, when it is measured: the voxels that are not below its value.
+ */
+snow_status snow_identity_transfer_above(struct snow_job *job,
+                                         snow_identity_transfer *identity);
+
+/* The job whose local image are the pairs of a picture, when the ramp is
+ * measured; where the shear-warp method cannot make it, `job` is changed to
+ * footprints too.  It lasts as long as the frame's ramp. */
+struct snow_shear_warp_image;
+snow_status snow_modes_value_weight(snow_frame *frame, struct snow_job *job,
+                                    struct snow_job *pairs);
+
+/* A picture of the pairs of all pixels; where they are to be warped from
+ * `drawn` (else NULL), `pairs` is room for a line of each thread. */
+snow_status snow_modes_paint(snow_frame *frame, const struct snow_job *job,
+                             const struct snow_shear_warp_image *drawn,
+                             float *pairs, snow_image **out);
+
+#endif

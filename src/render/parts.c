@@ -1,0 +1,154 @@
+/* render/parts.c - see parts.h. */
+#include "render/parts.h"
+
+#include "classify/gradient_opacity.h"
+#include "render/ghosts.h"
+#include "render/modes/depth.h"
+
+#include <math.h>
+
+/* The slice along z that the eye is level with, or the one nearest to it. */
+static int64_t nearest_slice(const snow_job *job) {
+    const snow_placement *p = &job->placement;
+    const int axes[3] = {p->u_axis, p->v_axis, p->slice_axis};
+    int64_t last = job->volume->info.dims[2] - 1;
+    double of[4], level = 0;
+    snow_depth_place(job, of);
+    for (int n = 0; n < 3; n++)
+        if (axes[n] == 2)
+            level = p->perspective ? p->eye.at[n]
+                    : of[n] < 0    ? (double)last
+                                   : 0;
+    return level > 0 ? (int64_t)fmin(floor(level + 0.5), (double)last) : 0;
+}
+
+/* How many times a slab's bytes its samples take: floats of all voxels that
+ * footprints are made of; 0: few. */
+static int64_t made_of(const snow_job *job) {
+    int64_t sample = job->channels * (int64_t)sizeof(float);
+    int64_t voxel = (int64_t)snow_type_size(job->volume->info.type);
+    if (job->settings.mode == SNOW_MODE_ISO ||
+        job->settings.method != SNOW_METHOD_FOOTPRINT)
+        return 0;
+    return sample > voxel ? sample / voxel : 1;
+}
+
+static snow_status open_slabs(snow_parts *parts) {
+    const snow_job *job = parts->whole;
+    int64_t layers[3];
+    if (job->settings.deterministic)
+        return snow_fail(job->context, SNOW_STATUS_NO_MEMORY,
+                         "%s: a deterministic picture by the method %s needs "
+                         "all voxels in memory at once; allow more of it, or "
+                         "let it not be deterministic",
+                         job->volume->path,
+                         snow_method_name(job->settings.method));
+    SNOW_TRY(snow_ghosts_needed(
+        job->context, &job->volume->info, job->view, &job->settings,
+        snow_transfer_has_gradient_opacity(job->transfer), false, layers));
+    parts->cut = (snow_slab_cut){.step = 1,
+                                 .ghosts = layers[2],
+                                 .made = made_of(job),
+                                 .from = nearest_slice(job)};
+    snow_slabs_open(job->volume, &parts->cut, &parts->slabs);
+    parts->many = true;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_parts_open(snow_parts *parts, snow_picture *p,
+                            snow_status status) {
+    snow_job *whole = &p->pass->job;
+    *parts = (snow_parts){.picture = p, .whole = whole};
+    parts->progress = snow_monitor_divide(
+        &p->monitor, (double)(p->pass - p->passes), p->pass_count);
+    whole->pixels = p->local.pixels;
+    whole->depths = p->local.depths;
+    return status == SNOW_STATUS_OK && whole->volume && whole->volume->stream &&
+                   p->pass->method->slabs
+               ? open_slabs(parts)
+               : status;
+}
+
+/* What was counted of a slab, for the whole. */
+static snow_status add_stats(snow_parts *parts) {
+    const snow_stats *here = &parts->stats;
+    snow_stats *all = parts->whole->stats;
+    if (parts->picture->pass->depth)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_method_figures(parts->picture->pass->method, parts->picture,
+                                 &parts->slab));
+    all->encoding = here->encoding;
+    all->interesting += here->interesting;
+    all->ea_bytes += here->ea_bytes;
+    all->ia_bytes += here->ia_bytes;
+    all->pa_bytes += here->pa_bytes;
+    all->seconds_classify += here->seconds_classify;
+    all->seconds_shade += here->seconds_shade;
+    all->seconds_encode += here->seconds_encode;
+    all->seconds_splat += here->seconds_splat;
+    all->seconds_composite += here->seconds_composite;
+    return SNOW_STATUS_OK;
+}
+
+/* The slab's job is the whole's, of its own voxels. */
+static snow_status begin_slab(snow_parts *parts, const snow_volume *volume) {
+    const snow_job *whole = parts->whole;
+    const snow_request request = {.volume = volume,
+                                  .transfer = whole->transfer,
+                                  .view = whole->view,
+                                  .settings = &whole->settings,
+                                  .parts = 1};
+    SNOW_TRY(
+        snow_job_begin(whole->context, &request, &parts->stats, &parts->slab));
+    parts->slab.channels = whole->channels;
+    parts->slab.composite = whole->composite;
+    parts->slab.pixels = whole->pixels;
+    parts->slab.depths = whole->depths;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status next_slab(snow_parts *parts, bool *any) {
+    const snow_volume *volume;
+    if (parts->part)
+        SNOW_TRY(add_stats(parts));
+    parts->part = &parts->slab;
+    SNOW_TRY(snow_slabs_next(&parts->slabs, &volume));
+    *any = volume != NULL;
+    return volume ? begin_slab(parts, volume) : SNOW_STATUS_OK;
+}
+
+snow_job *snow_parts_next(snow_parts *parts, snow_status *status) {
+    bool any = false;
+    if (!parts->many) {
+        bool first = !parts->part;
+        parts->part = parts->whole;
+        return first ? parts->whole : NULL;
+    }
+    if (*status == SNOW_STATUS_OK)
+        *status = next_slab(parts, &any);
+    return *status == SNOW_STATUS_OK && any ? parts->part : NULL;
+}
+
+/* Instead of a number of bytes that means nothing to the user. */
+static snow_status fail_room(const snow_parts *parts) {
+    const snow_job *job = parts->whole;
+    char limit[64];
+    snow_print_limit(job->context, limit);
+    return snow_fail(
+        job->context, SNOW_STATUS_NO_MEMORY,
+        "%s: slabs of %.1f MiB, %lld slices of which belong to their "
+        "neighbours, and what is made of them have no place%s; allow more "
+        "memory, give --crop or, where a pixel is several voxels wide, a "
+        "larger --size",
+        job->volume->path,
+        (double)snow_slab_bytes(job->volume, &parts->cut) / 0x1p20,
+        (long long)(2 * parts->cut.ghosts), limit);
+}
+
+snow_status snow_parts_close(snow_parts *parts, snow_status status) {
+    snow_monitor_whole(&parts->picture->monitor, parts->progress);
+    if (!parts->many)
+        return status;
+    snow_slabs_close(&parts->slabs);
+    return status == SNOW_STATUS_NO_MEMORY ? fail_room(parts) : status;
+}

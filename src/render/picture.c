@@ -1,0 +1,166 @@
+/* render/picture.c - the plan of a picture: its level of detail, its job and
+ * the passes that it is made in. */
+#include "render/picture.h"
+
+#include "image/image.h"
+#include "render/settings_resolve.h"
+
+#include <string.h>
+
+/* --- passes ---------------------------------------------------------------
+ */
+
+static snow_render_pass *add_pass(snow_picture *p, const snow_job *job,
+                                  int axis, double share) {
+    snow_render_pass *pass = &p->passes[p->pass_count++];
+    *pass =
+        (snow_render_pass){.job = *job, .axis = axis, .share = (float)share};
+    return pass;
+}
+
+/* In quality high, where two or three axes are nearly as good, the picture is a
+ * blend of theirs, so that a turning one does not jump. */
+static snow_status add_axes(snow_picture *p) {
+    double shares[3] = {0, 0, 0};
+    const snow_job *job = &p->job;
+    shares[job->placement.slice_axis] = 1;
+    if (job->settings.method == SNOW_METHOD_SHEAR_WARP && job->all) {
+        SNOW_TRY(snow_job_shares(job, shares));
+        p->layered = job->settings.quality == SNOW_QUALITY_HIGH;
+    }
+    for (int axis = 0; axis < 3; axis++)
+        if (shares[axis] != 0)
+            add_pass(p, job, axis, shares[axis])->method = snow_method_of(job);
+    return SNOW_STATUS_OK;
+}
+
+/* Footprints once more, with an eye on opacity alone. */
+static void add_depth(snow_picture *p) {
+    snow_render_pass *pass =
+        add_pass(p, &p->job, p->job.placement.slice_axis, 1);
+    pass->depth = true;
+    pass->job.stats = &p->unused;
+    pass->job.settings.method = SNOW_METHOD_FOOTPRINT;
+    pass->job.settings.shade = SNOW_SHADE_NONE;
+    pass->job.settings.deterministic = 0; /* it has one order of operations */
+    pass->method = snow_method_of(&pass->job);
+}
+
+static snow_status plan_over(snow_picture *p) {
+    SNOW_TRY(add_axes(p));
+    if (p->job.settings.depth)
+        add_depth(p);
+    return SNOW_STATUS_OK;
+}
+
+/* What fails has a pass too, for other ranks wait for this one in it. */
+snow_status snow_picture_plan_mode(snow_picture *p) {
+    snow_job job = p->job;
+    snow_status status = SNOW_STATUS_OK;
+    if (job.settings.mode == SNOW_MODE_OVER)
+        return SNOW_STATUS_OK;
+    if (job.settings.mode != SNOW_MODE_ISO)
+        status = snow_modes_value_weight(p->frame, &p->job, &job);
+    else if (job.settings.method != SNOW_METHOD_ORIGINAL || job.volume->stream)
+        job.settings.method = SNOW_METHOD_FOOTPRINT;
+    job.settings.deterministic = 0; /* bits do not depend on parts */
+    if (job.volume->stream)         /* by depths the nearest surface is found */
+        job.settings.depth |= job.settings.mode == SNOW_MODE_ISO;
+    add_pass(p, &job, job.placement.slice_axis, 1)->method =
+        snow_method_of(&job);
+    return status;
+}
+
+const snow_render_method *snow_method_of(const snow_job *job) {
+    const snow_settings *s = &job->settings;
+    if (s->mode == SNOW_MODE_ISO)
+        return &snow_method_iso;
+    if (s->method == SNOW_METHOD_SHEAR_WARP)
+        return s->mode == SNOW_MODE_OVER ? &snow_method_shear_warp
+                                         : &snow_method_projection;
+    if (s->deterministic)
+        return &snow_method_groups;
+    return job->placement.perspective ? &snow_method_exact_perspective
+                                      : &snow_method_exact;
+}
+
+/* --- the plan -------------------------------------------------------------
+ */
+
+/* The volume's level where the picture is of one (mipmap.h).  Its settings are
+ * the volume's. */
+static snow_status take_level(snow_picture *p, snow_request *request,
+                              snow_settings *settings, int halvings[3]) {
+    if (request->parts > 1)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_settings_resolve(p->frame->context, &request->volume->info,
+                                   settings));
+    return snow_mipmap_select(&p->frame->levels, request->volume,
+                              request->transfer, request->view, settings,
+                              &request->volume, halvings);
+}
+
+static snow_status check_depth(const snow_job *job) {
+    const snow_mode mode = job->settings.mode;
+    if (!job->settings.depth || mode == SNOW_MODE_OVER || mode == SNOW_MODE_ISO)
+        return SNOW_STATUS_OK;
+    return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
+                     "mode %s has no depth; take over or iso",
+                     snow_mode_name(mode));
+}
+
+static snow_status plan_job(snow_picture *p, const snow_request *request) {
+    SNOW_TRY(snow_job_begin(p->frame->context, request, &p->stats, &p->job));
+    SNOW_TRY(check_depth(&p->job));
+    return p->job.settings.mode == SNOW_MODE_OVER ? plan_over(p)
+                                                  : SNOW_STATUS_OK;
+}
+
+void snow_picture_watch(snow_picture *p, const snow_settings *settings) {
+    const snow_settings known = snow_settings_known(settings);
+    snow_monitor_begin(p->frame->context, &p->monitor, known.stop,
+                       known.stop_user);
+}
+
+snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
+    snow_context *context = p->frame->context;
+    snow_settings settings = snow_settings_known(asked->settings);
+    snow_request request = *asked;
+    int halvings[3] = {0, 0, 0};
+    char message[SNOW_MESSAGE_BYTES];
+    p->start = snow_seconds();
+    p->start_cpu = snow_cpu_seconds();
+    request.settings = &settings;
+    request.view = &p->view;
+    snow_status found = take_level(p, &request, &settings, halvings);
+    memcpy(message, context->message, sizeof message);
+    /* Also where there is no level: all ranks begin in the same way. */
+    snow_status status = plan_job(p, &request);
+    memcpy(p->stats.halvings, halvings, sizeof halvings);
+    /* As in snow_picture_plan_mode. */
+    if (status != SNOW_STATUS_OK && !p->pass_count)
+        add_pass(p, &p->job, p->job.placement.slice_axis, 1)->method =
+            snow_method_of(&p->job);
+    return found == SNOW_STATUS_OK ? status
+                                   : snow_fail(context, found, "%s", message);
+}
+
+/* --- the end --------------------------------------------------------------
+ */
+
+snow_status snow_picture_end(snow_picture *p, snow_status status,
+                             snow_image **image) {
+    snow_frame *frame = p->frame;
+    frame->stats = p->stats;
+    snow_image_free(p->near);
+    snow_image_free(frame->depth);
+    frame->depth = NULL;
+    if (status != SNOW_STATUS_OK) {
+        snow_image_free(p->image);
+        snow_image_free(p->depth);
+        return status;
+    }
+    frame->depth = p->depth;
+    *image = p->image;
+    return SNOW_STATUS_OK;
+}

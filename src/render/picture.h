@@ -1,0 +1,141 @@
+/* render/picture.h - a picture in the making: the records over which figure 8
+ * (frame.c) is one loop.
+ *
+ *   plan       a picture's job, and the passes that it is made in
+ *   parts      of the volume (parts.h): all of it in memory, the slabs of a
+ *              file in turn, or this rank's own
+ *   method     from a part to its local image: lines 02 to 13
+ *   combiner   from local images to the picture: lines 14 to 20
+ *
+ * Most pictures take one pass.  One of quality high that is blended of several
+ * axes takes one for each axis, and depths of mode over are a pass of
+ * footprints after the others. */
+#ifndef SNOW_RENDER_PICTURE_H
+#define SNOW_RENDER_PICTURE_H
+
+#include "base/monitor.h"
+#include "render/job.h"
+
+typedef struct snow_picture snow_picture;
+
+/* How a part's voxels become its local image, job->pixels and job->depths or,
+ * by shear-warp, picture->local.image.  A step that a method does not need is
+ * NULL.  The job is that of the picture's pass, or of a slab of it. */
+typedef snow_status snow_method_fn(snow_picture *picture, snow_job *job);
+typedef struct snow_render_method {
+    snow_method_fn *classify_and_shade;  /* 02 - 03 */
+    snow_method_fn *encode;              /* 04 - 06 */
+    snow_method_fn *splat_and_composite; /* 07 - 13 */
+    snow_method_fn *figures;             /* of a job whose image is made; NULL:
+                                            snow_job_finish */
+    bool slabs; /* of a volume in its file local images are made slab by slab;
+                   else the encoding is (shear_warp/stream.c) */
+    bool warps; /* the local image is an intermediate one */
+} snow_render_method;
+
+/* How local images become the picture.  The functions are collective, and each
+ * is handed what became of this process's own work; what they return is the
+ * same for all.  One process has nobody to wait for. */
+typedef snow_status snow_combine_fn(snow_picture *picture, snow_status status);
+typedef struct snow_combine_ops {
+    /* Not collective: when the plan is made.  Says whether the local image is
+     * drawn ahead, before it is asked for. */
+    snow_combine_fn *begin;
+    /* Before all that is not drawn ahead; makes the range of values known. */
+    snow_combine_fn *synchronize;
+    /* A place for the pass's local image, which is cleared. */
+    snow_combine_fn *place;
+    /* 14 - 18 */ snow_status (*combine)(snow_picture *picture,
+                                         const snow_job *part,
+                                         snow_status status);
+    /* 19 - 20 */ snow_combine_fn *display;
+    snow_combine_fn *agree;
+} snow_combine_ops;
+
+/* One walk over the parts. */
+typedef struct snow_render_pass {
+    const snow_render_method *method;
+    snow_job job; /* the picture's, with what is different in this pass */
+    int axis;     /* of the slices */
+    float share;  /* in the picture */
+    bool depth;   /* it makes the depths of mode over */
+} snow_render_pass;
+
+/* The local image of a part. */
+typedef struct snow_local_image {
+    float *pixels, *depths; /* of the picture's pixels; depths may be NULL */
+    /* Deterministic ones of the exact methods have a layer for each node. */
+    int layers;
+    snow_group_node nodes[SNOW_NODES_MOST];
+    /* By shear-warp. */
+    snow_shear_warp *shear_warp;
+    snow_placement placement;
+    snow_shear_warp_params params;
+    snow_shear_warp_image image;
+} snow_local_image;
+
+#define SNOW_PASSES_MOST 4
+
+struct snow_picture {
+    snow_frame *frame;
+    const snow_combine_ops *combiner;
+    snow_monitor monitor; /* stop and progress */
+    snow_view view;       /* as job.view */
+    snow_job job; /* without volume and transfer function when it is begun
+                     ahead, as its passes' */
+    snow_render_pass passes[SNOW_PASSES_MOST], *pass; /* the present one */
+    int pass_count;
+    snow_local_image local;
+    snow_image *image, *depth; /* NULL where another rank has them */
+    snow_image *near;          /* depths of the local image */
+    snow_stats stats, unused; /* of the passes that draw the picture; depths' */
+    double start, start_cpu;
+    bool layered;    /* passes' pictures are added up */
+    bool ahead;      /* the local image is begun before it is asked for */
+    bool drawing;    /* its bands are not all drawn */
+    bool aside;      /* another picture's local image is still needed */
+    double begin_at; /* where drawing begins (snow_shear_warp_params) */
+};
+
+/* Begins the monitor with settings.stop; `settings` may be NULL. */
+void snow_picture_watch(snow_picture *picture, const snow_settings *settings);
+
+/* The plan: the level of detail, the job and, in mode over, the passes. */
+snow_status snow_picture_plan(snow_picture *picture,
+                              const snow_request *request);
+
+/* The passes of other modes, when the range of values is known. */
+snow_status snow_picture_plan_mode(snow_picture *picture);
+
+/* A step of a method, which may have none. */
+static inline snow_status snow_step(snow_method_fn *step, snow_picture *picture,
+                                    snow_job *job) {
+    return step ? step(picture, job) : SNOW_STATUS_OK;
+}
+
+static inline snow_status snow_method_figures(const snow_render_method *method,
+                                              snow_picture *picture,
+                                              snow_job *job) {
+    return method->figures ? method->figures(picture, job)
+                           : snow_job_finish(picture->frame, job);
+}
+
+/* Whether of a node's two halves the one of lower slices is in front. */
+bool snow_group_rises(const snow_placement *placement, snow_group_node node);
+
+/* The method that a pass by such a job takes. */
+const snow_render_method *snow_method_of(const snow_job *job);
+
+extern const snow_render_method snow_method_exact,
+    snow_method_exact_perspective, snow_method_groups, snow_method_shear_warp,
+    snow_method_projection, snow_method_iso;
+
+/* Of one process. */
+extern const snow_combine_ops snow_combine_alone;
+
+/* Ends a picture, whatever became of it: the frame gets its figures and depths,
+ * and the caller its image; where it failed, its images are freed. */
+snow_status snow_picture_end(snow_picture *picture, snow_status status,
+                             snow_image **image);
+
+#endif

@@ -1,0 +1,115 @@
+/* render/settings_resolve.c - see settings_resolve.h. */
+#include "render/settings_resolve.h"
+
+#include "base/thread_pool.h"
+#include "simd/isa.h"
+#include "splat/kernel.h"
+
+#include <math.h>
+#include <snowglass/snowglass.h>
+#include <string.h>
+
+snow_settings snow_settings_known(const snow_settings *asked) {
+    snow_settings known;
+    snow_settings_init(&known);
+    if (!asked)
+        return known;
+    memcpy(&known, asked,
+           asked->size < sizeof known ? asked->size : sizeof known);
+    return known;
+}
+
+/* Refuses a number outside of [low, high], or not a number. */
+static snow_status check_range(snow_context *context, const char *name,
+                               double value, double low, double high) {
+    if (value >= low && value <= high)
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "%s is %g; take a number from %g to %g", name, value, low,
+                     high);
+}
+
+static snow_status check_choice(snow_context *context, const char *name,
+                                int value, int count) {
+    if (value >= 0 && value < count)
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "%s is %d, which is none of its values", name, value);
+}
+
+/* A footprint of 0 stands for the kernel's own, which is in range. */
+static snow_status check_numbers(snow_context *context,
+                                 const snow_settings *s) {
+    const struct {
+        const char *name;
+        double value, low, high;
+    } numbers[] = {
+        {"threshold", s->threshold, 0, 255},
+        {"footprint", s->footprint ? s->footprint : 2, 2, SNOW_FOOTPRINT_MOST},
+        {"ambient", s->ambient, 0, 1},
+        {"diffuse", s->diffuse, 0, 1},
+        {"specular", s->specular, 0, 1},
+        {"shininess", s->shininess, 0, 1e6},
+        {"light azimuth", s->light_azimuth, -1e6, 1e6},
+        {"light elevation", s->light_elevation, -1e6, 1e6},
+        {"opacity length", s->opacity_length, 0, 1e300},
+        {"threads", s->threads, 0, SNOW_THREADS_MOST},
+    };
+    for (int i = 0; i < (int)(sizeof numbers / sizeof *numbers); i++)
+        SNOW_TRY(check_range(context, numbers[i].name, numbers[i].value,
+                             numbers[i].low, numbers[i].high));
+    return SNOW_STATUS_OK;
+}
+
+/* Threads and instruction set, as this machine has them. */
+static snow_status resolve_machine(snow_context *context, snow_settings *s) {
+    if (s->threads == 0)
+        s->threads = snow_processors();
+    if (s->deterministic)
+        s->isa = SNOW_ISA_SCALAR;
+    if (!snow_isa_runs(s->isa))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "this machine does not run %s; it has %s",
+                         snow_isa_name(s->isa), snow_isa_found());
+    s->isa = snow_isa_resolve(s->isa);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_settings_resolve(snow_context *context,
+                                  const snow_volume_info *info,
+                                  snow_settings *s) {
+    if (s->size < sizeof s->size)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "settings of %zu bytes are none; fill them with "
+                         "snow_settings_init",
+                         s->size);
+    SNOW_TRY(check_choice(context, "method", (int)s->method,
+                          SNOW_METHOD_SHEAR_WARP + 1));
+    SNOW_TRY(check_choice(context, "encoding", (int)s->encoding,
+                          SNOW_ENCODING_RLE + 1));
+    SNOW_TRY(
+        check_choice(context, "kernel", (int)s->kernel, SNOW_KERNEL_BOX + 1));
+    SNOW_TRY(
+        check_choice(context, "shade", (int)s->shade, SNOW_SHADE_NONE + 1));
+    SNOW_TRY(check_choice(context, "quality", (int)s->quality,
+                          SNOW_QUALITY_HIGH + 1));
+    SNOW_TRY(check_choice(context, "isa", (int)s->isa, SNOW_ISA_NEON + 1));
+    SNOW_TRY(check_choice(context, "mode", (int)s->mode, SNOW_MODE_ISO + 1));
+    if (!isfinite(s->iso))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "iso is %g; take a finite data value", s->iso);
+    SNOW_TRY(check_numbers(context, s));
+    SNOW_TRY(resolve_machine(context, s));
+    if (s->method == SNOW_METHOD_AUTO)
+        s->method = SNOW_METHOD_SHEAR_WARP;
+    /* A draft's default kernel is the cheapest that is continuous. */
+    if (s->method == SNOW_METHOD_SHEAR_WARP && s->footprint == 0 &&
+        s->quality == SNOW_QUALITY_DRAFT && s->kernel == SNOW_KERNEL_BSPLINE)
+        s->kernel = SNOW_KERNEL_TENT;
+    if (s->footprint == 0)
+        s->footprint = snow_kernel_default_support(s->kernel);
+    const double *spacing = info->spacing;
+    if (s->opacity_length == 0)
+        s->opacity_length = fmin(spacing[0], fmin(spacing[1], spacing[2]));
+    return SNOW_STATUS_OK;
+}

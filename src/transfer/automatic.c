@@ -1,0 +1,267 @@
+/* transfer/automatic.c - makes a transfer function from the histogram.
+ *
+ * A first picture should show the object, not the air around it, as a surface
+ * that can be shaded, and show denser parts inside as denser.  The threshold
+ * between background and object is Otsu's (N. Otsu, "A threshold selection
+ * method from gray-level histograms", IEEE Trans. SMC 9, 1979) on a histogram
+ * with robust ends.  Some additions were found by looking at many volumes:
+ *
+ *   - If the "object" is most of the volume there was no background at all; the
+ *     upper part is then split once more.
+ *   - If the values form one cluster, the threshold explains little variance,
+ *     and the upper part is no small share, the object fills the volume (a
+ *     cut-out of a brain, for example).  There are no surfaces then, and the
+ *     faces of the block show most: all is nearly solid, black to white over
+ *     all values, and unshaded.  The same holds for volumes of one slice.
+ *     Values that reach as far below 0 as above are densities about a mean (of
+ *     proteins), whose upper part is what matters.
+ *   - Structure below the threshold (leaves, lung vessels, smoke) is kept as a
+ *     faint veil, from Otsu's threshold of the lower part on, if it is sparse;
+ *     otherwise it would be fog.
+ *
+ *   opacity                                    ___--- 0.8 at the top
+ *                                     ___---
+ *                             .---'   0.4 at the object's mean
+ *                  ...-------'        0.25 a little above the threshold
+ *   ______.....---'                   0.05 at it, 0 at the faint threshold */
+#include "transfer/look.h"
+
+#include <math.h>
+
+#define BINS 1024
+
+/* Robust ends of the histogram: 0.2 % and 0.5 % are cut off.  Padding at the
+ * smallest value is ignored at the top if it is more than a quarter, so that a
+ * vessel of 1 % of the voxels is not cut off. */
+#define CUT_LOW 0.002
+#define CUT_HIGH 0.005
+#define PADDING 0.25
+
+/* If more of the volume than this is above the threshold, there is no
+ * background. */
+#define MOST_OBJECT 0.6
+
+/* The values form one cluster if Otsu's threshold explains no more than this
+ * share of the variance (a normal distribution: 0.64, a uniform one 0.75), and
+ * at least this share of the volume lies above it. */
+#define ONE_HEAP 0.70
+#define UPPER_PART 0.25
+
+/* Values that reach below 0 by this share of their reach above it. */
+#define ABOUT_0 0.25
+
+/* A veil is drawn if the object, and the veil itself, are at most these shares
+ * of the volume. */
+#define VEIL_OBJECT 0.4
+#define VEIL_MOST 0.2
+
+/* The grey where opacity starts: below it, shading would make skin look
+ * black. */
+#define DARKEST 0.65
+
+typedef struct split {
+    double at;           /* the threshold, in bins */
+    double below, above; /* mean bin on each side */
+} split;
+
+/* Finds Otsu's threshold in bins first..last-1: the greatest variance between
+ * the two parts.  If several cuts are equally good (a gap in the histogram) the
+ * middle one is used.  Returns false if all counts are in one bin. */
+static bool part_bins(const uint64_t *counts, int first, int last, split *out) {
+    double all = 0, moment = 0, weight = 0, sum = 0, best = -1;
+    int from = 0, to = 0;
+    for (int i = first; i < last; i++) {
+        all += (double)counts[i];
+        moment += (double)counts[i] * (i + 0.5);
+    }
+    for (int i = first; i + 1 < last; i++) {
+        weight += (double)counts[i];
+        sum += (double)counts[i] * (i + 0.5);
+        if (weight <= 0 || weight >= all)
+            continue;
+        double gap = moment * weight - sum * all;
+        double variance = gap / all * (gap / all) / (weight * (all - weight));
+        if (variance > best) {
+            best = variance;
+            from = i;
+            out->below = sum / weight;
+            out->above = (moment - sum) / (all - weight);
+        }
+        if (variance >= best)
+            to = i;
+    }
+    out->at = (from + to) / 2.0 + 1;
+    return best >= 0;
+}
+
+static double share_of(const uint64_t *counts, int first, int last,
+                       uint64_t all) {
+    double sum = 0;
+    for (int i = first; i < last; i++)
+        sum += (double)counts[i];
+    return sum / (double)all;
+}
+
+/* The share of the variance of all values that the two parts explain, 0 to
+ * 1. */
+static double explained(const uint64_t *counts, const split *s) {
+    double all = 0, moment = 0, square = 0;
+    for (int i = 0; i < BINS; i++) {
+        double count = (double)counts[i], at = i + 0.5;
+        all += count;
+        moment += count * at;
+        square += count * at * at;
+    }
+    double mean = moment / all, variance = square / all - mean * mean;
+    double between = (mean - s->below) * (s->above - mean);
+    return variance > 0 ? between / variance : 1;
+}
+
+static bool fills_volume(const uint64_t *counts, uint64_t all, const split *s,
+                         double low, double high) {
+    return share_of(counts, (int)s->at, BINS, all) >= UPPER_PART &&
+           explained(counts, s) < ONE_HEAP && low > -ABOUT_0 * high;
+}
+
+static void read_counts(const uint64_t *counts, uint64_t all, bool log,
+                        double low, double high, snow_histogram_split *out) {
+    split s = {0}, veil = {0};
+    out->top = out->high = high;
+    out->low = low;
+    if (!part_bins(counts, 0, BINS, &s)) {
+        out->constant = true;
+        return;
+    }
+    out->fills_volume = fills_volume(counts, all, &s, low, high);
+    for (int tries = 0; tries < 3; tries++) {
+        split upper = {0};
+        if (share_of(counts, (int)s.at, BINS, all) < MOST_OBJECT ||
+            !part_bins(counts, (int)s.at, BINS, &upper))
+            break;
+        s = upper;
+    }
+    out->background = snow_between_on(log, low, high, s.below / BINS);
+    out->threshold = snow_between_on(log, low, high, s.at / BINS);
+    out->object = snow_between_on(log, low, high, s.above / BINS);
+    if (share_of(counts, (int)s.at, BINS, all) > VEIL_OBJECT ||
+        !part_bins(counts, 0, (int)s.at, &veil))
+        return;
+    out->faint = snow_between_on(log, low, high, veil.at / BINS);
+    out->with_faint =
+        share_of(counts, (int)veil.at, (int)s.at, all) <= VEIL_MOST &&
+        out->faint < out->threshold;
+}
+
+snow_status snow_histogram_split_at(const snow_histogram *histogram,
+                                    snow_histogram_split *out) {
+    snow_histogram_split parting = {0};
+    if (!(histogram->min < histogram->max)) {
+        parting.constant = true;
+        *out = parting;
+        return SNOW_STATUS_OK;
+    }
+    double padding = (double)histogram->at_min / (double)histogram->finite;
+    if (padding <= PADDING)
+        padding = 0;
+    const double shares[2] = {CUT_LOW, 1 - CUT_HIGH * (1 - padding)};
+    double ends[2];
+    SNOW_TRY(
+        snow_quantiles(histogram, SNOW_HISTOGRAM_SAMPLED, shares, 2, ends));
+    if (!(ends[0] < ends[1])) {
+        ends[0] = histogram->min;
+        ends[1] = histogram->max;
+    }
+    uint64_t counts[BINS], all;
+    SNOW_TRY(snow_count_bins(histogram, ends[0], ends[1], BINS, counts, &all));
+    read_counts(counts, all, histogram->log, ends[0], ends[1], &parting);
+    *out = parting;
+    return SNOW_STATUS_OK;
+}
+
+/* Appends a point; its value is raised to that of the point before it, if
+ * lower. */
+static void add_opacity(snow_transfer_builder *builder, double value,
+                        double opacity) {
+    size_t n = builder->opacity_count++;
+    if (n && value < builder->opacities[n - 1].value)
+        value = builder->opacities[n - 1].value;
+    builder->opacities[n] = (snow_opacity_point){value, opacity};
+}
+
+static void build_grey(snow_transfer_builder *builder, double low,
+                       double high) {
+    builder->name = "grey";
+    builder->low = low;
+    builder->high = high;
+    builder->color_count = 2;
+    builder->colors[0] = (snow_color_point){low, DARKEST, DARKEST, DARKEST};
+    builder->colors[1] = (snow_color_point){high, 1, 1, 1};
+}
+
+/* One slice is drawn as a picture that shows everything but its darkest values.
+ * Several slices are solid but let some light through. */
+static void build_solid(const snow_histogram_split *p, bool slice, bool log,
+                        snow_transfer_builder *builder) {
+    build_grey(builder, p->low, p->high);
+    builder->colors[0].red = builder->colors[0].green =
+        builder->colors[0].blue = 0;
+    builder->unshaded = true;
+    add_opacity(builder, p->low, 0);
+    if (slice) {
+        add_opacity(builder, snow_between_on(log, p->low, p->high, 0.05), 1);
+        return;
+    }
+    add_opacity(builder, snow_between_on(log, p->low, p->high, 0.15), 0);
+    add_opacity(builder, snow_between_on(log, p->low, p->high, 0.30), 0.30);
+    add_opacity(builder, p->high, 0.70);
+}
+
+/* The number of axes with one voxel: 1 is a slice, 2 a row. */
+static int axes_of_one(const snow_histogram *histogram) {
+    snow_extent part;
+    snow_volume_get_extent(histogram->volume, &part);
+    return (part.dims[0] == 1) + (part.dims[1] == 1) + (part.dims[2] == 1);
+}
+
+/* For a volume whose voxels all have one value, or none finite. */
+static void build_constant(const snow_histogram *histogram,
+                           snow_transfer_builder *builder) {
+    double low, high;
+    snow_full_range(histogram, &low, &high);
+    build_grey(builder, low, high);
+    add_opacity(builder, low, 0);
+    add_opacity(builder, high, 0.8);
+    builder->reason = "one value only";
+    builder->unshaded = true;
+}
+
+snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
+                                            snow_transfer_builder *builder) {
+    bool log = histogram->log;
+    snow_histogram_split p;
+    SNOW_TRY(snow_histogram_split_at(histogram, &p));
+    builder->reason = "from the histogram";
+    builder->opacity_count = 0;
+    if (p.constant) {
+        build_constant(histogram, builder);
+        return SNOW_STATUS_OK;
+    }
+    if (p.fills_volume || axes_of_one(histogram) == 1) {
+        build_solid(&p, axes_of_one(histogram) == 1, log, builder);
+        return SNOW_STATUS_OK;
+    }
+    builder->unshaded = axes_of_one(histogram) > 1;
+    double start = p.with_faint
+                       ? p.faint
+                       : snow_between_on(log, p.background, p.threshold, 0.6);
+    add_opacity(builder, start, 0);
+    if (p.with_faint)
+        add_opacity(builder, p.threshold, 0.05);
+    add_opacity(builder, snow_between_on(log, p.threshold, p.object, 0.15),
+                0.25);
+    add_opacity(builder, p.object, 0.4);
+    add_opacity(builder, p.top, 0.8);
+    build_grey(builder, start,
+               builder->opacities[builder->opacity_count - 1].value);
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,141 @@
+/* transfer/builder.c - transfer functions under construction: positions of
+ * values in a range, on a linear or logarithmic scale, and control points.
+ *
+ * Values of points never decrease: errors of rounding logarithms are
+ * corrected. */
+#include "base/exp_log.h"
+#include "transfer/look.h"
+
+#include <math.h>
+#include <string.h>
+
+double snow_between(double low, double high, double share) {
+    if (share >= 1)
+        return high;
+    double value = isfinite(high - low) ? low + share * (high - low)
+                                        : low * (1 - share) + high * share;
+    return value < high ? value : high;
+}
+
+double snow_between_on(bool log, double low, double high, double share) {
+    if (!log || share >= 1)
+        return snow_between(low, high, share);
+    if (share == 0)
+        return low;
+    double from = snow_log2_rising(low), to = snow_log2_rising(high);
+    double value = snow_exp2(from + share * (to - from));
+    return value < high ? value : high;
+}
+
+double snow_share_on(bool log, double low, double high, double value) {
+    if (log)
+        return (snow_log2_rising(value) - snow_log2_rising(low)) /
+               (snow_log2_rising(high) - snow_log2_rising(low));
+    /* Uses halves if the range exceeds the largest double. */
+    double scale = isfinite(high - low) ? 1 : 0.5;
+    return (scale * value - scale * low) / (scale * high - scale * low);
+}
+
+void snow_full_range(const snow_histogram *histogram, double *low,
+                     double *high) {
+    *low = histogram->finite ? histogram->min : 0;
+    *high = histogram->finite ? histogram->max : 1;
+    if (histogram->log && !(*low > 0))
+        *low = *high / 10;
+    if (*low < *high)
+        return;
+    /* If there is one value, it shows if it is above 0; 0 and less is empty. */
+    if (histogram->log)
+        *low = *high / 10;
+    else if (*high > 0)
+        *low = 0;
+    else
+        *high = *low < 0 ? 0 : 1;
+}
+
+/* --- points ---------------------------------------------------------------
+ */
+
+/* The range from the end of the background to the brightest value of the
+ * object. */
+static snow_status object_range(const snow_histogram *histogram, double *low,
+                                double *high) {
+    snow_histogram_split p;
+    SNOW_TRY(snow_histogram_split_at(histogram, &p));
+    snow_full_range(histogram, low, high);
+    if (!p.constant) {
+        *low = snow_between_on(histogram->log, p.background, p.threshold, 0.6);
+        *high = p.top;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Copies points; their values are shares of a range unless they are data
+ * values. */
+static void copy_colors(const snow_points *points, bool log, double low,
+                        double high, snow_transfer_builder *builder) {
+    bool shares = points->values != SNOW_DOMAIN_DATA;
+    builder->color_count = points->color_count;
+    for (size_t i = 0; i < points->color_count; i++) {
+        builder->colors[i] = points->colors[i];
+        if (shares)
+            builder->colors[i].value =
+                snow_between_on(log, low, high, points->colors[i].value);
+    }
+}
+
+static void copy_opacities(const snow_points *points, bool log, double low,
+                           double high, snow_transfer_builder *builder) {
+    bool shares = points->values != SNOW_DOMAIN_DATA;
+    builder->opacity_count = points->opacity_count;
+    for (size_t i = 0; i < points->opacity_count; i++) {
+        builder->opacities[i] = points->opacities[i];
+        if (shares)
+            builder->opacities[i].value =
+                snow_between_on(log, low, high, points->opacities[i].value);
+    }
+}
+
+/* Extends the range of colours to all values that have opacities. */
+static void widen(double value, double *low, double *high) {
+    *low = value < *low ? value : *low;
+    *high = value > *high ? value : *high;
+}
+
+/* The range of values of points in data units. */
+static void own_range(const snow_points *points, double *low, double *high) {
+    *low = INFINITY;
+    *high = -INFINITY;
+    if (points->color_count) {
+        widen(points->colors[0].value, low, high);
+        widen(points->colors[points->color_count - 1].value, low, high);
+    }
+    if (points->opacity_count) {
+        widen(points->opacities[0].value, low, high);
+        widen(points->opacities[points->opacity_count - 1].value, low, high);
+    }
+}
+
+snow_status snow_transfer_builder_points(const snow_points *points,
+                                         const snow_histogram *histogram,
+                                         snow_transfer_builder *builder) {
+    double low, high;
+    if (points->values == SNOW_DOMAIN_OBJECT)
+        SNOW_TRY(object_range(histogram, &low, &high));
+    else if (points->values == SNOW_DOMAIN_RANGE)
+        snow_full_range(histogram, &low, &high);
+    else
+        own_range(points, &low, &high);
+    builder->name = points->name;
+    builder->low = low;
+    builder->high = high;
+    if (points->color_count)
+        copy_colors(points, histogram->log, low, high, builder);
+    if (points->opacity_count)
+        copy_opacities(points, histogram->log, low, high, builder);
+    builder->gradient_count = points->gradient_count;
+    if (points->gradient_count)
+        memcpy(builder->gradients, points->gradients,
+               points->gradient_count * sizeof *points->gradients);
+    return SNOW_STATUS_OK;
+}

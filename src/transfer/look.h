@@ -1,0 +1,145 @@
+/* transfer/look.h - how a look becomes a transfer function: presets, colour
+ * maps and the histogram, each as control points under construction. */
+#ifndef SNOW_TRANSFER_LOOK_H
+#define SNOW_TRANSFER_LOOK_H
+
+#include "comm/comm.h"
+#include "transfer/transfer.h"
+#include "volume/volume.h"
+
+/* The most points of each kind that presets and automatic looks need. */
+#define SNOW_TRANSFER_BUILDER_POINTS SNOW_COLORMAP_POINTS_MAX
+
+/* A transfer function under construction, in data values.  There is memory for
+ * SNOW_TRANSFER_BUILDER_POINTS points, or as many as the source has. */
+typedef struct snow_transfer_builder {
+    const char *name;   /* of the colours, for messages */
+    const char *reason; /* why these values, for messages */
+    double low, high;   /* the range of data values */
+    bool unshaded;      /* for pictures without shading */
+    bool log;           /* logarithmic scale */
+    snow_color_point *colors;
+    size_t color_count;
+    snow_opacity_point *opacities;
+    size_t opacity_count;
+    snow_opacity_point *gradients;
+    size_t gradient_count;
+    void *block; /* the memory of the points */
+} snow_transfer_builder;
+
+/* How much of a volume's values has to be known, in rising order. */
+typedef enum snow_histogram_need {
+    SNOW_NEED_NOTHING, /* no voxel is read */
+    SNOW_NEED_SIGN,    /* `min` where it is not below 0; else a value that is */
+    SNOW_NEED_RANGE,   /* `finite` as 0 or not, `min` and `max` */
+    SNOW_NEED_COUNTS   /* all */
+} snow_histogram_need;
+
+/* How often a volume's values occur: range, order statistics, histogram. */
+typedef struct snow_histogram {
+    snow_histogram_need need; /* what is known */
+    const snow_volume *volume;
+    snow_comm *comm;  /* the ranks whose parts are counted together; NULL: this
+                         part alone */
+    uint64_t *counts; /* of each native value of 8 and 16 bit types, from the
+                         type's smallest on; NULL for other types */
+    uint64_t finite;
+    double min, max;     /* of finite data values; NaN if there are none */
+    uint64_t at_min;     /* number of voxels with the smallest value */
+    snow_volume *sample; /* for a volume that stays in its file: the voxels of a
+                            sampled pass, as one row; NULL: it reads the file */
+    bool log; /* values that are not above 0 are ignored, and histograms have
+                 bins that are equal in the logarithm */
+} snow_histogram;
+
+/* Counts the voxels that a volume is responsible for.  With a communicator
+ * (collective) counts those of all ranks' volumes, as if they were one; the
+ * other functions do the same.  Errors: SNOW_STATUS_NO_MEMORY (on all ranks),
+ * those of the transport.  Free with snow_histogram_free. */
+snow_status snow_histogram_new(const snow_volume *volume, snow_comm *comm,
+                               bool log, snow_histogram_need need,
+                               snow_histogram *out);
+
+void snow_histogram_free(snow_histogram *histogram);
+
+#define SNOW_QUANTILES_MOST 4
+
+/* All voxels, or a sample large enough that the plot of a histogram stays the
+ * same: at least 2^24, spread over the volume. */
+typedef enum snow_histogram_mode {
+    SNOW_HISTOGRAM_EXACT,
+    SNOW_HISTOGRAM_SAMPLED
+} snow_histogram_mode;
+
+/* The data value that is not exceeded by the share `fractions[n]` of the finite
+ * voxels (an existing value, no interpolation), for up to SNOW_QUANTILES_MOST
+ * shares of 0 to 1.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_quantiles(const snow_histogram *histogram,
+                           snow_histogram_mode histogram_mode,
+                           const double *fractions, size_t count, double *out);
+
+/* Counts in `bins` equal bins of low..high; values outside are ignored.  low <
+ * high.  `all` is the number of values, including those outside.  Errors: those
+ * of the transport. */
+snow_status snow_count_bins(const snow_histogram *histogram, double low,
+                            double high, int bins, uint64_t *counts,
+                            uint64_t *all);
+
+/* The split of the histogram into background and object. */
+typedef struct snow_histogram_split {
+    bool constant;     /* fewer than two values: no split */
+    double background; /* mean value below the threshold */
+    double threshold;
+    double object;     /* mean value above it */
+    double top;        /* robust largest value */
+    double faint;      /* where faint structure starts below the threshold */
+    bool with_faint;   /* there is such structure, and it is sparse */
+    bool fills_volume; /* the object fills the volume: no split */
+    double low, high;  /* robust ends */
+} snow_histogram_split;
+
+/* Computes the split.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_histogram_split_at(const snow_histogram *histogram,
+                                    snow_histogram_split *out);
+
+/* The automatic look, without any request.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
+                                            snow_transfer_builder *builder);
+
+/* Builds from points; if they lack colours or opacities, the builder's stay.
+ * Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_transfer_builder_points(const snow_points *points,
+                                         const snow_histogram *histogram,
+                                         snow_transfer_builder *builder);
+
+/* Smallest to largest finite value, separated if they are equal; above 0 on a
+ * logarithmic scale. */
+void snow_full_range(const snow_histogram *histogram, double *low,
+                     double *high);
+
+/* snow_transfer_new_for_volume for a volume whose parts are the volumes of a
+ * communicator's ranks; NULL: for one volume.  Collective, with errors agreed
+ * on. */
+snow_status snow_transfer_new_for_ranks(snow_comm *comm,
+                                        const snow_volume *volume,
+                                        const snow_look *look,
+                                        snow_transfer **out);
+
+/* Whether a look (NULL allowed) has a gradient opacity; false if its preset
+ * does not exist. */
+bool snow_look_has_gradient_opacity(const snow_look *look);
+
+/* Replaces the colours by a map over low..high. */
+void snow_transfer_builder_colormap(snow_transfer_builder *builder,
+                                    int colormap, double low, double high);
+
+/* low + share * (high - low), for any finite ends: exactly high from share 1
+ * on, and never decreasing as share grows, whatever the rounding. */
+double snow_between(double low, double high, double share);
+
+/* The same, on a logarithmic scale if `log` is set (0 < low < high), and the
+ * inverse: the share at which a value lies. */
+double snow_between_on(bool log, double low, double high, double share);
+double snow_share_on(bool log, double low, double high, double value);
+
+#endif

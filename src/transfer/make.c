@@ -1,0 +1,369 @@
+/* transfer/make.c - makes a transfer function from a look.
+ *
+ * A preset, or the histogram, gives control points over values of its own.  A
+ * requested range stretches these points over it.  A colour map then replaces
+ * the colours, and opacities replace the opacities.  The gradient opacity is
+ * used only if requested. */
+#include "transfer/look.h"
+#include "volume/stream.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef const char *name_fn(size_t index);
+
+static snow_status refuse_name(snow_context *context, const char *what,
+                               const char *name, name_fn *names) {
+    char list[768] = "";
+    for (size_t i = 0; names(i); i++) {
+        strncat(list, i ? ", " : "", sizeof list - strlen(list) - 1);
+        strncat(list, names(i), sizeof list - strlen(list) - 1);
+    }
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "%s '%.64s' is unknown; choose one of %s", what, name,
+                     list);
+}
+
+static snow_status check_look(snow_context *context, const snow_look *look) {
+    if (look->preset && snow_preset_from_name(look->preset) < 0)
+        return refuse_name(context, "preset", look->preset, snow_preset_name);
+    if (look->colormap && snow_colormap_from_name(look->colormap) < 0)
+        return refuse_name(context, "colour map", look->colormap,
+                           snow_colormap_name);
+    if (look->opacities && !look->opacity_count)
+        return snow_fail(
+            context, SNOW_STATUS_BAD_USAGE,
+            "a list of 0 opacities has no meaning; give at least one point");
+    if (look->gradient_opacities && !look->gradient_opacity_count)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "a list of 0 gradient opacities has no meaning; give "
+                         "at least one point");
+    if (look->range != SNOW_RANGE_VALUES &&
+        look->range != SNOW_RANGE_PERCENTILES)
+        return SNOW_STATUS_OK;
+    if (!isfinite(look->low) || !isfinite(look->high) ||
+        !(look->low < look->high))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "a range from %g to %g is empty; give two finite ends "
+                         "in rising order",
+                         look->low, look->high);
+    if (look->range == SNOW_RANGE_PERCENTILES &&
+        (look->low < 0 || look->high > 100))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "percentiles %g to %g are out of range; give 0 to 100",
+                         look->low, look->high);
+    return SNOW_STATUS_OK;
+}
+
+/* The data values of the requested range. */
+static snow_status resolve_range(const snow_histogram *histogram,
+                                 const snow_look *look, double *low,
+                                 double *high) {
+    snow_full_range(histogram, low, high);
+    if (look->range == SNOW_RANGE_VALUES) {
+        *low = look->low;
+        *high = look->high;
+    }
+    if (look->range != SNOW_RANGE_PERCENTILES || !histogram->finite)
+        return SNOW_STATUS_OK;
+    const double shares[2] = {look->low / 100, look->high / 100};
+    double ends[2];
+    SNOW_TRY(snow_quantiles(histogram, SNOW_HISTOGRAM_EXACT, shares, 2, ends));
+    if (ends[0] < ends[1]) {
+        *low = ends[0];
+        *high = ends[1];
+        return SNOW_STATUS_OK;
+    }
+    snow_notify(histogram->volume->context,
+                "percentiles %g and %g are both %g; the whole range is used",
+                look->low, look->high, ends[0]);
+    return SNOW_STATUS_OK;
+}
+
+/* The new position of `value` when the points are stretched over low..high.
+ * Points whose range rounding has reduced to nothing become a step. */
+static double stretched(const snow_transfer_builder *builder, bool log,
+                        double value, double low, double high) {
+    if (!(builder->low < builder->high))
+        return low;
+    double share = snow_share_on(log, builder->low, builder->high, value);
+    return snow_between_on(builder->log, low, high, share);
+}
+
+/* `log` is true if the values were interpolated by logarithms: for shares and
+ * the histogram they are, for data values only if their source says so.
+ * Gradients are stretched by the same factor as the values. */
+static void stretch(snow_transfer_builder *builder, bool log, double low,
+                    double high) {
+    double steeper = (high - low) / (builder->high - builder->low);
+    for (size_t i = 0; i < builder->color_count; i++)
+        builder->colors[i].value =
+            stretched(builder, log, builder->colors[i].value, low, high);
+    for (size_t i = 0; i < builder->opacity_count; i++)
+        builder->opacities[i].value =
+            stretched(builder, log, builder->opacities[i].value, low, high);
+    for (size_t i = 0; i < builder->gradient_count && isfinite(steeper); i++)
+        builder->gradients[i].value *= steeper;
+    builder->low = low;
+    builder->high = high;
+}
+
+static const snow_points *points_of(const snow_look *look) {
+    if (look->points)
+        return look->points;
+    return look->preset
+               ? snow_preset_points((size_t)snow_preset_from_name(look->preset))
+               : NULL;
+}
+
+/* Allocates the points. */
+static snow_status begin_builder(snow_context *context, const snow_look *look,
+                                 snow_transfer_builder *builder) {
+    const snow_points *points = points_of(look);
+    size_t colors = SNOW_TRANSFER_BUILDER_POINTS,
+           opacities = SNOW_TRANSFER_BUILDER_POINTS;
+    if (points && points->color_count > colors)
+        colors = points->color_count;
+    if (points && points->opacity_count > opacities)
+        opacities = points->opacity_count;
+    size_t gradients = points ? points->gradient_count : 0;
+    uint64_t bytes;
+    if (!snow_mul_u64(opacities + gradients, sizeof(snow_opacity_point),
+                      &bytes) ||
+        !snow_add_u64(bytes, colors * sizeof(snow_color_point), &bytes))
+        bytes = UINT64_MAX;
+    *builder =
+        (snow_transfer_builder){.log = look->log || (points && points->log)};
+    builder->block = snow_allocate_array(context, bytes, 1);
+    if (!builder->block)
+        return SNOW_STATUS_NO_MEMORY; /* draft->block is to be freed even so */
+    builder->colors = builder->block;
+    builder->opacities = (void *)(builder->colors + colors);
+    builder->gradients = builder->opacities + opacities;
+    return SNOW_STATUS_OK;
+}
+
+/* Checks that the values suit those of a preset or a file. */
+static snow_status check_values(const snow_histogram *histogram,
+                                const snow_look *look,
+                                const snow_points *points,
+                                const snow_transfer_builder *builder) {
+    if (points->values != SNOW_DOMAIN_DATA || look->range != SNOW_RANGE_AUTO)
+        return SNOW_STATUS_OK;
+    if (builder->log && !(builder->low > 0))
+        return snow_fail(histogram->volume->context, SNOW_STATUS_BAD_USAGE,
+                         "%.64s has values of 0 and below, which a logarithmic "
+                         "scale cannot show; give a range too",
+                         points->name);
+    if (!look->points && histogram->min >= 0)
+        snow_notify(histogram->volume->context,
+                    "%s is for Hounsfield units, but the smallest value is %g: "
+                    "if the values have an offset, give a range",
+                    look->preset, histogram->min);
+    return SNOW_STATUS_OK;
+}
+
+/* What has to be known of the values where no colour and no opacity is to be
+ * guessed. */
+static snow_histogram_need need_of_range(const snow_look *look,
+                                         const snow_points *points) {
+    snow_domain values = points ? points->values : SNOW_DOMAIN_DATA;
+    if (look->range == SNOW_RANGE_PERCENTILES || values == SNOW_DOMAIN_OBJECT)
+        return SNOW_NEED_COUNTS;
+    if (look->range == SNOW_RANGE_FULL || values == SNOW_DOMAIN_RANGE)
+        return SNOW_NEED_RANGE;
+    /* Hounsfield units (check_values). */
+    bool preset = look->range == SNOW_RANGE_AUTO && !look->points;
+    return preset ? SNOW_NEED_SIGN : SNOW_NEED_NOTHING;
+}
+
+static snow_histogram_need need_of(const snow_look *look) {
+    const snow_points *points = points_of(look);
+    bool colors = look->colormap || (points && points->color_count);
+    bool opacities = look->opacities || (points && points->opacity_count);
+    if (!colors || !opacities)
+        return SNOW_NEED_COUNTS;
+    if (!points && look->range == SNOW_RANGE_AUTO)
+        return SNOW_NEED_COUNTS;
+    if (points && !points->opacity_count && points->values != SNOW_DOMAIN_DATA)
+        return SNOW_NEED_COUNTS;
+    return need_of_range(look, points);
+}
+
+/* The points of a preset or a file, and where they say nothing, or nothing is
+ * asked, the histogram's. */
+static snow_status fill_builder(const snow_histogram *histogram,
+                                const snow_look *look,
+                                snow_transfer_builder *builder) {
+    const snow_points *points = points_of(look);
+    builder->high = 1; /* without points, until it is stretched */
+    if (need_of(look) == SNOW_NEED_COUNTS &&
+        (!points || !points->color_count || !points->opacity_count))
+        SNOW_TRY(snow_transfer_builder_automatic(histogram, builder));
+    if (!points)
+        return SNOW_STATUS_OK;
+    builder->reason = look->points ? "from the file" : look->preset;
+    double low = builder->low, high = builder->high;
+    SNOW_TRY(snow_transfer_builder_points(points, histogram, builder));
+    builder->unshaded = builder->unshaded && !points->opacity_count;
+    /* Colours without values and opacities use the range of the histogram. */
+    if (!points->opacity_count && points->values != SNOW_DOMAIN_DATA) {
+        for (size_t i = 0; i < builder->color_count; i++)
+            builder->colors[i].value = snow_between_on(builder->log, low, high,
+                                                       points->colors[i].value);
+        builder->low = low;
+        builder->high = high;
+    }
+    return check_values(histogram, look, points, builder);
+}
+
+/* Rounding of logarithms may have made values decrease. */
+static void keep_rising(snow_transfer_builder *builder) {
+    for (size_t i = 1; i < builder->color_count; i++)
+        if (builder->colors[i].value < builder->colors[i - 1].value)
+            builder->colors[i].value = builder->colors[i - 1].value;
+    for (size_t i = 1; i < builder->opacity_count; i++)
+        if (builder->opacities[i].value < builder->opacities[i - 1].value)
+            builder->opacities[i].value = builder->opacities[i - 1].value;
+}
+
+static snow_status build_look(const snow_histogram *histogram,
+                              const snow_look *look,
+                              snow_transfer_builder *builder) {
+    const snow_points *points = points_of(look);
+    SNOW_TRY(fill_builder(histogram, look, builder));
+    if (look->range != SNOW_RANGE_AUTO) {
+        double low, high;
+        bool data = points && points->values == SNOW_DOMAIN_DATA;
+        SNOW_TRY(resolve_range(histogram, look, &low, &high));
+        if (builder->log && !(low > 0))
+            return snow_fail(histogram->volume->context, SNOW_STATUS_BAD_USAGE,
+                             "a range from %g has no logarithm; begin above 0",
+                             low);
+        stretch(builder, data ? points->log : builder->log, low, high);
+    }
+    if (look->colormap)
+        snow_transfer_builder_colormap(builder,
+                                       snow_colormap_from_name(look->colormap),
+                                       builder->low, builder->high);
+    keep_rising(builder);
+    return SNOW_STATUS_OK;
+}
+
+/* The source of the look: only what was not requested was chosen. */
+static void set_reason(const snow_transfer_builder *builder,
+                       const snow_look *look, char *text, size_t room) {
+    bool all_asked =
+        look->opacities && look->range != SNOW_RANGE_AUTO && !look->preset;
+    snprintf(text, room, " (%s%s)",
+             all_asked ? "as requested" : builder->reason,
+             look->opacities && !all_asked ? "; opacities as requested" : "");
+}
+
+/* "grey 72..213; opacity 0 at 72, 0.4 at 213 (from the histogram)" */
+static void describe_look(snow_transfer *transfer,
+                          const snow_transfer_builder *builder,
+                          const snow_look *look) {
+    char text[SNOW_TRANSFER_TEXT_BYTES / 2]; /* the rest is for the gradients */
+    size_t room = sizeof text, used;
+    snprintf(text, room, "%.64s %.5g..%.5g%s; opacity", builder->name,
+             builder->low, builder->high, builder->log ? " logarithmic" : "");
+    for (size_t i = 0; i < transfer->opacity_count; i++) {
+        used = strlen(text);
+        /* The end is reserved for the reason. */
+        if (used + 64 > room) {
+            snprintf(text + used, room - used, ", ...");
+            break;
+        }
+        snprintf(text + used, room - used, "%s %.4g at %.5g", i ? "," : "",
+                 transfer->opacities[i].opacity, transfer->opacities[i].value);
+    }
+    used = strlen(text);
+    set_reason(builder, look, text + used, room - used);
+    snow_transfer_describe(transfer, text);
+}
+
+/* The same on all ranks, except for errors of memory. */
+static snow_status build(const snow_volume *volume,
+                         const snow_transfer_builder *builder,
+                         const snow_look *look, snow_transfer **out) {
+    snow_transfer *transfer;
+    SNOW_TRY(snow_transfer_new(
+        volume->context, builder->colors, builder->color_count,
+        look->opacities ? look->opacities : builder->opacities,
+        look->opacities ? look->opacity_count : builder->opacity_count,
+        &transfer));
+    describe_look(transfer, builder, look);
+    bool own = look->gradient_opacities != NULL;
+    snow_status status = snow_transfer_set_gradient_opacity(
+        transfer, own ? look->gradient_opacities : builder->gradients,
+        own ? look->gradient_opacity_count : builder->gradient_count);
+    transfer->unshaded = builder->unshaded && !look->opacities;
+    if (status == SNOW_STATUS_OK && builder->log)
+        status = snow_transfer_set_log(transfer);
+    if (status != SNOW_STATUS_OK) {
+        snow_transfer_free(transfer);
+        return status;
+    }
+    *out = transfer;
+    return SNOW_STATUS_OK;
+}
+
+bool snow_look_has_gradient_opacity(const snow_look *look) {
+    if (!look || look->gradient_opacities)
+        return look != NULL;
+    if (look->preset && snow_preset_from_name(look->preset) < 0)
+        return false;
+    const snow_points *points = points_of(look);
+    return points && points->gradient_count > 0;
+}
+
+static snow_status make_among(snow_comm *comm, const snow_volume *volume,
+                              const snow_look *look, snow_transfer **out) {
+    snow_transfer_builder builder;
+    snow_histogram histogram;
+    snow_transfer *transfer = NULL;
+    SNOW_TRY(check_look(volume->context, look));
+    snow_status status = begin_builder(volume->context, look, &builder);
+    if (comm && status == SNOW_STATUS_OK)
+        status = snow_volume_need_voxels(volume);
+    if (comm)
+        status = snow_comm_agree_status(comm, status);
+    if (status == SNOW_STATUS_OK)
+        status = snow_histogram_new(volume, comm, builder.log, need_of(look),
+                                    &histogram);
+    if (status == SNOW_STATUS_OK) {
+        status = build_look(&histogram, look, &builder);
+        snow_histogram_free(&histogram);
+        if (status == SNOW_STATUS_OK)
+            status = build(volume, &builder, look, &transfer);
+    }
+    snow_release(volume->context, builder.block);
+    if (comm)
+        status = snow_comm_agree_status(comm, status);
+    if (status != SNOW_STATUS_OK) {
+        snow_transfer_free(transfer);
+        return status;
+    }
+    *out = transfer;
+    return SNOW_STATUS_OK;
+}
+
+/* Slabs of a file are read for it. */
+snow_status snow_transfer_new_for_ranks(snow_comm *comm,
+                                        const snow_volume *volume,
+                                        const snow_look *look,
+                                        snow_transfer **out) {
+    static const snow_look automatic;
+    snow_monitor monitor;
+    snow_monitor_begin_reading(volume->context, &monitor);
+    return snow_monitor_end(
+        &monitor, make_among(comm, volume, look ? look : &automatic, out));
+}
+
+snow_status snow_transfer_new_for_volume(const snow_volume *volume,
+                                         const snow_look *look,
+                                         snow_transfer **out) {
+    return snow_transfer_new_for_ranks(NULL, volume, look, out);
+}

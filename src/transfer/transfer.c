@@ -1,0 +1,336 @@
+/* transfer/transfer.c - transfer functions: control points and their values.
+ *
+ * Points are in rising order, so a value is looked up by bisection for the
+ * first point beyond it.  If a value repeats, the value itself belongs to the
+ * later point, and the step is above it.
+ *
+ * A logarithmic scale changes only the interpolation between points: positions
+ * of values among points are compared as values, exactly. */
+#include "transfer/transfer.h"
+#include "base/exp_log.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Checks one point of either kind; `last` is the value before it. */
+static snow_status check_point(snow_context *context, const char *kind,
+                               size_t index, double value, double last) {
+    if (!isfinite(value))
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "%s point %zu has the value %g; give finite values",
+                         kind, index + 1, value);
+    if (index && value < last)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "%s point %zu at %g comes after %g; give the points "
+                         "in rising order of values",
+                         kind, index + 1, value, last);
+    return SNOW_STATUS_OK;
+}
+
+static bool in_unit(double x) {
+    return x >= 0 && x <= 1;
+}
+
+static snow_status check_colors(snow_context *context,
+                                const snow_color_point *colors, size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        const snow_color_point *c = colors + i;
+        SNOW_TRY(check_point(context, "colour", i, c->value,
+                             i ? colors[i - 1].value : 0));
+        if (!in_unit(c->red) || !in_unit(c->green) || !in_unit(c->blue))
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "colour point %zu is (%g, %g, %g); red, green and "
+                             "blue range from 0 to 1",
+                             i + 1, c->red, c->green, c->blue);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status check_opacities(snow_context *context, const char *kind,
+                                   const snow_opacity_point *opacities,
+                                   size_t count) {
+    for (size_t i = 0; i < count; i++) {
+        SNOW_TRY(check_point(context, kind, i, opacities[i].value,
+                             i ? opacities[i - 1].value : 0));
+        if (!in_unit(opacities[i].opacity))
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "%s point %zu is %g; opacity ranges from 0 to 1",
+                             kind, i + 1, opacities[i].opacity);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static bool all_grey(const snow_color_point *colors, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (colors[i].red != colors[i].green || colors[i].red != colors[i].blue)
+            return false;
+    return true;
+}
+
+static void *copy(snow_context *context, const void *items, size_t count,
+                  size_t size) {
+    void *block = snow_allocate_array(context, count, size);
+    if (block)
+        memcpy(block, items, count * size);
+    return block;
+}
+
+snow_status snow_transfer_new(snow_context *context,
+                              const snow_color_point *colors,
+                              size_t color_count,
+                              const snow_opacity_point *opacities,
+                              size_t opacity_count, snow_transfer **out) {
+    if (!color_count || !opacity_count)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "a transfer function of %zu colours and %zu opacities "
+                         "is incomplete; give at least one point of each",
+                         color_count, opacity_count);
+    SNOW_TRY(check_colors(context, colors, color_count));
+    SNOW_TRY(check_opacities(context, "opacity", opacities, opacity_count));
+    snow_transfer *transfer = snow_allocate_clear(context, sizeof *transfer);
+    if (!transfer)
+        return SNOW_STATUS_NO_MEMORY;
+    transfer->context = context;
+    transfer->color_count = color_count;
+    transfer->opacity_count = opacity_count;
+    transfer->grey = all_grey(colors, color_count);
+    transfer->colors = copy(context, colors, color_count, sizeof *colors);
+    transfer->opacities =
+        copy(context, opacities, opacity_count, sizeof *opacities);
+    if (!transfer->colors || !transfer->opacities) {
+        snow_transfer_free(transfer);
+        return SNOW_STATUS_NO_MEMORY;
+    }
+    char text[80];
+    snprintf(text, sizeof text, "%zu colour and %zu opacity points",
+             color_count, opacity_count);
+    snow_transfer_describe(transfer, text);
+    *out = transfer;
+    return SNOW_STATUS_OK;
+}
+
+void snow_transfer_free(snow_transfer *transfer) {
+    if (!transfer)
+        return;
+    snow_release(transfer->context, transfer->colors);
+    snow_release(transfer->context, transfer->opacities);
+    snow_release(transfer->context, transfer->gradients);
+    snow_release(transfer->context, transfer);
+}
+
+/* Appends "; gradient opacity 0 at 2, 1 at 10", as far as it fits. */
+static void describe_gradients(snow_transfer *transfer) {
+    char *text = transfer->text;
+    size_t room = sizeof transfer->text, used = transfer->look_bytes;
+    text[used] = 0;
+    for (size_t i = 0; i < transfer->gradient_count; i++) {
+        used = strlen(text);
+        if (used + 40 > room) { /* the longest entry, and an end */
+            snprintf(text + used, room - used, ", ...");
+            break;
+        }
+        snprintf(text + used, room - used, "%s %.4g at %.5g",
+                 i ? "," : "; gradient opacity", transfer->gradients[i].opacity,
+                 transfer->gradients[i].value);
+    }
+}
+
+void snow_transfer_describe(snow_transfer *transfer, const char *chosen) {
+    snprintf(transfer->text, sizeof transfer->text, "%s", chosen);
+    transfer->look_bytes = strlen(transfer->text);
+    describe_gradients(transfer);
+}
+
+static bool all_one(const snow_opacity_point *points, size_t count) {
+    for (size_t i = 0; i < count; i++)
+        if (points[i].opacity != 1)
+            return false;
+    return true;
+}
+
+snow_status snow_transfer_set_gradient_opacity(snow_transfer *transfer,
+                                               const snow_opacity_point *points,
+                                               size_t count) {
+    snow_opacity_point *gradients = NULL;
+    SNOW_TRY(
+        check_opacities(transfer->context, "gradient opacity", points, count));
+    if (all_one(points, count))
+        count = 0;
+    if (count) {
+        gradients = copy(transfer->context, points, count, sizeof *points);
+        if (!gradients)
+            return SNOW_STATUS_NO_MEMORY;
+    }
+    snow_release(transfer->context, transfer->gradients);
+    transfer->gradients = gradients;
+    transfer->gradient_count = count;
+    describe_gradients(transfer);
+    return SNOW_STATUS_OK;
+}
+
+const char *snow_transfer_description(const snow_transfer *transfer) {
+    return transfer->text;
+}
+
+void snow_transfer_domain(const snow_transfer *transfer, double *low,
+                          double *high) {
+    *low = transfer->colors[0].value;
+    *high = transfer->colors[transfer->color_count - 1].value;
+}
+
+bool snow_transfer_is_grey(const snow_transfer *transfer) {
+    return transfer->grey;
+}
+
+snow_status snow_transfer_set_log(snow_transfer *transfer) {
+    double color = transfer->colors[0].value;
+    double opacity = transfer->opacities[0].value;
+    if (!(color > 0) || !(opacity > 0))
+        return snow_fail(
+            transfer->context, SNOW_STATUS_BAD_USAGE,
+            "a control point at %g has no logarithm; give values above 0",
+            color > 0 ? opacity : color);
+    transfer->log = true;
+    return SNOW_STATUS_OK;
+}
+
+bool snow_transfer_is_unshaded(const snow_transfer *transfer) {
+    return transfer->unshaded;
+}
+
+bool snow_transfer_is_log(const snow_transfer *transfer) {
+    return transfer->log;
+}
+
+/* As part_of_way on a logarithmic scale; points with equal logarithms are
+ * joined by a straight line. */
+double snow_part_of_decades(double value, double a, double b) {
+    double from = snow_log2_rising(a), to = snow_log2_rising(b);
+    if (!(from < to))
+        return (value - a) / (b - a);
+    return (snow_log2_rising(value) - from) / (to - from);
+}
+
+/* The position of `value` on the way from a to b, which differ; uses halves if
+ * their distance exceeds the largest double. */
+static double part_of_way(bool log, double value, double a, double b) {
+    if (log)
+        return snow_part_of_decades(value, a, b);
+    if (isfinite(b - a))
+        return (value - a) / (b - a);
+    return (value / 2 - a / 2) / (b / 2 - a / 2);
+}
+
+static double mix(double a, double b, double t) {
+    return a + (b - a) * t;
+}
+
+/* The value of point n; points of both kinds, of `size` bytes, begin with
+ * it. */
+static inline double value_of(const void *points, size_t size, size_t n) {
+    const char *first = points;
+    return *(const double *)(const void *)(first + n * size);
+}
+
+/* The number of points at or before a value, which is not NaN; tries `guess`
+ * first. */
+static inline size_t points_up_to(const void *points, size_t size, size_t count,
+                                  double value, size_t guess) {
+    if ((guess == 0 || value_of(points, size, guess - 1) <= value) &&
+        (guess == count || value_of(points, size, guess) > value))
+        return guess;
+    size_t low = 0, high = count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (value_of(points, size, middle) > value)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return low;
+}
+
+static inline double opacity_behind(const snow_opacity_point *points,
+                                    size_t count, bool log, size_t up_to,
+                                    double value) {
+    if (up_to == 0)
+        return points[0].opacity;
+    if (up_to == count)
+        return points[up_to - 1].opacity;
+    double t =
+        part_of_way(log, value, points[up_to - 1].value, points[up_to].value);
+    return mix(points[up_to - 1].opacity, points[up_to].opacity, t);
+}
+
+static inline void color_behind(const snow_transfer *transfer, size_t up_to,
+                                double value, double rgb[3]) {
+    const snow_color_point *a = transfer->colors + (up_to ? up_to - 1 : 0);
+    const snow_color_point *b = a;
+    double t = 0;
+    if (up_to > 0 && up_to < transfer->color_count) {
+        b = a + 1;
+        t = part_of_way(transfer->log, value, a->value, b->value);
+    }
+    rgb[0] = mix(a->red, b->red, t);
+    rgb[1] = mix(a->green, b->green, t);
+    rgb[2] = mix(a->blue, b->blue, t);
+}
+
+double snow_transfer_opacity(const snow_transfer *transfer, double value) {
+    if (isnan(value) || (transfer->log && !(value > 0)))
+        return 0;
+    size_t up_to =
+        points_up_to(transfer->opacities, sizeof *transfer->opacities,
+                     transfer->opacity_count, value, 0);
+    return opacity_behind(transfer->opacities, transfer->opacity_count,
+                          transfer->log, up_to, value);
+}
+
+double snow_transfer_evaluate_gradient(const snow_transfer *transfer,
+                                       double magnitude) {
+    const snow_opacity_point *points = transfer->gradients;
+    size_t count = transfer->gradient_count;
+    if (!count)
+        return 1;
+    if (isnan(magnitude))
+        return points[count - 1].opacity;
+    size_t up_to = points_up_to(points, sizeof *points, count, magnitude, 0);
+    return opacity_behind(points, count, false, up_to, magnitude);
+}
+
+void snow_transfer_color(const snow_transfer *transfer, double value,
+                         double rgb[3]) {
+    if (transfer->log && !(value > 0)) {
+        memset(rgb, 0, 3 * sizeof *rgb);
+        return;
+    }
+    size_t up_to = points_up_to(transfer->colors, sizeof *transfer->colors,
+                                transfer->color_count, value, 0);
+    color_behind(transfer, up_to, value, rgb);
+}
+
+void snow_transfer_near(const snow_transfer *transfer, double value,
+                        snow_transfer_hint *hint, double rgba[4]) {
+    if (transfer->log && !(value > 0)) {
+        memset(rgba, 0, 4 * sizeof *rgba);
+        return;
+    }
+    hint->color = points_up_to(transfer->colors, sizeof *transfer->colors,
+                               transfer->color_count, value, hint->color);
+    hint->opacity =
+        points_up_to(transfer->opacities, sizeof *transfer->opacities,
+                     transfer->opacity_count, value, hint->opacity);
+    color_behind(transfer, hint->color, value, rgba);
+    rgba[3] = opacity_behind(transfer->opacities, transfer->opacity_count,
+                             transfer->log, hint->opacity, value);
+}
+
+void snow_transfer_evaluate(const snow_transfer *transfer, double value,
+                            double rgba[4]) {
+    memset(rgba, 0, 4 * sizeof *rgba);
+    if (isnan(value))
+        return;
+    snow_transfer_hint hint = {0, 0};
+    snow_transfer_near(transfer, value, &hint, rgba);
+}

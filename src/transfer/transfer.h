@@ -1,0 +1,60 @@
+/* transfer/transfer.h - the private record of a transfer function. */
+#ifndef SNOW_TRANSFER_TRANSFER_H
+#define SNOW_TRANSFER_TRANSFER_H
+
+#include "base/base.h"
+
+#include <snowglass/transfer.h>
+
+#define SNOW_TRANSFER_TEXT_BYTES 512
+
+struct snow_transfer {
+    snow_context *context;
+    snow_color_point *colors; /* values do not decrease */
+    size_t color_count;       /* at least 1 */
+    snow_opacity_point *opacities;
+    size_t opacity_count;
+    bool unshaded; /* made for pictures without shading */
+    bool log;      /* interpolated in the logarithm of values, all above 0 */
+    snow_opacity_point *gradients;       /* factors by gradient magnitude */
+    size_t gradient_count;               /* 0: no gradient opacity */
+    bool grey;                           /* red = green = blue everywhere */
+    char text[SNOW_TRANSFER_TEXT_BYTES]; /* a description for people: */
+    size_t
+        look_bytes; /* its length without the gradient opacity, which follows */
+};
+
+/* Opacity alone, since most voxels need no more; and colour alone.  The value
+ * is not NaN. */
+double snow_transfer_opacity(const snow_transfer *transfer, double value);
+void snow_transfer_color(const snow_transfer *transfer, double value,
+                         double rgb[3]);
+
+/* Writes the description of the look and of the gradient opacity to the
+ * text. */
+void snow_transfer_describe(snow_transfer *transfer, const char *chosen);
+
+/* Both, for a value that is not NaN, equal to snow_transfer_evaluate, but
+ * faster for values in order.  The hint begins as zeros and is passed on. */
+typedef struct snow_transfer_hint {
+    size_t color, opacity; /* points at or before the last value */
+} snow_transfer_hint;
+
+void snow_transfer_near(const snow_transfer *transfer, double value,
+                        snow_transfer_hint *hint, double rgba[4]);
+
+/* The position of a value on the way from a to b on a logarithmic scale, 0 < a
+ * < b, a <= value <= b: from 0 to 1, never decreasing. */
+double snow_part_of_decades(double value, double a, double b);
+
+/* So that rounding never decides whether a voxel is above the threshold. */
+#define SNOW_THRESHOLD_MARGIN 0.0001
+
+/* Whether a voxel of this opacity is above a threshold of 0 to 255 (model,
+ * point 3). */
+static inline bool snow_is_interesting(double opacity, double threshold) {
+    return opacity > 0 && (!(threshold > 0) ||
+                           255 * opacity > threshold + SNOW_THRESHOLD_MARGIN);
+}
+
+#endif

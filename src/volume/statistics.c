@@ -1,0 +1,126 @@
+/* volume/statistics.c - figures over all voxels: range, sums, histogram.
+ *
+ * Voxels are turned to doubles a block at a time; that loop alone is written
+ * per scalar type.  What follows sees data values (after slope and intercept)
+ * in storage order, so that sums have one order of additions on all machines.
+ */
+#include "base/monitor.h"
+#include "volume/stream.h"
+
+#include <math.h>
+#include <string.h>
+
+#define BLOCK 1024
+#define WATCHED (64 * BLOCK) /* voxels between two questions for a stop */
+
+/* The weights of `wsum` repeat after this many voxels; a prime, so that no
+ * row length hides a swap of axes. */
+#define WEIGHT_PERIOD 1009
+
+void snow_volume_natives(const snow_volume *volume, int64_t first, size_t count,
+                         double *out) {
+    switch (volume->info.type) {
+#define WIDEN(name, c_type, text)                                    \
+    case SNOW_TYPE_##name: {                                         \
+        const c_type *from = (const c_type *)volume->voxels + first; \
+        for (size_t i = 0; i < count; i++)                           \
+            out[i] = (double)from[i];                                \
+        break;                                                       \
+    }
+        SNOW_TYPE_MAP(WIDEN)
+#undef WIDEN
+    case SNOW_TYPE_NONE:
+        break;
+    }
+}
+
+/* For single looks; loops take snow_volume_natives a block at a time. */
+double snow_volume_native(const snow_volume *volume, int64_t index) {
+    double value = NAN;
+    snow_volume_natives(volume, index, 1, &value);
+    return value;
+}
+
+/* The product was checked when the volume was made. */
+static int64_t voxel_count(const snow_volume *volume) {
+    const int64_t *dims = volume->info.dims;
+    return dims[0] * dims[1] * dims[2];
+}
+
+/* The data values from `first` on into a block; returns how many. */
+static size_t next_block(const snow_volume *volume, int64_t first,
+                         double values[BLOCK]) {
+    int64_t left = voxel_count(volume) - first;
+    size_t count = left < BLOCK ? (size_t)left : BLOCK;
+    double slope = volume->info.slope, intercept = volume->info.intercept;
+    snow_volume_natives(volume, first, count, values);
+    for (size_t i = 0; i < count; i++)
+        values[i] = slope * values[i] + intercept;
+    return count;
+}
+
+/* The index in storage order gives the weight, so that wsum notices voxels that
+ * are right but in the wrong place. */
+static void measure_value(snow_volume_statistics *m, double value,
+                          int64_t index) {
+    if (!isfinite(value))
+        return;
+    /* The comparisons are false for the NaN that stands there at first. */
+    if (!(value >= m->min))
+        m->min = value;
+    if (!(value <= m->max))
+        m->max = value;
+    m->finite++;
+    m->sum += value;
+    m->wsum += value * (double)(index % WEIGHT_PERIOD + 1);
+}
+
+/* One thread and one order: the sums are compared to the last bit with those
+ * of other readers. */
+void snow_volume_get_statistics(const snow_volume *volume,
+                                snow_volume_statistics *out) {
+    snow_volume_statistics m = {
+        .voxels = voxel_count(volume), .min = NAN, .max = NAN};
+    double values[BLOCK];
+    size_t count;
+    for (int64_t first = 0; volume->voxels && first < m.voxels;
+         first += (int64_t)count) {
+        if (first % WATCHED == 0 &&
+            snow_monitor_look(volume->context->monitor, 0))
+            break; /* the caller looks at the status */
+        count = next_block(volume, first, values);
+        for (size_t i = 0; i < count; i++)
+            measure_value(&m, values[i], first + (int64_t)i);
+    }
+    *out = m;
+}
+
+/* The bin of a value is that of snowglass/volume.h to the last bit: floor of
+ * the scaled distance, with the upper end in the last bin. */
+snow_status snow_volume_histogram(const snow_volume *volume, double lo,
+                                  double hi, size_t bins, uint64_t *counts) {
+    SNOW_TRY(snow_volume_need_voxels(volume));
+    if (!isfinite(lo) || !isfinite(hi) || !(lo < hi) || !bins)
+        return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
+                         "a histogram from %g to %g in %zu bins is empty; give "
+                         "two finite ends in order and at least one bin",
+                         lo, hi, bins);
+    memset(counts, 0, bins * sizeof *counts);
+    /* Halves, where the whole range is more than a double can hold. */
+    double scale = isfinite(hi - lo) ? 1 : 0.5;
+    double range = scale * hi - scale * lo;
+    double values[BLOCK];
+    size_t count;
+    for (int64_t first = 0; first < voxel_count(volume);
+         first += (int64_t)count) {
+        count = next_block(volume, first, values);
+        for (size_t i = 0; i < count; i++) {
+            if (!(values[i] >= lo && values[i] <= hi))
+                continue;
+            double bin =
+                floor((scale * values[i] - scale * lo) / range * (double)bins);
+            counts[bin < (double)bins ? (size_t)bin : bins - 1]++;
+        }
+    }
+    return SNOW_STATUS_OK;
+}
