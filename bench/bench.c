@@ -5,7 +5,7 @@
 #include "bench.h"
 #include "combine.h"
 #include "frame.h"
-#include "start.h"
+#include "run/start.h"
 
 #include <errno.h>
 #include <getopt.h>

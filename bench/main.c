@@ -1,9 +1,9 @@
 /* bench/main.c - the program snowglass-bench, which `snowglass bench` starts.
  */
 #include "bench.h"
-#include "interrupt.h"
-#include "log.h"
-#include "start.h"
+#include "run/interrupt.h"
+#include "run/log.h"
+#include "run/start.h"
 
 /* What is no business of all ranks is that of the first. */
 static int run(int argc, char **argv) {

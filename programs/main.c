@@ -4,12 +4,12 @@
  * The first word is a verb, or the call is a plain `render`.  The tool uses the
  * public headers only.  Its exit codes are the library's status values and
  * 130. */
-#include "commands.h"
-#include "config.h"
-#include "interrupt.h"
-#include "log.h"
-#include "sibling.h"
-#include "start.h"
+#include "commands/commands.h"
+#include "options/config.h"
+#include "run/interrupt.h"
+#include "run/log.h"
+#include "run/sibling.h"
+#include "run/start.h"
 
 #include <fcntl.h>
 #include <stdio.h>

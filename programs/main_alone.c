@@ -1,5 +1,5 @@
 /* main_alone.c - the tool as one process. */
-#include "start.h"
+#include "run/start.h"
 
 int main(int argc, char **argv) {
     const launch alone = {.comm = NULL};

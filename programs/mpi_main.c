@@ -4,9 +4,9 @@
  * connection to the others has failed prints an error itself, and ends the job,
  * since the others may wait for it. */
 #define _GNU_SOURCE /* sched_getaffinity */
-#include "log.h"
-#include "sibling.h"
-#include "start.h"
+#include "run/log.h"
+#include "run/sibling.h"
+#include "run/start.h"
 
 #include <sched.h>
 #include <signal.h>

@@ -46,15 +46,14 @@ set(SNOW_COSTS
     test_deterministic 38 test_comm 37 test_load_balance 36 test_splat_isa 35
     test_perspective 34 cli_real 33 cli_mask 32)
 
+file(GLOB_RECURSE sources *.c *.sh *.py)
 get_property(tests DIRECTORY PROPERTY TESTS)
 foreach(label long surface threads plain)
   foreach(test ${SNOW_LABEL_${label}})
     if(test IN_LIST tests)
       set_property(TEST ${test} APPEND PROPERTY LABELS ${label})
     elseif(NOT test MATCHES "^(simulate|test_writer_named)$" AND
-           NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${test}.c AND
-           NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${test}.sh AND
-           NOT EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${test}.py)
+           NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
       message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
     endif()
   endforeach()

@@ -88,7 +88,7 @@ int combine_print(const combine_session *session) {
     bench_line out = {.json = options->json};
     const double difference = result->most.difference;
     /* A channel of 8 bits is off by half a step from rounding alone; floats by
-     * what tests/test_combine.c derives. */
+     * what tests/stages/test_combine.c derives. */
     const double allowed =
         options->bits == 8 ? 1.0 / 255 : 12.0 * result->ranks / (1 << 25);
     const bool good = difference >= 0 && difference <= allowed;

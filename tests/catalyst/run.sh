@@ -1,7 +1,7 @@
 #!/bin/bash
 # tests/catalyst/run.sh - `run.sh TOOL DATA DRIVER PLUGIN`: pictures by way of
 # Catalyst are those that the tool makes of the same field.
-. "$(dirname "$0")/../support_shell.sh"
+. "$(dirname "$0")/../support/shell.sh"
 DRIVER=$3 PLUGIN=$4
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 

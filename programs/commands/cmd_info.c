@@ -1,0 +1,277 @@
+/* cmd_info.c - the verb info: geometry, type, statistics and histogram of a
+ * volume, and the share of voxels that a threshold leaves out. */
+#include "commands/commands.h"
+#include "run/log.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define ROWS 16  /* bins of the histogram as text: half a screen */
+#define BINS 256 /* bins of the histogram as JSON */
+#define BAR 40   /* columns of the longest bar */
+
+/* The thresholds of the paper; --threshold replaces them by one. */
+static const double paper_thresholds[] = {0, 10, 30};
+
+/* A volume and all that is printed about it. */
+typedef struct facts {
+    const snow_volume *volume;
+    const snow_volume_info *info;
+    const snow_transfer *transfer;
+    snow_volume_statistics measures;
+    double thresholds[3], ratios[3];
+    size_t threshold_count;
+    const char *patient; /* NULL: not requested, or not in the file */
+} facts;
+
+/* Everything is computed before the first line is printed, so that a failure
+ * prints nothing. */
+static snow_status gather_facts(const options *asked, facts *f) {
+    f->info = snow_volume_get_info(f->volume);
+    f->thresholds[0] = asked->threshold;
+    f->threshold_count = 1;
+    if (asked->threshold < 0) {
+        memcpy(f->thresholds, paper_thresholds, sizeof paper_thresholds);
+        f->threshold_count = 3;
+    }
+    snow_volume_get_statistics(f->volume, &f->measures);
+    snow_status status = SNOW_STATUS_OK;
+    for (size_t i = 0; i < f->threshold_count && status == SNOW_STATUS_OK; i++)
+        status = snow_transfer_sparse_ratio(f->transfer, f->volume,
+                                            f->thresholds[i], &f->ratios[i]);
+    return status;
+}
+
+/* --- orientation -----------------------------------------------------------
+ */
+
+/* The cosine between index axis `axis` and world axis `row`.  The matrix maps
+ * indices to the world, so its column is the direction of an index axis, and as
+ * long as the spacing. */
+static double cosine(const snow_volume_info *info, int row, int axis) {
+    return info->matrix[row][axis] / info->spacing[axis];
+}
+
+/* The letter of the side that each index axis points to.  Each world axis is
+ * assigned to one index axis, the best pair first, so that an oblique volume
+ * has three different letters too. */
+static void axis_letters(const snow_volume_info *info, char letters[4]) {
+    static const char sides[3][2] = {{'L', 'R'}, {'P', 'A'}, {'I', 'S'}};
+    bool row_used[3] = {false}, axis_used[3] = {false};
+    for (int turn = 0; turn < 3; turn++) {
+        int best_row = -1, best_axis = -1;
+        for (int k = 0; k < 9; k++) {
+            int row = k / 3, axis = k % 3;
+            if (row_used[row] || axis_used[axis])
+                continue;
+            if (best_row < 0 || fabs(cosine(info, row, axis)) >
+                                    fabs(cosine(info, best_row, best_axis))) {
+                best_row = row;
+                best_axis = axis;
+            }
+        }
+        row_used[best_row] = axis_used[best_axis] = true;
+        letters[best_axis] =
+            sides[best_row][cosine(info, best_row, best_axis) > 0];
+    }
+    letters[3] = '\0';
+}
+
+/* --- text ------------------------------------------------------------------
+ */
+
+/* The geometry of the file; scale and time steps only if they matter. */
+static void print_geometry(const facts *f) {
+    const snow_volume_info *info = f->info;
+    char letters[4];
+    printf("%-14s%s\n", "format", info->format);
+    printf("%-14s%" PRId64 " x %" PRId64 " x %" PRId64 " (%" PRId64
+           " voxels)\n",
+           "dims", info->dims[0], info->dims[1], info->dims[2],
+           f->measures.voxels);
+    printf("%-14s%s\n", "type", snow_type_name(info->type));
+    printf("%-14s%g x %g x %g%s%s\n", "spacing", info->spacing[0],
+           info->spacing[1], info->spacing[2], info->unit[0] ? " " : "",
+           info->unit);
+    if (info->medical) {
+        axis_letters(info, letters);
+        printf("%-14s%s (the sides that x, y and z point to)\n", "axes",
+               letters);
+    }
+    for (int i = 0; i < 3; i++)
+        printf("%-14s%12g %12g %12g %12g\n", i ? "" : "matrix",
+               info->matrix[i][0], info->matrix[i][1], info->matrix[i][2],
+               info->matrix[i][3]);
+    if (info->times > 1)
+        printf("%-14s%" PRId64 " (these values: step %" PRId64 ")\n", "times",
+               info->times, info->time);
+    if (info->slope < 1 || info->slope > 1 || info->intercept < 0 ||
+        info->intercept > 0)
+        printf("%-14svalue = %g * stored + %g\n", "scale", info->slope,
+               info->intercept);
+    if (*info->storage)
+        printf("%-14s%s\n", "storage", info->storage);
+    if (f->patient)
+        printf("%-14s%s\n", "patient", f->patient);
+}
+
+/* The look and the sparse ratios are those that render would use with the same
+ * options, so that info can be tried first. */
+static void print_values(const facts *f) {
+    const snow_volume_statistics *m = &f->measures;
+    printf("%-14s%" PRId64 " of %" PRId64 " voxels\n", "finite", m->finite,
+           m->voxels);
+    if (m->finite > 0)
+        printf("%-14s%g .. %g, mean %g\n", "values", m->min, m->max,
+               m->sum / (double)m->finite);
+    printf("%-14s%s\n", "look", snow_transfer_description(f->transfer));
+    for (size_t i = 0; i < f->threshold_count; i++)
+        printf("%-14s%5.1f %% at threshold %g\n", i ? "" : "sparse ratio",
+               100 * f->ratios[i], f->thresholds[i]);
+}
+
+/* Returns false if there are no values to count. */
+static bool count_values(const facts *f, size_t bins, uint64_t *counts) {
+    return f->measures.finite > 0 && f->measures.min < f->measures.max &&
+           snow_volume_histogram(f->volume, f->measures.min, f->measures.max,
+                                 bins, counts) == SNOW_STATUS_OK;
+}
+
+/* Bars grow with the logarithm: there may be a hundred times more air than
+ * anything else. */
+static void print_histogram(const facts *f) {
+    uint64_t counts[ROWS], most = 1;
+    if (!count_values(f, ROWS, counts))
+        return;
+    for (size_t i = 0; i < ROWS; i++)
+        most = counts[i] > most ? counts[i] : most;
+    double step = (f->measures.max - f->measures.min) / ROWS;
+    printf("histogram     from         voxels  (bars: logarithmic)\n");
+    for (size_t i = 0; i < ROWS; i++) {
+        char bar[BAR + 1];
+        double share = log1p((double)counts[i]) / log1p((double)most);
+        size_t length = (size_t)(BAR * share);
+        memset(bar, '#', length);
+        bar[length] = '\0';
+        printf("%18.6g %14" PRIu64 "%s%s\n", f->measures.min + (double)i * step,
+               counts[i], length ? "  " : "", bar);
+    }
+}
+
+/* --- JSON ------------------------------------------------------------------
+ */
+
+/* Scripts rely on the keys: dims has x first, matrix maps index to world, row
+ * by row. */
+static void set_geometry(json_t *object, const snow_volume_info *info) {
+    json_t *matrix = json_array();
+    for (int i = 0; i < 4; i++)
+        json_array_append_new(matrix, json_vector(info->matrix[i], 4));
+    json_object_set_new(object, "format", json_string(info->format));
+    json_object_set_new(object, "dims", json_sizes(info->dims, 3));
+    json_object_set_new(object, "type",
+                        json_string(snow_type_name(info->type)));
+    json_object_set_new(object, "spacing", json_vector(info->spacing, 3));
+    json_object_set_new(object, "unit", json_string(info->unit));
+    json_object_set_new(object, "matrix", matrix);
+    json_object_set_new(object, "medical", json_boolean(info->medical));
+    if (info->medical) {
+        char letters[4];
+        axis_letters(info, letters);
+        json_object_set_new(object, "axes", json_string(letters));
+    }
+    json_object_set_new(object, "slope", json_number(info->slope));
+    json_object_set_new(object, "intercept", json_number(info->intercept));
+    json_object_set_new(object, "times", json_integer(info->times));
+    json_object_set_new(object, "time", json_integer(info->time));
+    if (*info->storage)
+        json_object_set_new(object, "storage", json_string(info->storage));
+}
+
+/* min and max are null if no voxel is finite. */
+static void set_values(json_t *object, const snow_volume_statistics *m) {
+    json_object_set_new(object, "voxels", json_integer(m->voxels));
+    json_object_set_new(object, "finite", json_integer(m->finite));
+    json_object_set_new(object, "min", json_number(m->min));
+    json_object_set_new(object, "max", json_number(m->max));
+    json_object_set_new(object, "sum", json_number(m->sum));
+    json_object_set_new(object, "wsum", json_number(m->wsum));
+}
+
+/* Null if all values are equal or none is finite: the bins would have no
+ * width. */
+static json_t *histogram_json(const facts *f) {
+    uint64_t counts[BINS];
+    if (!count_values(f, BINS, counts))
+        return json_null();
+    json_t *list = json_array();
+    for (size_t i = 0; i < BINS; i++)
+        json_array_append_new(list, json_integer((json_int_t)counts[i]));
+    json_t *object = json_object();
+    json_object_set_new(object, "low", json_number(f->measures.min));
+    json_object_set_new(object, "high", json_number(f->measures.max));
+    json_object_set_new(object, "counts", list);
+    return object;
+}
+
+/* Ratios are 0 to 1 here and percent in the text. */
+static json_t *sparse_json(const facts *f) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < f->threshold_count; i++) {
+        json_t *row = json_object();
+        json_object_set_new(row, "threshold", json_number(f->thresholds[i]));
+        json_object_set_new(row, "ratio", json_number(f->ratios[i]));
+        json_array_append_new(list, row);
+    }
+    return list;
+}
+
+static int report_json(const facts *f) {
+    json_t *object = json_object();
+    set_geometry(object, f->info);
+    if (f->patient)
+        json_object_set_new(object, "patient", json_string(f->patient));
+    set_values(object, &f->measures);
+    json_object_set_new(object, "look",
+                        json_string(snow_transfer_description(f->transfer)));
+    json_object_set_new(object, "sparse_ratio", sparse_json(f));
+    json_object_set_new(object, "histogram", histogram_json(f));
+    return print_json(object);
+}
+
+static int report_text(const facts *f) {
+    print_geometry(f);
+    print_values(f);
+    print_histogram(f);
+    return finish_stdout();
+}
+
+/* No picture is made, but the sparse ratio needs the transfer function. */
+int cmd_info(const options *asked) {
+    snow_context *context = NULL;
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    int done = check_look(asked);
+    if (done == CONTINUE)
+        done = open_context(asked, &context);
+    if (done == CONTINUE)
+        done = open_input(context, asked, asked->operands[0], &volume);
+    if (done == CONTINUE)
+        done = open_look(context, asked, volume, &transfer);
+    if (done == CONTINUE) {
+        facts f = {.volume = volume, .transfer = transfer};
+        if (asked->patient && *snow_volume_patient(volume))
+            f.patient = snow_volume_patient(volume);
+        snow_status status = gather_facts(asked, &f);
+        if (status != SNOW_STATUS_OK)
+            done = fail_status(context, status);
+        else
+            done = asked->json ? report_json(&f) : report_text(&f);
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+    return done;
+}

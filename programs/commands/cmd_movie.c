@@ -1,0 +1,66 @@
+/* cmd_movie.c - the verb movie: one frame for each time step, all with the same
+ * camera and the same transfer function.
+ *
+ * A transfer function chosen for each step would make the brightness flicker,
+ * and steps could not be compared.  One chosen by the first step would cut off
+ * values that appear later.  So all steps are read twice: first for their
+ * values, then to be rendered. */
+#include "commands/commands.h"
+#include "movie/movie_steps.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <stdlib.h>
+
+static int check_movie(const options *asked) {
+    if (asked->operand_count == 0)
+        return fail_usage(
+            "movie: no input given; give snowglass movie INPUT... -o OUT");
+    return movie_check(asked);
+}
+
+/* Lists the steps.  The rank that writes also checks the output. */
+static int prepare_movie(const options *asked, shot_renderer *shots,
+                         step_files *files, shot_list *list, sequence **s) {
+    int done = check_movie(asked);
+    if (done == CONTINUE)
+        done = steps_find(asked, files);
+    done = launch_agree(done);
+    if (done == CONTINUE)
+        done = shots_open(asked, shots);
+    if (done != CONTINUE)
+        return done;
+    done = steps_list(files, shots, list);
+    if (done == CONTINUE && launch_talks())
+        done = movie_open(asked, list, s);
+    return launch_agree(done);
+}
+
+/* Chooses the transfer function, then makes the frames. */
+static int run_movie(const options *asked, shot_renderer *shots,
+                     step_files *files, shot_list *list, sequence **s,
+                     double begin) {
+    int done = prepare_movie(asked, shots, files, list, s);
+    if (done == CONTINUE)
+        done = steps_look(list, shots);
+    if (done != CONTINUE)
+        return done;
+    shots->count = list->count;
+    movie_renderer renderer = shots_renderer(shots);
+    return movie_run(*s, asked, list, &renderer, begin);
+}
+
+int cmd_movie(const options *asked) {
+    double begin = seconds_now();
+    shot_renderer shots = {.count = 0};
+    step_files files = {NULL, 0, 0};
+    shot_list list = {.shots = NULL};
+    sequence *s = NULL;
+    int done = run_movie(asked, &shots, &files, &list, &s, begin);
+    progress(asked, NULL);
+    movie_close(s);
+    shots_close(&shots);
+    free(list.shots);
+    steps_free(&files);
+    return done;
+}

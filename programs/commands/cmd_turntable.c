@@ -1,0 +1,73 @@
+/* cmd_turntable.c - the verb turntable: a movie around a volume.  The camera
+ * turns once about the up axis to its right, from the requested azimuth.  Frame
+ * i of N equals `render --azimuth A+360i/N` bit for bit.  Frame N would equal
+ * frame 0, so the movie plays in a loop. */
+#include "commands/commands.h"
+#include "movie/movie_render.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int make_shots(const options *asked, shot_list *out) {
+    out->count = asked->frames;
+    out->shots = calloc((size_t)out->count, sizeof *out->shots);
+    if (!out->shots) {
+        say("out of memory for a list of %lld frames; make fewer",
+            (long long)out->count);
+        return SNOW_STATUS_NO_MEMORY;
+    }
+    for (int64_t i = 0; i < out->count; i++)
+        out->shots[i] = (movie_shot){
+            .path = asked->operands[0],
+            .time = asked->time,
+            .azimuth = asked->azimuth + 360 * (double)i / (double)asked->frames,
+            .step = -1};
+    return CONTINUE;
+}
+
+/* An earlier input from a pipe cannot be compared with a new one. */
+static int check_turntable(const options *asked) {
+    if (asked->resume && strcmp(asked->operands[0], "-") == 0)
+        return fail_usage("--resume: standard input cannot be compared with "
+                          "the earlier run's; name a file");
+    int done = scene_check(asked);
+    return done == CONTINUE ? movie_check(asked) : done;
+}
+
+/* The rank that writes checks the outputs. */
+static int prepare_turntable(const options *asked, shot_list *list,
+                             shot_renderer *shots, sequence **s) {
+    int done = check_turntable(asked);
+    if (done == CONTINUE)
+        done = make_shots(asked, list);
+    if (done == CONTINUE && launch_talks())
+        done = movie_open(asked, list, s);
+    done = launch_agree(done);
+    if (done == CONTINUE)
+        done = shots_open(asked, shots);
+    if (done != CONTINUE)
+        return done;
+    shots->count = list->count;
+    shots->scene.turns = true;
+    /* here, where an interruption still ends at once */
+    return shots_volume(shots, &list->shots[0]);
+}
+
+int cmd_turntable(const options *asked) {
+    double begin = seconds_now();
+    shot_list list = {.shots = NULL};
+    sequence *s = NULL;
+    shot_renderer shots = {.count = 0};
+    int done = prepare_turntable(asked, &list, &shots, &s);
+    if (done == CONTINUE) {
+        movie_renderer renderer = shots_renderer(&shots);
+        done = movie_run(s, asked, &list, &renderer, begin);
+    }
+    movie_close(s);
+    shots_close(&shots);
+    free(list.shots);
+    return done;
+}

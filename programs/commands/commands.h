@@ -1,0 +1,73 @@
+/* commands.h - the functions of the verbs, and helpers that several verbs
+ * share.  Each verb returns an exit code. */
+#ifndef COMMANDS_H
+#define COMMANDS_H
+
+#include "options/options.h"
+
+int cmd_render(const options *asked);
+int cmd_turntable(const options *asked);
+int cmd_movie(const options *asked);
+int cmd_info(const options *asked);
+int cmd_phantom(const options *asked);
+int cmd_convert(const options *asked);
+int cmd_compare(const options *asked);
+int cmd_doctor(const options *asked);
+int cmd_tf(const options *asked);
+
+/* The name of an input in messages: its path, or "standard input" for "-". */
+const char *name_of_input(const char *path);
+
+/* The options that describe an input, as the library takes them; the look's
+ * texts stay those of the options. */
+snow_volume_options data_options(const options *asked);
+snow_look look_options(const options *asked);
+
+/* Opens the input volume: a file, phantom:NAME, or "-" for standard input.
+ * Returns CONTINUE or an exit code. */
+int open_input(snow_context *context, const options *asked, const char *path,
+               snow_volume **out);
+
+/* Loads the file of --tf, if there is one, into the options; the second
+ * function frees it.  Returns CONTINUE or an exit code. */
+int look_load(options *asked);
+void look_unload(options *asked);
+
+/* Writes a volume to the output file and reports it.  Returns an exit code. */
+int save_volume(snow_context *context, const options *asked,
+                const snow_volume *volume);
+
+/* Refuses look options that contradict each other, before a volume is read.
+ * Returns CONTINUE or an exit code. */
+int check_look(const options *asked);
+
+/* Makes the transfer function that the options request.  Returns CONTINUE or an
+ * exit code. */
+int open_look(snow_context *context, const options *asked,
+              const snow_volume *volume, snow_transfer **out);
+
+/* Fills the settings from the options, except the opacity length, which depends
+ * on the volume's unit. */
+void fill_settings(const options *asked, snow_settings *out);
+
+/* Make the settings and the view that the options request.  Return CONTINUE or
+ * an exit code. */
+int make_settings(const options *asked, const snow_volume_info *info,
+                  snow_settings *out);
+int make_view(snow_context *context, const options *asked,
+              const snow_volume_info *info, snow_view *out);
+
+/* Refuses --depth in modes without depth.  Returns CONTINUE or an exit code. */
+int check_depth_mode(const options *asked);
+
+/* The form of the picture file that the options request. */
+snow_image_options picture_form(const options *asked);
+
+/* Refuses settings that contradict each other, before a volume is read.
+ * Returns CONTINUE or an exit code. */
+int check_settings(const options *asked);
+
+/* "raw 256x256x110 uint8, spacing 1x1x1 mm". */
+void describe_volume(const snow_volume_info *info, char *out, size_t size);
+
+#endif

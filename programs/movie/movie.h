@@ -1,0 +1,95 @@
+/* movie.h - many pictures as one movie: what turntable and movie share.
+ *
+ * A sequence is a list of shots.  They are rendered one after another; with
+ * several ranks the next is rendered while one is combined.  Meanwhile other
+ * threads compress and write the frames before (frames.h).  Every frame becomes
+ * a file, complete or absent:
+ *
+ *   -o f_%04d.png    f_0000.png, f_0001.png, ...      the result itself
+ *   -o spin.mp4      spin.mp4.frames/000000.png, ...  until the movie is
+ * complete; ffmpeg gets the same bytes meanwhile
+ *
+ * A record beside the frames holds what they were made with and which are done
+ * (movie_record.h), so that --resume can continue after any interruption.
+ *
+ * The renderer is a record of functions: one process, or many ranks of which
+ * only the first writes. */
+#ifndef MOVIE_H
+#define MOVIE_H
+
+#include "options/options.h"
+#include "picture/marks.h"
+
+/* A frame to be made. */
+typedef struct movie_shot {
+    const char *path; /* of the volume */
+    int64_t time;     /* the step in that file */
+    double azimuth;   /* of the camera, in degrees */
+    int64_t step;     /* the step number to show, -1: none */
+} movie_shot;
+
+typedef struct shot_list {
+    movie_shot *shots;
+    int64_t count; /* at least 1 */
+    bool together; /* all frames depend on all shots, by the look: a changed
+                      list is another movie */
+} shot_list;
+
+/* The figures of one or more frames and of the renderer. */
+typedef struct render_report render_report;
+
+/* The renderer.  All ranks call the functions in the same order with the same
+ * shots, and all get the same result. */
+typedef struct movie_renderer {
+    void *self;
+
+    /* Begin to render a shot, and finish the one begun first; *image belongs to
+     * the caller, and is NULL on ranks that do not write.  Return CONTINUE, or
+     * an exit code after the error was printed. */
+    int (*begin)(void *self, const movie_shot *shot);
+    int (*finish)(void *self, snow_image **image);
+    int ahead; /* shots to be begun before the one that is finished: 0 or 1 */
+
+    /* The depths of the last picture; NULL if none were requested.  Called on
+     * the rank that writes. */
+    const snow_image *(*depth)(void *self);
+
+    /* The figures of the last picture; the caller fills in their `image`.
+     * Called on the rank that writes. */
+    void (*report)(void *self, render_report *out);
+
+    /* The marks of the pictures, known after the first one.  Called on the rank
+     * that writes. */
+    void (*marks)(void *self, picture_marks *out);
+
+    /* Sends the word of the rank that writes to all.  NULL if there is one
+     * rank. */
+    int (*share)(void *self, int word);
+
+    bool writes; /* this rank writes and prints */
+    int ranks;
+} movie_renderer;
+
+typedef struct sequence sequence;
+
+/* Refuses options that contradict each other.  Returns CONTINUE or an exit
+ * code.
+ */
+int movie_check(const options *asked);
+
+/* Opens the output: checks whether it can be written and what an earlier run
+ * left there.  Writes nothing yet, but locks what will be resumed.  `list` and
+ * `asked` must outlive the sequence.  Only for the rank that writes.  Returns
+ * CONTINUE or an exit code. */
+int movie_open(const options *asked, const shot_list *list, sequence **out);
+
+/* Makes all frames that are missing, the movie from them, and the figures of
+ * --stats.  Ranks that do not write pass NULL for `s`.  Returns an exit
+ * code. */
+int movie_run(sequence *s, const options *asked, const shot_list *list,
+              const movie_renderer *renderer, double begin);
+
+/* Accepts NULL. */
+void movie_close(sequence *s);
+
+#endif

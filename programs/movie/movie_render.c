@@ -1,0 +1,144 @@
+/* movie_render.c - the renderer of a sequence.  It keeps a volume as long as
+ * shots use it, one transfer function, and one frame whose buffers and encoding
+ * are reused. */
+#include "movie/movie_render.h"
+#include "commands/commands.h"
+#include "picture/warnings.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
+
+int shots_open(const options *asked, shot_renderer *out) {
+    *out = (shot_renderer){.count = 0};
+    return scene_new(asked, &out->scene);
+}
+
+void shots_close(shot_renderer *shots) {
+    scene_free(&shots->scene);
+}
+
+/* A volume elsewhere in the world would move the camera, and the movie would
+ * jump. */
+int shots_check(shot_renderer *shots, const char *path,
+                const snow_volume_info *info) {
+    const snow_volume_info *first = &shots->grid;
+    if (shots->whole_files && info->times > 1) {
+        say("%s: holds %" PRId64
+            " time steps; give this file alone for a movie of them, or --time "
+            "to pick one of each file",
+            path, info->times);
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    if (first->dims[0] == 0) {
+        shots->grid = *info;
+        return CONTINUE;
+    }
+    if (memcmp(info->dims, first->dims, sizeof info->dims) != 0) {
+        say("%s: has %" PRId64 "x%" PRId64 "x%" PRId64
+            " voxels, but the first step %" PRId64 "x%" PRId64 "x%" PRId64
+            "; all steps of a movie need the same grid",
+            path, info->dims[0], info->dims[1], info->dims[2], first->dims[0],
+            first->dims[1], first->dims[2]);
+        return SNOW_STATUS_BAD_INPUT;
+    }
+    if (memcmp(info->matrix, first->matrix, sizeof info->matrix) == 0)
+        return CONTINUE;
+    say("%s: lies elsewhere in the world than the first step; all steps of a "
+        "movie need the same grid",
+        path);
+    return SNOW_STATUS_BAD_INPUT;
+}
+
+int shots_volume(shot_renderer *shots, const movie_shot *shot) {
+    scene *s = &shots->scene;
+    if (s->volume && strcmp(s->path, shot->path) == 0 &&
+        shots->time == shot->time)
+        return CONTINUE;
+    if (!shots->drawn)
+        progress(s->asked, "reading");
+    shots->time = shot->time;
+    int done = scene_open(s, shot->path, shot->time);
+    return done == CONTINUE
+               ? shots_check(shots, name_of_input(shot->path), &s->whole)
+               : done;
+}
+
+/* Prints the settings that were chosen automatically, as render does, for all
+ * frames. */
+static void report_choices(const shot_renderer *shots, snow_image *image) {
+    const options *asked = shots->scene.asked;
+    char text[1024];
+    scene_choices(&shots->scene, text, sizeof text);
+    if (asked->verbosity >= 0)
+        say("%s%s; %" PRId64 " frames of %lldx%lld to %s", text,
+            shots->painted.words, shots->count, (long long)asked->size[0],
+            (long long)asked->size[1], asked->output);
+    /* An empty first step says nothing about later ones, so only a turntable
+     * warns. */
+    warn_picture(&shots->scene, shots->scene.turns ? image : NULL);
+    marks_report(asked);
+}
+
+static int begin(void *self, const movie_shot *shot) {
+    shot_renderer *shots = self;
+    int done = shots_volume(shots, shot);
+    shots->scene.left = shots->count - shots->begun++;
+    return done == CONTINUE ? scene_begin(&shots->scene, shot->azimuth) : done;
+}
+
+static int finish_shot(void *self, snow_image **image) {
+    shot_renderer *shots = self;
+    int done = scene_finish(&shots->scene, image);
+    if (done == CONTINUE)
+        done =
+            paint_values(shots->scene.asked, shots->scene.context,
+                         shots->scene.transfer, true, image, &shots->painted);
+    if (done != CONTINUE)
+        return done;
+    if (!shots->drawn)
+        report_choices(shots, *image);
+    shots->drawn = true;
+    return CONTINUE;
+}
+
+static const snow_image *depth(void *self) {
+    const shot_renderer *shots = self;
+    return shots->scene.asked->depth ? snow_frame_depth(shots->scene.frame)
+                                     : NULL;
+}
+
+static void report_picture(void *self, render_report *out) {
+    const shot_renderer *shots = self;
+    *out = scene_report(&shots->scene);
+}
+
+static void marks(void *self, picture_marks *out) {
+    const shot_renderer *shots = self;
+    const scene *s = &shots->scene;
+    *out = (picture_marks){s->asked,
+                           s->drawn.whole,
+                           s->view,
+                           s->transfer,
+                           {shots->painted.range[0], shots->painted.range[1]}};
+}
+
+static int share_word(void *self, int word) {
+    (void)self;
+    return launch_share(word);
+}
+
+movie_renderer shots_renderer(shot_renderer *shots) {
+    return (movie_renderer){.self = shots,
+                            .begin = begin,
+                            .finish = finish_shot,
+                            .ahead = launch_ranks() > 1,
+                            .depth = depth,
+                            .report = report_picture,
+                            .marks = marks,
+                            .share = share_word,
+                            .writes = launch_talks(),
+                            .ranks = launch_ranks()};
+}

@@ -1,0 +1,38 @@
+/* movie_render.h - the frames of a sequence, rendered by this process or by
+ * all ranks (render_state.h). */
+#ifndef MOVIE_RENDER_H
+#define MOVIE_RENDER_H
+
+#include "movie/movie.h"
+#include "picture/paint.h"
+#include "picture/render_state.h"
+
+typedef struct shot_renderer {
+    scene scene;
+    int64_t count;         /* number of frames, for messages */
+    int64_t begun;         /* frames begun */
+    int64_t time;          /* time step of the present volume */
+    snow_volume_info grid; /* grid of the first volume */
+    bool whole_files; /* a file with several time steps is an error: it is one
+                       * of many, and no step was selected */
+    bool drawn;       /* a picture has been made, and choices printed */
+    paint_given painted; /* how a picture of values was painted */
+} shot_renderer;
+
+/* Returns CONTINUE or an exit code. */
+int shots_open(const options *asked, shot_renderer *out);
+void shots_close(shot_renderer *shots);
+
+/* Checks that a volume is one time step, on the same grid as the first one.
+ * Returns CONTINUE or an exit code. */
+int shots_check(shot_renderer *shots, const char *path,
+                const snow_volume_info *info);
+
+/* Opens a shot's volume as the present one.  Returns CONTINUE or an exit
+ * code. */
+int shots_volume(shot_renderer *shots, const movie_shot *shot);
+
+/* The functions for movie_run; valid as long as the renderer. */
+movie_renderer shots_renderer(shot_renderer *shots);
+
+#endif

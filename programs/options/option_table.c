@@ -1,0 +1,354 @@
+/* option_table.c - every option, verb and topic of the command line, as data.
+ *
+ * A row is one option: name, letter, argument, topic, verbs, reader, field,
+ * range, choices that are not built yet, help.  A row made with LATER is
+ * planned but not built.  It is refused by name, with its text as the advice,
+ * so that a script for a later version fails at once and with a reason.
+ *
+ * The order of the rows is the order of the help.  Planned verbs and topics are
+ * rows as well. */
+#include "options/parse.h"
+
+#include <stddef.h>
+
+#define FIELD(name) offsetof(options, name)
+#define LATER(name, letter, argument, topic, advice) \
+    { name, letter, argument, topic, RENDER, NULL, 0, 0, 0, "", advice }
+
+/* Short names for sets of verbs, since the rows are dense. */
+enum {
+    TURNTABLE = VERB_TURNTABLE,
+    MOVIE = VERB_MOVIE,
+    MOVIES = VERB_TURNTABLE | VERB_MOVIE,
+    RENDER = VERB_RENDER | MOVIES, /* all verbs that render */
+    INFO = VERB_INFO,
+    PHANTOM = VERB_PHANTOM,
+    COMPARE = VERB_COMPARE,
+    DOCTOR = VERB_DOCTOR,
+    CONVERT = VERB_CONVERT,
+    TF = VERB_TF,
+    LOOKED = RENDER | VERB_INFO, /* all verbs that use a look */
+    INPUT = LOOKED | CONVERT,    /* all verbs that read a volume */
+    EVERY = INPUT | VERB_PHANTOM | VERB_COMPARE | VERB_DOCTOR | VERB_HELP | TF
+};
+
+/* clang-format off */
+const option_row option_table[] = {
+    {"output", 'o', "FILE", TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
+     read_text,
+     FIELD(output), 0, 0, "",
+     "output file. Picture: .png or .webp; .npy, .exr, .tif or .pfm for float "
+     "pixels; - writes PNG to stdout. Movie: .mp4, .webm, .gif or .webp, or a "
+     "pattern such as f_%04d.png for single frames. Volume: .nrrd, .nii, "
+     ".nii.gz, .mha, .npy, .raw or .raw.gz"},
+    {"size", 's', "WxH", TOPIC_OUTPUT, RENDER, read_size, FIELD(size), 0, 0, "",
+     "picture size in pixels (default 512x512)"},
+    {"background", 0, "COLOR|none", TOPIC_OUTPUT, RENDER, read_color,
+     FIELD(background), 0, 0, "",
+     "background colour of a PNG, WebP or movie: a name, #rgb, #rrggbb, or "
+     "r,g,b from 0 to 1 (default none: transparent, but black in movies by "
+     "ffmpeg)"},
+    {"bits", 0, "8|16", TOPIC_OUTPUT, RENDER, read_choice, FIELD(bits), 0, 0,
+     "", "bits per channel of a PNG (default 8)"},
+    {"overwrite", 'y', NULL, TOPIC_OUTPUT, RENDER | PHANTOM | CONVERT | TF,
+     read_flag,
+     FIELD(overwrite), 0, 0, "",
+     "replace existing files of --output, --depth and --stats (default: "
+     "refuse)"},
+    {"depth", 0, "FILE", TOPIC_OUTPUT, RENDER, read_text, FIELD(depth), 0,
+     0, "",
+     "file for the depth of modes over and iso: .npy, .pfm, .exr or .tif. "
+     "Depth is the distance in world units along the line of sight, from the "
+     "target's plane to where opacity passes 1/2, or to the surface; NaN "
+     "elsewhere. The same .exr as --output adds it as channel Z; frames of a "
+     "movie need this"},
+
+    {"mode", 'm', "over|mip|minip|mean|sum|iso", TOPIC_MODE, RENDER,
+     read_choice, FIELD(mode), 0, 0, "",
+     "how samples along a ray make a pixel: over composites them, mip and "
+     "minip take the largest and smallest value, mean and sum average and add "
+     "them, iso shows the surface of --iso. All modes but over use every "
+     "voxel. In float files (.npy, .pfm, .exr, .tif) mean and sum keep data "
+     "units (default over)"},
+    {"iso", 0, "VALUE", TOPIC_MODE, RENDER, read_real, FIELD(iso), 0, 0, "",
+     "data value of the surface in mode iso"},
+
+    {"threshold", 0, "T", TOPIC_SPARSE, LOOKED, read_real, FIELD(threshold), 0,
+     255, "",
+     "skip voxels with an opacity of T or less, from 0 to 255; the others are "
+     "interesting (default 0; info lists 0, 10 and 30)"},
+    {"encoding", 0, "auto|crs|bitmap|rle", TOPIC_SPARSE, RENDER, read_choice,
+     FIELD(encoding), 0, 0, "",
+     "how the positions of interesting voxels are stored (default auto)"},
+    {"method", 0, "auto|original|footprint|shear-warp", TOPIC_SPARSE, RENDER,
+     read_method, FIELD(method), 0, 0, "",
+     "rendering method. shear-warp: the fastest; sheared is its old name; "
+     "footprint: splats interesting voxels straight onto the picture; "
+     "original: the same with every voxel (default auto: shear-warp)"},
+
+    {"kernel", 0, "tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
+     FIELD(kernel), 0, 0, "", "reconstruction kernel (default bspline)"},
+    {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
+     2, 9, "",
+     "support of the kernel in voxels, 2 to 9 (default 2 for tent and box, "
+     "otherwise 4)"},
+
+    {"preset", 0, "NAME", TOPIC_LOOK, LOOKED, read_preset, FIELD(preset), 0, 0,
+     "",
+     "a built-in transfer function (default: made from the histogram)"},
+    {"colormap", 'c', "NAME", TOPIC_LOOK, LOOKED, read_colormap,
+     FIELD(colormap), 0, 0, "", "colours along the range (default grey, or the preset's)"},
+    {"opacity", 0, "V:O,V:O", TOPIC_LOOK, LOOKED, read_points, FIELD(opacities),
+     0, 0, "", "opacity from 0 to 1 at data values, linear in between"},
+    {"gradient-opacity", 0, "G:O,G:O", TOPIC_LOOK, LOOKED, read_gradient_points,
+     FIELD(gradient_opacities), 0, 0, "",
+     "scale the opacity by gradient magnitude (data units per mm): factors "
+     "from 0 to 1, linear in between; 0:0,20:1 shows boundaries and hides "
+     "uniform regions (default: none)"},
+    {"window", 'w', "W", TOPIC_LOOK, LOOKED, read_real, FIELD(window), 1e-300,
+     1e300, "", "width of the range of data values; needs --level"},
+    {"level", 0, "L", TOPIC_LOOK, LOOKED, read_real, FIELD(level), 0, 0, "",
+     "centre of the range of data values; needs --window"},
+    {"range", 0, "LO,HI|pLO,pHI|full", TOPIC_LOOK, INPUT, read_range,
+     FIELD(range), 0, 0, "",
+     "range that the look is spread over: data values, percentiles of the "
+     "finite voxels, or all values (default: from the histogram, or the "
+     "preset's or file's own). With convert: two values or full, spread over "
+     "the type of --as"},
+    {"opacity-unit", 0, "voxel|mm", TOPIC_LOOK, RENDER, read_choice,
+     FIELD(opacity_unit), 0, 0, "",
+     "length over which an opacity applies: the smallest voxel spacing or one "
+     "millimetre (default voxel)"},
+    {"shade", 0, "phong|none", TOPIC_LOOK, RENDER, read_choice, FIELD(shade), 0,
+     0, "", "shading of the voxels (default phong)"},
+    {"light", 0, "AZ,EL", TOPIC_LOOK, RENDER, read_directions, FIELD(light), 0,
+     0, "",
+     "direction of the light: degrees to the right of the camera and up "
+     "(default 0,0)"},
+    {"ambient", 0, "A", TOPIC_LOOK, RENDER, read_real, FIELD(ambient), 0, 1, "",
+     "strength of the ambient light (default 0.2)"},
+    {"diffuse", 0, "D", TOPIC_LOOK, RENDER, read_real, FIELD(diffuse), 0, 1, "",
+     "strength of the diffuse light (default 0.7)"},
+    {"specular", 0, "S", TOPIC_LOOK, RENDER, read_real, FIELD(specular), 0, 1,
+     "", "strength of the specular light (default 0.2)"},
+    {"shininess", 0, "N", TOPIC_LOOK, RENDER, read_real, FIELD(shininess), 0,
+     1000, "", "exponent of the specular light (default 20)"},
+    {"tf", 0, "FILE", TOPIC_LOOK, LOOKED, read_text, FIELD(tf), 0, 0, "",
+     "transfer function from a file, in place of a preset: Snowglass .json or "
+     ".csv, 3D Slicer .vp or .xml, ParaView or niivue .json, Amrvis .pal; "
+     "FILE#NAME selects one of several"},
+    {"log", 0, NULL, TOPIC_LOOK, LOOKED, read_flag, FIELD(log), 0, 0, "",
+     "logarithmic scale for values; values of 0 and below are transparent"},
+
+    {"quality", 0, "draft|normal|high", TOPIC_QUALITY, RENDER, read_choice,
+     FIELD(quality), 0, 0, "",
+     "draft: one intermediate pixel per voxel and linear filters; normal: two "
+     "pixels and cubic filters; high: also interpolates between slices; "
+     "affects method shear-warp (default normal)"},
+
+    {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_view, FIELD(view), 0, 0, "",
+     "side that the camera is on (default anterior for a file with a medical "
+     "orientation, otherwise +z)"},
+    {"azimuth", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(azimuth),
+     0, 0, "", "move the camera to its right around the up axis (default 0)"},
+    {"elevation", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real,
+     FIELD(elevation), 0, 0, "", "then move the camera up (default 0)"},
+    {"roll", 0, "DEGREES", TOPIC_CAMERA, RENDER, read_real, FIELD(roll), 0, 0,
+     "", "then turn the camera clockwise (default 0)"},
+    {"zoom", 0, "Z", TOPIC_CAMERA, RENDER, read_real, FIELD(zoom), 1e-6, 1e6,
+     "", "magnification, 1e-6 to 1e6; 1 shows the whole volume (default 1)"},
+    {"perspective", 0, "[FOV]", TOPIC_CAMERA, RENDER, read_fov, FIELD(fov),
+     SNOW_FOV_MIN, SNOW_FOV_MAX, "",
+     "perspective projection with a field of view over the shorter side, in "
+     "degrees up to 120; 30 if FOV is left out (default: parallel projection)"},
+    {"position", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(position),
+     0, 0, "",
+     "camera position in world coordinates (mm), in place of --view; a "
+     "parallel projection uses only the direction (default: from --view)"},
+    {"target", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(target), 0,
+     0, "",
+     "point that the camera looks at and turns around (default: the centre of "
+     "the volume)"},
+    {"up", 0, "X,Y,Z", TOPIC_CAMERA, RENDER, read_place, FIELD(up), 0, 0, "",
+     "direction that is up in the picture (default: the view's; for a "
+     "--position 0,0,1, or 0,1,0 when looking along z)"},
+
+    {"no-labels", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(no_labels), 0,
+     0, "",
+     "omit the orientation letters R L A P S I at the edges (default: drawn if "
+     "the file has a medical orientation, but never into float files)"},
+    {"legend", 0, NULL, TOPIC_LABELS, RENDER, read_flag, FIELD(legend), 0, 0,
+     "",
+     "draw a colour bar with values and the opacity curve, and in a parallel "
+     "projection a scale bar"},
+    {"time-label", 0, NULL, TOPIC_LABELS, MOVIE, read_flag, FIELD(time_label),
+     0, 0, "",
+     "draw the number of the time step, from the file's name or in the file"},
+
+    {"dims", 0, "XxYxZ", TOPIC_DATA, INPUT | PHANTOM, read_dims, FIELD(dims), 0,
+     0, "", "voxels of raw data or of a phantom, x fastest"},
+    {"type", 0, "TYPE", TOPIC_DATA, INPUT, read_type, FIELD(type), 0, 0, "",
+     "voxel type of raw data: int8 to int64, uint8 to uint64, float32 or "
+     "float64"},
+    {"as", 0, "TYPE", TOPIC_DATA, CONVERT, read_type, FIELD(as), 0, 0, "",
+     "voxel type to convert to, by rounding; with --range, that range is "
+     "spread over the whole type (default: the input's, or the smallest that "
+     "holds the values)"},
+    {"spacing", 0, "XxYxZ", TOPIC_DATA, INPUT, read_spacing, FIELD(spacing), 0,
+     0, "", "voxel size, in place of the file's (default for raw data 1x1x1)"},
+    {"endian", 0, "little|big", TOPIC_DATA, INPUT, read_choice, FIELD(endian),
+     0, 0, "", "byte order of raw data (default little)"},
+    {"offset", 0, "BYTES", TOPIC_DATA, INPUT, read_count, FIELD(offset), 0, 0,
+     "", "bytes to skip before the voxels of raw data (default 0)"},
+    {"time", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(time), 0, 9e15, "",
+     "time step of a file with several, from 0 (default 0; movie: all)"},
+    {"dataset", 0, "PATH", TOPIC_DATA, INPUT, read_text, FIELD(dataset), 0, 0,
+     "",
+     "array to read from a file with several: path or name (default: the only "
+     "or first one)"},
+    {"channel", 0, "N", TOPIC_DATA, INPUT, read_integer, FIELD(channel), 0,
+     9e15, "", "channel of voxels with several values, from 0 (default 0)"},
+    {"crop", 0, "X0:X1,Y0:Y1,Z0:Z1", TOPIC_DATA, INPUT, read_crop, FIELD(crop),
+     0, 0, "",
+     "read only this box of the volume: first voxel and one past the last; an "
+     "omitted number means the end of the volume"},
+    {"series", 0, "UID|N", TOPIC_DATA, INPUT, read_text, FIELD(series), 0, 0,
+     "",
+     "DICOM series to read, by UID or by its number in the list (default: the "
+     "largest)"},
+    {"mask", 0, "FILE", TOPIC_DATA, INPUT, read_text, FIELD(mask), 0, 0, "",
+     "volume on the same grid; where it is 0 or NaN, voxels of the input are "
+     "removed: neither shown nor counted (default: none)"},
+    {"labels", 0, "LIST", TOPIC_DATA, INPUT, read_labels, FIELD(labels), 0, 0,
+     "",
+     "values of the mask that are kept: numbers and ranges such as 1,4-7 "
+     "(default: all but 0)"},
+    {"clip", 0, "A,B,C,D", TOPIC_DATA, INPUT, read_clip, FIELD(clip), 0, 0, "",
+     "remove the voxels beyond a plane in world coordinates, where A x + B y + "
+     "C z > D; up to six planes, in one list (default: none)"},
+
+    {"threads", 'j', "N", TOPIC_RUN, RENDER, read_integer, FIELD(threads), 1,
+     4096, "",
+     "number of threads; the picture does not depend on it (default: all "
+     "processors available to the process)"},
+    {"deterministic", 0, NULL, TOPIC_RUN, RENDER, read_flag,
+     FIELD(deterministic), 0, 0, "",
+     "compute with scalar code, which gives the same bits on every machine "
+     "(the number of threads never changes the bits)"},
+    {"isa", 0, "auto|scalar|avx2|avx512|neon", TOPIC_RUN, RENDER, read_choice,
+     FIELD(isa), 0, 0, "",
+     "instruction set to use (default auto: the best of this machine)"},
+    {"progress", 0, "auto|always|never", TOPIC_RUN, RENDER, read_choice,
+     FIELD(progress), 0, 0, "",
+     "progress on stderr. auto: a status line or bar on a terminal, otherwise "
+     "a line every 10 s; always: without a terminal also a line for each "
+     "stage; never: none (default auto)"},
+    {"stats", 0, "FILE", TOPIC_RUN, RENDER, read_text, FIELD(stats), 0, 0, "",
+     "write timings and other figures as JSON; - is stdout; replacing a file "
+     "needs --overwrite"},
+    {"verbose", 'v', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), 1,
+     0, "",
+     "print timings; render also prints bytes and the time of each stage"},
+    {"quiet", 'q', NULL, TOPIC_RUN, EVERY, read_constant, FIELD(verbosity), -1,
+     0, "", "print errors only"},
+    {"memory", 0, "SIZE", TOPIC_RUN, RENDER, read_bytes, FIELD(memory), 0, 0,
+     "",
+     "memory limit of a process for voxels, encodings and pictures, such as "
+     "800M or 4G. A larger volume stays in its file and is read in slabs; if "
+     "that does not fit either, the exit code is 5 (default: the free memory; "
+     "-v prints the need)"},
+    {"config", 0, "FILE", TOPIC_RUN, LOOKED, read_text, FIELD(config), 0, 0, "",
+     "read options from a JSON file whose keys are long option names, and "
+     "input; options on the command line have priority"},
+    {"save-config", 0, "FILE", TOPIC_RUN, RENDER, read_text,
+     FIELD(save_config), 0, 0, "",
+     "write the options to a JSON file that gives the same picture with "
+     "--config; --depth is included, --stats and other reports are not; - is "
+     "stdout; replacing a file needs --overwrite"},
+
+    {"frames", 0, "N", TOPIC_MORE, TURNTABLE, read_integer, FIELD(frames), 1,
+     1000000, "", "number of frames in one turn (default 120)"},
+    {"fps", 0, "N", TOPIC_MORE, MOVIES, read_real, FIELD(fps), 0.01, 1000, "",
+     "frames per second of the movie (default 25)"},
+    {"resume", 0, NULL, TOPIC_MORE, MOVIES, read_flag, FIELD(resume), 0, 0, "",
+     "continue an interrupted run and keep its finished frames; all other "
+     "options must be the same"},
+    {"cut", 0, "auto|equal|counted|bricks|measured", TOPIC_RANKS, RENDER,
+     read_choice, FIELD(cut), 0, 0, "",
+     "how the volume is partitioned: equal slabs as in the paper; counted or "
+     "bricks: slabs or bricks with equal numbers of interesting voxels; "
+     "measured: as auto, and a turntable repartitions slabs by rendering time "
+     "(default auto: counted, or bricks where slabs would be thin)"},
+    {"combine", 0, "auto|tree|swap|direct|radix", TOPIC_RANKS, RENDER,
+     read_choice, FIELD(combine), 0, 0, "",
+     "how the pictures of the ranks are combined: binary tree as in the paper, "
+     "binary swap, direct send, or radix-k (default auto: by ranks and size)"},
+    {"radix", 0, "K", TOPIC_RANKS, RENDER, read_integer, FIELD(radix), 2, 64,
+     "", "ranks per group of --combine radix (default: chosen)"},
+    {"timeout", 0, "SECONDS", TOPIC_RANKS, RENDER, read_real, FIELD(timeout), 0,
+     1e9, "",
+     "end the job if a rank neither sends nor waits for this long, and name "
+     "the rank; 0 waits forever (default 300)"},
+
+    {"json", 0, NULL, TOPIC_MORE, INFO | COMPARE | DOCTOR | TF, read_flag,
+     FIELD(json), 0, 0, "", "print one JSON object"},
+    {"patient", 0, NULL, TOPIC_MORE, INFO, read_flag, FIELD(patient), 0, 0, "",
+     "also print the patient's name, if the file has one"},
+    {"seed", 0, "N", TOPIC_MORE, PHANTOM, read_count, FIELD(seed), 0, 0, "",
+     "seed of the random parts of a phantom (default 0)"},
+    {"tolerance", 0, "X", TOPIC_MORE, COMPARE, read_tolerance, FIELD(tolerance),
+     0, 1, "",
+     "largest difference that counts as equal, from 0 to 1; quotients such as "
+     "1/255 are allowed (default 0)"},
+    {"help", 'h', "TOPIC", TOPIC_MORE, EVERY, read_flag, FIELD(help), 0, 0, "",
+     "print this help, or that of a topic or verb"},
+    {"version", 0, NULL, TOPIC_MORE, EVERY, read_flag, FIELD(version), 0, 0, "",
+     "print the version"},
+    {.name = NULL},
+};
+
+/* A verb without a bit is planned but not built; its last text is the
+ * advice. */
+const verb_row verb_table[] = {
+    {"render", VERB_RENDER, 1, "INPUT -o OUT",
+     "make one picture; the default verb"},
+    {"turntable", VERB_TURNTABLE, 1, "INPUT -o OUT [--frames N]",
+     "make a movie around the volume"},
+    {"movie", VERB_MOVIE, -1, "INPUT...|run_%04d.nrrd -o OUT",
+     "make a movie over time steps"},
+    {"info", VERB_INFO, 1, "INPUT [--json]",
+     "print geometry, type, range, histogram and sparse ratio"},
+    {"phantom", VERB_PHANTOM, 1, "NAME -o OUT", "write a built-in test volume"},
+    {"convert", VERB_CONVERT, 1, "IN -o OUT [--as TYPE] [--crop ...]",
+     "convert a volume to another format"},
+    {"compare", VERB_COMPARE, 2, "A B [--tolerance X]",
+     "print largest difference, PSNR and SSIM of two pictures"},
+    {"bench", VERB_BENCH, -1, "table1|table2|table3|speed",
+     "run the benchmarks of the paper and of speed"},
+    {"doctor", VERB_DOCTOR, 0, "[--json]",
+     "print what this build and this machine can do"},
+    {"help", VERB_HELP, -1, "[TOPIC|VERB]", "print help on a topic or a verb"},
+    {"tf", VERB_TF, -1,
+     "list | show NAME|FILE [-o OUT.png] | convert IN -o OUT",
+     "list, show and convert transfer functions"},
+    {"serve", 0, 0, "", "use render to write pictures"},
+    {.name = NULL},
+};
+
+/* The topics of `snowglass help TOPIC`. */
+const topic_row topic_table[] = {
+    {"output", "picture file: size, background, depth"},
+    {"mode", "how the samples along a ray make a pixel"},
+    {"sparse", "interesting voxels, encodings, methods"},
+    {"kernel", "reconstruction kernel and its support"},
+    {"look", "transfer function, colours, shading"},
+    {"quality", "draft, normal or high: speed or quality"},
+    {"camera", "view, angles, zoom, perspective"},
+    {"labels", "orientation letters, colour bar, time step"},
+    {"data", "which data to read: raw files, masks, crops"},
+    {"run", "threads, memory, progress, verbosity"},
+    {"ranks", "rendering on several machines with MPI"},
+    {"more", "options of single verbs"},
+    {NULL, NULL},
+};
+/* clang-format on */

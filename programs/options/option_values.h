@@ -1,0 +1,78 @@
+/* option_values.h - the values of options, parsed strictly from text.
+ *
+ * Numbers are decimal, finite and end where the text ends; nothing is rounded
+ * to fit.  A function that returns false leaves its result unchanged. */
+#ifndef VALUES_H
+#define VALUES_H
+
+#include <snowglass/snowglass.h>
+
+/* Size of the end of an error message, see options.h. */
+#define WRONG_BYTES 1024
+
+#define POINTS_MAX 256
+
+/* A list of control points of the opacity. */
+typedef struct point_list {
+    snow_opacity_point points[POINTS_MAX];
+    size_t count;
+} point_list;
+
+typedef struct range_value {
+    snow_range kind;
+    double low, high;
+} range_value;
+
+/* A position or a direction in the world. */
+typedef struct place_value {
+    bool given;
+    double at[3];
+} place_value;
+
+typedef struct color_value {
+    bool given; /* false: transparent */
+    double rgb[3];
+} color_value;
+
+bool value_real(const char *text, double *out);
+bool value_integer(const char *text, int64_t *out);
+bool value_count(const char *text, uint64_t *out);
+
+/* Parses bytes: digits, or a number and K, M, G or T (of 1024), optionally
+ * followed by B or iB; rounded down to whole bytes. */
+bool value_bytes(const char *text, uint64_t *out);
+
+/* A number, or a quotient of two such as 1/255. */
+bool value_quotient(const char *text, double *out);
+
+/* The most numbers that an option takes: clip planes. */
+#define VALUES_MOST (4 * SNOW_CLIPS_MAX)
+
+/* `count` numbers between single characters `separator`: "256x256x110"; up to
+ * three whole numbers, up to VALUES_MOST others. */
+bool value_reals(const char *text, char separator, int count, double *out);
+bool value_integers(const char *text, char separator, int count, int64_t *out);
+
+/* "first:end,first:end,first:end"; an omitted number is 0, the end of the
+ * volume. first < end if both are given. */
+bool value_crop(const char *text, int64_t out[3][2]);
+
+/* "none", a name, #rgb, #rrggbb, or red,green,blue from 0 to 1. */
+bool value_color(const char *text, color_value *out);
+
+/* The names of colours, separated by blanks. */
+void value_color_names(char *out, size_t size);
+
+/* "lo,hi", "p1,p99" or "full". */
+bool value_range(const char *text, range_value *out);
+
+/* "v:o,v:o,...": values that do not decrease, opacities from 0 to 1. */
+bool value_points(const char *text, point_list *out);
+
+/* True if `text` is one of the words of "a|b|c"; "" is not a choice. */
+bool value_is_choice(const char *choices, const char *text);
+
+/* The number of single-character edits between two words: for suggestions. */
+int value_distance(const char *a, const char *b);
+
+#endif

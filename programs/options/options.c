@@ -1,0 +1,335 @@
+/* options.c - the parser: getopt_long with the option table.
+ *
+ * Options may follow operands, "--" ends them, and the last of a repeated
+ * option counts.  Options that are unknown, not built yet, or of another verb
+ * are refused. */
+#include "options/options.h"
+#include "options/config.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define ROWS_MAX OPTION_ROWS_MOST
+
+/* Above all characters, so that long options do not collide with letters. */
+#define FIRST_LONG 256
+
+/* The shading defaults come from the library, so that the tool cannot disagree
+ * with it. */
+void options_init(options *out) {
+    snow_settings settings;
+    snow_settings_init(&settings);
+    *out = (options){
+        .size = {512, 512},
+        .threshold = -1,
+        .encoding = snow_encoding_name(settings.encoding),
+        .method = snow_method_name(settings.method),
+        .kernel = snow_kernel_name(settings.kernel),
+        .mode = "over",
+        .iso = NAN,
+        .window = NAN,
+        .level = NAN,
+        .opacity_unit = "voxel",
+        .shade = "phong",
+        .ambient = settings.ambient,
+        .diffuse = settings.diffuse,
+        .specular = settings.specular,
+        .shininess = settings.shininess,
+        .zoom = 1,
+        .progress = "auto",
+        .isa = "auto",
+        .quality = "normal",
+        .cut = "auto",
+        .combine = "auto",
+        .timeout = 300,
+        .frames = 120,
+        .fps = 25,
+    };
+}
+
+bool topic_is_here(topic which) {
+    return which != TOPIC_RANKS || launch_mpi() != NULL;
+}
+
+/* The index is the number of choices before the word in the row. */
+int option_choice(const char *name, const char *text) {
+    const option_row *row = option_table;
+    size_t length = strlen(text);
+    int index = 0;
+    while (strcmp(row->name, name) != 0)
+        row++;
+    for (const char *at = row->argument; *at; index++) {
+        size_t word = strcspn(at, "|");
+        if (word == length && strncmp(at, text, word) == 0)
+            break;
+        at += word + (at[word] == '|');
+    }
+    return index;
+}
+
+/* Names of verbs cannot be abbreviated, as those of options. */
+const verb_row *verb_named(const char *name) {
+    for (const verb_row *row = verb_table; row->name; row++) {
+        if (strcmp(row->name, name) == 0)
+            return row;
+    }
+    return NULL;
+}
+
+/* The row of a verb that is built; planned verbs have no bit. */
+const verb_row *verb_of(unsigned bit) {
+    const verb_row *row = verb_table;
+    while (row->name && row->bit != bit)
+        row++;
+    return row;
+}
+
+/* Whether an option has an optional argument, a number. */
+static bool takes_number(const option_row *row) {
+    return row->read && row->argument && row->argument[0] == '[';
+}
+
+/* Converts the table to getopt's form. */
+static void fill_getopt(struct option longs[ROWS_MAX + 1],
+                        char letters[2 * ROWS_MAX + 2]) {
+    size_t used = 0;
+    int count = 0;
+    letters[used++] =
+        ':'; /* distinguishes a missing argument from an unknown name */
+    for (const option_row *row = option_table; row->name && count < ROWS_MAX;
+         row++, count++) {
+        bool optional = row->argument &&
+                        (row->read == NULL || strcmp(row->name, "help") == 0 ||
+                         takes_number(row));
+        int argument = optional        ? optional_argument
+                       : row->argument ? required_argument
+                                       : no_argument;
+        longs[count] =
+            (struct option){row->name, argument, NULL, FIRST_LONG + count};
+        if (row->letter) {
+            letters[used++] = row->letter;
+            if (argument == required_argument)
+                letters[used++] = ':';
+        }
+    }
+    longs[count] = (struct option){NULL, 0, NULL, 0};
+    letters[used] = '\0';
+}
+
+/* Converts getopt's result, a letter or one of our numbers, to a row. */
+static const option_row *row_of(int code) {
+    if (code >= FIRST_LONG)
+        return &option_table[code - FIRST_LONG];
+    const option_row *row = option_table;
+    while (row->name && row->letter != code)
+        row++;
+    return row->name ? row : NULL;
+}
+
+/* The option whose name is nearest to the given one, if it is near enough: a
+ * third of the letters may be wrong, and one more in short names. */
+static const char *nearest_option(const char *name, unsigned verb) {
+    const char *best = NULL;
+    int least = (int)strlen(name) / 3 + 2;
+    for (const option_row *row = option_table; row->name; row++) {
+        int distance = value_distance(name, row->name);
+        if ((row->verbs & verb) && row->read && distance < least &&
+            topic_is_here(row->topic)) {
+            least = distance;
+            best = row->name;
+        }
+    }
+    return best;
+}
+
+/* getopt reports unknown and ambiguous abbreviations in the same way, but they
+ * need different advice. */
+static bool is_ambiguous(const char *name, size_t length) {
+    int hits = 0;
+    for (const option_row *row = option_table; row->name; row++)
+        hits += strncmp(row->name, name, length) == 0;
+    return hits > 1;
+}
+
+/* Reports a word that getopt does not know: `word` as written; `code` is the
+ * row of an option that was given an argument but takes none. */
+static int refuse_unknown(const verb_row *verb, const char *word, int code) {
+    if (code >= FIRST_LONG)
+        return fail_usage("%s: --%s takes no value; remove what follows =",
+                          word, row_of(code)->name);
+    if (code)
+        return fail_usage("-%c: unknown option; see snowglass help %s", code,
+                          verb->name);
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    if (is_ambiguous(name, strlen(name)))
+        return fail_usage("--%s: matches several options; write the full name, "
+                          "see snowglass help %s",
+                          name, verb->name);
+    const char *near = nearest_option(name, verb->bit);
+    if (near)
+        return fail_usage("--%s: unknown option; did you mean --%s?", name,
+                          near);
+    return fail_usage("--%s: unknown option; see snowglass help %s", name,
+                      verb->name);
+}
+
+/* Refuses an option of other verbs. */
+static int refuse_foreign(const option_row *row, const verb_row *verb) {
+    for (const verb_row *other = verb_table; other->name; other++) {
+        if (other->bit & row->verbs)
+            return fail_usage(
+                "--%s: is not an option of %s but of %s; remove it", row->name,
+                verb->name, other->name);
+    }
+    return fail_usage("--%s: is not an option of %s; remove it", row->name,
+                      verb->name);
+}
+
+/* Options that are not built come first: they belong to no verb. */
+static int take_option(options *out, const option_row *row,
+                       const verb_row *verb, const char *text) {
+    if (!row->read)
+        return fail_usage("--%s is not built yet; %s", row->name, row->text);
+    if (!topic_is_here(row->topic))
+        return fail_usage(
+            "--%s: is only for several ranks; use snowglass-mpi with mpirun",
+            row->name);
+    if (!(row->verbs & verb->bit))
+        return refuse_foreign(row, verb);
+    char wrong[WRONG_BYTES];
+    out->given[row - option_table] = text ? text : "";
+    if (row->read(row, text ? text : "", (char *)out + row->field, wrong))
+        return CONTINUE;
+    return fail_usage("--%s: '%s' %s", row->name, text, wrong);
+}
+
+static const option_row *row_named(const char *name) {
+    const option_row *row = option_table;
+    while (row->name && strcmp(row->name, name) != 0)
+        row++;
+    return row;
+}
+
+bool options_given(const options *asked, const char *name) {
+    return asked->given[row_named(name) - option_table] != NULL;
+}
+
+bool options_typed(const options *asked, const char *name) {
+    return options_given(asked, name) &&
+           !asked->configured[row_named(name) - option_table];
+}
+
+int options_take(options *out, const verb_row *verb, const char *name,
+                 const char *text) {
+    const option_row *row = row_named(name);
+    if (!row->name || !(row->verbs & verb->bit) || options_given(out, name))
+        return CONTINUE;
+    out->configured[row - option_table] = true;
+    return take_option(out, row, verb, text);
+}
+
+/* The next word is the optional argument only if all of it is a number;
+ * otherwise it is an operand, as in --perspective in.nrrd. */
+static const char *take_number(int argc, char **argv) {
+    double number;
+    if (optind >= argc || !value_real(argv[optind], &number))
+        return NULL;
+    return argv[optind++];
+}
+
+/* --help ends the parsing; the next word is its topic. */
+static int take_help(options *out, int argc, char **argv, const char *text) {
+    bool follows = !text && optind < argc && argv[optind][0] != '-';
+    out->help = true;
+    out->help_word = follows ? argv[optind] : text;
+    return CONTINUE;
+}
+
+/* An extra word may be a misspelt verb, or a verb after the options. */
+static int refuse_words(const options *out, const verb_row *verb) {
+    const char *first = out->operands[0];
+    for (const verb_row *other = verb_table; other->name; other++) {
+        int distance = value_distance(first, other->name);
+        if (verb->bit != VERB_RENDER || access(first, F_OK) == 0)
+            continue;
+        if (distance == 0)
+            return fail_usage(
+                "%s: the verb must come first; give snowglass %s %s", first,
+                other->name, other->usage);
+        if (distance <= (int)strlen(first) / 3)
+            return fail_usage("%s: is not a verb; did you mean %s?", first,
+                              other->name);
+    }
+    return fail_usage("%s: is one word too many for %s; give snowglass %s %s",
+                      out->operands[verb->operands], verb->name, verb->name,
+                      verb->usage);
+}
+
+/* Checks the number of operands: a file may be missing, or a name with blanks
+ * was not quoted. */
+static int check_count(const options *out, const verb_row *verb) {
+    if (verb->operands < 0 || out->operand_count == verb->operands)
+        return CONTINUE;
+    if (out->operand_count > verb->operands)
+        return refuse_words(out, verb);
+    return fail_usage("%s: an operand is missing; give snowglass %s %s",
+                      verb->name, verb->name, verb->usage);
+}
+
+/* The long option just read as it was written, NULL for a letter.  If its value
+ * is a word of its own, it stands one word before that. */
+static const char *long_word(char **argv) {
+    const char *word = argv[optind - 1];
+    if (optarg && optarg == word)
+        word = argv[optind - 2];
+    return strncmp(word, "--", 2) == 0 ? word + 2 : NULL;
+}
+
+/* getopt_long accepts abbreviations: --foo would be --footprint, until another
+ * option begins so. */
+static bool in_full(const char *word, const option_row *row) {
+    return !word || strcspn(word, "=") == strlen(row->name);
+}
+
+int options_parse(options *out, const verb_row *verb, int argc, char **argv) {
+    struct option longs[ROWS_MAX + 1];
+    char letters[2 * ROWS_MAX + 2];
+    fill_getopt(longs, letters);
+    opterr = 0; /* errors are printed here, in our own words */
+    optind = 1;
+    int code;
+    while ((code = getopt_long(argc, argv, letters, longs, NULL)) != -1) {
+        if (code == '?')
+            return refuse_unknown(verb, argv[optind - 1], optopt);
+        const option_row *row = row_of(code == ':' ? optopt : code);
+        const char *word = long_word(argv);
+        if (!in_full(word, row))
+            return fail_usage("--%s: unknown option; did you mean --%s?", word,
+                              row->name);
+        if (code == ':')
+            return fail_usage("--%s: needs a value; give --%s %s", row->name,
+                              row->name, row->argument);
+        if (strcmp(row->name, "help") == 0)
+            return take_help(out, argc, argv, optarg);
+        const char *text = optarg;
+        if (takes_number(row) && text && !*text)
+            return fail_usage(
+                "--%s: needs a value after =; give --%s=30, or remove the =",
+                row->name, row->name);
+        if (takes_number(row) && !text)
+            text = take_number(argc, argv);
+        int done = take_option(out, row, verb, text);
+        if (done != CONTINUE || out->version)
+            return done;
+    }
+    out->operands = argv + optind;
+    out->operand_count = argc - optind;
+    int done = config_take(out, verb);
+    return done == CONTINUE ? check_count(out, verb) : done;
+}

@@ -1,0 +1,218 @@
+/* options.h - the command line: the table of options, the record that they are
+ * read into, and the help.
+ *
+ * The parser, --help, the refusal of options that are not built yet and the
+ * suggestion of the nearest name all use the one table. */
+#ifndef OPTIONS_H
+#define OPTIONS_H
+
+#include "options/option_values.h"
+
+#include <snowglass/snowglass.h>
+#include <snowglass/tf.h>
+
+/* Exit code of an interrupted run; all others are a snow_status. */
+#define EXIT_INTERRUPTED 130
+
+/* Returned by a parser if the command should run. */
+#define CONTINUE (-1)
+
+enum {
+    VERB_RENDER = 1 << 0,
+    VERB_INFO = 1 << 1,
+    VERB_PHANTOM = 1 << 2,
+    VERB_COMPARE = 1 << 3,
+    VERB_BENCH = 1 << 4,
+    VERB_DOCTOR = 1 << 5,
+    VERB_HELP = 1 << 6,
+    VERB_TURNTABLE = 1 << 7,
+    VERB_MOVIE = 1 << 8,
+    VERB_CONVERT = 1 << 9,
+    VERB_TF = 1 << 10
+};
+
+typedef enum topic {
+    TOPIC_OUTPUT,
+    TOPIC_MODE,
+    TOPIC_SPARSE,
+    TOPIC_KERNEL,
+    TOPIC_LOOK,
+    TOPIC_QUALITY,
+    TOPIC_CAMERA,
+    TOPIC_LABELS,
+    TOPIC_DATA,
+    TOPIC_RUN,
+    TOPIC_RANKS, /* only in the program with MPI */
+    TOPIC_MORE   /* of single verbs */
+} topic;
+
+/* Must exceed the number of rows in option_table: more would be lost. */
+#define OPTION_ROWS_MOST 96
+
+/* Size of the texts of a configuration. */
+#define CONFIG_TEXTS_BYTES 32768
+
+/* All options.  Texts point into argv or, for a configuration, into `texts`. */
+typedef struct options {
+    const char *output; /* NULL: not given */
+    int64_t size[2];    /* width, height */
+    color_value background;
+    const char *bits; /* NULL: not given */
+    bool overwrite;
+
+    double threshold; /* below 0: not given */
+    const char *encoding, *method, *kernel;
+    int64_t footprint; /* 0: the kernel's default */
+
+    const char *mode;
+    double iso;                    /* NaN: not given */
+    const char *depth;             /* NULL: none */
+    const char *colormap, *preset; /* NULL: automatic */
+    const char *tf;                /* a file; NULL: none */
+    snow_tf *loaded;          /* the content of that file, set by look_load */
+    snow_context *tf_context; /* that owns it */
+    bool log;
+    point_list opacities, gradient_opacities;
+    double window, level; /* NaN: not given */
+    range_value range;
+    const char *opacity_unit, *shade;
+    double light[2]; /* azimuth, elevation */
+    double ambient, diffuse, specular, shininess;
+
+    const char *view; /* NULL: the volume's own */
+    double azimuth, elevation, roll, zoom;
+    double fov; /* 0: parallel */
+    place_value position, target, up;
+
+    int64_t dims[3]; /* 0: not given */
+    snow_type type, as;
+    double spacing[3];  /* 0: not given */
+    const char *endian; /* NULL: not given */
+    uint64_t offset;
+    int64_t time;
+    int64_t channel;
+    const char *dataset;            /* NULL: not given */
+    const char *series;             /* NULL: not given */
+    int64_t crop[3][2];             /* 0: the end */
+    double clip[SNOW_CLIPS_MAX][4]; /* zeros: none */
+    const char *mask, *labels;      /* NULL: not given */
+    uint64_t seed;
+
+    bool each_time; /* `time` is one of all steps, which are opened in turn */
+
+    int64_t frames; /* in a turn */
+    double fps;
+    bool resume;
+
+    double tolerance;
+    bool json;
+    bool patient;
+    const char *stats; /* NULL: none */
+    const char *progress, *isa, *quality;
+    int64_t threads; /* 0: not given */
+    uint64_t memory; /* bytes; 0: no limit */
+    const char *cut, *combine;
+    int64_t radix;  /* 0: automatic */
+    double timeout; /* seconds; 0: none */
+    bool deterministic;
+    bool no_labels, legend, time_label;
+    int verbosity; /* -1 quiet, 0, 1 verbose; the last one counts */
+
+    bool version, help;
+    const char *help_word;            /* the requested topic or verb, or NULL */
+    const char *config, *save_config; /* NULL: none */
+    char texts[CONFIG_TEXTS_BYTES];
+    size_t text_bytes;
+    char *config_input; /* the operand, if none is given */
+
+    char **operands;
+    int operand_count;
+    const char *given[OPTION_ROWS_MOST]; /* the text of each row of the table as
+                                            it was given, NULL: not given */
+    bool configured[OPTION_ROWS_MOST];   /* set by --config */
+} options;
+
+typedef struct option_row option_row;
+
+/* Parses an option's argument into its field.  Returns false if it is invalid:
+ * `wrong` is then the rest of the sentence that begins with the option and its
+ * argument. */
+typedef bool option_read(const option_row *row, const char *text, void *field,
+                         char wrong[WRONG_BYTES]);
+
+/* One option.  A row without `read` is planned but not built yet. */
+struct option_row {
+    const char *name;     /* long name */
+    char letter;          /* short name, or 0 */
+    const char *argument; /* its name in the help, or its choices a|b; in
+                             brackets if it is optional; NULL: none */
+    topic topic;
+    unsigned verbs; /* the verbs that take it */
+    option_read *read;
+    size_t field;      /* offset in options */
+    double low, high;  /* for numbers; both 0: any finite number */
+    const char *later; /* choices that are not built yet, a|b */
+    const char *text; /* help, with the default; for a planned option what to do
+                         instead */
+};
+
+/* Ends with a row without a name. */
+extern const option_row option_table[];
+
+/* One verb.  `operands` below 0 means that it reads its own arguments. */
+typedef struct verb_row {
+    const char *name;
+    unsigned bit; /* 0: planned but not built yet */
+    int operands;
+    const char *usage; /* the operands, for the help */
+    const char *text;
+} verb_row;
+
+/* Ends with a row without a name. */
+extern const verb_row verb_table[];
+
+/* Topics of the help, in the order of the enum; ends with a NULL name. */
+typedef struct topic_row {
+    const char *name;
+    const char *text;
+} topic_row;
+extern const topic_row topic_table[];
+
+/* Whether this program has a topic. */
+bool topic_is_here(topic which);
+
+/* The index of the choice that `text` names. */
+int option_choice(const char *name, const char *text);
+
+const verb_row *verb_named(const char *name);
+const verb_row *verb_of(unsigned bit);
+
+/* Sets the defaults. */
+void options_init(options *out);
+
+/* Parses the arguments of a verb; argv[0] is the verb's own name.  Returns
+ * CONTINUE, or an exit code after the error was printed. */
+int options_parse(options *out, const verb_row *verb, int argc, char **argv);
+
+/* Sets an option by its long name as if it stood on the command line, unless it
+ * stands there, or the verb does not take it.  `text` NULL: without a value.
+ * Returns CONTINUE or an exit code. */
+int options_take(options *out, const verb_row *verb, const char *name,
+                 const char *text);
+
+/* Whether an option was given, on the command line or in the file of
+ * --config. */
+bool options_given(const options *asked, const char *name);
+
+/* Whether it was given on the command line. */
+bool options_typed(const options *asked, const char *name);
+
+/* Prints help to standard output: `word` names a topic or a verb; NULL means
+ * the page of `verb`, or the overview if that is NULL too.  Returns an exit
+ * code. */
+int help_print(const char *word, const verb_row *verb);
+
+/* Prints the few lines of `snowglass` without arguments to standard error. */
+void help_hint(void);
+
+#endif

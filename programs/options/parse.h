@@ -1,0 +1,36 @@
+/* parse.h - the functions that parse one option's argument into its field; see
+ * option_read in options.h.  Each comment gives the type of the field. */
+#ifndef READERS_H
+#define READERS_H
+
+#include "options/options.h"
+
+option_read read_text;            /* const char * */
+option_read read_flag;            /* bool: true */
+option_read read_constant;        /* int: the row's lower limit */
+option_read read_choice;          /* const char *: one of the row's choices */
+option_read read_method;          /* const char *: one of them, or an alias */
+option_read read_real;            /* double within low..high */
+option_read read_fov;             /* double; the default for an empty text */
+option_read read_tolerance;       /* double; quotients are allowed */
+option_read read_integer;         /* int64_t within low..high */
+option_read read_count;           /* uint64_t */
+option_read read_bytes;           /* uint64_t; units as in 4G or 4GiB */
+option_read read_size;            /* int64_t[2] */
+option_read read_dims;            /* int64_t[3] */
+option_read read_labels;          /* const char * */
+option_read read_clip;            /* double[6][4] */
+option_read read_crop;            /* int64_t[3][2] */
+option_read read_spacing;         /* double[3] */
+option_read read_type;            /* snow_type */
+option_read read_preset;          /* const char * */
+option_read read_colormap;        /* const char * */
+option_read read_view;            /* const char * */
+option_read read_color;           /* color_value */
+option_read read_range;           /* range_value */
+option_read read_points;          /* point_list */
+option_read read_gradient_points; /* point_list */
+option_read read_directions;      /* double[2] */
+option_read read_place;           /* place_value */
+
+#endif

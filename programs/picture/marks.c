@@ -1,0 +1,96 @@
+/* marks.c - makes overlays from the options.  Pictures of 8 and 16 bits get
+ * them when they are written.  A picture in memory, its checksum and files of
+ * floats never do. */
+#include "picture/marks.h"
+#include "movie/movie_encoder.h"
+#include "run/log.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Whether an output can show marks: a picture of 8 or 16 bits, or a movie. */
+static bool shows_marks(const char *path) {
+    return movie_format_of(path) || snow_image_format_bits(path) > 0;
+}
+
+int marks_check(const options *asked) {
+    if (asked->output && (asked->legend || asked->time_label) &&
+        !shows_marks(asked->output))
+        return fail_usage("%s: --%s cannot be drawn into a file of floats; "
+                          "remove it or name a .png",
+                          asked->output,
+                          asked->legend ? "legend" : "time-label");
+    return CONTINUE;
+}
+
+void marks_report(const options *asked) {
+    if (asked->legend && asked->fov > 0 && asked->verbosity >= 0)
+        say("--legend: the scale bar is left out: in perspective no single "
+            "length is valid");
+}
+
+/* Presets for CT use Hounsfield units, unless a range spreads them over other
+ * values. */
+static const char *unit_of_values(const options *asked) {
+    int preset = asked->preset ? snow_preset_from_name(asked->preset) : -1;
+    bool spread = asked->range.kind != SNOW_RANGE_AUTO || !isnan(asked->window);
+    bool ct =
+        preset >= 0 && strncmp(snow_preset_name((size_t)preset), "ct-", 3) == 0;
+    return ct && !spread ? "HU" : NULL;
+}
+
+/* Projections show values by colour alone: the colours of the look, or those
+ * that the values were painted with. */
+static snow_status add_colors(const picture_marks *marks,
+                              snow_overlay *overlay) {
+    const options *asked = marks->asked;
+    double range[2] = {marks->range[0], marks->range[1]};
+    bool over = strcmp(asked->mode, "over") == 0;
+    if (range[0] == 0 && range[1] == 0)
+        snow_transfer_domain(marks->transfer, &range[0], &range[1]);
+    return snow_overlay_color_bar(overlay, marks->transfer,
+                                  unit_of_values(asked), over ? NULL : range);
+}
+
+static snow_status add_marks(const picture_marks *marks, const snow_view *view,
+                             int64_t step, snow_overlay *overlay) {
+    const options *asked = marks->asked;
+    snow_status status = SNOW_STATUS_OK;
+    if (!asked->no_labels)
+        status = snow_overlay_orientation(overlay, &marks->info, view);
+    if (status == SNOW_STATUS_OK && asked->legend)
+        status = add_colors(marks, overlay);
+    if (status == SNOW_STATUS_OK && asked->legend)
+        status = snow_overlay_scale_bar(overlay, &marks->info, view);
+    if (status == SNOW_STATUS_OK && asked->time_label && step >= 0) {
+        char text[40];
+        snprintf(text, sizeof text, "step %" PRId64, step);
+        status = snow_overlay_title(overlay, text);
+    }
+    return status;
+}
+
+snow_status marks_make(const picture_marks *marks, double azimuth, int64_t step,
+                       snow_context *context, snow_overlay **out) {
+    const options *asked = marks->asked;
+    bool letters = !asked->no_labels && marks->info.medical;
+    snow_view view = marks->view;
+    snow_overlay *overlay = NULL;
+    *out = NULL;
+    if (!shows_marks(asked->output) && strcmp(asked->output, "-") != 0)
+        return SNOW_STATUS_OK;
+    if (!letters && !asked->legend && !asked->time_label)
+        return SNOW_STATUS_OK;
+    view.azimuth = azimuth;
+    snow_status status =
+        snow_overlay_new(context, view.width, view.height, &overlay);
+    if (status == SNOW_STATUS_OK)
+        status = add_marks(marks, &view, step, overlay);
+    if (status == SNOW_STATUS_OK)
+        *out = overlay;
+    else
+        snow_overlay_free(overlay);
+    return status;
+}

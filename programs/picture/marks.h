@@ -1,0 +1,32 @@
+/* marks.h - overlays that are drawn when pictures are written: orientation
+ * letters unless --no-labels, the bars of --legend, the step of
+ * --time-label. */
+#ifndef MARKS_H
+#define MARKS_H
+
+#include "options/options.h"
+
+/* All that the overlays depend on, except the frame.  Several threads may read
+ * it at once; the transfer function must outlive it. */
+typedef struct picture_marks {
+    const options *asked;
+    snow_volume_info info;
+    snow_view view;
+    const snow_transfer *transfer;
+    double range[2]; /* the range that mean and sum are painted over; both 0:
+                        none */
+} picture_marks;
+
+/* Refuses marks for files of floats, which cannot show them.  Returns CONTINUE
+ * or an exit code. */
+int marks_check(const options *asked);
+
+/* Makes the overlay for a picture from an azimuth; NULL if nothing is drawn.
+ * `step` is a time step, or -1.  Error messages go to the context. */
+snow_status marks_make(const picture_marks *marks, double azimuth, int64_t step,
+                       snow_context *context, snow_overlay **out);
+
+/* Reports the parts that a legend lacks. */
+void marks_report(const options *asked);
+
+#endif

@@ -1,0 +1,234 @@
+/* outputs.c - the rules for writing files: no file is replaced unless
+ * requested, and a file under its final name is complete.
+ *
+ * The library writes pictures and volumes.  The figures are written after them
+ * by the tool itself, which follows the library's rules (src/io/writer.c) for
+ * this small text: a hidden .NAME.snow-XXXXXX beside the final file, fsync,
+ * then link or rename. */
+#define _XOPEN_SOURCE 700 /* realpath */
+#include "picture/outputs.h"
+#include "run/log.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The part of the final name that the hidden name repeats: names have at most
+ * 255 bytes, and ".", ".snow-" and six letters are added. */
+#define NAME_PART 200
+
+bool is_special(const char *path) {
+    struct stat what;
+    if (strcmp(path, "-") == 0)
+        return true;
+    return stat(path, &what) == 0 && !S_ISREG(what.st_mode) &&
+           !S_ISDIR(what.st_mode);
+}
+
+size_t folder_length(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? (size_t)(slash - path) + 1 : 0;
+}
+
+/* The folder of a path, "." if it has none. */
+static void folder_of(const char *path, char *out, size_t size) {
+    size_t length = folder_length(path);
+    snprintf(out, size, "%.*s", length ? (int)length : 1, length ? path : ".");
+}
+
+/* Existing files are compared by device and inode, so that links and "./" do
+ * not hide that they are equal.  For new files the folder and the name are
+ * compared.  A device may take two streams. */
+bool same_place(const char *a, const char *b) {
+    struct stat of_a, of_b;
+    if (stat(a, &of_a) == 0 && stat(b, &of_b) == 0)
+        return S_ISREG(of_a.st_mode) && of_a.st_dev == of_b.st_dev &&
+               of_a.st_ino == of_b.st_ino;
+    if (strcmp(a + folder_length(a), b + folder_length(b)) != 0)
+        return false;
+    char folder_a[PATH_MAX], folder_b[PATH_MAX];
+    folder_of(a, folder_a, sizeof folder_a);
+    folder_of(b, folder_b, sizeof folder_b);
+    return stat(folder_a, &of_a) == 0 && stat(folder_b, &of_b) == 0 &&
+           of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
+}
+
+static int fail_existing(const char *path) {
+    return fail_output("%s: exists; use --overwrite or another name", path);
+}
+
+/* The rules are those of pictures: figures of an earlier run are results too.
+ * lstat also finds a dangling link, which counts as a file. */
+int check_stats_path(const char *path, bool overwrite) {
+    struct stat what;
+    if (is_special(path))
+        return CONTINUE;
+    if (stat(path, &what) == 0 && S_ISDIR(what.st_mode))
+        return fail_output("%s: is a folder; name a file", path);
+    if (!overwrite && lstat(path, &what) == 0)
+        return fail_existing(path);
+    char folder[PATH_MAX];
+    folder_of(path, folder, sizeof folder);
+    if (access(folder, W_OK | X_OK) != 0)
+        return fail_output("%s: %s; choose a folder that can be written", path,
+                           strerror(errno));
+    return CONTINUE;
+}
+
+/* A text and its end. */
+typedef struct text_bytes {
+    const char *bytes;
+    size_t count;
+} text_bytes;
+
+static int dump_text(text_bytes text, FILE *file) {
+    return fwrite(text.bytes, 1, text.count, file) == text.count &&
+                   fflush(file) == 0
+               ? 0
+               : -1;
+}
+
+/* Opens a new file beside `path`, on the same file system, and stores its name
+ * in `aside`.  mkstemp's mode 0600 is for secrets, so the file gets the mode of
+ * the file that it will replace, or that of a new file. */
+static FILE *open_aside(const char *path, char *aside, size_t size) {
+    size_t folder = folder_length(path);
+    int length = snprintf(aside, size, "%.*s.%.*s.snow-XXXXXX", (int)folder,
+                          path, NAME_PART, path + folder);
+    if (length < 0 || (size_t)length >= size) {
+        errno = ENAMETOOLONG;
+        return NULL;
+    }
+    int handle = mkstemp(aside);
+    if (handle < 0)
+        return NULL;
+    struct stat old;
+    mode_t mask = umask(0); /* the only way to read it */
+    umask(mask);
+    fchmod(handle, stat(path, &old) == 0 ? old.st_mode & 0777 : 0666 & ~mask);
+    FILE *file = fdopen(handle, "w");
+    if (!file) {
+        close(handle);
+        unlink(aside);
+    }
+    return file;
+}
+
+/* Gives the finished file its name.  link fails if a file has appeared since
+ * the check; rename would destroy it. */
+static int rename_aside(const char *aside, const char *path, bool overwrite) {
+    struct stat here;
+    if (!overwrite) {
+        if (link(aside, path) == 0)
+            return unlink(aside);
+        if (errno == EEXIST)
+            return -1;
+        if (lstat(path, &here) == 0) { /* no hard links here: check instead */
+            errno = EEXIST;
+            return -1;
+        }
+    }
+    return rename(aside, path);
+}
+
+/* Makes the new name survive a power failure, if the file system can. */
+static void sync_folder(const char *path) {
+    char name[PATH_MAX];
+    folder_of(path, name, sizeof name);
+    int folder = open(name, O_RDONLY | O_CLOEXEC);
+    if (folder < 0)
+        return;
+    (void)fsync(folder);
+    close(folder);
+}
+
+int name_output(const char *aside, const char *path, bool overwrite) {
+    return rename_aside(aside, path, overwrite) == 0 ? 0 : errno;
+}
+
+int place_output(const char *aside, const char *path, bool overwrite) {
+    int file = open(aside, O_RDWR | O_CLOEXEC);
+    if (file < 0)
+        return errno;
+    int number = fsync(file) != 0 && errno != EINVAL ? errno : 0;
+    close(file);
+    if (number == 0 && rename_aside(aside, path, overwrite) != 0)
+        number = errno;
+    if (number == 0)
+        sync_folder(path);
+    return number;
+}
+
+/* A symbolic link is kept, and the file that it points to is replaced. */
+static int write_aside(text_bytes text, const char *given, bool overwrite) {
+    char resolved[PATH_MAX], aside[PATH_MAX];
+    const char *path = realpath(given, resolved) ? resolved : given;
+    FILE *file = open_aside(path, aside, sizeof aside);
+    if (!file)
+        return -1;
+    int done = dump_text(text, file);
+    if (done == 0 && fsync(fileno(file)) != 0 && errno != EINVAL)
+        done = -1;
+    if (fclose(file) != 0 || done != 0 ||
+        rename_aside(aside, path, overwrite) != 0) {
+        int reason = errno;
+        unlink(aside);
+        errno = reason;
+        return -1;
+    }
+    sync_folder(path);
+    return 0;
+}
+
+/* For pipes and devices, which a rename would replace by a regular file. */
+static int write_through(text_bytes text, const char *path) {
+    FILE *file = fopen(path, "w");
+    if (!file)
+        return -1;
+    int done = dump_text(text, file);
+    int reason = errno;
+    if (fclose(file) != 0)
+        return -1;
+    errno = reason;
+    return done;
+}
+
+int write_text(const char *bytes, size_t count, const char *path,
+               bool overwrite) {
+    const text_bytes text = {bytes, count};
+    errno = 0;
+    if (strcmp(path, "-") == 0)
+        return dump_text(text, stdout) == 0
+                   ? finish_stdout()
+                   : fail_output("standard output: cannot be written");
+    int done = is_special(path) ? write_through(text, path)
+                                : write_aside(text, path, overwrite);
+    if (done == 0)
+        return SNOW_STATUS_OK;
+    if (errno == EEXIST)
+        return fail_existing(path);
+    return fail_output("%s: %s; choose a place that can be written", path,
+                       errno ? strerror(errno) : "cannot be written");
+}
+
+int write_json(json_t *object, const char *path, bool overwrite) {
+    if (strcmp(path, "-") == 0)
+        return print_json(object);
+    size_t room = json_dumpb(object, NULL, 0, JSON_FORM);
+    char *text = room ? malloc(room + 1) : NULL;
+    if (text)
+        json_dumpb(object, text, room, JSON_FORM);
+    json_decref(object);
+    if (!text)
+        return fail_output(
+            "%s: out of memory for its text; close other programs", path);
+    text[room] = '\n';
+    int done = write_text(text, room + 1, path, overwrite);
+    free(text);
+    return done;
+}

@@ -1,0 +1,416 @@
+/* render_state.c - renders pictures of a file.  Each of many ranks has its part
+ * of the volume, and the first gets the pictures (snowglass/ranks.h). */
+#include "picture/render_state.h"
+#include "commands/commands.h"
+#include "picture/warnings.h"
+#include "run/interrupt.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+/* What each rank reports to the others about a picture. */
+typedef struct rank_figures {
+    snow_stats stats;
+    uint64_t peak;
+} rank_figures;
+
+int scene_check(const options *asked) {
+    warn_unused(asked);
+    if (launch_ranks() > 1 && strcmp(asked->operands[0], "-") == 0)
+        return fail_usage("-: standard input cannot be shared by several "
+                          "ranks, which each read a part; name a file");
+    return CONTINUE;
+}
+
+int scene_new(const options *asked, scene *out) {
+    *out = (scene){.asked = asked};
+    int done = open_render_context(asked, &out->context);
+    if (done == CONTINUE) {
+        snow_context_set_memory_limit(out->context, asked->memory);
+        snow_context_set_progress(out->context, progress_hear, NULL);
+        size_t ranks = (size_t)launch_ranks();
+        out->figures = calloc(ranks, sizeof(rank_figures));
+        if (!out->figures) {
+            say("out of memory at the start; close other programs");
+            done = SNOW_STATUS_NO_MEMORY;
+        }
+    }
+    return launch_agree(done);
+}
+
+/* In any order, but the context last; all of them accept NULL. */
+void scene_free(scene *s) {
+    snow_image_free(s->made);
+    snow_frame_free(s->frame);
+    snow_transfer_free(s->transfer);
+    snow_volume_close(s->volume);
+    free(s->figures);
+    if (s->context)
+        close_render_context(s->context);
+}
+
+/* --- a volume --------------------------------------------------------------
+ */
+
+static int place_camera(scene *s) {
+    int done = make_view(s->context, s->asked, &s->whole, &s->view);
+    if (done == CONTINUE)
+        done = make_settings(s->asked, &s->whole, &s->settings);
+    s->settings.stop = interrupt_asked;
+    return done;
+}
+
+/* If a look was chosen automatically for a volume without surfaces, it is not
+ * shaded, unless shading is requested. */
+static void choose_shade(scene *s) {
+    if (s->transfer && snow_transfer_is_unshaded(s->transfer) &&
+        !options_given(s->asked, "shade"))
+        s->settings.shade = SNOW_SHADE_NONE;
+}
+
+/* Growing blocks of the encoding leave gaps in the heap, which count as memory
+ * of the process.  Blocks with their own pages are returned to the system. */
+static void return_memory(void) {
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 256 << 10);
+#endif
+}
+
+/* Opens the volume in memory or in its file. */
+static int open_as_planned(scene *s, const options *step) {
+    if (!s->plan.streams)
+        return open_input(s->context, step, s->path, &s->volume);
+    return_memory();
+    snow_volume_options data = data_options(step);
+    snow_status status = snow_volume_open_streamed(
+        s->context, s->path, &data, s->plan.slab_bytes, &s->volume);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(s->context, status);
+    if (step->verbosity > 0)
+        say("%s: stays in its file and is read in slabs of at least %.1f MiB: "
+            "it is larger than the memory limit",
+            s->path, (double)s->plan.slab_bytes / 0x1p20);
+    if (step->verbosity >= 0 && s->plan.packed)
+        say("note: %s is compressed and is decompressed again for each slab; "
+            "decompress the file to be faster",
+            s->path);
+    return CONTINUE;
+}
+
+static int plan_memory(scene *s, const options *step) {
+    snow_volume_options data = data_options(step);
+    bool report = step->verbosity > 0 && !s->transfer;
+    int done = memory_plan_for(step, s->path, &data, report, &s->plan);
+    if (done != CONTINUE)
+        return done;
+    s->plan.streams = s->plan.streams || (s->in_slabs && s->plan.may_stream);
+    snow_context_set_memory_limit(s->context, s->plan.limit);
+    return CONTINUE;
+}
+
+/* The volume is in memory, but what is computed from it does not fit beside it:
+ * opens it again as a stream, and starts over. */
+static int leave_in_file(scene *s, const options *step) {
+    snow_frame_free(s->frame);
+    s->frame = NULL;
+    snow_volume_close(s->volume);
+    s->volume = NULL;
+    s->in_slabs = s->plan.streams = true;
+    return open_as_planned(s, step);
+}
+
+static bool may_leave(const scene *s, snow_status status) {
+    return status == SNOW_STATUS_NO_MEMORY && s->plan.may_stream &&
+           !s->plan.streams;
+}
+
+/* Reading slabs is not counted. */
+static snow_status make_look(scene *s, const options *step) {
+    snow_look look = look_options(step);
+    double begin = seconds_now(), before = snow_volume_read_seconds(s->volume);
+    snow_status status =
+        snow_transfer_new_for_volume(s->volume, &look, &s->transfer);
+    double reading = snow_volume_read_seconds(s->volume) - before;
+    s->times.look += seconds_now() - begin - reading;
+    s->times.read += reading;
+    return status;
+}
+
+/* Decompression and conversion count as reading. */
+static int open_alone(scene *s, const options *step) {
+    int done = plan_memory(s, step);
+    double begin = seconds_now();
+    if (done == CONTINUE)
+        done = open_as_planned(s, step);
+    s->times.read += seconds_now() - begin;
+    if (done != CONTINUE)
+        return done;
+    s->whole = *snow_volume_get_info(s->volume);
+    snow_status status = s->transfer ? SNOW_STATUS_OK : make_look(s, step);
+    if (may_leave(s, status)) {
+        done = leave_in_file(s, step);
+        status = done == CONTINUE ? make_look(s, step) : SNOW_STATUS_OK;
+    }
+    if (status != SNOW_STATUS_OK)
+        return fail_volume(s->context, status, name_of_input(s->path));
+    if (done == CONTINUE)
+        done = place_camera(s);
+    choose_shade(s);
+    return done;
+}
+
+/* Eight bits per channel suffice between ranks if the picture is placed on a
+ * background and rounded to them in the end. */
+static snow_ranks_options how_of(const scene *s) {
+    const options *asked = s->asked;
+    bool coarse = asked->background.given && !asked->deterministic &&
+                  !(asked->bits && asked->bits[0] == '1');
+    return (snow_ranks_options){
+        .size = sizeof(snow_ranks_options),
+        .cut = (snow_partition)option_choice("cut", asked->cut),
+        .combining = (snow_combine)option_choice("combine", asked->combine),
+        .radix = (int)asked->radix,
+        .pixel_bits = coarse ? 8 : 0,
+        .turns = s->turns,
+        .transfer = s->transfer};
+}
+
+/* The camera comes first: the partition of the volume depends on it. */
+static int inspect(scene *s, const snow_volume_options *data) {
+    snow_status status =
+        snow_volume_inspect(s->context, s->path, data, &s->whole);
+    return status == SNOW_STATUS_OK ? place_camera(s)
+                                    : fail_status(s->context, status);
+}
+
+/* Making the transfer function counts as reading: it needs values of all
+ * parts. */
+static int open_part(scene *s, const options *step) {
+    double begin = seconds_now();
+    snow_volume_options data = data_options(step);
+    snow_look look = look_options(step);
+    snow_ranks_options how = how_of(s);
+    snow_transfer *transfer = NULL;
+    int done = launch_agree(inspect(s, &data));
+    if (done != CONTINUE)
+        return done;
+    snow_status status =
+        snow_ranks_open(launch_comm(), s->path, &data, &look, &s->view,
+                        &s->settings, &how, &s->volume, &transfer);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(s->context, status);
+    if (!s->transfer)
+        s->transfer = transfer;
+    choose_shade(s);
+    s->times.read += seconds_now() - begin;
+    return CONTINUE;
+}
+
+options scene_step(const scene *s, int64_t time) {
+    options step = *s->asked;
+    step.time = time;
+    step.each_time = s->each_time;
+    return step;
+}
+
+/* The old volume is closed first: there is never memory for two. */
+int scene_open(scene *s, const char *path, int64_t time) {
+    options step = scene_step(s, time);
+    s->path = path;
+    snow_volume_close(s->volume);
+    s->volume = NULL;
+    return launch_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
+}
+
+/* --- a picture -------------------------------------------------------------
+ */
+
+/* Sums over ranks for counts; for times the slowest rank of each stage. */
+static void add_figures(snow_stats *sum, const snow_stats *stats) {
+    const struct {
+        double *to, from;
+    } rows[] = {{&sum->seconds_classify, stats->seconds_classify},
+                {&sum->seconds_shade, stats->seconds_shade},
+                {&sum->seconds_encode, stats->seconds_encode},
+                {&sum->seconds_splat, stats->seconds_splat},
+                {&sum->seconds_composite, stats->seconds_composite},
+                {&sum->seconds_warp, stats->seconds_warp},
+                {&sum->seconds_frame, stats->seconds_frame},
+                {&sum->seconds_combine, stats->seconds_combine},
+                {&sum->seconds_gather, stats->seconds_gather}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        if (rows[i].from > *rows[i].to)
+            *rows[i].to = rows[i].from;
+    sum->voxels += stats->voxels;
+    sum->interesting += stats->interesting;
+    sum->ea_bytes += stats->ea_bytes;
+    sum->ia_bytes += stats->ia_bytes;
+    sum->pa_bytes += stats->pa_bytes;
+}
+
+static void sum_up(scene *s) {
+    const rank_figures *figures = s->figures;
+    const int ranks = launch_ranks();
+    int64_t most = 0;
+    s->stats = figures[0].stats;
+    s->peak = 0;
+    for (int rank = 0; rank < ranks; rank++) {
+        if (rank)
+            add_figures(&s->stats, &figures[rank].stats);
+        if (figures[rank].peak > s->peak)
+            s->peak = figures[rank].peak;
+        if (figures[rank].stats.interesting > most)
+            most = figures[rank].stats.interesting;
+    }
+    double mean = (double)s->stats.interesting / ranks;
+    s->load = mean > 0 ? (double)most / mean : 1;
+    if (s->stats.voxels && ranks > 1)
+        s->stats.sparse_ratio =
+            1 - (double)s->stats.interesting / (double)s->stats.voxels;
+}
+
+static int take_figures(scene *s) {
+    rank_figures mine = {*snow_frame_stats(s->frame),
+                         snow_context_peak_bytes(s->context)};
+    snow_status status = SNOW_STATUS_OK;
+    if (launch_ranks() > 1)
+        status =
+            snow_comm_allgather(launch_comm(), &mine, sizeof mine, s->figures);
+    else
+        memcpy(s->figures, &mine, sizeof mine);
+    sum_up(s);
+    return status == SNOW_STATUS_OK ? CONTINUE
+                                    : fail_status(s->context, status);
+}
+
+static snow_status begin_part(scene *s) {
+    snow_ranks_options how = how_of(s);
+    snow_status status = SNOW_STATUS_OK;
+    if (s->turns)
+        status =
+            snow_ranks_rebalance(s->frame, launch_comm(), s->transfer, &s->view,
+                                 &s->settings, &how, s->left, &s->volume);
+    return status == SNOW_STATUS_OK
+               ? snow_ranks_begin(s->frame, launch_comm(), s->volume,
+                                  s->transfer, &s->view, &s->settings, &how)
+               : status;
+}
+
+static int make_frame(scene *s) {
+    if (s->frame) /* on all ranks */
+        return CONTINUE;
+    snow_status status = snow_frame_new(s->context, &s->frame);
+    return launch_agree(
+        status == SNOW_STATUS_OK ? CONTINUE : fail_status(s->context, status));
+}
+
+static snow_status draw_alone(scene *s) {
+    double before = snow_volume_read_seconds(s->volume);
+    snow_status status = snow_frame_render(s->frame, s->volume, s->transfer,
+                                           &s->view, &s->settings, &s->made);
+    s->times.read += snow_volume_read_seconds(s->volume) - before;
+    return status;
+}
+
+/* A lost rank makes both pictures in flight fail; only one message is
+ * printed. */
+static int fail_picture(scene *s, snow_status status, const char *path) {
+    if (!s->fault)
+        s->fault = fail_volume(s->context, status, name_of_input(path));
+    return s->fault;
+}
+
+int scene_begin(scene *s, double azimuth) {
+    snow_status status;
+    int done = make_frame(s);
+    if (done != CONTINUE)
+        return done;
+    s->view.azimuth = azimuth;
+    status = launch_ranks() > 1 ? begin_part(s) : draw_alone(s);
+    if (may_leave(s, status)) {
+        options step = scene_step(s, s->whole.time);
+        done = leave_in_file(s, &step);
+        if (done == CONTINUE)
+            done = make_frame(s);
+        if (done != CONTINUE)
+            return done;
+        status = draw_alone(s);
+    }
+    if (status != SNOW_STATUS_OK)
+        return fail_picture(s, status, s->path);
+    s->begun[s->in_flight++] = (scene_shot){s->path, s->whole};
+    return CONTINUE;
+}
+
+int scene_finish(scene *s, snow_image **image) {
+    snow_image *made = s->made;
+    snow_status status = SNOW_STATUS_OK;
+    if (launch_ranks() > 1)
+        status = snow_ranks_finish(s->frame, &made);
+    s->made = NULL;
+    s->drawn = s->begun[0];
+    s->begun[0] = s->begun[1];
+    s->in_flight--;
+    if (status != SNOW_STATUS_OK)
+        return fail_picture(s, status, s->drawn.path);
+    int done = take_figures(s);
+    if (done == CONTINUE)
+        *image = made;
+    else
+        snow_image_free(made);
+    return done;
+}
+
+int scene_draw(scene *s, double azimuth, snow_image **image) {
+    int done = scene_begin(s, azimuth);
+    return done == CONTINUE ? scene_finish(s, image) : done;
+}
+
+/* --- reports
+ * ----------------------------------------------------------------- */
+
+render_report scene_report(const scene *s) {
+    return (render_report){.volume = &s->drawn.whole,
+                           .stats = &s->stats,
+                           .peak = s->peak,
+                           .load = s->load,
+                           .settings = &s->settings,
+                           .times = &s->times};
+}
+
+void scene_choices(const scene *s, char *out, size_t size) {
+    const double *from = s->asked->position.at;
+    const char *view = s->asked->view           ? s->asked->view
+                       : s->drawn.whole.medical ? "anterior"
+                                                : "+z";
+    char place[96];
+    if (s->asked->position.given) {
+        snprintf(place, sizeof place, "from %g,%g,%g", from[0], from[1],
+                 from[2]);
+        view = place;
+    }
+    bool encoded = s->stats.encoding != SNOW_ENCODING_AUTO;
+    char volume[256];
+    describe_volume(&s->drawn.whole, volume, sizeof volume);
+    bool over = s->settings.mode == SNOW_MODE_OVER;
+    snprintf(
+        out, size, "%s: %s; %s%s%s%s; view %s; %s%s%smethod %s%s%s",
+        name_of_input(s->drawn.path), volume,
+        snow_transfer_description(s->transfer), over ? "; opacity per " : "",
+        !over                            ? ""
+        : s->settings.opacity_length > 0 ? "mm"
+                                         : "voxel",
+        over && s->settings.shade == SNOW_SHADE_NONE ? "; not shaded" : "",
+        view, over ? "" : "mode ", over ? "" : snow_mode_name(s->settings.mode),
+        over                        ? ""
+        : s->settings.threshold > 0 ? " of all voxels (no threshold), "
+                                    : " of all voxels, ",
+        snow_method_name(s->stats.method), encoded ? ", encoding " : "",
+        encoded ? snow_encoding_name(s->stats.encoding) : "");
+}

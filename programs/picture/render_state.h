@@ -1,0 +1,81 @@
+/* render_state.h - a volume, its look and its camera, rendered by this process
+ * or by all ranks together.  All ranks make the same calls and get the same
+ * results. */
+#ifndef SCENE_H
+#define SCENE_H
+
+#include "options/options.h"
+#include "picture/render_stats.h"
+#include "run/memory.h"
+
+#include <snowglass/ranks.h>
+
+/* The settings of one picture. */
+typedef struct scene_shot {
+    const char *path;
+    snow_volume_info whole; /* the whole volume; ranks have parts */
+} scene_shot;
+
+typedef struct scene {
+    const options *asked;
+    const char *path; /* path of the volume */
+    bool each_time;   /* all time steps of the file are opened in turn */
+    bool turns;       /* pictures from several sides are requested */
+    int64_t left;     /* then: how many are left, including the next */
+    memory_plan plan; /* the memory plan, if this process is alone */
+    bool in_slabs; /* the volume did not fit beside its interesting voxels: this
+                      one and all later ones stay in their files */
+    snow_context *context;
+    snow_volume_info whole; /* the whole volume; ranks have parts */
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    snow_view view;
+    snow_settings settings;
+    render_times
+        times; /* seconds for reading and look; sums over all volumes */
+    scene_shot begun[2]; /* pictures in flight, the oldest first */
+    int in_flight;
+    int fault;        /* the reported error, 0: none; errors that follow are not
+                         reported */
+    snow_image *made; /* made by this process alone, and not finished */
+    /* The last picture; for ranks sums, and seconds of the slowest. */
+    scene_shot drawn;
+    snow_stats stats;
+    uint64_t peak; /* bytes; for ranks the maximum */
+    double load;   /* most interesting voxels of a rank, divided by the mean */
+    void *figures; /* figures of all ranks */
+} scene;
+
+/* Refuses options that ranks do not support.  Returns CONTINUE or an exit
+ * code. */
+int scene_check(const options *asked);
+
+/* Returns CONTINUE or an exit code, as all functions here do. */
+int scene_new(const options *asked, scene *out);
+void scene_free(scene *s);
+
+/* The options with another time step. */
+options scene_step(const scene *s, int64_t time);
+
+/* Opens a time step of a volume in place of the present one, and makes the
+ * requested look unless the scene has a transfer function already. */
+int scene_open(scene *s, const char *path, int64_t time);
+
+/* Renders from an azimuth.  *image belongs to the caller; NULL on ranks that do
+ * not print. */
+int scene_draw(scene *s, double azimuth, snow_image **image);
+
+/* The same in two halves.  Ranks may have two pictures in flight; finish
+ * returns the one that was begun first.  Another step may be opened in
+ * between. */
+int scene_begin(scene *s, double azimuth);
+int scene_finish(scene *s, snow_image **image);
+
+/* The figures of the last picture, without an image. */
+render_report scene_report(const scene *s);
+
+/* Writes the line that reports the automatic choices, except its end. */
+void scene_choices(const scene *s, char *out, size_t size);
+
+#endif

@@ -1,0 +1,16 @@
+/* warnings.h - notes about a picture that is correct but perhaps not what was
+ * meant.  The rank that prints prints them, unless quiet. */
+#ifndef WARNINGS_H
+#define WARNINGS_H
+
+#include "picture/render_state.h"
+
+/* Reports options of the command line that have no effect in the mode. */
+void warn_unused(const options *asked);
+
+/* Reports about the last picture, before anything is drawn on it: another
+ * method than requested, a slice seen from its edge, and an empty picture,
+ * unless `image` is NULL. */
+void warn_picture(const scene *s, snow_image *image);
+
+#endif

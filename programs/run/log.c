@@ -1,0 +1,323 @@
+/* log.c - everything that people and scripts read, except the picture.
+ *
+ * Standard output carries only data; messages go to standard error, one line
+ * each. */
+#include "run/log.h"
+#include "run/interrupt.h"
+#include "run/start.h"
+
+#include <errno.h>
+#include <math.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Room for a message of the library (10 KiB) and the words around it. */
+#define LINE_BYTES 12288
+
+/* Whether the last line on the terminal is a stage, to be erased before a
+ * message. */
+static bool stage_shown;
+
+/* The last message of a rank that does not print. */
+static char kept[LINE_BYTES];
+
+/* Held while the last line of the terminal changes: a thread of its own reports
+ * a long stage. */
+static pthread_mutex_t talking = PTHREAD_MUTEX_INITIALIZER;
+
+static void wipe_stage(void) {
+    if (stage_shown)
+        fputs("\r\033[K", stderr);
+    stage_shown = false;
+}
+
+/* File names come from outside: their control characters could forge lines or
+ * control the terminal. */
+static void say_list(const char *format, va_list arguments) {
+    char line[LINE_BYTES];
+    vsnprintf(line, sizeof line, format, arguments);
+    for (char *at = line; *at; at++) {
+        if ((unsigned char)*at < ' ' || *at == 127)
+            *at = '?';
+    }
+    if (!launch_talks()) {
+        memcpy(kept, line, sizeof kept);
+        return;
+    }
+    pthread_mutex_lock(&talking);
+    wipe_stage();
+    fprintf(stderr, "snowglass: %s\n", line);
+    pthread_mutex_unlock(&talking);
+}
+
+const char *last_said(void) {
+    return kept;
+}
+
+void say(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    say_list(format, arguments);
+    va_end(arguments);
+}
+
+int fail_usage(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    say_list(format, arguments);
+    va_end(arguments);
+    return SNOW_STATUS_BAD_USAGE;
+}
+
+int fail_output(const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    say_list(format, arguments);
+    va_end(arguments);
+    return SNOW_STATUS_BAD_OUTPUT;
+}
+
+/* The library's message is complete: file, error, advice.  A lost rank makes
+ * all frames in flight fail; it is reported once. */
+int fail_status(const snow_context *context, snow_status status) {
+    static bool reported_broken;
+    if (status == SNOW_STATUS_STOPPED) /* interrupt.c has said so */
+        return EXIT_INTERRUPTED;
+    if (launch_broken() && reported_broken)
+        return (int)status;
+    reported_broken = launch_broken();
+    const char *message = context ? snow_context_message(context) : "";
+    say("%s", *message ? message : snow_status_description(status));
+    return (int)status;
+}
+
+int fail_volume(const snow_context *context, snow_status status,
+                const char *input) {
+    const char *message = snow_context_message(context);
+    bool of_input =
+        status == SNOW_STATUS_BAD_INPUT || status == SNOW_STATUS_NO_MEMORY;
+    if (!of_input || strncmp(message, input, strlen(input)) == 0)
+        return fail_status(context, status);
+    say("%s: %s", input, message);
+    return (int)status;
+}
+
+/* All steps of a file cause the same note; it is printed once. */
+static void hear_notice(void *user, const char *text) {
+    static char last[256];
+    (void)user;
+    if (strncmp(last, text, sizeof last - 1) == 0)
+        return;
+    snprintf(last, sizeof last, "%s", text);
+    say("note: %s", text);
+}
+
+int open_context(const options *asked, snow_context **out) {
+    snow_status status = snow_context_new(NULL, out);
+    if (status != SNOW_STATUS_OK)
+        return fail_status(NULL, status);
+    hear_notices(asked, *out, true);
+    return CONTINUE;
+}
+
+void hear_notices(const options *asked, snow_context *context, bool hear) {
+    hear = hear && asked->verbosity >= 0 && launch_talks();
+    snow_context_set_warning(context, hear ? hear_notice : NULL, NULL);
+}
+
+int open_render_context(const options *asked, snow_context **out) {
+    if (launch_ranks() == 1)
+        return open_context(asked, out);
+    *out = snow_comm_context(launch_comm());
+    hear_notices(asked, *out, true);
+    return CONTINUE;
+}
+
+void close_render_context(snow_context *context) {
+    if (launch_ranks() == 1)
+        snow_context_free(context);
+}
+
+double seconds_now(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* "dumb" terminals (editors, logs) cannot erase a line. */
+bool progress_is_live(void) {
+    const char *term = getenv("TERM");
+    return isatty(STDERR_FILENO) && term && strcmp(term, "dumb") != 0;
+}
+
+bool progress_is_wanted(const options *asked) {
+    return launch_talks() && asked->verbosity >= 0 &&
+           strcmp(asked->progress, "never") != 0;
+}
+
+void progress(const options *asked, const char *stage) {
+    if (!progress_is_wanted(asked))
+        return;
+    bool always = strcmp(asked->progress, "always") == 0;
+    bool live = progress_is_live();
+    pthread_mutex_lock(&talking);
+    wipe_stage();
+    if (live)
+        fputs(stage ? stage : "", stderr);
+    stage_shown = live && stage;
+    fflush(stderr);
+    pthread_mutex_unlock(&talking);
+    if (!live && always && stage)
+        say("%s", stage);
+}
+
+/* --- a long stage
+ * ------------------------------------------------------------ */
+
+/* Seconds between two reports of a long stage: on a terminal, elsewhere. */
+#define LIVE_SECONDS 1
+#define LINE_SECONDS 10
+
+/* The thread that reports it; only one stage is active at a time. */
+static struct {
+    pthread_t thread;
+    pthread_mutex_t lock;
+    pthread_cond_t ended;
+    bool running, ending;
+    const options *asked;
+    const char *stage;
+    double begin;
+    double fraction; /* of it, as far as the library has said; below 0: not */
+} clock_of_stage = {.lock = PTHREAD_MUTEX_INITIALIZER,
+                    .ended = PTHREAD_COND_INITIALIZER};
+
+#define BAR_CELLS 20
+
+void progress_bar(double fraction, char *out, size_t size) {
+    char bar[BAR_CELLS + 1] = "";
+    int full = (int)(fraction * BAR_CELLS);
+    for (int i = 0; i < BAR_CELLS; i++)
+        bar[i] = i < full ? '#' : '-';
+    snprintf(out, size, "[%s] ", bar);
+}
+
+/* "[####----------------] reading, 22 %, 3 s" (under the lock). */
+static void report_stage(void) {
+    char bar[BAR_CELLS + 4] = "", share[16] = "", line[80];
+    if (clock_of_stage.fraction >= 0)
+        snprintf(share, sizeof share, ", %.0f %%",
+                 100 * clock_of_stage.fraction);
+    if (clock_of_stage.fraction >= 0 && progress_is_live())
+        progress_bar(clock_of_stage.fraction, bar, sizeof bar);
+    snprintf(line, sizeof line, "%s%s%s, %.0f s", bar, clock_of_stage.stage,
+             share, seconds_now() - clock_of_stage.begin);
+    if (progress_is_live())
+        progress(clock_of_stage.asked, line);
+    else
+        say("%s", line);
+}
+
+static void *watch_stage(void *unused) {
+    (void)unused;
+    pthread_mutex_lock(&clock_of_stage.lock);
+    while (!clock_of_stage.ending) {
+        struct timespec until;
+        clock_gettime(CLOCK_REALTIME, &until);
+        until.tv_sec += progress_is_live() ? LIVE_SECONDS : LINE_SECONDS;
+        if (pthread_cond_timedwait(&clock_of_stage.ended, &clock_of_stage.lock,
+                                   &until) == ETIMEDOUT &&
+            !clock_of_stage.ending)
+            report_stage();
+    }
+    pthread_mutex_unlock(&clock_of_stage.lock);
+    return NULL;
+}
+
+/* Signals are handled by the thread that waits for them. */
+void progress_begin(const options *asked, const char *stage) {
+    sigset_t all, before;
+    progress(asked, stage);
+    if (!progress_is_wanted(asked))
+        return;
+    clock_of_stage.asked = asked;
+    clock_of_stage.stage = stage;
+    clock_of_stage.begin = seconds_now();
+    clock_of_stage.fraction = -1;
+    clock_of_stage.ending = false;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    clock_of_stage.running =
+        pthread_create(&clock_of_stage.thread, NULL, watch_stage, NULL) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+}
+
+void progress_end(const options *asked) {
+    if (clock_of_stage.running) {
+        pthread_mutex_lock(&clock_of_stage.lock);
+        clock_of_stage.ending = true;
+        pthread_cond_signal(&clock_of_stage.ended);
+        pthread_mutex_unlock(&clock_of_stage.lock);
+        pthread_join(clock_of_stage.thread, NULL);
+        clock_of_stage.running = false;
+    }
+    progress(asked, NULL);
+}
+
+bool progress_hear(void *unused, snow_stage stage, double fraction) {
+    static const char *const names[] = {[SNOW_STAGE_READ] = "reading",
+                                        [SNOW_STAGE_ENCODE] = "encoding",
+                                        [SNOW_STAGE_RENDER] = "rendering"};
+    (void)unused;
+    pthread_mutex_lock(&clock_of_stage.lock);
+    if (clock_of_stage.running) {
+        clock_of_stage.stage = names[stage];
+        clock_of_stage.fraction = fraction;
+        if (progress_is_live())
+            report_stage();
+    }
+    pthread_mutex_unlock(&clock_of_stage.lock);
+    return interrupt_asked(NULL);
+}
+
+/* printf only fills a buffer: a full disk or a reader that went away shows
+ * when it is flushed, and must not end in exit code 0. */
+int finish_stdout(void) {
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return SNOW_STATUS_OK;
+    return fail_output(
+        "standard output: %s; write to a file system with free space",
+        errno ? strerror(errno) : "cannot be written");
+}
+
+/* JSON has no NaN and no infinity; jansson would drop the key silently. */
+json_t *json_number(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+json_t *json_vector(const double *values, size_t count) {
+    json_t *array = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(array, json_number(values[i]));
+    return array;
+}
+
+json_t *json_sizes(const int64_t *values, size_t count) {
+    json_t *array = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_array_append_new(array, json_integer(values[i]));
+    return array;
+}
+
+int print_json(json_t *object) {
+    if (json_dumpf(object, stdout, JSON_FORM) == 0)
+        putchar('\n');
+    json_decref(object);
+    return finish_stdout();
+}

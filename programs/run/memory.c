@@ -1,0 +1,337 @@
+/* memory.c - computes the memory that is needed from sizes alone, before voxels
+ * are read.
+ *
+ *   limit    0 ........ smallest slab ........ voxels and picture ........
+ *                refused      |     in slabs           |    in memory
+ *
+ * Bytes of an interesting voxel are those of the encodings: its value as a code
+ * of 8 or 16 bits and a normal of 16 bits if it is shaded, or four floats for
+ * the exact methods.  Its position takes little more than one bit. */
+#include "run/memory.h"
+#include "commands/commands.h"
+#include "run/free_memory.h"
+#include "run/log.h"
+#include "run/start.h"
+
+#include <dirent.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define PIXEL_BYTES 16  /* four floats */
+#define PLACE_SHARE 7   /* EA: one byte for this many voxels */
+#define BOUND_BYTES 0.5 /* 16 bits for four voxels */
+
+static double shear_warp_bytes(const options *asked, double value_bytes) {
+    double code = value_bytes > 1 ? 2 : 1;
+    double normal = strcmp(asked->shade, "none") ? 2 : 0;
+    /* Bounds of the largest values; they have no normals. */
+    if (strcmp(asked->mode, "mip") == 0 || strcmp(asked->mode, "minip") == 0)
+        normal = normal > BOUND_BYTES ? normal : BOUND_BYTES;
+    /* Interpolated slices are encoded as well. */
+    double times = strcmp(asked->quality, "high") ? 1 : 2;
+    return times * (code + normal + 1.0 / PLACE_SHARE);
+}
+
+/* Bytes of an interesting voxel, without the arrays that all voxels share. */
+static double encoded_bytes(const options *asked,
+                            const snow_volume_info *info) {
+    if (strcmp(asked->method, "original") == 0)
+        return 0;
+    if (strcmp(asked->method, "footprint") == 0)
+        return PIXEL_BYTES + 1.0 / PLACE_SHARE;
+    double value = (double)snow_type_size(info->type);
+    double bytes = shear_warp_bytes(asked, value);
+    /* A draft with few pixels encodes a level of half the voxels or fewer in
+     * place of the volume. */
+    double level = (value + bytes) / 2;
+    bool draft = strcmp(asked->quality, "draft") == 0;
+    return draft && level > bytes ? level : bytes;
+}
+
+/* Bytes of the largest intermediate image: the two sides of a slice, each
+ * extended by the largest shift of the slices. */
+static double image_bytes(const options *asked, const snow_volume_info *info) {
+    const int64_t *dims = info->dims;
+    double scale = strcmp(asked->quality, "draft") ? 2 : 1, most = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        double deep = (double)dims[axis];
+        double wide = (double)dims[(axis + 1) % 3] + deep;
+        double high = (double)dims[(axis + 2) % 3] + deep;
+        if (wide * high > most)
+            most = wide * high;
+    }
+    return most * scale * scale * PIXEL_BYTES;
+}
+
+static uint64_t picture_bytes(const options *asked) {
+    return (uint64_t)(asked->size[0] * asked->size[1]) * PIXEL_BYTES;
+}
+
+memory_need memory_needed(const options *asked, const snow_volume_info *info) {
+    double voxels =
+        (double)info->dims[0] * (double)info->dims[1] * (double)info->dims[2];
+    double least = voxels * (double)snow_type_size(info->type) +
+                   (double)picture_bytes(asked);
+    double most =
+        least + voxels * encoded_bytes(asked, info) + image_bytes(asked, info);
+    return (memory_need){(uint64_t)least, (uint64_t)most};
+}
+
+/* The sizes that are known before a volume is opened. */
+typedef struct sizes {
+    snow_volume_info info;
+    uint64_t voxels, picture; /* bytes */
+    uint64_t masking; /* bytes needed beside the voxels while they are read */
+    bool packed;      /* the file is shorter than the voxels, so it is probably
+                         compressed */
+    memory_need need;
+} sizes;
+
+/* Bytes of the voxels in their native type; 0 for a file that cannot be
+ * inspected, which reading will report. */
+static uint64_t native_bytes(snow_context *context, const char *path,
+                             const snow_volume_options *data) {
+    snow_volume_info info;
+    if (snow_volume_inspect(context, path, data, &info) != SNOW_STATUS_OK)
+        return 0;
+    return (uint64_t)(info.dims[0] * info.dims[1] * info.dims[2]) *
+           snow_type_size(info.type);
+}
+
+/* The mask, and the volume before masking or clipping, are in memory together
+ * with the result. */
+static uint64_t masking_bytes(snow_context *context, const char *path,
+                              const snow_volume_options *data) {
+    snow_volume_options plain = *data, mask = {.type = SNOW_TYPE_NONE};
+    const double *plane = data->clip[0];
+    bool clips = plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+    if (!data->mask && !clips)
+        return 0;
+    plain.mask = plain.labels = NULL;
+    memset(plain.clip, 0, sizeof plain.clip);
+    memcpy(mask.crop, data->crop, sizeof mask.crop);
+    return native_bytes(context, path, &plain) +
+           (data->mask ? native_bytes(context, data->mask, &mask) : 0);
+}
+
+/* A file of a few kilobytes is only a header. */
+static bool is_packed(const char *path, uint64_t voxels) {
+    struct stat about;
+    if (stat(path, &about) != 0 || !S_ISREG(about.st_mode))
+        return false;
+    uint64_t bytes = (uint64_t)about.st_size;
+    return bytes > 65536 && bytes < voxels / 10 * 9;
+}
+
+/* Whether the input is a pipe, which can be read only once. */
+static bool is_read_once(const char *path) {
+    struct stat about;
+    return strcmp(path, "-") == 0 ||
+           (stat(path, &about) == 0 && !S_ISREG(about.st_mode) &&
+            !S_ISDIR(about.st_mode));
+}
+
+/* Inspects the headers in a context of its own, without warnings: opening the
+ * file repeats them and reports its errors.  Returns false on error. */
+static bool measure(const options *asked, const char *path,
+                    const snow_volume_options *data, sizes *out) {
+    sizes s = {.picture = picture_bytes(asked)};
+    snow_context *context;
+    if (is_read_once(path) ||
+        snow_context_new(NULL, &context) != SNOW_STATUS_OK)
+        return false;
+    bool fine =
+        snow_volume_inspect(context, path, data, &s.info) == SNOW_STATUS_OK;
+    if (fine) {
+        s.masking = masking_bytes(context, path, data);
+        s.need = memory_needed(asked, &s.info);
+        s.voxels = s.need.least - s.picture;
+        if (s.voxels + s.masking > s.need.least)
+            s.need.least = s.voxels + s.masking;
+        if (s.need.least > s.need.most)
+            s.need.most = s.need.least;
+        s.packed = is_packed(path, s.voxels);
+        *out = s;
+    }
+    snow_context_free(context);
+    return fine;
+}
+
+/* "12.3 MiB". */
+static const char *print_bytes(uint64_t bytes, char text[32]) {
+    static const char *const units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
+    double value = (double)bytes;
+    int unit = 0;
+    for (; value >= 1024 && unit < 4; unit++)
+        value /= 1024;
+    snprintf(text, 32, "%.*f %s", unit ? 1 : 0, value, units[unit]);
+    return text;
+}
+
+/* --- in slabs ------------------------------------------------------------- */
+
+/* Why a picture cannot be made from slabs; NULL if it can. */
+static const char *why_whole(const char *path) {
+    if (launch_ranks() > 1 || strcmp(path, "-") == 0)
+        return "this input";
+    if (strncmp(path, "phantom:", 8) == 0)
+        return "a phantom";
+    return NULL;
+}
+
+/* Slices of the smallest slab: one and its neighbours. */
+#define SLICES_LEAST 3
+
+/* Bytes of the tables of colours and counts, for 256 codes and for 65,536. */
+#define TABLES_SMALL ((uint64_t)1 << 20)
+#define TABLES_LARGE ((uint64_t)4 << 20)
+
+/* Slices that a thread encodes if slices lie along x and y: a band. */
+#define BAND_SLICES 32
+
+/* Longer slabs are not read faster. */
+#define SLAB_USUAL ((uint64_t)24 << 20)
+
+/* Bytes of a slab while it is read. */
+static uint64_t slab_bytes(const sizes *s, int64_t slices) {
+    int64_t all = s->info.dims[2];
+    if (slices > all)
+        slices = all;
+    return (s->voxels + s->masking) / (uint64_t)all * (uint64_t)slices;
+}
+
+/* Chooses the bytes of a slab's voxels.  Slabs are small, since most of the
+ * memory is for interesting voxels.  But there is a band for each thread if it
+ * fits into an eighth of the limit.  A compressed file is decompressed again
+ * for each slab, so its slabs may take a third. */
+static uint64_t choose_slab(const sizes *s, uint64_t limit, int threads) {
+    uint64_t room = limit > s->picture ? limit - s->picture : 0;
+    uint64_t eighth = room / 8;
+    uint64_t most = eighth < SLAB_USUAL ? eighth : SLAB_USUAL;
+    for (int n = threads; n > 0; n--) {
+        uint64_t bands = slab_bytes(s, n * BAND_SLICES + 2);
+        if (bands > most && bands <= eighth)
+            most = bands;
+    }
+    if (s->packed)
+        most = room / 3;
+    double share = (double)s->voxels / (double)(s->voxels + s->masking);
+    return (uint64_t)((double)most * share) + 1;
+}
+
+/* --- plans ---------------------------------------------------------------- */
+
+/* The limit: what this machine has free, less a reserve for other programs, or
+ * what --memory allows. */
+static uint64_t limit_of(const options *asked, bool *own) {
+    uint64_t there = free_memory();
+    *own = there == UINT64_MAX || (asked->memory && asked->memory <= there);
+    if (*own)
+        return asked->memory;
+    return there / 10 * 9;
+}
+
+/* Whether the files of a folder are so small that their voxels certainly fit:
+ * inspecting all of them twice would take time.  Slices are compressed to a
+ * quarter at best. */
+static bool is_small_folder(const char *path) {
+    char name[PATH_MAX];
+    struct stat about;
+    uint64_t bytes = 0;
+    DIR *folder = opendir(path);
+    if (!folder)
+        return false;
+    for (struct dirent *entry; (entry = readdir(folder));) {
+        if (entry->d_name[0] == '.')
+            continue;
+        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
+        if (stat(name, &about) == 0)
+            bytes +=
+                S_ISDIR(about.st_mode) ? UINT32_MAX : (uint64_t)about.st_size;
+    }
+    closedir(folder);
+    return bytes < free_memory() / 8;
+}
+
+static int threads_of(const options *asked) {
+    return asked->threads ? (int)asked->threads : launch_processors();
+}
+
+static void report_need(const sizes *s) {
+    char least[32], most[32];
+    say("memory: at least %s, about %s if all voxels are interesting",
+        print_bytes(s->need.least, least), print_bytes(s->need.most, most));
+}
+
+/* Bytes of the smallest slab, the tables of the look and the picture. */
+static uint64_t slabs_least(const sizes *s) {
+    bool small = snow_type_size(s->info.type) == 1;
+    return slab_bytes(s, SLICES_LEAST) + s->picture +
+           (small ? TABLES_SMALL : TABLES_LARGE);
+}
+
+/* Refuses the volume.  `why` says why all voxels must be in memory at once;
+ * NULL if slabs would do but do not fit either. */
+static int refuse_volume(const sizes *s, const char *path, uint64_t limit,
+                         bool own, const char *why) {
+    char need[32], room[32];
+    const char *of = own ? "--memory" : "free memory";
+    const char *advice = own ? "raise it, " : "";
+    bool slabs = !why && slabs_least(s) < s->need.least;
+    print_bytes(slabs ? slabs_least(s) : s->need.least, need);
+    print_bytes(limit, room);
+    if (slabs)
+        say("%s: one slab, tables and the picture need %s, over the %s of %s; "
+            "%suse --crop or a smaller --size",
+            path, need, of, room, advice);
+    else
+        say("%s: voxels and picture need %s, over the %s of %s%s%s%s; %suse "
+            "--crop, or share the volume among several machines "
+            "(snowglass-mpi)",
+            path, need, of, room, why ? ", and " : "", why ? why : "",
+            why ? " needs all voxels at once" : "", advice);
+    return SNOW_STATUS_NO_MEMORY;
+}
+
+int memory_plan_for(const options *asked, const char *path,
+                    const snow_volume_options *data, bool report,
+                    memory_plan *out) {
+    const char *why = why_whole(path);
+    bool own = true;
+    uint64_t limit = asked->memory;
+    sizes s;
+    *out = (memory_plan){.may_stream = !why, .limit = asked->memory};
+    if (!asked->memory && !report && is_small_folder(path))
+        return CONTINUE;
+    if (!measure(asked, path, data, &s)) {
+        out->may_stream = false;
+        return CONTINUE;
+    }
+    if (report)
+        report_need(&s);
+    limit = limit_of(asked, &own);
+    if (limit)
+        out->slab_bytes = choose_slab(&s, limit, threads_of(asked));
+    out->packed = s.packed;
+    if (!limit || s.need.least <= limit)
+        return CONTINUE;
+    if (why && (!asked->memory || s.need.least <= asked->memory))
+        return CONTINUE; /* the system may know better what is free */
+    out->limit = limit;
+    if (why || slabs_least(&s) > limit || slabs_least(&s) >= s.need.least)
+        return refuse_volume(&s, path, limit, own, why);
+    out->streams = true;
+    return CONTINUE;
+}
+
+int memory_check(const options *asked, const char *path,
+                 const snow_volume_options *data) {
+    sizes s;
+    if (!asked->memory || !measure(asked, path, data, &s) ||
+        s.need.least <= asked->memory)
+        return CONTINUE;
+    return refuse_volume(&s, path, asked->memory, true,
+                         "the range of all steps");
+}

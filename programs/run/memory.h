@@ -1,0 +1,41 @@
+/* memory.h - how much memory a picture needs, the limit of --memory and of the
+ * machine, and the decision: the volume is held in memory, stays in its file,
+ * or is refused. */
+#ifndef MEMORY_H
+#define MEMORY_H
+
+#include "options/options.h"
+
+/* Bytes of a picture made by one process. */
+typedef struct memory_need {
+    uint64_t least; /* voxels and picture */
+    uint64_t most;  /* the same if all voxels are interesting, approximately */
+} memory_need;
+
+memory_need memory_needed(const options *asked, const snow_volume_info *info);
+
+/* How a volume is to be opened. */
+typedef struct memory_plan {
+    bool streams; /* the voxels stay in the file (snow_volume_open_streamed) */
+    bool may_stream; /* the requested kind of picture can be made that way */
+    uint64_t slab_bytes; /* if it streams */
+    bool packed;    /* the file is compressed and read again for each slab */
+    uint64_t limit; /* memory limit of the context; 0: none */
+} memory_plan;
+
+/* Plans how to open a volume; reports the need if `report` is set.  A volume
+ * over the limit stays in its file.  One that does not fit even so is refused,
+ * before anything large is allocated.  Without --memory the limit is what the
+ * machine has free.  The size of the interesting voxels is known only after
+ * encoding; the context keeps it within the limit.  Nothing is known about
+ * standard input.  Returns CONTINUE or an exit code. */
+int memory_plan_for(const options *asked, const char *path,
+                    const snow_volume_options *data, bool report,
+                    memory_plan *out);
+
+/* The same where all voxels are needed at once: refused is what is over
+ * --memory as a whole. */
+int memory_check(const options *asked, const char *path,
+                 const snow_volume_options *data);
+
+#endif

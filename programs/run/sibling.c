@@ -1,0 +1,59 @@
+/* sibling.c - programs that are installed beside this one. */
+#ifndef _XOPEN_SOURCE
+#define _XOPEN_SOURCE 700 /* readlink */
+#endif
+#include "run/sibling.h"
+#include "run/log.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* The path of a program beside this one; false where that is not known, or
+ * nothing is there to be run. */
+static bool find_beside(const char *name, char path[PATH_MAX]) {
+    char self[PATH_MAX];
+    ssize_t length = readlink("/proc/self/exe", self, sizeof self - 1);
+    if (length <= 0)
+        return false;
+    self[length] = 0;
+    char *slash = strrchr(self, '/');
+    int used =
+        snprintf(path, PATH_MAX, "%.*s/%s", (int)(slash - self), self, name);
+    return used < PATH_MAX && access(path, X_OK) == 0;
+}
+
+/* What stops an exec may be the file itself, or that there is none. */
+static int refuse(const char *name) {
+    int reason = errno;
+    return fail_usage("%s: cannot be started (%s); install it beside snowglass "
+                      "or in a folder of PATH",
+                      name, strerror(reason));
+}
+
+int sibling_become(const char *name, char **argv) {
+    char path[PATH_MAX];
+    argv[0] = (char *)name;
+    if (find_beside(name, path))
+        execv(path, argv);
+    else
+        execvp(name, argv);
+    return refuse(name);
+}
+
+int sibling_run(const char *name, char **argv) {
+    int state = 0;
+    fflush(stdout);
+    pid_t child = fork();
+    if (child < 0)
+        return refuse(name);
+    if (child == 0)
+        _exit(sibling_become(name, argv));
+    while (waitpid(child, &state, 0) < 0)
+        if (errno != EINTR)
+            return refuse(name);
+    return WIFEXITED(state) ? WEXITSTATUS(state) : SNOW_STATUS_FAILED;
+}

@@ -1,0 +1,98 @@
+/* start.c - how the tool was started, and agreement between ranks. */
+#include "run/start.h"
+#include "run/interrupt.h"
+#include "run/log.h"
+
+#include <limits.h>
+#include <snowglass/snowglass.h>
+#include <stdlib.h>
+
+static launch now;
+
+/* 0 if the variable is not set or not valid. */
+static int number_given(const char *name) {
+    const char *text = getenv(name);
+    char *end = NULL;
+    long number = text ? strtol(text, &end, 10) : 0;
+    return end && !*end && number > 0 && number < INT_MAX ? (int)number : 0;
+}
+
+/* The processors that Slurm has assigned to a task, or to a job on this
+ * machine, count even if Slurm does not bind the processes. */
+static void heed_slurm(void) {
+    int limit = number_given("SLURM_CPUS_PER_TASK");
+    if (!limit && !now.comm)
+        limit = number_given("SLURM_CPUS_ON_NODE");
+    if (limit && limit < launch_processors())
+        now.threads = limit;
+}
+
+void launch_begin(const launch *how) {
+    now = *how;
+    heed_slurm();
+    if (!launch_talks())
+        interrupt_mute();
+}
+
+int launch_rank(void) {
+    return now.comm ? snow_comm_rank(now.comm) : 0;
+}
+
+int launch_ranks(void) {
+    return now.comm ? snow_comm_size(now.comm) : 1;
+}
+
+snow_comm *launch_comm(void) {
+    return now.comm;
+}
+
+int launch_threads(void) {
+    return now.threads;
+}
+
+int launch_processors(void) {
+    return now.threads ? now.threads : snow_processors();
+}
+
+const char *launch_mpi(void) {
+    return now.mpi;
+}
+
+bool launch_talks(void) {
+    return launch_rank() == 0;
+}
+
+bool launch_broken(void) {
+    return launch_ranks() > 1 && snow_comm_broken(now.comm);
+}
+
+/* The reason why the communicator broke was printed when it happened.  A rank
+ * that does not print has kept its last message. */
+int launch_agree(int done) {
+    if (launch_ranks() == 1)
+        return done;
+    snow_context *context = snow_comm_context(now.comm);
+    const bool given = snow_comm_broken(now.comm);
+    snow_status mine = done == CONTINUE ? SNOW_STATUS_OK : (snow_status)done;
+    if (mine != SNOW_STATUS_OK && !launch_talks() && !given)
+        snow_context_fail(context, mine, "%s", last_said());
+    snow_status all = snow_comm_agree_status(now.comm, mine);
+    if (all == SNOW_STATUS_OK)
+        return done;
+    if (mine == SNOW_STATUS_OK && launch_talks() && !given)
+        return fail_status(context, all);
+    return (int)all;
+}
+
+int launch_share(int word) {
+    int shared = word;
+    if (launch_ranks() == 1)
+        return word;
+    const bool given = snow_comm_broken(now.comm);
+    snow_status status =
+        snow_comm_broadcast(now.comm, &shared, sizeof shared, 0);
+    if (status == SNOW_STATUS_OK)
+        return shared;
+    return given ? (int)status
+                 : fail_status(snow_comm_context(now.comm), status);
+}

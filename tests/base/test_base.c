@@ -1,0 +1,138 @@
+/* tests/base/test_base.c - contexts, memory and numbers keep their promises. */
+#include "support/support.h"
+
+#include <locale.h>
+
+static void
+a_failed_allocation_tells_its_size_and_changes_nothing(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    assert_null(snow_allocate(context, SIZE_MAX / 2));
+    assert_non_null(strstr(snow_context_message(context), "out of memory"));
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+static void blocks_are_aligned_and_counted(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    void *a = snow_allocate(context, 1), *b = snow_allocate(context, 100);
+    assert_int_equal((uintptr_t)a % 64, 0);
+    assert_int_equal((uintptr_t)b % 64, 0);
+    assert_int_equal(snow_context_bytes(context), 101);
+    snow_release(context, a);
+    snow_release(context, b);
+    assert_int_equal(snow_context_bytes(context), 0);
+    assert_int_equal(snow_context_peak_bytes(context), 101);
+    snow_context_free(context);
+}
+
+static void products_that_overflow_are_refused(void **state) {
+    (void)state;
+    uint64_t product = 7;
+    assert_false(snow_mul_u64(UINT64_MAX / 2, 3, &product));
+    assert_int_equal(product, 7);
+    assert_true(snow_mul_u64(UINT32_MAX, UINT32_MAX, &product));
+    assert_true(product == (uint64_t)UINT32_MAX * UINT32_MAX);
+}
+
+static void a_reserved_block_keeps_its_bytes(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    char *block = NULL;
+    size_t capacity = 0;
+    assert_int_equal(snow_reserve(context, &block, &capacity, 0, 3),
+                     SNOW_STATUS_OK);
+    memcpy(block, "abc", 3);
+    assert_int_equal(snow_reserve(context, &block, &capacity, 3, 999),
+                     SNOW_STATUS_OK);
+    assert_memory_equal(block, "abc", 3);
+    assert_true(capacity >= 999);
+    snow_release(context, block);
+    snow_context_free(context);
+}
+
+static void numbers_are_whole_or_refused(void **state) {
+    (void)state;
+    int64_t i = 5;
+    double d = 5;
+    assert_false(snow_parse_int64("12x", &i));
+    assert_false(snow_parse_int64("", &i));
+    assert_false(snow_parse_int64("99999999999999999999", &i));
+    assert_int_equal(i, 5);
+    assert_true(snow_parse_int64(" -12 ", &i));
+    assert_int_equal(i, -12);
+    assert_false(snow_parse_double("1.5,", &d));
+    assert_true(snow_parse_double("1.5e3", &d));
+    assert_true(d == 1500);
+    assert_false(snow_parse_double("0x10", &d));
+    assert_true(d == 1500);
+}
+
+static void a_number_gets_the_sign_of_the_locale(void **state) {
+    (void)state;
+    char out[8];
+    assert_true(snow_localize_number("-1.5", ",", out, sizeof out));
+    assert_string_equal(out, "-1,5");
+    assert_true(snow_localize_number("1.5", "\xd9\xab", out, sizeof out));
+    assert_string_equal(out, "1\xd9\xab"
+                             "5");
+    assert_true(snow_localize_number("1.5", ".", out, sizeof out));
+    assert_string_equal(out, "1.5");
+    assert_false(snow_localize_number("1,5", ",", out, sizeof out));
+    assert_true(snow_localize_number("1234567", ",", out, sizeof out));
+    assert_false(snow_localize_number("12345678", ",", out, sizeof out));
+}
+
+static void a_host_with_a_comma_reads_the_same_numbers(void **state) {
+    (void)state;
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE",
+                                        "fr_FR.UTF-8", "fr_FR"};
+    bool found = false;
+    for (size_t i = 0; i < sizeof names / sizeof *names && !found; i++)
+        found = setlocale(LC_NUMERIC, names[i]) != NULL;
+    if (!found)
+        skip();
+    double value = 7;
+    bool point = snow_parse_double("0.25", &value);
+    bool comma = snow_parse_double("0,5", &value);
+    setlocale(LC_NUMERIC, "C");
+    assert_true(point);
+    assert_false(comma);
+    assert_true(value == 0.25);
+}
+
+static void a_message_is_one_line_whatever_it_quotes(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_fail(context, SNOW_STATUS_BAD_INPUT, "%s: no", "a\nb\x1b[2J\x7f");
+    assert_string_equal(snow_context_message(context), "a?b?[2J?: no");
+    snow_context_free(context);
+}
+
+static void layers_add_what_they_know_to_a_message(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_fail(context, SNOW_STATUS_BAD_INPUT, "line %d is empty", 3);
+    assert_int_equal(snow_fail_within(context, SNOW_STATUS_BAD_INPUT, "a.nrrd"),
+                     SNOW_STATUS_BAD_INPUT);
+    assert_string_equal(snow_context_message(context),
+                        "a.nrrd: line 3 is empty");
+    snow_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(
+            a_failed_allocation_tells_its_size_and_changes_nothing),
+        cmocka_unit_test(blocks_are_aligned_and_counted),
+        cmocka_unit_test(products_that_overflow_are_refused),
+        cmocka_unit_test(a_reserved_block_keeps_its_bytes),
+        cmocka_unit_test(numbers_are_whole_or_refused),
+        cmocka_unit_test(a_number_gets_the_sign_of_the_locale),
+        cmocka_unit_test(a_host_with_a_comma_reads_the_same_numbers),
+        cmocka_unit_test(a_message_is_one_line_whatever_it_quotes),
+        cmocka_unit_test(layers_add_what_they_know_to_a_message),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

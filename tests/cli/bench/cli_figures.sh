@@ -1,0 +1,44 @@
+#!/bin/bash
+# bench figure11 and figure12: speed-ups hang together, pictures of many nodes
+# are that of one, and the chart is well-formed.
+. "$(dirname "$0")/../../support/shell.sh"
+
+command -v python3 >/dev/null || {
+    skipped all "there is no python3"
+    exit 77
+}
+
+for figure in 11 12; do
+    run 0 "figure $figure" "$TOOL" bench "figure$figure" --quick --json \
+        --chart "chart$figure.svg"
+    cp "$OUT" "$figure.json"
+    check "figure $figure hangs together" python3 - "$figure" <<'END'
+import json, math, sys
+from xml.dom import minidom
+
+figure = int(sys.argv[1])
+told = json.load(open(f"{figure}.json"))
+assert told["figure"] == figure
+assert told["nodes"] == [1, 2, 4, 8, 16, 32]
+assert [row["dataset"] for row in told["rows"]] == ["Head", "Engine"]
+for row in told["rows"]:
+    assert row["largest_difference"] <= 0.5 / 255, row["largest_difference"]
+    assert set(row["clusters"]) == {"sp2-paper", "sp2", "today"}
+    for ways in row["clusters"].values():
+        assert ways["slowness"] > 0
+        first = ways["original"]["seconds"][0]
+        for name in ("original", "crs", "bitmap", "rle"):
+            way = ways[name]
+            one = first if figure == 11 else way["seconds"][0]
+            for seconds, speedup in zip(way["seconds"], way["speedup"]):
+                assert seconds > 0
+                assert math.isclose(speedup, one / seconds), (name, way)
+lines = minidom.parse(f"chart{figure}.svg").getElementsByTagName("polyline")
+assert len(lines) == (3 + 1) * 8, len(lines)  # with the legend
+END
+done
+
+run 0 "as a table" "$TOOL" bench figure12 --quick
+prints "nodes: 32 take, efficiency"
+run 2 "options of others" "$TOOL" bench figure11 --threads 2
+finish

@@ -1,0 +1,79 @@
+#!/bin/bash
+# convert: voxels and geometry go from format to format; types change by
+# rounding, over a range, or not at all.
+. "$(dirname "$0")/../../support/shell.sh"
+
+# sums FILE [OPTIONS]: type, sums and matrix, without what formats round.
+sums() {
+    "$TOOL" info -q --json "$@" | python3 -c '
+import json, sys
+o = json.load(sys.stdin)
+print(o["type"], o["dims"], o["sum"], o["wsum"],
+      [round(x, 4) for row in o["matrix"] for x in row])'
+}
+
+same() {
+    local a b
+    a=$(sums "$1") b=$(sums "$2")
+    [ -n "$a" ] && [ "$a" = "$b" ] || { echo "$a / $b"; false; }
+}
+
+"$TOOL" phantom head --dims 33x21x17 -q -o a.nrrd
+for end in nii nii.gz mha nrrd; do
+    run 0 "to $end" "$TOOL" convert a.nrrd -o "b.$end"
+    says "b.$end: 33x21x17"
+    check "voxels and matrix are the same in $end" same a.nrrd "b.$end"
+done
+run 0 "to npy" "$TOOL" convert b.nii.gz -o c.npy
+run 0 "to raw" "$TOOL" convert -q c.npy -o c.raw.gz
+run 0 "and back from raw" "$TOOL" convert -q c.raw.gz --dims 33x21x17 \
+    --type uint8 -o d.npy
+check "byte for byte" cmp c.npy d.npy
+
+run 0 "a box" "$TOOL" convert -q a.nrrd --crop 3:20,2:,:9 -o e.nii
+check "lies where it was" test "$(sums e.nii)" = \
+    "$(sums a.nrrd --crop 3:20,2:,:9)"
+
+run 0 "to another type" "$TOOL" convert -q a.nrrd --as float32 -o f.nrrd
+run 0 "by --type, of a file that tells its own" "$TOOL" convert -q a.nrrd \
+    --type float32 -o g.nrrd
+check "the same" cmp f.nrrd g.nrrd
+run 0 "raw data to another type" "$TOOL" convert -q c.raw.gz --dims 33x21x17 \
+    --type uint8 --as int16 -o h.npy
+run 0 "a type that holds less" "$TOOL" convert -q h.npy --as uint8 -o i.npy
+check "holds these" cmp i.npy c.npy
+run 0 "over a range" "$TOOL" convert a.nrrd --as uint16 --range full -o j.nrrd
+says 'values 1 to 200 became 0 to 65535 of uint16'
+
+# A CT's slope and intercept, which NRRD cannot say.
+python3 - <<'EOF'
+import struct
+header = bytearray(352)
+struct.pack_into("<i", header, 0, 348)
+struct.pack_into("<8h", header, 40, 3, 2, 1, 1, 1, 1, 1, 1)
+struct.pack_into("<hh", header, 70, 4, 16)
+struct.pack_into("<8f", header, 76, 1, 1, 1, 1, 1, 1, 1, 1)
+struct.pack_into("<fff", header, 108, 352, 1, -1024)
+header[344:348] = b"n+1\0"
+open("ct.nii", "wb").write(header + struct.pack("<hh", 24, 3000))
+EOF
+run 0 "an intercept to NRRD" "$TOOL" convert -q ct.nii -o ct.nrrd
+check "is in the values" test "$(sums ct.nrrd | cut -d' ' -f1-6)" = \
+    "int16 [2, 1, 1] 976.0 2952.0"
+run 0 "an intercept to MetaImage" "$TOOL" convert -q ct.nii -o ct.mha
+check "stays one" grep -aq "ElementToIntensityFunctionOffset = -1024" ct.mha
+
+refused 2 "no output" "no output file given" "$TOOL" convert a.nrrd
+refused 2 "an unknown ending" "volumes are written as" \
+    "$TOOL" convert a.nrrd -o a.xyz
+refused 2 "values that do not fit" "nrrd: .* do not fit int8; convert to float32" \
+    "$TOOL" convert j.nrrd -o k.nrrd --as int8
+refused 2 "a range without a type" "add --as uint8" \
+    "$TOOL" convert a.nrrd -o k.nrrd --range 0,5
+refused 2 "percentiles" "two data values or full" \
+    "$TOOL" convert a.nrrd -o k.nrrd --as uint8 --range p1,p99
+refused 4 "a file that exists" "exists" "$TOOL" convert a.nrrd -o b.nii
+refused 3 "no such file" "none.nrrd" "$TOOL" convert none.nrrd -o k.nrrd
+refused 2 "a look" "is not an option of convert" "$TOOL" convert a.nrrd -o k.nrrd --preset linear
+check "nothing was left" test ! -e k.nrrd
+finish

@@ -1,0 +1,99 @@
+#!/bin/bash
+# info tells the truth about small volumes whose figures are known by hand, and
+# phantom writes files that info and render read back.
+. "$(dirname "$0")/../../support/shell.sh"
+
+# 2 x 2 x 2 voxels of 1 .. 8: sum 36, wsum 1*1 + 2*2 + ... + 8*8 = 204.
+printf '\1\2\3\4\5\6\7\10' >eight.raw
+raw="--dims 2x2x2 --type uint8"
+# shellcheck disable=SC2086
+run 0 "info of eight voxels" "$TOOL" info eight.raw $raw --spacing 1x2x3 --json
+check "is one line" [ "$(wc -l <"$OUT")" -eq 1 ]
+prints '"format": "raw"'
+prints '"dims": \[2, 2, 2\]'
+prints '"type": "uint8"'
+prints '"spacing": \[1.0, 2.0, 3.0\]'
+prints '"unit": ""'
+prints '"matrix": \[\[1.0, 0.0, 0.0, [^]]*\], \[0.0, 2.0, 0.0, [^]]*\], \[0.0, 0.0, 3.0, [^]]*\], \[0.0, 0.0, 0.0, 1.0\]\]'
+prints '"medical": false'
+prints '"slope": 1.0, "intercept": 0.0, "times": 1, "time": 0'
+prints '"voxels": 8, "finite": 8, "min": 1.0, "max": 8.0, "sum": 36.0, "wsum": 204.0'
+prints '"histogram": \{"low": 1.0, "high": 8.0, "counts": \[1, 0'
+prints '"sparse_ratio": \[\{"threshold": 0.0, .*"threshold": 10.0, .*"threshold": 30.0'
+prints '"look": "..*"'
+
+# shellcheck disable=SC2086
+run 0 "the same as text" "$TOOL" info eight.raw $raw --spacing 1x2x3
+prints '^dims +2 x 2 x 2 \(8 voxels\)$'
+prints '^type +uint8$'
+prints '^spacing +1 x 2 x 3$'
+prints '^values +1 .. 8, mean 4.5$'
+prints '^finite +8 of 8 voxels$'
+prints '^histogram'
+check "the histogram counts every voxel" \
+    [ "$(sed '1,/^histogram/d' "$OUT" | awk '{s += $2} END {print s}')" -eq 8 ]
+
+# Opacity is value / 8; above 100/255 are 4 .. 8, so 3 of 8 are uninteresting.
+# shellcheck disable=SC2086
+run 0 "the sparse ratio of one threshold" "$TOOL" info eight.raw $raw --json \
+    --opacity 0:0,8:1 --threshold 100
+prints '"sparse_ratio": \[\{"threshold": 100.0, "ratio": 0.375\}\]'
+
+# Along x the values step by 1, along y by 2, along z by 4: all gradients are of
+# sqrt(21).  Half of each opacity is left, so that 100/255 is passed by 7 and 8.
+# shellcheck disable=SC2086
+run 0 "the sparse ratio with a gradient opacity" "$TOOL" info eight.raw $raw \
+    --json --opacity 0:0,8:1 --threshold 100 --gradient-opacity 0:0,9.165151:1
+prints '"sparse_ratio": \[\{"threshold": 100.0, "ratio": 0.75\}\]'
+prints 'gradient opacity 0 at 0, 1 at 9.1652'
+
+# The same bytes as big endian 16 bit: 0x0102, 0x0304, 0x0506, 0x0708.
+run 0 "big endian" "$TOOL" info eight.raw --dims 2x2x1 --type uint16 \
+    --endian big --json
+prints '"min": 258.0, "max": 1800.0'
+run 0 "an offset" "$TOOL" info eight.raw --dims 2x2x1 --type uint8 --offset 4 \
+    --json
+prints '"min": 5.0, "max": 8.0'
+
+printf '\0\0\300\177' >nan.raw
+run 0 "a volume of NaN alone" "$TOOL" info nan.raw --dims 1x1x1 --type float32 \
+    --json
+prints '"finite": 0, "min": null, "max": null'
+prints '"histogram": null'
+run 0 "a volume of NaN alone as text" "$TOOL" info nan.raw --dims 1x1x1 \
+    --type float32
+prints '^finite +0 of 1 voxels$'
+
+check "standard input" bash -c "'$TOOL' info - $raw --json <eight.raw |
+    grep -q '\"sum\": 36.0'"
+
+# The engine's default size is that of the paper.
+run 0 "info of a phantom" "$TOOL" info phantom:cube --json
+prints '"format": "phantom", "dims": \[256, 256, 110\], "type": "uint8"'
+ratio=$(sed -n 's/.*"threshold": 0.0, "ratio": 0.\([0-9][0-9]\).*/\1/p' "$OUT")
+check "the cube is sparse as in Table 1" [ "${ratio:-0}" -ge 97 ]
+
+figures() { sed -n 's/.*\("dims": \[[^]]*\]\).*\("voxels".*"wsum": [^,]*\).*/\1 \2/p' "$1"; }
+run 0 "info of phantom:engine" \
+    "$TOOL" info phantom:engine --dims 20x18x16 --json
+figures "$OUT" >direct
+check "it has figures" [ -s direct ]
+for suffix in nrrd nii nii.gz mha raw raw.gz; do
+    run 0 "phantom engine to .$suffix" \
+        "$TOOL" phantom engine --dims 20x18x16 -o engine.$suffix
+    options=
+    case $suffix in raw*) options="--dims 20x18x16 --type uint8" ;; esac
+    # shellcheck disable=SC2086
+    run 0 "info of .$suffix" "$TOOL" info engine.$suffix $options --json
+    figures "$OUT" >read_back
+    check ".$suffix holds the same voxels" cmp -s direct read_back
+done
+run 0 "the same phantom again" \
+    "$TOOL" phantom engine --dims 20x18x16 -o again.raw
+check "has the same bytes" cmp -s engine.raw again.raw
+run 0 "the head with seed 1" \
+    "$TOOL" phantom head --dims 20x18x16 --seed 1 -o one.raw
+run 0 "the head with seed 2" \
+    "$TOOL" phantom head --dims 20x18x16 --seed 2 -o two.raw
+check "has other bytes" [ "$(cmp -s one.raw two.raw; echo $?)" -eq 1 ]
+finish

@@ -1,0 +1,170 @@
+#!/bin/bash
+# --mask, --labels and --clip: what is left out is as if it had never had a value, in
+# pictures, figures, movies and conversions; what does not fit is refused.
+. "$(dirname "$0")/../../support/shell.sh"
+command -v python3 >/dev/null || {
+    skipped all "there is no python3"
+    exit 77
+}
+
+render() { "$TOOL" render -q --no-labels -s 90x80 "$@"; }
+
+# figure FILE: of info.
+figure() { "$TOOL" info --json "${@:2}" | python3 -c "
+import json, sys
+print(json.load(sys.stdin)['$1'])"; }
+
+"$TOOL" phantom head --dims 32x28x30 -o v.npy -q
+"$TOOL" convert v.npy -o v.nrrd -q
+
+# Labels 0 to 3 in blocks; the volume masked here by hand, labels 2 and 3, and
+# all but 0; a mask of another size.
+python3 - <<'END'
+import array
+
+def head(kind, shape):
+    text = "{'descr': '%s', 'fortran_order': False, 'shape': %s, }" % (kind, shape)
+    text += " " * (-(len(text) + 11) % 64) + "\n"
+    return b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text.encode()
+
+nx, ny, nz = 32, 28, 30
+data = open("v.npy", "rb").read()[-nx * ny * nz:]
+labels = bytes((x >= 16) + 2 * (z >= 14)
+               for z in range(nz) for y in range(ny) for x in range(nx))
+nan = float("nan")
+
+def write(name, inside):
+    values = array.array("f", (v if inside(m) else nan
+                               for v, m in zip(data, labels)))
+    open(name, "wb").write(head("<f4", (nz, ny, nx)) + values.tobytes())
+
+write("two.npy", lambda m: m in (2, 3))
+write("any.npy", lambda m: m != 0)
+open("m.npy", "wb").write(head("|u1", (nz, ny, nx)) + labels)
+open("m.raw", "wb").write(labels)
+floats = array.array("d", (m if m else nan for m in labels))
+open("nan.npy", "wb").write(head("<f8", (nz, ny, nx)) + floats.tobytes())
+open("small.npy", "wb").write(head("|u1", (nz, ny, nx - 1)) +
+                              labels[:nz * ny * (nx - 1)])
+# The volume's file with its header's geometry, and flipped.
+for name, x, origin in ("place", 1, 5), ("flip", -1, 36):
+    text = ("NRRD0004\ntype: uint8\ndimension: 3\nsizes: 32 28 30\n"
+            "space: RAS\nspace directions: (%d,0,0) (0,1,0) (0,0,1)\n"
+            "space origin: (%d,0,0)\nencoding: raw\n\n" % (x, origin))
+    open(name + ".nrrd", "wb").write(text.encode() + labels)
+END
+
+# --- pictures -----------------------------------------------------------------
+for way in "" "--method footprint" "--method original" "--mode mip" \
+    "--mode iso --iso 90" "--quality high --encoding rle" \
+    "--gradient-opacity 0:0,20:1"; do
+    # shellcheck disable=SC2086
+    run 0 "labels 2 and 3 ${way:-as usual}" render v.npy $way -o a.npy -y \
+        --mask m.npy --labels 2-3
+    # shellcheck disable=SC2086
+    run 0 "masked by hand" render two.npy $way -o b.npy -y
+    check "is the same picture" cmp -s a.npy b.npy
+done
+run 0 "the whole volume" render v.npy -o whole.npy
+check "is another" bash -c '! cmp -s whole.npy a.npy'
+run 0 "all but 0" render v.npy -o c.npy --mask m.npy --stats c.json
+run 0 "by hand" render any.npy -o d.npy --stats d.json
+check "is the same picture" cmp -s c.npy d.npy
+run 0 "NaN in the mask is outside" render v.npy -o e.npy --mask nan.npy
+check "as 0 is" cmp -s c.npy e.npy
+# shellcheck disable=SC2016
+check "as many interesting voxels" python3 -c '
+import json
+a, b = (json.load(open(n)) for n in ("c.json", "d.json"))
+assert a["sparse_ratio"] == b["sparse_ratio"] > 0.25, a
+assert a["volume"]["type"] == "float32", a'
+run 0 "a box of both" render v.npy -o f.npy --mask m.npy --labels 1,3 \
+    --crop 10:30,2:,:20
+run 0 "a converted mask" "$TOOL" convert v.npy -o box.npy -q --mask m.npy \
+    --labels 1,3 --crop 10:30,2:,:20
+run 0 "is the same box" render box.npy -o g.npy
+check "and picture, but for its place" cmp -s f.npy g.npy
+run 0 "from standard input" bash -c \
+    "'$TOOL' render - -q --no-labels -s 90x80 -o h.npy --mask m.npy <v.npy"
+check "is the same" cmp -s c.npy h.npy
+run 0 "a mask of no voxel" "$TOOL" render v.npy -o i.png --mask m.npy --labels 9
+says 'm.npy: no voxel is left inside this mask, whose values are 0 to 3'
+
+# --- planes: x up to 15 of 0 to 31, a sixth plane beyond all ------------------
+python3 - <<'END'
+import array
+data = open("two.npy", "rb").read()
+head, values = data[:-4 * 32 * 28 * 30], array.array("f", data[-4 * 32 * 28 * 30:])
+for i in range(len(values)):
+    if i % 32 > 15 or i // 896 < 4:
+        values[i] = float("nan")
+open("clip.npy", "wb").write(head + values.tobytes())
+END
+run 0 "a mask and planes" render v.npy -o n.npy --mask m.npy --labels 2-3 \
+    --clip 2,0,0,30,0,0,-1,-4,1,0,0,99,1,0,0,99,1,0,0,99,1,1,1,999 \
+    --save-config n.json
+run 0 "masked and clipped by hand" render clip.npy -o o.npy
+check "is the same picture" cmp -s n.npy o.npy
+run 0 "taken from a recipe" render --config n.json -o q.npy
+check "they are the same" cmp -s n.npy q.npy
+run 0 "planes alone" "$TOOL" info v.npy --clip 1,0,0,15
+prints '^finite  *13440 of 26880'
+run 0 "of a box lie where they were" "$TOOL" info v.npy --clip 1,0,0,15 \
+    --crop 10:,0:7,0:5
+prints '^finite  *210 of'
+run 0 "planes that leave nothing" "$TOOL" render v.npy -o p.png --clip 1,0,0,-1
+says 'clip: no voxel is left'
+
+# --- figures and movies -------------------------------------------------------
+check "info counts what is inside" test \
+    "$(figure finite v.npy --mask m.npy --labels 3)" = $((16 * 28 * 16))
+check "with the values that are left" test \
+    "$(figure sum v.npy --mask m.npy --labels 2,3)" = "$(figure sum two.npy)"
+check "and the look is chosen of them alone" test \
+    "$(figure look v.npy --mask m.npy --labels 2,3)" = "$(figure look two.npy)"
+run 0 "a turntable" "$TOOL" turntable v.npy -q --no-labels -s 60x50 \
+    --frames 2 -o 't_%d.png' --mask m.npy --labels 2-3
+run 0 "of the volume masked by hand" "$TOOL" turntable two.npy -q --no-labels \
+    -s 60x50 --frames 2 -o 'u_%d.png'
+check "is the same" cmp -s t_1.png u_1.png
+run 0 "a movie of files" "$TOOL" movie v.npy v.nrrd -q --no-labels -s 60x50 \
+    -o 'w_%d.png' --mask m.npy --labels 2-3
+run 0 "of files masked by hand" "$TOOL" movie two.npy two.npy -q --no-labels \
+    -s 60x50 -o 'x_%d.png'
+check "is the same" cmp -s w_1.png x_1.png
+
+# --- recipes ------------------------------------------------------------------
+run 0 "a recipe is saved" render v.npy -o j.npy --mask m.npy --labels 1,2-3 \
+    --save-config j.json
+check "with both keys" grep -q '"labels": "1,2-3"' j.json
+run 0 "and taken" render --config j.json -o k.npy
+check "gives the same" cmp -s j.npy k.npy
+run 0 "other labels count more" render --config j.json -o l.npy --labels 2-3
+run 0 "than those of the file" render two.npy -o b.npy -y
+check "and are heeded" cmp -s l.npy b.npy
+
+# --- refused ------------------------------------------------------------------
+refused 3 "another size" \
+    'small.npy: the mask has 31x28x30 voxels and the volume 32x28x30' \
+    "$TOOL" render v.npy -o z.png --mask small.npy
+refused 3 "another size, where the boxes are alike" 'the mask has 31x28x30' \
+    "$TOOL" render v.npy -o z.png --mask small.npy --crop 0:9,0:9,0:9
+refused 3 "a flipped mask" 'flip.nrrd: the mask lies elsewhere: its voxel' \
+    "$TOOL" render place.nrrd -o z.png --mask flip.nrrd
+run 0 "a mask in its place" render place.nrrd -o y.png --mask place.nrrd
+run 0 "a mask without a place" render place.nrrd -o y2.png --mask m.npy
+check "is believed" cmp -s y.png y2.png
+refused 3 "no mask" 'none.nrrd: cannot be opened' \
+    "$TOOL" info v.npy --mask none.nrrd
+refused 2 "a raw mask" 'm.raw: .* snowglass convert makes' \
+    "$TOOL" info v.npy --mask m.raw
+refused 2 "a mask from standard input" '^snowglass: -: a mask is read from' \
+    "$TOOL" info v.npy --mask -
+refused 2 "a box of standard input" 'with a mask both must be files' bash -c \
+    "'$TOOL' info - --mask m.npy --crop 0:9,0:9,0:9 <v.npy"
+refused 2 "NaN in integers" 'convert to float32, which has NaN' \
+    "$TOOL" convert v.npy -o z.nrrd --as uint8 --mask m.npy
+# 26880 voxels: of one byte, of the mask's and of floats.
+refused 5 "both volumes count" 'need 157.5 KiB, over the --memory' \
+    "$TOOL" render v.npy -o z.png -s 9x9 --mask m.npy --memory 100K
+finish

@@ -1,0 +1,113 @@
+#!/bin/bash
+# Pictures in modes other than over: in every encoding and method, as colours
+# and as values in data units.
+. "$(dirname "$0")/../../support/shell.sh"
+
+small="phantom:head --dims 24x24x20 -s 40x30 --azimuth 30 --elevation 20"
+# shellcheck disable=SC2086
+render() { "$TOOL" $small "$@"; }
+# The shape that the header of a .npy tells.
+shape() { head -c 128 "$1" | tr -d '\0' | grep -ao "'shape': ([0-9, ]*)"; }
+
+run 0 "over" render -q -o over.npy
+for mode in mip minip mean sum; do
+    run 0 "mode $mode" render -m $mode -o $mode.npy
+    check "it is told on one line" [ "$(wc -l <"$ERR")" -eq 1 ]
+    says "mode $mode of all voxels, method"
+    says "grey .* \(linear\)"
+    run 6 "$mode is another picture than over" \
+        "$TOOL" compare over.npy $mode.npy
+    for encoding in crs bitmap rle; do
+        run 0 "$mode in $encoding" render -q -m $mode --encoding $encoding \
+            -o $mode.$encoding.npy
+        run 0 "encoding $encoding does not change $mode" \
+            "$TOOL" compare $mode.npy $mode.$encoding.npy
+    done
+    run 0 "$mode with a threshold" render -m $mode --threshold 30 \
+        -o $mode.threshold.npy
+    says "of all voxels \(no threshold\)"
+    run 0 "a threshold has no part in $mode" \
+        "$TOOL" compare $mode.npy $mode.threshold.npy
+    run 0 "$mode in perspective" render -q -m $mode --perspective \
+        -o $mode.eye.npy
+    run 6 "perspective changes $mode" \
+        "$TOOL" compare $mode.npy $mode.eye.npy
+    run 0 "$mode as PNG" render -q -m $mode -o $mode.png
+    run 0 "$mode on a background" render -q -m $mode -o $mode.back.png \
+        --background white
+    run 0 "$mode as PFM" render -q -m $mode -o $mode.pfm
+done
+check "mip is colours" [ "$(shape mip.npy)" = "'shape': (30, 40, 4)" ]
+check "a mean is values" [ "$(shape mean.npy)" = "'shape': (30, 40)" ]
+check "a sum is values" [ "$(shape sum.npy)" = "'shape': (30, 40)" ]
+check "a mean's PFM is grey" [ "$(head -c 2 mean.pfm)" = "Pf" ]
+check "a mip's PFM is colour" [ "$(head -c 2 mip.pfm)" = "PF" ]
+run 0 "a mean is the same in both formats" "$TOOL" compare mean.npy mean.pfm
+
+for suffix in exr tif; do
+    "$TOOL" doctor | grep -q "^picture outputs.* \.$suffix" || continue
+    run 0 "a sum as .$suffix" render -q -m sum -o sum.$suffix
+    run 0 "holds values too" "$TOOL" compare sum.npy sum.$suffix
+    run 0 "depths as .$suffix" render -q -m iso --iso 40 -o any.$suffix.png \
+        --depth depth.$suffix
+    run 0 "and .npy" render -q -m iso --iso 40 -y -o any.$suffix.png \
+        --depth depth.$suffix.npy
+    run 0 "are the same" "$TOOL" compare depth.$suffix depth.$suffix.npy
+done
+run 2 "depths are no picture" render -q -m iso --iso 40 -o no.png --depth no.webp
+says "--depth: no.webp cannot hold depths"
+
+run 0 "a PNG of means tells its range" render -m mean -o told.png
+says "means of [-0-9.e]+\.\.[-0-9.e]+ in the look's colours"
+run 0 "a range that is asked for" render -m sum --range 10,500 -o range.png
+says "sums of 10\.\.500 in the look's colours"
+run 0 "a colour map" render -q -m mean -c viridis -o viridis.png
+run 6 "changes the colours" "$TOOL" compare told.png viridis.png
+
+run 0 "iso and its depth" render -m iso --iso 40 -o iso.npy --depth near.npy
+says "mode iso of all voxels"
+check "a depth is values" [ "$(shape near.npy)" = "'shape': (30, 40)" ]
+run 0 "another value" render -q -m iso --iso 120 -o iso2.npy --depth near2.pfm
+run 6 "is another surface" "$TOOL" compare iso.npy iso2.npy
+run 6 "elsewhere" "$TOOL" compare near.npy near2.pfm
+run 4 "a depth that exists is kept" render -q -m iso --iso 40 -o iso3.npy \
+    --depth near.npy
+says "near.npy: "
+run 0 "iso unshaded" render -q -m iso --iso 40 --shade none -o flat.npy
+run 6 "is flat" "$TOOL" compare iso.npy flat.npy
+for encoding in crs bitmap rle; do
+    run 0 "iso in $encoding" render -q -m iso --iso 40 --encoding $encoding \
+        -o iso.$encoding.npy
+    run 0 "encoding $encoding does not change iso" \
+        "$TOOL" compare iso.npy iso.$encoding.npy
+done
+run 0 "iso by the original method" render -q -m iso --iso 40 \
+    --method original -o iso.original.npy
+run 0 "is the same" "$TOOL" compare iso.npy iso.original.npy
+run 0 "iso in perspective" render -q -m iso --iso 40 --perspective -o eye.png
+run 0 "over and its depth" render -q -o solid.npy --depth solid.depth.npy \
+    --opacity 0.3:0,0.31:1
+run 0 "over is what it is without" render -q -o solid2.npy \
+    --opacity 0.3:0,0.31:1
+run 0 "the same picture" "$TOOL" compare solid.npy solid2.npy
+run 0 "a recipe keeps iso" render -q -m iso --iso 40 -y -o keep.npy \
+    --save-config iso.json
+run 0 "and gives it again" "$TOOL" render --config iso.json -q -y -o again.npy
+run 0 "the same surface" "$TOOL" compare iso.npy again.npy
+
+run 2 "a movie of sums has one range" "$TOOL" turntable phantom:head \
+    --dims 12x12x12 -m sum -o "sum_%02d.png" --frames 2
+says "--mode sum: all frames of a movie need the same range"
+run 0 "a movie of sums" "$TOOL" turntable phantom:head --dims 12x12x12 -m sum \
+    --range 0,1000 -o "sum_%02d.png" --frames 2 -s 20x20
+run 0 "a movie of maxima" "$TOOL" turntable phantom:head --dims 12x12x12 \
+    -m mip -o "mip_%02d.png" --frames 2 -s 20x20
+run 0 "a recipe keeps the mode" render -q -y -m minip -o keep.npy \
+    --save-config keep.json
+run 0 "and gives it again" "$TOOL" render --config keep.json -q -y -o again.npy
+run 0 "the same" "$TOOL" compare keep.npy again.npy
+run 0 "what mip makes no use of" render -m mip --opacity 0:0,200:1 \
+    --light 10,10 -y -o unused.png
+says '^snowglass: note: --opacity has no effect in mode mip$'
+says '^snowglass: note: --light has no effect in mode mip$'
+finish

@@ -1,0 +1,287 @@
+#!/bin/bash
+# Pictures of every phantom, in every format; figures; streams; the promises of
+# equality between encodings and methods.
+. "$(dirname "$0")/../../support/shell.sh"
+
+# Every phantom gives a picture that differs from an empty one.
+for name in cube head engine shells marschner-lobb turbulence; do
+    small="phantom:$name --dims 24x24x20 -s 40x30"
+    # shellcheck disable=SC2086
+    run 0 "phantom:$name" "$TOOL" $small -o $name.png
+    check "phantom:$name is a PNG" is_png $name.png
+    says "phantom:$name: phantom 24x24x20"
+    # shellcheck disable=SC2086
+    run 0 "phantom:$name made transparent" "$TOOL" $small -o empty_$name.png \
+        --opacity 0:0
+    run 6 "phantom:$name shows something" \
+        "$TOOL" compare $name.png empty_$name.png
+done
+run 0 "two transparent pictures" \
+    "$TOOL" compare empty_cube.png empty_head.png
+
+small="phantom:shells --dims 24x24x20 -s 40x30"
+# shellcheck disable=SC2086
+render() { "$TOOL" $small "$@"; }
+
+run 0 "-q is silent" render -q -o quiet.png
+check "-q is silent: no word" [ ! -s "$ERR" ] 
+run 0 "one line without -q" render -o said.png
+check "it is one line" [ "$(wc -l <"$ERR")" -eq 1 ]
+says "view \+z; method shear-warp, encoding (crs|bitmap|rle)"
+run 0 "nothing is visible" render -y -o void.png --opacity 900:0,901:1
+says '^snowglass: note: the picture is empty: no voxel has an opacity'
+run 0 "all is beside the picture" render -y -o void.png --target 5000,0,0
+says '^snowglass: note: the picture is empty: no visible voxel is in view'
+run 0 "a surface of no value" render -y -o void.png -m iso --iso 900
+says '^snowglass: note: the picture is empty: no surface of value 900 '
+run 0 "quietly" render -q -y -o void.png --opacity 900:0,901:1
+check "nothing is said" [ ! -s "$ERR" ]
+run 0 "a slice" "$TOOL" phantom cube --dims 1x9x9 -q -o slice.nrrd
+run 0 "from its edge" "$TOOL" render slice.nrrd -s 20x20 -y -o void.png
+says '^snowglass: note: the volume is a single slice, seen from its edge; use --view \+x to see its face$'
+run 0 "not where the view is chosen" "$TOOL" render slice.nrrd -s 20x20 -y \
+    -o void.png --view +z
+check "no remark" bash -c "! grep -q edge '$ERR'"
+run 0 "-v tells more" render -v -o more.png
+says "^snowglass: seconds: read"
+says "^snowglass: bytes: volume"
+run 0 "--progress always" render --progress always -o p.png
+says "^snowglass: rendering$"
+run 0 "the last of -v -q counts" render -v -q -o r.png
+check "the last of -v -q counts: silent" [ ! -s "$ERR" ]
+
+# The options of every topic are taken, and those that must change the picture
+# do.
+run 0 "a picture to begin with" render -q -o base.npy
+changes() {
+    rm -f changed.npy
+    run 0 "render $*" render -q -o changed.npy "$@"
+    run 6 "$* changes the picture" "$TOOL" compare base.npy changed.npy
+}
+same() {
+    rm -f same.npy
+    run 0 "render $*" render -q -o same.npy "$@"
+    run 0 "$* does not change the picture" "$TOOL" compare base.npy same.npy
+}
+near() {
+    tolerance=$1
+    shift
+    rm -f near.npy
+    run 0 "render $*" render -q -o near.npy "$@"
+    run 0 "$* is within $tolerance of the picture" \
+        "$TOOL" compare base.npy near.npy --tolerance "$tolerance"
+}
+changes --azimuth -30
+changes --elevation 20
+changes --roll 15
+changes --zoom 2
+changes --perspective
+changes --perspective 60
+changes --view left
+changes --view -z
+changes --threshold 60
+changes --kernel tent
+changes --kernel gauss
+changes --kernel box
+changes --footprint 3
+changes --colormap viridis
+changes --preset linear
+changes --opacity 0:0,1:0.1
+changes --gradient-opacity 0:0,0.5:1
+same --gradient-opacity 0:1,255:1
+changes --range p20,p60
+changes --range full --opacity 0:0.1
+changes --window 1 --level 0.5
+changes --opacity-unit mm --spacing 2x2x2
+changes --shade none
+changes --light 60,30
+changes --ambient 0.6
+changes --diffuse 0.1
+changes --specular 0.9
+changes --shininess 3
+changes --spacing 1x1x3
+same -m over
+same -j 1
+near 1e-5 --deterministic
+near 1e-5 --isa scalar
+same -j 2
+same -j 7
+near 0.1 --quality draft
+near 0.2 --quality high
+same --no-labels
+same --progress never
+same --encoding crs
+same --encoding bitmap
+same --encoding rle
+near 0.02 --method footprint
+changes --method footprint
+run 0 "the exact picture" render -q -o exact.npy --method footprint \
+    --isa scalar
+run 0 "the original one" render -q -o original.npy --method original
+run 0 "they are one" "$TOOL" compare exact.npy original.npy
+same --azimuth 50 --azimuth 0
+same --size 9x9 -s 40x30
+
+# The number behind --perspective may be left out, and is only a number.
+run 0 "an eye of 30 degrees" render -q -o eye.npy --perspective
+for way in "--perspective 30" "--perspective=30" "--perspective=60 --perspective"; do
+    # shellcheck disable=SC2086
+    run 0 "$way" render -q -o eye2.npy -y $way
+    run 0 "$way is --perspective" "$TOOL" compare eye.npy eye2.npy
+done
+run 0 "an input behind --perspective" "$TOOL" render -q --perspective \
+    phantom:shells --dims 24x24x20 -s 40x30 -o eye3.npy
+run 0 "it is no number" "$TOOL" compare eye.npy eye3.npy
+run 0 "a number and an input behind it" "$TOOL" render -q --perspective 30 \
+    phantom:shells --dims 24x24x20 -s 40x30 -o eye4.npy
+run 0 "they are told apart" "$TOOL" compare eye.npy eye4.npy
+run 0 "the exact picture in perspective" \
+    render -q -o eye5.npy --perspective --method footprint
+run 0 "is near the sheared one" \
+    "$TOOL" compare eye.npy eye5.npy --tolerance 0.02
+run 0 "the original method in perspective" \
+    render -q -o eye6.npy --perspective --method original
+run 0 "is the exact picture" "$TOOL" compare eye5.npy eye6.npy
+
+# The smallest volumes there are; the sanitizers look on.
+for dims in 1x1x1 1x1x100 1x100x1 100x1x1; do
+    run 0 "a volume of $dims" \
+        "$TOOL" -q phantom:engine --dims $dims -s 32x32 -o tiny.npy -y
+done
+
+# Streams and formats.
+run 0 "the picture to standard output" render -q -o -
+check "is a PNG" is_png "$OUT"
+cp "$OUT" stream.png
+run 0 "the same to a file" render -q -o stream_file.png
+check "is the same, byte for byte" cmp -s stream.png stream_file.png
+run 0 "16 bits" render -q -o deep.png --bits 16
+run 0 "16 bits are near the floats" \
+    "$TOOL" compare base.npy deep.png --tolerance 0.001
+run 0 "8 bits are near the floats" \
+    "$TOOL" compare base.npy stream.png --tolerance 1/255
+run 0 "a background" render -q -o ground.png --background '#ff8000'
+run 6 "a background shows" "$TOOL" compare stream.png ground.png
+run 0 "another background" render -q -o night.png --background navy
+run 6 "differs from the first" "$TOOL" compare night.png ground.png
+run 0 "the same background in words of numbers" \
+    render -q -o ground2.png --background 1,0.50196,0
+run 0 "gives the same picture" "$TOOL" compare ground.png ground2.png
+run 0 "PFM" render -q -o base.pfm
+check "PFM begins with PF" [ "$(head -c 2 base.pfm)" = PF ]
+check "NPY has its floats" \
+    [ "$(wc -c <base.npy)" -eq $((128 + 40 * 30 * 16)) ]
+run 0 "options after the operand, -- before it" \
+    "$TOOL" -q -s 9x9 --dims 8x8x8 -o dash.png -- phantom:cube
+raw_cube cube.raw 8
+raw="--dims 8x8x8 --type uint8"
+# shellcheck disable=SC2086
+run 0 "a raw file" "$TOOL" -q cube.raw $raw -s 20x20 -o raw.npy
+# shellcheck disable=SC2086
+check "standard input" bash -c \
+    "'$TOOL' -q - $raw -s 20x20 -o stdin.npy <cube.raw"
+run 0 "gives the same picture" "$TOOL" compare raw.npy stdin.npy
+gzip -k cube.raw
+# shellcheck disable=SC2086
+run 0 "a raw file in gzip" "$TOOL" -q cube.raw.gz $raw -s 20x20 -o gz.npy
+run 0 "gives the same picture" "$TOOL" compare raw.npy gz.npy
+
+# The figures.
+run 0 "figures to standard output" render -q -o f.png --threshold 10 \
+    --encoding rle --stats -
+check "are one line" [ "$(wc -l <"$OUT")" -eq 1 ]
+prints '^\{"version": "[0-9.]+", "volume": \{"dims": \[24, 24, 20\], "type": "[a-z0-9]+", "spacing": \[[-0-9.e]+, [-0-9.e]+, [-0-9.e]+\]\}, "threshold": 10.0, "sparse_ratio": [0-9.e-]+, "encoding": "rle", "method": "shear-warp", "kernel": "bspline", "footprint": 4, "threads": [0-9]+, "ranks": 1, "load": 1.0, "isa": "[a-z0-9]+", "quality": "normal", "halvings": \[0, 0, 0\], "bytes": \{"volume": [0-9]+, "ea": [0-9]+, "ia": [0-9]+, "pa": [0-9]+, "peak": [0-9]+\}, "seconds": \{"read": [-0-9.e]+, "classify": [-0-9.e]+, "shade": [-0-9.e]+, "encode": [-0-9.e]+, "splat": [-0-9.e]+, "composite": [-0-9.e]+, "warp": [-0-9.e]+, "combine": 0.0, "gather": 0.0, "write": [-0-9.e]+, "frame": [-0-9.e]+, "total": [-0-9.e]+\}, "image": \{"width": 40, "height": 30, "checksum": "[0-9a-f]{16}"\}\}$'
+check "interesting voxels take bytes" [ "$(number ia)" -gt 0 ]
+run 0 "sheared is another name of shear-warp" \
+    render -q -o alias.npy --method sheared --stats -
+prints '"method": "shear-warp"'
+run 0 "shear-warp by its name" render -q -o name.npy --method shear-warp
+run 0 "is the same picture" "$TOOL" compare alias.npy name.npy
+run 0 "figures in words and as JSON" "$TOOL" -v phantom:shells \
+    --dims 96x96x96 -s 40x30 -o w.png --stats -
+check "no level is made for normal quality" [ -z "$(grep level: "$ERR")" ]
+look=$(sed -n 's/.*(look \([0-9.]*\)).*/\1/p' "$ERR")
+check "classify counts the choice of the look" awk -v look="${look:-none}" \
+    -v both="$(number classify)" \
+    'BEGIN { exit !(look + 0 > 0 && both + 0.0005 >= look) }'
+run 0 "a draft of few pixels" "$TOOL" -v phantom:shells --dims 96x96x96 \
+    -s 40x30 -o w2.png --quality draft --stats -
+prints '"quality": "draft", "halvings": \[1, 1, 1\], '
+check "tells of its level" grep -q \
+    "level: the volume is halved 1, 1 and 1 times along x, y and z" "$ERR"
+run 0 "a draft of categories" "$TOOL" phantom:shells --dims 96x96x96 \
+    -s 40x30 -o w3.png --quality draft --colormap tab10 --stats -
+prints '"halvings": \[0, 0, 0\], '
+run 0 "a deterministic draft" "$TOOL" phantom:shells --dims 96x96x96 \
+    -s 40x30 -o w4.png --quality draft --deterministic --stats -
+prints '"halvings": \[0, 0, 0\], '
+run 0 "figures of the original method" render -q -o g.png --method original \
+    --stats -
+prints '"encoding": "none", "method": "original"'
+run 0 "the picture to standard output, figures to a file" \
+    render -q -o - --stats figures.json
+check "PNG and JSON keep apart" grep -q '"checksum"' figures.json
+
+# Interruption: no picture, nothing aside, 130.
+for signal in TERM INT; do
+    run 130 "SIG$signal while rendering" timeout --preserve-status \
+        -s $signal 1 "$TOOL" phantom:head --dims 500x500x500 -s 4000x4000 \
+        --method original --footprint 9 -o late.png
+    check "leaves nothing" [ -z "$(ls -A | grep late)" ]
+done
+
+# While the file is written the signal is let go: the picture becomes whole.
+"$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
+    -o large.png 2>stages &
+job=$!
+for _ in $(seq 600); do
+    grep -q writing stages && break
+    sleep 0.05
+done
+kill -TERM $job
+wait $job
+check "SIGTERM while writing ends as usual" [ $? -eq 0 ]
+check "with a whole picture" is_png large.png
+"$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
+    -o second.png 2>stages &
+job=$!
+for _ in $(seq 600); do
+    grep -q writing stages && break
+    sleep 0.05
+done
+kill -TERM $job
+kill -HUP $job
+wait $job
+check "a second signal ends the writing at once" [ $? -eq 130 ]
+check "and leaves no picture" absent second.png
+rm -f .second.png.snow-*
+mkfifo pipe.png
+run 130 "SIGTERM while a pipe waits for its reader" timeout \
+    --preserve-status -s TERM 3 "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 \
+    -o pipe.png
+
+# At any moment: 130 and no picture, or 0 and a whole one.
+broken=0 early=0
+for delay in 0.01 0.02 0.04 0.06 0.08 0.1 0.13 0.16 0.2 0.3 0.5; do
+    rm -f late.png
+    timeout --preserve-status -s TERM $delay "$TOOL" -q phantom:engine \
+        --dims 64x64x64 -s 700x700 --bits 16 -o late.png 2>/dev/null
+    case $? in
+    130) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
+    143) early=$((early + 1)) && [ ! -e late.png ] || broken=1 ;;
+    0) is_png late.png && "$TOOL" compare late.png late.png >"$OUT" ||
+        broken=1 ;;
+    *) broken=1 ;;
+    esac
+done
+check "interrupted at 11 moments, $early of them early: whole or absent" \
+    [ "$broken" -eq 0 ]
+check "and nothing is left aside" [ -z "$(ls -A | grep snow-)" ]
+# What Slurm has given, where it binds no processes.
+for given in SLURM_CPUS_PER_TASK=1 SLURM_CPUS_ON_NODE=1; do
+    run 0 "$given" env "$given" "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 -q -y \
+        -o slurm.png --stats -
+    prints '"threads": 1,'
+done
+
+finish

@@ -1,0 +1,268 @@
+#!/bin/bash
+# Volumes larger than memory: a sparse file of 3 GB is rendered within 300 MB,
+# as raw and as NRRD, and pictures are those of the volume in memory, bit for
+# bit; packed files, slices in files of their own, turntables, movies; and what
+# cannot be done so, or does not fit even then, ends with one line.
+. "$(dirname "$0")/../../support/shell.sh"
+
+# peak COMMAND...: runs it, and leaves its most kilobytes in $PEAK.
+cat >peak.py <<'EOF2'
+import resource, subprocess, sys
+code = subprocess.call(sys.argv[2:])
+with open(sys.argv[1], "w") as file:
+    file.write(str(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss))
+sys.exit(code)
+EOF2
+peak() { python3 peak.py kilobytes "$@"; }
+
+same() { # NAME A B
+    check "$1: bit for bit" cmp "$2" "$3"
+}
+
+# --- small ones --------------------------------------------------------------
+
+"$TOOL" phantom head --dims 256x256x200 -q -o a.nrrd
+"$TOOL" convert a.nrrd -q -o a.nii.gz
+"$TOOL" convert a.nrrd -q --type float32 -o a_f32.nrrd
+look=(-s 96x96 --preset linear --opacity 120:0,250:1 --colormap viridis --shade phong)
+for view in "-z" "+y --elevation 20" "left --azimuth 30 --perspective"; do
+    # shellcheck disable=SC2086
+    run 0 "$view, whole" "$TOOL" render a.nrrd "${look[@]}" --view $view -q \
+        -o whole.png -y --threads 2
+    # shellcheck disable=SC2086
+    run 0 "$view, in slabs" "$TOOL" render a.nrrd "${look[@]}" --view $view -v \
+        -o slabs.png -y --memory 11M --stats slabs.json
+    says 'a.nrrd: stays in its file and is read in slabs of at least [12].[0-9] MiB'
+    says 'memory: at least 12.6 MiB'
+    same "$view" whole.png slabs.png
+    check "holds to its limit" python3 -c '
+import json
+told = json.load(open("slabs.json"))
+assert told["bytes"]["peak"] <= 11 << 20, told
+assert told["bytes"]["volume"] == 256 * 256 * 200, told
+assert told["seconds"]["read"] > 0 and told["encoding"] == "bitmap", told'
+    rm slabs.json
+done
+
+run 0 "floats, whole" "$TOOL" render a_f32.nrrd "${look[@]}" --view -z \
+    --range 0,255 -q -o whole.png -y
+run 0 "floats in slabs" "$TOOL" render a_f32.nrrd "${look[@]}" --view -z \
+    --range 0,255 -q -o slabs.png -y --memory 46M
+same "floats" whole.png slabs.png
+
+# Other modes, and depths; of the surface slabs that hold nothing of it too.
+for mode in mip minip mean sum iso; do
+    value=()
+    [ "$mode" = iso ] && value=(--iso 120 --depth near.npy)
+    for eye in "--view -z" "--view left --azimuth 30 --perspective"; do
+        # shellcheck disable=SC2086
+        run 0 "$mode $eye, whole" "$TOOL" render a_f32.nrrd -s 96x96 $eye -q \
+            -m $mode "${value[@]}" -o whole.npy -y
+        [ "$mode" = iso ] && mv near.npy whole.near.npy
+        # shellcheck disable=SC2086
+        run 0 "$mode $eye, in slabs" "$TOOL" render a_f32.nrrd -s 96x96 $eye \
+            -v -m $mode "${value[@]}" -o slabs.npy -y --memory 46M
+        says 'a_f32.nrrd: stays in its file'
+        same "$mode $eye" whole.npy slabs.npy
+        [ "$mode" = iso ] && same "$mode, depth $eye" whole.near.npy near.npy
+    done
+done
+run 0 "bytes of a surface, whole" "$TOOL" render a.nrrd -s 96x96 -q -m iso \
+    --iso 120 -o whole.npy -y
+run 0 "bytes of a surface in slabs" "$TOOL" render a.nrrd -s 96x96 -q -m iso \
+    --iso 120 -o slabs.npy -y --memory 11M
+same "bytes of a surface" whole.npy slabs.npy
+mv slabs.npy slabs_iso.npy
+run 0 "depths, whole" "$TOOL" render a.nrrd "${look[@]}" --view -z -q \
+    -o whole.npy -y --depth whole.depth.npy
+run 0 "depths in slabs" "$TOOL" render a.nrrd "${look[@]}" --view -z -q \
+    -o slabs.npy -y --memory 11M --depth slabs.depth.npy
+same "the picture of depths" whole.npy slabs.npy
+run 0 "depths but for rounding" "$TOOL" compare whole.depth.npy \
+    slabs.depth.npy --tolerance 4e-6
+run 0 "a turntable of a surface in slabs" "$TOOL" turntable a.nrrd -s 96x96 \
+    -q -m iso --iso 120 --frames 2 -o 'i_%d.npy' --memory 11M
+same "its first frame" i_0.npy slabs_iso.npy
+
+run 0 "a packed file, whole" "$TOOL" render a.nii.gz "${look[@]}" -q \
+    -o whole.png -y
+run 0 "a packed file in slabs" "$TOOL" render a.nii.gz "${look[@]}" \
+    -o slabs.png -y --memory 11M
+says 'note: a.nii.gz is compressed and is decompressed again for each slab'
+same "a packed file" whole.png slabs.png
+
+run 0 "a turntable, whole" "$TOOL" turntable a.nrrd "${look[@]}" -q \
+    --frames 6 -o 'w_%d.png'
+run 0 "a turntable in slabs" "$TOOL" turntable a.nrrd "${look[@]}" -q \
+    --frames 6 -o 's_%d.png' --memory 11M
+for i in 0 1 2 3 4 5; do
+    same "frame $i" "w_$i.png" "s_$i.png"
+done
+run 0 "a movie in slabs" "$TOOL" movie a.nrrd a.nrrd "${look[@]}" -q \
+    --range 0,255 -o 'm_%d.png' --memory 11M
+run 0 "its first step alone" "$TOOL" render a.nrrd "${look[@]}" -q \
+    --range 0,255 -o whole.png -y
+same "a movie" m_0.png whole.png
+same "its second step" m_1.png whole.png
+
+# --- nothing is left ----------------------------------------------------------
+
+"$TOOL" phantom cube --dims 256x256x200 -q -o mask.nrrd
+for limit in 200M 11M; do # in memory, and in slabs
+    run 0 "a mask of no voxel under $limit" "$TOOL" render a.nrrd -s 64x64 \
+        --view -z -o none.png -y --mask mask.nrrd --labels 300 --memory $limit
+    says 'mask.nrrd: no voxel is left inside this mask, whose values are [0-9]* to 255; correct'
+    check "is told once" test "$(grep -c 'no voxel is left' "$ERR")" = 1
+    run 0 "planes that leave nothing under $limit" "$TOOL" render a.nrrd \
+        -s 64x64 --view -z -o none.png -y --clip 1,0,0,-9999 --memory $limit
+    says 'clip: no voxel is left'
+    run 0 "planes that leave some under $limit" "$TOOL" render a.nrrd \
+        -s 64x64 --view -z -o none.png -y --clip 0,0,1,-50 --memory $limit
+    check "are not remarked on" bash -c "! grep -q 'no voxel' '$ERR'"
+done
+rm none.png
+
+# --- what is refused ---------------------------------------------------------
+
+small=(-s 64x64 -o none.png)
+refused 5 "too many interesting voxels" \
+    'a.nrrd: 131[0-9]* of 13107200 voxels are interesting \(100 %\) and take about 39.[0-9] MiB when encoded, which do not fit beside slabs of [0-9.]* MiB under the limit of 11.0 MiB; raise --threshold' \
+    "$TOOL" render a.nrrd "${small[@]}" --preset linear --memory 11M -q
+refused 5 "the same beside the volume in memory" \
+    'a.nrrd: 131[0-9]* of 13107200 voxels are' \
+    "$TOOL" render a.nrrd "${small[@]}" --preset linear --memory 16M -q
+refused 5 "the smallest slab" \
+    'a.nrrd: one slab, tables and the picture need 17.2 MiB, over the --memory of 3.0 MiB; raise it' \
+    "$TOOL" render a.nrrd -s 1024x1024 -o none.png --memory 3M
+for mode in mip mean; do
+    refused 5 "mode $mode of too many voxels" \
+        'when encoded, which do not fit beside slabs of [0-9.]* MiB under the limit of 11.0 MiB; give --crop or more memory' \
+        "$TOOL" render a.nrrd "${small[@]}" -m "$mode" --memory 11M -q
+done
+refused 5 "a deterministic picture by an exact method" \
+    'a deterministic picture by the method footprint needs all voxels' \
+    "$TOOL" render a.nrrd "${small[@]}" --method footprint --deterministic \
+    --memory 11M -q
+refused 5 "the range of all steps" 'and the range of all steps needs all' \
+    "$TOOL" movie a.nrrd a.nrrd -s 64x64 -o 'n_%d.png' --memory 11M
+check "nothing is left" test ! -e none.png -a ! -e n_0.png
+for method in footprint original; do
+    run 0 "$method" "$TOOL" render a.nrrd "${small[@]}" -q --method "$method" \
+        -o exact.npy -y
+    run 0 "$method under a limit" "$TOOL" render a.nrrd "${small[@]}" -q \
+        --method "$method" --memory 11M -o slabs.npy -y
+    run 0 "is nearly the same" "$TOOL" compare exact.npy slabs.npy \
+        --tolerance 4e-6
+done
+
+# --- slices in files of their own --------------------------------------------
+
+if [ -f "$DATA/dicom/ct_abdomen_20of275.tar.gz" ]; then
+    tar xzf "$DATA/dicom/ct_abdomen_20of275.tar.gz"
+    bone=(-s 2048x2048 --preset linear --range -1000,2000
+        --opacity 150:0,400:1 --view superior)
+    run 0 "DICOM, whole" "$TOOL" render ct_abdomen "${bone[@]}" -q \
+        -o whole.png -y
+    run 0 "DICOM in slabs" "$TOOL" render ct_abdomen "${bone[@]}" -v \
+        -o slabs.png -y --memory 73M
+    says 'ct_abdomen: stays in its file'
+    same "DICOM" whole.png slabs.png
+fi
+if [ -f "$DATA/classic/cthead-8bit_99tif.tar.gz" ]; then
+    mkdir tiff
+    tar xzf "$DATA/classic/cthead-8bit_99tif.tar.gz" -C tiff
+    stack=$(dirname "$(find tiff -name '*.tif' | head -n 1)")
+    run 0 "TIFF files, whole" "$TOOL" render "$stack" -s 96x96 \
+        --opacity 150:0,250:1 -q -o whole.png -y
+    run 0 "TIFF files in slabs" "$TOOL" render "$stack" -s 96x96 \
+        --opacity 150:0,250:1 -v -o slabs.png -y --memory 6M
+    says 'stays in its file'
+    same "TIFF files" whole.png slabs.png
+fi
+
+# --- a large one -------------------------------------------------------------
+
+done_here() {
+    skipped "a large file" "$1"
+    finish
+    exit
+}
+long_tier || done_here "left to the long tier"
+grep -aq __asan_init "$TOOL" && done_here "the sanitizer needs more memory"
+x=1024 y=1024 z=1500
+truncate -s $((2 * x * y * z)) big.raw || done_here "no sparse files"
+python3 - <<EOF
+import array
+side = 80
+rows = [[array.array("H", [max(0, min(4000, int((40 - ((i - 40)**2 +
+         (j - 40)**2 + (k - 40)**2)**0.5) * 120))) for i in range(side)])
+         .tobytes() for j in range(side)] for k in range(side)]
+with open("big.raw", "r+b") as file:
+    for a, b, c in ((100, 100, 100), (700, 150, 600), (400, 700, 1250)):
+        for k in range(side):
+            for j in range(side):
+                file.seek(2 * (((c + k) * $y + b + j) * $x + a))
+                file.write(rows[k][j])
+EOF
+[ "$(du -m big.raw | cut -f1)" -lt 100 ] || done_here "no sparse files"
+printf 'NRRD0004\ntype: uint16\ndimension: 3\nsizes: %d %d %d\n' \
+    $x $y $z >big.nhdr
+printf 'encoding: raw\nendian: little\ndata file: big.raw\n' >>big.nhdr
+raw=(--dims ${x}x${y}x${z} --type uint16)
+
+run 0 "3 GB of raw data" peak "$TOOL" render big.raw "${raw[@]}" --view iso \
+    -s 256x256 -q -o raw.png --memory 300M --stats raw.json
+check "within the limit, $(cat kilobytes) KB of the process" \
+    test "$(cat kilobytes)" -lt $((300 * 1024))
+run 0 "3 GB of NRRD" peak "$TOOL" render big.nhdr --view +y -s 256x256 -q \
+    -o nrrd.png --memory 300M --stats nrrd.json
+check "within the limit, $(cat kilobytes) KB of the process" \
+    test "$(cat kilobytes)" -lt $((300 * 1024))
+check "every voxel is counted once" python3 - <<EOF
+import json
+raw, nrrd = (json.load(open(name)) for name in ("raw.json", "nrrd.json"))
+assert raw["sparse_ratio"] == nrrd["sparse_ratio"], raw
+kept = (1 - raw["sparse_ratio"]) * $x * $y * $z / 3
+assert 0.7 * 268083 < kept < 268083, kept # a ball of radius 40
+EOF
+
+for eye in "--view iso" "--view +x --perspective"; do
+    # shellcheck disable=SC2086
+    run 0 "largest values of it, $eye" peak "$TOOL" render big.nhdr -m mip \
+        $eye -s 256x256 -q -o mip.png -y --memory 300M
+    check "within the limit, $(cat kilobytes) KB of the process" \
+        test "$(cat kilobytes)" -lt $((300 * 1024))
+done
+run 0 "a surface of it" peak "$TOOL" render big.nhdr -m iso --iso 2000 \
+    --view iso -s 256x256 -q -o iso.png --memory 300M
+check "within the limit, $(cat kilobytes) KB of the process" \
+    test "$(cat kilobytes)" -lt $((300 * 1024))
+
+# By itself, where addresses are limited.
+run 0 "by itself" bash -c "ulimit -v 1000000 &&
+    exec '$TOOL' render big.nhdr --view iso -s 256x256 -v -o itself.png"
+says 'big.nhdr: stays in its file'
+same "by itself" raw.png itself.png
+
+if [ "$(free_gigabytes)" -ge 5 ]; then
+    run 0 "the same in memory" "$TOOL" render big.nhdr --view iso -s 256x256 \
+        -q -o memory.png
+    same "3 GB" raw.png memory.png
+fi
+# Pipes can be read once only: they are not looked at beforehand.
+run 0 "a volume of a file" "$TOOL" phantom head --dims 48x48x48 -o pipe.nrrd
+run 0 "its picture" "$TOOL" render -q pipe.nrrd -o file.npy
+mkfifo pipe
+cat pipe.nrrd >pipe &
+run 0 "the same through a pipe" "$TOOL" render -q pipe -o pipe.npy
+run 0 "is the same" "$TOOL" compare file.npy pipe.npy
+
+# What is made of all voxels at once does not fit beside them.
+run 0 "a larger volume" "$TOOL" phantom head --dims 256x256x256 -o wide.nrrd
+run 0 "few pixels" "$TOOL" render wide.nrrd -s 16x16 --opacity 150:0,250:1 \
+    -q -o wide.npy
+run 0 "few pixels under a limit" "$TOOL" render wide.nrrd -s 16x16 \
+    --opacity 150:0,250:1 --memory 18M -q -o thin.npy
+run 0 "are nearly the same" "$TOOL" compare wide.npy thin.npy --tolerance 4e-6
+
+finish

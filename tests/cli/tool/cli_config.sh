@@ -1,0 +1,160 @@
+#!/bin/bash
+# --config and --save-config: what was saved gives the same picture, and what
+# stands on the command line counts more than what stands in a file.
+. "$(dirname "$0")/../../support/shell.sh"
+
+render() { "$TOOL" render -q "$@"; }
+
+# --- saved and taken ----------------------------------------------------------
+run 0 "a picture with many wishes is saved" "$TOOL" render \
+    phantom:marschner-lobb --dims 40x36x44 --spacing 1x1.5x0.7 -o a.png \
+    -s 130x110 --background '#102030' --bits 16 --threshold 2.5 \
+    --kernel gauss --footprint 5 --preset linear -c inferno \
+    --opacity 0.1:0,0.5:0.05,0.5:0.2,1:1 --range 0.1,0.9 --opacity-unit mm \
+    --gradient-opacity 0:0.1,0.2:0.7,0.2:0.8,1.25:1 \
+    --light 20,-10 --ambient 0.31 --diffuse 0.6 --specular 0.1 --shininess 7 \
+    --view iso --azimuth 33.3 --elevation -12 --roll 5 --zoom 1.1 \
+    --perspective 25 --quality high --isa scalar -j 1 --crop 3:39,2:,:40 \
+    --save-config all.json
+run 0 "it gives the same picture" render --config all.json -o b.png
+run 0 "bit for bit" "$TOOL" compare a.png b.png
+check "byte for byte" cmp -s a.png b.png
+run 0 "saved again, it is the same" render --config all.json -o c.png \
+    --save-config again.json
+check "but for the output" bash -c 'sed s/a.png/X/ all.json >one &&
+    sed s/c.png/X/ again.json >other && diff one other'
+run 4 "its own output is kept" render --config all.json
+says 'a.png'
+run 0 "and replaced where that is asked" render --config all.json -y
+
+# What is meant for one mode may stand beside another.
+run 0 "another mode" "$TOOL" render --config all.json -m mip -y -o mip.png
+check "no word on what it does not use" bash -c "! grep -q 'no part' '$ERR'"
+run 0 "but what is told" "$TOOL" render --config all.json -m mip -y \
+    --light 3,4 -o mip.png
+says '^snowglass: note: --light has no effect in mode mip$'
+
+# The permission to replace files is for one run.
+run 0 "saved with -y" render phantom:cube -s 9x9 -o once.png -y \
+    --save-config once.json
+run 4 "nothing is replaced without it" render --config once.json
+
+# A unit that is told beside a transfer function of another one.
+echo '{"snowglass-tf": 1, "opacity-unit": "mm",
+    "opacities": [[0, 0], [255, 0.5]]}' >mm.json
+run 0 "opacities of a voxel" render phantom:cube --dims 20x20x20 \
+    --spacing 4x4x4 --tf mm.json --opacity-unit voxel -o voxel.png \
+    --save-config voxel.json
+run 0 "and again" render --config voxel.json -o again.png
+check "are the same" cmp -s voxel.png again.png
+run 0 "and not those of a millimetre" render phantom:cube --dims 20x20x20 \
+    --spacing 4x4x4 --tf mm.json -o mm.png
+check "which differ" [ -z "$(cmp -s voxel.png mm.png && echo same)" ]
+
+run 0 "nothing is asked" render phantom:cube -o d.png --save-config d.json
+run 0 "and nothing saved but defaults" render --config d.json -o e.png
+check "the same picture" cmp -s d.png e.png
+run 0 "percentiles and a window" render phantom:shells --dims 32x32x32 \
+    -o f.png --range p5,p95 --save-config f.json
+run 0 "are kept" render --config f.json -o g.png
+check "as they are" cmp -s f.png g.png
+run 0 "a window" render phantom:shells --dims 32x32x32 -o h.png \
+    --window 100 --level 120 --save-config h.json
+run 0 "is kept" render --config h.json -o i.png
+check "as a range" cmp -s h.png i.png
+run 0 "to standard output" render phantom:cube -o j.png --save-config -
+prints '^\{"input": "phantom:cube", "output": "j.png", "size": \[512, 512\]'
+
+# --- depths -------------------------------------------------------------------
+run 0 "a depth" render phantom:shells --dims 24x20x22 -s 60x50 -o da.npy \
+    --depth dd.npy --stats ds.json --save-config depth.json
+refused 4 "is kept as the output is" 'dd.npy: ' \
+    "$TOOL" render --config depth.json -o db.npy
+check "before anything is made" absent db.npy
+cp dd.npy before.npy
+run 0 "and made again" render --config depth.json -y
+check "as it was" cmp -s dd.npy before.npy
+check "without its figures" bash -c '! grep -q stats depth.json'
+run 0 "another place on the command line" render --config depth.json \
+    -o db.npy --depth de.npy
+check "counts more" cmp -s de.npy before.npy
+run 0 "a mode without depth" render --config depth.json -m mip -o dm.npy
+run 2 "beside a depth on the command line" \
+    "$TOOL" render --config depth.json -m mip -o dn.npy --depth dn2.npy
+if "$TOOL" doctor --json | grep -q '".exr"'; then
+    run 0 "a picture with its depth" render phantom:shells --dims 24x20x22 \
+        -s 60x50 -o z.exr --depth z.exr --save-config z.json
+    cp z.exr before.exr
+    run 0 "another picture" render --config z.json -o y.exr -y
+    check "gets the depth too" cmp -s y.exr before.exr
+    check "and the first is as it was" cmp -s z.exr before.exr
+    run 0 "a picture that takes none" render --config z.json -o y.png -y
+    check "has none, and the first is as it was" cmp -s z.exr before.exr
+fi
+refused 2 "a configuration in the depth's place" 'same file as --depth; name two' \
+    "$TOOL" render phantom:cube -o w.png --depth w.npy --save-config w.npy
+refused 2 "and in the figures'" 'same file as --stats; name two' \
+    "$TOOL" render phantom:cube -o w.png --stats q.json --save-config q.json
+
+# --- the command line counts more ---------------------------------------------
+echo '{"input": "phantom:cube", "size": [50, 40], "range": [10, 20],
+       "azimuth": 10, "deterministic": true, "overwrite": false,
+       "perspective": 0}' >base.json
+run 0 "a size on the command line" render --config base.json -o k.png \
+    -s 60x30 --window 50 --level 100
+run 0 "is the size" render phantom:cube -o l.png -s 60x30 --window 50 \
+    --level 100 --azimuth 10 --deterministic
+check "and the window counts, not the file's range" cmp -s k.png l.png
+run 0 "an input on the command line" render phantom:shells --dims 20x20x20 \
+    --config base.json -o m.png --range 1,200
+run 0 "is the input" render phantom:shells --dims 20x20x20 -o n.png -s 50x40 \
+    --range 1,200 --azimuth 10 --deterministic
+check "of this picture" cmp -s m.png n.png
+run 0 "info takes what is its own" "$TOOL" info --config base.json
+prints 'phantom'
+echo '{"window": 50, "level": 100}' >w.json
+run 0 "a window in a file" render phantom:cube --config w.json -o o.png
+run 0 "a range on the command line" render phantom:cube --config w.json \
+    -o p.png --range 75,125
+check "which is the same" cmp -s o.png p.png
+
+# --- places of the camera -----------------------------------------------------
+run 0 "a place, a target and an up" render phantom:shells --dims 24x20x22 \
+    -o pa.png -s 60x50 --position 500,-300.5,400 --target 10,8,12 --up 0,1,0.25 \
+    --perspective 20 --save-config p.json
+run 0 "are kept" render --config p.json -o pb.png
+check "and give the same picture" cmp -s pa.png pb.png
+run 0 "a view on the command line" render --config p.json --view left -o pc.png
+run 0 "takes the place's place" render phantom:shells --dims 24x20x22 \
+    -o pd.png -s 60x50 --view left --target 10,8,12 --up 0,1,0.25 \
+    --perspective 20
+check "with target and up" cmp -s pc.png pd.png
+
+# --- refused ------------------------------------------------------------------
+refused 3 "a file that is not there" 'none.json: cannot be opened' \
+    "$TOOL" render --config none.json phantom:cube -o x.png
+echo '{"colour": "red"}' >bad.json
+refused 3 "an unknown key" '"colour" is not a key of a recipe' \
+    "$TOOL" render --config bad.json phantom:cube -o x.png
+echo '{"size": "big"}' >bad.json
+refused 3 "a wrong value" '"size" must be \[width, height\]' \
+    "$TOOL" render --config bad.json phantom:cube -o x.png
+printf '{"size": [1, 2],\n"azimuth": }' >bad.json
+refused 3 "no JSON" 'bad.json: line 2 is not valid JSON' \
+    "$TOOL" render --config bad.json phantom:cube -o x.png
+refused 2 "no input anywhere" 'an operand is missing' \
+    "$TOOL" render --config w.json -o x.png
+refused 4 "a configuration that exists" 'd.json: exists' \
+    "$TOOL" render phantom:cube -o x.png --save-config d.json
+refused 2 "the picture's own place" 'name two files' \
+    "$TOOL" render phantom:cube -o x.png --save-config x.png
+check "nothing is written then" absent x.png
+
+# --- movies -------------------------------------------------------------------
+echo '{"size": [40, 30], "azimuth": 15, "colormap": "hot"}' >turn.json
+run 0 "a turntable from a file" "$TOOL" turntable -q phantom:cube \
+    --dims 20x20x20 --frames 2 --config turn.json -o 't_%d.png'
+run 0 "and without" "$TOOL" turntable -q phantom:cube --dims 20x20x20 \
+    --frames 2 -s 40x30 --azimuth 15 -c hot -o 'u_%d.png'
+check "are the same" cmp -s t_1.png u_1.png
+finish

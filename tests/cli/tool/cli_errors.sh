@@ -1,0 +1,180 @@
+#!/bin/bash
+# Inputs that cannot be read give exit code 3, outputs that cannot be written
+# 4, always with the file's name; what was there before stays byte for byte.
+. "$(dirname "$0")/../../support/shell.sh"
+
+mkdir folder folder.png
+: >empty.nrrd
+: >empty.raw
+head -c 1000 /dev/zero >short.raw
+printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8\n' >bad.nrrd
+
+for verb in info render; do
+    output=
+    [ $verb = render ] && output="-o z.png"
+    # shellcheck disable=SC2086
+    for input in missing.nrrd folder empty.nrrd empty.raw bad.nrrd; do
+        refused 3 "$verb $input" "$input" "$TOOL" $verb $input $output
+    done
+    # shellcheck disable=SC2086
+    refused 3 "$verb of a raw file that is too short" "short.raw" \
+        "$TOOL" $verb short.raw --dims 16x16x16 --type uint8 $output
+    # shellcheck disable=SC2086
+    refused 3 "$verb of dimensions beyond all memory" "short.raw" "$TOOL" \
+        $verb short.raw --dims 4000000000x4000000000x8 --type uint8 $output
+done
+raw_cube eight.raw 8
+raw="--dims 8x8x8 --type uint8"
+# shellcheck disable=SC2086
+refused 3 "voxels that no picture can show" \
+    "^snowglass: eight.raw: voxels of .* cannot be shown at zoom" "$TOOL" \
+    eight.raw $raw --spacing 1e-30x1e30x1e30 -o z.png
+given() {
+    local file=$1
+    shift
+    cat "$file" | "$TOOL" "$@"
+}
+# shellcheck disable=SC2086
+refused 3 "the same from standard input" \
+    "^snowglass: standard input: voxels of" given eight.raw \
+    - $raw --spacing 1e-30x1e30x1e30 -o z.png
+printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 8 8 8\nencoding: raw
+data file: eight.raw\n\n' >eight.nhdr
+run 0 "a header and its data" "$TOOL" info eight.nhdr
+refused 3 "a header from standard input, whose data are elsewhere" \
+    "^snowglass: standard input: .*eight.raw" given eight.nhdr info -
+refused 3 "an empty name" "^snowglass: [^:]" "$TOOL" info ""
+refused 3 "an empty name of a picture" "^snowglass: [^:]" \
+    "$TOOL" compare "" eight.raw
+refused 3 "an empty standard input" "^snowglass: standard input: [^:]*empty" \
+    given empty.raw info -
+refused 3 "a device as standard input" "^snowglass: standard input: is a dev" \
+    "$TOOL" compare - -
+printf 'a\nb\033[2J' >"$(printf 'odd\nname\033[2J.nrrd')"
+run 3 "a name with line ends and escapes" "$TOOL" info \
+    "$(printf 'odd\nname\033[2J.nrrd')"
+plain_error
+check "no escape reaches the terminal" [ -z "$(grep -c $'\033' "$ERR" |
+    grep -v '^0$')" ]
+check "no picture is left of any of these" absent z.png
+
+refused 3 "compare with a missing picture" "missing.png" \
+    "$TOOL" compare missing.png missing.png
+refused 3 "compare with what is no picture" "short.raw" \
+    "$TOOL" compare short.raw short.raw
+
+small="phantom:cube --dims 16x16x16 -s 16x16"
+# shellcheck disable=SC2086
+render() { "$TOOL" $small "$@"; }
+
+echo precious >there.png
+cp there.png kept
+refused 4 "an existing output" "there.png" render -o there.png
+check "it is kept byte for byte" cmp -s there.png kept
+run 0 "with -y it is replaced" render -o there.png -y
+check "by a picture" is_png there.png
+
+echo precious >stats.json
+cp stats.json kept
+refused 4 "existing figures" "stats.json" render -o a.png --stats stats.json
+check "they are kept byte for byte" cmp -s stats.json kept
+check "and no picture is written" absent a.png
+run 0 "with -y they are replaced" render -o a.png --stats stats.json -y
+check "by JSON" grep -q '^{"version"' stats.json
+
+mkdir figures
+echo old >figures/target.json
+chmod 640 figures/target.json
+ln -s figures/target.json link.json
+refused 4 "a link to figures" "link.json" render -o l.png --stats link.json
+run 0 "with -y figures follow a link" render -o l.png --stats link.json -y
+check "the link is still one" [ -L link.json ]
+check "its target keeps its permissions" \
+    [ "$(stat -c %a figures/target.json)" = 640 ]
+check "and is new" grep -q '^{"version"' figures/target.json
+ln -s nowhere.json dangling.json
+refused 4 "figures at a link to nowhere" "dangling.json: exists" \
+    render -o d.png --stats dangling.json
+check "no picture is made" absent d.png
+long=$(printf 'n%.0s' $(seq 255))
+run 0 "figures of the longest name" render -o n.png --stats "$long"
+check "are figures" grep -q '^{"version"' "$long"
+check "nothing is left aside" [ -z "$(find . -name '*.snow-*')" ]
+
+# What comes into being while the picture is made is kept: the picture goes to
+# a pipe, and the figures' place is taken before the pipe is read.
+mkfifo slow.png
+render -q -o slow.png --stats raced.json 2>"$ERR" &
+job=$!
+sleep 0.5
+echo precious >raced.json
+timeout 60 cat slow.png >"$OUT"
+wait $job
+check "figures whose place was taken meanwhile are refused" [ $? -eq 4 ]
+NAME="they"
+says "raced.json: exists"
+check "what took it is kept" [ "$(cat raced.json)" = precious ]
+
+echo precious >there.nrrd
+cp there.nrrd kept
+refused 4 "an existing phantom" "there.nrrd" \
+    "$TOOL" phantom cube --dims 8x8x8 -o there.nrrd
+check "is kept byte for byte" cmp -s there.nrrd kept
+
+refused 4 "a folder as output" "folder" render -o folder.png -y
+refused 4 "a missing folder" "nowhere" render -o nowhere/a.png
+refused 4 "figures into a missing folder" "nowhere" \
+    render -o b.png --stats nowhere/s.json
+refused 4 "figures to a folder" "folder" render -o b.png --stats folder -y
+check "and no picture is written" absent b.png
+if [ "$(id -u)" -ne 0 ]; then
+    mkdir locked && chmod 555 locked
+    refused 4 "a folder without permission" "locked" render -o locked/a.png
+fi
+refused 4 "a folder that is a file" "kept" render -o kept/a.png
+
+# Under a limit of address space; sanitizers do not start there.
+limited() { (ulimit -v 1500000 && "$@"); }
+if limited "$TOOL" --version >/dev/null 2>&1; then
+    refused 5 "a volume beyond the memory" "memory" \
+        limited "$TOOL" phantom:cube --dims 1500x1500x1500 -o huge.png
+    refused 5 "a picture beyond the memory" "memory" \
+        limited "$TOOL" phantom:cube --dims 8x8x8 -s 32768x32768 -o huge.png
+    check "leaves no picture" absent huge.png
+fi
+
+if [ -c /dev/full ]; then
+    full() { "$@" >/dev/full; }
+    run 4 "a picture to a full device" full render -q -o -
+    says "standard output"
+    run 4 "help to a full device" full "$TOOL" --help
+    says "standard output"
+    run 4 "info to a full device" full "$TOOL" info -q phantom:cube
+    says "snowglass: "
+    run 4 "figures to a full device" render -q -o c.png --stats /dev/full
+    says "/dev/full"
+    check "the device is still a device" [ -c /dev/full ]
+fi
+closed() { "$@" >&-; }
+run 4 "a closed standard output" closed "$TOOL" doctor
+run 4 "a picture to a closed standard output" closed render -q -o -
+
+gone() {
+    "$@" 2>err.txt | true
+    return "${PIPESTATUS[0]}"
+}
+run 4 "a reader that went away" gone \
+    "$TOOL" -q phantom:cube --dims 16x16x16 -s 2048x2048 --background white \
+    --bits 16 -o -
+check "nothing is left aside" [ -z "$(ls -A | grep -E 'snow-|XXXX')" ]
+# Sizes that a file cannot hold are its fault, whatever memory there is.
+printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 90000 90000 90000\nencoding: raw\n\n12345678' \
+    >large.nrrd
+printf 'ObjectType = Image\nNDims = 3\nDimSize = 90000 90000 90000\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n12345678' \
+    >large.mha
+for file in large.nrrd large.mha; do
+    run 3 "sizes that $file cannot hold" "$TOOL" render $file -o large.png
+    says "$file: has 8 bytes left where the voxels need 729000000000000"
+done
+
+finish

@@ -1,0 +1,203 @@
+#!/bin/bash
+# What is unknown, not built or malformed is refused with exit code 2 and the
+# right words, before any file is looked at.
+. "$(dirname "$0")/../../support/shell.sh"
+
+# Each line: the arguments | a pattern of the message.
+while IFS='|' read -r arguments pattern; do
+    [ -n "$arguments" ] || continue
+    eval "set -- $arguments"
+    refused 2 "$arguments" "$pattern" "$TOOL" "$@"
+done <<'END'
+--azimoth 3 x -o y.png|--azimoth: unknown option; did you mean --azimuth\?
+--thresold=3 x|did you mean --threshold\?
+--flurb x|--flurb: unknown option; see snowglass help render
+-Z x|-Z: unknown option
+--s 3 x|matches several options
+--overwrite=3 x|--overwrite takes no value
+info --roll 3 x|--roll: is not an option of info but of render
+x --json|--json: is not an option of render but of info
+-q info x|info: the verb must come first; give snowglass info
+rendr x -o y.png|rendr: is not a verb; did you mean render\?
+x y -o z.png|one word too many for render
+render -o z.png|give snowglass render INPUT -o OUT
+compare a.png|give snowglass compare A B
+phantom:cube|no output file given; add -o OUT.png
+phantom cube|no output file given
+phantom:cube -o x.jpg|x.jpg
+phantom snowman -o x.nrrd|snowman
+phantom cube -o x.txt|x.txt
+turntable -o y.mp4|give snowglass turntable INPUT -o OUT
+turntable x y -o y.mp4|one word too many for turntable
+convert a b|one word too many for convert
+serve x|serve is not built yet
+help serve|serve is not built yet
+--perspective=wide x -o y.png|--perspective: 'wide' is out of range; give a decimal number from 0.001 to 120
+--perspective=150 x -o y.png|--perspective: '150' is out of range
+--perspective 0 x -o y.png|--perspective: '0' is out of range
+--perspective= x -o y.png|--perspective: needs a value
+--perspective x y -o y.png|one word too many
+--persp x -o y.png|did you mean --perspective
+info --perspective x|is not an option of info
+--memory lots x -o y.png|--memory: 'lots' is not an amount of memory
+--memory 0 x -o y.png|--memory: '0' is not an amount
+--memory 1.5Q x -o y.png|is not an amount of memory
+--labels 1 x -o y.png|--labels: these are of a mask; give --mask FILE beside it
+convert x -o y.nrrd --labels 1|--labels: these are of a mask
+info x --labels 1|--labels: these are of a mask
+--labels 1,b x -o y.png|--labels: '1,b' is not a list of labels
+--labels 7-4 x -o y.png|--labels: '7-4' is not a list of labels
+--labels= x -o y.png|--labels
+--mask= x -o y.png|--mask
+--clip 1,0,0 x -o y.png|--clip: '1,0,0' are not planes; give A,B,C,D
+--clip 0,0,0,1 x -o y.png|--clip: '0,0,0,1' are not planes
+--clip 1,0,0,1,2 x -o y.png|--clip: '1,0,0,1,2' are not planes
+--clip 1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1,1,0,0,1 x|are not planes
+--clip 1,0,0,nan x -o y.png|are not planes
+phantom --mask m cube -o y.nrrd|--mask: is not an option of phantom
+--azim 10 x|--azim: unknown option; did you mean --azimuth
+--foo x|--foo: unknown option; did you mean --footprint
+--crop 0:1,0:1 x|--crop: 
+--series= x|--series
+--patient x|--patient: is not an option of render but of info
+--quality best x|'best' is unknown
+--frames 3 x|--frames: is not an option of render but of turntable
+movie --frames 3 x -o y.mp4|--frames: is not an option of movie
+--resume x|--resume: is not an option of render but of turntable
+turntable x -o y.mp4 --fps 0|--fps: '0' is out of range
+--mode iso x -o y.png|--mode iso: needs --iso VALUE too
+--iso 3 x -o y.png|--iso: needs --mode iso too
+--iso high x -o y.png|--iso: 'high' is not a finite number
+--depth d.png x -o y.png|--depth: d.png cannot hold depths
+--depth d.npy -m mip x -o y.png|--depth: mode mip has no depth; use mode over or iso
+--depth y.npy x -o y.npy|--depth: is the same file as --output; name two files, or use one .exr
+turntable --depth d.npy x -o y.mp4|--depth: frames hold depths in their own files
+turntable --depth y_%d.exr x -o z_%d.exr|--depth: frames hold depths in their own files
+turntable --depth y_%d.png x -o y_%d.png|--depth: frames hold depths in their own files
+movie --depth y_%d.exr x -o y_%d.exr -m mip|--depth: mode mip has no depth
+--mode best x|'best' is unknown
+--method ray x|'ray' is unknown
+--method tested x|'tested' is unknown
+--isa sse9 x|'sse9' is unknown
+-j 5000 x|whole number
+-j 0 x|whole number
+-j many x|whole number
+--size 512 x|--size: '512' is not a picture size
+-s 0x10 x|is not a picture size
+-s 40000x40000 x|is not a picture size
+-s 8x8x8 x|is not a picture size
+-s ' 8x8' x|is not a picture size
+-s 8.5x8 x|is not a picture size
+--size|--size: needs a value
+-s|--size: needs a value
+--bits 12 x|choose from: 8, 16
+--background brick x|is not a colour
+--background '#12' x|is not a colour
+--background 1,2,3 x|is not a colour
+--threshold 256 x|from 0 to 255
+--threshold -1 x|from 0 to 255
+--threshold nan x|from 0 to 255
+--encoding zip x|choose from: auto, crs, bitmap, rle
+--encoding '' x|choose from
+--kernel cube x|choose from: tent, gauss, bspline, box
+--footprint 1 x|from 2 to 9
+--footprint 10 x|from 2 to 9
+--footprint 3.5 x|from 2 to 9
+--azimuth nan x|is not a finite number
+--azimuth inf x|is not a finite number
+--azimuth 1e999 x|is not a finite number
+--azimuth 0x10 x|is not a finite number
+--azimuth 3deg x|is not a finite number
+--azimuth '' x|is not a finite number
+--position 1,2 x|is not a position
+--target 1,2,nan x|is not a position
+--up up x|is not a position
+--zoom 0 x|out of range
+--zoom -2 x|out of range
+--opacity 80 x|VALUE:OPACITY
+--opacity 80:2 x|VALUE:OPACITY
+--opacity 80:0.1,70:0.2 x|VALUE:OPACITY
+--opacity 80:0.1, x|VALUE:OPACITY
+--gradient-opacity 80 x|MAGNITUDE:FACTOR
+--gradient-opacity 0:0,20:2 x|MAGNITUDE:FACTOR
+--gradient-opacity 9:0,8:1 x|MAGNITUDE:FACTOR
+--range 3,2 x|is not a range
+--range 3,nan x|is not a range
+--range p99,p1 x|is not a range
+--range p1,99 x|is not a range
+--range p1,p101 x|is not a range
+--window 0 x|out of range
+--shade flat x|choose from: phong, none
+--light 30 x|is not a direction
+--ambient 2 x|from 0 to 1
+--shininess -1 x|out of range
+--dims 8x8 x|are not dimensions
+--dims 8x8x0 x|are not dimensions
+--dims 8x8x-8 x|are not dimensions
+--dims 9999999999999999999x1x1 x|are not dimensions
+--type int7 x|choose from: int8 uint8 int16
+--spacing 1x1x0 x|is not a spacing
+--spacing 1x1xinf x|is not a spacing
+--endian middle x|choose from: little, big
+--offset -1 x|whole number of 0 or more
+--offset 99999999999999999999 x|whole number of 0 or more
+--time -1 x|whole number
+--preset toast x|--preset: 'toast' is unknown; choose from: linear, ct-aaa
+--colormap beige x|--colormap: 'beige' is unknown; choose from: grey, viridis
+--view upside x|--view: 'upside' is unknown; choose from: anterior, .*-z
+--view '' x|--view: '' is unknown
+info nope.nii --preset foo|--preset: 'foo' is unknown
+--progress some x|choose from: auto, always, never
+--stats x.png phantom:cube -o x.png|name two files
+phantom --seed -1 cube|whole number of 0 or more
+compare --tolerance 2 a b|is not a difference
+compare --tolerance 1/0 a b|is not a difference
+x -o y.npy --background white|work only for PNG and WebP
+x -o y.pfm --bits 16|work only for PNG and WebP
+END
+
+# These need a volume to be found wrong.
+while IFS='|' read -r arguments pattern; do
+    [ -n "$arguments" ] || continue
+    eval "set -- $arguments"
+    refused 2 "phantom:cube $arguments" "$pattern" \
+        "$TOOL" phantom:cube --dims 8x8x8 -o z.png "$@"
+done <<'END'
+--window 3|needs --level too
+--level 3|needs --window too
+--window 3 --level 3 --range 1,2|conflicts with --range
+--type uint8|type
+END
+# The bench reads its own options.
+while IFS='|' read -r arguments pattern; do
+    [ -n "$arguments" ] || continue
+    eval "set -- $arguments"
+    refused 2 "bench $arguments" "$pattern" "$TOOL" bench "$@"
+done <<'END'
+table1 --dat x|unknown option or missing value '--dat'
+table1 --dat=x|unknown option or missing value '--dat=x'
+table1 --he|unknown option or missing value '--he'
+table1 --foo|unknown option or missing value '--foo'
+table1 --runs|unknown option or missing value '--runs'
+table1 --runs 4|this value is not possible: '4'
+table1 --kernel cube|this value is not possible: 'cube'
+table4|there is no benchmark 'table4'
+table1 table2|give one thing to measure
+--json|give one thing to measure
+END
+for table in table1 table2 table3; do
+    refused 3 "bench $table without its files" \
+        "nowhere/classic/CThead.*: No such file" \
+        "$TOOL" bench $table --data nowhere
+done
+run 0 "bench -h" "$TOOL" bench -h
+
+for name in "--preset CT_Bone" "-c gray" "-c CoolWarm" "--view Left"; do
+    # shellcheck disable=SC2086
+    refused 3 "$name is a name" "nope.nii" \
+        "$TOOL" render nope.nii -o z.png $name
+done
+refused 2 "two choices in one" "'crs.rle' is unknown" \
+    "$TOOL" --encoding 'crs|rle' x
+check "nothing was written" [ -z "$(ls)" ]
+finish

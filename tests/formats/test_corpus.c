@@ -1,0 +1,85 @@
+/* tests/formats/test_corpus.c - every file of the fuzzers' corpora of volumes
+ * is opened with each allocation made to fail, once and from there on: an error
+ * with a message, nothing held, no crash. */
+#include "support/failing.h"
+
+#include <dirent.h>
+
+/* Opens the file; returns the allocations made. */
+static long open_failing(const char *path, const char *name, const void *bytes,
+                         size_t size, long failing, bool for_good,
+                         bool *failed) {
+    support_failing allocator = {
+        .failing = failing, .for_good = for_good, .largest = (size_t)64 << 20};
+    const snow_allocator functions = support_failing_allocator(&allocator);
+    snow_context *context;
+    snow_volume *volume = NULL;
+    if (snow_context_new(&functions, &context) != SNOW_STATUS_OK) {
+        *failed = true;
+        return allocator.allocations;
+    }
+    snow_status status =
+        snow_volume_open_memory(context, name, bytes, size, NULL, &volume);
+    *failed = status != SNOW_STATUS_OK;
+    if (*failed && (volume || !*snow_context_message(context)))
+        fail_msg("%s, allocation %ld: no message", path, failing);
+    snow_volume_close(volume);
+    snow_context_free(context);
+    if (allocator.held)
+        fail_msg("%s, allocation %ld: %ld blocks stay", path, failing,
+                 allocator.held);
+    return allocator.allocations;
+}
+
+static void check_file(const char *path, const char *name) {
+    static unsigned char bytes[1 << 16];
+    bool failed;
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t size = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    long count = open_failing(path, name, bytes, size, -1, false, &failed);
+    for (long i = 0; i < count; i++) {
+        bool again;
+        open_failing(path, name, bytes, size, i, false, &failed);
+        open_failing(path, name, bytes, size, i, true, &again);
+        if (!failed || !again)
+            fail_msg("%s: opens without its allocation %ld", path, i);
+    }
+}
+
+static void check_corpus(const char *subject, const char *name) {
+    char folder[512], path[1024];
+    snprintf(folder, sizeof folder, "%s/%s", SNOW_CORPUS, subject);
+    DIR *stream = opendir(folder);
+    assert_non_null(stream);
+    int files = 0;
+    for (const struct dirent *entry; (entry = readdir(stream));) {
+        if (*entry->d_name == '.')
+            continue;
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        check_file(path, name);
+        files++;
+    }
+    closedir(stream);
+    assert_true(files > 5);
+}
+
+static void no_reader_is_lost_without_memory(void **state) {
+    (void)state;
+    static const char *const subjects[][2] = {
+        {"npy_volume", "a.npy"}, {"mrc", "a.mrc"},       {"vtk", "a.vtk"},
+        {"vti", "a.vti"},        {"tiff", "a.tif"},      {"png_slice", "a.png"},
+        {"hdf5", "a.h5"},        {"netcdf", "a.nc"},     {"nrrd", "a.nrrd"},
+        {"nifti", "a.nii"},      {"metaimage", "a.mha"}, {"den", "a.den"},
+    };
+    for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++)
+        check_corpus(subjects[i][0], subjects[i][1]);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_reader_is_lost_without_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

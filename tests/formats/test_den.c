@@ -1,0 +1,132 @@
+/* tests/formats/test_den.c - DEN volumes: both byte orders, and what is no
+ * such. */
+#include "support/files.h"
+
+#include "volume/volume.h"
+
+#define HEADER 62
+
+typedef struct den_file {
+    unsigned char bytes[HEADER + 64];
+    size_t size;
+} den_file;
+
+static void put(den_file *file, int index, int value, bool big) {
+    file->bytes[2 * index + big] = (unsigned char)(value & 255);
+    file->bytes[2 * index + !big] = (unsigned char)(value >> 8);
+}
+
+/* 4 x 3 x 2 voxels 0, 1, 2, ... */
+static den_file make(bool big) {
+    static const int dims[3] = {4, 3, 2};
+    den_file file = {.size = HEADER + 24};
+    put(&file, 0, 1, big);
+    for (int group = 1; group < 28; group += 9)
+        for (int i = 0; i < 3; i++) {
+            put(&file, group + 3 + i, dims[i] - 1, big);
+            put(&file, group + 6 + i, dims[i], big);
+        }
+    put(&file, big ? 30 : 29, 24, big);
+    for (int i = 0; i < 24; i++)
+        file.bytes[HEADER + i] = (unsigned char)i;
+    return file;
+}
+
+static const char *put_file(support_files *files, const den_file *file) {
+    return support_write(files, "a.den", file->bytes, file->size);
+}
+
+static void both_byte_orders_are_read(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    for (int big = 0; big < 2; big++) {
+        den_file file = make(big);
+        snow_volume *volume =
+            support_opened(&files, put_file(&files, &file), NULL);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_string_equal(info->format, "den");
+        assert_int_equal(info->type, SNOW_TYPE_UINT8);
+        assert_true(info->dims[0] == 4 && info->dims[1] == 3 &&
+                    info->dims[2] == 2);
+        assert_memory_equal(snow_volume_voxels(volume), file.bytes + HEADER,
+                            24);
+        snow_volume_close(volume);
+    }
+    support_files_end(&files);
+}
+
+static void a_box_is_cut_out(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    den_file file = make(false);
+    const snow_volume_options box = {.crop = {{1, 3}, {2, 3}, {0, 2}}};
+    static const unsigned char wanted[] = {9, 10, 21, 22};
+    snow_volume *volume = support_opened(&files, put_file(&files, &file), &box);
+    assert_memory_equal(snow_volume_voxels(volume), wanted, sizeof wanted);
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+static void damaged_files_are_refused(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    den_file file = make(false);
+    file.size--;
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT, "the file is truncated", 1 << 17);
+    file = make(false);
+    put(&file, 29, 25, false);
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT,
+                    "4x3x2 voxels but another number of bytes", 1 << 17);
+    file = make(false);
+    put(&file, 26, 7, false);
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT, "not a DEN header", 1 << 17);
+    file.size = 20;
+    support_refused(&files, put_file(&files, &file), NULL,
+                    SNOW_STATUS_BAD_INPUT, "not a DEN header", 1 << 17);
+    support_files_end(&files);
+}
+
+/* What is known but not read is called by its name. */
+static void strangers_are_known(void **state) {
+    (void)state;
+    static const struct {
+        size_t offset;
+        const char *magic;
+        const char *given;
+    } strangers[] = {
+        {257, "ustar", "is a tar archive; unpack it"},
+        {0, "11111\n66 66 66 8", "is an SLC volume"},
+        {0, "PK\3\4", "is a zip archive"},
+        {0, "BZh9", "is compressed by bzip2"},
+        {0, "MATLAB 5.0 MAT-file", "save it with -v7.3"},
+        {0, "\xFF\xD8\xFF\xE0", "is a JPEG picture"},
+    };
+    support_files files;
+    support_files_begin(&files);
+    for (size_t i = 0; i < sizeof strangers / sizeof *strangers; i++) {
+        char bytes[512] = "";
+        memcpy(bytes + strangers[i].offset, strangers[i].magic,
+               strlen(strangers[i].magic));
+        const char *path =
+            support_write(&files, "strange", bytes, sizeof bytes);
+        support_refused(&files, path, NULL, SNOW_STATUS_BAD_INPUT,
+                        strangers[i].given, 1 << 17);
+    }
+    support_files_end(&files);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(both_byte_orders_are_read),
+        cmocka_unit_test(a_box_is_cut_out),
+        cmocka_unit_test(damaged_files_are_refused),
+        cmocka_unit_test(strangers_are_known),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

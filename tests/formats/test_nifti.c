@@ -1,0 +1,741 @@
+/* tests/formats/test_nifti.c - NIfTI files are read right or refused. */
+#include "support/volumes.h"
+
+#include <math.h>
+#include <zlib.h>
+
+/* What a refused file may cost: layers' buffers and zlib's window. */
+#define LITTLE 200000
+
+/* A NIfTI file in memory, filled field by field at the offsets of nifti1.h and
+ * nifti2.h. */
+typedef struct file {
+    unsigned char bytes[8192];
+    size_t size;
+    bool big;
+    int version;
+} file;
+
+static void put_bits(file *f, size_t at, size_t size, uint64_t bits) {
+    for (size_t i = 0; i < size; i++)
+        f->bytes[at + (f->big ? size - 1 - i : i)] =
+            (unsigned char)(bits >> (8 * i));
+}
+
+static void put_real(file *f, size_t at1, size_t at2, double value) {
+    uint64_t bits;
+    uint32_t narrow;
+    const float single = (float)value;
+    memcpy(&bits, &value, sizeof bits);
+    memcpy(&narrow, &single, sizeof narrow);
+    if (f->version == 1)
+        put_bits(f, at1, 4, narrow);
+    else
+        put_bits(f, at2, 8, bits);
+}
+
+static void put_dim(file *f, size_t i, int64_t value) {
+    if (f->version == 1)
+        put_bits(f, 40 + 2 * i, 2, (uint64_t)value);
+    else
+        put_bits(f, 16 + 8 * i, 8, (uint64_t)value);
+}
+
+static void put_pixdim(file *f, size_t i, double value) {
+    put_real(f, 76 + 4 * i, 104 + 8 * i, value);
+}
+
+static void put_code(file *f, size_t at1, size_t at2, int code) {
+    put_bits(f, f->version == 1 ? at1 : at2, f->version == 1 ? 2 : 4,
+             (uint64_t)code);
+}
+
+static void put_datatype(file *f, int datatype, size_t bytes) {
+    put_bits(f, f->version == 1 ? 70 : 12, 2, (uint64_t)datatype);
+    put_bits(f, f->version == 1 ? 72 : 14, 2, 8 * bytes);
+}
+
+static void put_sform(file *f, const double rows[12]) {
+    put_code(f, 254, 348, 1);
+    for (size_t i = 0; i < 12; i++)
+        put_real(f, 280 + 4 * i, 400 + 8 * i, rows[i]);
+}
+
+static void put_qform(file *f, double b, double c, double d) {
+    put_code(f, 252, 344, 1);
+    put_real(f, 256, 352, b);
+    put_real(f, 260, 360, c);
+    put_real(f, 264, 368, d);
+    put_real(f, 268, 376, 10);
+    put_real(f, 272, 384, 20);
+    put_real(f, 276, 392, 30);
+}
+
+/* 3 x 2 x 2 int16 voxels 100, 101, ... with neither sform nor qform. */
+static file make_file(int version, bool big) {
+    file f = {.big = big, .version = version};
+    size_t data = version == 1 ? 352 : 544;
+    put_bits(&f, 0, 4, version == 1 ? 348 : 540);
+    if (version == 1)
+        memcpy(f.bytes + 344, "n+1", 4);
+    else
+        memcpy(f.bytes + 4, "n+2\0\r\n\032\n", 8);
+    const int64_t dim[8] = {3, 3, 2, 2, 1, 1, 1, 1};
+    for (size_t i = 0; i < 8; i++) {
+        put_dim(&f, i, dim[i]);
+        put_pixdim(&f, i, i ? (double)i : 1);
+    }
+    put_datatype(&f, 4, 2);
+    if (version == 1)
+        put_real(&f, 108, 0, (double)data);
+    else
+        put_bits(&f, 168, 8, data);
+    put_real(&f, 112, 176, 1);
+    for (size_t i = 0; i < 12; i++)
+        put_bits(&f, data + 2 * i, 2, 100 + i);
+    f.size = data + 24;
+    return f;
+}
+
+static snow_volume *open_file(support_place *place, const file *f) {
+    snow_volume *volume = NULL;
+    if (snow_volume_open_memory(place->context, "a.nii", f->bytes, f->size,
+                                NULL, &volume) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(place->context));
+    return volume;
+}
+
+static void assert_matrix(const snow_volume *volume, const double rows[12]) {
+    double wanted[4][4] = {{0}};
+    memcpy(wanted, rows, 12 * sizeof *rows);
+    wanted[3][3] = 1;
+    support_same_matrix(snow_volume_get_info(volume)->matrix,
+                        (const double(*)[4])wanted, 1e-6);
+}
+
+static void refuse(support_place *place, const file *f, const char *part) {
+    support_place_refuse(place, "a.nii", f->bytes, f->size, part, LITTLE);
+}
+
+static void both_versions_and_byte_orders_give_one_volume(void **state) {
+    support_place *place = *state;
+    for (int i = 0; i < 4; i++) {
+        file f = make_file(1 + i / 2, i % 2);
+        snow_volume *volume = open_file(place, &f);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_int_equal(info->dims[0], 3);
+        assert_int_equal(info->dims[1], 2);
+        assert_int_equal(info->dims[2], 2);
+        assert_int_equal(info->type, SNOW_TYPE_INT16);
+        assert_string_equal(info->format, "nifti");
+        assert_string_equal(info->unit, "mm");
+        assert_false(info->medical);
+        assert_matrix(volume, (double[]){1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0});
+        const int16_t *voxels = snow_volume_voxels(volume);
+        for (int k = 0; k < 12; k++)
+            assert_int_equal(voxels[k], 100 + k);
+        assert_string_equal(place->notices, "");
+        snow_volume_close(volume);
+    }
+}
+
+static void every_scalar_type_is_read_in_both_byte_orders(void **state) {
+    support_place *place = *state;
+    static const struct {
+        int code;
+        snow_type type;
+    } types[] = {{2, SNOW_TYPE_UINT8},    {4, SNOW_TYPE_INT16},
+                 {8, SNOW_TYPE_INT32},    {16, SNOW_TYPE_FLOAT32},
+                 {64, SNOW_TYPE_FLOAT64}, {256, SNOW_TYPE_INT8},
+                 {512, SNOW_TYPE_UINT16}, {768, SNOW_TYPE_UINT32},
+                 {1024, SNOW_TYPE_INT64}, {1280, SNOW_TYPE_UINT64}};
+    uint64_t seed = 5;
+    for (size_t i = 0; i < 4 * sizeof types / sizeof *types; i++) {
+        file f = make_file(1 + (int)i % 2, i / 2 % 2);
+        size_t size = snow_type_size(types[i / 4].type);
+        size_t data = f.size - 24;
+        put_datatype(&f, types[i / 4].code, size);
+        f.size = data + 12 * size;
+        unsigned char wanted[96];
+        for (size_t k = 0; k < 12; k++) {
+            uint64_t bits = support_random(&seed);
+            put_bits(&f, data + k * size, size, bits);
+            memcpy(wanted + k * size, &bits, size); /* little machines only */
+        }
+        snow_volume *volume = open_file(place, &f);
+        assert_int_equal(snow_volume_get_info(volume)->type, types[i / 4].type);
+        const uint16_t one = 1;
+        if (*(const unsigned char *)&one)
+            assert_memory_equal(snow_volume_voxels(volume), wanted, 12 * size);
+        snow_volume_close(volume);
+    }
+}
+
+static void types_that_are_no_numbers_are_refused_by_name(void **state) {
+    support_place *place = *state;
+    static const struct {
+        int code;
+        const char *part;
+    } types[] = {{1, "bits"},       {32, "complex"},          {128, "RGB"},
+                 {1536, "128-bit"}, {1792, "complex"},        {2048, "complex"},
+                 {2304, "RGBA"},    {0, "type 0 is unknown"}, {77, "type 77"}};
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        file f = make_file(1, false);
+        put_datatype(&f, types[i].code, 0);
+        refuse(place, &f, types[i].part);
+    }
+}
+
+static void slope_and_intercept_are_kept_and_zero_means_none(void **state) {
+    support_place *place = *state;
+    static const double given[][4] = {{0.5, -3, 0.5, -3},
+                                      {0, 7, 1, 0},
+                                      {NAN, NAN, 1, 0},
+                                      {INFINITY, 1, 1, 0}};
+    for (size_t i = 0; i < 8; i++) {
+        file f = make_file(1 + (int)i / 4, false);
+        put_real(&f, 112, 176, given[i % 4][0]);
+        put_real(&f, 116, 184, given[i % 4][1]);
+        snow_volume *volume = open_file(place, &f);
+        assert_true(snow_volume_get_info(volume)->slope == given[i % 4][2]);
+        assert_true(snow_volume_get_info(volume)->intercept == given[i % 4][3]);
+        snow_volume_close(volume);
+    }
+    file f = make_file(1, false);
+    put_real(&f, 116, 184, NAN);
+    refuse(place, &f, "intercept");
+}
+
+static void the_matrix_is_sform_then_qform_then_spacing(void **state) {
+    support_place *place = *state;
+    const double sform[] = {0, 0, 4, -1, 2, 0, 0, -2, 0, -3, 0, -3};
+    for (int version = 1; version < 3; version++) {
+        file f = make_file(version, version == 1);
+        put_qform(&f, 0, 0, 1); /* half a turn about z */
+        snow_volume *volume = open_file(place, &f);
+        assert_true(snow_volume_get_info(volume)->medical);
+        assert_matrix(volume,
+                      (double[]){-1, 0, 0, 10, 0, -2, 0, 20, 0, 0, 3, 30});
+        snow_volume_close(volume);
+        put_sform(&f, sform);
+        volume = open_file(place, &f);
+        assert_true(snow_volume_get_info(volume)->medical);
+        assert_matrix(volume, sform);
+        snow_volume_close(volume);
+    }
+}
+
+static void a_quaternion_turns_and_qfac_mirrors(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    put_qform(&f, 0.5, 0.5, 0.5); /* x -> y -> z -> x */
+    put_pixdim(&f, 0, -1);
+    snow_volume *volume = open_file(place, &f);
+    assert_matrix(volume, (double[]){0, 0, -3, 10, 1, 0, 0, 20, 0, 2, 0, 30});
+    snow_volume_close(volume);
+    put_pixdim(&f, 0, 0); /* 0 counts as 1 */
+    volume = open_file(place, &f);
+    assert_matrix(volume, (double[]){0, 0, 3, 10, 1, 0, 0, 20, 0, 2, 0, 30});
+    snow_volume_close(volume);
+    /* Rounding made it too long by a little; it still is a rotation. */
+    put_qform(&f, 0, 0, 1.000001);
+    volume = open_file(place, &f);
+    assert_matrix(volume, (double[]){-1, 0, 0, 10, 0, -2, 0, 20, 0, 0, 3, 30});
+    snow_volume_close(volume);
+}
+
+static void bad_geometry_falls_back_with_a_warning(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    put_qform(&f, 0, 0, 0);
+    put_sform(&f, (double[12]){1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0});
+    snow_volume *volume = open_file(place, &f);
+    assert_matrix(volume, (double[]){1, 0, 0, 10, 0, 2, 0, 20, 0, 0, 3, 30});
+    assert_non_null(strstr(place->notices, "sform"));
+    snow_volume_close(volume);
+    put_qform(&f, NAN, 0, 0);
+    volume = open_file(place, &f);
+    assert_matrix(volume, (double[]){1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0});
+    assert_non_null(strstr(place->notices, "qform"));
+    assert_false(snow_volume_get_info(volume)->medical);
+    snow_volume_close(volume);
+}
+
+static void an_impossible_spacing_becomes_1_with_a_warning(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    put_pixdim(&f, 1, NAN);
+    put_pixdim(&f, 2, 0);
+    put_pixdim(&f, 3, -5);
+    snow_volume *volume = open_file(place, &f);
+    assert_matrix(volume, (double[]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 5, 0});
+    assert_non_null(strstr(place->notices, "pixdim"));
+    snow_volume_close(volume);
+}
+
+static void units_of_length_become_millimetres(void **state) {
+    support_place *place = *state;
+    static const double factors[] = {1, 1000, 1, 0.001};
+    for (unsigned unit = 0; unit < 4; unit++) {
+        file f = make_file(1, false);
+        f.bytes[123] = (unsigned char)(unit | 8); /* 8: seconds */
+        double k = factors[unit];
+        snow_volume *volume = open_file(place, &f);
+        assert_matrix(volume,
+                      (double[]){k, 0, 0, 0, 0, 2 * k, 0, 0, 0, 0, 3 * k, 0});
+        snow_volume_close(volume);
+    }
+}
+
+static void the_time_step_that_is_asked_for_is_read(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    const int64_t dim[8] = {6, 2, 1, 1, 2, 1, 3, 99};
+    for (size_t i = 0; i < 8; i++)
+        put_dim(&f, i, dim[i]);
+    for (int64_t time = 0; time < 6; time++) {
+        const snow_volume_options options = {.time = time};
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_open_memory(place->context, "a.nii",
+                                                 f.bytes, f.size, &options,
+                                                 &volume),
+                         SNOW_STATUS_OK);
+        assert_int_equal(snow_volume_get_info(volume)->times, 6);
+        assert_int_equal(snow_volume_get_info(volume)->time, time);
+        assert_int_equal(*(const int16_t *)snow_volume_voxels(volume),
+                         100 + 2 * time);
+        snow_volume_close(volume);
+    }
+    assert_non_null(strstr(place->notices, "volume 0 of 6"));
+    const snow_volume_options beyond = {.time = 6};
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_open_memory(place->context, "a.nii", f.bytes,
+                                             f.size, &beyond, &volume),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_null(volume);
+}
+
+static void only_the_fourth_axis_is_called_time(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    const int64_t dim[8] = {4, 2, 1, 1, 6, 99, 99, 99};
+    for (size_t i = 0; i < 8; i++)
+        put_dim(&f, i, dim[i]);
+    snow_volume_close(open_file(place, &f));
+    assert_non_null(strstr(place->notices, "time step 0 of 6"));
+}
+
+static void few_axes_and_extensions_are_read(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    put_dim(&f, 0, 1);
+    put_dim(&f, 1, 12);
+    put_dim(&f, 2, -4); /* unused, may be anything */
+    put_dim(&f, 3, 0);
+    memmove(f.bytes + 384, f.bytes + 352, 24);
+    memset(f.bytes + 352, 'x', 32);
+    put_real(&f, 108, 0, 384);
+    f.size += 32;
+    snow_volume *volume = open_file(place, &f);
+    assert_int_equal(snow_volume_get_info(volume)->dims[0], 12);
+    assert_int_equal(snow_volume_get_info(volume)->dims[1], 1);
+    assert_int_equal(*(const int16_t *)snow_volume_voxels(volume), 100);
+    snow_volume_close(volume);
+}
+
+static void cut_files_are_refused_at_every_length(void **state) {
+    support_place *place = *state;
+    for (int version = 1; version < 3; version++) {
+        file f = make_file(version, false);
+        size_t whole = f.size;
+        for (f.size = 1; f.size < whole; f.size++)
+            refuse(place, &f, "a.nii");
+    }
+}
+
+static void a_cut_header_is_counted(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    f.size = 1;
+    refuse(place, &f, "1 byte is too few for a NIfTI header");
+    f.size = 347;
+    refuse(place, &f, "347 bytes are too few for a NIfTI header");
+}
+
+static void sizes_that_lie_are_refused_before_memory_is_taken(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    for (size_t i = 1; i < 4; i++)
+        put_dim(&f, i, 32767);
+    refuse(place, &f, "bytes left");
+    for (size_t i = 0; i < 8; i++)
+        put_dim(&f, i, i ? 32767 : 7);
+    refuse(place, &f, "too large for any file");
+    file g = make_file(2, false);
+    put_dim(&g, 1, INT64_C(1) << 62);
+    refuse(place, &g, "too large for any file");
+    static const int64_t bad[] = {0, -1, INT16_MIN};
+    for (size_t i = 0; i < 3; i++) {
+        f = make_file(1, false);
+        put_dim(&f, 2, bad[i]);
+        refuse(place, &f, "axis 2");
+    }
+    f = make_file(1, false);
+    put_dim(&f, 0, 8);
+    refuse(place, &f, "8 axes");
+}
+
+static void contradictions_are_refused(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    put_datatype(&f, 4, 4);
+    refuse(place, &f, "32 bits per voxel");
+    static const double offsets[] = {-1,    100, 349,      351,
+                                     352.5, NAN, INFINITY, 1e30};
+    for (size_t i = 0; i < sizeof offsets / sizeof *offsets; i++) {
+        f = make_file(1, false);
+        put_real(&f, 108, 0, offsets[i]);
+        refuse(place, &f, "vox_offset");
+    }
+    f = make_file(1, false);
+    put_real(&f, 108, 0, 100000);
+    refuse(place, &f, "bytes left");
+    f = make_file(2, false);
+    f.bytes[8] = '\n'; /* as a transfer as text leaves it */
+    refuse(place, &f, "text");
+    f = make_file(1, false);
+    memset(f.bytes + 344, 0, 4);
+    refuse(place, &f, "Analyze");
+    unsigned char empty = 0;
+    support_place_refuse(place, "a.nii", &empty, 0, "empty", LITTLE);
+}
+
+static void an_offset_of_0_means_right_after_the_header(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    put_real(&f, 108, 0, 0);
+    snow_volume *volume = open_file(place, &f);
+    assert_int_equal(*(const int16_t *)snow_volume_voxels(volume), 100);
+    snow_volume_close(volume);
+}
+
+static void bytes_after_the_voxels_are_a_warning(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    f.size += 5;
+    snow_volume_close(open_file(place, &f));
+    assert_non_null(strstr(place->notices, "5 bytes after"));
+}
+
+/* Packs a file into `packed`; returns its size. */
+static size_t pack(const file *f, unsigned char packed[16384]) {
+    z_stream stream = {0};
+    assert_int_equal(deflateInit2(&stream, 9, Z_DEFLATED, 31, 8, 0), Z_OK);
+    stream.next_in = (unsigned char *)f->bytes;
+    stream.avail_in = (uInt)f->size;
+    stream.next_out = packed;
+    stream.avail_out = 16384;
+    assert_int_equal(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    size_t size = stream.total_out;
+    deflateEnd(&stream);
+    return size;
+}
+
+static void gzip_is_verified_to_its_last_byte(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    unsigned char packed[16384];
+    size_t size = pack(&f, packed);
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_open_memory(place->context, "a.nii.gz", packed,
+                                             size, NULL, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(*(const int16_t *)snow_volume_voxels(volume), 100);
+    snow_volume_close(volume);
+    for (size_t cut = 20; cut < size; cut++)
+        support_place_refuse(place, "a.nii.gz", packed, cut, "", LITTLE);
+    for (size_t i = size - 8; i < size; i++) {
+        packed[i] ^= 1;
+        support_place_refuse(place, "a.nii.gz", packed, size, "damaged",
+                             LITTLE);
+        packed[i] ^= 1;
+    }
+}
+
+static void a_packed_size_that_lies_is_refused_early(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    unsigned char packed[16384];
+    for (size_t i = 1; i < 4; i++)
+        put_dim(&f, i, 4000);
+    size_t size = pack(&f, packed);
+    support_place_refuse(place, "a.nii.gz", packed, size, "at most", LITTLE);
+}
+
+/* Header and voxels as two files: either is opened, packed or not. */
+static void pairs_open_by_either_file(void **state) {
+    support_place *place = *state;
+    static const char *const names[][3] = {{"a.hdr", "a.img", ""},
+                                           {"B.HDR", "B.IMG", ""},
+                                           {"c.hdr.gz", "c.img.gz", "x"},
+                                           {"d.hdr", "d.img.gz", "x"}};
+    for (size_t i = 0; i < 8; i++) {
+        const char *const *name = names[i / 2];
+        file f = make_file(1 + (int)i % 2, i % 2);
+        size_t header = f.version == 1 ? 348 : 540;
+        memcpy(f.bytes + (f.version == 1 ? 344 : 4), "ni", 2);
+        if (f.version == 1)
+            put_real(&f, 108, 0, 4);
+        else
+            put_bits(&f, 168, 8, 4);
+        unsigned char packed[16384];
+        const unsigned char *voxels = f.bytes + header;
+        file image = {.size = 28};
+        memcpy(image.bytes, voxels, 28); /* four bytes to skip, then voxels */
+        support_place_put(place, name[0], f.bytes, header);
+        if (*name[2])
+            support_place_put(place, name[1], packed, pack(&image, packed));
+        else
+            support_place_put(place, name[1], image.bytes, image.size);
+        for (int k = 0; k < 2; k++) {
+            snow_volume *volume =
+                support_place_open(place, support_place_path(place, name[k]));
+            assert_int_equal(*(const int16_t *)snow_volume_voxels(volume), 100);
+            snow_volume_close(volume);
+        }
+    }
+}
+
+static void a_pair_without_its_other_file_is_refused(void **state) {
+    support_place *place = *state;
+    file f = make_file(1, false);
+    memcpy(f.bytes + 344, "ni1", 4);
+    const char *path = support_place_put(place, "a.hdr", f.bytes, 348);
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
+                     SNOW_STATUS_BAD_INPUT);
+    assert_non_null(strstr(snow_context_message(place->context), "a.img"));
+    path = support_place_put(place, "b.img", f.bytes + 352, 24);
+    assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
+                     SNOW_STATUS_BAD_INPUT);
+    assert_non_null(strstr(snow_context_message(place->context), "b.hdr"));
+    path = support_place_put(place, "c.dat", f.bytes, 348);
+    assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
+                     SNOW_STATUS_BAD_INPUT);
+    assert_non_null(strstr(snow_context_message(place->context), "rename"));
+    refuse(place, &f, "rename");
+}
+
+/* The figures of DATA.md: sizes, steps, type, range as stored. */
+static const struct real_file {
+    const char *name;
+    int64_t dims[3], times;
+    snow_type type;
+    double min, max; /* of the first step where there are several */
+} real_files[] = {
+    {"classic/fuel.nii.gz", {64, 33, 32}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"formats/nifti/5D_zeros.nii.gz",
+     {256, 256, 170},
+     3,
+     SNOW_TYPE_UINT8,
+     0,
+     0},
+    {"formats/nifti/air.hdr.gz",
+     {79, 67, 64},
+     1,
+     SNOW_TYPE_FLOAT32,
+     0,
+     92.5539},
+    {"formats/nifti/air.img.gz",
+     {79, 67, 64},
+     1,
+     SNOW_TYPE_FLOAT32,
+     0,
+     92.5539},
+    {"formats/nifti/anatomical.nii",
+     {33, 41, 25},
+     1,
+     SNOW_TYPE_INT16,
+     -610,
+     30393},
+    {"formats/nifti/avf_float_32.nii.gz",
+     {74, 93, 20},
+     1,
+     SNOW_TYPE_FLOAT32,
+     0,
+     2509.89},
+    {"formats/nifti/avg152T1_LR_nifti.nii",
+     {91, 109, 91},
+     1,
+     SNOW_TYPE_UINT8,
+     0,
+     255},
+    {"formats/nifti/big.nii.gz",
+     {64, 64, 21},
+     1,
+     SNOW_TYPE_FLOAT32,
+     -8.71075,
+     18.5825},
+    {"formats/nifti/little.nii.gz",
+     {64, 64, 21},
+     1,
+     SNOW_TYPE_FLOAT32,
+     -8.71075,
+     18.5825},
+    {"formats/nifti/standard.nii.gz", {4, 5, 7}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"formats/nifti/with_extension.nii.gz",
+     {161, 191, 151},
+     1,
+     SNOW_TYPE_UINT8,
+     0,
+     1},
+    {"formats/nrrd/pynrrd/BallBinary30x30x30.nii.gz",
+     {30, 30, 30},
+     1,
+     SNOW_TYPE_INT16,
+     0,
+     257},
+    {"medical/CT_AVM.nii.gz", {256, 242, 154}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"medical/CT_pitch.nii.gz", {175, 248, 58}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"medical/ch2.nii.gz", {181, 217, 181}, 1, SNOW_TYPE_UINT8, 0, 254},
+    {"medical/chris_MRA.nii.gz", {200, 256, 120}, 1, SNOW_TYPE_UINT8, 0, 254},
+    {"medical/fmri_pitch.nii.gz", {64, 64, 35}, 1, SNOW_TYPE_UINT8, 0, 255},
+    {"sim/heptane.nii.gz", {302, 302, 302}, 1, SNOW_TYPE_UINT8, 0, 255},
+};
+
+static void real_files_have_their_known_figures(void **state) {
+    support_place *place = *state;
+    if (!support_data("classic/fuel.nii.gz"))
+        skip();
+    for (size_t i = 0; i < sizeof real_files / sizeof *real_files; i++) {
+        const struct real_file *real = &real_files[i];
+        snow_volume *volume =
+            support_place_open(place, support_data(real->name));
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_memory_equal(info->dims, real->dims, sizeof info->dims);
+        assert_int_equal(info->times, real->times);
+        assert_int_equal(info->type, real->type);
+        assert_true(info->medical);
+        snow_volume_statistics m;
+        snow_volume_get_statistics(volume, &m);
+        double low = real->min * info->slope + info->intercept;
+        double high = real->max * info->slope + info->intercept;
+        assert_true(fabs(m.min - low) <= 1e-5 * fabs(low));
+        assert_true(fabs(m.max - high) <= 1e-5 * fabs(high));
+        assert_int_equal(m.finite, m.voxels);
+        snow_volume_close(volume);
+    }
+}
+
+/* Stored range over all time steps. */
+static void range_of_all_steps(support_place *place, const char *name,
+                               int64_t steps, double slope, double intercept,
+                               double range[2]) {
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (int64_t time = 0; time < steps; time++) {
+        const snow_volume_options options = {.time = time};
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_open(place->context, support_data(name),
+                                          &options, &volume),
+                         SNOW_STATUS_OK);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_int_equal(info->times, steps);
+        assert_true(fabs(info->slope - slope) < 1e-12);
+        assert_true(fabs(info->intercept - intercept) < 1e-12);
+        snow_volume_statistics m;
+        snow_volume_get_statistics(volume, &m);
+        range[0] = fmin(range[0], round((m.min - intercept) / slope));
+        range[1] = fmax(range[1], round((m.max - intercept) / slope));
+        snow_volume_close(volume);
+    }
+}
+
+static void real_files_of_many_steps_have_their_known_range(void **state) {
+    support_place *place = *state;
+    if (!support_data("formats/nifti/functional.nii"))
+        skip();
+    double range[2];
+    range_of_all_steps(place, "formats/nifti/functional.nii", 20,
+                       0.07540696859359741, 3100.76171875, range);
+    assert_true(range[0] == -32768 && range[1] == 32767);
+    range_of_all_steps(place, "formats/nifti/example_nifti2.nii.gz", 2, 1, 0,
+                       range);
+    assert_true(range[0] == 46 && range[1] == 757);
+    range_of_all_steps(place, "formats/nifti/5D_small.nii", 3,
+                       0.0027581409085541964, 0.07691901922225952, range);
+    assert_true(range[0] == 0 && range[1] == 255);
+}
+
+static void same_real_pair(support_place *place, const char *first,
+                           const char *second) {
+    snow_volume *a = support_place_open(place, support_data(first));
+    snow_volume *b = support_place_open(place, support_data(second));
+    support_same_voxels(a, b);
+    support_same_matrix(snow_volume_get_info(a)->matrix,
+                        snow_volume_get_info(b)->matrix, 1e-5);
+    snow_volume_close(a);
+    snow_volume_close(b);
+}
+
+static void real_pairs_are_the_same(void **state) {
+    support_place *place = *state;
+    if (!support_data("formats/nifti/big.nii.gz"))
+        skip();
+    same_real_pair(place, "formats/nifti/big.nii.gz",
+                   "formats/nifti/little.nii.gz");
+    same_real_pair(place, "formats/nifti/avg152T1_LR_nifti.nii",
+                   "formats/nifti/avg152T1_LR_nifti.nii.gz");
+    same_real_pair(place, "formats/nifti/avf_float_32.nii.gz",
+                   "formats/nrrd/avf_float_32.nrrd");
+    same_real_pair(place, "formats/nifti/air.hdr.gz",
+                   "formats/nifti/air.img.gz");
+}
+
+static void a_real_file_of_another_kind_is_refused(void **state) {
+    support_place *place = *state;
+    const char *path = support_data("formats/nifti/not-nifti.nii");
+    if (!path)
+        skip();
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_open(place->context, path, NULL, &volume),
+                     SNOW_STATUS_BAD_INPUT);
+    assert_non_null(
+        strstr(snow_context_message(place->context), "not a NIfTI"));
+}
+
+#define UNIT(test)                                             \
+    cmocka_unit_test_setup_teardown(test, support_place_begin, \
+                                    support_place_end)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        UNIT(both_versions_and_byte_orders_give_one_volume),
+        UNIT(every_scalar_type_is_read_in_both_byte_orders),
+        UNIT(types_that_are_no_numbers_are_refused_by_name),
+        UNIT(slope_and_intercept_are_kept_and_zero_means_none),
+        UNIT(the_matrix_is_sform_then_qform_then_spacing),
+        UNIT(a_quaternion_turns_and_qfac_mirrors),
+        UNIT(bad_geometry_falls_back_with_a_warning),
+        UNIT(an_impossible_spacing_becomes_1_with_a_warning),
+        UNIT(units_of_length_become_millimetres),
+        UNIT(the_time_step_that_is_asked_for_is_read),
+        UNIT(only_the_fourth_axis_is_called_time),
+        UNIT(few_axes_and_extensions_are_read),
+        UNIT(cut_files_are_refused_at_every_length),
+        UNIT(a_cut_header_is_counted),
+        UNIT(sizes_that_lie_are_refused_before_memory_is_taken),
+        UNIT(contradictions_are_refused),
+        UNIT(an_offset_of_0_means_right_after_the_header),
+        UNIT(bytes_after_the_voxels_are_a_warning),
+        UNIT(gzip_is_verified_to_its_last_byte),
+        UNIT(a_packed_size_that_lies_is_refused_early),
+        UNIT(pairs_open_by_either_file),
+        UNIT(a_pair_without_its_other_file_is_refused),
+        UNIT(real_files_have_their_known_figures),
+        UNIT(real_files_of_many_steps_have_their_known_range),
+        UNIT(real_pairs_are_the_same),
+        UNIT(a_real_file_of_another_kind_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

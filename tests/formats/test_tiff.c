@@ -1,0 +1,187 @@
+/* tests/formats/test_tiff.c - TIFF files by hand: which pages are slices, and
+ * what is refused.  What others write is compared in oracle_tiff.py. */
+#include "support/files.h"
+
+/* The most memory that a refusal may ask for at once: tables of a small file.
+ */
+#define MOST ((size_t)100 * 1024)
+
+/* Index of the library among those of snow_library_name. */
+#define LIBTIFF 1
+
+typedef struct tiff {
+    unsigned char bytes[4096];
+    size_t size;
+    size_t link; /* where the next page's place is told */
+} tiff;
+
+static void put(tiff *t, size_t at, size_t size, uint64_t value) {
+    for (size_t i = 0; i < size; i++)
+        t->bytes[at + i] = (unsigned char)(value >> (8 * i));
+}
+
+static void begin(tiff *t) {
+    memset(t, 0, sizeof *t);
+    memcpy(t->bytes, "II*", 4);
+    t->size = 8;
+    t->link = 4;
+}
+
+/* A page of width x 2 pixels of `bits`, all of value `fill`; `tag` and `value`
+ * replace one of its entries. */
+static void add_page(tiff *t, uint32_t width, uint16_t bits, int fill,
+                     uint16_t tag, uint32_t value) {
+    uint32_t bytes = width * 2 * bits / 8, data = (uint32_t)t->size;
+    const uint32_t entries[][3] = {
+        /* tag, type (3: 16 bits, 4: 32), value */
+        {254, 4, 0}, {256, 4, width}, {257, 4, 2},    {258, 3, bits},
+        {259, 3, 1}, {262, 3, 1},     {273, 4, data}, {277, 3, 1},
+        {278, 4, 2}, {279, 4, bytes}, {339, 3, 1},
+    };
+    size_t count = sizeof entries / sizeof *entries;
+    memset(t->bytes + t->size, fill, bytes);
+    t->size += bytes + bytes % 2;
+    put(t, t->link, 4, t->size);
+    put(t, t->size, 2, count);
+    for (size_t i = 0; i < count; i++) {
+        size_t at = t->size + 2 + 12 * i;
+        put(t, at, 2, entries[i][0]);
+        put(t, at + 2, 2, entries[i][1]);
+        put(t, at + 4, 4, 1);
+        put(t, at + 8, 4, entries[i][0] == tag ? value : entries[i][2]);
+    }
+    t->link = t->size + 2 + 12 * count;
+    t->size = t->link + 4;
+}
+
+static const char *write_tiff(support_files *files, const tiff *t) {
+    return support_write(files, "a.tif", t->bytes, t->size);
+}
+
+static void pages_are_slices_in_order(void **state) {
+    (void)state;
+    support_files files;
+    tiff t;
+    support_files_begin(&files);
+    begin(&t);
+    for (int z = 0; z < 5; z++)
+        add_page(&t, 3, 8, 10 + z, 0, 0);
+    snow_volume *volume = support_opened(&files, write_tiff(&files, &t), NULL);
+    const snow_volume_info *info = snow_volume_get_info(volume);
+    const uint8_t *voxels = snow_volume_voxels(volume);
+    assert_string_equal(info->format, "tiff");
+    assert_true(info->dims[0] == 3 && info->dims[1] == 2 && info->dims[2] == 5);
+    for (int z = 0; z < 5; z++)
+        assert_true(voxels[6 * z] == 10 + z && voxels[6 * z + 5] == 10 + z);
+    assert_int_equal(files.notices, 0);
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+static void small_copies_are_no_slices(void **state) {
+    (void)state;
+    support_files files;
+    tiff t;
+    support_files_begin(&files);
+    begin(&t);
+    add_page(&t, 4, 8, 1, 0, 0);
+    add_page(&t, 2, 8, 9, 254, 1);
+    add_page(&t, 4, 8, 2, 0, 0);
+    snow_volume *volume = support_opened(&files, write_tiff(&files, &t), NULL);
+    const uint8_t *voxels = snow_volume_voxels(volume);
+    assert_int_equal(snow_volume_get_info(volume)->dims[2], 2);
+    assert_true(voxels[0] == 1 && voxels[8] == 2);
+    snow_volume_close(volume);
+    support_files_end(&files);
+}
+
+static void pages_that_lie_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        uint16_t tag;
+        uint32_t value;
+        const char *part;
+    } cases[] = {
+        {256, 5, "must be alike"},  {257, 1, "must be alike"},
+        {258, 16, "must be alike"}, {339, 2, "must be alike"},
+        {258, 12, "12 bits"},       {339, 6, "format 6"},
+        {339, 3, "format 3"},       {262, 6, "samplesperpixel"},
+        {262, 32844, "luminance"},  {256, 2000000000, "must be alike"},
+        {273, 60000, "damaged"},    {259, 32773, "damaged"},
+        {259, 12345, "damaged"},
+    };
+    support_files files;
+    support_files_begin(&files);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        tiff t;
+        begin(&t);
+        add_page(&t, 4, 8, 1, 0, 0);
+        add_page(&t, 4, 8, 1, cases[i].tag, cases[i].value);
+        support_refused(&files, write_tiff(&files, &t), NULL,
+                        SNOW_STATUS_BAD_INPUT, cases[i].part, MOST);
+    }
+    support_files_end(&files);
+}
+
+static void sizes_that_the_file_cannot_hold_cost_nothing(void **state) {
+    (void)state;
+    support_files files;
+    tiff t;
+    support_files_begin(&files);
+    begin(&t);
+    add_page(&t, 4, 8, 1, 256, 2000000000);
+    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
+                    "cannot hold", MOST);
+    begin(&t);
+    add_page(&t, 4, 8, 1, 257, 4000000000);
+    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
+                    "damaged", MOST);
+    put(&t, t.link, 4, 8 + 8); /* the next page is the same one */
+    support_refused(&files, write_tiff(&files, &t), NULL, SNOW_STATUS_BAD_INPUT,
+                    ";", MOST);
+    support_files_end(&files);
+}
+
+/* A folder of numbered files: all of them, or none. */
+static void a_folder_with_a_gap_is_refused(void **state) {
+    (void)state;
+    support_files files;
+    support_files_begin(&files);
+    for (int z = 8; z < 12; z++) {
+        tiff t;
+        char name[16];
+        begin(&t);
+        add_page(&t, 3, 8, z, 0, 0);
+        snprintf(name, sizeof name, "s%d.tif", z);
+        support_write(&files, name, t.bytes, t.size);
+    }
+    snow_volume *volume = support_opened(&files, files.folder, NULL);
+    const uint8_t *voxels = snow_volume_voxels(volume);
+    for (int z = 0; z < 4; z++)
+        assert_int_equal(voxels[6 * z], 8 + z);
+    snow_volume_close(volume);
+    const snow_volume_options box = {.crop = {{1, 2}, {0, 0}, {1, 3}}};
+    volume = support_opened(&files, files.folder, &box);
+    voxels = snow_volume_voxels(volume);
+    assert_true(voxels[0] == 9 && voxels[3] == 10);
+    assert_int_equal(snow_volume_get_info(volume)->dims[1], 2);
+    snow_volume_close(volume);
+    assert_int_equal(remove(support_path(&files, "s9.tif")), 0);
+    support_refused(&files, files.folder, NULL, SNOW_STATUS_BAD_INPUT,
+                    "missing", MOST);
+    support_files_end(&files);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pages_are_slices_in_order),
+        cmocka_unit_test(small_copies_are_no_slices),
+        cmocka_unit_test(pages_that_lie_are_refused),
+        cmocka_unit_test(sizes_that_the_file_cannot_hold_cost_nothing),
+        cmocka_unit_test(a_folder_with_a_gap_is_refused),
+    };
+    const char *version, *formats;
+    if (snow_library_name(LIBTIFF, &version, &formats) && !version)
+        return 77;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

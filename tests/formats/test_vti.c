@@ -1,0 +1,175 @@
+/* tests/formats/test_vti.c - VTI files by hand, and what is refused.  What VTK
+ * writes is compared in oracle_vtk.py. */
+#include "support/files.h"
+
+/* The most memory that a refusal may ask for at once. */
+#define MOST ((size_t)150 * 1024)
+
+#define FILE_TAG "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\">\n"
+#define GRID                                                   \
+    "<ImageData WholeExtent=\"1 3 0 1 0 0\" Origin=\"1 2 3\" " \
+    "Spacing=\"0.5 1 2\"><Piece Extent=\"1 3 0 1 0 0\"><PointData>"
+#define ARRAY(name, form) \
+    "<DataArray type=\"UInt8\" Name=\"" name "\" format=\"" form "\">"
+#define END "</DataArray></PointData></Piece></ImageData></VTKFile>"
+#define BYTES "BgAAAAABAgMEBQ==" /* 6, then 0 to 5 */
+
+static snow_volume *opened(support_files *files, const char *text,
+                           const snow_volume_options *options) {
+    return support_opened(files, support_write_text(files, "a.vti", text),
+                          options);
+}
+
+static void expect_counting(snow_volume *volume) {
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(((const uint8_t *)snow_volume_voxels(volume))[i], i);
+    snow_volume_close(volume);
+}
+
+/* Skips where the build reads no XML. */
+static int begin(void **state) {
+    static support_files files;
+    const char *version, *formats;
+    *state = &files;
+    support_files_begin(&files);
+    return snow_library_name(0, &version, &formats) && version ? 0 : 1;
+}
+
+static int end(void **state) {
+    support_files_end(*state);
+    return 0;
+}
+
+static void text_and_base64_are_read_in_place(void **state) {
+    support_files *files = *state;
+    static const char *const texts[] = {
+        FILE_TAG GRID ARRAY("a", "ascii") "0 1 2\n 3 4 5" END,
+        FILE_TAG GRID ARRAY("a", "binary") "\n  " BYTES "\n" END,
+        FILE_TAG GRID ARRAY("a", "binary") "BgAA\nAAAB AgMEBQ= =" END,
+        "<?xml version=\"1.0\"?>\n<!-- by hand -->\n" FILE_TAG GRID ARRAY(
+            "a", "ascii") "0 1 2 3 4 5" END,
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        snow_volume *volume = opened(files, texts[i], NULL);
+        const snow_volume_info *info = snow_volume_get_info(volume);
+        assert_string_equal(info->format, "vti");
+        assert_true(info->dims[0] == 3 && info->dims[1] == 2);
+        /* The first index is 1. */
+        assert_true(info->matrix[0][0] == 0.5 && info->matrix[0][3] == 1.5);
+        expect_counting(volume);
+    }
+    assert_int_equal(files->notices, 0);
+}
+
+static void the_scalars_of_the_file_come_before_others(void **state) {
+    support_files *files = *state;
+    expect_counting(
+        opened(files,
+               FILE_TAG
+               "<ImageData WholeExtent=\"1 3 0 1 0 0\">"
+               "<Piece Extent=\"1 3 0 1 0 0\"><PointData Scalars=\"b\">" ARRAY(
+                   "a", "ascii") "9 9 9 9 9 9</DataArray>" ARRAY("b", "binary")
+                   BYTES END,
+               NULL));
+    const snow_volume_options options = {.dataset = "c"};
+    support_refused(
+        files,
+        support_write_text(files, "b.vti",
+                           FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4 5" END),
+        &options, SNOW_STATUS_BAD_USAGE, "the file has a", MOST);
+}
+
+static void appended_arrays_lie_at_their_offsets(void **state) {
+    support_files *files = *state;
+    static const char text[] = FILE_TAG GRID
+        "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" "
+        "offset=\"16\"/></PointData></Piece></ImageData>"
+        "<AppendedData encoding=\"base64\">\n _BgAAAAkJCQkJCQ==" BYTES
+        "</AppendedData></VTKFile>";
+    expect_counting(opened(files, text, NULL));
+}
+
+static void what_is_no_image_is_refused(void **state) {
+    support_files *files = *state;
+    static const char *const cases[][2] = {
+        {"<VTKFile type=\"PolyData\"/>", "not of image data"},
+        {"<a><VTKFile/></a>", "not a VTK file"},
+        {"<VTKFile type=\"ImageData\"><", "XML is damaged"},
+        {FILE_TAG, "XML is damaged"},
+        {FILE_TAG "</VTKFile>", "no array"},
+        {"<!DOCTYPE a>" FILE_TAG "</VTKFile>", "document type"},
+        {"<VTKFile type=\"ImageData\" compressor=\"vtkLZ4DataCompressor\"/>",
+         "zlib"},
+        {FILE_TAG "<ImageData/></VTKFile>", "WholeExtent"},
+        {FILE_TAG "<ImageData WholeExtent=\"1 0 0 0 0 0\"/></VTKFile>",
+         "WholeExtent"},
+        {FILE_TAG "<ImageData WholeExtent=\"0 9 0 9 0 9\">"
+                  "<Piece Extent=\"0 9 0 9 0 4\"/></ImageData></VTKFile>",
+         "no piece"},
+        {FILE_TAG GRID ARRAY("a", "ascii") "0 1 2 3 4" END,
+         "not a valid uint8"},
+        {FILE_TAG GRID ARRAY("a", "binary") "BQAAAAABAgME" END,
+         "5 bytes but the voxels need 6"},
+        {FILE_TAG GRID ARRAY("a", "binary") "BgAAAAABAgM=" END, "too early"},
+        {FILE_TAG GRID ARRAY("a", "binary") "BgAAAAABAg=" END, "base64"},
+        {FILE_TAG GRID ARRAY("a", "hex") "00" END, "unknown type"},
+        {FILE_TAG GRID "<DataArray type=\"String\" format=\"ascii\">" END,
+         "unknown type"},
+        {FILE_TAG
+         "<ImageData WholeExtent=\"0 9 0 9 0 9\" Spacing=\"0 1 1\">"
+         "<Piece Extent=\"0 9 0 9 0 9\"><PointData>" ARRAY("a", "ascii") END,
+         "spacing"},
+        {FILE_TAG
+         "<ImageData WholeExtent=\"0 99999999 0 99999999 0 9\">"
+         "<Piece Extent=\"0 99999999 0 99999999 0 9\"><PointData>" ARRAY(
+             "a", "ascii") END,
+         "is truncated"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        support_refused(files, support_write_text(files, "a.vti", cases[i][0]),
+                        NULL, SNOW_STATUS_BAD_INPUT, cases[i][1], MOST);
+}
+
+/* A compressed array in three blocks of 2 bytes, the sizes as told. */
+static void blocks_that_lie_are_refused(void **state) {
+    support_files *files = *state;
+    static const uint32_t heads[][6] = {
+        {3, 2, 0, 1u << 30, 1, 1}, {1u << 31, 1u << 31, 0, 1, 1, 1},
+        {3, 1u << 30, 0, 9, 9, 9}, {0, 0, 0, 1, 1, 1},
+        {3, 2, 2, 10, 10, 10},
+    };
+    static const char text[] =
+        "<VTKFile type=\"ImageData\" compressor=\"vtkZLibDataCompressor\">" GRID
+        "<DataArray type=\"UInt8\" Name=\"a\" format=\"appended\" "
+        "offset=\"0\"/></PointData></Piece></ImageData>"
+        "<AppendedData encoding=\"raw\">_";
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+        unsigned char bytes[sizeof text + 100] = {0};
+        memcpy(bytes, text, sizeof text - 1);
+        for (size_t k = 0; k < 24; k++)
+            bytes[sizeof text - 1 + k] =
+                (unsigned char)(heads[i][k / 4] >> (8 * (k % 4)));
+        support_refused(files,
+                        support_write(files, "a.vti", bytes, sizeof bytes),
+                        NULL, SNOW_STATUS_BAD_INPUT, ";", MOST);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(text_and_base64_are_read_in_place,
+                                        begin, end),
+        cmocka_unit_test_setup_teardown(
+            the_scalars_of_the_file_come_before_others, begin, end),
+        cmocka_unit_test_setup_teardown(appended_arrays_lie_at_their_offsets,
+                                        begin, end),
+        cmocka_unit_test_setup_teardown(what_is_no_image_is_refused, begin,
+                                        end),
+        cmocka_unit_test_setup_teardown(blocks_that_lie_are_refused, begin,
+                                        end),
+    };
+    const char *version, *formats;
+    if (snow_library_name(0, &version, &formats) && !version)
+        return 77;
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

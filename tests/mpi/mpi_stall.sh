@@ -1,0 +1,73 @@
+#!/bin/bash
+# mpi_stall.sh - one rank of four is stopped: the job ends when its timeout is
+# over, with one message that names the rank, and leaves nothing unfinished. A
+# rank that goes on in time is waited for.
+. "$(dirname "$0")/../support/mpi.sh"
+need_proc
+LIMIT=180
+
+# begin WHEN COMMAND...: starts four ranks, and stops rank $RANK once WHEN is
+# true.
+begin() {
+    local when=$1 tries=0
+    shift
+    victim=
+    launch 4 "$@" >"$OUT" 2>"$ERR" </dev/null &
+    job=$!
+    while [ -z "$victim" ] && [ $tries -lt 300 ]; do
+        sleep 0.1
+        tries=$((tries + 1))
+        eval "$when" && victim=$(process_of_rank "$RANK")
+    done
+    check "$NAME: there is a rank $RANK" [ -n "$victim" ]
+    [ -n "$victim" ] && kill -STOP "$victim"
+}
+
+# stalled WHEN COMMAND...
+stalled() {
+    local started
+    begin "$@" --timeout 3
+    started=$(date +%s)
+    wait "$job"
+    check "$NAME: the job fails" [ $? -ne 0 ]
+    check "$NAME: within 20 s" [ $(($(date +%s) - started)) -le 20 ]
+    # A launcher that ends the job lets go of the stopped rank first, which
+    # then says that it was interrupted.
+    check "$NAME: one message" [ "$(grep '^snowglass: ' "$ERR" |
+        grep -vc interrupted)" -eq 1 ]
+    says "^snowglass: .*rank $RANK \\(process $victim on .* it is stopped"
+    kill -CONT "$victim" 2>/dev/null
+    # The writer itself may be killed between beginning a hidden file and its
+    # new name; frames are whole all the same.
+    check "$NAME: nothing half written" \
+        [ "$(find . -name '*snow-*' | wc -l)" -le $((RANK == 0)) ]
+    "$TOOL" compare f_000003.png f_000003.png >"$OUT" 2>&1 ||
+        fail "$NAME: a frame is whole"
+}
+
+movie="turntable phantom:head --dims 40x40x40 -s 64x64 --frames 100000 -q -y"
+for RANK in 2 0 3; do
+    NAME="rank $RANK of a movie"
+    rm -f f_*
+    # shellcheck disable=SC2086
+    stalled '[ -e f_000003.png ]' "$MPI_TOOL" $movie -o f_%06d.png
+done
+
+# In time, and with all the time there is.
+for timeout in 20 0; do
+    NAME="a rank that goes on, timeout $timeout" RANK=2
+    rm -f f_*
+    begin '[ -e f_000003.png ]' "$MPI_TOOL" turntable phantom:head \
+        --dims 40x40x40 -s 64x64 --frames 400 -q -y -o f_%06d.png \
+        --timeout $timeout
+    sleep 5
+    check "$NAME: the others wait" [ ! -e f_000399.png ]
+    [ -n "$victim" ] && kill -CONT "$victim"
+    wait "$job"
+    check "$NAME: the job succeeds" [ $? -eq 0 ]
+    check "$NAME: its frames are there" [ -e f_000399.png ]
+done
+run 2 "a timeout below 0" launch 2 "$MPI_TOOL" phantom:head --timeout -1 \
+    -o out.png
+says '^snowglass: --timeout'
+finish

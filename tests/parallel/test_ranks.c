@@ -1,0 +1,960 @@
+/* tests/parallel/test_ranks.c - one picture by many processors equals the
+ * serial one, whatever the number of ranks, the cut, the view and the method.
+ */
+#include "reference/model.h"
+
+#include "decompose/deterministic.h"
+#include "decompose/partition.h"
+#include "frame.h"
+#include "image/image.h"
+#include "render/ghosts.h"
+#include "transfer/transfer.h"
+#include "volume/volume.h"
+
+#include <math.h>
+#include <snowglass/ranks.h>
+#include <stdatomic.h>
+
+/* Rounding of over, and of the warp.  Where the sheared method gives up a pixel
+ * half a step of 8 bits may shine through, which parts do later than the whole,
+ * and Catmull-Rom's weights along both axes may make 1.25^2 times that of it.
+ */
+#define BOUND 4e-6
+#define BOUND_OPAQUE (1.25 * 1.25 * 0.5 / 255 + BOUND)
+
+#define MOST_RANKS 33
+
+/* --- a scene that ranks share ---------------------------------------------
+ */
+
+/* How it is cut. */
+typedef enum cutting {
+    ACROSS,  /* slabs along the view's slice axis */
+    BESIDE,  /* along another axis */
+    BRICKS,  /* a k-d tree */
+    GROUPED, /* slabs along the slice axis, of whole groups */
+    CUTTINGS
+} cutting;
+
+typedef struct play {
+    snow_volume_info info;
+    const void *voxels;
+    const snow_transfer *transfer; /* whose points every rank copies */
+    snow_view view;
+    snow_settings settings;
+    snow_ranks_options how;
+    cutting cut;
+    snow_box boxes[MOST_RANKS];
+    int pictures; /* one after another, with one frame */
+    float *picture;
+    int channels;
+    float *depths;               /* NULL: not asked for */
+    snow_stats stats;            /* of rank 0 */
+    snow_stats each[MOST_RANKS]; /* of every rank */
+    /* Of the serial picture. */
+    int64_t interesting, voxels_drawn;
+    int halvings[3];
+} play;
+
+static size_t floats_of(const play *p) {
+    return (size_t)p->view.width * (size_t)p->view.height * (size_t)p->channels;
+}
+
+static int slice_axis(snow_context *context, const play *p) {
+    snow_placement placement;
+    if (snow_placement_make(context, &p->info, &p->view, &placement) !=
+        SNOW_STATUS_OK)
+        return 0;
+    return placement.slice_axis;
+}
+
+/* Halves a box until each rank has one. */
+static void halve(snow_box box, int first, int count, snow_box *boxes) {
+    int longest = 0;
+    boxes[first] = box;
+    if (count == 1)
+        return;
+    for (int axis = 1; axis < 3; axis++)
+        if (box.count[axis] > box.count[longest])
+            longest = axis;
+    snow_box low = box, high = box;
+    low.count[longest] = box.count[longest] * (count / 2) / count;
+    high.first[longest] += low.count[longest];
+    high.count[longest] -= low.count[longest];
+    halve(low, first, count / 2, boxes);
+    halve(high, first + count / 2, count - count / 2, boxes);
+}
+
+static void cut_up(snow_context *context, play *p, int ranks) {
+    const int64_t *dims = p->info.dims;
+    int axis = slice_axis(context, p);
+    if (p->cut == BESIDE)
+        axis = (axis + 1) % 3;
+    snow_box all = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
+    if (p->cut == BRICKS) {
+        halve(all, 0, ranks, p->boxes);
+        return;
+    }
+    for (int rank = 0; rank < ranks; rank++) {
+        snow_slab slab = p->cut == GROUPED
+                             ? snow_slab_grouped(dims[axis], ranks, rank)
+                             : snow_slab_equal(dims[axis], ranks, rank);
+        p->boxes[rank] = all;
+        p->boxes[rank].first[axis] = slab.first;
+        p->boxes[rank].count[axis] = slab.count;
+    }
+}
+
+/* This rank's box with its ghosts, as a volume; its voxels are to be freed. */
+static snow_status open_part(snow_context *context, const play *p,
+                             const snow_box *box, void **voxels,
+                             snow_volume **volume) {
+    snow_volume_info info = p->info;
+    size_t size = snow_type_size(info.type);
+    int64_t layers[3];
+    snow_extent part = {{0}, {0}, {0}, {0}};
+    bool none = !snow_box_voxels(box);
+    SNOW_TRY(snow_ghosts_needed(context, &p->info, &p->view, &p->settings,
+                                p->transfer->gradient_count > 0, false,
+                                layers));
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t low = none ? 0 : box->first[axis] - layers[axis];
+        int64_t high =
+            none ? 1 : box->first[axis] + box->count[axis] + layers[axis];
+        part.dims[axis] = p->info.dims[axis];
+        part.first[axis] = none ? 0 : box->first[axis];
+        part.count[axis] = none ? 0 : box->count[axis];
+        part.stored[axis] = low > 0 ? low : 0;
+        high = high < part.dims[axis] ? high : part.dims[axis];
+        info.dims[axis] = high - part.stored[axis];
+    }
+    for (int row = 0; row < 3; row++)
+        for (int axis = 0; axis < 3; axis++)
+            info.matrix[row][3] +=
+                info.matrix[row][axis] * (double)part.stored[axis];
+    size_t line = (size_t)info.dims[0] * size;
+    char *to = *voxels = malloc(line * (size_t)(info.dims[1] * info.dims[2]));
+    for (int64_t z = 0; z < info.dims[2]; z++)
+        for (int64_t y = 0; y < info.dims[1]; y++, to += line) {
+            int64_t at =
+                ((part.stored[2] + z) * part.dims[1] + part.stored[1] + y) *
+                    part.dims[0] +
+                part.stored[0];
+            memcpy(to, (const char *)p->voxels + (size_t)at * size, line);
+        }
+    SNOW_TRY(snow_volume_wrap(context, &info, *voxels, volume));
+    snow_volume_freeze(*volume);
+    return snow_volume_set_extent(*volume, &part);
+}
+
+static snow_status copy_transfer(snow_context *context, const snow_transfer *t,
+                                 snow_transfer **out) {
+    SNOW_TRY(snow_transfer_new(context, t->colors, t->color_count, t->opacities,
+                               t->opacity_count, out));
+    return snow_transfer_set_gradient_opacity(*out, t->gradients,
+                                              t->gradient_count);
+}
+
+/* What a rank does. */
+static snow_status perform(snow_comm *comm, void *user) {
+    play *p = user;
+    snow_context *context = snow_comm_context(comm);
+    int rank = snow_comm_rank(comm);
+    void *voxels = NULL;
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_status status =
+        open_part(context, p, &p->boxes[rank], &voxels, &volume);
+    if (status == SNOW_STATUS_OK)
+        status = copy_transfer(context, p->transfer, &transfer);
+    if (status == SNOW_STATUS_OK)
+        status = snow_frame_new(context, &frame);
+    for (int n = 0; n < p->pictures && status == SNOW_STATUS_OK; n++) {
+        snow_image *image = NULL;
+        status = snow_ranks_render(frame, comm, volume, transfer, &p->view,
+                                   &p->settings, &p->how, &image);
+        if (status == SNOW_STATUS_OK && (rank == 0) != (image != NULL))
+            status = snow_fail(context, SNOW_STATUS_BAD_OUTPUT,
+                               "a picture too many");
+        if (status == SNOW_STATUS_OK && rank == 0) {
+            memcpy(p->picture, snow_image_pixels(image),
+                   floats_of(p) * sizeof(float));
+            p->stats = *snow_frame_stats(frame);
+            if (p->depths)
+                memcpy(p->depths, snow_frame_depth(frame)->pixels,
+                       floats_of(p) / (size_t)p->channels * sizeof(float));
+        }
+        snow_image_free(image);
+    }
+    if (status == SNOW_STATUS_OK && frame)
+        p->each[rank] = *snow_frame_stats(frame);
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    free(voxels);
+    return status;
+}
+
+/* --- comparison -----------------------------------------------------------
+ */
+
+/* The serial picture; its strongest opacity. */
+static float *serial_picture(snow_context *context, play *p,
+                             double *strongest) {
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_image *image = NULL;
+    assert_int_equal(snow_volume_wrap(context, &p->info, p->voxels, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(copy_transfer(context, p->transfer, &transfer),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
+    if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
+                          &image) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(context));
+    p->interesting = snow_frame_stats(frame)->interesting;
+    p->voxels_drawn = snow_frame_stats(frame)->voxels;
+    memcpy(p->halvings, snow_frame_stats(frame)->halvings, sizeof p->halvings);
+    p->channels = snow_image_channels(image);
+    float *pixels = malloc(floats_of(p) * sizeof(float));
+    assert_non_null(pixels);
+    memcpy(pixels, snow_image_pixels(image), floats_of(p) * sizeof(float));
+    if (p->depths)
+        memcpy(p->depths, snow_frame_depth(frame)->pixels,
+               floats_of(p) / (size_t)p->channels * sizeof(float));
+    size_t channels = (size_t)p->channels;
+    *strongest = 0;
+    for (size_t n = channels - 1; n < floats_of(p); n += channels)
+        *strongest = fmax(*strongest, (double)pixels[n]);
+    snow_image_free(image);
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return pixels;
+}
+
+/* Renders by so many ranks. */
+static void enact(snow_context *context, play *p, int ranks) {
+    p->picture = calloc(floats_of(p), sizeof(float));
+    assert_non_null(p->picture);
+    cut_up(context, p, ranks);
+    if (snow_comm_run_threads(context, ranks, perform, p) != SNOW_STATUS_OK)
+        fail_msg("%d ranks: %s", ranks, snow_context_message(context));
+}
+
+static double largest_gap(const play *p, const float *serial) {
+    double most = 0;
+    for (size_t n = 0; n < floats_of(p); n++) {
+        double gap = fabs((double)p->picture[n] - (double)serial[n]);
+        most = gap <= most ? most : gap;
+    }
+    return most;
+}
+
+/* Voxels of borders, which several ranks hold, count for their owner only. */
+static void check_counts(const play *p, int ranks) {
+    int64_t interesting = 0, voxels = 0, all = p->voxels_drawn;
+    for (int rank = 0; rank < ranks; rank++) {
+        interesting += p->each[rank].interesting;
+        voxels += p->each[rank].voxels;
+        assert_memory_equal(p->each[rank].halvings, p->halvings,
+                            sizeof p->halvings);
+    }
+    if (interesting != p->interesting || voxels != all)
+        fail_msg("%d ranks count %lld of %lld voxels as interesting, one "
+                 "counts %lld of %lld; cut %d, method %d, quality %d",
+                 ranks, (long long)interesting, (long long)voxels,
+                 (long long)p->interesting, (long long)all, (int)p->cut,
+                 (int)p->settings.method, (int)p->settings.quality);
+}
+
+/* What a sweep came to. */
+typedef struct sweep_tally {
+    int clear, opaque;
+    double clear_most, opaque_most, strongest;
+} sweep_tally;
+
+static void check(snow_context *context, play *p, const float *serial,
+                  double strongest, int ranks, sweep_tally *tally) {
+    enact(context, p, ranks);
+    double gap = largest_gap(p, serial);
+    bool opaque = strongest > 1 - 0.5 / 255 - 1e-5;
+    double bound = opaque ? BOUND_OPAQUE : BOUND;
+    if (p->how.pixel_bits == 8)
+        bound += 0.5 / 255;
+    if (!(gap <= bound))
+        fail_msg("%d ranks differ by %g; cut %d, method %d, quality %d, fov "
+                 "%g, combining %d, strongest %g",
+                 ranks, gap, (int)p->cut, (int)p->settings.method,
+                 (int)p->settings.quality, p->view.fov, (int)p->how.combining,
+                 strongest);
+    assert_int_equal(p->stats.ranks, ranks);
+    check_counts(p, ranks);
+    if (p->how.pixel_bits != 8) {
+        double *most = opaque ? &tally->opaque_most : &tally->clear_most;
+        *most = fmax(*most, gap);
+    }
+    tally->clear += !opaque;
+    tally->opaque += opaque;
+    tally->strongest += strongest;
+    free(p->picture);
+}
+
+static void report(const char *title, const sweep_tally *tally) {
+    int all = tally->clear + tally->opaque;
+    print_message("             %s: %d pictures differ by up to %.2g, %d with "
+                  "opaque pixels by %.2g; strongest opacity %.2f in the mean\n",
+                  title, tally->clear, tally->clear_most, tally->opaque,
+                  tally->opaque_most, tally->strongest / all);
+    assert_true(tally->strongest / all > 0.2);
+}
+
+/* --- small volumes of all kinds -------------------------------------------
+ */
+
+static const int rank_counts[] = {1, 2, 3, 5, 7, 8, 16, 33};
+#define COUNTS (int)(sizeof rank_counts / sizeof *rank_counts)
+
+/* In the short tier each scene meets some of them, the next scene others. */
+#define COUNT_STRIDE (int)support_stride(4)
+static int first_count(int scene) {
+    return (int)support_start((size_t)scene, 4);
+}
+
+static const double turns[][3] = {
+    {0, 0, 0},   {180, 0, 0},  {90, 0, 0},      {-90, 0, 30}, {0, 90, 0},
+    {0, -90, 0}, {30, 20, 10}, {-130, -50, 70}, {44, 3, 0},   {25, -35, 200},
+};
+#define TURNS (int)(sizeof turns / sizeof *turns)
+
+/* A play of a scene, of which everything varies with `n`. */
+static play play_of(int n, int64_t depth, reference_scene *scene) {
+    static const double zooms[] = {1, 0.3, 2, 0.6, 6};
+    const double *turn = turns[n % TURNS];
+    *scene = model_scene((int64_t[]){21, 18, depth},
+                         n % 3 ? SNOW_TYPE_UINT8 : SNOW_TYPE_INT16, n % 4 == 0,
+                         (model_matrix)(n % MODEL_MATRICES), (uint64_t)n + 1);
+    model_turn(scene, turn[0], turn[1], turn[2], zooms[n % 5]);
+    if (n / 6 % 2)
+        model_fade(scene);
+    scene->settings.method = SNOW_METHOD_SHEAR_WARP;
+    scene->settings.quality = (snow_quality)(n / 2 % 3);
+    scene->settings.shade = n / 3 % 2 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+    scene->settings.threads = 1 + n % 2;
+    if (n % 2)
+        scene->settings.opacity_length = 15;
+    return (play){.info = scene->info,
+                  .voxels = scene->voxels,
+                  .view = scene->view,
+                  .settings = scene->settings,
+                  .how = {.size = sizeof(snow_ranks_options),
+                          .combining = (snow_combine)(n % 5)},
+                  .pictures = 1 + n % 2};
+}
+
+static void sweep(const char *title, int scenes, double fov,
+                  const snow_method *methods, int method_count) {
+    snow_context *context = support_context();
+    sweep_tally tally = {0};
+    for (int n = 0; n < scenes; n++) {
+        reference_scene scene;
+        snow_transfer *transfer = NULL;
+        double strongest;
+        play p = play_of(n, 24, &scene);
+        p.view.fov = fov;
+        p.settings.method = methods[n % method_count];
+        transfer = model_transfer(context, &scene);
+        p.transfer = transfer;
+        float *serial = serial_picture(context, &p, &strongest);
+        for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
+            p.cut = (cutting)((n + i) % CUTTINGS);
+            p.how.pixel_bits = (n + i) % 7 == 0 ? 8 : 0;
+            check(context, &p, serial, strongest, rank_counts[i], &tally);
+        }
+        free(serial);
+        snow_transfer_free(transfer);
+        model_free(&scene);
+    }
+    report(title, &tally);
+    snow_context_free(context);
+}
+
+static void any_number_of_ranks_makes_the_serial_picture(void **state) {
+    (void)state;
+    const snow_method sheared = SNOW_METHOD_SHEAR_WARP;
+    sweep("sheared", 30, 0, &sheared, 1);
+}
+
+static void so_it_does_in_perspective(void **state) {
+    (void)state;
+    const snow_method sheared = SNOW_METHOD_SHEAR_WARP;
+    sweep("perspective", 20, 35, &sheared, 1);
+}
+
+static void so_it_does_by_the_exact_methods(void **state) {
+    (void)state;
+    static const snow_method exact[] = {
+        SNOW_METHOD_ORIGINAL, SNOW_METHOD_TESTED, SNOW_METHOD_FOOTPRINT};
+    sweep("exact", 12, 0, exact, 3);
+    sweep("exact, perspective", 6, 50, exact, 3);
+}
+
+/* --- other modes ----------------------------------------------------------
+ */
+
+/* Rounding of sums, and where it decides whether a ray misses. */
+#define BOUND_SUMS 2e-6
+
+/* The largest difference as a part of the largest value; infinite where a pixel
+ * is in one of them only. */
+static double gap_of(const float *a, const float *b, size_t count) {
+    double most = 0, gap = 0;
+    for (size_t n = 0; n < count; n++) {
+        if (isnan(a[n]) != isnan(b[n]))
+            return INFINITY;
+        if (isnan(a[n]))
+            continue;
+        gap = fmax(gap, fabs((double)a[n] - (double)b[n]));
+        most = fmax(most, fabs((double)b[n]));
+    }
+    return most > 0 ? gap / most : gap;
+}
+
+static bool shows_something(const play *p, const float *serial) {
+    int steps = 0;
+    for (size_t n = 1; n < floats_of(p); n++)
+        steps += serial[n] != serial[n - 1] && !isnan(serial[n]);
+    return steps > 20;
+}
+
+/* Serially, and by every number of ranks. */
+static int compare_modes(snow_context *context, play *p, int n, double bound,
+                         double *most) {
+    size_t pixels = (size_t)p->view.width * (size_t)p->view.height;
+    float *depths = calloc(pixels, sizeof(float));
+    double unused;
+    p->depths = p->settings.depth ? depths : NULL;
+    float *serial = serial_picture(context, p, &unused);
+    bool shows = shows_something(p, serial);
+    float *others = calloc(pixels, sizeof(float));
+    p->depths = p->settings.depth ? others : NULL;
+    for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
+        p->cut = (cutting)(i % CUTTINGS);
+        enact(context, p, rank_counts[i]);
+        double gap = gap_of(p->picture, serial, floats_of(p));
+        if (p->depths)
+            gap = fmax(gap, gap_of(others, depths, pixels));
+        if (!(gap <= bound))
+            fail_msg("%s by %d ranks differs by %g; cut %d, method %d, fov %g",
+                     snow_mode_name(p->settings.mode), rank_counts[i], gap,
+                     (int)p->cut, (int)p->settings.method, p->view.fov);
+        *most = fmax(*most, gap);
+        check_counts(p, rank_counts[i]);
+        free(p->picture);
+    }
+    free(serial);
+    free(depths);
+    free(others);
+    return shows;
+}
+
+static void mode_pictures(snow_mode mode, double bound) {
+    static const snow_method methods[] = {
+        SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_FOOTPRINT,
+        SNOW_METHOD_ORIGINAL};
+    snow_context *context = support_context();
+    double most = 0;
+    int shown = 0, all = 0;
+    for (int n = 0; n < 2 * TURNS; n++, all++) {
+        reference_scene scene;
+        play p = play_of(n, 24, &scene);
+        p.settings.mode = mode;
+        p.settings.method = methods[n % 4];
+        p.settings.depth = mode == SNOW_MODE_ISO || mode == SNOW_MODE_OVER;
+        p.settings.iso = 60;
+        p.view.fov = n % 5 == 4 ? 35 : 0;
+        snow_transfer *transfer = model_transfer(context, &scene);
+        p.transfer = transfer;
+        shown += compare_modes(context, &p, n, bound, &most);
+        snow_transfer_free(transfer);
+        model_free(&scene);
+    }
+    print_message("             %s: %d of %d pictures show something, differ "
+                  "by up to %.2g\n",
+                  snow_mode_name(mode), shown, all, most);
+    assert_true(shown * 2 > all);
+    snow_context_free(context);
+}
+
+static void largest_values_of_many_ranks_have_the_serial_bits(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_MIP, 0);
+    mode_pictures(SNOW_MODE_MINIP, 0);
+}
+
+static void sums_of_many_ranks_differ_by_rounding(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_MEAN, BOUND_SUMS);
+    mode_pictures(SNOW_MODE_SUM, BOUND_SUMS);
+}
+
+/* Of the picture itself more is tested above. */
+static void depths_of_over_by_many_ranks(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_OVER, BOUND);
+}
+
+static void surfaces_of_many_ranks_have_the_serial_bits(void **state) {
+    (void)state;
+    mode_pictures(SNOW_MODE_ISO, 0);
+}
+
+/* --- phantoms -------------------------------------------------------------
+ */
+
+/* Views along all axes from both sides, and oblique; every number of ranks; all
+ * cuts in turn. */
+static void look_around(const char *name, const snow_volume *volume) {
+    static const char *const names[] = {"+x", "-x", "+y",  "-y",
+                                        "+z", "-z", "iso", "iso"};
+    snow_context *context = support_context();
+    snow_transfer *transfer = NULL;
+    sweep_tally tally = {0};
+    assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    for (int n = 0; n < 8; n++) {
+        double strongest;
+        play p = {.info = *snow_volume_get_info(volume),
+                  .voxels = snow_volume_voxels(volume),
+                  .transfer = transfer,
+                  .how = {.size = sizeof(snow_ranks_options),
+                          .combining = (snow_combine)(n % 5)},
+                  .pictures = 1};
+        assert_int_equal(snow_view_from_name(context, names[n], &p.view),
+                         SNOW_STATUS_OK);
+        snow_settings_init(&p.settings);
+        p.view.width = 160;
+        p.view.height = 120;
+        p.view.zoom = 1 + n % 3 * 0.5;
+        p.view.fov = n == 7 ? 30 : 0;
+        p.settings.threads = 1;
+        p.settings.quality = (snow_quality)(n % 3);
+        if (n / 2 % 2) /* thin */
+            p.settings.opacity_length = 100;
+        float *serial = serial_picture(context, &p, &strongest);
+        for (int i = first_count(n) + n % 2; i < COUNTS;
+             i += 2 * COUNT_STRIDE) {
+            p.cut = (cutting)((n + i / 2) % CUTTINGS);
+            check(context, &p, serial, strongest, rank_counts[i], &tally);
+        }
+        free(serial);
+    }
+    report(name, &tally);
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void phantoms_are_seen_alike_by_many_ranks(void **state) {
+    (void)state;
+    static const char *const names[] = {"head", "engine", "shells"};
+    for (int n = 0; n < 3; n++) {
+        snow_context *context = support_context();
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_open_phantom(context, names[n],
+                                                  (const int64_t[]){70, 64, 60},
+                                                  1, &volume),
+                         SNOW_STATUS_OK);
+        look_around(names[n], volume);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+}
+
+/* --- drafts of few pixels -------------------------------------------------
+ */
+
+/* A volume's draft from one side, by every number of ranks: as one process
+ * makes it, of a level that is halved so often at most. */
+static void drafts_of(const char *name, const snow_volume *volume, int side,
+                      int halved) {
+    static const char *const names[] = {"+x", "-y", "+z", "iso", "-z", "iso"};
+    snow_context *context = support_context();
+    snow_transfer *transfer = NULL;
+    sweep_tally tally = {0};
+    assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    for (int n = 0; n < 6; n++) {
+        double strongest;
+        play p = {.info = *snow_volume_get_info(volume),
+                  .voxels = snow_volume_voxels(volume),
+                  .transfer = transfer,
+                  .how = {.size = sizeof(snow_ranks_options)},
+                  .pictures = 1};
+        assert_int_equal(snow_view_from_name(context, names[n], &p.view),
+                         SNOW_STATUS_OK);
+        snow_settings_init(&p.settings);
+        p.view.width = p.view.height = side;
+        p.view.fov = n == 5 ? 30 : 0;
+        p.settings.threads = 1;
+        p.settings.quality = SNOW_QUALITY_DRAFT;
+        p.settings.shade = n % 3 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
+        if (n / 2 % 2) /* thin */
+            p.settings.opacity_length = 100;
+        float *serial = serial_picture(context, &p, &strongest);
+        int most = 0;
+        for (int axis = 0; axis < 3; axis++)
+            most = p.halvings[axis] > most ? p.halvings[axis] : most;
+        assert_in_range(most, halved - (n == 5), halved);
+        for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
+            p.cut = (cutting)((n + i) % CUTTINGS);
+            check(context, &p, serial, strongest, rank_counts[i], &tally);
+        }
+        free(serial);
+    }
+    report(name, &tally);
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+static void drafts_of_few_pixels_are_of_the_same_level(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        int64_t dims[3];
+        int side, halved;
+    } cases[] = {
+        {"engine", {201, 186, 173}, 128, 1}, {"head", {128, 144, 150}, 64, 1},
+        {"shells", {161, 159, 163}, 64, 1},  {"engine", {290, 281, 263}, 64, 2},
+        {"head", {100, 90, 99}, 20, 1},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        snow_context *context = support_context();
+        snow_volume *volume = NULL;
+        assert_int_equal(snow_volume_open_phantom(context, cases[n].name,
+                                                  cases[n].dims, 1, &volume),
+                         SNOW_STATUS_OK);
+        drafts_of(cases[n].name, volume, cases[n].side, cases[n].halved);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+}
+
+/* --- real volumes ---------------------------------------------------------
+ */
+
+static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
+    (void)state;
+    static const struct {
+        const char *path;
+        snow_volume_options options;
+    } files[] = {
+        {"classic/engine_256x256x110_u8.raw.gz",
+         {.dims = {256, 256, 110}, .type = SNOW_TYPE_UINT8}},
+        {"classic/CThead_256x256x113_u16be.raw.gz",
+         {.dims = {256, 256, 113},
+          .type = SNOW_TYPE_UINT16,
+          .endian = SNOW_ENDIAN_BIG,
+          .spacing = {1, 1, 2}}},
+    };
+    if (!support_data(files[0].path) || !support_data(files[1].path))
+        skip();
+    for (int n = 0; n < 2; n++) {
+        snow_context *context = support_context();
+        snow_volume *volume = NULL;
+        if (snow_volume_open(context, support_data(files[n].path),
+                             &files[n].options, &volume) != SNOW_STATUS_OK)
+            fail_msg("%s", snow_context_message(context));
+        look_around(n ? "CThead" : "Engine", volume);
+        drafts_of(n ? "CThead, 128x128" : "Engine, 128x128", volume, 128, 1);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+}
+
+/* --- deterministic pictures -----------------------------------------------
+ */
+
+/* Bits, over methods and views. */
+static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    static const snow_method methods[] = {
+        SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_FOOTPRINT,
+        SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_TESTED};
+    int pictures = 0;
+    double moved = 0;
+    for (int n = 0; n < 24; n++) {
+        reference_scene scene;
+        snow_transfer *transfer = NULL;
+        double strongest;
+        play p = play_of(n, n % 2 ? 24 : 70, &scene);
+        if (n % TURNS == 8) /* a blend of two axes */
+            p.settings.quality = SNOW_QUALITY_NORMAL;
+        p.view.fov = n % 3 == 2 ? 40 : 0;
+        p.settings.method = methods[n % 5];
+        transfer = model_transfer(context, &scene);
+        p.transfer = transfer;
+        float *usual = serial_picture(context, &p, &strongest);
+        p.settings.deterministic = 1;
+        float *serial = serial_picture(context, &p, &strongest);
+        for (size_t i = 0; i < floats_of(&p); i++)
+            moved = fmax(moved, fabs((double)usual[i] - (double)serial[i]));
+        p.cut = GROUPED;
+        for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
+            enact(context, &p, rank_counts[i]);
+            if (memcmp(p.picture, serial, floats_of(&p) * sizeof(float)) != 0)
+                fail_msg("%d ranks: scene %d, %g", rank_counts[i], n,
+                         largest_gap(&p, serial));
+            free(p.picture);
+            pictures++;
+        }
+        free(usual);
+        free(serial);
+        snow_transfer_free(transfer);
+        model_free(&scene);
+    }
+    print_message("             %d pictures are the same; the usual ones "
+                  "differ by up to %.2g\n",
+                  pictures, moved);
+    assert_true(moved < BOUND_OPAQUE);
+    snow_context_free(context);
+}
+
+/* --- what goes wrong ------------------------------------------------------
+ */
+
+/* A mistake that one rank makes, or all. */
+typedef struct mishap {
+    play play;
+    const char *expected; /* part of the message */
+    int wrong;            /* rank; -1: none but what the play has */
+    void (*spoil)(play *p, snow_volume *volume);
+    bool again; /* a second picture, without the mistake, is made */
+} mishap;
+
+static snow_status stumble(snow_comm *comm, void *user) {
+    const mishap *m = user;
+    play p = m->play;
+    snow_context *context = snow_comm_context(comm);
+    int rank = snow_comm_rank(comm);
+    void *voxels = NULL;
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_image *image = NULL;
+    SNOW_TRY(open_part(context, &p, &p.boxes[rank], &voxels, &volume));
+    SNOW_TRY(copy_transfer(context, p.transfer, &transfer));
+    SNOW_TRY(snow_frame_new(context, &frame));
+    if (rank == m->wrong)
+        m->spoil(&p, volume);
+    snow_status status = snow_ranks_render(
+        frame, comm, volume, transfer, &p.view, &p.settings, &p.how, &image);
+    char message[300];
+    snprintf(message, sizeof message, "%s", snow_context_message(context));
+    bool given = strstr(message, m->expected) != NULL;
+    if (status != SNOW_STATUS_BAD_USAGE || !given || image)
+        status = snow_fail(context, SNOW_STATUS_BAD_OUTPUT,
+                           "rank %d: %d, \"%s\"", rank, (int)status, message);
+    else
+        status = SNOW_STATUS_OK;
+    if (status == SNOW_STATUS_OK && m->again) {
+        status = snow_ranks_render(frame, comm, volume, transfer, &m->play.view,
+                                   &m->play.settings, &p.how, &image);
+        snow_image_free(image);
+    }
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    free(voxels);
+    return status;
+}
+
+static void other_view(play *p, snow_volume *volume) {
+    (void)volume;
+    p->view.azimuth += 1;
+}
+
+static void bad_threshold(play *p, snow_volume *volume) {
+    (void)volume;
+    p->settings.threshold = 300;
+}
+
+/* Leaves some of its voxels to nobody. */
+static void modest(play *p, snow_volume *volume) {
+    snow_extent part;
+    (void)p;
+    snow_volume_get_extent(volume, &part);
+    for (int axis = 0; axis < 3; axis++)
+        part.count[axis]--;
+    assert_int_equal(snow_volume_set_extent(volume, &part), SNOW_STATUS_OK);
+}
+
+/* The part without its ghosts: refused by that rank alone. */
+static void ghostless(play *p, snow_volume *volume) {
+    snow_extent part;
+    (void)p;
+    snow_volume_get_extent(volume, &part);
+    for (int axis = 0; axis < 3; axis++) {
+        part.first[axis] = part.stored[axis];
+        part.count[axis] = volume->info.dims[axis];
+    }
+    assert_int_equal(snow_volume_set_extent(volume, &part), SNOW_STATUS_OK);
+}
+
+static void what_one_rank_finds_wrong_all_are_told(void **state) {
+    (void)state;
+    static const struct {
+        void (*spoil)(play *p, snow_volume *volume);
+        const char *expected;
+        bool deterministic, again;
+        int bits;
+        cutting cut;
+        bool draft; /* of few pixels */
+    } cases[] = {
+        {other_view, "different pictures", false, true, 0, BRICKS, false},
+        {bad_threshold, "rank 2: threshold is 300", false, true, 0, ACROSS,
+         false},
+        {modest, "voxels do not make up", false, false, 0, BESIDE, false},
+        {ghostless, "rank 2: this view needs", false, false, 0, BESIDE, false},
+        {ghostless, "rank 2: this view needs", false, false, 0, ACROSS, true},
+        {NULL, "deterministic pictures are made of slabs", true, false, 0,
+         BESIDE, false},
+        {NULL, "whole groups", true, false, 0, ACROSS, false},
+        {NULL, "pixels of 7 bits", false, false, 7, ACROSS, false},
+    };
+    snow_context *context = support_context();
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        reference_scene scene;
+        snow_transfer *transfer = NULL;
+        mishap m = {.play = play_of(0, 70, &scene),
+                    .expected = cases[n].expected,
+                    .spoil = cases[n].spoil,
+                    .wrong = cases[n].spoil ? 2 : -1,
+                    .again = cases[n].again};
+        transfer = model_transfer(context, &scene);
+        m.play.transfer = transfer;
+        m.play.cut = cases[n].cut;
+        m.play.settings.deterministic = cases[n].deterministic;
+        m.play.how.pixel_bits = cases[n].bits;
+        if (cases[n].draft) {
+            m.play.settings.quality = SNOW_QUALITY_DRAFT;
+            m.play.view.width = m.play.view.height = 6;
+        }
+        cut_up(context, &m.play, 5);
+        if (snow_comm_run_threads(context, 5, stumble, &m) != SNOW_STATUS_OK)
+            fail_msg("case %zu: %s", n, snow_context_message(context));
+        snow_transfer_free(transfer);
+        model_free(&scene);
+    }
+    snow_context_free(context);
+}
+
+/* --- memory ---------------------------------------------------------------
+ */
+
+/* Fails one allocation, or all from it on. */
+typedef struct miser {
+    atomic_long asked;
+    long failing;
+    bool for_good;
+} miser;
+
+static void *give_or_not(void *user, size_t bytes) {
+    miser *m = user;
+    long number = atomic_fetch_add(&m->asked, 1);
+    bool fails = m->for_good ? number >= m->failing : number == m->failing;
+    return m->failing >= 0 && fails ? NULL : malloc(bytes);
+}
+
+static void take_back(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+/* Ranks' allocations come in any order, so a number is another one each time;
+ * what counts is that all ranks end, and nothing is left. */
+static void ranks_without_memory_fail_together(void **state) {
+    (void)state;
+    static const snow_mode modes[8] = {[4] = SNOW_MODE_MIP,
+                                       [5] = SNOW_MODE_SUM,
+                                       [6] = SNOW_MODE_ISO,
+                                       [7] = SNOW_MODE_OVER};
+    for (int n = 0; n < 8; n++) {
+        reference_scene scene;
+        snow_context *maker = support_context();
+        snow_transfer *transfer = NULL;
+        play p = play_of(2 + n, 70, &scene);
+        p.settings.method =
+            n == 2 || n == 5 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_SHEAR_WARP;
+        p.settings.mode = modes[n];
+        p.settings.iso = 60;
+        p.settings.depth = n >= 6;
+        p.settings.quality = n == 3 ? SNOW_QUALITY_DRAFT : SNOW_QUALITY_NORMAL;
+        if (n == 3) { /* of a level */
+            scene.color_count = 2;
+            p.view.width = p.view.height = 12;
+        }
+        p.settings.deterministic = n == 1;
+        p.settings.shade = SNOW_SHADE_NONE;
+        p.settings.threads = 1;
+        p.cut = GROUPED;
+        p.how.pixel_bits = 8;
+        transfer = model_transfer(maker, &scene);
+        p.transfer = transfer;
+        p.channels = transfer->grey ? 2 : 4;
+        if (n == 5)
+            p.channels = 1;
+        cut_up(maker, &p, 3);
+        p.picture = malloc(floats_of(&p) * sizeof(float));
+        assert_non_null(p.picture);
+        long last = 1;
+        /* Each of the first ones, then some. */
+        for (long failing = -1; failing < last;
+             failing += failing < 30 ? 1 : 5) {
+            miser m = {.failing = failing, .for_good = failing % 2};
+            const snow_allocator allocator = {give_or_not, take_back, &m};
+            snow_context *context = NULL;
+            if (snow_context_new(&allocator, &context) != SNOW_STATUS_OK)
+                continue;
+            snow_status status = snow_comm_run_threads(context, 3, perform, &p);
+            assert_int_equal(status, failing < 0 ? SNOW_STATUS_OK : status);
+            assert_true(status == SNOW_STATUS_OK ||
+                        status == SNOW_STATUS_NO_MEMORY);
+            if (failing < 0)
+                last = atomic_load(&m.asked);
+            const int *halvings = p.each[2].halvings;
+            if (failing < 0 && n == 3)
+                assert_true(halvings[0] + halvings[1] + halvings[2] > 0);
+            assert_int_equal(snow_context_bytes(context), 0);
+            snow_context_free(context);
+        }
+        assert_true(last > 50);
+        free(p.picture);
+        snow_transfer_free(transfer);
+        snow_context_free(maker);
+        model_free(&scene);
+    }
+}
+
+int main(int argc, char **argv) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_number_of_ranks_makes_the_serial_picture),
+        cmocka_unit_test(so_it_does_in_perspective),
+        cmocka_unit_test(so_it_does_by_the_exact_methods),
+        cmocka_unit_test(largest_values_of_many_ranks_have_the_serial_bits),
+        cmocka_unit_test(sums_of_many_ranks_differ_by_rounding),
+        cmocka_unit_test(depths_of_over_by_many_ranks),
+        cmocka_unit_test(surfaces_of_many_ranks_have_the_serial_bits),
+        cmocka_unit_test(phantoms_are_seen_alike_by_many_ranks),
+        cmocka_unit_test(drafts_of_few_pixels_are_of_the_same_level),
+        cmocka_unit_test(real_volumes_are_seen_alike_by_many_ranks),
+        cmocka_unit_test(deterministic_pictures_are_the_same_bit_for_bit),
+        cmocka_unit_test(what_one_rank_finds_wrong_all_are_told),
+        cmocka_unit_test(ranks_without_memory_fail_together),
+    };
+    if (argc > 1)
+        cmocka_set_test_filter(argv[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

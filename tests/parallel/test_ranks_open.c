@@ -1,0 +1,779 @@
+/* tests/parallel/test_ranks_open.c - many ranks open one file: each gets its
+ * part of it, whole and with its ghosts, and little more is read than there is.
+ */
+#include "support/volumes.h"
+
+#include "decompose/deterministic.h"
+#include "render/ghosts.h"
+#include "transfer/transfer.h"
+#include "volume/volume.h"
+
+#include <snowglass/ranks.h>
+
+#include <math.h>
+#include <pthread.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define MOST_RANKS 33
+
+/* What all ranks are asked, and what each answers. */
+typedef struct order {
+    const char *path, *wrong; /* the path on rank `odd` */
+    int odd;                  /* -1: none */
+    snow_volume_options options;
+    snow_view view, turned;
+    bool turn;
+    snow_look look; /* zeros: automatic */
+    snow_settings settings;
+    snow_ranks_options how;
+    const snow_volume *whole;
+    const snow_transfer *expected;
+    snow_extent parts[MOST_RANKS];
+    int64_t stored[MOST_RANKS];
+    uint64_t read[MOST_RANKS];
+} order;
+
+static void begin_order(order *o, const snow_volume *whole) {
+    *o = (order){.odd = -1, .whole = whole, .how.size = sizeof o->how};
+    snow_settings_init(&o->settings);
+    snow_view_default(whole, &o->view);
+    o->turned = o->view;
+}
+
+/* On threads of their own nothing can be asserted: what is wrong is a failure.
+ */
+#define REQUIRE(comm, condition)                                             \
+    do {                                                                     \
+        if (!(condition))                                                    \
+            return snow_fail(snow_comm_context(comm), SNOW_STATUS_BAD_INPUT, \
+                             "line %d: not " #condition, __LINE__);          \
+    } while (0)
+
+/* Every stored voxel is that of the whole, in its place in the world. */
+static snow_status check_voxels(snow_comm *comm, const order *o,
+                                const snow_volume *volume) {
+    snow_extent part;
+    snow_volume_info whole;
+    const snow_volume_info *all = &o->whole->info;
+    size_t size = snow_type_size(all->type);
+    const int64_t *dims = volume->info.dims;
+    snow_volume_get_extent(volume, &part);
+    snow_volume_whole(volume, &whole);
+    REQUIRE(comm, volume->info.type == all->type);
+    REQUIRE(comm, !memcmp(part.dims, all->dims, sizeof part.dims));
+    REQUIRE(comm, !memcmp(whole.dims, all->dims, sizeof part.dims));
+    REQUIRE(comm, !memcmp(whole.matrix, all->matrix, sizeof whole.matrix));
+    for (int i = 0; i < 3; i++) {
+        double place = all->matrix[i][3];
+        for (int j = 0; j < 3; j++)
+            place += all->matrix[i][j] * (double)part.stored[j];
+        double off = volume->info.matrix[i][3] - place;
+        REQUIRE(comm, off < 1e-9 && off > -1e-9);
+    }
+    bool none = !part.count[0] || !part.count[1] || !part.count[2];
+    const char *to = volume->voxels;
+    for (int64_t z = 0; z < dims[2] && !none; z++)
+        for (int64_t y = 0; y < dims[1]; y++) {
+            int64_t at =
+                ((part.stored[2] + z) * part.dims[1] + part.stored[1] + y) *
+                    part.dims[0] +
+                part.stored[0];
+            REQUIRE(comm,
+                    !memcmp((const char *)o->whole->voxels + (size_t)at * size,
+                            to, (size_t)dims[0] * size));
+            to += (size_t)dims[0] * size;
+        }
+    return SNOW_STATUS_OK;
+}
+
+/* Ghosts on every side that has a neighbour, as many as the view needs. */
+static snow_status check_ghosts(snow_comm *comm, const order *o,
+                                const snow_view *view,
+                                const snow_volume *volume) {
+    snow_extent part;
+    int64_t layers[3];
+    snow_volume_get_extent(volume, &part);
+    SNOW_TRY(snow_ghosts_needed(
+        snow_comm_context(comm), &o->whole->info, view, &o->settings,
+        o->look.gradient_opacities != NULL, o->how.turns != 0, layers));
+    for (int i = 0; i < 3 && part.count[0] && part.count[1] && part.count[2];
+         i++) {
+        int64_t below = part.first[i] - layers[i];
+        int64_t end = part.first[i] + part.count[i] + layers[i];
+        if (end > part.dims[i])
+            end = part.dims[i];
+        REQUIRE(comm, part.stored[i] <= (below > 0 ? below : 0));
+        REQUIRE(comm, part.stored[i] + volume->info.dims[i] >= end);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status check_transfer(snow_comm *comm, const order *o,
+                                  const snow_transfer *transfer) {
+    const snow_transfer *e = o->expected;
+    REQUIRE(comm, !e || !strcmp(e->text, transfer->text));
+    REQUIRE(comm, !e || (e->opacity_count == transfer->opacity_count &&
+                         !memcmp(e->opacities, transfer->opacities,
+                                 e->opacity_count * sizeof *e->opacities)));
+    return SNOW_STATUS_OK;
+}
+
+static snow_status turn_part(snow_comm *comm, order *o,
+                             const snow_transfer *transfer,
+                             snow_volume **volume) {
+    uint64_t read = snow_context_bytes_read(snow_comm_context(comm));
+    const snow_volume *before = *volume;
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &o->view, &o->settings,
+                                    &o->how, volume));
+    REQUIRE(comm, before == *volume);
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &o->turned, &o->settings,
+                                    &o->how, volume));
+    REQUIRE(comm, read == snow_context_bytes_read(snow_comm_context(comm)));
+    SNOW_TRY(check_ghosts(comm, o, &o->turned, *volume));
+    before = *volume;
+    SNOW_TRY(snow_ranks_repartition(comm, transfer, &o->turned, &o->settings,
+                                    &o->how, volume));
+    REQUIRE(comm, before == *volume);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status open_part(snow_comm *comm, void *user) {
+    order *o = user;
+    int rank = snow_comm_rank(comm);
+    snow_volume *volume;
+    snow_transfer *transfer;
+    SNOW_TRY(snow_ranks_open(comm, rank == o->odd ? o->wrong : o->path,
+                             &o->options, &o->look, &o->view, &o->settings,
+                             &o->how, &volume, &transfer));
+    o->read[rank] = snow_context_bytes_read(snow_comm_context(comm));
+    snow_status status = check_transfer(comm, o, transfer);
+    if (status == SNOW_STATUS_OK)
+        status = check_ghosts(comm, o, &o->view, volume);
+    /* The others would wait for a rank that does not turn. */
+    status = snow_comm_agree_status(comm, status);
+    if (status == SNOW_STATUS_OK && o->turn)
+        status = turn_part(comm, o, transfer, &volume);
+    if (status == SNOW_STATUS_OK)
+        status = check_voxels(comm, o, volume);
+    snow_volume_get_extent(volume, &o->parts[rank]);
+    o->stored[rank] =
+        volume->info.dims[0] * volume->info.dims[1] * volume->info.dims[2];
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return status;
+}
+
+/* Each voxel is owned by one rank. */
+static void check_cover(const order *o, int ranks) {
+    const int64_t *dims = o->whole->info.dims;
+    size_t voxels = (size_t)(dims[0] * dims[1] * dims[2]);
+    unsigned char *seen = calloc(voxels, 1);
+    assert_non_null(seen);
+    for (int rank = 0; rank < ranks; rank++) {
+        const snow_extent *p = &o->parts[rank];
+        for (int64_t z = 0; z < p->count[2]; z++)
+            for (int64_t y = 0; y < p->count[1]; y++)
+                for (int64_t x = 0; x < p->count[0]; x++)
+                    seen[((p->first[2] + z) * dims[1] + p->first[1] + y) *
+                             dims[0] +
+                         p->first[0] + x]++;
+    }
+    for (size_t i = 0; i < voxels; i++)
+        assert_int_equal(seen[i], 1);
+    free(seen);
+}
+
+static void open_by(support_place *place, order *o, int ranks) {
+    if (snow_comm_run_threads(place->context, ranks, open_part, o) !=
+        SNOW_STATUS_OK)
+        fail_msg("%d ranks, cut %d: %s", ranks, o->how.cut,
+                 snow_context_message(place->context));
+    check_cover(o, ranks);
+}
+
+/* The phantom engine, small, as a file. */
+static const char *put_engine(support_place *place, const char *name) {
+    const int64_t dims[3] = {40, 36, 30};
+    snow_volume *volume;
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &volume),
+        SNOW_STATUS_OK);
+    const char *path = support_place_path(place, name);
+    assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
+    snow_volume_close(volume);
+    return path;
+}
+
+static void every_rank_gets_its_part(void **state) {
+    support_place *place = *state;
+    static const char *const names[] = {"e.nrrd", "e.nii.gz", "e.mha",
+                                        "phantom:head"};
+    static const int ranks[] = {1, 2, 3, 8, 33};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        char path[256];
+        snprintf(path, sizeof path, "%s",
+                 n < 3 ? put_engine(place, names[n]) : names[n]);
+        snow_volume_options options = {.spacing = {1, 1.5, 2}};
+        if (n == 3)
+            options.dims[0] = options.dims[1] = options.dims[2] = 37;
+        snow_volume *whole;
+        snow_transfer *expected;
+        assert_int_equal(
+            snow_volume_open(place->context, path, &options, &whole),
+            SNOW_STATUS_OK);
+        assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &expected),
+                         SNOW_STATUS_OK);
+        for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
+            for (int i = 0; i < 5; i++) {
+                order o;
+                begin_order(&o, whole);
+                o.path = path;
+                o.options = options;
+                o.expected = expected;
+                o.how.cut = (snow_partition)cut;
+                o.view.azimuth = 40.0 * i;
+                open_by(place, &o, ranks[i]);
+            }
+        snow_transfer_free(expected);
+        snow_volume_close(whole);
+    }
+}
+
+static void slabs_lie_along_the_slice_axis(void **state) {
+    support_place *place = *state;
+    static const char *const views[] = {"+x", "+y", "+z"};
+    snow_volume *whole;
+    const int64_t dims[3] = {40, 36, 30};
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    for (int n = 0; n < 6; n++) {
+        order o;
+        begin_order(&o, whole);
+        o.path = "phantom:engine";
+        memcpy(o.options.dims, dims, sizeof dims);
+        o.how.cut = n < 3 ? SNOW_PARTITION_EQUAL : SNOW_PARTITION_COUNTED;
+        assert_int_equal(
+            snow_view_from_name(place->context, views[n % 3], &o.view),
+            SNOW_STATUS_OK);
+        open_by(place, &o, 5);
+        for (int rank = 0; rank < 5; rank++)
+            for (int i = 0; i < 3; i++)
+                assert_true(i == n % 3 ? o.parts[rank].count[i] < dims[i] / 2
+                                       : o.parts[rank].count[i] == dims[i]);
+    }
+    snow_volume_close(whole);
+}
+
+/* As the picture needs it that is the same for any number of ranks. */
+static void deterministic_cuts_lie_between_groups(void **state) {
+    support_place *place = *state;
+    snow_volume *whole;
+    const int64_t dims[3] = {20, 20, 100};
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "shells", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
+        order o;
+        begin_order(&o, whole);
+        o.path = "phantom:shells";
+        memcpy(o.options.dims, dims, sizeof dims);
+        o.how.cut = (snow_partition)cut;
+        o.settings.deterministic = 1;
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
+        open_by(place, &o, 7);
+        for (int rank = 0; rank < 7; rank++) {
+            bool found = false;
+            for (int group = 0; group < SNOW_GROUPS; group++)
+                found = found || snow_group_slab(100, group).first ==
+                                     o.parts[rank].first[2];
+            assert_true(found);
+        }
+    }
+    snow_volume_close(whole);
+}
+
+static void a_crop_is_dealt_out_like_a_volume(void **state) {
+    support_place *place = *state;
+    char path[256];
+    snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
+    const snow_volume_options options = {.crop = {{5, 33}, {0, 0}, {11, 29}}};
+    snow_volume *whole;
+    assert_int_equal(snow_volume_open(place->context, path, &options, &whole),
+                     SNOW_STATUS_OK);
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
+        order o;
+        begin_order(&o, whole);
+        o.path = path;
+        o.options = options;
+        o.how.cut = (snow_partition)cut;
+        open_by(place, &o, 6);
+    }
+    snow_volume_close(whole);
+}
+
+/* 12 MB: what all ranks read together is the file and a buffer for each header,
+ * or the equal slabs with their ghosts; nobody reads more than its share. */
+static void the_file_is_read_once(void **state) {
+    support_place *place = *state;
+    const int64_t dims[3] = {256, 240, 200};
+    const uint64_t slice = 256 * 240;
+    snow_volume *whole;
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    char path[256];
+    snprintf(path, sizeof path, "%s", support_place_path(place, "e.nrrd"));
+    assert_int_equal(snow_volume_save(whole, path, true), SNOW_STATUS_OK);
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
+        order o;
+        begin_order(&o, whole);
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
+        o.path = path;
+        o.how.cut = (snow_partition)cut;
+        open_by(place, &o, 8);
+        uint64_t sum = 0, most = 0;
+        int64_t stored = 0;
+        for (int rank = 0; rank < 8; rank++) {
+            sum += o.read[rank];
+            most = o.read[rank] > most ? o.read[rank] : most;
+            stored = o.stored[rank] > stored ? o.stored[rank] : stored;
+        }
+        /* Twice a buffer: inspected, and opened. */
+        uint64_t headers = 2 * 65536;
+        uint64_t ghosts = cut == SNOW_PARTITION_EQUAL ? 2 * slice : 0;
+        assert_in_range(sum, slice * 200, slice * 200 + 8 * (headers + ghosts));
+        assert_true(most <= slice * 25 + headers + ghosts);
+        print_message("cut %d: file %lld, read %llu, most by one %llu, most "
+                      "voxels stored %lld\n",
+                      cut, (long long)slice * 200, (unsigned long long)sum,
+                      (unsigned long long)most, (long long)stored);
+    }
+    snow_volume_close(whole);
+}
+
+static void another_view_is_served_without_the_file(void **state) {
+    support_place *place = *state;
+    static const int ranks[] = {1, 4, 9, 33};
+    static const snow_opacity_point curve[] = {{5, 0}, {30, 1}};
+    snow_volume *whole;
+    const int64_t dims[3] = {40, 36, 30};
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    for (int n = 0; n < 16; n++) {
+        order o;
+        begin_order(&o, whole);
+        o.path = "phantom:engine";
+        memcpy(o.options.dims, dims, sizeof dims);
+        o.how.cut = (snow_partition)(n % 4);
+        o.settings.deterministic = n % 3 == 0;
+        o.settings.method =
+            n % 5 ? SNOW_METHOD_SHEAR_WARP : SNOW_METHOD_FOOTPRINT;
+        o.turn = true;
+        if (n % 2) { /* gradients without shading */
+            o.settings.shade = SNOW_SHADE_NONE;
+            o.look.gradient_opacities = curve;
+            o.look.gradient_opacity_count = 2;
+        }
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
+        o.turned = o.view;
+        o.turned.azimuth = 80;
+        o.turned.zoom = 0.2; /* wide pixels: more ghosts */
+        open_by(place, &o, ranks[n / 4]);
+        bool slabs = o.how.cut == SNOW_PARTITION_EQUAL ||
+                     o.how.cut == SNOW_PARTITION_COUNTED || n % 5 == 0;
+        for (int rank = 0; rank < ranks[n / 4] && slabs; rank++)
+            if (o.parts[rank].count[0])
+                assert_true(o.parts[rank].count[1] == 36 &&
+                            o.parts[rank].count[2] == 30);
+    }
+    snow_volume_close(whole);
+}
+
+/* With ghosts for every turn nothing has to be cut again but slabs. */
+static void bricks_for_turns_stay_where_they_are(void **state) {
+    support_place *place = *state;
+    snow_volume *whole;
+    const int64_t dims[3] = {40, 36, 30};
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    order o, again;
+    begin_order(&o, whole);
+    o.path = "phantom:engine";
+    memcpy(o.options.dims, dims, sizeof dims);
+    o.how.cut = SNOW_PARTITION_BRICKS;
+    o.how.turns = 1;
+    open_by(place, &o, 8);
+    again = o;
+    again.turn = true;
+    again.turned.azimuth = 77;
+    again.turned.elevation = 20;
+    open_by(place, &again, 8);
+    assert_memory_equal(o.parts, again.parts, sizeof o.parts);
+    snow_volume_close(whole);
+}
+
+/* Parts that are not all of the volume across its slices. */
+static int count_bricks(const order *o, int ranks, int slice_axis) {
+    int bricks = 0;
+    for (int rank = 0; rank < ranks; rank++)
+        for (int axis = 0; axis < 3; axis++)
+            bricks += axis != slice_axis &&
+                      o->parts[rank].count[axis] != o->parts[rank].dims[axis];
+    return bricks;
+}
+
+static void
+every_method_is_cut_into_bricks_but_deterministic_pictures(void **state) {
+    support_place *place = *state;
+    const snow_method methods[] = {SNOW_METHOD_SHEAR_WARP,
+                                   SNOW_METHOD_FOOTPRINT, SNOW_METHOD_ORIGINAL};
+    snow_volume *whole;
+    const int64_t dims[3] = {40, 36, 30};
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    for (int n = 0; n < 6; n++) {
+        order o;
+        begin_order(&o, whole);
+        assert_int_equal(snow_view_from_name(place->context, "+z", &o.view),
+                         SNOW_STATUS_OK);
+        o.path = "phantom:engine";
+        memcpy(o.options.dims, dims, sizeof dims);
+        o.settings.method = methods[n % 3];
+        o.settings.deterministic = n >= 3;
+        o.how.cut = SNOW_PARTITION_BRICKS;
+        open_by(place, &o, 8);
+        assert_int_equal(count_bricks(&o, 8, 2) > 0, n < 3);
+    }
+    snow_volume_close(whole);
+}
+
+static void a_file_that_one_rank_lacks_fails_all(void **state) {
+    support_place *place = *state;
+    char path[256], other[256];
+    snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
+    snprintf(other, sizeof other, "%s", support_place_path(place, "none.nrrd"));
+    snow_volume *whole = support_place_open(place, path);
+    for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++) {
+        order o;
+        begin_order(&o, whole);
+        o.path = path;
+        o.wrong = other;
+        o.odd = 3;
+        o.how.cut = (snow_partition)cut;
+        assert_int_equal(
+            snow_comm_run_threads(place->context, 5, open_part, &o),
+            SNOW_STATUS_BAD_INPUT);
+        assert_non_null(
+            strstr(snow_context_message(place->context), "rank 3: "));
+        assert_non_null(
+            strstr(snow_context_message(place->context), "none.nrrd"));
+    }
+    snow_volume_close(whole);
+}
+
+static void a_file_that_differs_on_one_rank_is_refused(void **state) {
+    support_place *place = *state;
+    order o;
+    char path[256], other[256];
+    snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
+    snow_volume *whole = support_place_open(place, path), *half;
+    const snow_volume_options options = {.crop = {{0, 0}, {0, 0}, {3, 0}}};
+    assert_int_equal(snow_volume_open(place->context, path, &options, &half),
+                     SNOW_STATUS_OK);
+    snprintf(other, sizeof other, "%s", support_place_path(place, "o.nrrd"));
+    assert_int_equal(snow_volume_save(half, other, true), SNOW_STATUS_OK);
+    snow_volume_close(half);
+    begin_order(&o, whole);
+    o.path = path;
+    o.wrong = other;
+    o.odd = 1;
+    assert_int_equal(snow_comm_run_threads(place->context, 4, open_part, &o),
+                     SNOW_STATUS_BAD_INPUT);
+    assert_non_null(
+        strstr(snow_context_message(place->context), "is not the same file"));
+    snow_volume_close(whole);
+}
+
+/* Writes a file into a pipe. */
+static void *feed(void *user) {
+    const char *const *names = user;
+    FILE *from = fopen(names[0], "rb"), *to = fopen(names[1], "wb");
+    for (int c; from && to && (c = getc(from)) != EOF;)
+        putc(c, to);
+    if (from)
+        fclose(from);
+    if (to)
+        fclose(to);
+    return NULL;
+}
+
+static void a_pipe_is_read_by_one_rank_and_sent_to_all(void **state) {
+    support_place *place = *state;
+    char path[256], pipe[256];
+    snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
+    snprintf(pipe, sizeof pipe, "%s", support_place_path(place, "pipe"));
+    assert_int_equal(mkfifo(pipe, 0600), 0);
+    snow_volume *whole = support_place_open(place, path);
+    for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
+        for (int ranks = 1; ranks <= 7; ranks += 3) {
+            order o;
+            pthread_t thread;
+            const char *names[2] = {path, pipe};
+            begin_order(&o, whole);
+            o.path = pipe;
+            o.how.cut = (snow_partition)cut;
+            assert_int_equal(pthread_create(&thread, NULL, feed, names), 0);
+            open_by(place, &o, ranks);
+            pthread_join(thread, NULL);
+            for (int rank = 1; rank < ranks; rank++)
+                assert_int_equal(o.read[rank], 0);
+        }
+    snow_volume_close(whole);
+    unlink(pipe);
+}
+
+/* Allocations of four ranks fail, one after another, on whichever rank it is.
+ */
+static void memory_that_is_missing_fails_all_ranks(void **state) {
+    support_place *place = *state;
+    char path[256];
+    snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
+    snow_volume *whole = support_place_open(place, path);
+    for (int cut = SNOW_PARTITION_EQUAL; cut <= SNOW_PARTITION_BRICKS; cut++) {
+        snow_status status = SNOW_STATUS_NO_MEMORY;
+        int64_t tries = 0;
+        for (; status != SNOW_STATUS_OK && tries < 6000;
+             tries += 3 * (int64_t)support_stride(7)) {
+            order o;
+            begin_order(&o, whole);
+            o.path = path;
+            o.how.cut = (snow_partition)cut;
+            o.turn = true;
+            o.turned.azimuth = 90;
+            place->fail_at = place->allocations + 1 + tries;
+            status = snow_comm_run_threads(place->context, 4, open_part, &o);
+            place->fail_at = 0;
+            assert_true(status == SNOW_STATUS_OK ||
+                        status == SNOW_STATUS_NO_MEMORY);
+        }
+        assert_in_range(tries, 50, 5999);
+    }
+    snow_volume_close(whole);
+}
+
+static void a_plan_tells_parts_and_loads(void **state) {
+    support_place *place = *state;
+    snow_volume *whole;
+    snow_transfer *transfer;
+    const int64_t dims[3] = {64, 60, 56};
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    double ratio;
+    assert_int_equal(snow_transfer_sparse_ratio(transfer, whole, 20, &ratio),
+                     SNOW_STATUS_OK);
+    int64_t all = (int64_t)((1 - ratio) * 64 * 60 * 56 + 0.5);
+    for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
+        for (int axis = 0; axis < 3; axis++) {
+            order o;
+            int64_t loads[12], sum = 0;
+            begin_order(&o, whole);
+            assert_int_equal(snow_ranks_partition(whole, transfer, 20,
+                                                  (snow_partition)cut, axis, 12,
+                                                  o.parts, loads),
+                             SNOW_STATUS_OK);
+            check_cover(&o, 12);
+            for (int i = 0; i < 12; i++)
+                sum += loads[i];
+            assert_int_equal(sum, all);
+        }
+    assert_int_equal(snow_ranks_partition(whole, transfer, 20,
+                                          SNOW_PARTITION_AUTO, 3, 12, NULL,
+                                          NULL),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(snow_ranks_partition(whole, transfer, 20,
+                                          SNOW_PARTITION_AUTO, 2, 0, NULL,
+                                          NULL),
+                     SNOW_STATUS_BAD_USAGE);
+    snow_transfer_free(transfer);
+    snow_volume_close(whole);
+}
+
+static void options_that_are_none_are_refused_by_all(void **state) {
+    support_place *place = *state;
+    snow_volume *whole;
+    assert_int_equal(
+        snow_volume_open_phantom(place->context, "cube", NULL, 0, &whole),
+        SNOW_STATUS_OK);
+    order o;
+    begin_order(&o, whole);
+    o.path = "phantom:cube";
+    o.how.cut = (snow_partition)9;
+    assert_int_equal(snow_comm_run_threads(place->context, 3, open_part, &o),
+                     SNOW_STATUS_BAD_USAGE);
+    o.how.cut = SNOW_PARTITION_AUTO;
+    o.settings.footprint = 99;
+    assert_int_equal(snow_comm_run_threads(place->context, 3, open_part, &o),
+                     SNOW_STATUS_BAD_USAGE);
+    o.settings.footprint = 0;
+    o.options.crop[1][1] = 9999;
+    assert_int_equal(snow_comm_run_threads(place->context, 3, open_part, &o),
+                     SNOW_STATUS_BAD_USAGE);
+    snow_volume_close(whole);
+}
+
+/* --- pictures -------------------------------------------------------------
+ */
+
+#define SIDE 48
+#define PICTURES 5
+
+/* Pictures from five sides of a volume that was opened for the first one. */
+typedef struct turntable {
+    order o;
+    snow_view views[PICTURES];
+    float *serial[PICTURES]; /* of one processor; freed by the test */
+    size_t floats;
+    double most; /* difference so far */
+} turntable;
+
+static void compare_pictures(turntable *t, int n, const float *pixels) {
+    for (size_t i = 0; i < t->floats; i++) {
+        double off = fabs((double)pixels[i] - (double)t->serial[n][i]);
+        if (!(off <= t->most))
+            t->most = off;
+    }
+}
+
+static snow_status draw_views(snow_comm *comm, turntable *t,
+                              const snow_transfer *transfer, snow_frame *frame,
+                              snow_volume **volume) {
+    const order *o = &t->o;
+    for (int n = 0; n < PICTURES; n++) {
+        snow_image *image = NULL;
+        if (n)
+            SNOW_TRY(snow_ranks_repartition(comm, transfer, &t->views[n],
+                                            &o->settings, &o->how, volume));
+        SNOW_TRY(snow_ranks_render(frame, comm, *volume, transfer, &t->views[n],
+                                   &o->settings, &o->how, &image));
+        if (image)
+            compare_pictures(t, n, snow_image_pixels(image));
+        snow_image_free(image);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status draw_turntable(snow_comm *comm, void *user) {
+    turntable *t = user;
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_frame *frame;
+    SNOW_TRY(snow_ranks_open(comm, t->o.path, &t->o.options, NULL, &t->views[0],
+                             &t->o.settings, &t->o.how, &volume, &transfer));
+    snow_status status = snow_frame_new(snow_comm_context(comm), &frame);
+    if (status == SNOW_STATUS_OK) {
+        status = draw_views(comm, t, transfer, frame, &volume);
+        snow_frame_free(frame);
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return status;
+}
+
+static void draw_serial(support_place *place, turntable *t,
+                        const snow_volume *whole) {
+    snow_transfer *transfer;
+    snow_frame *frame;
+    assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_frame_new(place->context, &frame), SNOW_STATUS_OK);
+    for (int n = 0; n < PICTURES; n++) {
+        snow_image *image;
+        snow_view_default(whole, &t->views[n]);
+        t->views[n].width = t->views[n].height = SIDE;
+        t->views[n].azimuth = 65.0 * n;
+        t->views[n].elevation = 11.0 * n;
+        assert_int_equal(snow_frame_render(frame, whole, transfer, &t->views[n],
+                                           &t->o.settings, &image),
+                         SNOW_STATUS_OK);
+        t->floats = (size_t)SIDE * SIDE * 2; /* grey and opacity */
+        t->serial[n] = malloc(t->floats * sizeof(float));
+        assert_non_null(t->serial[n]);
+        memcpy(t->serial[n], snow_image_pixels(image),
+               t->floats * sizeof(float));
+        snow_image_free(image);
+    }
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+}
+
+/* Apart from rounding, and from what lies behind 0.5 / 255 of transparency,
+ * which a rank leaves out where it sees it; or to the bit where that was asked
+ * for. */
+static void pictures_from_all_sides_are_those_of_one_processor(void **state) {
+    support_place *place = *state;
+    static const int ranks[] = {1, 3, 8, 17};
+    char path[256];
+    snprintf(path, sizeof path, "%s", put_engine(place, "e.nrrd"));
+    snow_volume *whole = support_place_open(place, path);
+    for (int n = 0; n < 4; n++) {
+        turntable t = {.floats = 0};
+        begin_order(&t.o, whole);
+        t.o.path = path;
+        t.o.settings.deterministic = n == 1;
+        t.o.settings.method = n == 2 ? SNOW_METHOD_FOOTPRINT : SNOW_METHOD_AUTO;
+        t.o.settings.threads = 1;
+        draw_serial(place, &t, whole);
+        for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
+            for (int i = 0; i < 4; i++) {
+                t.o.how.cut = (snow_partition)cut;
+                t.o.how.turns = n == 3;
+                t.most = 0;
+                if (snow_comm_run_threads(place->context, ranks[i],
+                                          draw_turntable, &t) != SNOW_STATUS_OK)
+                    fail_msg("%d ranks, cut %d: %s", ranks[i], cut,
+                             snow_context_message(place->context));
+                if (t.most > (n == 1 ? 0 : 0.5 / 255 + 1e-5))
+                    fail_msg("case %d, %d ranks, cut %d: off by %g", n,
+                             ranks[i], cut, t.most);
+            }
+        for (int k = 0; k < PICTURES; k++)
+            free(t.serial[k]);
+    }
+    snow_volume_close(whole);
+}
+
+#define TEST(name)                                             \
+    cmocka_unit_test_setup_teardown(name, support_place_begin, \
+                                    support_place_end)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        TEST(every_rank_gets_its_part),
+        TEST(slabs_lie_along_the_slice_axis),
+        TEST(deterministic_cuts_lie_between_groups),
+        TEST(a_crop_is_dealt_out_like_a_volume),
+        TEST(the_file_is_read_once),
+        TEST(another_view_is_served_without_the_file),
+        TEST(bricks_for_turns_stay_where_they_are),
+        TEST(every_method_is_cut_into_bricks_but_deterministic_pictures),
+        TEST(a_file_that_one_rank_lacks_fails_all),
+        TEST(a_file_that_differs_on_one_rank_is_refused),
+        TEST(a_pipe_is_read_by_one_rank_and_sent_to_all),
+        TEST(memory_that_is_missing_fails_all_ranks),
+        TEST(a_plan_tells_parts_and_loads),
+        TEST(options_that_are_none_are_refused_by_all),
+        TEST(pictures_from_all_sides_are_those_of_one_processor),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,252 @@
+/* tests/render/test_progress.c - progress never falls within a call, ends at 1,
+ * is reported at most 20 times a second by the thread that called, and can end
+ * the call. */
+#include "support/folder.h"
+#include "support/support.h"
+
+#include "base/monitor.h"
+
+#include <pthread.h>
+#include <snowglass/render.h>
+
+#define CALLS_MOST 1000
+
+typedef struct listener {
+    int calls;
+    double when[CALLS_MOST];
+    snow_stage stages[CALLS_MOST];
+    double fractions[CALLS_MOST];
+    pthread_t thread;
+    bool foreign;
+    int stop_at; /* the call that asks for a stop; 0: none */
+} listener;
+
+static bool hear(void *user, snow_stage stage, double fraction) {
+    listener *l = user;
+    l->foreign |= !pthread_equal(l->thread, pthread_self());
+    if (l->calls < CALLS_MOST) {
+        l->when[l->calls] = snow_seconds();
+        l->stages[l->calls] = stage;
+        l->fractions[l->calls] = fraction;
+    }
+    return ++l->calls == l->stop_at;
+}
+
+static void listen_to(snow_context *context, listener *l, int stop_at) {
+    *l = (listener){.thread = pthread_self(), .stop_at = stop_at};
+    snow_context_set_progress(context, hear, l);
+}
+
+/* What holds for the calls of any number of calls to the library. */
+static void check_rate(const listener *l) {
+    assert_true(l->calls < CALLS_MOST);
+    assert_false(l->foreign);
+    for (int n = 20; n < l->calls; n++)
+        assert_true(l->when[n] - l->when[n - 20] >= 1);
+}
+
+/* What holds for one call: how often a stage was reported. */
+static int check_stage(const listener *l, snow_stage stage) {
+    double last = 0;
+    int calls = 0;
+    for (int n = 0; n < l->calls; n++) {
+        if (l->stages[n] != stage)
+            continue;
+        assert_true(l->fractions[n] >= last && l->fractions[n] <= 1);
+        last = l->fractions[n];
+        calls++;
+    }
+    if (calls)
+        assert_true(last == 1);
+    return calls;
+}
+
+/* --- volumes --------------------------------------------------------------
+ */
+
+/* Large enough to be read for a while on any machine. */
+static const char *write_large(const char *folder, const char *name) {
+    const char *path = support_folder_path(folder, name);
+    snow_context *context = support_context();
+    snow_volume *volume;
+    assert_int_equal(snow_volume_open_phantom(context, "turbulence",
+                                              (const int64_t[3]){192, 192, 192},
+                                              0, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
+    snow_volume_close(volume);
+    snow_context_free(context);
+    return path;
+}
+
+static void a_phantom_is_reported_while_it_is_made(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume;
+    listener l;
+    listen_to(context, &l, 0);
+    assert_int_equal(snow_volume_open_phantom(context, "turbulence",
+                                              (const int64_t[3]){160, 160, 160},
+                                              0, &volume),
+                     SNOW_STATUS_OK);
+    check_rate(&l);
+    assert_true(check_stage(&l, SNOW_STAGE_READ) >= 2);
+    assert_int_equal(check_stage(&l, SNOW_STAGE_READ), l.calls);
+    assert_true(l.fractions[0] < 1);
+    snow_volume_close(volume);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+static void reading_is_reported_and_can_be_stopped(void **state) {
+    static const char *const names[] = {"v.nrrd", "v.nii.gz", "v.mha",
+                                        "v.raw.gz"};
+    char folder[SUPPORT_FOLDER_BYTES];
+    (void)state;
+    support_folder_make(folder);
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
+        const char *path = write_large(folder, names[n]);
+        snow_context *context = support_context();
+        snow_volume_options options = {0};
+        snow_volume *volume = NULL;
+        listener l;
+        if (n == 3) {
+            options.type = SNOW_TYPE_FLOAT32;
+            for (int axis = 0; axis < 3; axis++)
+                options.dims[axis] = 192;
+        }
+        listen_to(context, &l, 0);
+        assert_int_equal(snow_volume_open(context, path, &options, &volume),
+                         SNOW_STATUS_OK);
+        check_rate(&l);
+        int calls = check_stage(&l, SNOW_STAGE_READ);
+        assert_int_equal(calls, l.calls);
+        snow_volume_close(volume);
+        volume = NULL;
+        bool slow = n == 1 || n == 3; /* to unpack is, anywhere */
+        assert_true(!slow || calls > 1);
+        listen_to(context, &l, 1);
+        snow_status status = snow_volume_open(context, path, &options, &volume);
+        assert_true(!slow || l.calls == 1);
+        assert_int_equal(status,
+                         l.calls ? SNOW_STATUS_STOPPED : SNOW_STATUS_OK);
+        assert_int_equal(volume == NULL, l.calls > 0);
+        snow_volume_close(volume);
+        assert_int_equal(snow_context_bytes(context), 0);
+        snow_context_set_progress(context, NULL, NULL);
+        assert_int_equal(snow_volume_open(context, path, &options, &volume),
+                         SNOW_STATUS_OK);
+        snow_volume_close(volume);
+        snow_context_free(context);
+    }
+    support_folder_remove(folder);
+}
+
+/* --- pictures -------------------------------------------------------------
+ */
+
+static void a_picture_is_reported(void **state) {
+    (void)state;
+    static const snow_quality qualities[] = {SNOW_QUALITY_NORMAL,
+                                             SNOW_QUALITY_HIGH};
+    static const snow_method methods[] = {
+        SNOW_METHOD_SHEAR_WARP, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_ORIGINAL};
+    snow_context *context = support_context();
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_view view;
+    listener l;
+    assert_int_equal(snow_volume_open_phantom(context, "head",
+                                              (const int64_t[3]){150, 150, 150},
+                                              0, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
+                     SNOW_STATUS_OK);
+    snow_view_default(volume, &view);
+    view.azimuth = 41;
+    for (int n = 0; n < 6; n++) {
+        snow_settings settings;
+        snow_frame *frame;
+        snow_image *image = NULL;
+        snow_settings_init(&settings);
+        settings.method = methods[n / 2];
+        settings.quality = qualities[n % 2];
+        settings.threads = 1 + n % 2;
+        assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
+        listen_to(context, &l, 0);
+        assert_int_equal(snow_frame_render(frame, volume, transfer, &view,
+                                           &settings, &image),
+                         SNOW_STATUS_OK);
+        snow_image_free(image);
+        check_rate(&l);
+        assert_int_equal(check_stage(&l, SNOW_STAGE_READ), 0);
+        int all = check_stage(&l, SNOW_STAGE_ENCODE) +
+                  check_stage(&l, SNOW_STAGE_RENDER);
+        assert_int_equal(all, l.calls);
+        bool slow = methods[n / 2] == SNOW_METHOD_ORIGINAL; /* anywhere */
+        assert_true(!slow || l.calls >= 3);
+        image = NULL;
+        listen_to(context, &l, 1);
+        snow_status status = snow_frame_render(frame, volume, transfer, &view,
+                                               &settings, &image);
+        assert_true(!slow || l.calls == 1);
+        assert_int_equal(status,
+                         l.calls ? SNOW_STATUS_STOPPED : SNOW_STATUS_OK);
+        assert_int_equal(image == NULL, l.calls > 0);
+        snow_image_free(image);
+        snow_frame_free(frame);
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+/* Calls of many short works, each of which reports its end. */
+static void many_calls_are_not_reported_more_often(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    listener l;
+    listen_to(context, &l, 0);
+    double end = snow_seconds() + 2.5;
+    for (int n = 0; snow_seconds() < end; n++) {
+        snow_monitor monitor;
+        double until = snow_seconds() + 0.06 + 0.01 * (n % 5);
+        snow_monitor_begin(context, &monitor, NULL, NULL);
+        while (snow_seconds() < until)
+            snow_monitor_report(&monitor, (snow_stage)(n % 3), 1, 2);
+        assert_int_equal(snow_monitor_end(&monitor, SNOW_STATUS_OK),
+                         SNOW_STATUS_OK);
+    }
+    check_rate(&l);
+    assert_true(l.calls > 20);
+    snow_context_free(context);
+}
+
+static void nothing_is_reported_of_what_is_short(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    listener l;
+    listen_to(context, &l, 0);
+    for (int n = 0; n < 20; n++) {
+        snow_volume *volume;
+        assert_int_equal(snow_volume_open_phantom(context, "cube",
+                                                  (const int64_t[3]){8, 8, 8},
+                                                  0, &volume),
+                         SNOW_STATUS_OK);
+        snow_volume_close(volume);
+    }
+    assert_int_equal(l.calls, 0);
+    snow_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_phantom_is_reported_while_it_is_made),
+        cmocka_unit_test(reading_is_reported_and_can_be_stopped),
+        cmocka_unit_test(a_picture_is_reported),
+        cmocka_unit_test(many_calls_are_not_reported_more_often),
+        cmocka_unit_test(nothing_is_reported_of_what_is_short),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

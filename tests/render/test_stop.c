@@ -1,0 +1,593 @@
+/* tests/render/test_stop.c - a picture that is stopped ends with its status,
+ * leaves nothing behind, and the next one has the bits of one that was never
+ * stopped.
+ *
+ * With arguments it measures instead: `test_stop VOLUME [STOPS [SIDE [WAY]]]`
+ * says for each way to draw a volume how long the longest of many stops took,
+ * from the question before it. */
+#include "support/folder.h"
+#include "support/support.h"
+
+#include "comm/comm.h"
+#include "frame.h"
+#include "image/image.h"
+
+#include <math.h>
+#include <snowglass/ranks.h>
+#include <stdatomic.h>
+
+/* A way to draw. */
+typedef struct way {
+    const char *name;
+    snow_method method;
+    snow_mode mode;
+    snow_quality quality;
+    double fov;
+    int depth, deterministic;
+    double gradient; /* opacity depends on gradients up to this */
+    double zoom;     /* 0: 1 */
+    bool alone;      /* not by ranks */
+} way;
+
+#define SHEARED .method = SNOW_METHOD_SHEAR_WARP
+static const way ways[] = {
+    {"parallel", SHEARED},
+    {"parallel, draft", SHEARED, .quality = SNOW_QUALITY_DRAFT},
+    {"a level, draft", SHEARED, .quality = SNOW_QUALITY_DRAFT, .zoom = 0.2},
+    {"parallel, high", SHEARED, .quality = SNOW_QUALITY_HIGH},
+    {"parallel, groups", SHEARED, .deterministic = 1},
+    {"gradient opacity", SHEARED, .gradient = 20},
+    {"perspective", SHEARED, .fov = 30},
+    {"perspective, high", SHEARED, .fov = 30, .quality = SNOW_QUALITY_HIGH},
+    {"depth", SHEARED, .depth = 1},
+    {"mip", SHEARED, .mode = SNOW_MODE_MIP},
+    {"minip", SHEARED, .mode = SNOW_MODE_MINIP},
+    {"mean", SHEARED, .mode = SNOW_MODE_MEAN},
+    {"sum", SHEARED, .mode = SNOW_MODE_SUM},
+    {"mip, perspective", SHEARED, .mode = SNOW_MODE_MIP, .fov = 30},
+    {"iso", SHEARED, .mode = SNOW_MODE_ISO, .depth = 1},
+    {"iso, perspective", SHEARED, .mode = SNOW_MODE_ISO, .fov = 30},
+    {"iso, original", .method = SNOW_METHOD_ORIGINAL, .mode = SNOW_MODE_ISO,
+     .alone = true},
+    {"original", .method = SNOW_METHOD_ORIGINAL},
+    {"tested", .method = SNOW_METHOD_TESTED},
+    {"footprint", .method = SNOW_METHOD_FOOTPRINT},
+    {"footprint, groups", .method = SNOW_METHOD_FOOTPRINT, .deterministic = 1},
+    {"footprint, mip", .method = SNOW_METHOD_FOOTPRINT, .mode = SNOW_MODE_MIP},
+    {"footprint, perspective", .method = SNOW_METHOD_FOOTPRINT, .fov = 30},
+    {"original, perspective", .method = SNOW_METHOD_ORIGINAL, .fov = 30},
+};
+#define WAYS (sizeof ways / sizeof *ways)
+
+/* --- who asks for a stop --------------------------------------------------
+ */
+
+typedef struct question {
+    int asked, at;    /* so far; that is answered with a stop, 0: none */
+    pthread_t thread; /* that may ask */
+    bool foreign;     /* another one has */
+} question;
+
+static bool answer(void *user) {
+    question *q = user;
+    q->foreign |= !pthread_equal(q->thread, pthread_self());
+    return ++q->asked == q->at;
+}
+
+/* --- what is drawn --------------------------------------------------------
+ */
+
+typedef struct scene {
+    snow_context *context;
+    snow_volume *volume;
+    snow_transfer *transfer;
+    snow_view view;
+    snow_settings settings;
+} scene;
+
+static void fill_settings(const way *w, int threads, scene *s) {
+    snow_settings_init(&s->settings);
+    s->settings.method = w->method;
+    s->settings.mode = w->mode;
+    s->settings.quality = w->quality;
+    s->settings.depth = w->depth;
+    s->settings.deterministic = w->deterministic;
+    s->settings.threads = threads;
+    s->settings.iso = 60;
+    s->view.fov = w->fov;
+    s->view.zoom *= w->zoom > 0 ? w->zoom : 1;
+}
+
+static snow_look look_of(const way *w, const snow_opacity_point *gradients) {
+    bool fades = w->gradient > 0;
+    return (snow_look){.colormap = "viridis",
+                       .gradient_opacities = fades ? gradients : NULL,
+                       .gradient_opacity_count = fades ? 2 : 0};
+}
+
+static snow_status fill_look(const way *w, scene *s) {
+    const snow_opacity_point gradients[] = {{0, 0.1}, {w->gradient, 1}};
+    const snow_look look = look_of(w, gradients);
+    return snow_transfer_new_for_volume(s->volume, &look, &s->transfer);
+}
+
+static void scene_free(scene *s) {
+    snow_transfer_free(s->transfer);
+    snow_volume_close(s->volume);
+    assert_int_equal(snow_context_bytes(s->context), 0);
+    snow_context_free(s->context);
+}
+
+static void fill_view(const snow_volume *volume, int side, snow_view *view) {
+    snow_view_default(volume, view);
+    view->azimuth = 25;
+    view->elevation = 10;
+    view->width = view->height = side;
+}
+
+static void scene_new(const char *path, const way *w, int threads,
+                      bool streamed, int side, scene *s) {
+    snow_volume *volume;
+    *s = (scene){.context = support_context()};
+    assert_int_equal(snow_volume_open(s->context, path, NULL, &volume),
+                     SNOW_STATUS_OK);
+    s->volume = volume;
+    assert_int_equal(fill_look(w, s), SNOW_STATUS_OK);
+    if (streamed) {
+        snow_volume_close(volume);
+        assert_int_equal(snow_volume_open_streamed(s->context, path, NULL,
+                                                   1 << 14, &s->volume),
+                         SNOW_STATUS_OK);
+    }
+    fill_view(s->volume, side, &s->view);
+    fill_settings(w, threads, s);
+}
+
+static snow_status draw(const scene *s, snow_frame *frame, question *q,
+                        snow_image **image) {
+    snow_settings settings = s->settings;
+    q->thread = pthread_self();
+    q->foreign = false;
+    settings.stop = q->at || q->asked < 0 ? answer : NULL;
+    settings.stop_user = q;
+    return snow_frame_render(frame, s->volume, s->transfer, &s->view, &settings,
+                             image);
+}
+
+static size_t image_bytes(const snow_image *image) {
+    return (size_t)image->width * (size_t)image->height *
+           (size_t)image->channels * sizeof *image->pixels;
+}
+
+static void assert_same(const snow_image *a, const snow_image *b) {
+    assert_int_equal(image_bytes(a), image_bytes(b));
+    assert_memory_equal(a->pixels, b->pixels, image_bytes(a));
+}
+
+static snow_image *draw_whole(const scene *s, snow_frame *frame) {
+    question none = {0};
+    snow_image *image = NULL;
+    assert_int_equal(draw(s, frame, &none, &image), SNOW_STATUS_OK);
+    return image;
+}
+
+/* --- one process ----------------------------------------------------------
+ */
+
+/* Stops at the k-th question; the same frame then draws the picture. */
+static void stop_at(const scene *s, int k, const snow_image *whole,
+                    bool encoded) {
+    question q = {.at = k};
+    snow_frame *frame;
+    snow_image *image = NULL;
+    assert_int_equal(snow_frame_new(s->context, &frame), SNOW_STATUS_OK);
+    if (encoded)
+        snow_image_free(draw_whole(s, frame));
+    snow_status status = draw(s, frame, &q, &image);
+    assert_false(q.foreign);
+    if (q.asked >= k) {
+        assert_int_equal(status, SNOW_STATUS_STOPPED);
+        assert_non_null(strstr(snow_context_message(s->context), "stopped"));
+        assert_null(image);
+        assert_null(snow_frame_depth(frame));
+        assert_int_equal(q.asked, k); /* nobody asks again */
+    } else {
+        assert_int_equal(status, SNOW_STATUS_OK);
+        snow_image_free(image);
+    }
+    image = draw_whole(s, frame);
+    assert_same(image, whole);
+    snow_image_free(image);
+    snow_frame_free(frame);
+}
+
+static void stop_ways(const char *path, int threads, bool streamed) {
+    for (size_t n = 0; n < WAYS; n++) {
+        scene s;
+        snow_frame *frame;
+        snow_image *asked = NULL;
+        question all = {.asked = -1000000};
+        if (streamed && ways[n].deterministic &&
+            ways[n].method != SNOW_METHOD_SHEAR_WARP)
+            continue;
+        scene_new(path, &ways[n], threads, streamed, 40, &s);
+        assert_int_equal(snow_frame_new(s.context, &frame), SNOW_STATUS_OK);
+        snow_image *whole = draw_whole(&s, frame);
+        snow_frame_free(frame);
+        assert_int_equal(snow_frame_new(s.context, &frame), SNOW_STATUS_OK);
+        assert_int_equal(draw(&s, frame, &all, &asked), SNOW_STATUS_OK);
+        assert_same(asked, whole);
+        snow_image_free(asked);
+        snow_frame_free(frame);
+        int count = all.asked + 1000000;
+        assert_true(count >= 2);
+        const int at[] = {1, 2, count / 3, 2 * count / 3, count - 1, count};
+        for (size_t k = 0; k < sizeof at / sizeof *at; k++)
+            if (at[k] > 0)
+                stop_at(&s, at[k], whole, k % 2);
+        snow_image_free(whole);
+        scene_free(&s);
+    }
+}
+
+static void write_volume(const char *path, const int64_t dims[3]) {
+    snow_context *context = support_context();
+    snow_volume *volume;
+    assert_int_equal(
+        snow_volume_open_phantom(context, "head", dims, 0, &volume),
+        SNOW_STATUS_OK);
+    assert_int_equal(snow_volume_save(volume, path, true), SNOW_STATUS_OK);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static const int64_t small[3] = {26, 30, 22};
+
+static void in_memory(int threads) {
+    char folder[SUPPORT_FOLDER_BYTES];
+    support_folder_make(folder);
+    const char *path = support_folder_path(folder, "v.nrrd");
+    write_volume(path, small);
+    stop_ways(path, threads, false);
+    support_folder_remove(folder);
+}
+
+static void pictures_stop_on_one_thread(void **state) {
+    (void)state;
+    in_memory(1);
+}
+
+static void pictures_stop_on_two_threads(void **state) {
+    (void)state;
+    in_memory(2);
+}
+
+static void pictures_of_a_file_stop(void **state) {
+    char folder[SUPPORT_FOLDER_BYTES];
+    (void)state;
+    support_folder_make(folder);
+    const char *path = support_folder_path(folder, "v.nrrd");
+    write_volume(path, small);
+    stop_ways(path, 2, true);
+    support_folder_remove(folder);
+}
+
+/* --- ranks ----------------------------------------------------------------
+ */
+
+#define REQUIRE(comm, condition)                                             \
+    do {                                                                     \
+        if (!(condition))                                                    \
+            return snow_fail(snow_comm_context(comm), SNOW_STATUS_BAD_INPUT, \
+                             "line %d: not " #condition, __LINE__);          \
+    } while (0)
+
+typedef struct crew {
+    const char *path;
+    snow_view view;
+    const way *way;
+    int threads;
+    bool flight;
+    atomic_int questions; /* of the rank that asked most */
+    atomic_int stopped;
+} crew;
+
+typedef struct place {
+    snow_comm *comm;
+    crew *crew;
+    scene s;
+    snow_frame *frame;
+    question q;
+} place;
+
+/* With `at` 0 nobody is asked. */
+static snow_status begin(place *seat, int at) {
+    snow_ranks_options how = {.size = sizeof how};
+    snow_settings settings = seat->s.settings;
+    if (at) {
+        seat->q = (question){.at = at, .thread = pthread_self()};
+        settings.stop = answer;
+        settings.stop_user = &seat->q;
+    }
+    return snow_ranks_begin(seat->frame, seat->comm, seat->s.volume,
+                            seat->s.transfer, &seat->s.view, &settings, &how);
+}
+
+/* Finishes a picture; compares it with `whole`, or keeps it. */
+static snow_status finish(place *seat, snow_image **whole) {
+    snow_image *image = NULL;
+    SNOW_TRY(snow_ranks_finish(seat->frame, &image));
+    if (!image)
+        return SNOW_STATUS_OK;
+    if (!*whole) {
+        *whole = image;
+        return SNOW_STATUS_OK;
+    }
+    bool same =
+        image_bytes(image) == image_bytes(*whole) &&
+        memcmp(image->pixels, (*whole)->pixels, image_bytes(image)) == 0;
+    snow_image_free(image);
+    REQUIRE(seat->comm, same);
+    return SNOW_STATUS_OK;
+}
+
+/* Rank `who` stops at its question `at`: the picture ends on all ranks, or on
+ * none where it is not asked so often. */
+static snow_status stop_one(place *seat, int who, int at, snow_image **whole) {
+    int rank = snow_comm_rank(seat->comm);
+    SNOW_TRY(begin(seat, rank == who ? at : 1 << 30));
+    if (seat->crew->flight) /* the next one is begun, and lives on */
+        SNOW_TRY(begin(seat, 0));
+    snow_status status = finish(seat, whole);
+    int64_t words[2] = {status == SNOW_STATUS_STOPPED,
+                        status == SNOW_STATUS_OK};
+    SNOW_TRY(snow_comm_reduce_ints(seat->comm, words, 2, SNOW_SUM));
+    int ranks = snow_comm_size(seat->comm);
+    REQUIRE(seat->comm, words[0] == ranks || words[1] == ranks);
+    REQUIRE(seat->comm, !seat->q.foreign);
+    atomic_fetch_add(&seat->crew->stopped, words[0] == ranks);
+    if (seat->crew->flight)
+        return finish(seat, whole);
+    SNOW_TRY(begin(seat, 0));
+    return finish(seat, whole);
+}
+
+static snow_status stop_many(place *seat) {
+    snow_image *whole = NULL;
+    int64_t asked;
+    SNOW_TRY(begin(seat, 0));
+    snow_status status = finish(seat, &whole);
+    if (status == SNOW_STATUS_OK)
+        status = begin(seat, 1 << 30);
+    if (status == SNOW_STATUS_OK)
+        status = finish(seat, &whole);
+    asked = seat->q.asked;
+    if (status == SNOW_STATUS_OK)
+        status = snow_comm_reduce_ints(seat->comm, &asked, 1, SNOW_MAX);
+    for (int n = 0; n < 4 && status == SNOW_STATUS_OK; n++) {
+        snow_frame_free(seat->frame); /* to be encoded anew, now and then */
+        seat->frame = NULL;
+        status = snow_frame_new(seat->s.context, &seat->frame);
+        if (status == SNOW_STATUS_OK && n % 2) {
+            status = begin(seat, 0);
+            if (status == SNOW_STATUS_OK)
+                status = finish(seat, &whole);
+        }
+        if (status == SNOW_STATUS_OK)
+            status = stop_one(seat, n % snow_comm_size(seat->comm),
+                              1 + (int)asked * n / 4, &whole);
+    }
+    snow_image_free(whole);
+    return status;
+}
+
+static snow_status sit_down(snow_comm *comm, void *user) {
+    crew *c = user;
+    place seat = {.comm = comm, .crew = c};
+    scene *s = &seat.s;
+    snow_ranks_options how = {.size = sizeof how};
+    const snow_opacity_point gradients[] = {{0, 0.1}, {c->way->gradient, 1}};
+    const snow_look look = look_of(c->way, gradients);
+    s->context = snow_comm_context(comm);
+    s->view = c->view;
+    fill_settings(c->way, c->threads, s);
+    SNOW_TRY(snow_ranks_open(comm, c->path, NULL, &look, &s->view, &s->settings,
+                             &how, &s->volume, &s->transfer));
+    snow_status status = snow_frame_new(s->context, &seat.frame);
+    if (status == SNOW_STATUS_OK)
+        status = stop_many(&seat);
+    snow_frame_free(seat.frame);
+    snow_transfer_free(s->transfer);
+    snow_volume_close(s->volume);
+    return status;
+}
+
+static void view_of_file(snow_context *context, const char *path,
+                         snow_view *view) {
+    snow_volume *volume;
+    assert_int_equal(snow_volume_open(context, path, NULL, &volume),
+                     SNOW_STATUS_OK);
+    fill_view(volume, 40, view);
+    snow_volume_close(volume);
+}
+
+static void stop_crews(int ranks, int threads, bool flight) {
+    char folder[SUPPORT_FOLDER_BYTES];
+    support_folder_make(folder);
+    const char *path = support_folder_path(folder, "v.nrrd");
+    write_volume(path, small);
+    for (size_t n = 0; n < WAYS; n++) {
+        if (ways[n].alone)
+            continue;
+        snow_context *context = support_context();
+        crew c = {.path = path,
+                  .way = &ways[n],
+                  .threads = threads,
+                  .flight = flight};
+        view_of_file(context, path, &c.view);
+        snow_status status =
+            snow_comm_run_threads(context, ranks, sit_down, &c);
+        if (status != SNOW_STATUS_OK)
+            fail_msg("%s: %s", ways[n].name, snow_context_message(context));
+        assert_true(atomic_load(&c.stopped) >= ranks);
+        assert_int_equal(snow_context_bytes(context), 0);
+        snow_context_free(context);
+    }
+    support_folder_remove(folder);
+}
+
+static void pictures_of_ranks_stop_on_all(void **state) {
+    (void)state;
+    stop_crews(2, 1, false);
+    stop_crews(3, 2, false);
+}
+
+static void pictures_under_way_stop_one_by_one(void **state) {
+    (void)state;
+    stop_crews(3, 1, true);
+}
+
+/* --- how long it takes ----------------------------------------------------
+ */
+
+/* With one thread its own processor time counts, which other programs on the
+ * machine do not add to. */
+static double clock_of(const scene *s) {
+    return s->settings.threads == 1 ? snow_thread_seconds() : snow_seconds();
+}
+
+#define QUESTIONS_MOST 65536
+
+/* When questions were asked. */
+typedef struct questions {
+    const scene *s;
+    int asked, at;
+    double before, when[QUESTIONS_MOST];
+} questions;
+
+static bool note(void *user) {
+    questions *q = user;
+    if (q->asked < QUESTIONS_MOST)
+        q->when[q->asked] = clock_of(q->s);
+    return ++q->asked == q->at;
+}
+
+static snow_status draw_noted(const scene *s, snow_frame *frame, questions *q,
+                              int at) {
+    snow_settings settings = s->settings;
+    snow_image *image = NULL;
+    settings.stop = note;
+    settings.stop_user = q;
+    q->s = s;
+    q->at = at;
+    q->asked = 0;
+    q->before = clock_of(s);
+    snow_status status = snow_frame_render(frame, s->volume, s->transfer,
+                                           &s->view, &settings, &image);
+    snow_image_free(image);
+    return status;
+}
+
+/* The time from question at - 1, behind which a stop may come, to the end of a
+ * picture that is stopped at question `at`; the least of three, 0: it was not
+ * asked so often. */
+static double stop_seconds(const scene *s, questions *q, int at, bool encoded) {
+    double least = INFINITY;
+    for (int n = 0; n < 3; n++) {
+        snow_frame *frame;
+        assert_int_equal(snow_frame_new(s->context, &frame), SNOW_STATUS_OK);
+        if (encoded)
+            snow_image_free(draw_whole(s, frame));
+        snow_status status = draw_noted(s, frame, q, at);
+        double end = clock_of(s);
+        double from = at > 1 ? q->when[at - 2] : q->before;
+        snow_frame_free(frame);
+        if (status == SNOW_STATUS_OK)
+            return 0;
+        least = end - from < least ? end - from : least;
+    }
+    return least;
+}
+
+/* The question with the longest time before it. */
+static int slowest(questions *q) {
+    int found = 0;
+    double most = -1;
+    for (int n = 0; n < q->asked && n < QUESTIONS_MOST; n++) {
+        double gap = q->when[n] - (n ? q->when[n - 1] : q->before);
+        if (gap > most) {
+            most = gap;
+            found = n + 1;
+        }
+    }
+    return found;
+}
+
+/* The longest of stops all over a picture, and at its slowest question. */
+static double longest(const scene *s, int stops, bool encoded,
+                      double *seconds) {
+    static questions q;
+    snow_frame *frame;
+    assert_int_equal(snow_frame_new(s->context, &frame), SNOW_STATUS_OK);
+    if (encoded)
+        snow_image_free(draw_whole(s, frame));
+    assert_int_equal(draw_noted(s, frame, &q, 0), SNOW_STATUS_OK);
+    *seconds = clock_of(s) - q.before;
+    snow_frame_free(frame);
+    int all = q.asked < QUESTIONS_MOST ? q.asked : QUESTIONS_MOST;
+    double most = stop_seconds(s, &q, slowest(&q), encoded);
+    for (int n = 0; n < stops; n++) {
+        int at = 1 + (int)((int64_t)(all - 1) * n / stops);
+        double took = stop_seconds(s, &q, at, encoded);
+        most = took > most ? took : most;
+    }
+    return most;
+}
+
+static void measure(const char *path, int stops, int side, const char *only,
+                    int threads_most) {
+    for (size_t n = 0; n < WAYS; n++)
+        for (int threads = 1; threads <= threads_most; threads++) {
+            scene s;
+            double seconds[2], most[2];
+            if (only && !strstr(ways[n].name, only))
+                continue;
+            scene_new(path, &ways[n], threads, false, side, &s);
+            for (int encoded = 0; encoded < 2; encoded++)
+                most[encoded] = longest(&s, stops, encoded, &seconds[encoded]);
+            printf("%-24s %d thread%s: a picture takes %8.1f ms, the longest "
+                   "stop %5.1f ms; encoded before %8.1f ms, %5.1f ms\n",
+                   ways[n].name, threads, threads > 1 ? "s" : " ",
+                   1e3 * seconds[0], 1e3 * most[0], 1e3 * seconds[1],
+                   1e3 * most[1]);
+            fflush(stdout);
+            scene_free(&s);
+        }
+}
+
+static void stops_are_quick(void **state) {
+    char folder[SUPPORT_FOLDER_BYTES];
+    (void)state;
+    support_folder_make(folder);
+    const char *path = support_folder_path(folder, "v.nrrd");
+    write_volume(path, (const int64_t[3]){64, 64, 64});
+    measure(path, 2, 96, NULL, 1);
+    support_folder_remove(folder);
+}
+
+int main(int argc, char **argv) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_stop_on_one_thread),
+        cmocka_unit_test(pictures_stop_on_two_threads),
+        cmocka_unit_test(pictures_of_a_file_stop),
+        cmocka_unit_test(pictures_of_ranks_stop_on_all),
+        cmocka_unit_test(pictures_under_way_stop_one_by_one),
+        cmocka_unit_test(stops_are_quick),
+    };
+    if (argc > 1) {
+        measure(argv[1], argc > 2 ? atoi(argv[2]) : 20,
+                argc > 3 ? atoi(argv[3]) : 512, argc > 4 ? argv[4] : NULL, 2);
+        return 0;
+    }
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

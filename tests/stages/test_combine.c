@@ -1,0 +1,788 @@
+/* test_combine - the exchange and the gather, by every method, for 1 to 33
+ * ranks in one process, against all local images laid over one another in
+ * double precision.
+ *
+ * The bound: an "over" of floats in [0, 1] has three roundings of at most 2^-25
+ * each (of 1 - a, the product, the sum), and hands the errors of both colours
+ * on no larger, but for that of the front's alpha, which it adds once.  A pixel
+ * of n layers is thus off by less than 6 n 2^-25, in any order of laying. */
+#include "support/comm.h"
+
+#include "combine/exchange.h"
+#include "combine/rounds.h"
+
+#include <math.h>
+
+#define RANKS_MOST 33
+
+static double bound(int layers) {
+    return 6.0 * layers / (1 << 25);
+}
+
+/* --- local images --------------------------------------------------------- */
+
+typedef struct job {
+    int width, height, channels, seed;
+    int ranks[RANKS_MOST]; /* from front to back */
+    int count;
+} job;
+
+static uint64_t mix(uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+static uint64_t draw(const job *j, int rank, int x, int y, int what) {
+    return mix(
+        mix(mix(mix((uint64_t)j->seed * 977 + (uint64_t)rank) + (uint64_t)y) +
+            (uint64_t)x) +
+        (uint64_t)what);
+}
+
+/* What a rank has drawn into: one in six nothing, one in six all. */
+static snow_rectangle drawn_by(const job *j, int rank) {
+    int w = j->width, h = j->height;
+    uint64_t kind = draw(j, rank, -1, -1, 0) % 6;
+    if (kind == 0)
+        return (snow_rectangle){0, 0, 0, 0};
+    if (kind == 1)
+        return (snow_rectangle){0, 0, w, h};
+    int x0 = (int)(draw(j, rank, -1, -1, 1) % (uint64_t)w);
+    int y0 = (int)(draw(j, rank, -1, -1, 2) % (uint64_t)h);
+    int x1 = x0 + 1 + (int)(draw(j, rank, -1, -1, 3) % (uint64_t)(w - x0));
+    int y1 = y0 + 1 + (int)(draw(j, rank, -1, -1, 4) % (uint64_t)(h - y0));
+    return (snow_rectangle){x0, y0, x1, y1};
+}
+
+/* A pixel of a local image: half of the ranks have speckles, half have runs;
+ * some pixels are opaque, some glow without hiding anything. */
+static void pixel_of(const job *j, int rank, int x, int y, float *out) {
+    const snow_rectangle d = drawn_by(j, rank);
+    const int last = j->channels - 1;
+    memset(out, 0, (size_t)j->channels * sizeof *out);
+    if (x < d.x0 || x >= d.x1 || y < d.y0 || y >= d.y1 ||
+        draw(j, rank, rank % 2 ? x / 9 : x, y, 5) % 10 > 3)
+        return;
+    uint64_t kind = draw(j, rank, x, y, 6) % 16;
+    float alpha = (float)(draw(j, rank, x, y, 7) % 1000) / 1000;
+    out[last] = kind == 0 ? 1 : kind == 1 ? 0 : alpha;
+    for (int c = 0; c < last; c++)
+        out[c] = (kind == 1 ? 0.01f : out[last]) *
+                 (float)(draw(j, rank, x, y, 8 + c) % 256) / 255;
+}
+
+/* The local image; what is not drawn must not be read. */
+static void fill_local(const job *j, int rank, float *pixels, size_t stride) {
+    const snow_rectangle d = drawn_by(j, rank);
+    for (int y = 0; y < j->height; y++)
+        for (size_t i = 0; i < stride; i++)
+            pixels[(size_t)y * stride + i] = NAN;
+    for (int y = d.y0; y < d.y1; y++)
+        for (int x = d.x0; x < d.x1; x++)
+            pixel_of(j, rank, x, y,
+                     pixels + (size_t)y * stride + x * j->channels);
+}
+
+/* All local images, one over the other. */
+static void expect(const job *j, int x, int y, double *out) {
+    const int last = j->channels - 1;
+    for (int c = 0; c <= last; c++)
+        out[c] = 0;
+    for (int i = 0; i < j->count; i++) {
+        float back[4];
+        pixel_of(j, j->ranks[i], x, y, back);
+        double left = 1 - out[last];
+        for (int c = 0; c <= last; c++)
+            out[c] += left * (double)back[c];
+    }
+}
+
+/* --- one exchange --------------------------------------------------------- */
+
+static snow_exchange_params order_of(const job *j, int rank,
+                                     const float *pixels, size_t stride) {
+    return (snow_exchange_params){.width = j->width,
+                                  .height = j->height,
+                                  .channels = j->channels,
+                                  .pixels = pixels,
+                                  .stride = stride,
+                                  .drawn = drawn_by(j, rank),
+                                  .ranks = j->ranks,
+                                  .grain = 1};
+}
+
+/* The pixel numbers of pieces: together all, each once, and this rank's. */
+static snow_status check_pieces(snow_comm *comm, const snow_combiner *combiner,
+                                const job *j, int grain,
+                                const snow_image_region *mine) {
+    int64_t firsts[RANKS_MOST], counts[RANKS_MOST];
+    int64_t sum = 0, pixels = (int64_t)j->width * j->height;
+    snow_exchange_regions(combiner, firsts, counts);
+    for (int i = 0; i < j->count; i++) {
+        CHECK(counts[i] >= 0 && counts[i] % grain == 0);
+        CHECK(counts[i] == 0 || firsts[i] % grain == 0);
+        CHECK(firsts[i] >= 0 && firsts[i] + counts[i] <= pixels);
+        sum += counts[i];
+        for (int k = 0; k < i; k++)
+            CHECK(!counts[i] || !counts[k] ||
+                  firsts[i] >= firsts[k] + counts[k] ||
+                  firsts[k] >= firsts[i] + counts[i]);
+    }
+    CHECK(sum == pixels);
+    CHECK(firsts[comm->rank] == mine->first || !mine->count);
+    CHECK(counts[comm->rank] == mine->count);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status check_piece(snow_comm *comm, const snow_combiner *combiner,
+                               const job *j, const snow_image_region *region) {
+    for (int64_t i = 0; i < region->count; i++) {
+        int64_t at = region->first + i;
+        int x = (int)(at % j->width);
+        int y = snow_exchange_line(combiner, (int)(at / j->width));
+        double want[4];
+        expect(j, x, y, want);
+        for (int c = 0; c < j->channels; c++) {
+            double is = (double)region->pixels[i * j->channels + c];
+            if (!(fabs(is - want[c]) <= bound(j->count)))
+                return snow_fail(comm->context, SNOW_STATUS_FAILED,
+                                 "pixel %d %d of %d ranks: %.9g, not %.9g", x,
+                                 y, j->count, is, want[c]);
+        }
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* The piece's lines as runs, without pixels that are nothing. */
+static size_t runs_of(const snow_combiner *combiner, const job *j,
+                      const snow_image_region *region, snow_pixel_run *runs,
+                      float *packed) {
+    size_t count = 0;
+    int64_t last = -2;
+    for (int64_t i = 0; i < region->count; i++) {
+        const float *pixel = region->pixels + i * j->channels;
+        bool any = false;
+        for (int c = 0; c < j->channels; c++)
+            any = any || pixel[c] != 0;
+        if (!any)
+            continue;
+        int64_t at = region->first + i;
+        int x = (int)(at % j->width);
+        if (last != at - 1 || x == 0)
+            runs[count++] = (snow_pixel_run){
+                x, snow_exchange_line(combiner, (int)(at / j->width)), 0};
+        runs[count - 1].count++;
+        last = at;
+        memcpy(packed, pixel, (size_t)j->channels * sizeof *pixel);
+        packed += j->channels;
+    }
+    return count;
+}
+
+static snow_status check_gather(snow_comm *comm, snow_combiner *combiner,
+                                const job *j, const snow_image_region *region) {
+    const size_t pixels = (size_t)j->width * (size_t)j->height;
+    const size_t bytes = (size_t)j->channels * sizeof(float);
+    snow_pixel_run *runs = calloc((size_t)region->count + 1, sizeof *runs);
+    float *packed = calloc((size_t)region->count + 1, bytes);
+    float *picture = comm->rank == 0 ? calloc(pixels, bytes) : NULL;
+    size_t count = runs_of(combiner, j, region, runs, packed);
+    int64_t some = 0;
+    for (size_t i = 0; i < count; i++)
+        some += runs[i].count;
+    snow_status status = snow_comm_agree_status(
+        comm,
+        snow_gather_reserve(combiner, j->width, j->height, count, some, bytes));
+    if (status == SNOW_STATUS_OK)
+        status = snow_gather(combiner, j->width, j->height, runs, count, packed,
+                             bytes, picture);
+    for (size_t i = 0; i < pixels && picture && status == SNOW_STATUS_OK; i++) {
+        double want[4];
+        expect(j, (int)i % j->width, (int)i / j->width, want);
+        for (int c = 0; c < j->channels; c++)
+            if (!(fabs((double)picture[i * (size_t)j->channels + (size_t)c] -
+                       want[c]) <= bound(j->count)))
+                status = snow_fail(comm->context, SNOW_STATUS_FAILED,
+                                   "pixel %zu of the picture differs", i);
+    }
+    free(runs);
+    free(packed);
+    free(picture);
+    return status;
+}
+
+/* --- all methods ---------------------------------------------------------- */
+
+typedef struct way {
+    snow_combine method;
+    int radix;
+    bool whole;
+} way;
+
+static const way ways[] = {
+    {SNOW_COMBINE_AUTO, 0, false},  {SNOW_COMBINE_TREE, 0, false},
+    {SNOW_COMBINE_TREE, 0, true},   {SNOW_COMBINE_SWAP, 0, false},
+    {SNOW_COMBINE_SWAP, 0, true},   {SNOW_COMBINE_DIRECT, 0, false},
+    {SNOW_COMBINE_RADIX, 3, false}, {SNOW_COMBINE_RADIX, 4, true},
+    {SNOW_COMBINE_RADIX, 8, false},
+};
+
+static const int sizes[][2] = {{1, 1}, {5, 3}, {61, 7}, {64, 16}, {37, 41}};
+
+#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
+
+/* A shuffled order of ranks. */
+static void shuffle(job *j) {
+    for (int i = 0; i < j->count; i++)
+        j->ranks[i] = i;
+    for (int i = j->count - 1; i > 0; i--) {
+        int k = (int)(draw(j, i, 0, 0, 99) % (uint64_t)(i + 1));
+        int swapped = j->ranks[i];
+        j->ranks[i] = j->ranks[k];
+        j->ranks[k] = swapped;
+    }
+}
+
+static snow_status combine_once(snow_comm *comm, snow_combiner *combiner,
+                                const job *j, const way *w, int grain,
+                                snow_image_partition regions) {
+    const size_t stride = (size_t)(j->width * j->channels) + 3;
+    float *pixels = malloc(stride * (size_t)j->height * sizeof *pixels);
+    fill_local(j, comm->rank, pixels, stride);
+    snow_exchange_params order = order_of(j, comm->rank, pixels, stride);
+    order.method = w->method;
+    order.radix = w->radix;
+    order.whole = w->whole;
+    order.grain = grain;
+    order.regions = regions;
+    snow_image_region region;
+    snow_status status = snow_exchange(combiner, &order, &region);
+    free(pixels);
+    SNOW_TRY(status);
+    SNOW_TRY(check_pieces(comm, combiner, j, grain, &region));
+    SNOW_TRY(check_piece(comm, combiner, j, &region));
+    snow_gather_radix(combiner, (int)(draw(j, 0, 0, 0, 1) % 6));
+    return check_gather(comm, combiner, j, &region);
+}
+
+/* Every way, with sizes, channels, grains and pieces taken in turns. */
+static snow_status combine_all_ways(snow_comm *comm, void *user) {
+    snow_combiner *combiner;
+    int turn = *(int *)user + comm->ranks;
+    snow_status status = SNOW_STATUS_OK;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    for (size_t i = 0; i < COUNT_OF(ways) && status == SNOW_STATUS_OK; i++)
+        for (size_t k = 0; k < COUNT_OF(sizes) && status == SNOW_STATUS_OK;
+             k++) {
+            turn++;
+            job j = {.width = sizes[k][0],
+                     .height = sizes[k][1],
+                     .channels = turn % 2 ? 2 : 4,
+                     .seed = turn,
+                     .count = comm->ranks};
+            shuffle(&j);
+            status = combine_once(comm, combiner, &j, &ways[i],
+                                  turn % 3 ? 1 : j.width,
+                                  (snow_image_partition)(turn / 2 % 4));
+            status = snow_comm_agree_status(comm, status);
+        }
+    snow_combiner_free(combiner);
+    return status;
+}
+
+static void
+every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    for (int ranks = 1; ranks <= RANKS_MOST;
+         ranks += ranks < 5 ? 1 : (int)support_stride(7))
+        for (int turn = 0; turn < 2; turn++) {
+            int first = turn * 1000;
+            snow_status status =
+                snow_comm_run_threads(context, ranks, combine_all_ways, &first);
+            if (status != SNOW_STATUS_OK)
+                print_message("%d ranks: %s\n", ranks,
+                              snow_context_message(context));
+            assert_int_equal(status, SNOW_STATUS_OK);
+        }
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+/* --- what it costs -------------------------------------------------------- */
+
+/* An allocator that fails from some point on. */
+typedef struct stop {
+    bool stopped;
+    long asked, refused; /* the number of one that fails, from 1 */
+} stop;
+
+static void *allocate_until_stopped(void *user, size_t bytes) {
+    stop *s = user;
+    s->asked++;
+    return s->stopped || s->asked == s->refused ? NULL : malloc(bytes);
+}
+
+static void release_plain(void *user, void *block) {
+    (void)user;
+    free(block);
+}
+
+/* Runs a body's work with the communicator's memory taken from `s`: only what
+ * is made meanwhile is, not the transport's own. */
+static snow_status with_memory(snow_comm *comm, stop *s,
+                               snow_status (*work)(snow_comm *, stop *)) {
+    const snow_allocator allocator = {allocate_until_stopped, release_plain, s};
+    snow_context *usual = comm->context, *own;
+    SNOW_TRY(snow_context_new(&allocator, &own));
+    comm->context = own;
+    snow_status status = work(comm, s);
+    comm->context = usual;
+    if (status != SNOW_STATUS_OK)
+        status = snow_fail(usual, status, "%s", snow_context_message(own));
+    snow_context_free(own);
+    return status;
+}
+
+#define VIEWS 3
+
+/* One of several views; views are seen twice.  Memory is for the first picture
+ * of all, for counted pieces and for packed pixels of views not seen before. */
+static snow_status combine_view(snow_comm *comm, snow_combiner *combiner,
+                                const way *w, snow_image_partition regions,
+                                int turn, stop *s) {
+    job j = {.width = 61,
+             .height = 33,
+             .channels = 4,
+             .seed = turn % VIEWS,
+             .count = comm->ranks};
+    shuffle(&j);
+    snow_gather_radix(combiner, 3);
+    float *pixels = malloc(61 * 33 * 4 * sizeof *pixels);
+    fill_local(&j, comm->rank, pixels, 61 * 4);
+    snow_exchange_params order = order_of(&j, comm->rank, pixels, 61 * 4);
+    order.method = w->method;
+    order.radix = w->radix;
+    order.whole = w->whole;
+    order.regions = regions;
+    snow_image_region region;
+    s->stopped =
+        turn > (regions == SNOW_IMAGE_PARTITION_COUNTED ? VIEWS - 1 : 0);
+    snow_status status = snow_exchange(combiner, &order, &region);
+    free(pixels);
+    s->stopped = turn >= VIEWS;
+    if (status == SNOW_STATUS_OK)
+        status = check_piece(comm, combiner, &j, &region);
+    if (status == SNOW_STATUS_OK)
+        status = check_gather(comm, combiner, &j, &region);
+    return status;
+}
+
+static snow_status combine_twice(snow_comm *comm, stop *s) {
+    static const snow_image_partition cuts[] = {
+        SNOW_IMAGE_PARTITION_EVEN, SNOW_IMAGE_PARTITION_COUNTED,
+        SNOW_IMAGE_PARTITION_INTERLACED};
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_status status = SNOW_STATUS_OK;
+    for (size_t i = 0; i < 3 * COUNT_OF(ways) && status == SNOW_STATUS_OK; i++)
+        for (int turn = 0; turn < 2 * VIEWS && status == SNOW_STATUS_OK; turn++)
+            status = combine_view(comm, combiner, &ways[i / 3], cuts[i % 3],
+                                  turn, s);
+    snow_combiner_free(combiner);
+    return status;
+}
+
+static snow_status combine_twice_with_memory_once(snow_comm *comm, void *user) {
+    stop s = {0};
+    (void)user;
+    return with_memory(comm, &s, combine_twice);
+}
+
+static void run_body(int ranks, snow_comm_body_fn *body, void *user) {
+    snow_context *context = support_context();
+    snow_status status = snow_comm_run_threads(context, ranks, body, user);
+    if (status != SNOW_STATUS_OK)
+        print_message("%d ranks: %s\n", ranks, snow_context_message(context));
+    assert_int_equal(status, SNOW_STATUS_OK);
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+static void
+pictures_that_need_no_more_than_others_take_no_memory(void **state) {
+    (void)state;
+    run_body(1, combine_twice_with_memory_once, NULL);
+    run_body(7, combine_twice_with_memory_once, NULL);
+    run_body(16, combine_twice_with_memory_once, NULL);
+}
+
+static snow_status send_whole(snow_comm *comm, void *user) {
+    const way *w = user;
+    job j = {.width = 64, .height = 64, .channels = 4, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    float *pixels = calloc(64 * 64 * 4, sizeof *pixels);
+    snow_exchange_params order = order_of(&j, comm->rank, pixels, 64 * 4);
+    order.method = w->method;
+    order.radix = w->radix;
+    order.whole = true;
+    snow_image_region region;
+    snow_status status = snow_exchange(combiner, &order, &region);
+    uint64_t before = comm->bytes_sent;
+    if (status == SNOW_STATUS_OK)
+        status = snow_exchange(combiner, &order, &region);
+    uint64_t sent = comm->bytes_sent - before;
+    free(pixels);
+    snow_combiner_free(combiner);
+    SNOW_TRY(status);
+    uint64_t picture = 64 * 64 * 16;
+    if (w->method == SNOW_COMBINE_TREE)
+        CHECK(sent == (comm->rank ? picture : 0));
+    else
+        CHECK(sent == picture - picture / (uint64_t)comm->ranks);
+    return SNOW_STATUS_OK;
+}
+
+/* Each rank must send all pixels but those of its own piece, and does not send
+ * more, by any method. */
+static void
+whole_pictures_cost_the_least_that_whole_pictures_can(void **state) {
+    static const way some[] = {{SNOW_COMBINE_SWAP, 0, true},
+                               {SNOW_COMBINE_RADIX, 8, true},
+                               {SNOW_COMBINE_RADIX, 4, true},
+                               {SNOW_COMBINE_DIRECT, 0, true},
+                               {SNOW_COMBINE_TREE, 0, true}};
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(some); i++) {
+        way w = some[i];
+        run_body(32, send_whole, &w);
+        run_body(8, send_whole, &w);
+    }
+}
+
+typedef struct seen_by {
+    const job *j;
+    int rank;
+} seen_by;
+
+static uint64_t active_of(void *user, int y, int x, int count) {
+    const seen_by *seen = user;
+    uint64_t bits = 0;
+    for (int i = 0; i < count; i++) {
+        float pixel[4];
+        pixel_of(seen->j, seen->rank, x + i, y, pixel);
+        for (int c = 0; c < seen->j->channels; c++)
+            if (pixel[c] != 0)
+                bits |= (uint64_t)1 << i;
+    }
+    return bits;
+}
+
+/* Sizes of what is sent, with pixels and without. */
+static snow_status rehearse(snow_comm *comm, void *user) {
+    const way *w = user;
+    job j = {.width = 67, .height = 31, .channels = 4, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    float *pixels = malloc(67 * 31 * 4 * sizeof *pixels);
+    fill_local(&j, comm->rank, pixels, 67 * 4);
+    seen_by seen = {&j, comm->rank};
+    const snow_rehearsal rehearsal = {active_of, &seen};
+    snow_exchange_params order = order_of(&j, comm->rank, pixels, 67 * 4);
+    order.method = w->method;
+    order.radix = w->radix;
+    order.whole = w->whole;
+    snow_status status = SNOW_STATUS_OK;
+    uint64_t sent[2] = {0};
+    int64_t laid[2] = {0};
+    snow_image_region region;
+    status = snow_exchange(combiner, &order, &region); /* agrees on memory */
+    for (int turn = 0; turn < 2 && status == SNOW_STATUS_OK; turn++) {
+        sent[turn] = comm->bytes_sent;
+        status = snow_exchange(combiner, &order, &region);
+        laid[turn] = snow_exchange_get_figures(combiner)->laid;
+        order.rehearsal = &rehearsal;
+        order.pixels = NULL;
+        sent[turn] = comm->bytes_sent - sent[turn];
+    }
+    free(pixels);
+    snow_combiner_free(combiner);
+    SNOW_TRY(status);
+    CHECK(sent[0] == sent[1]);
+    CHECK(laid[0] == laid[1]);
+    return SNOW_STATUS_OK;
+}
+
+static void a_rehearsal_sends_messages_of_the_same_length(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        way w = ways[i];
+        run_body(1, rehearse, &w);
+        run_body(13, rehearse, &w);
+        run_body(16, rehearse, &w);
+    }
+}
+
+/* --- pieces --------------------------------------------------------------- */
+
+/* All that is active lies in some lines: how many pixels of layers the busiest
+ * rank gets, against the mean. */
+static uint64_t active_in_band(void *user, int y, int x, int count) {
+    (void)user;
+    (void)x;
+    return y >= 80 && y < 120 ? ~(uint64_t)0 >> (64 - count) : 0;
+}
+
+static snow_status lay_band(snow_comm *comm, void *user) {
+    job j = {.width = 128, .height = 256, .channels = 4, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    const snow_rehearsal rehearsal = {active_in_band, NULL};
+    snow_exchange_params order = order_of(&j, comm->rank, NULL, 0);
+    order.drawn = (snow_rectangle){0, 0, 128, 256};
+    order.rehearsal = &rehearsal;
+    order.method = SNOW_COMBINE_DIRECT;
+    order.regions = *(snow_image_partition *)user;
+    snow_image_region region;
+    snow_status status = snow_exchange(combiner, &order, &region);
+    int64_t laid[2] = {snow_exchange_get_figures(combiner)->laid, 0};
+    snow_combiner_free(combiner);
+    SNOW_TRY(status);
+    laid[1] = laid[0];
+    SNOW_TRY(snow_comm_reduce_ints(comm, laid, 1, SNOW_SUM));
+    SNOW_TRY(snow_comm_reduce_ints(comm, laid + 1, 1, SNOW_MAX));
+    double ratio = (double)laid[1] * comm->ranks / (double)laid[0];
+    CHECK(order.regions == SNOW_IMAGE_PARTITION_EVEN ? ratio > 5
+                                                     : ratio < 1.45);
+    return SNOW_STATUS_OK;
+}
+
+static void counted_and_interlaced_pieces_are_balanced(void **state) {
+    snow_image_partition regions[] = {SNOW_IMAGE_PARTITION_EVEN,
+                                      SNOW_IMAGE_PARTITION_COUNTED,
+                                      SNOW_IMAGE_PARTITION_INTERLACED};
+    (void)state;
+    for (int i = 0; i < 3; i++)
+        run_body(16, lay_band, &regions[i]);
+}
+
+/* --- plans of many ranks -------------------------------------------------- */
+
+/* How many messages go from seat to seat in each round, counted at both ends,
+ * as a sum that tells who, whom and when. */
+static void check_plan(snow_combine method, int radix, int rank_order) {
+    snow_rounds rounds;
+    snow_rounds_choose(&rounds, method, radix, rank_order, 1 << 20, 16);
+    assert_true(rounds.count <= SNOW_ROUNDS_MOST);
+    size_t room = snow_rounds_room(&rounds);
+    rounds.shares = calloc(room + 1, sizeof *rounds.shares);
+    int *table = calloc((size_t)rank_order, sizeof *table);
+    int *owners = calloc((size_t)rank_order, sizeof *owners);
+    uint64_t sent = 0, received = 0;
+    for (int rank_position = 0; rank_position < rank_order; rank_position++) {
+        snow_rounds_fill(&rounds, rank_position, rank_order / 3, table);
+        assert_true((size_t)rounds.share_count <= room);
+        for (int i = 0; i < rounds.count; i++) {
+            const snow_round *round = &rounds.rounds[i];
+            const snow_share *share = rounds.shares + round->first_send;
+            for (int k = 0; k < round->sends; k++)
+                sent += mix(mix(mix((uint64_t)i) + (uint64_t)rank_position) +
+                            (uint64_t)share[k].rank_position);
+            share = rounds.shares + round->first_receive;
+            for (int k = 0; k < round->receives; k++)
+                received += mix(
+                    mix(mix((uint64_t)i) + (uint64_t)share[k].rank_position) +
+                    (uint64_t)rank_position);
+        }
+        int last = snow_rounds_last(&rounds, rank_position);
+        if (last >= 0)
+            owners[last]++;
+    }
+    assert_true(sent == received);
+    for (int i = 0; i < (method == SNOW_COMBINE_TREE ? 1 : rank_order); i++)
+        assert_int_equal(owners[i], 1);
+    free(rounds.shares);
+    free(table);
+    free(owners);
+}
+
+static void what_is_sent_is_waited_for_with_any_number_of_ranks(void **state) {
+    static const int many[] = {128, 257, 360};
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(ways); i++) {
+        for (int rank_order = 1; rank_order <= 70; rank_order++)
+            check_plan(ways[i].method, ways[i].radix, rank_order);
+        for (size_t k = 0; k < COUNT_OF(many); k++)
+            check_plan(ways[i].method, ways[i].radix, many[k]);
+    }
+}
+
+/* --- failures ------------------------------------------------------------- */
+
+static snow_status combine_bad_orders(snow_comm *comm, void *user) {
+    job j = {.width = 6, .height = 4, .channels = 4, .count = comm->ranks};
+    (void)user;
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_image_region region = {.first = 7};
+    snow_exchange_params good = order_of(&j, comm->rank, NULL, 0), bad[6];
+    good.drawn = (snow_rectangle){-5, -5, -1, 90};
+    for (int i = 0; i < 6; i++)
+        bad[i] = good;
+    bad[0].width = 0;
+    bad[1].channels = 3;
+    bad[2].grain = 4;
+    bad[3].radix = 1;
+    bad[4].height = -1;
+    const int strangers[] = {8, 9, 10};
+    bad[5].ranks = strangers;
+    snow_status status = SNOW_STATUS_OK;
+    for (int i = 0; i < 6; i++)
+        if (snow_exchange(combiner, &bad[i], &region) !=
+                SNOW_STATUS_BAD_USAGE ||
+            region.first != 7)
+            status =
+                snow_fail(comm->context, SNOW_STATUS_FAILED, "order %d", i);
+    if (status == SNOW_STATUS_OK)
+        status = snow_exchange(combiner, &good, &region);
+    snow_combiner_free(combiner);
+    return status;
+}
+
+static void what_is_no_order_is_refused(void **state) {
+    (void)state;
+    run_body(3, combine_bad_orders, NULL);
+}
+
+static snow_status gather_bad_runs(snow_comm *comm, void *user) {
+    snow_combiner *combiner;
+    unsigned char picture[8 * 4] = {0}, pixels[64] = {0};
+    const snow_pixel_run wrong = {6, 1, 3}, right = {0, comm->rank, 8};
+    (void)user;
+    memset(pixels, comm->rank + 1, sizeof pixels);
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_status status =
+        snow_gather(combiner, 8, 4, comm->rank == 2 ? &wrong : &right, 1,
+                    pixels, 1, picture);
+    snow_combiner_free(combiner);
+    CHECK(status == (comm->rank == 2 ? SNOW_STATUS_BAD_USAGE : SNOW_STATUS_OK));
+    for (int i = 0; i < 8 && comm->rank == 0; i++) {
+        CHECK(picture[i] == 1 && picture[8 + i] == 2);
+        CHECK(picture[16 + i] == 0 && picture[24 + i] == 4);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static void wrong_runs_of_one_rank_fail_there_and_nobody_waits(void **state) {
+    (void)state;
+    run_body(4, gather_bad_runs, NULL);
+}
+
+static snow_status combine_until_stopped(snow_comm *comm, stop *s) {
+    job j = {.width = 16, .height = 16, .channels = 2, .count = comm->ranks};
+    shuffle(&j);
+    snow_combiner *combiner;
+    SNOW_TRY(snow_combiner_new(comm, &combiner));
+    snow_exchange_params order = order_of(&j, comm->rank, NULL, 0);
+    order.drawn = (snow_rectangle){0, 0, 0, 0};
+    snow_image_region region;
+    s->stopped = comm->rank == 1;
+    snow_status status = snow_exchange(combiner, &order, &region);
+    s->stopped = false;
+    if (status == SNOW_STATUS_NO_MEMORY) /* all is well with memory again */
+        status = snow_exchange(combiner, &order, &region);
+    else
+        status = SNOW_STATUS_FAILED;
+    s->stopped = comm->rank == 1;
+    unsigned char picture[256] = {0};
+    if (status == SNOW_STATUS_OK &&
+        snow_gather(combiner, 16, 16, NULL, 0, NULL, 1, picture) !=
+            SNOW_STATUS_NO_MEMORY)
+        status = SNOW_STATUS_FAILED;
+    snow_combiner_free(combiner);
+    return status;
+}
+
+static snow_status combine_with_little_memory(snow_comm *comm, void *user) {
+    stop s = {0};
+    (void)user;
+    return with_memory(comm, &s, combine_until_stopped);
+}
+
+static void one_rank_without_memory_fails_all_and_nobody_waits(void **state) {
+    (void)state;
+    run_body(5, combine_with_little_memory, NULL);
+}
+
+/* One rank is refused one block after another. */
+static snow_status combine_with_gaps(snow_comm *comm, stop *s) {
+    snow_status status = SNOW_STATUS_OK;
+    int failed = 0;
+    for (int n = 1; n <= 40 && status == SNOW_STATUS_OK; n++) {
+        job j = {.width = 61,
+                 .height = 33,
+                 .channels = 4,
+                 .seed = n,
+                 .count = comm->ranks};
+        snow_combiner *combiner;
+        SNOW_TRY(snow_combiner_new(comm, &combiner));
+        shuffle(&j);
+        float *pixels = malloc(61 * 33 * 4 * sizeof *pixels);
+        fill_local(&j, comm->rank, pixels, 61 * 4);
+        snow_exchange_params order = order_of(&j, comm->rank, pixels, 61 * 4);
+        order.regions = SNOW_IMAGE_PARTITION_COUNTED;
+        snow_image_region region;
+        s->refused = comm->rank == 3 ? s->asked + n : 0;
+        status = snow_exchange(combiner, &order, &region);
+        if (status == SNOW_STATUS_OK)
+            status = snow_comm_agree_status(
+                comm, check_gather(comm, combiner, &j, &region));
+        s->refused = 0;
+        failed += status == SNOW_STATUS_NO_MEMORY;
+        if (status ==
+            SNOW_STATUS_NO_MEMORY) /* the combiner is as good as before */
+            status = snow_exchange(combiner, &order, &region);
+        if (status == SNOW_STATUS_OK)
+            status = check_piece(comm, combiner, &j, &region);
+        free(pixels);
+        snow_combiner_free(combiner);
+    }
+    if (status == SNOW_STATUS_OK && (failed < 15 || failed == 40))
+        status =
+            snow_fail(comm->context, SNOW_STATUS_FAILED, "%d failed", failed);
+    return status;
+}
+
+static snow_status combine_with_gaps_in_memory(snow_comm *comm, void *user) {
+    stop s = {0};
+    (void)user;
+    return with_memory(comm, &s, combine_with_gaps);
+}
+
+static void any_block_that_one_rank_does_not_get_fails_all(void **state) {
+    (void)state;
+    run_body(6, combine_with_gaps_in_memory, NULL);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(
+            every_method_gives_the_picture_of_a_chain_for_1_to_33_ranks),
+        cmocka_unit_test(pictures_that_need_no_more_than_others_take_no_memory),
+        cmocka_unit_test(whole_pictures_cost_the_least_that_whole_pictures_can),
+        cmocka_unit_test(a_rehearsal_sends_messages_of_the_same_length),
+        cmocka_unit_test(counted_and_interlaced_pieces_are_balanced),
+        cmocka_unit_test(what_is_sent_is_waited_for_with_any_number_of_ranks),
+        cmocka_unit_test(what_is_no_order_is_refused),
+        cmocka_unit_test(wrong_runs_of_one_rank_fail_there_and_nobody_waits),
+        cmocka_unit_test(one_rank_without_memory_fails_all_and_nobody_waits),
+        cmocka_unit_test(any_block_that_one_rank_does_not_get_fails_all),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,233 @@
+/* tests/stages/test_encode.c - EA, IA and PA are those of section 3 of the
+ * paper, and all three schemes are read back as the same spans. */
+#include "support/support.h"
+
+#include "encode/encode.h"
+
+/* A strip over rows of 0 and 1: each 1 is kept, its sample is its number. */
+static void fill_strip(snow_row_block *strip, const unsigned char *mask,
+                       int64_t rows, int64_t columns, float *number) {
+    strip->rows = rows;
+    strip->count = 0;
+    for (int64_t row = 0; row < rows; row++) {
+        for (int64_t column = 0; column < columns; column++)
+            if (mask[row * columns + column]) {
+                strip->columns[strip->count] = (uint32_t)column;
+                strip->samples[2 * strip->count] = *number;
+                strip->samples[2 * strip->count + 1] = 1;
+                strip->count++;
+                ++*number;
+            }
+        strip->row_end[row] = strip->count;
+    }
+}
+
+/* Encodes `slices` slices of a mask by a scheme. */
+static void encode(snow_context *context, const snow_scheme *scheme,
+                   const unsigned char *mask, int64_t slices, int64_t rows,
+                   int64_t columns, snow_sparse *sparse) {
+    snow_placement placement = {
+        .columns = columns, .rows = rows, .slices = slices};
+    snow_row_block strip = {0};
+    float number = 1;
+    *sparse = (snow_sparse){.context = context};
+    assert_int_equal(snow_row_block_make(context, &placement, 2, &strip),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_sparse_begin(sparse, scheme, &placement, 2),
+                     SNOW_STATUS_OK);
+    for (int64_t slice = 0; slice < slices; slice++) {
+        assert_int_equal(snow_sparse_begin_slice(sparse), SNOW_STATUS_OK);
+        for (int64_t row = 0; row < rows; row++) {
+            fill_strip(&strip, mask + (slice * rows + row) * columns, 1,
+                       columns, &number);
+            assert_int_equal(snow_sparse_add_row_block(sparse, &strip),
+                             SNOW_STATUS_OK);
+        }
+        assert_int_equal(snow_sparse_end_slice(sparse), SNOW_STATUS_OK);
+    }
+    snow_row_block_free(context, &strip);
+}
+
+/* Walks every slice, last first, and compares spans and samples with the mask
+ * itself. */
+static void assert_walks_like(const snow_sparse *sparse,
+                              const unsigned char *mask) {
+    int64_t rows = sparse->rows, columns = sparse->columns;
+    snow_span *spans = malloc(((size_t)columns / 2 + 1) * sizeof *spans);
+    assert_non_null(spans);
+    for (int64_t slice = sparse->filled - 1; slice >= 0; slice--) {
+        snow_walk walk;
+        snow_walk_begin(&walk, sparse, slice);
+        float number = (float)sparse->pa[slice].ia + 1;
+        for (int64_t row = 0; row < rows; row++) {
+            const unsigned char *line = mask + (slice * rows + row) * columns;
+            size_t voxel;
+            size_t count = snow_walk_row(&walk, spans, &voxel), span = 0;
+            const float *samples = sparse->ia + 2 * voxel;
+            for (int64_t column = 0; column < columns; span++) {
+                while (column < columns && !line[column])
+                    column++;
+                if (column == columns)
+                    break;
+                assert_true(span < count);
+                assert_int_equal(spans[span].column, column);
+                for (; column < columns && line[column]; column++, samples += 2)
+                    assert_true(samples[0] == number++);
+                assert_int_equal(spans[span].column + spans[span].length,
+                                 column);
+            }
+            assert_int_equal(span, count);
+        }
+    }
+    free(spans);
+}
+
+/* The sparse matrix of figure 4: 1 where an element is not 0. */
+static const unsigned char figure4[25] = {0, 0, 0, 0, 1, 1, 1, 0, 0, 0, 0, 0, 0,
+                                          1, 0, 1, 0, 0, 0, 1, 0, 1, 0, 0, 0};
+
+static void crs_of_figure_4_is_indr_and_col(void **state) {
+    (void)state;
+    static const uint32_t indr[] = {0, 1, 3, 4, 6, 7};
+    static const uint16_t col[] = {4, 0, 1, 3, 0, 4, 1};
+    snow_context *context = support_context();
+    snow_sparse sparse;
+    encode(context, &snow_scheme_crs, figure4, 1, 5, 5, &sparse);
+    assert_memory_equal(sparse.ea, indr, sizeof indr);
+    assert_memory_equal(sparse.ea + sizeof indr, col, sizeof col);
+    assert_int_equal(sparse.ia_voxels, 7);
+    snow_sparse_fini(&sparse);
+    snow_context_free(context);
+}
+
+static void bitmap_of_figure_5_is_one_bit_an_element(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_sparse sparse;
+    encode(context, &snow_scheme_bitmap, figure4, 1, 5, 5, &sparse);
+    assert_int_equal(sparse.ea_bytes, 4);
+    for (int i = 0; i < 25; i++)
+        assert_int_equal(sparse.ea[i / 8] >> i % 8 & 1, figure4[i]);
+    assert_int_equal(sparse.ea[3] >> 1, 0);
+    snow_sparse_fini(&sparse);
+    snow_context_free(context);
+}
+
+static void rle_of_figure_6_alternates_from_uninteresting(void **state) {
+    (void)state;
+    static const unsigned char runs[] = {4, 3, 6, 1, 1, 1, 3, 1, 1, 1, 3};
+    snow_context *context = support_context();
+    snow_sparse sparse;
+    encode(context, &snow_scheme_rle, figure4, 1, 5, 5, &sparse);
+    assert_int_equal(sparse.ea_bytes, sizeof runs);
+    assert_memory_equal(sparse.ea, runs, sizeof runs);
+    snow_sparse_fini(&sparse);
+    snow_context_free(context);
+}
+
+static void runs_above_255_are_split_by_runs_of_0(void **state) {
+    (void)state;
+    static const unsigned char runs[] = {255, 0, 45, 255, 0, 255, 1, 1};
+    unsigned char mask[812] = {0};
+    memset(mask + 300, 1, 510);
+    mask[811] = 1;
+    snow_context *context = support_context();
+    snow_sparse sparse;
+    encode(context, &snow_scheme_rle, mask, 1, 1, 812, &sparse);
+    assert_int_equal(sparse.ea_bytes, sizeof runs);
+    assert_memory_equal(sparse.ea, runs, sizeof runs);
+    assert_walks_like(&sparse, mask);
+    snow_sparse_fini(&sparse);
+    snow_context_free(context);
+}
+
+/* Fills a mask with runs of random lengths up to `longest` of either kind. */
+static void random_runs(unsigned char *mask, size_t size, uint64_t longest,
+                        uint64_t seed) {
+    unsigned char kind = seed % 2;
+    for (size_t i = 0; i < size; kind = !kind)
+        for (uint64_t run = support_random(&seed) % longest + 1;
+             run && i < size; run--)
+            mask[i++] = kind;
+}
+
+static void all_schemes_walk_the_same_spans(void **state) {
+    (void)state;
+    static const int64_t widths[] = {1,  2,  7,   8,   9,   55,  56,  57,
+                                     63, 64, 111, 112, 113, 255, 256, 511};
+    const snow_scheme *schemes[] = {&snow_scheme_crs, &snow_scheme_bitmap,
+                                    &snow_scheme_rle};
+    snow_context *context = support_context();
+    static unsigned char mask[3 * 5 * 511];
+    for (size_t w = 0; w < sizeof widths / sizeof widths[0]; w++)
+        for (uint64_t longest = 1; longest < 2000; longest *= 3)
+            for (int s = 0; s < 3; s++) {
+                snow_sparse sparse;
+                random_runs(mask, sizeof mask, longest, w * 977 + longest);
+                encode(context, schemes[s], mask, 3, 5, widths[w], &sparse);
+                assert_walks_like(&sparse, mask);
+                snow_sparse_fini(&sparse);
+            }
+    assert_int_equal(snow_context_bytes(context), 0);
+    snow_context_free(context);
+}
+
+static void empty_and_full_slices_walk_too(void **state) {
+    (void)state;
+    const snow_scheme *schemes[] = {&snow_scheme_crs, &snow_scheme_bitmap,
+                                    &snow_scheme_rle};
+    snow_context *context = support_context();
+    unsigned char mask[3 * 4 * 70] = {0};
+    memset(mask + 280, 1, 280);
+    for (int s = 0; s < 3; s++) {
+        snow_sparse sparse;
+        encode(context, schemes[s], mask, 3, 4, 70, &sparse);
+        assert_int_equal(sparse.ia_voxels, 280);
+        assert_walks_like(&sparse, mask);
+        snow_sparse_fini(&sparse);
+    }
+    snow_context_free(context);
+}
+
+static void rows_longer_than_a_crs_column_can_say_are_cut(void **state) {
+    (void)state;
+    int64_t columns = 3 * 65536 + 5;
+    unsigned char *mask = malloc(2 * (size_t)columns);
+    assert_non_null(mask);
+    random_runs(mask, 2 * (size_t)columns, 9000, 7);
+    snow_context *context = support_context();
+    const snow_scheme *schemes[] = {&snow_scheme_crs, &snow_scheme_bitmap,
+                                    &snow_scheme_rle};
+    for (int s = 0; s < 3; s++) {
+        snow_sparse sparse;
+        encode(context, schemes[s], mask, 1, 2, columns, &sparse);
+        assert_walks_like(&sparse, mask);
+        snow_sparse_fini(&sparse);
+    }
+    snow_context_free(context);
+    free(mask);
+}
+
+static void auto_goes_by_density_and_run_length(void **state) {
+    (void)state;
+    assert_int_equal(snow_encoding_choose(1000, 10, 1), SNOW_ENCODING_CRS);
+    assert_int_equal(snow_encoding_choose(1000, 400, 4), SNOW_ENCODING_BITMAP);
+    assert_int_equal(snow_encoding_choose(1000, 16, 1), SNOW_ENCODING_RLE);
+    assert_int_equal(snow_encoding_choose(1000, 400, 200),
+                     SNOW_ENCODING_BITMAP);
+    assert_int_equal(snow_encoding_choose(1000, 0, 0), SNOW_ENCODING_CRS);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(crs_of_figure_4_is_indr_and_col),
+        cmocka_unit_test(bitmap_of_figure_5_is_one_bit_an_element),
+        cmocka_unit_test(rle_of_figure_6_alternates_from_uninteresting),
+        cmocka_unit_test(runs_above_255_are_split_by_runs_of_0),
+        cmocka_unit_test(all_schemes_walk_the_same_spans),
+        cmocka_unit_test(empty_and_full_slices_walk_too),
+        cmocka_unit_test(rows_longer_than_a_crs_column_can_say_are_cut),
+        cmocka_unit_test(auto_goes_by_density_and_run_length),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

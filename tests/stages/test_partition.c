@@ -1,0 +1,338 @@
+/* tests/stages/test_partition.c - cuts of a grid: nothing twice, nothing left
+ * out, and how equal the loads are. */
+#include "support/support.h"
+
+#include "decompose/partition.h"
+
+#include <math.h>
+
+typedef enum kind { EQUAL, COUNTED, BRICKS } kind;
+
+/* A grid with borders at the multiples of a number, or anywhere for 1. */
+static snow_partition_grid grid_of(const int64_t dims[3], int axis,
+                                   int64_t multiple) {
+    static int64_t borders[1025];
+    snow_partition_grid grid = {{dims[0], dims[1], dims[2]}, axis, NULL, 0};
+    if (multiple == 1)
+        return grid;
+    grid.borders = borders;
+    for (int64_t at = 0; at < dims[axis]; at += multiple)
+        borders[grid.count++] = at;
+    borders[grid.count] = dims[axis];
+    return grid;
+}
+
+/* A tally as a cut needs it, with counts of `inside` (NULL: none). */
+typedef int64_t inside_fn(const int64_t dims[3], const snow_box *block);
+
+static snow_block_counts count(kind how, const snow_partition_grid *grid,
+                               int ranks, inside_fn *inside) {
+    snow_block_counts t = how == BRICKS
+                              ? snow_block_counts_for_bricks(grid, ranks)
+                              : snow_block_counts_for_slabs(grid);
+    t.counts = calloc(snow_block_counts_blocks(&t), sizeof *t.counts);
+    assert_non_null(t.counts);
+    int64_t *to = t.counts, at[3];
+    for (at[2] = 0; at[2] < t.blocks[2]; at[2]++)
+        for (at[1] = 0; at[1] < t.blocks[1]; at[1]++)
+            for (at[0] = 0; at[0] < t.blocks[0]; at[0]++, to++) {
+                const int64_t end[3] = {at[0] + 1, at[1] + 1, at[2] + 1};
+                snow_box box = snow_block_counts_box(&t, at, end);
+                *to = inside ? inside(grid->dims, &box) : 0;
+            }
+    return t;
+}
+
+static void cut(snow_context *context, kind how, const snow_block_counts *tally,
+                int ranks, snow_box *boxes) {
+    if (how == EQUAL)
+        snow_partition_equal(&tally->grid, ranks, boxes);
+    else if (how == COUNTED)
+        assert_int_equal(snow_partition_counted(context, tally, ranks, boxes),
+                         SNOW_STATUS_OK);
+    else
+        assert_int_equal(snow_partition_bricks(context, tally, ranks, boxes),
+                         SNOW_STATUS_OK);
+}
+
+/* The voxels of an ellipsoid that fills the grid: of a row those between two
+ * roots. */
+static int64_t ellipsoid(const int64_t dims[3], const snow_box *block) {
+    int64_t sum = 0;
+    for (int64_t z = 0; z < block->count[2]; z++)
+        for (int64_t y = 0; y < block->count[1]; y++) {
+            double v =
+                2 * ((double)(block->first[1] + y) + 0.5) / (double)dims[1] - 1;
+            double w =
+                2 * ((double)(block->first[2] + z) + 0.5) / (double)dims[2] - 1;
+            double square = 1 - v * v - w * w;
+            if (square <= 0)
+                continue;
+            double half = (double)dims[0] / 2, reach = half * sqrt(square);
+            double low = ceil(half - reach - 0.5),
+                   high = floor(half + reach - 0.5) + 1;
+            low = fmax(low, (double)block->first[0]);
+            high = fmin(high, (double)(block->first[0] + block->count[0]));
+            sum += high > low ? (int64_t)(high - low) : 0;
+        }
+    return sum;
+}
+
+/* Each voxel in exactly one box; borders along the axis at multiples. */
+static void check_cover(const int64_t dims[3], int axis, int64_t multiple,
+                        const snow_box *boxes, int ranks) {
+    static unsigned char seen[64 * 64 * 64];
+    memset(seen, 0, sizeof seen);
+    for (int rank = 0; rank < ranks; rank++) {
+        const snow_box *b = &boxes[rank];
+        int64_t end = b->first[axis] + b->count[axis];
+        for (int i = 0; i < 3; i++)
+            assert_true(b->first[i] >= 0 && b->count[i] >= 0 &&
+                        b->first[i] + b->count[i] <= dims[i]);
+        if (!snow_box_voxels(b))
+            continue;
+        assert_int_equal(b->first[axis] % multiple, 0);
+        assert_true(end % multiple == 0 || end == dims[axis]);
+        for (int64_t z = 0; z < b->count[2]; z++)
+            for (int64_t y = 0; y < b->count[1]; y++)
+                for (int64_t x = 0; x < b->count[0]; x++)
+                    seen[((b->first[2] + z) * dims[1] + b->first[1] + y) *
+                             dims[0] +
+                         b->first[0] + x]++;
+    }
+    for (int64_t i = 0; i < dims[0] * dims[1] * dims[2]; i++)
+        assert_int_equal(seen[i], 1);
+}
+
+static uint64_t random_state = 17;
+
+static int64_t noise(const int64_t dims[3], const snow_box *block) {
+    (void)dims;
+    return support_random(&random_state) % 4
+               ? 0
+               : (int64_t)(support_random(&random_state) %
+                           (uint64_t)(snow_box_voxels(block) + 1));
+}
+
+static void every_voxel_is_in_exactly_one_box(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    static snow_box boxes[4096];
+    static int64_t loads[4096];
+    static const int some_ranks[] = {1, 2, 3, 5, 7, 8, 16, 31, 64, 500, 4096};
+    for (int round = 0; round < 400; round++) {
+        kind how = (kind)(round % 3);
+        int64_t dims[3], sum = 0;
+        for (int i = 0; i < 3; i++)
+            dims[i] = 1 + (int64_t)(support_random(&random_state) % 30);
+        int axis = (int)(support_random(&random_state) % 3);
+        int64_t multiple = 1 + (int64_t)(support_random(&random_state) % 9);
+        int ranks = some_ranks[support_random(&random_state) % 11];
+        snow_partition_grid grid = grid_of(dims, axis, multiple);
+        snow_block_counts tally =
+            count(how, &grid, ranks, round % 5 ? noise : NULL);
+        cut(context, how, &tally, ranks, boxes);
+        check_cover(dims, axis, multiple, boxes, ranks);
+        snow_partition_loads(&tally, boxes, ranks, loads);
+        for (int rank = 0; rank < ranks; rank++)
+            sum += loads[rank];
+        for (size_t i = 0; i < snow_block_counts_blocks(&tally); i++)
+            sum -= tally.counts[i];
+        assert_int_equal(sum, 0);
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+/* The largest load over the mean one, of an ellipsoid. */
+static double imbalance(kind how, const int64_t dims[3], int ranks) {
+    const snow_partition_grid grid = grid_of(dims, 2, 1);
+    snow_context *context = support_context();
+    static snow_box boxes[4096];
+    static int64_t loads[4096];
+    snow_block_counts tally = count(how, &grid, ranks, ellipsoid);
+    cut(context, how, &tally, ranks, boxes);
+    snow_partition_loads(&tally, boxes, ranks, loads);
+    free(tally.counts);
+    snow_context_free(context);
+    return snow_partition_imbalance(loads, ranks);
+}
+
+/* Of a slab through the middle the area is 3/2 of the mean one. */
+static void equal_slabs_of_an_ellipsoid_are_half_again_as_loaded(void **state) {
+    (void)state;
+    const int64_t dims[3] = {200, 240, 1024};
+    for (int ranks = 32; ranks <= 1024; ranks *= 2) {
+        double most = imbalance(EQUAL, dims, ranks);
+        assert_true(most > 1.49 && most < 1.51);
+    }
+}
+
+static void counted_slabs_of_an_ellipsoid_are_about_equal(void **state) {
+    (void)state;
+    const int64_t dims[3] = {200, 240, 1024};
+    static const struct {
+        int ranks;
+        double most;
+    } rows[] = {{2, 1.002}, {8, 1.02}, {32, 1.04}, {128, 1.13}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double most = imbalance(COUNTED, dims, rows[i].ranks);
+        print_message("counted slabs, %4d ranks: %.4f\n", rows[i].ranks, most);
+        assert_true(most >= 1 && most <= rows[i].most);
+    }
+}
+
+static void bricks_of_an_ellipsoid_are_about_equal(void **state) {
+    (void)state;
+    const int64_t dims[3] = {256, 256, 256};
+    static const struct {
+        int ranks;
+        double most;
+    } rows[] = {{8, 1.05}, {33, 1.05}, {128, 1.1}, {1024, 1.15}, {4096, 1.25}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        double most = imbalance(BRICKS, dims, rows[i].ranks);
+        print_message("bricks, %4d ranks: %.4f\n", rows[i].ranks, most);
+        assert_true(most >= 1 && most <= rows[i].most);
+    }
+}
+
+/* The least possible maximum by dynamic programming. */
+static int64_t least_by_trying(const int64_t *costs, int items, int parts,
+                               int longest) {
+    int64_t best[2][64];
+    for (int end = 0; end <= items; end++)
+        best[0][end] = end ? INT64_MAX : 0;
+    for (int part = 0; part < parts; part++) {
+        int64_t *from = best[part % 2], *to = best[1 - part % 2];
+        for (int end = 0; end <= items; end++) {
+            int64_t sum = 0;
+            to[end] = from[end];
+            for (int begin = end; begin-- > 0 && end - begin <= longest;) {
+                sum += costs[begin];
+                int64_t most = from[begin] > sum ? from[begin] : sum;
+                if (most < to[end])
+                    to[end] = most;
+            }
+        }
+    }
+    return best[parts % 2][items];
+}
+
+static void no_slabs_are_cheaper_than_counted_ones(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    for (int round = 0; round < 300; round++) {
+        int items = 1 + (int)(support_random(&random_state) % 40);
+        int ranks = 1 + (int)(support_random(&random_state) % 12);
+        const int64_t dims[3] = {50, 40, items};
+        int64_t costs[64], all = 0, dearest = 0;
+        snow_box boxes[12];
+        const snow_partition_grid grid = grid_of(dims, 2, 1);
+        snow_block_counts tally = count(COUNTED, &grid, ranks, noise);
+        for (int i = 0; i < items; i++)
+            all += tally.counts[i];
+        for (int i = 0; i < items; i++)
+            costs[i] = SNOW_EMPTINESS * tally.counts[i] + 1 +
+                       (int64_t)((double)all * (1.0 / items));
+        cut(context, COUNTED, &tally, ranks, boxes);
+        for (int rank = 0; rank < ranks; rank++) {
+            int64_t cost = 0;
+            for (int64_t i = 0; i < boxes[rank].count[2]; i++)
+                cost += costs[boxes[rank].first[2] + i];
+            if (cost > dearest)
+                dearest = cost;
+        }
+        assert_int_equal(
+            dearest,
+            least_by_trying(costs, items, ranks,
+                            SNOW_THICKEST * ((items - 1) / ranks + 1)));
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+/* All that is interesting lies in slice 500. */
+static int64_t one_slice(const int64_t dims[3], const snow_box *block) {
+    (void)dims;
+    return block->first[2] <= 500 && 500 < block->first[2] + block->count[2]
+               ? block->count[0] * block->count[1]
+               : 0;
+}
+
+static void no_rank_stores_all_that_is_empty(void **state) {
+    (void)state;
+    const int64_t dims[3] = {64, 64, 1000};
+    const snow_partition_grid grid = grid_of(dims, 2, 1);
+    snow_context *context = support_context();
+    snow_box boxes[100];
+    for (kind how = COUNTED; how <= BRICKS; how++) {
+        snow_block_counts tally = count(how, &grid, 100, one_slice);
+        cut(context, how, &tally, 100, boxes);
+        for (int rank = 0; rank < 100; rank++)
+            assert_true(snow_box_voxels(&boxes[rank]) <=
+                        (how == COUNTED ? SNOW_THICKEST : SNOW_EMPTINESS + 1) *
+                            64 * 64 * 10);
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+static void a_grid_without_interesting_voxels_is_cut_equally(void **state) {
+    (void)state;
+    const int64_t dims[3] = {64, 64, 128};
+    const snow_partition_grid grid = grid_of(dims, 2, 1);
+    snow_context *context = support_context();
+    snow_box boxes[32];
+    for (kind how = COUNTED; how <= BRICKS; how++) {
+        snow_block_counts tally = count(how, &grid, 32, NULL);
+        cut(context, how, &tally, 32, boxes);
+        for (int rank = 0; rank < 32; rank++)
+            assert_int_equal(snow_box_voxels(&boxes[rank]), 64 * 64 * 4);
+        int64_t loads[32];
+        snow_partition_loads(&tally, boxes, 32, loads);
+        assert_true(snow_partition_imbalance(loads, 32) == 1);
+        free(tally.counts);
+    }
+    snow_context_free(context);
+}
+
+/* 10^15 voxels: no count of blocks depends on them. */
+static void blocks_of_a_huge_grid_fit_the_memory(void **state) {
+    (void)state;
+    const int64_t borders[] = {0, 7, 50000, 100000};
+    snow_partition_grid grid = {{100000, 100000, 100000}, 1, NULL, 0};
+    for (int ranks = 1; ranks <= 4096; ranks *= 8)
+        for (int grouped = 0; grouped < 2; grouped++) {
+            grid.borders = grouped ? borders : NULL;
+            grid.count = 3;
+            snow_block_counts tally =
+                snow_block_counts_for_bricks(&grid, ranks);
+            assert_in_range(snow_block_counts_blocks(&tally), ranks, 1 << 22);
+            for (int i = 0; i < 3; i++) {
+                assert_int_equal(snow_block_counts_begin(&tally, i, 0), 0);
+                assert_int_equal(
+                    snow_block_counts_begin(&tally, i, tally.blocks[i]),
+                    100000);
+                for (int64_t voxel = 0; voxel < 100000; voxel += 9) {
+                    int64_t n = snow_block_counts_find(&tally, i, voxel);
+                    assert_true(
+                        snow_block_counts_begin(&tally, i, n) <= voxel &&
+                        voxel < snow_block_counts_begin(&tally, i, n + 1));
+                }
+            }
+        }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_voxel_is_in_exactly_one_box),
+        cmocka_unit_test(equal_slabs_of_an_ellipsoid_are_half_again_as_loaded),
+        cmocka_unit_test(counted_slabs_of_an_ellipsoid_are_about_equal),
+        cmocka_unit_test(bricks_of_an_ellipsoid_are_about_equal),
+        cmocka_unit_test(no_slabs_are_cheaper_than_counted_ones),
+        cmocka_unit_test(no_rank_stores_all_that_is_empty),
+        cmocka_unit_test(a_grid_without_interesting_voxels_is_cut_equally),
+        cmocka_unit_test(blocks_of_a_huge_grid_fit_the_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,37 @@
+/* tests/support/folder.c - see support_folder.h. */
+#include "support/folder.h"
+#include "support/support.h"
+
+#include <dirent.h>
+#include <unistd.h>
+
+void support_folder_make(char folder[SUPPORT_FOLDER_BYTES]) {
+    snprintf(folder, SUPPORT_FOLDER_BYTES, "/tmp/snowglass-test-XXXXXX");
+    assert_non_null(mkdtemp(folder));
+}
+
+void support_folder_remove(const char *folder) {
+    DIR *listing = opendir(folder);
+    assert_non_null(listing);
+    for (struct dirent *entry; (entry = readdir(listing));)
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            unlink(support_folder_path(folder, entry->d_name));
+    closedir(listing);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+const char *support_folder_path(const char *folder, const char *name) {
+    static char paths[4][512];
+    static int next;
+    char *path = paths[next++ % 4];
+    snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+    return path;
+}
+
+void support_write_file(const char *path, const void *bytes, size_t size) {
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    if (size)
+        assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}

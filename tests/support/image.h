@@ -1,0 +1,57 @@
+/* tests/support/image.h - pictures, files and failing memory for the tests of
+ * the picture formats. */
+#ifndef SNOW_TEST_SUPPORT_IMAGE_H
+#define SNOW_TEST_SUPPORT_IMAGE_H
+
+#include "support/folder.h"
+#include "support/support.h"
+
+#include "image/image.h"
+
+/* A context and an empty folder; cmocka's setup and teardown.  The teardown
+ * fails the test when memory or files other than `path` are left. */
+typedef struct image_fixture {
+    snow_context *context;
+    char folder[SUPPORT_FOLDER_BYTES];
+    char path[128]; /* told by support_image_path last */
+    char notice[SNOW_MESSAGE_BYTES];
+} image_fixture;
+
+int support_image_setup(void **state);
+int support_image_teardown(void **state);
+
+/* The path of a file in the fixture's folder. */
+const char *support_image_path(image_fixture *fixture, const char *name);
+
+/* Files in the folder now. */
+int support_image_files(const image_fixture *fixture);
+
+typedef struct support_bytes {
+    unsigned char *bytes;
+    size_t size;
+} support_bytes;
+
+/* A whole file; free the bytes. */
+support_bytes support_read_file(const char *path);
+
+/* A picture of smooth and random premultiplied pixels with transparent ones. */
+snow_image *support_picture(snow_context *context, int width, int height,
+                            int channels, uint64_t seed);
+
+/* Asserts that bytes are refused as bad input in one line that begins with the
+ * name, and that no memory is held afterwards. */
+void support_assert_refused(snow_context *context, const void *bytes,
+                            size_t size);
+
+/* Loads bytes that must be a picture. */
+snow_image *support_load(snow_context *context, const void *bytes, size_t size);
+
+/* malloc, whose n-th call from now on fails, alone or with all that follow. */
+typedef struct support_memory {
+    int64_t left; /* calls until one fails; INT64_MAX: none does */
+    bool once;
+} support_memory;
+
+snow_context *support_failing_context(support_memory *memory);
+
+#endif

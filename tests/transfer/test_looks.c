@@ -1,0 +1,357 @@
+/* tests/transfer/test_looks.c - looks of points as data, and on a logarithmic
+ * scale. */
+#include "support/looks.h"
+
+#include <math.h>
+
+static double opacity_at(const snow_transfer *transfer, double value) {
+    double rgba[4];
+    snow_transfer_evaluate(transfer, value, rgba);
+    return rgba[3];
+}
+
+static double red_at(const snow_transfer *transfer, double value) {
+    double rgba[4];
+    snow_transfer_evaluate(transfer, value, rgba);
+    return rgba[0];
+}
+
+static bool near(double a, double b) {
+    return fabs(a - b) < 1e-9;
+}
+
+/* 0.001 to 1000, seven decades, and what has no logarithm. */
+static const float decades[] = {0.001F, 0.01F, 0.1F, 1,    10,
+                                100,    1000,  0,    -500, -0.001F};
+#define DECADES (sizeof decades / sizeof *decades)
+
+static void linear_over_decades_is_linear_in_decades(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume =
+        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
+    snow_look look = {.preset = "linear", .log = true};
+    snow_transfer *transfer = support_look(volume, look);
+    assert_true(snow_transfer_is_log(transfer));
+    for (int i = 0; i < 7; i++) {
+        assert_true(fabs(opacity_at(transfer, (double)decades[i]) - i / 6.0) <
+                    1e-7);
+        assert_true(fabs(red_at(transfer, (double)decades[i]) - i / 6.0) <
+                    1e-7);
+    }
+    assert_true(opacity_at(transfer, 0) == 0);
+    assert_true(opacity_at(transfer, -500) == 0);
+    assert_true(opacity_at(transfer, (double)NAN) == 0);
+    assert_true(opacity_at(transfer, (double)INFINITY) == 1);
+    assert_non_null(strstr(snow_transfer_description(transfer), "logarithmic"));
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void a_range_is_spread_by_decades(void **state) {
+    (void)state;
+    snow_context *context = support_context();
+    snow_volume *volume =
+        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
+    snow_look look = {.preset = "ct-bone",
+                      .range = SNOW_RANGE_VALUES,
+                      .low = 0.1,
+                      .high = 1000,
+                      .log = true};
+    snow_transfer *transfer = support_look(volume, look);
+    /* ct-bone goes from 150 to 1500; 350 is 200 / 1350 of the way. */
+    double value = 0.1 * pow(1e4, 200.0 / 1350);
+    assert_true(near(opacity_at(transfer, value), 0.40));
+    assert_true(opacity_at(transfer, 0.1) == 0);
+    assert_true(opacity_at(transfer, 1000) == 0.85);
+    snow_transfer_free(transfer);
+    look.range = SNOW_RANGE_PERCENTILES;
+    look.low = 0;
+    look.high = 100; /* of the values above 0 */
+    look.colormap = "grey";
+    transfer = support_look(volume, look);
+    assert_true(fabs(red_at(transfer, 1) - 0.5) < 1e-7);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void what_has_no_logarithm_is_refused(void **state) {
+    (void)state;
+    static const snow_opacity_point from_0[] = {{0, 0}, {10, 1}};
+    snow_context *context = support_context();
+    snow_volume *volume =
+        support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
+    const snow_look looks[] = {
+        {.preset = "ct-soft", .log = true},
+        {.opacities = from_0, .opacity_count = 2, .log = true},
+        {.range = SNOW_RANGE_VALUES, .low = 0, .high = 9, .log = true}};
+    for (size_t i = 0; i < 3; i++) {
+        snow_transfer *transfer = NULL;
+        assert_int_equal(
+            snow_transfer_new_for_volume(volume, &looks[i], &transfer),
+            SNOW_STATUS_BAD_USAGE);
+        assert_null(transfer);
+        assert_non_null(strstr(snow_context_message(context), "logarithm"));
+    }
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* The type, and its table of counts, must not matter. */
+static void counted_types_give_the_same_look_by_decades(void **state) {
+    (void)state;
+    int16_t narrow[400];
+    double wide[400];
+    uint64_t seed = 3;
+    for (int i = 0; i < 400; i++)
+        wide[i] = narrow[i] =
+            (int16_t)(pow(10, 4.4 * support_uniform(&seed)) - 5);
+    snow_context *context = support_context();
+    snow_volume *a = support_row(context, SNOW_TYPE_INT16, narrow, 400);
+    snow_volume *b = support_row(context, SNOW_TYPE_FLOAT64, wide, 400);
+    snow_look look = {.log = true};
+    snow_transfer *first = support_look(a, look),
+                  *second = support_look(b, look);
+    assert_string_equal(snow_transfer_description(first),
+                        snow_transfer_description(second));
+    for (int i = 0; i < 400; i++)
+        assert_true(opacity_at(first, wide[i]) == opacity_at(second, wide[i]));
+    snow_transfer_free(first);
+    snow_transfer_free(second);
+    snow_volume_close(a);
+    snow_volume_close(b);
+    snow_context_free(context);
+}
+
+static void odd_volumes_have_a_logarithmic_look_too(void **state) {
+    (void)state;
+    const float odd[][3] = {{0, 0, 0},      {-1, -2, -3},
+                            {5, 5, 5},      {NAN, NAN, NAN},
+                            {0, 0, 1e-40F}, {1e-40F, 1, 3e38F}};
+    snow_context *context = support_context();
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++) {
+        snow_volume *volume =
+            support_row(context, SNOW_TYPE_FLOAT32, odd[i], 3);
+        for (size_t p = 0; p < 4; p++) {
+            snow_look look = {.log = true,
+                              .preset = p == 1   ? "linear"
+                                        : p == 2 ? "mr-angio"
+                                                 : NULL,
+                              .colormap = p == 3 ? "turbo" : NULL};
+            snow_transfer_free(support_look(volume, look));
+        }
+        snow_volume_close(volume);
+    }
+    snow_context_free(context);
+}
+
+/* --- points as data ------------------------------------------------------- */
+
+static const snow_color_point red_blue[] = {{0, 1, 0, 0}, {1, 0, 0, 1}};
+static const snow_opacity_point half[] = {{0, 0}, {1, 0.5}};
+
+static void points_in_data_units_stay_where_they_are(void **state) {
+    (void)state;
+    const snow_color_point colors[] = {{20, 1, 0, 0}, {40, 0, 0, 1}};
+    const snow_opacity_point opacities[] = {{10, 0}, {50, 0.5}};
+    const snow_opacity_point gradients[] = {{0, 0}, {4, 1}};
+    const uint8_t bytes[] = {0, 255};
+    const snow_points points = {.name = "mine",
+                                .colors = colors,
+                                .color_count = 2,
+                                .opacities = opacities,
+                                .opacity_count = 2,
+                                .gradients = gradients,
+                                .gradient_count = 2};
+    snow_context *context = support_context();
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.points = &points});
+    assert_true(near(opacity_at(transfer, 30), 0.25));
+    assert_true(near(red_at(transfer, 30), 0.5));
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.5));
+    assert_non_null(strstr(snow_transfer_description(transfer), "mine 10..50"));
+    snow_transfer_free(transfer);
+    /* Over twice the range gradients are half as steep. */
+    transfer = support_look(volume, (snow_look){.points = &points,
+                                                .range = SNOW_RANGE_VALUES,
+                                                .low = 100,
+                                                .high = 180});
+    assert_true(near(opacity_at(transfer, 140), 0.25));
+    assert_true(near(red_at(transfer, 120), 1));
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.25));
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void points_without_values_are_spread(void **state) {
+    (void)state;
+    const uint8_t bytes[] = {50, 150};
+    const snow_points points = {.name = "mine",
+                                .values = SNOW_DOMAIN_RANGE,
+                                .colors = red_blue,
+                                .color_count = 2,
+                                .opacities = half,
+                                .opacity_count = 2};
+    snow_points colors_only = points;
+    colors_only.opacity_count = 0;
+    snow_context *context = support_context();
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.points = &points});
+    assert_true(near(opacity_at(transfer, 100), 0.25));
+    assert_true(near(red_at(transfer, 75), 0.75));
+    snow_transfer_free(transfer);
+    transfer = support_look(volume, (snow_look){.points = &colors_only});
+    snow_transfer *automatic =
+        support_look(volume, (snow_look){.preset = NULL});
+    assert_true(near(opacity_at(transfer, 150), opacity_at(automatic, 150)));
+    assert_true(red_at(transfer, 150) == 0);
+    snow_transfer_free(automatic);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* More than drafts of our own have. */
+static void hundreds_of_points_are_taken(void **state) {
+    (void)state;
+    snow_color_point colors[700];
+    snow_opacity_point opacities[900];
+    for (int i = 0; i < 700; i++)
+        colors[i] = (snow_color_point){i, i / 700.0, 0, 0};
+    for (int i = 0; i < 900; i++)
+        opacities[i] = (snow_opacity_point){i, i % 2};
+    const float values[] = {0, 1000};
+    const snow_points points = {.name = "many",
+                                .colors = colors,
+                                .color_count = 700,
+                                .opacities = opacities,
+                                .opacity_count = 900};
+    snow_context *context = support_context();
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.points = &points});
+    assert_true(near(opacity_at(transfer, 655.25), 0.75));
+    assert_true(near(red_at(transfer, 350), 0.5));
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+static void presets_and_colour_maps_are_data(void **state) {
+    (void)state;
+    snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
+    for (size_t i = 0; snow_preset_name(i); i++) {
+        const snow_points *preset = snow_preset_points(i);
+        assert_true(preset->color_count && preset->opacity_count);
+        assert_true(preset->opacities[0].opacity == 0);
+    }
+    assert_null(snow_preset_points(1000));
+    for (size_t i = 0; snow_colormap_name(i); i++) {
+        size_t count =
+            snow_colormap_points(i, points, SNOW_COLORMAP_POINTS_MAX);
+        assert_in_range(count, 2, SNOW_COLORMAP_POINTS_MAX);
+        assert_true(points[0].value == 0 && points[count - 1].value == 1);
+    }
+    assert_int_equal(snow_colormap_points(1000, points, 1), 0);
+}
+
+/* Tableau's ten, in equal steps. */
+static void categories_are_not_mixed(void **state) {
+    (void)state;
+    static const unsigned rgb[10] = {0x1f77b4, 0xff7f0e, 0x2ca02c, 0xd62728,
+                                     0x9467bd, 0x8c564b, 0xe377c2, 0x7f7f7f,
+                                     0xbcbd22, 0x17becf};
+    const float values[] = {0, 10};
+    snow_context *context = support_context();
+    snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.preset = "linear", .colormap = "tab10"});
+    for (int i = 0; i < 100; i++) {
+        double found[4];
+        snow_transfer_evaluate(transfer, i / 10.0 + 0.05, found);
+        for (int c = 0; c < 3; c++)
+            assert_true(
+                near(found[c], (rgb[i / 10] >> (16 - 8 * c) & 255) / 255.0));
+    }
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
+/* --- volumes without surfaces --------------------------------------------- */
+
+static snow_transfer *look_at_block(snow_context *context, const float *values,
+                                    const int64_t dims[3]) {
+    snow_volume_info info = {.dims = {dims[0], dims[1], dims[2]},
+                             .type = SNOW_TYPE_FLOAT32};
+    snow_volume *volume = NULL;
+    assert_int_equal(snow_volume_wrap(context, &info, values, &volume),
+                     SNOW_STATUS_OK);
+    snow_transfer *transfer = support_look(volume, (snow_look){.preset = NULL});
+    snow_volume_close(volume);
+    return transfer;
+}
+
+/* Twelve dice make one heap. */
+static void fill_heap(float *values, int count, double middle, double width) {
+    uint64_t seed = 4;
+    for (int i = 0; i < count; i++) {
+        double sum = 0;
+        for (int n = 0; n < 12; n++)
+            sum += support_uniform(&seed) - 0.5;
+        values[i] = (float)(middle + width * sum);
+    }
+}
+
+static void one_heap_of_values_is_a_solid_block(void **state) {
+    (void)state;
+    static float values[20 * 20 * 20];
+    const int64_t cube[3] = {20, 20, 20}, slice[3] = {80, 100, 1};
+    snow_context *context = support_context();
+    fill_heap(values, 8000, 100, 10);
+    snow_transfer *transfer = look_at_block(context, values, cube);
+    assert_true(snow_transfer_is_unshaded(transfer));
+    assert_true(opacity_at(transfer, 100) > 0.3);
+    assert_true(red_at(transfer, 100) > 0.3 && red_at(transfer, 100) < 0.7);
+    snow_transfer_free(transfer);
+    /* Densities about a mean of 0 are not. */
+    fill_heap(values, 8000, 0, 10);
+    transfer = look_at_block(context, values, cube);
+    assert_false(snow_transfer_is_unshaded(transfer));
+    assert_true(opacity_at(transfer, -5) == 0);
+    snow_transfer_free(transfer);
+    /* An object in its background is not. */
+    for (int i = 0; i < 8000; i++)
+        values[i] = i % 3 ? 0 : 100 + (float)(i % 7);
+    transfer = look_at_block(context, values, cube);
+    assert_false(snow_transfer_is_unshaded(transfer));
+    snow_transfer_free(transfer);
+    /* A slice is a picture, whatever its values. */
+    transfer = look_at_block(context, values, slice);
+    assert_true(snow_transfer_is_unshaded(transfer));
+    assert_true(opacity_at(transfer, 100) == 1);
+    snow_transfer_free(transfer);
+    snow_context_free(context);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(linear_over_decades_is_linear_in_decades),
+        cmocka_unit_test(a_range_is_spread_by_decades),
+        cmocka_unit_test(what_has_no_logarithm_is_refused),
+        cmocka_unit_test(counted_types_give_the_same_look_by_decades),
+        cmocka_unit_test(odd_volumes_have_a_logarithmic_look_too),
+        cmocka_unit_test(points_in_data_units_stay_where_they_are),
+        cmocka_unit_test(points_without_values_are_spread),
+        cmocka_unit_test(hundreds_of_points_are_taken),
+        cmocka_unit_test(presets_and_colour_maps_are_data),
+        cmocka_unit_test(categories_are_not_mixed),
+        cmocka_unit_test(one_heap_of_values_is_a_solid_block),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
