@@ -15,11 +15,39 @@ typedef struct snow_traffic {
     int count;
 } snow_traffic;
 
-/* Pixels first .. last - 1, and the share of the rounds that they go to. */
-typedef struct snow_packed_message {
+/* Messages begin at a multiple of this many bytes. */
+#define SNOW_MESSAGE_ALIGNMENT 64
+static inline size_t snow_message_align(size_t bytes) {
+    return (bytes + SNOW_MESSAGE_ALIGNMENT - 1) / SNOW_MESSAGE_ALIGNMENT *
+           SNOW_MESSAGE_ALIGNMENT;
+}
+
+/* Pixels first .. last - 1. */
+typedef struct snow_stretch {
     int64_t first, last;
+} snow_stretch;
+
+/* A part of this rank's image that a round has not sent yet, and the share of
+ * the rounds that it goes to. */
+#define SNOW_SHARE_NONE (-1)
+typedef struct snow_part_to_send {
+    snow_stretch part;
     int share;
-} snow_packed_message;
+} snow_part_to_send;
+
+/* The exchange that is under way. */
+typedef struct snow_exchange_state {
+    snow_exchange_params order;
+    size_t pixel_bytes;
+    bool divided;             /* regions are known */
+    int level;                /* the round */
+    int awaited;              /* of combiner->parts */
+    size_t used;              /* bytes of the round's buffer */
+    int64_t sent;             /* bytes, in the first round */
+    int layer_count;          /* of combiner->layers, to merge */
+    const unsigned char *own; /* the message to oneself */
+    size_t own_bytes;
+} snow_exchange_state;
 
 /* What determines the sizes of all buffers; the same on all ranks, so that all
  * allocate at the same time and can agree on the status. */
@@ -74,20 +102,46 @@ struct snow_combiner {
     snow_borders borders;
     int64_t counts[SNOW_BINS_MOST]; /* snow_exchange_counts */
     int counted_bins;
-    int *lines; /* the order of lines, NULL for the picture's */
-    int *ranks; /* by position, as in the last params */
-    int *table; /* of snow_rounds_fill */
-    snow_packed_message *packed_messages; /* of one round, not yet sent */
-    snow_active *layers;                  /* of one round */
-    uint64_t *words;                      /* their masks */
-    uint64_t *part;                       /* mask of the part to send next */
+    int *lines;               /* the order of lines, NULL for the picture's */
+    int *ranks;               /* by position, as in the last params */
+    int *table;               /* of snow_rounds_fill */
+    snow_part_to_send *parts; /* of one round, not yet sent */
+    snow_active *layers;      /* of one round */
+    uint64_t *words;          /* their masks */
+    uint64_t *part;           /* mask of the part to send next */
     snow_traffic in[2], out[2];
     float *region;
+    snow_exchange_state exchange; /* and the last one's params */
     snow_exchange_figures figures;
-    double scan_seconds, blend_seconds; /* of the last params */
     snow_gather_state gather;
 };
 
+/* --- combiner.c ---
+
+ * Collective. Checks the params and makes a plan for them: rounds, the order
+ * of lines, loops for pixels. Errors: as for snow_exchange. */
+snow_status snow_combiner_plan(snow_combiner *combiner,
+                               const snow_exchange_params *order);
+
+/* Collective. Allocates buffers for the borders of regions as they are now. */
+snow_status snow_combiner_fit(snow_combiner *combiner);
+
+/* --- counts.c ---
+
+ * Whether counts came with the params; otherwise the local image is counted,
+ * for which it must be finished. */
+bool snow_counts_given(const snow_combiner *combiner);
+
+/* Collective. Divides the picture by counts. */
+snow_status snow_counts_divide(snow_combiner *combiner);
+
+/* Adds a part of the local image, whose mask is complete, to the counts for the
+ * next picture. */
+void snow_counts_add(snow_combiner *combiner, snow_stretch part);
+
+/* --- gather.c, gather_region.c --- */
+
 void snow_gather_free(snow_combiner *combiner);
+void snow_gather_free_region(snow_combiner *combiner);
 
 #endif

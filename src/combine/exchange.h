@@ -51,21 +51,8 @@ typedef struct snow_rehearsal {
     void *user;
 } snow_rehearsal;
 
-/* An unfinished local image. Its finished parts are sent while the rest is
- * drawn. */
-typedef struct snow_unfinished {
-    /* Draws a little more; false if nothing is left to begin. */
-    bool (*step)(void *user);
-    /* Whether lines y0 .. y1 - 1 are finished; if so, sets the rectangle that
-     * was drawn on, as in the params. */
-    bool (*look)(void *user, int y0, int y1, snow_rectangle *drawn);
-    /* Returns when all is finished; called once. */
-    void (*end)(void *user);
-    void *user;
-} snow_unfinished;
-
 /* The parameters of an exchange. All except `pixels`, `stride`, `drawn` and the
- * users of rehearsal and unfinished image are the same on all ranks. */
+ * user of the rehearsal are the same on all ranks. */
 typedef struct snow_exchange_params {
     int width, height, channels; /* of the picture; 2 (grey, a) or 4 (r, g, b,
                                     a), premultiplied */
@@ -80,7 +67,6 @@ typedef struct snow_exchange_params {
         regions; /* for all methods except the tree, which has one */
     snow_composite_op composite_op; /* for 2 channels if it is not over */
     bool whole; /* all pixels are sent, without masks, as in the paper */
-    const snow_unfinished *unfinished; /* sets `drawn`; NULL: all is finished */
     /* snow_exchange_counts, summed over all ranks: the borders of counted
      * regions; NULL: from the local images. */
     const int64_t *counts;
@@ -128,13 +114,43 @@ void snow_combiner_free(snow_combiner *combiner);
  * the same sizes, method and regions allocates nothing; with counted regions,
  * unless they are larger than before. Errors, the same on all ranks:
  * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_BAD_USAGE (invalid params), those of the
- * transport.
- *
- * An unfinished local image is always ended, even on failure; before the
- * exchange if its regions are counted without `counts`. */
+ * transport. */
 snow_status snow_exchange(snow_combiner *combiner,
-                          const snow_exchange_params *order,
+                          const snow_exchange_params *params,
                           snow_image_region *out);
+
+/* The same of a local image that is still drawn: its parts are sent as they are
+ * finished.
+ *
+ *   begin
+ *   while some of the image is not drawn:
+ *       send each part that the exchange awaits and whose lines are finished
+ *       draw a little more; progress
+ *   end
+ *
+ * `drawn` of the params is not read; what `ranks`, `counts` and `rehearsal`
+ * point to must last until the end. Regions that are counted without `counts`
+ * need all of the image before anything is sent. After an error the exchange is
+ * over. Begin and end are collective, with the errors of snow_exchange. */
+snow_status snow_exchange_begin(snow_combiner *combiner,
+                                const snow_exchange_params *params);
+
+/* Whether there is an n-th part that was not sent; it needs lines y0 .. y1 - 1
+ * of the local image. */
+bool snow_exchange_awaits(const snow_combiner *combiner, int n, int *y0,
+                          int *y1);
+
+/* Sends the n-th part, in whose lines pixels outside `drawn` are transparent;
+ * the parts behind it move up. */
+snow_status snow_exchange_send(snow_combiner *combiner, int n,
+                               snow_rectangle drawn);
+
+/* Call it after drawing a little: lets messages go on, and counts what was sent
+ * as early. */
+void snow_exchange_progress(snow_combiner *combiner);
+
+snow_status snow_exchange_end(snow_combiner *combiner, snow_rectangle drawn,
+                              snow_image_region *out);
 
 const snow_exchange_figures *
 snow_exchange_get_figures(const snow_combiner *combiner);

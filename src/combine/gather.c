@@ -49,19 +49,9 @@ static void drop_buffers(snow_combiner *combiner) {
     state->width = 0;
 }
 
-static void drop_packed(snow_combiner *combiner) {
-    snow_gather_state *state = &combiner->gather;
-    snow_release(combiner->comm->context, state->runs);
-    snow_release(combiner->comm->context, state->packed);
-    state->runs = NULL;
-    state->packed = NULL;
-    state->packed_capacity = 0;
-}
-
 void snow_gather_free(snow_combiner *combiner) {
     snow_release(combiner->comm->context, combiner->gather.own);
     drop_buffers(combiner);
-    drop_packed(combiner);
 }
 
 /* --- the tree ------------------------------------------------------------- */
@@ -122,7 +112,7 @@ static size_t most_bytes(const snow_gather_state *state, int ranks) {
            (size_t)(ranks + 2) * (HEAD + sizeof(block_head)) + SLOT;
 }
 
-static snow_status take_buffers(snow_combiner *combiner) {
+static snow_status allocate_buffers(snow_combiner *combiner) {
     snow_gather_state *state = &combiner->gather;
     snow_context *context = combiner->comm->context;
     const int ranks = combiner->comm->ranks;
@@ -148,8 +138,8 @@ static snow_status take_buffers(snow_combiner *combiner) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_shape(snow_combiner *combiner, int width, int height,
-                              size_t pixel_bytes) {
+static snow_status plan_tree(snow_combiner *combiner, int width, int height,
+                             size_t pixel_bytes) {
     snow_gather_state *state = &combiner->gather;
     const int radix = chosen_radix(combiner, width, height, pixel_bytes);
     if (width < 1 || height < 1 || width > 65535 || height > 65535 ||
@@ -167,7 +157,7 @@ static snow_status take_shape(snow_combiner *combiner, int width, int height,
     state->pixel_bytes = pixel_bytes;
     state->used_radix = radix;
     snow_status status =
-        snow_comm_agree_status(combiner->comm, take_buffers(combiner));
+        snow_comm_agree_status(combiner->comm, allocate_buffers(combiner));
     if (status != SNOW_STATUS_OK)
         drop_buffers(combiner);
     return status;
@@ -231,8 +221,8 @@ static snow_status check_runs(snow_combiner *combiner,
 }
 
 /* Copies one run into the picture. */
-static void place_run(const snow_gather_state *state, const snow_pixel_run *run,
-                      const unsigned char *pixels, unsigned char *picture) {
+static void copy_run(const snow_gather_state *state, const snow_pixel_run *run,
+                     const unsigned char *pixels, unsigned char *picture) {
     size_t at = (size_t)run->y * (size_t)state->width + (size_t)run->x;
     memcpy(picture + at * state->pixel_bytes, pixels,
            (size_t)run->count * state->pixel_bytes);
@@ -261,9 +251,8 @@ static size_t write_block(const snow_gather_state *state,
 }
 
 /* Copies the pixels of blocks into the picture; false if they are invalid. */
-static bool place_blocks(const snow_gather_state *state,
-                         const unsigned char *at, size_t bytes,
-                         unsigned char *picture) {
+static bool copy_blocks(const snow_gather_state *state, const unsigned char *at,
+                        size_t bytes, unsigned char *picture) {
     const unsigned char *end = at + bytes;
     while (at < end) {
         block_head head;
@@ -285,7 +274,7 @@ static bool place_blocks(const snow_gather_state *state,
             if (!run_fits(state, &run) ||
                 length > (size_t)(pixels_end - pixels))
                 return false;
-            place_run(state, &run, pixels, picture);
+            copy_run(state, &run, pixels, picture);
             pixels += length;
         }
         at = pixels_end;
@@ -318,7 +307,7 @@ typedef struct intake {
                                    send, done */
 } intake;
 
-static uint64_t told_length(const snow_gather_state *state, int child) {
+static uint64_t message_length(const snow_gather_state *state, int child) {
     uint64_t length;
     memcpy(&length, state->slots + (size_t)child * SLOT, sizeof length);
     return length;
@@ -326,11 +315,11 @@ static uint64_t told_length(const snow_gather_state *state, int child) {
 
 /* The beginning of a child's message has arrived: it is appended to the data;
  * if there is a rest, the child is queued. */
-static snow_status take_beginning(snow_combiner *combiner, int child,
-                                  intake *in) {
+static snow_status append_beginning(snow_combiner *combiner, int child,
+                                    intake *in) {
     snow_gather_state *state = &combiner->gather;
     const size_t here = state->messages[child].bytes;
-    const uint64_t length = here >= HEAD ? told_length(state, child) : 0;
+    const uint64_t length = here >= HEAD ? message_length(state, child) : 0;
     if (here < HEAD || length < here - HEAD ||
         length > state->capacity - in->used)
         return snow_fail(combiner->comm->context, SNOW_STATUS_FAILED,
@@ -354,7 +343,7 @@ static snow_status ask_rests(snow_combiner *combiner, intake *in) {
         int child = state->queue[in->asked++];
         SNOW_TRY(snow_comm_receive(
             combiner->comm, state->bytes + state->places[child] + here,
-            (size_t)told_length(state, child) - here, state->children[child],
+            (size_t)message_length(state, child) - here, state->children[child],
             SNOW_TAG_GATHER, &state->messages[state->child_count + child]));
     }
     return SNOW_STATUS_OK;
@@ -378,23 +367,23 @@ static snow_status send_up(snow_combiner *combiner, unsigned char *bytes,
 }
 
 /* All of a child's blocks have arrived: the display processor copies them. */
-static bool place_child(snow_combiner *combiner, int child,
-                        unsigned char *picture) {
+static bool copy_child(snow_combiner *combiner, int child,
+                       unsigned char *picture) {
     const snow_gather_state *state = &combiner->gather;
-    const size_t length = (size_t)told_length(state, child);
+    const size_t length = (size_t)message_length(state, child);
     if (state->parent >= 0)
         return true;
     /* Costs per byte as examining a pixel of four floats. */
     snow_comm_work(combiner->comm,
-                   (double)length / 16 * combiner->scan_seconds);
-    return !picture || place_blocks(state, state->bytes + state->places[child],
-                                    length, picture);
+                   (double)length / 16 * combiner->exchange.order.scan_seconds);
+    return !picture || copy_blocks(state, state->bytes + state->places[child],
+                                   length, picture);
 }
 
 /* Receives what children send, in order of arrival, behind the first `used`
  * bytes. */
-static snow_status take_children(snow_combiner *combiner, size_t *used,
-                                 unsigned char *picture) {
+static snow_status receive_children(snow_combiner *combiner, size_t *used,
+                                    unsigned char *picture) {
     snow_gather_state *state = &combiner->gather;
     const int count = state->child_count;
     intake in = {.used = *used};
@@ -407,12 +396,12 @@ static snow_status take_children(snow_combiner *combiner, size_t *used,
             break;
         const int child = which % count, queued = in.queued;
         if (which < count)
-            SNOW_TRY(take_beginning(combiner, child, &in));
+            SNOW_TRY(append_beginning(combiner, child, &in));
         else
             in.arrived++;
         SNOW_TRY(ask_rests(combiner, &in));
         if (in.queued == queued)
-            good = place_child(combiner, child, picture) && good;
+            good = copy_child(combiner, child, picture) && good;
     }
     *used = in.used;
     if (!good)
@@ -429,7 +418,7 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
     snow_gather_state *state = &combiner->gather;
     const unsigned char *from = pixels;
     size_t used = HEAD;
-    SNOW_TRY(take_shape(combiner, width, height, pixel_bytes));
+    SNOW_TRY(plan_tree(combiner, width, height, pixel_bytes));
     snow_status status = check_runs(combiner, runs, run_count);
     if (status != SNOW_STATUS_OK)
         run_count = 0;
@@ -438,130 +427,11 @@ snow_status snow_gather(snow_combiner *combiner, int width, int height,
     if (state->parent >= 0)
         used += write_block(state, runs, run_count, pixels, block + used);
     for (size_t i = 0; i < run_count && picture && state->parent < 0; i++) {
-        place_run(state, &runs[i], from, picture);
+        copy_run(state, &runs[i], from, picture);
         from += (size_t)runs[i].count * pixel_bytes;
     }
-    SNOW_TRY(take_children(combiner, &used, picture));
+    SNOW_TRY(receive_children(combiner, &used, picture));
     if (state->parent >= 0)
         SNOW_TRY(send_up(combiner, block, used - HEAD));
     return status;
-}
-
-/* --- gathering regions ---------------------------------------------------- */
-
-/* Allocates buffers for the region of any position, of the same size on all
- * ranks except those without a region in a tree; all ranks call it together. */
-static snow_status take_packed(snow_combiner *combiner, size_t pixel_bytes) {
-    snow_gather_state *state = &combiner->gather;
-    snow_context *context = combiner->comm->context;
-    const int regions = combiner->rounds.tree ? 1 : combiner->comm->ranks;
-    const int64_t capacity = snow_border_room(&combiner->borders, regions);
-    if (state->packed_capacity == capacity &&
-        state->packed_bytes == pixel_bytes)
-        return SNOW_STATUS_OK;
-    drop_packed(combiner);
-    state->packed_capacity = capacity;
-    state->packed_bytes = pixel_bytes;
-    /* Every second pixel may be a run, and every line's first. */
-    uint64_t runs =
-        (uint64_t)(capacity / 2 + capacity / combiner->shape.width + 3);
-    bool fine =
-        (combiner->rounds.tree && combiner->comm->rank) ||
-        ((state->runs =
-              snow_allocate_array(context, runs, sizeof *state->runs)) &&
-         (state->packed =
-              snow_allocate_array(context, (uint64_t)capacity, pixel_bytes)));
-    snow_status status = snow_comm_agree_status(
-        combiner->comm, fine ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
-    if (status != SNOW_STATUS_OK)
-        drop_packed(combiner);
-    return status;
-}
-
-static void round_pixels(const float *pixels, int64_t floats,
-                         unsigned char *out) {
-    for (int64_t i = 0; i < floats; i++) {
-        float value = pixels[i] * 255 + 0.5f;
-        value = value > 0 ? value : 0;
-        out[i] = (unsigned char)(value < 255 ? value : 255);
-    }
-}
-
-/* Appends pixels first .. last - 1, of one line, to the packed ones. */
-static void pack_run(snow_combiner *combiner, const snow_image_region *region,
-                     int64_t first, int64_t last, size_t *run_count,
-                     int64_t *packed) {
-    snow_gather_state *state = &combiner->gather;
-    const int channels = combiner->shape.channels;
-    const int width = combiner->shape.width;
-    const int64_t count = last - first;
-    unsigned char *out = state->packed + (size_t)*packed * state->packed_bytes;
-    state->runs[(*run_count)++] = (snow_pixel_run){
-        (int32_t)(first % width),
-        snow_exchange_line(combiner, (int)(first / width)), (int32_t)count};
-    if (region->pixels) {
-        const float *from = region->pixels + (first - region->first) * channels;
-        if (state->packed_bytes == (size_t)channels)
-            round_pixels(from, count * channels, out);
-        else
-            memcpy(out, from, (size_t)count * state->packed_bytes);
-    }
-    *packed += count;
-}
-
-/* The next pixel from `at` on whose activity is `active`; at most `end`. */
-static int64_t next_pixel(const snow_image_region *region, int64_t at,
-                          int64_t end, bool active) {
-    while (at < end) {
-        uint64_t word = region->active[at / 64 - region->first / 64];
-        word = (active ? word : ~word) >> (at % 64);
-        if (word) {
-            at += __builtin_ctzll(word);
-            break;
-        }
-        at = (at / 64 + 1) * 64;
-    }
-    return at < end ? at : end;
-}
-
-/* Packs the active pixels of a region, line by line; gaps shorter than the cost
- * of a run are filled. */
-static size_t pack_region(snow_combiner *combiner,
-                          const snow_image_region *region, int64_t *packed) {
-    const int64_t width = combiner->shape.width;
-    const int64_t gap = SNOW_RUN_BYTES / (int64_t)combiner->gather.packed_bytes;
-    const int64_t last = region->first + region->count;
-    size_t runs = 0;
-    for (int64_t line = region->first; line < last;) {
-        int64_t end = (line / width + 1) * width;
-        end = end < last ? end : last;
-        int64_t at = next_pixel(region, line, end, true);
-        while (at < end) {
-            int64_t stop = next_pixel(region, at, end, false);
-            int64_t next = next_pixel(region, stop, end, true);
-            while (next < end && next - stop <= gap) {
-                stop = next_pixel(region, next, end, false);
-                next = next_pixel(region, stop, end, true);
-            }
-            pack_run(combiner, region, at, stop, &runs, packed);
-            at = next;
-        }
-        line = end;
-    }
-    return runs;
-}
-
-snow_status snow_gather_region(snow_combiner *combiner,
-                               const snow_image_region *region, int bits,
-                               void *picture) {
-    const snow_exchange_shape *shape = &combiner->shape;
-    const size_t pixel_bytes =
-        (size_t)shape->channels * (bits == 8 ? 1 : sizeof(float));
-    int64_t packed = 0;
-    SNOW_TRY(take_packed(combiner, pixel_bytes));
-    size_t runs = pack_region(combiner, region, &packed);
-    snow_comm_work(combiner->comm, (double)packed * combiner->blend_seconds);
-    return snow_gather(
-        combiner, shape->width, shape->height, combiner->gather.runs, runs,
-        region->pixels ? combiner->gather.packed : NULL, pixel_bytes, picture);
 }

@@ -38,14 +38,9 @@ static snow_rectangle drawn_part(const snow_shear_warp_image *image, int layer,
     return box;
 }
 
-/* While it is exchanged (snow_unfinished). */
-static bool draw_band(void *of) {
-    const snow_flight *p = of;
-    return snow_ranks_draw(p->ranks);
-}
-
-static bool look_at_lines(void *of, int y0, int y1, snow_rectangle *drawn) {
-    const snow_flight *p = of;
+/* Whether lines y0 .. y1 - 1 are finished; if so, what of them was drawn on. */
+static bool look_at_lines(const snow_flight *p, int y0, int y1,
+                          snow_rectangle *drawn) {
     const snow_shear_warp_image *image = &p->picture.local.image;
     int first = y0 / image->tile_height,
         end = (y1 - 1) / image->tile_height + 1;
@@ -57,12 +52,7 @@ static bool look_at_lines(void *of, int y0, int y1, snow_rectangle *drawn) {
     return true;
 }
 
-static void end_drawing(void *of) {
-    const snow_flight *p = of;
-    snow_ranks_drain(p->ranks);
-}
-
-/* What was drawn is told where that is over. */
+/* `drawn` is known only when the image is finished. */
 static snow_local sheared_local(const snow_shear_warp_image *image,
                                 bool drawing) {
     snow_local local = {.width = image->width,
@@ -164,12 +154,32 @@ static void set_rounds(snow_flight *p, const snow_exchange_figures *given) {
     p->ranks->begin_at = given->begin_at;
 }
 
+/* Sends parts of a local image while the rest of it is drawn. */
+static snow_status send_while_drawing(snow_flight *p) {
+    snow_combiner *combiner = p->ranks->combiner;
+    snow_rectangle drawn;
+    int y0, y1;
+    while (p->picture.drawing) {
+        for (int n = 0; snow_exchange_awaits(combiner, n, &y0, &y1);) {
+            if (look_at_lines(p, y0, y1, &drawn))
+                SNOW_TRY(snow_exchange_send(combiner, n, drawn));
+            else
+                n++;
+        }
+        if (snow_exchange_awaits(combiner, 0, &y0, &y1) &&
+            snow_ranks_draw(p->ranks))
+            snow_exchange_progress(combiner);
+        else
+            snow_ranks_drain(p->ranks);
+    }
+    look_at_lines(p, 0, p->local.height, &p->local.drawn[0]);
+    return SNOW_STATUS_OK;
+}
+
 static snow_status exchange(snow_flight *p, const snow_job *job) {
     snow_ranks *r = p->ranks;
     const snow_local *local = &p->local;
     const bool warps = p->picture.pass->method->warps;
-    const snow_unfinished unfinished = {draw_band, look_at_lines, end_drawing,
-                                        p};
     if (job->settings.deterministic)
         return snow_layers_exchange(r, local, placement_of(p, job), &p->region);
     const snow_exchange_params order = {
@@ -178,16 +188,17 @@ static snow_status exchange(snow_flight *p, const snow_job *job) {
         .channels = local->channels,
         .pixels = local->pixels,
         .stride = local->stride,
-        .drawn = local->drawn[0],
         .ranks = r->order,
         .method = p->how.combining,
         .radix = p->how.radix,
         .composite_op = local->composite_op,
         .grain = warps ? local->width : 1, /* pieces of whole lines */
         .counts = p->picture.ahead ? r->group_counts : NULL,
-        .count_groups = r->groups,
-        .unfinished = p->picture.drawing ? &unfinished : NULL};
-    SNOW_TRY(snow_exchange(r->combiner, &order, &p->region));
+        .count_groups = r->groups};
+    SNOW_TRY(snow_exchange_begin(r->combiner, &order));
+    if (p->picture.drawing)
+        SNOW_TRY(send_while_drawing(p));
+    SNOW_TRY(snow_exchange_end(r->combiner, local->drawn[0], &p->region));
     set_rounds(p, snow_exchange_get_figures(r->combiner));
     snow_exchange_regions(r->combiner, r->firsts, r->counts);
     return SNOW_STATUS_OK;

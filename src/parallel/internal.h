@@ -1,6 +1,7 @@
 /* parallel/internal.h - one picture by many processors: what its steps share.
  *
  *   ranks.c          what a frame keeps
+ *   clock.c          their time, which stands while another picture is drawn
  *   pipeline.c       which pictures are under way
  *   render.c         the combiner of many ranks: its operations
  *   exchange.c       local images to pieces, these to the picture on rank 0

@@ -60,8 +60,7 @@ static void finish_bands(sketch *s, int until) {
         draw_band(s, (s->first + s->finished) % s->bands);
 }
 
-static bool step(void *user) {
-    sketch *s = user;
+static bool step(sketch *s) {
     bool any = s->begun < s->bands;
     s->begun += any;
     if (s->begun - s->lag > s->finished)
@@ -69,8 +68,7 @@ static bool step(void *user) {
     return any;
 }
 
-static bool look(void *user, int y0, int y1, snow_rectangle *drawn) {
-    const sketch *s = user;
+static bool look(const sketch *s, int y0, int y1, snow_rectangle *drawn) {
     for (int band = y0 / BAND; band * BAND < y1; band++)
         if ((band - s->first + s->bands) % s->bands >= s->finished)
             return false;
@@ -78,8 +76,7 @@ static bool look(void *user, int y0, int y1, snow_rectangle *drawn) {
     return true;
 }
 
-static void end(void *user) {
-    sketch *s = user;
+static void end(sketch *s) {
     finish_bands(s, s->bands);
     s->begun = s->bands;
     s->ended++;
@@ -129,12 +126,32 @@ typedef struct painter {
     double begin_at;
 } painter;
 
+/* Sends what is finished while the rest is drawn. */
+static snow_status exchange_early(snow_combiner *combiner, sketch *s,
+                                  const snow_exchange_params *params,
+                                  snow_image_region *region) {
+    snow_rectangle drawn;
+    int y0, y1;
+    SNOW_TRY(snow_exchange_begin(combiner, params));
+    for (bool any = true; any;) {
+        for (int n = 0; snow_exchange_awaits(combiner, n, &y0, &y1);)
+            if (look(s, y0, y1, &drawn))
+                SNOW_TRY(snow_exchange_send(combiner, n, drawn));
+            else
+                n++;
+        any = step(s);
+        if (any)
+            snow_exchange_progress(combiner);
+    }
+    end(s);
+    return snow_exchange_end(combiner, frame_of(s, 0, s->height), region);
+}
+
 /* A picture to rank 0's `picture`; how many bytes were sent early. */
 static snow_status paint(painter *p, int seed, bool early, float *picture,
                          int64_t *early_bytes) {
     snow_comm *comm = p->comm;
     sketch *s = &p->sketch;
-    const snow_unfinished unfinished = {step, look, end, s};
     snow_exchange_params order = {.width = s->width,
                                   .height = s->height,
                                   .channels = s->channels,
@@ -147,8 +164,7 @@ static snow_status paint(painter *p, int seed, bool early, float *picture,
                                   .radix = p->way->radix,
                                   .grain = seed % 2 ? s->width : 1,
                                   .regions = p->way->regions,
-                                  .whole = p->way->whole,
-                                  .unfinished = early ? &unfinished : NULL};
+                                  .whole = p->way->whole};
     snow_image_region region;
     const int64_t *mine;
     int64_t counts[SNOW_COUNTS_MOST];
@@ -162,7 +178,8 @@ static snow_status paint(painter *p, int seed, bool early, float *picture,
         SNOW_TRY(
             snow_comm_reduce_both(comm, counts, 0, (size_t)order.count_groups));
     }
-    SNOW_TRY(snow_exchange(p->combiner, &order, &region));
+    SNOW_TRY(early ? exchange_early(p->combiner, s, &order, &region)
+                   : snow_exchange(p->combiner, &order, &region));
     CHECK(s->ended == 1 && s->finished == s->bands);
     p->begin_at = snow_exchange_get_figures(p->combiner)->begin_at;
     CHECK(p->begin_at >= 0 && p->begin_at < 1);
@@ -269,41 +286,39 @@ static void unfinished_images_give_the_bits_of_finished_ones_for_1_to_33_ranks(
 
 /* --- what goes wrong ------------------------------------------------------ */
 
-static snow_status paint_badly(snow_comm *comm, void *user) {
+static snow_status begin_badly(snow_comm *comm, void *user) {
     (void)user;
     const int all[] = {0, 1, 2};
-    float pixels[10 * 9 * 4];
-    sketch s = {.width = 10, .height = 9, .channels = 4, .pixels = pixels};
-    const snow_unfinished unfinished = {step, look, end, &s};
-    snow_image_region region;
+    float pixels[10 * 9 * 4] = {0};
     snow_combiner *combiner;
+    snow_image_region region;
+    snow_status status[3];
+    int y0, y1;
     SNOW_TRY(snow_combiner_new(comm, &combiner));
-    snow_status status[2];
-    int ended[2];
-    for (int n = 0; n < 2; n++) {
-        snow_exchange_params order = {.width = n ? 10 : 0,
-                                      .height = 9,
-                                      .channels = 4,
-                                      .pixels = pixels,
-                                      .stride = 40,
-                                      .ranks = all,
-                                      .grain = n ? 3 : 1,
-                                      .unfinished = &unfinished};
-        begin_sketch(&s, 0, 0);
-        status[n] = snow_exchange(combiner, &order, &region);
-        ended[n] = s.ended;
+    for (int n = 0; n < 3; n++) {
+        const snow_exchange_params order = {.width = n == 0 ? 0 : 10,
+                                            .height = 9,
+                                            .channels = 4,
+                                            .pixels = pixels,
+                                            .stride = 40,
+                                            .ranks = all,
+                                            .grain = n == 1 ? 3 : 1};
+        status[n] = snow_exchange_begin(combiner, &order);
+        if (n < 2)
+            CHECK(!snow_exchange_awaits(combiner, 0, &y0, &y1));
     }
-    snow_combiner_free(combiner);
     CHECK(status[0] == SNOW_STATUS_BAD_USAGE &&
-          status[1] == SNOW_STATUS_BAD_USAGE);
-    CHECK(ended[0] == 1 && ended[1] == 1);
-    return SNOW_STATUS_OK;
+          status[1] == SNOW_STATUS_BAD_USAGE && status[2] == SNOW_STATUS_OK);
+    snow_status ended =
+        snow_exchange_end(combiner, (snow_rectangle){0, 0, 10, 9}, &region);
+    snow_combiner_free(combiner);
+    return ended;
 }
 
-static void an_exchange_that_fails_ends_what_is_unfinished(void **state) {
+static void an_exchange_that_cannot_begin_awaits_nothing(void **state) {
     (void)state;
     snow_context *context = support_context();
-    if (snow_comm_run_threads(context, 3, paint_badly, NULL) != SNOW_STATUS_OK)
+    if (snow_comm_run_threads(context, 3, begin_badly, NULL) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
     snow_context_free(context);
 }
@@ -312,7 +327,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(
             unfinished_images_give_the_bits_of_finished_ones_for_1_to_33_ranks),
-        cmocka_unit_test(an_exchange_that_fails_ends_what_is_unfinished),
+        cmocka_unit_test(an_exchange_that_cannot_begin_awaits_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* settings.c - the settings of a picture: their names and defaults.  What they
- * mean for one volume is found in render/settings_resolve.c. */
+/* render/settings.c - the settings of a picture: their names and defaults.
+ * settings_resolve.c finds what they mean for one volume. */
 #include <snowglass/render.h>
 #include <string.h>
 
