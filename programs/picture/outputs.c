@@ -2,8 +2,8 @@
  * requested, and a file under its final name is complete.
  *
  * The library writes pictures and volumes.  The figures are written after them
- * by the tool itself, which follows the library's rules (src/io/writer.c) for
- * this small text: a hidden .NAME.snow-XXXXXX beside the final file, fsync,
+ * by the tool itself, which follows the library's rules (src/io/output_file.c)
+ * for this small text: a hidden .NAME.snow-XXXXXX beside the final file, fsync,
  * then link or rename. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "picture/outputs.h"

@@ -13,7 +13,7 @@
  * with 130; --resume goes on from there.
  *
  * A second signal stops even the writing at once, with code 130.  On file
- * systems without unnamed files (src/io/writer.c) the hidden file
+ * systems without unnamed files (src/io/output_file.c) the hidden file
  * .NAME.snow-XXXXXX may then be left beside the output.  Only the library knows
  * its name, so the handler cannot remove it. */
 #ifndef INTERRUPT_H

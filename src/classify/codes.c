@@ -297,12 +297,6 @@ static double wide_value(const snow_quantizer *quantizer, size_t code) {
 /* --- quantizers -
  * -------------------------------------------------------------- */
 
-static int32_t lowest_of(snow_type type) {
-    return type == SNOW_TYPE_INT8    ? INT8_MIN
-           : type == SNOW_TYPE_INT16 ? INT16_MIN
-                                     : 0;
-}
-
 snow_status snow_quantizer_make(snow_context *context,
                                 const snow_volume *volume,
                                 const snow_transfer *transfer, double threshold,
@@ -314,7 +308,9 @@ snow_status snow_quantizer_make(snow_context *context,
     quantizer->threshold = threshold;
     quantizer->bytes = snow_type_size(info->type) == 1 ? 1 : 2;
     quantizer->codes = snow_type_size(info->type) == 1 ? 256 : 65536;
-    quantizer->lowest = lowest_of(info->type);
+    quantizer->lowest = info->type == SNOW_TYPE_INT8    ? INT8_MIN
+                        : info->type == SNOW_TYPE_INT16 ? INT16_MIN
+                                                        : 0;
     quantizer->log = transfer->log;
     quantizer->run_count = 0;
     quantizer->stop_count = quantizer->stretch_codes = 0;

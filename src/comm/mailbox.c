@@ -284,18 +284,6 @@ static snow_status deliver_message(mailbox_rank *own, snow_message *message) {
     return SNOW_STATUS_OK;
 }
 
-/* Does a piece of other work with the lock released, so that messages may have
- * arrived; false if there is none. */
-static bool work_meanwhile(mailbox_rank *own) {
-    bool worked;
-    if (!own->meanwhile)
-        return false;
-    pthread_mutex_unlock(&own->mailbox->lock);
-    worked = own->meanwhile(own->meanwhile_user);
-    pthread_mutex_lock(&own->mailbox->lock);
-    return worked;
-}
-
 static snow_status wait_any(void *self, snow_message *messages, int count,
                             int *which) {
     mailbox_rank *own = self;
@@ -303,11 +291,14 @@ static snow_status wait_any(void *self, snow_message *messages, int count,
     int found = -1;
     pthread_mutex_lock(&mailbox->lock);
     mailbox_event news = find_done(mailbox, messages, count, &found);
-    bool busy = true;
+    bool busy = own->meanwhile != NULL; /* while there is other work */
     while (news == NOTHING && !mailbox->stuck) {
-        if (busy)
-            busy = work_meanwhile(own);
-        else
+        if (busy) {
+            /* Messages may arrive while the lock is released. */
+            pthread_mutex_unlock(&mailbox->lock);
+            busy = own->meanwhile(own->meanwhile_user);
+            pthread_mutex_lock(&mailbox->lock);
+        } else
             sleep_at(mailbox, &mailbox->boxes[own->rank]);
         news = find_done(mailbox, messages, count, &found);
     }

@@ -4,16 +4,11 @@
  * them: engine_256x256x110_uint8.raw, head_64x64x93_u16le.raw.gz. */
 #include "formats/unsupported.h"
 #include "formats/write.h"
+#include "io/folder.h"
 
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* The name without folders, whose names mean other things. */
-static const char *base_name(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
 
 /* Parses a word "256x256x110". */
 static bool parse_dims(const char *word, size_t length, int64_t dims[3]) {
@@ -77,7 +72,7 @@ static bool parse_type(const char *word, size_t length, snow_type *type,
 static void read_name(snow_context *context, const char *path,
                       snow_volume_options *options) {
     snow_volume_options found = {0};
-    for (const char *word = base_name(path); *word;) {
+    for (const char *word = snow_path_name(path); *word;) {
         size_t length = strcspn(word, "_.- ");
         if (!found.dims[0])
             parse_dims(word, length, found.dims);

@@ -7,7 +7,7 @@
  *   shared     one brick that lies in memory as wanted: its voxels are used
  *              where they are
  *   copied     bricks with halos: into one dense box, without a message
- *   exchanged  ghost voxels come from their owners (decompose/redistribute.h)
+ *   exchanged  ghost voxels come from their owners (decompose/redistribute.c)
  *   recut      all voxels do
  *
  * All ranks decide alike, from one reduction of a few numbers; only whether a

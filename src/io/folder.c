@@ -10,6 +10,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
+const char *snow_path_name(const char *path) {
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 /* More files than any image series has. */
 #define MOST_FILES ((size_t)1 << 24)
 
@@ -31,12 +36,6 @@ bool snow_is_folder(const char *path) {
     return stat(path, &about) == 0 && S_ISDIR(about.st_mode);
 }
 
-/* The begin of the last component of a path. */
-static const char *last_part(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* The length of "%d", "%5d" or "%05d"; 0 for other text. */
 static size_t number_letters(const char *text) {
     if (*text != '%')
@@ -47,7 +46,7 @@ static size_t number_letters(const char *text) {
 
 bool snow_is_pattern(const char *path) {
     struct stat about;
-    const char *part = last_part(path);
+    const char *part = snow_path_name(path);
     bool signs = strpbrk(part, "*?") != NULL;
     for (const char *at = part; *at && !signs; at++)
         signs = number_letters(at) > 0;
@@ -198,7 +197,7 @@ static snow_status list_at(snow_context *context, char *folder,
 snow_status snow_folder_list(snow_context *context, const char *path,
                              snow_folder *out) {
     bool whole = snow_is_folder(path);
-    const char *pattern = whole ? "" : last_part(path);
+    const char *pattern = whole ? "" : snow_path_name(path);
     size_t length = whole ? strlen(path) : (size_t)(pattern - path);
     char *folder = snow_allocate(context, length + 2);
     if (!folder)
@@ -235,7 +234,7 @@ void snow_folder_free(snow_folder *folder) {
 }
 
 int64_t snow_last_number(const char *path) {
-    const char *part = last_part(path), *end = part + strlen(part);
+    const char *part = snow_path_name(path), *end = part + strlen(part);
     while (end > part && !isdigit((unsigned char)end[-1]))
         end--;
     const char *at = end;

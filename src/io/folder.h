@@ -11,6 +11,9 @@ typedef struct snow_folder {
     size_t count;
 } snow_folder;
 
+/* The last component of a path. */
+const char *snow_path_name(const char *path);
+
 /* True if the first `length` characters of a path name an existing file or
  * folder. */
 bool snow_is_there(const char *path, size_t length);

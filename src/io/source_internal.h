@@ -3,7 +3,7 @@
 #ifndef SNOW_IO_SOURCE_INTERNAL_H
 #define SNOW_IO_SOURCE_INTERNAL_H
 
-#include "io/filter.h"
+#include "io/filters/filter.h"
 #include "io/source.h"
 
 struct snow_source {

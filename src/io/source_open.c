@@ -3,7 +3,7 @@
  *
  * A name on the command line may be a pipe, and "-" is standard input; a name
  * in a header, which is untrusted, must be a regular file. */
-#include "io/filter.h"
+#include "io/filters/filter.h"
 #include "io/source_internal.h"
 
 #include <errno.h>

@@ -14,7 +14,8 @@
  * of all ranks cover the grid and do not overlap, before and after. */
 #include "parallel/open.h"
 #include "classify/gradient_opacity.h"
-#include "decompose/redistribute.h"
+#include "comm/comm.h"
+#include "decompose/box.h"
 #include "decompose/slab.h"
 #include "transfer/look.h"
 #include "volume/mask.h"

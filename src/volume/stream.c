@@ -213,20 +213,14 @@ static snow_status compare(const snow_volume *volume, const snow_volume *slab,
                      volume->stream->path, (long long)part->stored[2]);
 }
 
-/* Whether a remark on a slab holds for the volume: one on what a mask or plane
- * leaves does not. */
-static bool may_remark(const snow_volume_options *options) {
-    const double *plane = options->clip[0];
-    return !options->mask && plane[0] == 0 && plane[1] == 0 && plane[2] == 0;
-}
-
 static snow_status open_slab(snow_context *context, snow_stream *stream,
                              const snow_volume_options *options,
                              snow_volume **out) {
     snow_volume_info info;
     double begin = snow_seconds();
     listen_once(context, stream);
-    if (!may_remark(options))
+    /* A remark on what a mask or plane leaves does not hold for the volume. */
+    if (snow_mask_asked(options))
         snow_context_set_warning(context, NULL, NULL);
     snow_status status =
         stream->open(context, stream->path, options, &info, out);
@@ -264,14 +258,6 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     return SNOW_STATUS_OK;
 }
 
-/* What a mask or planes have left of the slabs that one visit has read. */
-static void note_empty(const snow_volume *slab, snow_stream *stream) {
-    if (!slab->emptied)
-        stream->left = true;
-    stream->mask_range[0] = fmin(stream->mask_range[0], slab->mask_range[0]);
-    stream->mask_range[1] = fmax(stream->mask_range[1], slab->mask_range[1]);
-}
-
 /* As of a volume in memory: of one that is cropped nothing is said. */
 static void warn_empty(const snow_volume *volume) {
     static const int64_t none[3][2];
@@ -282,19 +268,6 @@ static void warn_empty(const snow_volume *volume) {
         return;
     stream->told_empty = true;
     snow_mask_remark(volume->context, options, stream->mask_range);
-}
-
-/* Its voxels' room is left to the next one. */
-static void drop_slab(snow_volume *slab) {
-    snow_context *context = slab->context;
-    int64_t voxels;
-    uint64_t bytes;
-    snow_volume_count(slab->info.dims, slab->info.type, &voxels, &bytes);
-    snow_release(context, context->spare);
-    context->spare = slab->owned;
-    context->spare_bytes = (size_t)bytes;
-    slab->owned = NULL;
-    snow_volume_close(slab);
 }
 
 void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
@@ -309,12 +282,23 @@ void snow_slabs_open(const snow_volume *volume, const snow_slab_cut *cut,
     stream->mask_range[0] = stream->mask_range[1] = NAN;
 }
 
+/* The room of the slab's voxels is left to the next one. */
 static void drop_present(snow_slabs *slabs) {
+    snow_context *context = slabs->volume->context;
+    snow_volume *slab = slabs->slab;
+    int64_t voxels;
+    uint64_t bytes;
     if (slabs->number) /* the progress is that of the whole again */
-        snow_monitor_whole(slabs->volume->context->monitor, slabs->whole);
-    if (slabs->slab)
-        drop_slab(slabs->slab);
+        snow_monitor_whole(context->monitor, slabs->whole);
     slabs->slab = NULL;
+    if (!slab)
+        return;
+    snow_volume_count(slab->info.dims, slab->info.type, &voxels, &bytes);
+    snow_release(context, context->spare);
+    context->spare = slab->owned;
+    context->spare_bytes = (size_t)bytes;
+    slab->owned = NULL;
+    snow_volume_close(slab);
 }
 
 /* Whether a slab of a file is left, from `next` on. */
@@ -347,7 +331,12 @@ snow_status snow_slabs_next(snow_slabs *slabs, const snow_volume **slab) {
                        left < slabs->count ? left : slabs->count,
                        slabs->cut.ghosts, &slabs->slab));
     slabs->next += slabs->falls ? -slabs->count : slabs->count;
-    note_empty(slabs->slab, volume->stream);
+    snow_stream *stream = volume->stream;
+    stream->left = stream->left || !slabs->slab->emptied;
+    stream->mask_range[0] =
+        fmin(stream->mask_range[0], slabs->slab->mask_range[0]);
+    stream->mask_range[1] =
+        fmax(stream->mask_range[1], slabs->slab->mask_range[1]);
     *slab = slabs->slab;
     return SNOW_STATUS_OK;
 }

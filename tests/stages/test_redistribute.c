@@ -2,7 +2,8 @@
  * grid into boxes, in any layout in memory, against a copy in one process. */
 #include "support/support.h"
 
-#include "decompose/redistribute.h"
+#include "comm/comm.h"
+#include "decompose/box.h"
 
 #define BOXES_MOST 80
 

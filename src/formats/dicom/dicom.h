@@ -2,11 +2,13 @@
  *
  *   files   files.c    which files belong together
  *     |
- *   parse   parse.c    a file's elements
+ *   parse   parse.c    a file's elements, values.c their values
  *     |
  *   header  header.c   a file's image, and its frames
  *     |
- *   series  series.c   which frames form a volume, their order and positions
+ *   series  groups.c   which frames may be slices of one volume
+ *           series.c   their order and positions
+ *           spacing.c  their distances
  *     |
  *   voxels  voxels.c   frames scaled and put in place
  *     |
@@ -65,7 +67,33 @@ typedef struct dicom_frame {
     double keys[DICOM_KEYS];
 } dicom_frame;
 
-/* --- parse.c --------------------------------------------------------
+/* --- groups.c, series.c, spacing.c ------------------------------------ */
+
+/* The order of two numbers: below 0, 0 or above 0. */
+static inline int snow_dicom_order(double a, double b) {
+    return (a > b) - (a < b);
+}
+
+static inline double snow_dicom_dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline double snow_dicom_smallest_pixel(const dicom_frame *frame) {
+    return frame->pixel[0] < frame->pixel[1] ? frame->pixel[0]
+                                             : frame->pixel[1];
+}
+
+/* The name of its file, for messages. */
+static inline const char *snow_dicom_name(const dicom_frame *frame) {
+    const char *path = frame->image->path;
+    return path ? snow_path_name(path) : "it";
+}
+
+/* The order of two frames that nothing but their files distinguishes. */
+int snow_dicom_compare_sources(const dicom_frame *a, const dicom_frame *b);
+
+/* --- parse.c, values.c
+ * --------------------------------------------------------
  */
 
 /* Of the progress of reading a series, one part in so many is headers. */
@@ -174,6 +202,17 @@ typedef struct dicom_stack {
     double gap_least, gap_most, gap; /* mm between positions; between slices */
     bool given;                      /* gap is given */
 } dicom_stack;
+
+static inline const double *snow_dicom_position(const dicom_stack *stack,
+                                                size_t index) {
+    return stack->frames[index * stack->times].position;
+}
+
+double snow_dicom_distance(const double a[3], const double b[3]);
+
+/* Measures the distances of neighbours along the normal, and makes even slices
+ * between them if they are not on an even grid.  Errors: as below. */
+snow_status snow_dicom_space_slices(dicom_stack *stack, const double normal[3]);
 
 /* Orders the frames of a group and finds the positions of its slices.  Gives no
  * warnings.  Free with snow_dicom_stack_free.  Errors: SNOW_STATUS_BAD_INPUT (a

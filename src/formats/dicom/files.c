@@ -30,19 +30,14 @@ static snow_status probe(snow_context *context, const char *path, bool *is,
     return status;
 }
 
-/* A file that cannot be read does not count as DICOM. */
-static bool is_dicom(snow_context *context, const char *path) {
-    bool is;
-    size_t got;
-    return probe(context, path, &is, &got) == SNOW_STATUS_OK && is;
-}
-
 bool snow_dicom_among(snow_context *context, const snow_folder *files,
                       snow_format_finder *find) {
     for (size_t i = 0; i < files->count; i++) {
         const snow_format *format = find(files->paths[i]);
+        bool is;
+        size_t got;
         if ((!format || format == &snow_format_dicom) &&
-            is_dicom(context, files->paths[i]))
+            probe(context, files->paths[i], &is, &got) == SNOW_STATUS_OK && is)
             return true;
     }
     return false;
@@ -133,15 +128,10 @@ static snow_status add_path(collection *c, char *path, const char *series) {
     return status;
 }
 
-static const char *name_of(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Whether a file may be a slice, by its name: "IM_0004", "1.2.840.4",
  * "4.dcm". */
 static bool may_be_slice(const char *path) {
-    const char *dot = strrchr(name_of(path), '.');
+    const char *dot = strrchr(snow_path_name(path), '.');
     return !dot || (dot[1] >= '0' && dot[1] <= '9') ||
            snow_format_has_name(&snow_format_dicom, path);
 }
@@ -161,7 +151,7 @@ static snow_status add_scrap(collection *c, const char *path,
     }
     if ((status != SNOW_STATUS_OK || bytes < HEAD_BYTES) &&
         may_be_slice(path) && !c->scraps++)
-        c->scrap = name_of(path);
+        c->scrap = snow_path_name(path);
     return SNOW_STATUS_OK;
 }
 
@@ -340,11 +330,11 @@ static void add_siblings(collection *c, const char *path, snow_folder *files) {
     size_t unread = 0;
     for (size_t i = 0; i < files->count; i++) {
         char *file = files->paths[i];
-        if (strcmp(name_of(file), name_of(path)) == 0)
+        if (strcmp(snow_path_name(file), snow_path_name(path)) == 0)
             continue;
         snow_status status = add_file(c, file, series);
         if (status != SNOW_STATUS_OK && !unread++)
-            first = name_of(file);
+            first = snow_path_name(file);
     }
     if (unread)
         snow_notify(c->context,

@@ -7,6 +7,7 @@
  * right. */
 #include "formats/nifti/nifti.h"
 #include "formats/write.h"
+#include "io/folder.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -89,9 +90,7 @@ static char *pair_letters(char *name) {
 static snow_status open_other(const snow_source *source, const char *wanted,
                               snow_source **out) {
     snow_context *context = snow_source_context(source);
-    const char *path = snow_source_name(source);
-    const char *slash = strrchr(path, '/');
-    const char *own = slash ? slash + 1 : path;
+    const char *own = snow_path_name(snow_source_name(source));
     size_t room = strlen(own) + 4;
     char *name = snow_allocate_clear(context, room);
     if (!name)

@@ -1,6 +1,6 @@
 /* formats/vtk/vti.c - image data of VTK's XML files: .vti. */
 #include "formats/vtk/vti.h"
-#include "io/filters.h"
+#include "io/filters/filters.h"
 
 #include <string.h>
 

@@ -9,7 +9,7 @@
  *
  * All counts have 4 or 8 bytes, according to the file's header_type. */
 #include "formats/vtk/vti.h"
-#include "io/filters.h"
+#include "io/filters/filters.h"
 
 #include <string.h>
 

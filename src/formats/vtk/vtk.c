@@ -16,7 +16,7 @@
  * which VTK writes before those of points. */
 #include "formats/vtk/vtk.h"
 #include "formats/ascii.h"
-#include "io/filters.h"
+#include "io/filters/filters.h"
 
 #include <ctype.h>
 #include <string.h>

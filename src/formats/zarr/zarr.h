@@ -2,7 +2,8 @@
  * folder's reader and tests.
  *
  *   store.c   names -> bytes, from a folder or from memory
- *   meta.c    .zarray, zarr.json -> the description of an array
+ *   node.c    .zarray, .zgroup, .zattrs, zarr.json -> what a folder is
+ *   meta.c    these -> the description of an array
  *   codec.c   the codecs, as steps; fill values
  *   find.c    a path -> the array to read, possibly a level of an image
  *   place.c   axes and transformations -> positions of voxels
@@ -75,7 +76,7 @@ snow_status snow_zarr_visit(const zarr_store *store, const char *path,
  * empty; returns false if it does not fit. */
 bool snow_zarr_join(const char *path, const char *name, char *out);
 
-/* --- meta.c, codec.c ----------------------------------------------
+/* --- node.c, meta.c, codec.c ----------------------------------------------
  */
 
 typedef enum zarr_packer {

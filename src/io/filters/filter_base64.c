@@ -1,10 +1,10 @@
-/* io/filter_base64.c - the filter stage that decodes base64 (RFC 4648, section
- * 4), in which XML files store binary data.
+/* io/filters/filter_base64.c - the filter stage that decodes base64 (RFC 4648,
+ * section 4), in which XML files store binary data.
  *
  * Four characters encode three bytes, fewer before padding. Encoded parts may
  * follow one another, each with its own padding: their bytes are joined. The
  * data end before the first character that is neither base64 nor blank. */
-#include "io/filter.h"
+#include "io/filters/filter.h"
 
 /* Classes of characters other than the six-bit values. */
 enum { BLANK = 64, PADDING = 65, FOREIGN = 66 };

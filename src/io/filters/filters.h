@@ -1,9 +1,9 @@
-/* io/filters.h - encodings that some formats use for their data, and declared
- * sizes of data; extends io/source.h. */
+/* io/filters/filters.h - encodings that some formats use for their data, and
+ * declared sizes of data; extends io/source.h. */
 #ifndef SNOW_IO_FILTERS_H
 #define SNOW_IO_FILTERS_H
 
-#include "io/filter.h"
+#include "io/filters/filter.h"
 #include "io/source.h"
 
 /* Declares that from here on the bytes are base64 text, up to the first

@@ -1,13 +1,12 @@
-/* io/filter_inflate.c - the filter stage that unpacks gzip (RFC 1952) and zlib
- * (RFC 1950) streams.
+/* io/filters/filter_inflate.c - the filter stage that unpacks gzip (RFC 1952)
+ * and zlib (RFC 1950) streams.
  *
  * zlib verifies the check sum, and for gzip the length, at a stream's end; the
  * stage reports the end only after that. A gzip file may have several members,
  * whose bytes are joined. */
-#include "io/filter.h"
+#include "io/filters/filter.h"
 #include "io/source.h"
-
-#include <zlib.h>
+#include "io/zlib_memory.h"
 
 /* What inflate may have consumed but not returned: its bit buffer and a started
  * run. In packed bytes, generously. */
@@ -24,16 +23,6 @@ bool snow_looks_gzip(const unsigned char *bytes, size_t size) {
     /* Two magic bytes, method 8 (deflate), no reserved flag. */
     return size >= 4 && bytes[0] == 0x1f && bytes[1] == 0x8b && bytes[2] == 8 &&
            !(bytes[3] & 0xe0);
-}
-
-/* zlib's memory comes from the context too, so that it is counted, limited and
- * made to fail in tests like all other. */
-static voidpf allocate_for_zlib(voidpf context, uInt count, uInt size) {
-    return snow_allocate_array(context, count, size);
-}
-
-static void release_for_zlib(voidpf context, voidpf block) {
-    snow_release(context, block);
 }
 
 /* After the end of a member: begins the next one, or ends the data. */
@@ -116,9 +105,7 @@ snow_status snow_filter_stage_open_inflate(snow_filter_stage *below,
     if (!inflater)
         return SNOW_STATUS_NO_MEMORY;
     z_stream *stream = &inflater->stream;
-    stream->zalloc = allocate_for_zlib;
-    stream->zfree = release_for_zlib;
-    stream->opaque = below->context;
+    snow_zlib_use(stream, below->context);
     /* 15: the largest window; + 32: gzip or zlib, according to the header. */
     int answer = inflateInit2(stream, 15 + 32);
     inflater->filter.name = below->name;

@@ -1,6 +1,6 @@
-/* io/filters.c - adds the stages of filter_base64.c and filter_blocks.c to a
- * source; the end of data that are followed by others. */
-#include "io/filters.h"
+/* io/filters/filters.c - adds the stages of filter_base64.c and filter_blocks.c
+ * to a source; the end of data that are followed by others. */
+#include "io/filters/filters.h"
 #include "io/source_internal.h"
 
 snow_status snow_source_unpack_base64(snow_source *source) {

@@ -1,9 +1,9 @@
-/* io/filter.c - buffering, and the two bottom stages, which read a file or
- * memory.
+/* io/filters/filter.c - buffering, and the two bottom stages, which read a file
+ * or memory.
  *
  * Files are read by descriptor: the C library's streams would allocate outside
  * of the context. */
-#include "io/filter.h"
+#include "io/filters/filter.h"
 
 #include "base/monitor.h"
 

@@ -1,12 +1,11 @@
-/* io/filter_blocks.c - the filter stage that unpacks a sequence of zlib streams
- * (RFC 1950) of known sizes, as in VTK's XML files.
+/* io/filters/filter_blocks.c - the filter stage that unpacks a sequence of zlib
+ * streams (RFC 1950) of known sizes, as in VTK's XML files.
  *
  * Since the sizes precede the data, skipped blocks need not be unpacked: a
  * block is skipped by its packed size. */
-#include "io/filter.h"
+#include "io/filters/filter.h"
 #include "io/source.h"
-
-#include <zlib.h>
+#include "io/zlib_memory.h"
 
 /* Bytes of a stream besides its data: header, check sum, last bits. */
 #define STREAM_SLACK 64
@@ -20,14 +19,6 @@ typedef struct blocks_filter {
     uint64_t left;   /* unpacked bytes that it has still to return */
     bool damaged;    /* a jump failed: the position is unknown */
 } blocks_filter;
-
-static voidpf allocate_for_zlib(voidpf context, uInt count, uInt size) {
-    return snow_allocate_array(context, count, size);
-}
-
-static void release_for_zlib(voidpf context, voidpf block) {
-    snow_release(context, block);
-}
 
 static uint64_t size_of(const blocks_filter *filter, uint64_t block) {
     return block + 1 == filter->blocks.count ? filter->blocks.last
@@ -205,9 +196,7 @@ snow_status snow_filter_stage_open_blocks(snow_filter_stage *below,
         snow_filter_stage_allocate(below->context, sizeof *filter);
     if (!filter)
         return SNOW_STATUS_NO_MEMORY;
-    filter->stream.zalloc = allocate_for_zlib;
-    filter->stream.zfree = release_for_zlib;
-    filter->stream.opaque = below->context;
+    snow_zlib_use(&filter->stream, below->context);
     if (inflateInit2(&filter->stream, 15) != Z_OK) {
         snow_release(below->context, filter);
         return SNOW_STATUS_NO_MEMORY; /* snow_allocate set the message */

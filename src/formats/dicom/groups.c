@@ -1,0 +1,87 @@
+/* formats/dicom/groups.c - which frames may be slices of one volume. */
+#include "formats/dicom/dicom.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Cosines are written with six digits, or fewer. */
+#define SAME_COSINE 1e-3
+
+/* Numbers that differ only by rounding or printing are equal. */
+static int order_about(double a, double b, double tolerance) {
+    return fabs(a - b) <= tolerance ? 0 : snow_dicom_order(a, b);
+}
+
+static int compare_images(const dicom_image *a, const dicom_image *b) {
+    if (a->series_number != b->series_number)
+        return a->series_number < b->series_number ? -1 : 1;
+    int by = strcmp(a->series, b->series);
+    if (!by)
+        by = snow_dicom_order((double)a->columns, (double)b->columns);
+    if (!by)
+        by = snow_dicom_order((double)a->rows, (double)b->rows);
+    if (!by)
+        by = a->samples - b->samples;
+    if (!by)
+        by = a->allocated - b->allocated;
+    if (!by)
+        by = a->is_signed - b->is_signed;
+    return by ? by : strcmp(a->photometric, b->photometric);
+}
+
+/* 0 if two frames may be slices of one volume. */
+static int compare_frames(const dicom_frame *a, const dicom_frame *b) {
+    int by = a->image == b->image ? 0 : compare_images(a->image, b->image);
+    if (!by)
+        by = b->placed - a->placed;
+    for (int i = 0; i < 3 && !by && a->placed; i++) {
+        by = order_about(a->row[i], b->row[i], SAME_COSINE);
+        if (!by)
+            by = order_about(a->column[i], b->column[i], SAME_COSINE);
+    }
+    for (int i = 0; i < 2 && !by; i++)
+        by = order_about(a->pixel[i], b->pixel[i], 1e-4 * a->pixel[i]);
+    return by;
+}
+
+/* By their files, if nothing else distinguishes them. */
+int snow_dicom_compare_sources(const dicom_frame *a, const dicom_frame *b) {
+    int by = snow_dicom_order(a->keys[DICOM_KEY_INSTANCE],
+                              b->keys[DICOM_KEY_INSTANCE]);
+    if (!by)
+        by = strcmp(a->image->instance, b->image->instance);
+    if (!by && a->image->path && b->image->path)
+        by = strcmp(a->image->path, b->image->path);
+    return by ? by : snow_dicom_order((double)a->number, (double)b->number);
+}
+
+static int by_image(const void *a, const void *b) {
+    const dicom_frame *x = a, *y = b;
+    int by = x->image == y->image ? 0 : compare_images(x->image, y->image);
+    return by ? by : snow_dicom_compare_sources(x, y);
+}
+
+/* "About equal" is not an order for sorting: each group is gathered around its
+ * first frame instead.  Series have few groups. */
+size_t snow_dicom_group(dicom_frame *frames, size_t count,
+                        dicom_group *groups) {
+    size_t made = 0;
+    qsort(frames, count, sizeof *frames, by_image);
+    for (size_t first = 0; first < count;) {
+        size_t end = first + 1;
+        for (size_t i = end; i < count; i++) {
+            if (frames[i].image != frames[first].image &&
+                compare_images(frames[i].image, frames[first].image))
+                break; /* sorted: no other belongs to it */
+            if (compare_frames(&frames[first], &frames[i]))
+                continue;
+            dicom_frame moved = frames[i];
+            memmove(&frames[end + 1], &frames[end], (i - end) * sizeof moved);
+            frames[end++] = moved;
+        }
+        groups[made++] = (dicom_group){first, end - first};
+        first = end;
+    }
+    return made;
+}

@@ -1,0 +1,163 @@
+/* formats/dicom/spacing.c - the distances of a stack's slices: even ones,
+ * missing ones, and slices at even distances between uneven ones. */
+#include "formats/dicom/dicom.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Slices may deviate by this share of a gap from even positions: less than is
+ * visible. */
+#define EVEN 0.05
+
+/* Gaps within this share of one another count as equal. */
+#define SAME_GAP 0.1
+
+/* Resampling uneven slices makes at most this many times as many. */
+#define MOST_FINER 8
+
+double snow_dicom_distance(const double a[3], const double b[3]) {
+    const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return sqrt(snow_dicom_dot(d, d));
+}
+
+static double gap_at(const dicom_stack *s, const double normal[3], size_t i) {
+    return snow_dicom_dot(snow_dicom_position(s, i + 1), normal) -
+           snow_dicom_dot(snow_dicom_position(s, i), normal);
+}
+
+static int by_size(const void *a, const void *b) {
+    return snow_dicom_order(*(const double *)a, *(const double *)b);
+}
+
+/* The median gap. */
+static snow_status usual_gap(const dicom_stack *s, const double normal[3],
+                             double *out) {
+    size_t count = s->places - 1;
+    double *gaps = snow_allocate_array(s->context, count, sizeof *gaps);
+    if (!gaps)
+        return SNOW_STATUS_NO_MEMORY;
+    for (size_t i = 0; i < count; i++)
+        gaps[i] = gap_at(s, normal, i);
+    qsort(gaps, count, sizeof *gaps, by_size);
+    *out = gaps[(count - 1) / 2];
+    snow_release(s->context, gaps);
+    return SNOW_STATUS_OK;
+}
+
+/* The multiple of the usual gap, 0 if it is not a whole number. */
+static double multiple(double gap, double usual) {
+    double times = floor(gap / usual + 0.5);
+    return fabs(gap - times * usual) <= SAME_GAP * usual ? times : 0;
+}
+
+/* A single gap of twice or three times the usual one between usual ones is a
+ * missing slice; two in a row are how the slices were acquired. */
+static snow_status refuse_missing(const dicom_stack *s,
+                                  const double normal[3]) {
+    double usual, before = 1;
+    size_t found = s->places;
+    SNOW_TRY(usual_gap(s, normal, &usual));
+    for (size_t i = 0; i + 1 < s->places; i++) {
+        double times = multiple(gap_at(s, normal, i), usual);
+        if (times < 1 || (times > 1 && before > 1))
+            return SNOW_STATUS_OK;
+        if (times > 1 && found == s->places)
+            found = i;
+        before = times;
+    }
+    if (found == s->places || s->places < 4)
+        return SNOW_STATUS_OK;
+    double gap = gap_at(s, normal, found);
+    double lost = multiple(gap, usual) - 1;
+    const dicom_frame *low = &s->frames[found * s->times];
+    const dicom_frame *high = &s->frames[(found + 1) * s->times];
+    return snow_fail(
+        s->context, SNOW_STATUS_BAD_INPUT,
+        "%.0f of its slices %s missing between %s and %s (frames %lld and "
+        "%lld), which lie %g mm apart while others lie %g; add %s",
+        lost, lost > 1 ? "are" : "is", snow_dicom_name(low),
+        snow_dicom_name(high), (long long)low->number, (long long)high->number,
+        gap, usual, lost > 1 ? "them" : "it");
+}
+
+/* The largest snow_dicom_distance of a position from its place on the line from
+ * the first to the last at `share` of it; along the line, or only across it. */
+static double farthest(const dicom_stack *s, const double normal[3],
+                       bool beside) {
+    const double *a = snow_dicom_position(s, 0),
+                 *b = snow_dicom_position(s, s->places - 1);
+    double all = snow_dicom_dot(b, normal) - snow_dicom_dot(a, normal),
+           most = 0;
+    for (size_t i = 0; i < s->places; i++) {
+        const double *p = snow_dicom_position(s, i);
+        double share =
+            beside
+                ? (snow_dicom_dot(p, normal) - snow_dicom_dot(a, normal)) / all
+                : (double)i / (double)(s->places - 1);
+        double want[3];
+        for (int k = 0; k < 3; k++)
+            want[k] = a[k] + share * (b[k] - a[k]);
+        double off = snow_dicom_distance(p, want);
+        most = off > most || isnan(off) ? off : most;
+    }
+    return most;
+}
+
+/* Makes slices at even distances from the first position to the last, as close
+ * as the closest positions. */
+static snow_status even_out(dicom_stack *s, const double normal[3]) {
+    double first = snow_dicom_dot(snow_dicom_position(s, 0), normal);
+    double all =
+        snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) - first;
+    double most = (double)MOST_FINER * (double)s->places;
+    double steps = ceil(all / s->gap_least - 1e-3);
+    if (!(steps < most))
+        return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
+                         "its slices lie %g to %g mm apart, too unevenly for "
+                         "resampling; open a part of them",
+                         s->gap_least, s->gap_most);
+    s->slice_count = (size_t)steps + 1;
+    s->slices =
+        snow_allocate_array(s->context, s->slice_count, sizeof *s->slices);
+    if (!s->slices)
+        return SNOW_STATUS_NO_MEMORY;
+    s->gap = all / steps;
+    size_t low = 0;
+    for (size_t i = 0; i < s->slice_count; i++) {
+        double at = first + s->gap * (double)i;
+        while (low + 2 < s->places &&
+               snow_dicom_dot(snow_dicom_position(s, low + 1), normal) <= at)
+            low++;
+        double below = snow_dicom_dot(snow_dicom_position(s, low), normal);
+        double weight = (at - below) / gap_at(s, normal, low);
+        weight = weight < 1e-9 ? 0 : weight > 1 - 1e-9 ? 1 : weight;
+        s->slices[i] = (dicom_slice){low, low + 1, weight};
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* Measures the distances of neighbours, and decides whether an even grid
+ * fits. */
+snow_status snow_dicom_space_slices(dicom_stack *s, const double normal[3]) {
+    double all = snow_dicom_dot(snow_dicom_position(s, s->places - 1), normal) -
+                 snow_dicom_dot(snow_dicom_position(s, 0), normal);
+    s->gap = all / (double)(s->places - 1);
+    s->gap_least = s->gap_most = gap_at(s, normal, 0);
+    for (size_t i = 1; i + 1 < s->places; i++) {
+        double gap = gap_at(s, normal, i);
+        s->gap_least = gap < s->gap_least ? gap : s->gap_least;
+        s->gap_most = gap > s->gap_most ? gap : s->gap_most;
+    }
+    s->given = true;
+    if (farthest(s, normal, false) <= EVEN * s->gap)
+        return SNOW_STATUS_OK;
+    double beside = farthest(s, normal, true);
+    if (!(beside <= snow_dicom_smallest_pixel(s->frames) / 2) &&
+        !(beside <= EVEN * s->gap_least))
+        return snow_fail(s->context, SNOW_STATUS_BAD_INPUT,
+                         "its slices are not aligned: one is %g mm off the "
+                         "line from the first to the last; open a part of them",
+                         beside);
+    SNOW_TRY(refuse_missing(s, normal));
+    return even_out(s, normal);
+}
