@@ -14,7 +14,7 @@
 #ifndef SNOW_ENCODE_DECODE_H
 #define SNOW_ENCODE_DECODE_H
 
-#include "encode/bands.h"
+#include "encode/bands/bands.h"
 #include "simd/isa.h"
 
 #define SNOW_DECODE_ROWS 64 /* a mask of rows is one 64-bit word */

@@ -32,7 +32,7 @@ typedef struct snow_slice_pointer {
 typedef struct snow_scheme snow_scheme;
 typedef struct snow_reader snow_reader;
 
-/* A volume's interesting voxels, or those of a band of rows (encode/bands.h).
+/* A volume's interesting voxels, or those of a band of rows (encode/bands/bands.h).
  * Slices are appended in order; beginning again reuses the buffers.
  *
  * Slices of a whole volume are written as in the paper's figures 4 to 6. Those
@@ -49,7 +49,7 @@ typedef struct snow_sparse {
     unsigned char *ea; /* readable beyond its end */
     size_t ea_bytes, ea_capacity;
     /* IA holds samples (exact method), or codes, normals and factors
-     * (encode/bands.h). */
+     * (encode/bands/bands.h). */
     float *ia;
     size_t ia_voxels, ia_capacity; /* capacity in bytes */
     unsigned char *codes;

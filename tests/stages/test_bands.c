@@ -3,7 +3,7 @@
  * scheme, density, level of instructions and number of threads. */
 #include "support/support.h"
 
-#include "encode/bands.h"
+#include "encode/bands/bands.h"
 #include "simd/isa.h"
 
 #include <math.h>

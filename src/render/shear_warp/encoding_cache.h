@@ -11,7 +11,7 @@
 #ifndef SNOW_RENDER_SHEAR_WARP_ENCODING_CACHE_H
 #define SNOW_RENDER_SHEAR_WARP_ENCODING_CACHE_H
 
-#include "encode/bands.h"
+#include "encode/bands/bands.h"
 
 /* What is known of the bands; zeros at first. */
 typedef struct snow_encoding_cache {

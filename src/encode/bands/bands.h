@@ -1,5 +1,5 @@
-/* encode/bands.h - the sparse matrix of the shear-warp method: the paper's EA,
- * IA and PA (section 3), once for each band of rows.
+/* encode/bands/bands.h - the sparse matrix of the shear-warp method: the
+ * paper's EA, IA and PA (section 3), once for each band of rows.
  *
  *        v                      band 1: rows 32 .. 63 of every slice
  *        |  +-----------+       +-- its own EA, IA, PA[slice]

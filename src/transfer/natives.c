@@ -1,0 +1,200 @@
+/* transfer/natives.c - voxels of 8 and 16 bits, which are counted once by their
+ * native value: all else is computed from these counts. */
+#include "transfer/walk.h"
+
+#include <math.h>
+#include <string.h>
+
+bool snow_natives_counted(snow_type type) {
+    return type == SNOW_TYPE_INT8 || type == SNOW_TYPE_UINT8 ||
+           type == SNOW_TYPE_INT16 || type == SNOW_TYPE_UINT16;
+}
+
+static int smallest_native(snow_type type) {
+    return type == SNOW_TYPE_INT8    ? INT8_MIN
+           : type == SNOW_TYPE_INT16 ? INT16_MIN
+                                     : 0;
+}
+
+/* Bytes that are compared at once. */
+#define EVEN 32
+
+/* Whether these bytes are copies of one value of `size` bytes, 1 or 2.  Empty
+ * regions usually are, and incrementing the same count again and again is
+ * slow. */
+static bool is_even(const void *bytes, size_t size) {
+    uint64_t words[EVEN / sizeof(uint64_t)];
+    memcpy(words, bytes, sizeof words);
+    uint64_t turned = words[0] << 8 * size | words[0] >> (64 - 8 * size);
+    uint64_t differ = words[0] ^ turned;
+    for (size_t n = 1; n < sizeof words / sizeof *words; n++)
+        differ |= words[0] ^ words[n];
+    return !differ;
+}
+
+/* `user` points to the counts. */
+static snow_status count_natives(const snow_volume *volume, void *user) {
+    uint64_t *counts = user;
+    snow_voxel_walk w =
+        snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_EXACT);
+#define COUNT_TYPE(name, c_type, smallest)                             \
+    case name: {                                                       \
+        const c_type *voxels = volume->voxels;                         \
+        const uint64_t some = EVEN / sizeof *voxels;                   \
+        while (snow_voxel_walk_next_run(&w)) {                         \
+            const c_type *at = voxels + (int64_t)w.at + w.ahead;       \
+            const c_type *end = at + (w.end - w.at);                   \
+            while (at < end)                                           \
+                if ((uint64_t)(end - at) >= some &&                    \
+                    is_even(at, sizeof *voxels)) {                     \
+                    counts[*at - (smallest)] += some;                  \
+                    at += some;                                        \
+                } else {                                               \
+                    const c_type *last =                               \
+                        (uint64_t)(end - at) < some ? end : at + some; \
+                    while (at < last)                                  \
+                        counts[*at++ - (smallest)]++;                  \
+                }                                                      \
+        }                                                              \
+        break;                                                         \
+    }
+    switch (volume->info.type) {
+        COUNT_TYPE(SNOW_TYPE_INT8, int8_t, INT8_MIN)
+        COUNT_TYPE(SNOW_TYPE_UINT8, uint8_t, 0)
+        COUNT_TYPE(SNOW_TYPE_INT16, int16_t, INT16_MIN)
+        COUNT_TYPE(SNOW_TYPE_UINT16, uint16_t, 0)
+    default:
+        break;
+    }
+#undef COUNT_TYPE
+    return SNOW_STATUS_OK;
+}
+
+uint64_t snow_natives_nth(const snow_histogram *histogram, int n,
+                          double *value) {
+    const snow_volume_info *info = &histogram->volume->info;
+    int place = info->slope < 0 ? SNOW_DIGITS - 1 - n : n;
+    *value =
+        info->slope * (place + smallest_native(info->type)) + info->intercept;
+    return histogram->log && !(*value > 0) ? 0 : histogram->counts[place];
+}
+
+static void measure_counts(snow_histogram *histogram) {
+    for (int n = 0; n < SNOW_DIGITS; n++) {
+        double value;
+        uint64_t count = snow_natives_nth(histogram, n, &value);
+        if (!count || !isfinite(value))
+            continue;
+        if (!histogram->finite) {
+            histogram->min = value;
+            histogram->at_min = count;
+        }
+        histogram->max = value;
+        histogram->finite += count;
+    }
+}
+snow_status snow_natives_count(snow_histogram *histogram) {
+    SNOW_TRY(snow_histogram_new_tables(histogram, 1, &histogram->counts));
+    SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_EXACT,
+                                  count_natives, histogram->counts));
+    SNOW_TRY(snow_histogram_sum_table(histogram, histogram->counts));
+    measure_counts(histogram);
+    return SNOW_STATUS_OK;
+}
+
+double snow_natives_quantile(const snow_histogram *histogram, uint64_t rank) {
+    for (int n = 0; n < SNOW_DIGITS; n++) {
+        double value;
+        uint64_t count = snow_natives_nth(histogram, n, &value);
+        if (!isfinite(value))
+            continue;
+        if (rank < count)
+            return value;
+        rank -= count;
+    }
+    return histogram->max;
+}
+/* --- the range alone ------------------------------------------------------ */
+
+/* The extremes of native values. */
+typedef struct extremes {
+    bool until_negative; /* data values below 0 end the search */
+    bool any, negative;
+    int low, high;
+} extremes;
+
+#define EXTREMES_BLOCK 65536
+
+static void extremes_of_run(const snow_volume *volume, int64_t first,
+                            int64_t count, int *low, int *high) {
+#define EXTREMES_TYPE(name, c_type)                                \
+    case name: {                                                   \
+        const c_type *at = (const c_type *)volume->voxels + first; \
+        c_type least = at[0], most = at[0];                        \
+        for (int64_t n = 1; n < count; n++) {                      \
+            least = at[n] < least ? at[n] : least;                 \
+            most = at[n] > most ? at[n] : most;                    \
+        }                                                          \
+        *low = least;                                              \
+        *high = most;                                              \
+        break;                                                     \
+    }
+    switch (volume->info.type) {
+        EXTREMES_TYPE(SNOW_TYPE_INT8, int8_t)
+        EXTREMES_TYPE(SNOW_TYPE_UINT8, uint8_t)
+        EXTREMES_TYPE(SNOW_TYPE_INT16, int16_t)
+        EXTREMES_TYPE(SNOW_TYPE_UINT16, uint16_t)
+    default:
+        break;
+    }
+#undef EXTREMES_TYPE
+}
+
+static double data_value(const snow_volume *volume, int native) {
+    return volume->info.slope * native + volume->info.intercept;
+}
+
+static void join_extremes(const snow_volume *volume, int64_t first,
+                          int64_t count, extremes *n) {
+    int low = 0, high = 0;
+    extremes_of_run(volume, first, count, &low, &high);
+    n->low = n->any && n->low < low ? n->low : low;
+    n->high = n->any && n->high > high ? n->high : high;
+    n->any = true;
+    n->negative =
+        data_value(volume, n->low) < 0 || data_value(volume, n->high) < 0;
+}
+
+/* Of the voxels that a volume answers for; `user` are extremes. */
+static snow_status find_extremes_of_part(const snow_volume *volume,
+                                         void *user) {
+    extremes *n = user;
+    snow_voxel_walk w =
+        snow_voxel_walk_begin(volume, false, SNOW_HISTOGRAM_EXACT);
+    while (snow_voxel_walk_next_run(&w))
+        for (uint64_t at = w.at; at < w.end; at += EXTREMES_BLOCK) {
+            uint64_t left = w.end - at;
+            if (n->until_negative && n->negative)
+                return SNOW_STATUS_OK;
+            join_extremes(
+                volume, (int64_t)at + w.ahead,
+                left < EXTREMES_BLOCK ? (int64_t)left : EXTREMES_BLOCK, n);
+        }
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_natives_range(snow_histogram *histogram, bool *found) {
+    const snow_volume *volume = histogram->volume;
+    extremes n = {.until_negative = histogram->need == SNOW_NEED_SIGN};
+    *found = false;
+    SNOW_TRY(snow_histogram_visit(histogram, SNOW_HISTOGRAM_EXACT,
+                                  find_extremes_of_part, &n));
+    double low = data_value(volume, n.low), high = data_value(volume, n.high);
+    if (!n.any || !isfinite(low) || !isfinite(high))
+        return SNOW_STATUS_OK;
+    histogram->min = low < high ? low : high;
+    histogram->max = low < high ? high : low;
+    histogram->finite = 1;
+    *found = !histogram->log || histogram->min > 0;
+    return SNOW_STATUS_OK;
+}
