@@ -23,31 +23,11 @@ typedef struct gradient_opacity_kernels {
     void (*encode)(const double *factors, size_t count, uint16_t *codes);
 } gradient_opacity_kernels;
 
-/* The order matters, so a blank line keeps the two from being sorted. */
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "classify/gradient_opacity.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "classify/gradient_opacity.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "classify/gradient_opacity.tmpl.h"
-#endif
+#define TEMPLATE "classify/gradient_opacity.tmpl.h"
+#include "simd/each_isa.h"
 
 static const gradient_opacity_kernels *kernels_of(snow_isa isa) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return &kernels_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return &kernels_avx2;
-#endif
-    (void)isa;
-    return &kernels_scalar;
+    return SNOW_OF_ISA(isa, &kernels);
 }
 
 snow_status snow_gradient_opacity_init(snow_context *context,

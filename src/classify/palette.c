@@ -23,30 +23,11 @@ typedef struct palette_kernels {
                     float *opacities);
 } palette_kernels;
 
-/* The order matters, so a blank line keeps the two from being sorted. */
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "classify/palette.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "classify/palette.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "classify/palette.tmpl.h"
-#endif
+#define TEMPLATE "classify/palette.tmpl.h"
+#include "simd/each_isa.h"
 
 static const palette_kernels *best_kernels(void) {
-#if SNOW_HAS_AVX
-    if (snow_isa_runs(SNOW_ISA_AVX512))
-        return &kernels_avx512;
-    if (snow_isa_runs(SNOW_ISA_AVX2))
-        return &kernels_avx2;
-#endif
-    return &kernels_scalar;
+    return SNOW_OF_ISA(snow_isa_resolve(SNOW_ISA_AUTO), &kernels);
 }
 
 /* What the threads need to make looks or samples. */

@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-static void over_grey(float *restrict front, const float *restrict back,
-                      size_t count) {
+static void over_grey_scalar(float *restrict front, const float *restrict back,
+                             size_t count) {
     for (size_t i = 0; i < count; i++) {
         float left = 1 - front[2 * i + 1];
         front[2 * i] += left * back[2 * i];
@@ -15,8 +15,8 @@ static void over_grey(float *restrict front, const float *restrict back,
     }
 }
 
-static void over_rgba(float *restrict front, const float *restrict back,
-                      size_t count) {
+static void over_rgba_scalar(float *restrict front, const float *restrict back,
+                             size_t count) {
     for (size_t i = 0; i < count; i++) {
         float left = 1 - front[4 * i + 3];
         for (size_t c = 0; c < 4; c++)
@@ -36,22 +36,16 @@ static void over_rgba(float *restrict front, const float *restrict back,
 #endif
 
 snow_composite_fn *snow_over_pick(snow_isa isa, int channels) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return channels == 2 ? over_grey_avx512 : over_rgba_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return channels == 2 ? over_grey_avx2 : over_rgba_avx2;
-#endif
-    (void)isa;
-    return channels == 2 ? over_grey : over_rgba;
+    return channels == 2 ? SNOW_OF_ISA(isa, over_grey)
+                         : SNOW_OF_ISA(isa, over_rgba);
 }
 
 void snow_over_row(float *front, const float *back, size_t count,
                    int channels) {
     if (channels == 2)
-        over_grey(front, back, count);
+        over_grey_scalar(front, back, count);
     else
-        over_rgba(front, back, count);
+        over_rgba_scalar(front, back, count);
 }
 
 void snow_composite_sheet(float *image, snow_sheet *sheet,

@@ -3,30 +3,11 @@
 
 #include <string.h>
 
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "composite/tile_isa.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "composite/tile_isa.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "composite/tile_isa.h"
-#endif
+#define TEMPLATE "composite/tile_isa.h"
+#include "simd/each_isa.h"
 
 snow_tile_fn *snow_tile_of(snow_isa isa, int channels) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return channels == 2 ? tile2_avx512 : tile4_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return channels == 2 ? tile2_avx2 : tile4_avx2;
-#endif
-    (void)isa;
-    return channels == 2 ? tile2_scalar : tile4_scalar;
+    return channels == 2 ? SNOW_OF_ISA(isa, tile2) : SNOW_OF_ISA(isa, tile4);
 }
 
 void snow_tile_clear(float *pixels, size_t count, int channels) {

@@ -40,31 +40,9 @@ static void next_mask(snow_walk *walk, snow_span *spans, uint64_t *bits,
     set_spans(bits, spans, walk->reader->next_row(walk, spans));
 }
 
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "encode/decode.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "encode/decode.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "encode/decode.tmpl.h"
-#endif
+#define TEMPLATE "encode/decode.tmpl.h"
+#include "simd/each_isa.h"
 
 const snow_decode_fns *snow_decode_fns_of(snow_isa isa) {
-    static const snow_decode_fns scalar = {windows_scalar, read_scalar};
-#if SNOW_HAS_AVX
-    static const snow_decode_fns avx2 = {windows_avx2, read_avx2};
-    static const snow_decode_fns avx512 = {windows_avx512, read_avx512};
-    if (isa == SNOW_ISA_AVX2)
-        return &avx2;
-    if (isa == SNOW_ISA_AVX512)
-        return &avx512;
-#endif
-    (void)isa;
-    return &scalar;
+    return SNOW_OF_ISA(isa, &decode_fns);
 }

@@ -111,3 +111,5 @@ TARGET static void NAME(read)(const snow_bands *bands, int64_t slice,
         row = end;
     }
 }
+
+static const snow_decode_fns NAME(decode_fns) = {NAME(windows), NAME(read)};

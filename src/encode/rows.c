@@ -45,14 +45,7 @@
 
 /* By instruction set, and bytes of a code less one: see rows.tmpl.h. */
 static snow_encode_rows_fn *const *loops_of(snow_isa isa, int bytes) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return bytes == 1 ? loops_8_avx512 : loops_16_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return bytes == 1 ? loops_8_avx2 : loops_16_avx2;
-#endif
-    (void)isa;
-    return bytes == 1 ? loops_8_scalar : loops_16_scalar;
+    return bytes == 1 ? SNOW_OF_ISA(isa, loops_8) : SNOW_OF_ISA(isa, loops_16);
 }
 
 size_t snow_columns_of_masks(const uint64_t *masks, size_t words,

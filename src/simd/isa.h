@@ -24,6 +24,16 @@
 #define SNOW_HAS_AVX 0
 #endif
 
+/* `name` with the suffix of an instruction set, which was resolved. */
+#if SNOW_HAS_AVX
+#define SNOW_OF_ISA(isa, name)                \
+    ((isa) == SNOW_ISA_AVX512 ? name##_avx512 \
+     : (isa) == SNOW_ISA_AVX2 ? name##_avx2   \
+                              : name##_scalar)
+#else
+#define SNOW_OF_ISA(isa, name) ((void)(isa), name##_scalar)
+#endif
+
 /* Whether this machine has an instruction set; AUTO and SCALAR always. */
 bool snow_isa_runs(snow_isa isa);
 

@@ -92,8 +92,8 @@
  *                                  uint64_t, rising, to n; returns their
  *                                  number.  Writes 64 + 8 numbers at most
  *
- * The file that includes the template includes the three vec_*.h headers, and
- * this one once for each instruction set; no file needs special compiler flags.
+ * simd/each_isa.h includes a template for every instruction set; no file needs
+ * special compiler flags.
  */
 /* clang-format on */
 #include "simd/isa.h"

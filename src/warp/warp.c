@@ -37,20 +37,8 @@ typedef struct warp_group {
     float down[2 * GROUP];   /* may be read from any index */
 } warp_group;
 
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "warp/warp_isa.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "warp/warp_isa.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "warp/warp_isa.h"
-#endif
+#define TEMPLATE "warp/warp_isa.h"
+#include "simd/each_isa.h"
 
 /* Both functions of an instruction set. */
 typedef struct warp_pair {

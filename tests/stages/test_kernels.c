@@ -1032,20 +1032,8 @@ typedef struct word_output {
     uint16_t least[4];
 } word_output;
 
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "reference/shear_warp_operations.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "reference/shear_warp_operations.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "reference/shear_warp_operations.tmpl.h"
-#endif
+#define TEMPLATE "reference/shear_warp_operations.tmpl.h"
+#include "simd/each_isa.h"
 
 typedef void words_fn(const word_input *in, word_output *out);
 

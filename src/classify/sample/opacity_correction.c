@@ -16,31 +16,13 @@ static const float ray_places[SNOW_WINDOW_MOST + 17] = {
     64, 65, 66, 67, 68, 69, 70, 71, 72, 73, 74, 75, 76, 77, 78, 79,
 };
 
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "classify/sample/opacity_correction_isa.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "classify/sample/opacity_correction_isa.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "classify/sample/opacity_correction_isa.h"
-#endif
+#define TEMPLATE "classify/sample/opacity_correction_isa.h"
+#include "simd/each_isa.h"
 
 snow_ray_sample_fn *snow_ray_sample_of(snow_isa isa, int code_bytes,
                                        int channels, bool shaded,
                                        bool with_gradient_opacity) {
     int bytes = code_bytes == 2, color = channels == 4;
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return ray_samples_avx512[bytes][color][shaded][with_gradient_opacity];
-    if (isa == SNOW_ISA_AVX2)
-        return ray_samples_avx2[bytes][color][shaded][with_gradient_opacity];
-#endif
-    (void)isa;
-    return ray_samples_scalar[bytes][color][shaded][with_gradient_opacity];
+    return SNOW_OF_ISA(
+        isa, ray_samples)[bytes][color][shaded][with_gradient_opacity];
 }

@@ -19,31 +19,12 @@ typedef snow_sample_fn *snow_sample_table[2][2][4];
                    (SNOW_SAMPLE_MARGIN - 32) * sizeof *(to)); \
     } while (0)
 
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "classify/sample/sample_isa.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "classify/sample/sample_isa.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "classify/sample/sample_isa.h"
-#endif
+#define TEMPLATE "classify/sample/sample_isa.h"
+#include "simd/each_isa.h"
 
 snow_sample_fn *snow_sample_of(snow_isa isa, int code_bytes, int channels,
                                bool shaded, bool with_gradient_opacity) {
     int bytes = code_bytes == 2, color = channels == 4;
     int how = shaded + 2 * with_gradient_opacity;
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return samples_avx512[bytes][color][how];
-    if (isa == SNOW_ISA_AVX2)
-        return samples_avx2[bytes][color][how];
-#endif
-    (void)isa;
-    return samples_scalar[bytes][color][how];
+    return SNOW_OF_ISA(isa, samples)[bytes][color][how];
 }

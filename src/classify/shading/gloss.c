@@ -34,31 +34,11 @@ static inline snow_gloss gloss_of(float factor, float white) {
            (uint32_t)(int32_t)(white * SNOW_GLOSS_ONE + 0.5f) << 16;
 }
 
-/* The order matters, so a blank line keeps the two from being sorted. */
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "classify/shading/gloss.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "classify/shading/gloss.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "classify/shading/gloss.tmpl.h"
-#endif
+#define TEMPLATE "classify/shading/gloss.tmpl.h"
+#include "simd/each_isa.h"
 
 static gloss_row_fn *row_of(snow_isa isa) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return gloss_row_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return gloss_row_avx2;
-#endif
-    (void)isa;
-    return gloss_row_scalar;
+    return SNOW_OF_ISA(isa, gloss_row);
 }
 
 static void gloss_rows(void *user, int64_t item, int worker) {

@@ -76,31 +76,11 @@ static inline float twice(double high, double low) {
     return (float)copysign(bounded < least ? least : bounded, d);
 }
 
-/* The order matters, so a blank line keeps the two from being sorted. */
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "classify/shading/normals.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "classify/shading/normals.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "classify/shading/normals.tmpl.h"
-#endif
+#define TEMPLATE "classify/shading/normals.tmpl.h"
+#include "simd/each_isa.h"
 
 static const normal_kernels *kernels_of(snow_isa isa) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return &kernels_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return &kernels_avx2;
-#endif
-    (void)isa;
-    return &kernels_scalar;
+    return SNOW_OF_ISA(isa, &kernels);
 }
 
 /* --- one normal -----------------------------------------------------------

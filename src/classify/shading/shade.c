@@ -86,35 +86,15 @@ static inline float shaded(float color, double factor, double white) {
     return (float)(sum < 1 ? sum : 1);
 }
 
-/* The order matters, so a blank line keeps the two from being sorted. */
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "classify/shading/shade.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "classify/shading/shade.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "classify/shading/shade.tmpl.h"
-#endif
+#define TEMPLATE "classify/shading/shade.tmpl.h"
+#include "simd/each_isa.h"
 
 typedef void shade_block_fn(const snow_shader *shader,
                             const double gradients[3][SHADE_BLOCK], int count,
                             int channels, float *samples);
 
 static shade_block_fn *block_of(snow_isa isa) {
-#if SNOW_HAS_AVX
-    if (isa == SNOW_ISA_AVX512)
-        return shade_block_avx512;
-    if (isa == SNOW_ISA_AVX2)
-        return shade_block_avx2;
-#endif
-    (void)isa;
-    return shade_block_scalar;
+    return SNOW_OF_ISA(isa, shade_block);
 }
 
 void snow_shade_row_block(const snow_shader *shader, int channels,

@@ -46,30 +46,11 @@ typedef struct rake_loops {
     spread_fn *cubic, *tent;
 } rake_loops;
 
-/* The order matters, so a blank line keeps the two from being sorted. */
-#define SELECT_SCALAR
-#include "simd/select.h"
-
-#include "splat/separable/rake.tmpl.h"
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#include "splat/separable/rake.tmpl.h"
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#include "splat/separable/rake.tmpl.h"
-#endif
+#define TEMPLATE "splat/separable/rake.tmpl.h"
+#include "simd/each_isa.h"
 
 static const rake_loops *best_loops(void) {
-#if SNOW_HAS_AVX
-    if (snow_isa_runs(SNOW_ISA_AVX512))
-        return &loops_avx512;
-    if (snow_isa_runs(SNOW_ISA_AVX2))
-        return &loops_avx2;
-#endif
-    return &loops_scalar;
+    return SNOW_OF_ISA(snow_isa_resolve(SNOW_ISA_AUTO), &loops);
 }
 
 /* Any kernel, by its definition in double precision. */
