@@ -16,114 +16,64 @@
     X(24)        \
     X(72)
 
+/* clang-format off */
+
+/* Rows of both tables: kind, place, size, round, blend, how. */
+
 /* The casting, in the order of construction: block, flange, jacket cut out,
  * cylinders put back, pipes and pump. */
 static const snow_solid casting[] = {
-    {.kind = SNOW_BOX, .at = {0, -22, -4}, .size = {102, 42, 44}, .round = 6},
-    {.kind = SNOW_BOX,
-     .at = {0, -22, -4},
-     .size = {95, 35, 37},
-     .round = 4,
-     .carve = true},
-    {.kind = SNOW_BOX,
-     .at = {0, -22, 40},
-     .size = {110, 50, 5},
-     .round = 2,
-     .blend = 4},
-    {.kind = SNOW_BOX,
-     .at = {0, -22, -46},
-     .size = {110, 50, 4},
-     .round = 2,
-     .blend = 4},
+    {SNOW_BOX, {0, -22, -4}, {102, 42, 44}, 6, 0, 0},
+    {SNOW_BOX, {0, -22, -4}, {95, 35, 37}, 4, 0, SNOW_CARVE},
+    {SNOW_BOX, {0, -22, 40}, {110, 50, 5}, 2, 4, 0},
+    {SNOW_BOX, {0, -22, -46}, {110, 50, 4}, 2, 4, 0},
 #define WALL(x) \
-    {.kind = SNOW_CYLINDER_Z, .at = {x, -22, 0}, .size = {25, 45}, .blend = 3},
+    {SNOW_CYLINDER_Z, {x, -22, 0}, {25, 45, 0}, 0, 3, 0},
     BORES(WALL)
 #undef WALL
 #define PIPE(x) \
-    {.kind = SNOW_CYLINDER_Y, .at = {x, 48, 14}, .size = {13, 38}, .blend = 6},
-        BORES(PIPE)
+    {SNOW_CYLINDER_Y, {x, 48, 14}, {13, 38, 0}, 0, 6, 0},
+    BORES(PIPE)
 #undef PIPE
-            {.kind = SNOW_CYLINDER_X,
-             .at = {6, 88, 14},
-             .size = {17, 100},
-             .round = 4,
-             .blend = 8},
-    {.kind = SNOW_CYLINDER_X, .at = {108, 88, 14}, .size = {27, 5}, .round = 2},
-    {.kind = SNOW_CYLINDER_X,
-     .at = {-20, -92, -12},
-     .size = {25, 50},
-     .round = 6,
-     .blend = 4},
-    {.kind = SNOW_BOX,
-     .at = {-20, -70, -12},
-     .size = {30, 10, 16},
-     .round = 3,
-     .blend = 6},
-    {.kind = SNOW_CYLINDER_X,
-     .at = {-20, -92, -12},
-     .size = {19, 44},
-     .round = 4,
-     .carve = true},
-#define HOLE(x)                   \
-    {.kind = SNOW_CYLINDER_Z,     \
-     .at = {x, -22, 0},           \
-     .size = {21, 80},            \
-     .carve = true},              \
-        {.kind = SNOW_CYLINDER_Y, \
-         .at = {x, 50, 14},       \
-         .size = {9, 52},         \
-         .carve = true},
+    {SNOW_CYLINDER_X, {6, 88, 14}, {17, 100, 0}, 4, 8, 0},
+    {SNOW_CYLINDER_X, {108, 88, 14}, {27, 5, 0}, 2, 0, 0},
+    {SNOW_CYLINDER_X, {-20, -92, -12}, {25, 50, 0}, 6, 4, 0},
+    {SNOW_BOX, {-20, -70, -12}, {30, 10, 16}, 3, 6, 0},
+    {SNOW_CYLINDER_X, {-20, -92, -12}, {19, 44, 0}, 4, 0, SNOW_CARVE},
+#define HOLE(x) \
+    {SNOW_CYLINDER_Z, {x, -22, 0}, {21, 80, 0}, 0, 0, SNOW_CARVE}, \
+    {SNOW_CYLINDER_Y, {x, 50, 14}, {9, 52, 0}, 0, 0, SNOW_CARVE},
     BORES(HOLE)
 #undef HOLE
-        {.kind = SNOW_CYLINDER_X,
-         .at = {16, 88, 14},
-         .size = {12.5, 104},
-         .carve = true},
+    {SNOW_CYLINDER_X, {16, 88, 14}, {12.5, 104, 0}, 0, 0, SNOW_CARVE},
 };
 
 /* Liners, bolts, shafts: the dense metal. */
 static const snow_solid steel[] = {
 #define LINER(x) \
-    {.kind = SNOW_CYLINDER_Z, .at = {x, -22, 0}, .size = {21.2, 44}},
+    {SNOW_CYLINDER_Z, {x, -22, 0}, {21.2, 44, 0}, 0, 0, 0},
     BORES(LINER)
 #undef LINER
-#define BORE(x)               \
-    {.kind = SNOW_CYLINDER_Z, \
-     .at = {x, -22, 0},       \
-     .size = {17.5, 80},      \
-     .carve = true},
-        BORES(BORE)
+#define BORE(x) \
+    {SNOW_CYLINDER_Z, {x, -22, 0}, {17.5, 80, 0}, 0, 0, SNOW_CARVE},
+    BORES(BORE)
 #undef BORE
-#define BOLT(x)                                                                \
-    {.kind = SNOW_CYLINDER_Z, .at = {x, 21, 30}, .size = {4, 20}, .round = 1}, \
-        {.kind = SNOW_CYLINDER_Z,                                              \
-         .at = {x, 21, 48},                                                    \
-         .size = {6.5, 3.5},                                                   \
-         .round = 1},                                                          \
-        {.kind = SNOW_CYLINDER_Z,                                              \
-         .at = {x, -65, 30},                                                   \
-         .size = {4, 20},                                                      \
-         .round = 1},                                                          \
-        {.kind = SNOW_CYLINDER_Z,                                              \
-         .at = {x, -65, 48},                                                   \
-         .size = {6.5, 3.5},                                                   \
-         .round = 1},
-            BOLT(-101) BOLT(-48) BOLT(0) BOLT(48) BOLT(101)
+#define BOLT(x) \
+    {SNOW_CYLINDER_Z, {x, 21, 30}, {4, 20, 0}, 1, 0, 0}, \
+    {SNOW_CYLINDER_Z, {x, 21, 48}, {6.5, 3.5, 0}, 1, 0, 0}, \
+    {SNOW_CYLINDER_Z, {x, -65, 30}, {4, 20, 0}, 1, 0, 0}, \
+    {SNOW_CYLINDER_Z, {x, -65, 48}, {6.5, 3.5, 0}, 1, 0, 0},
+    BOLT(-101) BOLT(-48) BOLT(0) BOLT(48) BOLT(101)
 #undef BOLT
-                {.kind = SNOW_CYLINDER_X,
-                 .at = {-20, -92, -12},
-                 .size = {7, 66},
-                 .round = 2},
-    {.kind = SNOW_CYLINDER_X,
-     .at = {46, -92, -12},
-     .size = {17, 5},
-     .round = 2},
+    {SNOW_CYLINDER_X, {-20, -92, -12}, {7, 66, 0}, 2, 0, 0},
+    {SNOW_CYLINDER_X, {46, -92, -12}, {17, 5, 0}, 2, 0, 0},
 #define STUD(y, z) \
-    {.kind = SNOW_CYLINDER_X, .at = {111, y, z}, .size = {3, 7}, .round = 1},
+    {SNOW_CYLINDER_X, {111, y, z}, {3, 7, 0}, 1, 0, 0},
     STUD(88, 36) STUD(88, -8) STUD(107, 25) STUD(107, 3) STUD(69, 25)
-        STUD(69, 3)
+    STUD(69, 3)
 #undef STUD
 };
+/* clang-format on */
 
 /* Scanner noise in the air: triangular, cut at 0, with a faint long tail. */
 static double air_value(uint32_t bits) {

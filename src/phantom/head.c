@@ -21,208 +21,72 @@
  * does. */
 #define GROWTH 1.06
 
+/* clang-format off */
+
+/* Rows of all tables: kind, place, size, round, blend, how. */
 static const snow_solid skin[] = {
-    /* the vault */
-    {.kind = SNOW_ELLIPSOID, .at = {0, -12, 32}, .size = {77, 96, 75}},
-    /* the face */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 34, -16},
-     .size = {60, 60, 66},
-     .blend = 24},
-    /* the jaw */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 44, -60},
-     .size = {48, 46, 34},
-     .blend = 22},
-    /* the chin */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 84, -82},
-     .size = {17, 13, 13},
-     .blend = 14},
-    /* the neck */
-    {.kind = SNOW_CYLINDER_Z,
-     .at = {0, -18, -110},
-     .size = {55, 80},
-     .blend = 22},
-    /* brows */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {24, 80, 23},
-     .size = {23, 13, 8},
-     .blend = 12,
-     .twin = true},
+    {SNOW_ELLIPSOID, {0, -12, 32}, {77, 96, 75}, 0, 0, 0}, /* the vault */
+    {SNOW_ELLIPSOID, {0, 34, -16}, {60, 60, 66}, 0, 24, 0}, /* the face */
+    {SNOW_ELLIPSOID, {0, 44, -60}, {48, 46, 34}, 0, 22, 0}, /* the jaw */
+    {SNOW_ELLIPSOID, {0, 84, -82}, {17, 13, 13}, 0, 14, 0}, /* the chin */
+    {SNOW_CYLINDER_Z, {0, -18, -110}, {55, 80, 0}, 0, 22, 0}, /* the neck */
+    {SNOW_ELLIPSOID, {24, 80, 23}, {23, 13, 8}, 0, 12, SNOW_TWIN}, /* brows */
     /* cheeks */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {38, 64, -24},
-     .size = {22, 24, 22},
-     .blend = 14,
-     .twin = true},
+    {SNOW_ELLIPSOID, {38, 64, -24}, {22, 24, 22}, 0, 14, SNOW_TWIN},
     /* hollows of the eyes */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {32, 103, 6},
-     .size = {15, 19, 11},
-     .blend = 12,
-     .carve = true,
-     .twin = true},
-    /* lids */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {31, 77, 6},
-     .size = {13, 13, 12},
-     .blend = 4,
-     .twin = true},
+    {SNOW_ELLIPSOID, {32, 103, 6}, {15, 19, 11}, 0, 12, SNOW_CARVE | SNOW_TWIN},
+    {SNOW_ELLIPSOID, {31, 77, 6}, {13, 13, 12}, 0, 4, SNOW_TWIN}, /* lids */
     /* the ridge of the nose */
-    {.kind = SNOW_CAPSULE,
-     .at = {0, 88, 12},
-     .size = {0, 109, -20},
-     .round = 7.5,
-     .blend = 12},
-    /* its tip */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 110, -24},
-     .size = {10, 10, 9},
-     .blend = 8},
+    {SNOW_CAPSULE, {0, 88, 12}, {0, 109, -20}, 7.5, 12, 0},
+    {SNOW_ELLIPSOID, {0, 110, -24}, {10, 10, 9}, 0, 8, 0}, /* its tip */
     /* its wings */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {10, 101, -27},
-     .size = {7, 9, 7},
-     .blend = 6,
-     .twin = true},
+    {SNOW_ELLIPSOID, {10, 101, -27}, {7, 9, 7}, 0, 6, SNOW_TWIN},
     /* nostrils */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {6, 107, -34},
-     .size = {3.5, 6, 5},
-     .blend = 2,
-     .carve = true,
-     .twin = true},
-    /* the upper lip */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 91, -48},
-     .size = {21, 9, 5},
-     .blend = 7},
-    /* the lower lip */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 89, -58},
-     .size = {18, 9, 5.5},
-     .blend = 7},
+    {SNOW_ELLIPSOID, {6, 107, -34}, {3.5, 6, 5}, 0, 2, SNOW_CARVE | SNOW_TWIN},
+    {SNOW_ELLIPSOID, {0, 91, -48}, {21, 9, 5}, 0, 7, 0}, /* the upper lip */
+    {SNOW_ELLIPSOID, {0, 89, -58}, {18, 9, 5.5}, 0, 7, 0}, /* the lower lip */
     /* the gap between them */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 101, -53},
-     .size = {22, 7, 2},
-     .blend = 3,
-     .carve = true},
-    /* ears */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {81, -14, -2},
-     .size = {8, 19, 31},
-     .blend = 6,
-     .twin = true},
+    {SNOW_ELLIPSOID, {0, 101, -53}, {22, 7, 2}, 0, 3, SNOW_CARVE},
+    {SNOW_ELLIPSOID, {81, -14, -2}, {8, 19, 31}, 0, 6, SNOW_TWIN}, /* ears */
     /* hollows of the ears */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {90, -8, 0},
-     .size = {7, 11, 20},
-     .blend = 4,
-     .carve = true,
-     .twin = true},
+    {SNOW_ELLIPSOID, {90, -8, 0}, {7, 11, 20}, 0, 4, SNOW_CARVE | SNOW_TWIN},
 };
 
 static const snow_solid skull[] = {
-    /* the vault */
-    {.kind = SNOW_ELLIPSOID, .at = {0, -12, 32}, .size = {70, 89, 69}},
-    /* the upper jaw */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 56, -22},
-     .size = {36, 31, 30},
-     .blend = 10},
+    {SNOW_ELLIPSOID, {0, -12, 32}, {70, 89, 69}, 0, 0, 0}, /* the vault */
+    {SNOW_ELLIPSOID, {0, 56, -22}, {36, 31, 30}, 0, 10, 0}, /* the upper jaw */
     /* cheekbones */
-    {.kind = SNOW_CAPSULE,
-     .at = {24, 84, -14},
-     .size = {60, 48, -10},
-     .round = 6.5,
-     .blend = 8,
-     .twin = true},
+    {SNOW_CAPSULE, {24, 84, -14}, {60, 48, -10}, 6.5, 8, SNOW_TWIN},
     /* the arches behind them */
-    {.kind = SNOW_CAPSULE,
-     .at = {60, 48, -10},
-     .size = {69, 2, -8},
-     .round = 4,
-     .blend = 5,
-     .twin = true},
+    {SNOW_CAPSULE, {60, 48, -10}, {69, 2, -8}, 4, 5, SNOW_TWIN},
     /* ridges above the eyes */
-    {.kind = SNOW_CAPSULE,
-     .at = {10, 81, 22},
-     .size = {48, 66, 18},
-     .round = 6,
-     .blend = 8,
-     .twin = true},
+    {SNOW_CAPSULE, {10, 81, 22}, {48, 66, 18}, 6, 8, SNOW_TWIN},
     /* orbits */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {31, 80, 5},
-     .size = {17, 30, 15},
-     .blend = 5,
-     .carve = true,
-     .twin = true},
+    {SNOW_ELLIPSOID, {31, 80, 5}, {17, 30, 15}, 0, 5, SNOW_CARVE | SNOW_TWIN},
     /* the bone of the nose */
-    {.kind = SNOW_CAPSULE,
-     .at = {0, 82, 20},
-     .size = {0, 96, 0},
-     .round = 4.5,
-     .blend = 5},
+    {SNOW_CAPSULE, {0, 82, 20}, {0, 96, 0}, 4.5, 5, 0},
     /* its opening */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 88, -17},
-     .size = {11, 20, 15},
-     .blend = 4,
-     .carve = true},
+    {SNOW_ELLIPSOID, {0, 88, -17}, {11, 20, 15}, 0, 4, SNOW_CARVE},
     /* the lower jaw */
-    {.kind = SNOW_CAPSULE,
-     .at = {2, 80, -82},
-     .size = {40, 40, -72},
-     .round = 8,
-     .blend = 5,
-     .twin = true},
+    {SNOW_CAPSULE, {2, 80, -82}, {40, 40, -72}, 8, 5, SNOW_TWIN},
     /* its branches up to the ears */
-    {.kind = SNOW_CAPSULE,
-     .at = {42, 36, -70},
-     .size = {57, 8, -20},
-     .round = 7,
-     .blend = 8,
-     .twin = true},
-    /* four vertebrae */
-    {.kind = SNOW_CYLINDER_Z, .at = {0, -34, -48}, .size = {17, 9}, .round = 4},
-    {.kind = SNOW_CYLINDER_Z, .at = {0, -33, -69}, .size = {17, 8}, .round = 4},
-    {.kind = SNOW_CYLINDER_Z, .at = {0, -32, -89}, .size = {17, 8}, .round = 4},
-    {.kind = SNOW_CYLINDER_Z,
-     .at = {0, -32, -110},
-     .size = {17, 9},
-     .round = 4},
+    {SNOW_CAPSULE, {42, 36, -70}, {57, 8, -20}, 7, 8, SNOW_TWIN},
+    {SNOW_CYLINDER_Z, {0, -34, -48}, {17, 9, 0}, 4, 0, 0}, /* four vertebrae */
+    {SNOW_CYLINDER_Z, {0, -33, -69}, {17, 8, 0}, 4, 0, 0},
+    {SNOW_CYLINDER_Z, {0, -32, -89}, {17, 8, 0}, 4, 0, 0},
+    {SNOW_CYLINDER_Z, {0, -32, -110}, {17, 9, 0}, 4, 0, 0},
     /* spines of two of them */
-    {.kind = SNOW_CAPSULE,
-     .at = {0, -50, -50},
-     .size = {0, -72, -56},
-     .round = 5,
-     .blend = 6},
-    {.kind = SNOW_CAPSULE,
-     .at = {0, -50, -90},
-     .size = {0, -70, -98},
-     .round = 5,
-     .blend = 6},
+    {SNOW_CAPSULE, {0, -50, -50}, {0, -72, -56}, 5, 6, 0},
+    {SNOW_CAPSULE, {0, -50, -90}, {0, -70, -98}, 5, 6, 0},
     /* the canal of the spinal cord */
-    {.kind = SNOW_CYLINDER_Z,
-     .at = {0, -40, -75},
-     .size = {8, 70},
-     .carve = true},
+    {SNOW_CYLINDER_Z, {0, -40, -75}, {8, 70, 0}, 0, 0, SNOW_CARVE},
 };
 
 /* Upper and lower arch; x, y and z of the crowns' centres. */
 static const snow_solid teeth[] = {
-#define TOOTH(x, y, width)                                                    \
-    {.kind = SNOW_ELLIPSOID,                                                  \
-     .at = {x, y, -46},                                                       \
-     .size = {width, 4, 7},                                                   \
-     .twin = true},                                                           \
-    {                                                                         \
-        .kind = SNOW_ELLIPSOID, .at = {x, (y)-2, -61}, .size = {width, 4, 7}, \
-        .twin = true                                                          \
-    }
+#define TOOTH(x, y, width) \
+    {SNOW_ELLIPSOID, {x, y, -46}, {width, 4, 7}, 0, 0, SNOW_TWIN}, \
+    {SNOW_ELLIPSOID, {x, (y) - 2, -61}, {width, 4, 7}, 0, 0, SNOW_TWIN}
     TOOTH(4.2, 82, 3.9), TOOTH(11.5, 80, 3.4), TOOTH(17.8, 76, 3.6),
     TOOTH(22.6, 70, 4),  TOOTH(26, 62.5, 4.4), TOOTH(28.5, 53, 5.2),
 #undef TOOTH
@@ -230,108 +94,53 @@ static const snow_solid teeth[] = {
 
 static const snow_solid airways[] = {
     /* sinuses above the eyes */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {10, 75, 27},
-     .size = {9, 4, 8},
-     .twin = true},
+    {SNOW_ELLIPSOID, {10, 75, 27}, {9, 4, 8}, 0, 0, SNOW_TWIN},
     /* sinuses in the upper jaw */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {24, 62, -18},
-     .size = {9, 14, 12},
-     .twin = true},
+    {SNOW_ELLIPSOID, {24, 62, -18}, {9, 14, 12}, 0, 0, SNOW_TWIN},
     /* the nose */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {5.5, 76, -20},
-     .size = {3.8, 34, 13},
-     .twin = true},
+    {SNOW_ELLIPSOID, {5.5, 76, -20}, {3.8, 34, 13}, 0, 0, SNOW_TWIN},
     /* the throat behind it */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 24, -34},
-     .size = {10, 9, 30},
-     .blend = 8},
-    /* the mouth */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, 50, -50},
-     .size = {20, 26, 4},
-     .blend = 8},
-    /* the windpipe */
-    {.kind = SNOW_CAPSULE,
-     .at = {0, 16, -56},
-     .size = {0, 10, -130},
-     .round = 8,
-     .blend = 8},
+    {SNOW_ELLIPSOID, {0, 24, -34}, {10, 9, 30}, 0, 8, 0},
+    {SNOW_ELLIPSOID, {0, 50, -50}, {20, 26, 4}, 0, 8, 0}, /* the mouth */
+    {SNOW_CAPSULE, {0, 16, -56}, {0, 10, -130}, 8, 8, 0}, /* the windpipe */
     /* ear canals */
-    {.kind = SNOW_CAPSULE,
-     .at = {58, -8, -2},
-     .size = {86, -8, -2},
-     .round = 3.2,
-     .twin = true},
+    {SNOW_CAPSULE, {58, -8, -2}, {86, -8, -2}, 3.2, 0, SNOW_TWIN},
 };
 
 static const snow_solid cavity[] = {
     /* the space of the brain */
-    {.kind = SNOW_ELLIPSOID, .at = {0, -12, 32}, .size = {63, 82, 62}},
+    {SNOW_ELLIPSOID, {0, -12, 32}, {63, 82, 62}, 0, 0, 0},
     /* the space of the cerebellum */
-    {.kind = SNOW_ELLIPSOID,
-     .at = {0, -44, -6},
-     .size = {48, 34, 28},
-     .blend = 12},
+    {SNOW_ELLIPSOID, {0, -44, -6}, {48, 34, 28}, 0, 12, 0},
     /* the space of the spinal cord */
-    {.kind = SNOW_CAPSULE,
-     .at = {0, -34, -10},
-     .size = {0, -40, -130},
-     .round = 8,
-     .blend = 10},
+    {SNOW_CAPSULE, {0, -34, -10}, {0, -40, -130}, 8, 10, 0},
 };
 
 static const snow_solid cerebellum[] = {
     /* the cerebellum, and below it the brain stem */
-    {.kind = SNOW_ELLIPSOID, .at = {0, -50, -10}, .size = {44, 28, 20}},
-    {.kind = SNOW_CAPSULE,
-     .at = {0, -20, 10},
-     .size = {0, -40, -130},
-     .round = 6.5,
-     .blend = 6},
+    {SNOW_ELLIPSOID, {0, -50, -10}, {44, 28, 20}, 0, 0, 0},
+    {SNOW_CAPSULE, {0, -20, 10}, {0, -40, -130}, 6.5, 6, 0},
 };
 
 static const snow_solid ventricles[] = {
     /* front horns */
-    {.kind = SNOW_CAPSULE,
-     .at = {9, 24, 40},
-     .size = {10, -22, 48},
-     .round = 6,
-     .twin = true},
-    /* bends */
-    {.kind = SNOW_CAPSULE,
-     .at = {10, -22, 48},
-     .size = {19, -46, 36},
-     .round = 6.5,
-     .blend = 5,
-     .twin = true},
+    {SNOW_CAPSULE, {9, 24, 40}, {10, -22, 48}, 6, 0, SNOW_TWIN},
+    {SNOW_CAPSULE, {10, -22, 48}, {19, -46, 36}, 6.5, 5, SNOW_TWIN}, /* bends */
     /* lower horns */
-    {.kind = SNOW_CAPSULE,
-     .at = {19, -46, 36},
-     .size = {33, -14, 14},
-     .round = 3.5,
-     .blend = 5,
-     .twin = true},
+    {SNOW_CAPSULE, {19, -46, 36}, {33, -14, 14}, 3.5, 5, SNOW_TWIN},
     /* the third ventricle, in the middle */
-    {.kind = SNOW_ELLIPSOID, .at = {0, -6, 30}, .size = {2.5, 14, 10}},
+    {SNOW_ELLIPSOID, {0, -6, 30}, {2.5, 14, 10}, 0, 0, 0},
 };
 
 static const snow_solid eyes[] = {
-    {.kind = SNOW_ELLIPSOID,
-     .at = {31, 74, 6},
-     .size = {12, 12, 12},
-     .twin = true},
+    {SNOW_ELLIPSOID, {31, 74, 6}, {12, 12, 12}, 0, 0, SNOW_TWIN},
 };
 
 static const snow_solid capsule[] = {
-    {.kind = SNOW_CAPSULE,
-     .at = {75, 14, 34},
-     .size = {75, 14, 46},
-     .round = 5.5},
+    {SNOW_CAPSULE, {75, 14, 34}, {75, 14, 46}, 5.5, 0, 0},
 };
+
+/* clang-format on */
 
 /* The values that are constant along a row. */
 typedef struct head_row {

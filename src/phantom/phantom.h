@@ -72,9 +72,11 @@ typedef struct snow_solid {
     double size[3];
     double round; /* radius of its edges */
     double blend; /* width of the fillet to the previous solids */
-    bool carve;   /* takes away instead of adding */
-    bool twin;    /* mirrored at -x as well: must lie at x > 0 */
+    unsigned how; /* 0, or of these: */
 } snow_solid;
+
+#define SNOW_CARVE 1u /* takes away instead of adding */
+#define SNOW_TWIN 2u  /* mirrored at -x as well: must lie at x > 0 */
 
 #define SNOW_SHAPE_MOST 48 /* most solids of a shape */
 

@@ -121,7 +121,7 @@ void snow_shape_row_begin(snow_shape_row *row, const snow_solid *solids,
         row->near[row->count].solid = solid;
         row->near[row->count].first = low;
         row->near[row->count].last = high;
-        double mirrored = solid->twin ? -high : low;
+        double mirrored = solid->how & SNOW_TWIN ? -high : low;
         row->first = row->count ? smaller(row->first, mirrored) : mirrored;
         row->last = row->count ? larger(row->last, high) : high;
         row->count++;
@@ -145,12 +145,12 @@ double snow_shape_distance(const snow_shape_row *row, double x) {
         return distance;
     for (int i = 0; i < row->count; i++) {
         const snow_solid *solid = row->near[i].solid;
-        double at = solid->twin ? fabs(x) : x;
+        double at = solid->how & SNOW_TWIN ? fabs(x) : x;
         if (at < row->near[i].first || at > row->near[i].last)
             continue;
         double d = solid_distance(solid, at, row->y, row->z);
-        distance = solid->carve ? -join(-distance, d, solid->blend)
-                                : join(distance, d, solid->blend);
+        distance = solid->how & SNOW_CARVE ? -join(-distance, d, solid->blend)
+                                           : join(distance, d, solid->blend);
     }
     return distance;
 }

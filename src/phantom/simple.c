@@ -37,7 +37,7 @@ static double frame_distance(double x, double y, double z) {
 static void cube_row(const snow_phantom_grid *grid, int64_t j, int64_t k,
                      void *out) {
     static const snow_solid block[] = {
-        {.kind = SNOW_BOX, .at = {30, 22, 14}, .size = {24, 24, 24}},
+        {SNOW_BOX, {30, 22, 14}, {24, 24, 24}, 0, 0, 0},
     };
     double y = snow_phantom_place(grid, 1, j);
     double z = snow_phantom_place(grid, 2, k);
