@@ -15,55 +15,10 @@
 
 typedef __m256 snow_avx2_vec;
 
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_load(const float *p) {
-    return _mm256_loadu_ps(p);
-}
-
-SNOW_AVX2_INLINE void snow_avx2_store(float *p, snow_avx2_vec v) {
-    _mm256_storeu_ps(p, v);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_set1(float x) {
-    return _mm256_set1_ps(x);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_add(snow_avx2_vec a, snow_avx2_vec b) {
-    return _mm256_add_ps(a, b);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sub(snow_avx2_vec a, snow_avx2_vec b) {
-    return _mm256_sub_ps(a, b);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_mul(snow_avx2_vec a, snow_avx2_vec b) {
-    return _mm256_mul_ps(a, b);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_min(snow_avx2_vec a, snow_avx2_vec b) {
-    return _mm256_min_ps(a, b);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_max(snow_avx2_vec a, snow_avx2_vec b) {
-    return _mm256_max_ps(a, b);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fma(snow_avx2_vec a, snow_avx2_vec b,
-                                             snow_avx2_vec c) {
-    return _mm256_fmadd_ps(a, b, c);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_fnma(snow_avx2_vec a, snow_avx2_vec b,
-                                              snow_avx2_vec c) {
-    return _mm256_fnmadd_ps(a, b, c);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha2(snow_avx2_vec v) {
-    return _mm256_permute_ps(v, 0xF5);
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_alpha4(snow_avx2_vec v) {
-    return _mm256_permute_ps(v, 0xFF);
-}
+#define V(word) snow_avx2_##word
+#define M(word) _mm256_##word
+#define INLINE SNOW_AVX2_INLINE
+#include "simd/vec_avx.tmpl.h"
 
 SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_deinterleave2(snow_avx2_vec a,
                                                        snow_avx2_vec b) {
@@ -135,38 +90,8 @@ SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_with_alpha4(snow_avx2_vec a,
     return _mm256_blend_ps(a, b, 0x88);
 }
 
-SNOW_AVX2_INLINE void snow_avx2_expand8(const uint8_t *p, uint32_t bits,
-                                        uint32_t *out) {
-    for (int i = 0; i < 16; i++, bits >>= 1) {
-        uint32_t here = bits & 1;
-        out[i] = ((uint32_t)*p + 1) & (0 - here);
-        p += here;
-    }
-}
-
-SNOW_AVX2_INLINE void snow_avx2_expand16(const uint16_t *p, uint32_t bits,
-                                         uint32_t *out) {
-    for (int i = 0; i < 16; i++, bits >>= 1) {
-        uint32_t here = bits & 1;
-        out[i] = ((uint32_t)*p + 1) & (0 - here);
-        p += here;
-    }
-}
-
-/* See simd/select.h. */
-#define SNOW_AVX2_NUMBERS(bits_of_number, type)                               \
-    SNOW_AVX2_INLINE void snow_avx2_numbers##bits_of_number(                  \
-        const type *p, uint32_t bits, float scale, float start, float *out) { \
-        uint32_t numbers[16];                                                 \
-        snow_avx2_expand##bits_of_number(p, bits, numbers);                   \
-        for (int i = 0; i < 16; i++) {                                        \
-            float number = start + scale * (float)(int32_t)(numbers[i] - 1);  \
-            out[i] = numbers[i] ? number : 0;                                 \
-        }                                                                     \
-    }
-SNOW_AVX2_NUMBERS(8, uint8_t)
-SNOW_AVX2_NUMBERS(16, uint16_t)
-#undef SNOW_AVX2_NUMBERS
+SNOW_VEC_EXPAND(SNOW_AVX2_INLINE, avx2, 8, uint8_t)
+SNOW_VEC_EXPAND(SNOW_AVX2_INLINE, avx2, 16, uint16_t)
 
 SNOW_AVX2_INLINE unsigned snow_avx2_windows(const uint64_t *low,
                                             const uint64_t *high,
@@ -271,10 +196,6 @@ SNOW_AVX2_INLINE void snow_avx2_load_pairs4(const float *p, const int64_t *at,
     *right = snow_avx2_halves(p + at[0] + 4, p + at[1] + 4);
 }
 
-SNOW_AVX2_INLINE int snow_avx2_popcount(uint64_t x) {
-    return __builtin_popcountll(x);
-}
-
 SNOW_AVX2_INLINE int snow_avx2_any_less(snow_avx2_vec a, snow_avx2_vec b) {
     return _mm256_movemask_ps(_mm256_cmp_ps(a, b, _CMP_LT_OQ)) != 0;
 }
@@ -315,10 +236,6 @@ SNOW_AVX2_INLINE void snow_avx2_transpose64(const uint8_t *bytes,
         low = _mm256_add_epi8(low, low);
         high = _mm256_add_epi8(high, high);
     }
-}
-
-SNOW_AVX2_INLINE snow_avx2_vec snow_avx2_sqrt(snow_avx2_vec v) {
-    return _mm256_sqrt_ps(v);
 }
 
 /* k is in the last bits of the float, and is shifted into the exponent. */

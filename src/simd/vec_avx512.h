@@ -18,62 +18,10 @@
 
 typedef __m512 snow_avx512_vec;
 
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_load(const float *p) {
-    return _mm512_loadu_ps(p);
-}
-
-SNOW_AVX512_INLINE void snow_avx512_store(float *p, snow_avx512_vec v) {
-    _mm512_storeu_ps(p, v);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_set1(float x) {
-    return _mm512_set1_ps(x);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_add(snow_avx512_vec a,
-                                                   snow_avx512_vec b) {
-    return _mm512_add_ps(a, b);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sub(snow_avx512_vec a,
-                                                   snow_avx512_vec b) {
-    return _mm512_sub_ps(a, b);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_mul(snow_avx512_vec a,
-                                                   snow_avx512_vec b) {
-    return _mm512_mul_ps(a, b);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_min(snow_avx512_vec a,
-                                                   snow_avx512_vec b) {
-    return _mm512_min_ps(a, b);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_max(snow_avx512_vec a,
-                                                   snow_avx512_vec b) {
-    return _mm512_max_ps(a, b);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fma(snow_avx512_vec a,
-                                                   snow_avx512_vec b,
-                                                   snow_avx512_vec c) {
-    return _mm512_fmadd_ps(a, b, c);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_fnma(snow_avx512_vec a,
-                                                    snow_avx512_vec b,
-                                                    snow_avx512_vec c) {
-    return _mm512_fnmadd_ps(a, b, c);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha2(snow_avx512_vec v) {
-    return _mm512_permute_ps(v, 0xF5);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_alpha4(snow_avx512_vec v) {
-    return _mm512_permute_ps(v, 0xFF);
-}
+#define V(word) snow_avx512_##word
+#define M(word) _mm512_##word
+#define INLINE SNOW_AVX512_INLINE
+#include "simd/vec_avx.tmpl.h"
 
 SNOW_AVX512_INLINE snow_avx512_vec
 snow_avx512_deinterleave2(snow_avx512_vec a, snow_avx512_vec b) {
@@ -170,13 +118,14 @@ SNOW_AVX512_INLINE void snow_avx512_expand16(const uint16_t *p, uint32_t bits,
                                     _mm512_set1_epi32(1)));
 }
 
-SNOW_AVX512_INLINE void snow_avx512_scaled(__mmask16 here, __m512i numbers,
-                                           float scale, float start,
-                                           float *out) {
+/* Numbers where a bit is set, scaled. */
+SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_scale16(__m512i numbers,
+                                                       __mmask16 here,
+                                                       float scale,
+                                                       float start) {
     __m512 scaled =
         _mm512_mul_ps(_mm512_set1_ps(scale), _mm512_cvtepi32_ps(numbers));
-    _mm512_storeu_ps(out,
-                     _mm512_maskz_add_ps(here, _mm512_set1_ps(start), scaled));
+    return _mm512_maskz_add_ps(here, _mm512_set1_ps(start), scaled);
 }
 
 SNOW_AVX512_INLINE void snow_avx512_numbers8(const uint8_t *p, uint32_t bits,
@@ -185,7 +134,8 @@ SNOW_AVX512_INLINE void snow_avx512_numbers8(const uint8_t *p, uint32_t bits,
     __mmask16 here = (__mmask16)bits;
     __m128i numbers = _mm_maskz_expand_epi8(
         here, _mm_loadu_si128((const __m128i *)(const void *)p));
-    snow_avx512_scaled(here, _mm512_cvtepu8_epi32(numbers), scale, start, out);
+    snow_avx512_store(out, snow_avx512_scale16(_mm512_cvtepu8_epi32(numbers),
+                                               here, scale, start));
 }
 
 SNOW_AVX512_INLINE void snow_avx512_numbers16(const uint16_t *p, uint32_t bits,
@@ -194,16 +144,8 @@ SNOW_AVX512_INLINE void snow_avx512_numbers16(const uint16_t *p, uint32_t bits,
     __mmask16 here = (__mmask16)bits;
     __m256i numbers = _mm256_maskz_expand_epi16(
         here, _mm256_loadu_si256((const __m256i *)(const void *)p));
-    snow_avx512_scaled(here, _mm512_cvtepu16_epi32(numbers), scale, start, out);
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_scale16(__m512i numbers,
-                                                       __mmask16 here,
-                                                       float scale,
-                                                       float start) {
-    __m512 scaled =
-        _mm512_mul_ps(_mm512_set1_ps(scale), _mm512_cvtepi32_ps(numbers));
-    return _mm512_maskz_add_ps(here, _mm512_set1_ps(start), scaled);
+    snow_avx512_store(out, snow_avx512_scale16(_mm512_cvtepu16_epi32(numbers),
+                                               here, scale, start));
 }
 
 SNOW_AVX512_INLINE void snow_avx512_window8(const uint8_t *p, uint32_t bits,
@@ -317,10 +259,6 @@ SNOW_AVX512_INLINE void snow_avx512_load_pairs4(const float *p,
     *right = snow_avx512_runs(p + 4, at);
 }
 
-SNOW_AVX512_INLINE int snow_avx512_popcount(uint64_t x) {
-    return __builtin_popcountll(x);
-}
-
 SNOW_AVX512_INLINE int snow_avx512_any_less(snow_avx512_vec a,
                                             snow_avx512_vec b) {
     return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ) != 0;
@@ -347,10 +285,6 @@ SNOW_AVX512_INLINE void snow_avx512_transpose64(const uint8_t *bytes,
     __m512i all = _mm512_loadu_si512(bytes);
     for (int n = 0; n < 8; n++)
         out[n] = _mm512_test_epi8_mask(all, _mm512_set1_epi8((char)(1 << n)));
-}
-
-SNOW_AVX512_INLINE snow_avx512_vec snow_avx512_sqrt(snow_avx512_vec v) {
-    return _mm512_sqrt_ps(v);
 }
 
 /* k is in the last bits of the float, and is shifted into the exponent. */

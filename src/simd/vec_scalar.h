@@ -130,38 +130,27 @@ static inline snow_scalar_vec snow_scalar_with_alpha4(snow_scalar_vec a,
     return (snow_scalar_vec){a[0], a[1], a[2], b[3]};
 }
 
-static inline void snow_scalar_expand8(const uint8_t *p, uint32_t bits,
-                                       uint32_t *out) {
-    for (int i = 0; i < 16; i++, bits >>= 1) {
-        uint32_t here = bits & 1;
-        out[i] = ((uint32_t)*p + 1) & (0 - here);
-        p += here;
-    }
-}
-
-static inline void snow_scalar_expand16(const uint16_t *p, uint32_t bits,
-                                        uint32_t *out) {
-    for (int i = 0; i < 16; i++, bits >>= 1) {
-        uint32_t here = bits & 1;
-        out[i] = ((uint32_t)*p + 1) & (0 - here);
-        p += here;
-    }
-}
-
-/* See simd/select.h. */
-#define SNOW_SCALAR_NUMBERS(bits_of_number, type)                             \
-    static inline void snow_scalar_numbers##bits_of_number(                   \
+/* expand8 and numbers8, or 16, of an instruction set without an expansion. */
+#define SNOW_VEC_EXPAND(begin, isa, width, type)                              \
+    begin void snow_##isa##_expand##width(const type *p, uint32_t bits,       \
+                                          uint32_t *out) {                    \
+        for (int i = 0; i < 16; i++, bits >>= 1) {                            \
+            uint32_t here = bits & 1;                                         \
+            out[i] = ((uint32_t)*p + 1) & (0 - here);                         \
+            p += here;                                                        \
+        }                                                                     \
+    }                                                                         \
+    begin void snow_##isa##_numbers##width(                                   \
         const type *p, uint32_t bits, float scale, float start, float *out) { \
         uint32_t numbers[16];                                                 \
-        snow_scalar_expand##bits_of_number(p, bits, numbers);                 \
+        snow_##isa##_expand##width(p, bits, numbers);                         \
         for (int i = 0; i < 16; i++) {                                        \
             float number = start + scale * (float)(int32_t)(numbers[i] - 1);  \
             out[i] = numbers[i] ? number : 0;                                 \
         }                                                                     \
     }
-SNOW_SCALAR_NUMBERS(8, uint8_t)
-SNOW_SCALAR_NUMBERS(16, uint16_t)
-#undef SNOW_SCALAR_NUMBERS
+SNOW_VEC_EXPAND(static inline, scalar, 8, uint8_t)
+SNOW_VEC_EXPAND(static inline, scalar, 16, uint16_t)
 
 /* See simd/select.h; in two steps, since a shift by 64 is undefined. */
 static inline unsigned snow_scalar_windows(const uint64_t *low,

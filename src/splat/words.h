@@ -29,10 +29,16 @@
 #include "simd/isa.h"
 
 #if SNOW_HAS_AVX
-#include "simd/vec_avx2.h"
-#include "simd/vec_avx512.h"
+#define SELECT_AVX2
+#include "simd/select.h"
 
 typedef __m256i snow_avx2_ints;
+
+#define M(word) _mm256_##word
+#define INLINE SNOW_AVX2_INLINE
+#define PAIRS __m256d
+#define B(word) snow_b8_##word
+#include "splat/words.tmpl.h"
 
 SNOW_AVX2_INLINE __m256 snow_avx2_lanes(void) {
     return _mm256_setr_ps(0, 1, 2, 3, 4, 5, 6, 7);
@@ -40,33 +46,6 @@ SNOW_AVX2_INLINE __m256 snow_avx2_lanes(void) {
 
 SNOW_AVX2_INLINE __m256 snow_avx2_floor(__m256 v) {
     return _mm256_floor_ps(v);
-}
-
-SNOW_AVX2_INLINE __m256i snow_avx2_to_ints(__m256 v) {
-    return _mm256_cvttps_epi32(v);
-}
-
-SNOW_AVX2_INLINE __m256 snow_avx2_to_floats(__m256i i) {
-    return _mm256_cvtepi32_ps(i);
-}
-
-SNOW_AVX2_INLINE __m256i snow_avx2_clamp(__m256i i, int low, int high) {
-    i = _mm256_max_epi32(i, _mm256_set1_epi32(low));
-    return _mm256_min_epi32(i, _mm256_set1_epi32(high));
-}
-
-SNOW_AVX2_INLINE __m256i snow_avx2_place(__m256i i, int i_step, __m256i j,
-                                         int j_step) {
-    return _mm256_add_epi32(_mm256_mullo_epi32(i, _mm256_set1_epi32(i_step)),
-                            _mm256_mullo_epi32(j, _mm256_set1_epi32(j_step)));
-}
-
-SNOW_AVX2_INLINE __m256i snow_avx2_add_int(__m256i i, int n) {
-    return _mm256_add_epi32(i, _mm256_set1_epi32(n));
-}
-
-SNOW_AVX2_INLINE __m256i snow_avx2_times(__m256i i, int n) {
-    return _mm256_mullo_epi32(i, _mm256_set1_epi32(n));
 }
 
 SNOW_AVX2_INLINE void snow_avx2_store_ints(int32_t *p, __m256i i) {
@@ -80,21 +59,6 @@ SNOW_AVX2_INLINE __m256 snow_avx2_deal(__m256 v) {
                                     _mm256_setr_epi32(0, 2, 4, 6, 1, 3, 5, 7));
 }
 
-SNOW_AVX2_INLINE void snow_avx2_store_fours(float *p, __m256 a, __m256 b,
-                                            __m256 c, __m256 d) {
-    __m256d ab_low = _mm256_castps_pd(_mm256_unpacklo_ps(a, b));
-    __m256d cd_low = _mm256_castps_pd(_mm256_unpacklo_ps(c, d));
-    __m256d ab_high = _mm256_castps_pd(_mm256_unpackhi_ps(a, b));
-    __m256d cd_high = _mm256_castps_pd(_mm256_unpackhi_ps(c, d));
-    _mm256_storeu_ps(p, _mm256_castpd_ps(_mm256_unpacklo_pd(ab_low, cd_low)));
-    _mm256_storeu_ps(p + 8,
-                     _mm256_castpd_ps(_mm256_unpackhi_pd(ab_low, cd_low)));
-    _mm256_storeu_ps(p + 16,
-                     _mm256_castpd_ps(_mm256_unpacklo_pd(ab_high, cd_high)));
-    _mm256_storeu_ps(p + 24,
-                     _mm256_castpd_ps(_mm256_unpackhi_pd(ab_high, cd_high)));
-}
-
 SNOW_AVX2_INLINE unsigned snow_avx2_bits(const uint32_t *map, int words,
                                          __m256i i, __m256i j) {
     __m256i at = snow_avx2_place(_mm256_srli_epi32(i, 5), 1, j, words);
@@ -106,7 +70,16 @@ SNOW_AVX2_INLINE unsigned snow_avx2_bits(const uint32_t *map, int words,
     return (unsigned)_mm256_movemask_ps(_mm256_castsi256_ps(bit));
 }
 
+#define SELECT_AVX512
+#include "simd/select.h"
+
 typedef __m512i snow_avx512_ints;
+
+#define M(word) _mm512_##word
+#define INLINE SNOW_AVX512_INLINE
+#define PAIRS __m512d
+#define B(word) snow_b16_##word
+#include "splat/words.tmpl.h"
 
 SNOW_AVX512_INLINE __m512 snow_avx512_lanes(void) {
     return _mm512_setr_ps(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -114,33 +87,6 @@ SNOW_AVX512_INLINE __m512 snow_avx512_lanes(void) {
 
 SNOW_AVX512_INLINE __m512 snow_avx512_floor(__m512 v) {
     return _mm512_roundscale_ps(v, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC);
-}
-
-SNOW_AVX512_INLINE __m512i snow_avx512_to_ints(__m512 v) {
-    return _mm512_cvttps_epi32(v);
-}
-
-SNOW_AVX512_INLINE __m512 snow_avx512_to_floats(__m512i i) {
-    return _mm512_cvtepi32_ps(i);
-}
-
-SNOW_AVX512_INLINE __m512i snow_avx512_clamp(__m512i i, int low, int high) {
-    i = _mm512_max_epi32(i, _mm512_set1_epi32(low));
-    return _mm512_min_epi32(i, _mm512_set1_epi32(high));
-}
-
-SNOW_AVX512_INLINE __m512i snow_avx512_place(__m512i i, int i_step, __m512i j,
-                                             int j_step) {
-    return _mm512_add_epi32(_mm512_mullo_epi32(i, _mm512_set1_epi32(i_step)),
-                            _mm512_mullo_epi32(j, _mm512_set1_epi32(j_step)));
-}
-
-SNOW_AVX512_INLINE __m512i snow_avx512_add_int(__m512i i, int n) {
-    return _mm512_add_epi32(i, _mm512_set1_epi32(n));
-}
-
-SNOW_AVX512_INLINE __m512i snow_avx512_times(__m512i i, int n) {
-    return _mm512_mullo_epi32(i, _mm512_set1_epi32(n));
 }
 
 SNOW_AVX512_INLINE void snow_avx512_store_ints(int32_t *p, __m512i i) {
@@ -154,21 +100,6 @@ SNOW_AVX512_INLINE __m512 snow_avx512_deal(__m512 v) {
         v);
 }
 
-SNOW_AVX512_INLINE void snow_avx512_store_fours(float *p, __m512 a, __m512 b,
-                                                __m512 c, __m512 d) {
-    __m512d ab_low = _mm512_castps_pd(_mm512_unpacklo_ps(a, b));
-    __m512d cd_low = _mm512_castps_pd(_mm512_unpacklo_ps(c, d));
-    __m512d ab_high = _mm512_castps_pd(_mm512_unpackhi_ps(a, b));
-    __m512d cd_high = _mm512_castps_pd(_mm512_unpackhi_ps(c, d));
-    _mm512_storeu_ps(p, _mm512_castpd_ps(_mm512_unpacklo_pd(ab_low, cd_low)));
-    _mm512_storeu_ps(p + 16,
-                     _mm512_castpd_ps(_mm512_unpackhi_pd(ab_low, cd_low)));
-    _mm512_storeu_ps(p + 32,
-                     _mm512_castpd_ps(_mm512_unpacklo_pd(ab_high, cd_high)));
-    _mm512_storeu_ps(p + 48,
-                     _mm512_castpd_ps(_mm512_unpackhi_pd(ab_high, cd_high)));
-}
-
 SNOW_AVX512_INLINE unsigned snow_avx512_bits(const uint32_t *map, int words,
                                              __m512i i, __m512i j) {
     __m512i at = snow_avx512_place(_mm512_srli_epi32(i, 5), 1, j, words);
@@ -180,28 +111,6 @@ SNOW_AVX512_INLINE unsigned snow_avx512_bits(const uint32_t *map, int words,
 
 /* --- blocks of 8 floats ----------------------------------------------------
  */
-
-typedef __m256 snow_b8_block;
-
-SNOW_AVX2_INLINE __m256 snow_b8_load(const float *p) {
-    return _mm256_loadu_ps(p);
-}
-
-SNOW_AVX2_INLINE __m256 snow_b8_scale(float s, __m256 b) {
-    return _mm256_mul_ps(_mm256_set1_ps(s), b);
-}
-
-SNOW_AVX2_INLINE __m256 snow_b8_more(float s, __m256 b, __m256 c) {
-    return _mm256_fmadd_ps(_mm256_set1_ps(s), b, c);
-}
-
-SNOW_AVX2_INLINE __m256 snow_b8_zero(void) {
-    return _mm256_setzero_ps();
-}
-
-SNOW_AVX2_INLINE __m256 snow_b8_fma(__m256 a, __m256 b, __m256 c) {
-    return _mm256_fmadd_ps(a, b, c);
-}
 
 SNOW_AVX2_INLINE __m256 snow_b8_pairs(const float *p) {
     return _mm256_permutevar_ps(
@@ -280,28 +189,6 @@ SNOW_AVX2_INLINE void snow_p16_fold_four(const snow_p16_block b[4], float *p) {
 
 /* --- blocks of 16 floats, whole --------------------------------------------
  */
-
-typedef __m512 snow_b16_block;
-
-SNOW_AVX512_INLINE __m512 snow_b16_load(const float *p) {
-    return _mm512_loadu_ps(p);
-}
-
-SNOW_AVX512_INLINE __m512 snow_b16_scale(float s, __m512 b) {
-    return _mm512_mul_ps(_mm512_set1_ps(s), b);
-}
-
-SNOW_AVX512_INLINE __m512 snow_b16_more(float s, __m512 b, __m512 c) {
-    return _mm512_fmadd_ps(_mm512_set1_ps(s), b, c);
-}
-
-SNOW_AVX512_INLINE __m512 snow_b16_zero(void) {
-    return _mm512_setzero_ps();
-}
-
-SNOW_AVX512_INLINE __m512 snow_b16_fma(__m512 a, __m512 b, __m512 c) {
-    return _mm512_fmadd_ps(a, b, c);
-}
 
 SNOW_AVX512_INLINE __m512 snow_b16_fours(const float *p) {
     return _mm512_permutevar_ps(
