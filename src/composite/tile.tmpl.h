@@ -1,11 +1,8 @@
 /* composite/tile.tmpl.h - the cells of a tile. Include simd/select.h first, and
  * define:
  *
- *   TILE_CHANNELS      floats of a pixel: 2 or 4
- *   TILE_INTERLEAVE    V(interleave2) or V(interleave4)
- *   TILE_DEINTERLEAVE  V(deinterleave2) or V(deinterleave4)
- *   TILE_ALPHA         V(alpha2) or V(alpha4)
- *   TILE_NAME          names of the functions
+ *   TILE_CHANNELS  floats of a pixel: 2 or 4
+ *   TILE_NAME      names of the functions
  *
  * All are undefined at the end. The functions below take the numbers of taps
  * and phases as arguments, which are constants in the common cases
@@ -82,7 +79,7 @@ TILE_NAME(_double)(const float *samples, const V(vec) * weights, const int taps,
             else if (m > lead)
                 b = V(fma)(weights[taps + m - lead], voxels, b);
         }
-        TILE_INTERLEAVE(a, b, pixels + 2 * at);
+        VC(interleave, TILE_CHANNELS)(a, b, pixels + 2 * at);
     }
 }
 
@@ -100,7 +97,8 @@ TILE_NAME(_halved)(const float *samples, const V(vec) * weights, const int taps,
             a = V(fma)(weights[m], V(load)(at), a);
             b = V(fma)(weights[m], V(load)(at + LANES), b);
         }
-        V(store)(pixels + n * TILE_CHANNELS, TILE_DEINTERLEAVE(a, b));
+        V(store)
+        (pixels + n * TILE_CHANNELS, VC(deinterleave, TILE_CHANNELS)(a, b));
     }
 }
 
@@ -121,7 +119,7 @@ TILE_NAME(_line)(float *line, const float *const *rows, const V(vec) * weights,
                                  sums[n]);
         for (int n = 0; n < abreast; n++) {
             V(vec) front = V(load)(line + at + n * LANES);
-            front = V(fnma)(TILE_ALPHA(front), sums[n], front);
+            front = V(fnma)(VC(alpha, TILE_CHANNELS)(front), sums[n], front);
             V(store)(line + at + n * LANES, front);
             least = V(min)(least, front);
         }
@@ -154,8 +152,8 @@ TILE_NAME(_lines)(float *line, float *below, const float *const *rows,
             else if (m > lead)
                 b = V(fma)(weights[taps + m - lead], pixels, b);
         }
-        front = V(fnma)(TILE_ALPHA(front), a, front);
-        next = V(fnma)(TILE_ALPHA(next), b, next);
+        front = V(fnma)(VC(alpha, TILE_CHANNELS)(front), a, front);
+        next = V(fnma)(VC(alpha, TILE_CHANNELS)(next), b, next);
         V(store)(line + at, front);
         V(store)(below + at, next);
         least = V(min)(least, V(min)(front, next));
@@ -241,7 +239,4 @@ TARGET static uint64_t TILE_NAME()(const snow_tile *t) {
 #undef TILE_CASE
 #undef TILE_CASES
 #undef TILE_CHANNELS
-#undef TILE_INTERLEAVE
-#undef TILE_DEINTERLEAVE
-#undef TILE_ALPHA
 #undef TILE_NAME

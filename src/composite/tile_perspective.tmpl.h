@@ -2,9 +2,6 @@
  * Include simd/select.h first, and define:
  *
  *   RAY_CHANNELS  floats of a pixel: 2 or 4
- *   RAY_GATHER    V(gather2) or V(gather4)
- *   RAY_PLACES, RAY_REPEAT  V(places2), V(repeat2) or V(places4), V(repeat4)
- *   RAY_ALPHA     V(alpha2) or V(alpha4)
  *   RAY_NAME      names of the functions
  *
  * All are undefined at the end. The numbers of taps are arguments, which are
@@ -26,7 +23,8 @@ RAY_NAME(_group)(const snow_perspective_tile *t, const int n, const int taps,
     V(vec) weights[SNOW_TAPS_MOST];
     for (int i = 0; i < RAY_PIXELS; i++)
         voxel[i] = (uint32_t)(first[i] - first[0]);
-    const V(places) pick = RAY_PLACES(first), repeat = RAY_REPEAT();
+    const V(places) pick = VC(places, RAY_CHANNELS)(first),
+                    repeat = VC(repeat, RAY_CHANNELS)();
     for (int m = 0; m < taps; m++)
         weights[m] =
             V(pick)(t->u.weights + (size_t)m * t->u.stride + n, repeat);
@@ -38,7 +36,8 @@ RAY_NAME(_group)(const snow_perspective_tile *t, const int n, const int taps,
         V(vec) sum = V(set1)(0);
         for (int m = 0; m < taps; m++, sample += RAY_CHANNELS) {
             V(vec)
-            tap = dense ? V(pick)(sample, pick) : RAY_GATHER(sample, voxel);
+            tap = dense ? V(pick)(sample, pick)
+                        : VC(gather, RAY_CHANNELS)(sample, voxel);
             sum =
                 m == 0 ? V(mul)(weights[0], tap) : V(fma)(weights[m], tap, sum);
         }
@@ -64,7 +63,7 @@ RAY_NAME(_line)(const snow_perspective_tile *t, const float *const *rows, int n,
         V(vec) sum = V(mul)(weights[0], V(load)(row[0] + at));
         for (int m = 1; m < taps; m++)
             sum = V(fma)(weights[m], V(load)(row[m] + at), sum);
-        front = V(fnma)(RAY_ALPHA(front), sum, front);
+        front = V(fnma)(VC(alpha, RAY_CHANNELS)(front), sum, front);
         V(store)(line + at, front);
         least = V(min)(least, front);
     }
@@ -108,8 +107,4 @@ TARGET static uint64_t RAY_NAME()(const snow_perspective_tile *t) {
 
 #undef RAY_PIXELS
 #undef RAY_CHANNELS
-#undef RAY_ALPHA
-#undef RAY_GATHER
-#undef RAY_PLACES
-#undef RAY_REPEAT
 #undef RAY_NAME

@@ -10,6 +10,7 @@
  *   TARGET        attribute of each function of the template
  *   NAME(word)    word with the instruction set appended, as in over_avx2
  *   V(vec)        the vector type
+ *   VC(word, n)   V(word2) or V(word4): n is a macro of 2 or 4 channels
  *   V(load)(p), V(store)(p, v)     any alignment
  *   V(set1)(x), V(add)(a, b), V(sub)(a, b), V(mul)(a, b)
  *   V(min)(a, b), V(max)(a, b)     b if one is NaN
@@ -107,6 +108,8 @@
 #undef TARGET
 #undef NAME
 #undef V
+#define VC(word, channels) SNOW_VC(word, channels)
+#define SNOW_VC(word, channels) V(word##channels)
 
 #if defined(SELECT_SCALAR)
 #undef SELECT_SCALAR

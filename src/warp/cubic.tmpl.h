@@ -2,13 +2,12 @@
  * simd/select.h first, and define:
  *
  *   WARP_CHANNELS  floats of a pixel: 2 or 4; a multiple of LANES / 4
- *   WARP_HADD      V(hadd2) or V(hadd4), for WARP_CHANNELS
  *   WARP_NAME      names of the functions: (_mix)
  *
- * WARP_HADD is undefined at the end. The taps along x are contiguous in memory,
- * so a line of them is one run of 4 * WARP_CHANNELS floats. Lines are added up
- * with their weights along y first, then the pixels of the run with theirs
- * along x. Sums are computed by halves, so that they do not depend on LANES. */
+ * The taps along x are contiguous in memory: a line of four pixels is one run.
+ * Lines are added up with their weights along y first, then the pixels of the
+ * run with theirs along x. Sums are computed by halves, so that they do not
+ * depend on LANES. */
 
 #define WARP_VECTORS (4 * WARP_CHANNELS / LANES)
 
@@ -25,7 +24,7 @@ WARP_NAME(_pixel)(const float *run, size_t stride, const float *along_y,
     for (int half = WARP_VECTORS / 2; half; half /= 2)
         for (int n = 0; n < half; n++)
             part[n] = V(add)(part[n], part[n + half]);
-    return WARP_HADD(part[0]);
+    return VC(hadd, WARP_CHANNELS)(part[0]);
 }
 
 /* Weights along x in all lanes, as cubic polynomials of the fraction. */
@@ -67,4 +66,3 @@ WARP_NAME(_mix)(const snow_intermediate_view *plane, const warp_group *group,
 }
 
 #undef WARP_VECTORS
-#undef WARP_HADD

@@ -2,13 +2,10 @@
  * simd/select.h first, and define:
  *
  *   WARP_CHANNELS  floats of a pixel: 2 or 4
- *   WARP_LOAD_PAIRS, WARP_REPEAT
- *                  V(load_pairs2), V(repeat2) or V(load_pairs4), V(repeat4),
- * for WARP_CHANNELS WARP_NAME      names of the functions: (_mix)
+ *   WARP_NAME      names of the functions: (_mix)
  *
- * WARP_LOAD_PAIRS and WARP_REPEAT are undefined at the end. A vector holds the
- * same one of the four neighbours of several pixels. No product is fused with
- * its sum, so all instruction sets give the same bits. */
+ * A vector holds the same one of the four neighbours of several pixels. No
+ * product is fused with its sum, so all instruction sets give the same bits. */
 
 /* (1 - part) a + part b */
 TARGET static inline __attribute__((always_inline)) V(vec)
@@ -19,20 +16,18 @@ TARGET static inline __attribute__((always_inline)) V(vec)
 TARGET static inline __attribute__((always_inline)) void
 WARP_NAME(_mix)(const snow_intermediate_view *plane, const warp_group *group,
                 float *pixels) {
-    const V(places) repeat = WARP_REPEAT();
+    const V(places) repeat = VC(repeat, WARP_CHANNELS)();
     for (int n = 0; n < GROUP; n += LANES / WARP_CHANNELS) {
         V(vec) left, right, above, below;
         V(vec) across = V(pick)(group->across + n, repeat);
         V(vec) down = V(pick)(group->down + n, repeat);
-        WARP_LOAD_PAIRS(plane->pixels, group->at + n, &left, &right);
+        VC(load_pairs, WARP_CHANNELS)
+        (plane->pixels, group->at + n, &left, &right);
         above = WARP_NAME(_mixed)(left, right, across);
-        WARP_LOAD_PAIRS(plane->pixels + plane->stride, group->at + n, &left,
-                        &right);
+        VC(load_pairs, WARP_CHANNELS)
+        (plane->pixels + plane->stride, group->at + n, &left, &right);
         below = WARP_NAME(_mixed)(left, right, across);
         V(store)
         (pixels + n * WARP_CHANNELS, WARP_NAME(_mixed)(above, below, down));
     }
 }
-
-#undef WARP_LOAD_PAIRS
-#undef WARP_REPEAT

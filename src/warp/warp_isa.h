@@ -4,28 +4,22 @@
  * sets with shorter vectors (warp/warp.c). */
 #define WARP_CHANNELS 2
 #define WARP_BEFORE 0
-#define WARP_LOAD_PAIRS V(load_pairs2)
-#define WARP_REPEAT V(repeat2)
 #define WARP_NAME(part) NAME(linear2##part)
 #include "warp/linear.tmpl.h"
 #include "warp/lines.tmpl.h"
 #define WARP_CHANNELS 4
 #define WARP_BEFORE 0
-#define WARP_LOAD_PAIRS V(load_pairs4)
-#define WARP_REPEAT V(repeat4)
 #define WARP_NAME(part) NAME(linear4##part)
 #include "warp/linear.tmpl.h"
 #include "warp/lines.tmpl.h"
 #define WARP_CHANNELS 4
 #define WARP_BEFORE 1
-#define WARP_HADD V(hadd4)
 #define WARP_NAME(part) NAME(cubic4##part)
 #include "warp/cubic.tmpl.h"
 #include "warp/lines.tmpl.h"
 #if LANES <= 8
 #define WARP_CHANNELS 2
 #define WARP_BEFORE 1
-#define WARP_HADD V(hadd2)
 #define WARP_NAME(part) NAME(cubic2##part)
 #include "warp/cubic.tmpl.h"
 #include "warp/lines.tmpl.h"

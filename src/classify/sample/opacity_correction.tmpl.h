@@ -63,16 +63,17 @@ RAY_NAME(RAY_KIND)(const void *codes, const uint16_t *normals,
 #else
     const V(vec) round = V(set1)(0x1.8p23f);
 #endif
-    const V(places) spread = RAY_REPEAT();
+    const V(places) spread = VC(repeat, RAY_CHANNELS)();
     const V(vec) one = V(set1)(1);
     (void)one;
     for (int i = 0; i < count; i += LANES / RAY_CHANNELS) {
-        V(vec) straight = RAY_GATHER(entries, entry + i);
+        V(vec) straight = VC(gather, RAY_CHANNELS)(entries, entry + i);
 #if RAY_GRADIENT_OPACITY
         V(vec) alpha = V(pick)(opacities + i, spread);
 #else
         V(vec)
-        power = V(mul)(RAY_ALPHA(straight), V(pick)(exponents + i, spread));
+        power = V(mul)(VC(alpha, RAY_CHANNELS)(straight),
+                       V(pick)(exponents + i, spread));
         power = V(max)(power, V(set1)(-126));
         /* 2^power as 2^k 2^f with |f| <= 1/2; 2^f - 1 by its series. */
         V(vec) whole = V(add)(power, round);
@@ -94,7 +95,7 @@ RAY_NAME(RAY_KIND)(const void *codes, const uint16_t *normals,
 #endif
         V(store)
         (samples + i * RAY_CHANNELS,
-         RAY_WITH_ALPHA(V(mul)(color, alpha), alpha));
+         VC(with_alpha, RAY_CHANNELS)(V(mul)(color, alpha), alpha));
     }
 }
 

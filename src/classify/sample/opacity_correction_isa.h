@@ -9,37 +9,21 @@
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
 #define RAY_CHANNELS 2
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
 #define RAY_NAME(kind) RAY_KIND_OF(byte2, kind)
 #include "classify/sample/opacity_correction_kinds.tmpl.h"
 #define RAY_CODE uint8_t
 #define RAY_EXPAND V(expand8)
 #define RAY_CHANNELS 4
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME(kind) RAY_KIND_OF(byte4, kind)
 #include "classify/sample/opacity_correction_kinds.tmpl.h"
 #define RAY_CODE uint16_t
 #define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 2
-#define RAY_GATHER V(gather2)
-#define RAY_REPEAT V(repeat2)
-#define RAY_ALPHA V(alpha2)
-#define RAY_WITH_ALPHA V(with_alpha2)
 #define RAY_NAME(kind) RAY_KIND_OF(word2, kind)
 #include "classify/sample/opacity_correction_kinds.tmpl.h"
 #define RAY_CODE uint16_t
 #define RAY_EXPAND V(expand16)
 #define RAY_CHANNELS 4
-#define RAY_GATHER V(gather4)
-#define RAY_REPEAT V(repeat4)
-#define RAY_ALPHA V(alpha4)
-#define RAY_WITH_ALPHA V(with_alpha4)
 #define RAY_NAME(kind) RAY_KIND_OF(word4, kind)
 #include "classify/sample/opacity_correction_kinds.tmpl.h"
 

@@ -5,8 +5,6 @@
  *   RAY_CODE      C type of a code: uint8_t or uint16_t
  *   RAY_EXPAND    V(expand8) or V(expand16), for the code
  *   RAY_CHANNELS  floats of a sample: 2 or 4
- *   RAY_GATHER, RAY_REPEAT, RAY_ALPHA, RAY_WITH_ALPHA
- *                 as in classify/sample/sample.tmpl.h
  *   RAY_NAME(kind)  name of the function of a kind
  *
  * All are undefined at the end. */
@@ -31,7 +29,3 @@
 #undef RAY_EXPAND
 #undef RAY_CHANNELS
 #undef RAY_NAME
-#undef RAY_GATHER
-#undef RAY_REPEAT
-#undef RAY_ALPHA
-#undef RAY_WITH_ALPHA

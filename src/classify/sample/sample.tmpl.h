@@ -4,10 +4,6 @@
  *   SAMPLE_CODE      C type of a code: uint8_t or uint16_t
  *   SAMPLE_WIDEN     V(widen8) or V(widen16), for the code
  *   SAMPLE_CHANNELS  floats of a sample: 2 or 4
- *   SAMPLE_GATHER, SAMPLE_REPEAT, SAMPLE_ALPHA, SAMPLE_WITH_ALPHA,
- *   SAMPLE_SPREAD    V(gather2), V(repeat2), V(alpha2), V(with_alpha2),
- *                    V(spread2), or V(gather4), V(repeat4), V(alpha4),
- *                    V(with_alpha4), V(spread4), for the channels
  *   SAMPLE_NAME      name of the functions: SAMPLE_NAME(plain), (shaded),
  *                    (faded_plain), (faded_shaded)
  *
@@ -41,8 +37,9 @@ TARGET static inline void SAMPLE_NAME(spread)(const snow_sample_job *job) {
     const float *samples = job->room->samples;
     for (uint64_t left = job->held; left; left &= left - 1) {
         int row = __builtin_ctzll(left);
-        SAMPLE_SPREAD(samples, job->bits[row], job->count,
-                      job->samples + (size_t)row * job->window);
+        VC(spread, SAMPLE_CHANNELS)
+        (samples, job->bits[row], job->count,
+         job->samples + (size_t)row * job->window);
         samples += SAMPLE_CHANNELS * V(popcount)(job->bits[row]);
     }
 }
@@ -77,20 +74,22 @@ TARGET static inline void SAMPLE_NAME(look_up)(const snow_sample_job *job,
 
 TARGET static void SAMPLE_NAME(shaded)(const snow_sample_job *job) {
     snow_sample_room *room = job->room;
-    const V(places) repeat = SAMPLE_REPEAT();
+    const V(places) repeat = VC(repeat, SAMPLE_CHANNELS)();
     const V(vec) one = V(set1)(SNOW_GLOSS_ONE);
     const V(vec) step = V(set1)(1 / SNOW_GLOSS_ONE);
     int total = SAMPLE_NAME(codes)(job, true);
     SAMPLE_NAME(look_up)(job, total);
     for (int i = 0; i < total; i += LANES / SAMPLE_CHANNELS) {
-        V(vec) straight = SAMPLE_GATHER(job->palette, room->entries + i);
+        V(vec)
+        straight = VC(gather, SAMPLE_CHANNELS)(job->palette, room->entries + i);
         V(vec) factor = V(pick)(room->factors + i, repeat);
         V(vec) white = V(pick)(room->whites + i, repeat);
         V(vec) color = V(min)(V(fma)(straight, factor, white), one);
-        color = V(mul)(color, V(mul)(SAMPLE_ALPHA(straight), step));
+        color =
+            V(mul)(color, V(mul)(VC(alpha, SAMPLE_CHANNELS)(straight), step));
         V(store)
         (room->samples + i * SAMPLE_CHANNELS,
-         SAMPLE_WITH_ALPHA(color, straight));
+         VC(with_alpha, SAMPLE_CHANNELS)(color, straight));
     }
     SAMPLE_NAME(spread)(job);
 }
@@ -128,31 +127,33 @@ TARGET static inline void SAMPLE_NAME(fade)(const snow_sample_job *job,
 TARGET static void SAMPLE_NAME(faded_plain)(const snow_sample_job *job) {
     snow_sample_room *room = job->room;
     const SAMPLE_CODE *codes = (const SAMPLE_CODE *)(void *)room->codes;
-    const V(places) repeat = SAMPLE_REPEAT();
+    const V(places) repeat = VC(repeat, SAMPLE_CHANNELS)();
     int total = SAMPLE_NAME(codes)(job, false);
     for (int i = 0; i < total; i += 16)
         SAMPLE_WIDEN(codes + i, room->entries + i);
     SAMPLE_NAME(fade)(job, total);
     for (int i = 0; i < total; i += LANES / SAMPLE_CHANNELS) {
-        V(vec) straight = SAMPLE_GATHER(job->palette, room->entries + i);
+        V(vec)
+        straight = VC(gather, SAMPLE_CHANNELS)(job->palette, room->entries + i);
         V(vec) opacity = V(pick)(room->opacities + i, repeat);
         V(store)
         (room->samples + i * SAMPLE_CHANNELS,
-         SAMPLE_WITH_ALPHA(V(mul)(straight, opacity), opacity));
+         VC(with_alpha, SAMPLE_CHANNELS)(V(mul)(straight, opacity), opacity));
     }
     SAMPLE_NAME(spread)(job);
 }
 
 TARGET static void SAMPLE_NAME(faded_shaded)(const snow_sample_job *job) {
     snow_sample_room *room = job->room;
-    const V(places) repeat = SAMPLE_REPEAT();
+    const V(places) repeat = VC(repeat, SAMPLE_CHANNELS)();
     const V(vec) one = V(set1)(SNOW_GLOSS_ONE);
     const V(vec) step = V(set1)(1 / SNOW_GLOSS_ONE);
     int total = SAMPLE_NAME(codes)(job, true);
     SAMPLE_NAME(look_up)(job, total);
     SAMPLE_NAME(fade)(job, total);
     for (int i = 0; i < total; i += LANES / SAMPLE_CHANNELS) {
-        V(vec) straight = SAMPLE_GATHER(job->palette, room->entries + i);
+        V(vec)
+        straight = VC(gather, SAMPLE_CHANNELS)(job->palette, room->entries + i);
         V(vec) factor = V(pick)(room->factors + i, repeat);
         V(vec) white = V(pick)(room->whites + i, repeat);
         V(vec) opacity = V(pick)(room->opacities + i, repeat);
@@ -160,7 +161,7 @@ TARGET static void SAMPLE_NAME(faded_shaded)(const snow_sample_job *job) {
         color = V(mul)(color, V(mul)(opacity, step));
         V(store)
         (room->samples + i * SAMPLE_CHANNELS,
-         SAMPLE_WITH_ALPHA(color, opacity));
+         VC(with_alpha, SAMPLE_CHANNELS)(color, opacity));
     }
     SAMPLE_NAME(spread)(job);
 }
@@ -169,8 +170,3 @@ TARGET static void SAMPLE_NAME(faded_shaded)(const snow_sample_job *job) {
 #undef SAMPLE_WIDEN
 #undef SAMPLE_CHANNELS
 #undef SAMPLE_NAME
-#undef SAMPLE_GATHER
-#undef SAMPLE_REPEAT
-#undef SAMPLE_ALPHA
-#undef SAMPLE_WITH_ALPHA
-#undef SAMPLE_SPREAD

@@ -5,41 +5,21 @@
 #define SAMPLE_CODE uint8_t
 #define SAMPLE_WIDEN V(widen8)
 #define SAMPLE_CHANNELS 2
-#define SAMPLE_GATHER V(gather2)
-#define SAMPLE_REPEAT V(repeat2)
-#define SAMPLE_ALPHA V(alpha2)
-#define SAMPLE_WITH_ALPHA V(with_alpha2)
-#define SAMPLE_SPREAD V(spread2)
 #define SAMPLE_NAME(kind) NAME(sample_byte2_##kind)
 #include "classify/sample/sample.tmpl.h"
 #define SAMPLE_CODE uint8_t
 #define SAMPLE_WIDEN V(widen8)
 #define SAMPLE_CHANNELS 4
-#define SAMPLE_GATHER V(gather4)
-#define SAMPLE_REPEAT V(repeat4)
-#define SAMPLE_ALPHA V(alpha4)
-#define SAMPLE_WITH_ALPHA V(with_alpha4)
-#define SAMPLE_SPREAD V(spread4)
 #define SAMPLE_NAME(kind) NAME(sample_byte4_##kind)
 #include "classify/sample/sample.tmpl.h"
 #define SAMPLE_CODE uint16_t
 #define SAMPLE_WIDEN V(widen16)
 #define SAMPLE_CHANNELS 2
-#define SAMPLE_GATHER V(gather2)
-#define SAMPLE_REPEAT V(repeat2)
-#define SAMPLE_ALPHA V(alpha2)
-#define SAMPLE_WITH_ALPHA V(with_alpha2)
-#define SAMPLE_SPREAD V(spread2)
 #define SAMPLE_NAME(kind) NAME(sample_word2_##kind)
 #include "classify/sample/sample.tmpl.h"
 #define SAMPLE_CODE uint16_t
 #define SAMPLE_WIDEN V(widen16)
 #define SAMPLE_CHANNELS 4
-#define SAMPLE_GATHER V(gather4)
-#define SAMPLE_REPEAT V(repeat4)
-#define SAMPLE_ALPHA V(alpha4)
-#define SAMPLE_WITH_ALPHA V(with_alpha4)
-#define SAMPLE_SPREAD V(spread4)
 #define SAMPLE_NAME(kind) NAME(sample_word4_##kind)
 #include "classify/sample/sample.tmpl.h"
 
