@@ -22,12 +22,14 @@ static void fill(uint8_t voxels[SIDE][SIDE][SIDE]) {
 
 static snow_status draw(snow_context *context, const snow_volume *volume,
                         snow_image **out) {
-    snow_look look = {0}; /* colours and opacities by the histogram */
+    snow_look look; /* by default colours and opacities by the histogram */
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_settings settings;
     snow_view view;
+    snow_look_init(&look);
     snow_settings_init(&settings);
+    snow_view_init(&view);
     snow_view_default(volume, &view);
     snow_status status = snow_transfer_new_for_volume(volume, &look, &transfer);
     if (!status)
@@ -42,14 +44,16 @@ static snow_status draw(snow_context *context, const snow_volume *volume,
 
 int main(int argc, char **argv) {
     static uint8_t voxels[SIDE][SIDE][SIDE];
-    const snow_volume_info info = {.dims = {SIDE, SIDE, SIDE},
-                                   .type = SNOW_TYPE_UINT8};
+    snow_volume_info info;
     snow_context *context = NULL;
     snow_volume *volume = NULL;
     snow_image *image = NULL;
     if (argc != 2 || snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return SNOW_STATUS_BAD_USAGE;
     fill(voxels);
+    snow_volume_info_init(&info);
+    info.dims[0] = info.dims[1] = info.dims[2] = SIDE;
+    info.type = SNOW_TYPE_UINT8;
     snow_status status = snow_volume_wrap(context, &info, voxels, &volume);
     if (!status)
         status = draw(context, volume, &image);

@@ -11,11 +11,13 @@ int main(int argc, char **argv) {
 
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL; /* data value to colour and opacity */
-    snow_look look = {0};           /* chosen from the histogram */
-    snow_frame *frame = NULL;       /* the pipeline with its buffers */
+    snow_look look;                 /* by default chosen from the histogram */
+    snow_look_init(&look);
+    snow_frame *frame = NULL; /* the pipeline with its buffers */
     snow_settings settings;
     snow_settings_init(&settings);
     snow_view view;
+    snow_view_init(&view);
     snow_image *image = NULL;
 
     snow_status status =

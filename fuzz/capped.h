@@ -67,7 +67,7 @@ static inline void look_at(const char *name, const uint8_t *bytes, size_t size,
     snow_status status =
         snow_volume_open_memory(context, name, bytes, size, options, &volume);
     if (status == SNOW_STATUS_OK) {
-        snow_volume_statistics measures;
+        snow_volume_statistics measures = {.size = sizeof measures};
         uint64_t counts[16];
         snow_volume_get_statistics(volume, &measures);
         snow_volume_histogram(volume, -10, 1000, 16, counts);

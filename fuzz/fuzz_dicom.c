@@ -8,7 +8,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
-    const snow_volume_options box = {.time = 1,
+    const snow_volume_options box = {.size = sizeof box,
+                                     .time = 1,
                                      .channel = 1,
                                      .series = "0",
                                      .crop = {{1, 2}, {0, 0}, {1, 0}}};

@@ -4,7 +4,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
-    const snow_volume_options second = {.time = 1};
+    const snow_volume_options second = {.size = sizeof second, .time = 1};
     look_at("fuzz.nrrd", bytes, size, NULL);
     look_at("fuzz.nrrd", bytes, size, &second);
     return 0;

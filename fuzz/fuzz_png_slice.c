@@ -7,8 +7,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
-    const snow_volume_options box = {.channel = 1,
-                                     .crop = {{1, 2}, {1, 0}, {0, 0}}};
+    const snow_volume_options box = {
+        .size = sizeof box, .channel = 1, .crop = {{1, 2}, {1, 0}, {0, 0}}};
     look_at("fuzz.png", bytes, size, NULL);
     uint8_t *copy = sealed_copy(bytes, size);
     if (!copy)

@@ -16,6 +16,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     if (length < size)
         length++;
     const snow_volume_options given = {
+        .size = sizeof given,
         .dims = {4, 3, 2},
         .type = SNOW_TYPE_UINT16,
         .endian = SNOW_ENDIAN_BIG,

@@ -22,7 +22,8 @@ static char *write_text(snow_context *context, const snow_recipe *recipe) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
     snow_context *context = NULL;
-    snow_recipe recipe, again;
+    snow_recipe recipe = {.size = sizeof recipe},
+                again = {.size = sizeof again};
     if (snow_context_new(NULL, &context) != SNOW_STATUS_OK)
         return 0;
     if (snow_recipe_parse(context, "text", (const char *)bytes, size,

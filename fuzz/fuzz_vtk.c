@@ -4,8 +4,10 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
-    const snow_volume_options box = {
-        .channel = 1, .dataset = "v", .crop = {{1, 2}, {0, 0}, {1, 0}}};
+    const snow_volume_options box = {.size = sizeof box,
+                                     .channel = 1,
+                                     .dataset = "v",
+                                     .crop = {{1, 2}, {0, 0}, {1, 0}}};
     look_at("fuzz.vtk", bytes, size, NULL);
     look_at("fuzz.vtk", bytes, size, &box);
     return 0;

@@ -16,11 +16,11 @@ static void look_inside(const uint8_t *bytes, size_t size, const char *path,
     const zarr_store store = {
         .context = context, .records = bytes, .size = size};
     snow_volume *volume = NULL;
-    snow_volume_info info;
+    snow_volume_info info = {.size = sizeof info};
     snow_status status =
         snow_zarr_read_store(&store, path, options, &info, &volume);
     if (status == SNOW_STATUS_OK) {
-        snow_volume_statistics measures;
+        snow_volume_statistics measures = {.size = sizeof measures};
         snow_volume_get_statistics(volume, &measures);
         if (measures.finite > measures.voxels)
             abort();
@@ -34,9 +34,11 @@ static void look_inside(const uint8_t *bytes, size_t size, const char *path,
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size) {
-    const snow_volume_options whole = {.time = 0};
-    const snow_volume_options box = {
-        .time = 1, .channel = 1, .crop = {{1, 3}, {0, 2}, {1, 0}}};
+    const snow_volume_options whole = {.size = sizeof whole, .time = 0};
+    const snow_volume_options box = {.size = sizeof box,
+                                     .time = 1,
+                                     .channel = 1,
+                                     .crop = {{1, 3}, {0, 2}, {1, 0}}};
     look_inside(bytes, size, "", &whole);
     look_inside(bytes, size, "1", &box);
     return 0;

@@ -10,7 +10,7 @@
 /* What must hold of a picture that was read. */
 static void check_picture(snow_image *image) {
     int width = snow_image_width(image), height = snow_image_height(image);
-    snow_image_difference difference;
+    snow_image_difference difference = {.size = sizeof difference};
     if (width < 1 || height < 1 || snow_image_channels(image) != 4)
         abort();
     snow_image_checksum(image); /* touches every pixel */

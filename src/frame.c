@@ -89,8 +89,7 @@ snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
                                    int part, snow_image **image) {
     const snow_request request = {volume,   transfer, view,
                                   settings, parts,    part};
-    snow_picture p = {
-        .frame = frame, .combiner = &snow_combine_alone, .view = *view};
+    snow_picture p = {.frame = frame, .combiner = &snow_combine_alone};
     snow_picture_watch(&p, settings);
     snow_status status = complete(&p, begin(&p, &request));
     return snow_picture_end(&p, snow_monitor_end(&p.monitor, status), image);
@@ -122,7 +121,7 @@ snow_ranks_begin(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
                  const snow_settings *settings, const snow_ranks_options *how) {
     const snow_request request = {volume, transfer, view, settings, 1, 0};
     snow_picture *p, *waiting;
-    SNOW_TRY(snow_pipeline_open(frame, comm, view, settings, how, &p));
+    SNOW_TRY(snow_pipeline_open(frame, comm, settings, how, &p));
     snow_pipeline_begun(p, begin(p, &request));
     while (!p->ahead && (waiting = snow_pipeline_waiting(frame)))
         complete_waiting(waiting);

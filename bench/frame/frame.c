@@ -145,6 +145,7 @@ static bool read_network(const char *text, snow_network *out) {
 
 /* The text that cannot be read; NULL: all were. */
 static const char *read_texts(const texts *t, frame_options *out) {
+    snow_volume_options_init(&out->data);
     if (t->dims && read_sizes(t->dims, INT64_MAX, out->data.dims, 3) != 3)
         return t->dims;
     if (t->type && !(out->data.type = snow_type_from_name(t->type)))

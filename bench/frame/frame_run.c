@@ -21,7 +21,8 @@ static double cpu_seconds(const frame_rank *s) {
 
 static snow_status fill_view(frame_rank *s) {
     const frame_options *options = s->options;
-    snow_volume_info info;
+    snow_volume_info info = {.size = sizeof info};
+    snow_view_init(&s->view);
     snow_status status =
         snow_volume_inspect(s->context, options->path, &options->data, &info);
     if (status == SNOW_STATUS_OK)
@@ -39,7 +40,7 @@ static snow_status prepare(frame_rank *s) {
     snow_settings_init(&s->settings);
     s->settings.threshold = options->threshold;
     s->settings.threads = 1;
-    s->how = (snow_ranks_options){.size = sizeof s->how,
+    s->how = (snow_ranks_options){.size = sizeof(snow_ranks_options),
                                   .cut = options->cut,
                                   .combining = options->combining,
                                   .radix = options->radix,
@@ -58,7 +59,7 @@ static snow_status prepare(frame_rank *s) {
 
 static snow_status open_part(frame_rank *s) {
     double start = snow_comm_seconds(s->comm), cpu = cpu_seconds(s);
-    const snow_look look = {0};
+    const snow_look look = {.size = sizeof look};
     snow_status status = snow_ranks_open(
         s->comm, s->options->path, &s->options->data, &look, &s->view,
         &s->settings, &s->how, &s->volume, &s->transfer);
@@ -83,7 +84,7 @@ static void finish(frame_rank *s) {
 static void take_stats(frame_rank *s, bool first) {
     const snow_stats *stats = snow_frame_stats(s->frame);
     double *seconds = s->mine.seconds;
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     snow_volume_get_extent(s->volume, &part);
     if (first)
         seconds[FRAME_ENCODE] = stats->seconds_classify + stats->seconds_shade +
@@ -283,7 +284,7 @@ typedef struct alone {
 } alone;
 
 static snow_status open_alone(frame_rank *s, alone *a) {
-    const snow_look look = {0};
+    const snow_look look = {.size = sizeof look};
     snow_status status = snow_volume_open(s->context, s->options->path,
                                           &s->options->data, &a->volume);
     if (status == SNOW_STATUS_OK)
@@ -312,7 +313,7 @@ static snow_status draw_alone(frame_rank *s, alone *a, frame_result *out) {
 
 static snow_status compare(frame_rank *s, frame_result *out) {
     alone a = {0};
-    snow_image_difference difference;
+    snow_image_difference difference = {.size = sizeof difference};
     snow_status status = open_alone(s, &a);
     if (status == SNOW_STATUS_OK)
         status = draw_alone(s, &a, out);

@@ -53,6 +53,7 @@ static void take(const pipe_table *table) {
 }
 
 static void load(void) {
+    snow_view_init(&worker.view);
     check(snow_volume_open(worker.context, worker.raw, &worker.options,
                            &worker.volume));
     check(snow_view_from_name(worker.context, "+z", &worker.view));
@@ -104,6 +105,7 @@ static void set_up(char **argv) {
         pipe_fail(&face, "no memory");
     worker.raw = argv[1];
     face.size = atoi(argv[5]);
+    snow_volume_options_init(&worker.options);
     worker.options.type = SNOW_TYPE_UINT8;
     for (int i = 0; i < 3; i++)
         worker.options.dims[i] = atoi(argv[2 + i]);

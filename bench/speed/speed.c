@@ -45,6 +45,7 @@ snow_status speed_measure(snow_context *context, const bench_options *options,
         .context = context, .job = job, .options = options};
     *out = (speed_result){.load = machine_load()};
     lay_out(filter, job, options, out);
+    snow_view_init(&session.view);
     snow_status status = snow_view_from_name(context, "+z", &session.view);
     session.view.width = session.view.height = job->side;
     if (status == SNOW_STATUS_OK)
@@ -161,7 +162,11 @@ static speed_case sweep_case(const speed_run *run, const bench_volume *volume) {
 static snow_status open_phantom(speed_run *run, const char *name, int64_t x,
                                 int64_t y, int64_t z, bench_volume *out) {
     bench_options no_data = *run->options;
-    bench_source source = {name, name, NULL, {.dims = {x, y, z}}};
+    bench_source source = {
+        name,
+        name,
+        NULL,
+        {.size = sizeof(snow_volume_options), .dims = {x, y, z}}};
     no_data.data = NULL;
     snow_status status =
         bench_source_open(run->context, &source, &no_data, out);

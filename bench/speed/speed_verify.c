@@ -191,7 +191,7 @@ static snow_status verify_bounds(verification *verifier, int way,
     const speed_case *job = verifier->session->job;
     double least = bounds->psnr[job->shade == SNOW_SHADE_PHONG][job->look];
     snow_image *exact;
-    snow_image_difference difference;
+    snow_image_difference difference = {.size = sizeof difference};
     snow_status status = exact_of(verifier, way, &exact);
     if (status == SNOW_STATUS_OK)
         status = snow_image_compare(exact, image, &difference);
@@ -219,7 +219,7 @@ static snow_status verify_isas(verification *verifier, int way,
          name = strtok(NULL, " ")) {
         snow_isa isa = (snow_isa)snow_isa_from_name(name);
         snow_image *other;
-        snow_image_difference difference;
+        snow_image_difference difference = {.size = sizeof difference};
         status = speed_render(verifier->session, way, isa, 1,
                               verifier->session->job->threshold, 0, &other);
         if (status != SNOW_STATUS_OK)

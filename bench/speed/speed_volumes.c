@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define CUBIC_DIMS(n)       \
-    {                       \
-        .dims = { n, n, n } \
+#define CUBIC_DIMS(n)                                            \
+    {                                                            \
+        .size = sizeof(snow_volume_options), .dims = { n, n, n } \
     }
 
 /* The paper's volumes, two very different 256^3 ones of a public collection,
@@ -20,19 +20,34 @@ static const struct {
     bench_source source; /* a phantom NULL: only with --data */
     int table_set;       /* bench_set whose source it is, else -1 */
 } volumes[] = {
-    {"engine", false, {NULL, NULL, NULL, {.offset = 0}}, BENCH_ENGINE},
-    {"head", false, {NULL, NULL, NULL, {.offset = 0}}, BENCH_HEAD},
+    {"engine",
+     false,
+     {NULL, NULL, NULL, {.size = sizeof(snow_volume_options)}},
+     BENCH_ENGINE},
+    {"head",
+     false,
+     {NULL, NULL, NULL, {.size = sizeof(snow_volume_options)}},
+     BENCH_HEAD},
     {"aneurism",
      false,
-     {"Aneurism", NULL, "classic/aneurism.vti", {.offset = 0}},
+     {"Aneurism",
+      NULL,
+      "classic/aneurism.vti",
+      {.size = sizeof(snow_volume_options)}},
      -1},
     {"bonsai",
      false,
-     {"Bonsai", NULL, "classic/bonsai.vti", {.offset = 0}},
+     {"Bonsai",
+      NULL,
+      "classic/bonsai.vti",
+      {.size = sizeof(snow_volume_options)}},
      -1},
     {"cube",
      false,
-     {"Cube", "phantom:cube", NULL, {.dims = {256, 256, 110}}},
+     {"Cube",
+      "phantom:cube",
+      NULL,
+      {.size = sizeof(snow_volume_options), .dims = {256, 256, 110}}},
      -1},
     {"shells", false, {"Shells", "phantom:shells", NULL, CUBIC_DIMS(256)}, -1},
     {"cube512", true, {"Cube", "phantom:cube", NULL, CUBIC_DIMS(512)}, -1},
@@ -47,7 +62,10 @@ static const struct {
 
 /* --quick is for tests: a phantom that small is drawn in a moment. */
 static const bench_source quick_source = {
-    "Engine", "phantom:engine", NULL, {.dims = {40, 40, 32}}};
+    "Engine",
+    "phantom:engine",
+    NULL,
+    {.size = sizeof(snow_volume_options), .dims = {40, 40, 32}}};
 
 const bench_source *speed_source(const bench_options *options, int index) {
     if (options->quick)

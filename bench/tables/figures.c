@@ -60,9 +60,9 @@ typedef struct figure_job {
 /* Which slices are the node's.  The original splatting works on all voxels, so
  * its slabs are equal by any measure. */
 static snow_status plan(snow_comm *comm, const figure_job *job,
-                        snow_extent *mine) {
+                        snow_box *mine) {
     snow_context *context = snow_comm_context(comm);
-    snow_extent parts[NODES_MOST];
+    snow_box parts[NODES_MOST];
     snow_volume *whole;
     snow_transfer *transfer = NULL;
     snow_status status =
@@ -89,10 +89,14 @@ static snow_status open_slab(snow_comm *comm, const figure_job *job,
                              snow_volume **out) {
     snow_volume_info info = *snow_volume_get_info(job->volume->volume);
     const char *voxels = snow_volume_voxels(job->volume->volume);
-    snow_extent part;
-    snow_status status = plan(comm, job, &part);
+    snow_extent part = {.size = sizeof part};
+    snow_box box;
+    snow_status status = plan(comm, job, &box);
     if (status != SNOW_STATUS_OK)
         return status;
+    memcpy(part.dims, info.dims, sizeof part.dims);
+    memcpy(part.first, box.first, sizeof part.first);
+    memcpy(part.count, box.count, sizeof part.count);
     bool none = part.count[2] == 0;
     memset(part.stored, 0, sizeof part.stored);
     part.stored[2] = none ? 0 : part.first[2];
@@ -111,6 +115,7 @@ static snow_status open_slab(snow_comm *comm, const figure_job *job,
 /* As in Table 2: a voxel a pixel, no shading, plain loops, one thread. */
 static snow_status settle(const figure_job *job, snow_context *context,
                           snow_view *view, snow_settings *settings) {
+    snow_view_init(view);
     snow_status status = snow_view_from_name(context, "+z", view);
     view->width = view->height = IMAGE_SIDE;
     view->zoom =
@@ -173,7 +178,7 @@ static snow_status time_picture(snow_comm *comm, figure_job *job,
     if (snow_comm_rank(comm) != 0 || status != SNOW_STATUS_OK)
         return status;
     job->seconds = snow_comm_seconds(comm) - start;
-    snow_image_difference difference;
+    snow_image_difference difference = {.size = sizeof difference};
     if (!job->expected) {
         /* The picture goes with its context: its pixels are copied. */
         memcpy(snow_image_pixels(job->kept), snow_image_pixels(image),

@@ -44,6 +44,7 @@ static snow_status begin_run(snow_context *context, const bench_volume *volume,
                              const bench_options *options, int footprint,
                              bench_run *run) {
     run->volume = volume;
+    snow_view_init(&run->view);
     snow_status status = snow_view_from_name(context, "+z", &run->view);
     if (status != SNOW_STATUS_OK)
         return status;

@@ -23,17 +23,23 @@
 /* Raw files say nothing of themselves, so their form stands here, as the
  * collections that they come from give it. */
 static const bench_source sources[] = {
-    [BENCH_CUBE] = {"Cube", "phantom:cube", NULL, {.offset = 0}},
+    [BENCH_CUBE] = {"Cube",
+                    "phantom:cube",
+                    NULL,
+                    {.size = sizeof(snow_volume_options)}},
     [BENCH_HEAD] = {"Head",
                     "phantom:head",
                     "classic/CThead_256x256x113_u16be.raw.gz",
-                    {.dims = {256, 256, 113},
+                    {.size = sizeof(snow_volume_options),
+                     .dims = {256, 256, 113},
                      .type = SNOW_TYPE_UINT16,
                      .endian = SNOW_ENDIAN_BIG}},
     [BENCH_ENGINE] = {"Engine",
                       "phantom:engine",
                       "classic/engine_256x256x110_u8.raw.gz",
-                      {.dims = {256, 256, 110}, .type = SNOW_TYPE_UINT8}},
+                      {.size = sizeof(snow_volume_options),
+                       .dims = {256, 256, 110},
+                       .type = SNOW_TYPE_UINT8}},
 };
 
 const bench_source *bench_source_of(bench_set set) {
@@ -105,7 +111,8 @@ static snow_status open_file(snow_context *context, const bench_source *source,
     if (!options->data || !source->file) {
         snprintf(out->source, sizeof out->source, "%s", source->phantom);
         /* The rest of the options is the file's. */
-        snow_volume_options size = {.dims = {source->options.dims[0],
+        snow_volume_options size = {.size = sizeof size,
+                                    .dims = {source->options.dims[0],
                                              source->options.dims[1],
                                              source->options.dims[2]}};
         return snow_volume_open(context, source->phantom, &size, &out->file);
@@ -134,8 +141,11 @@ snow_status bench_source_open(snow_context *context, const bench_source *source,
     return status;
 }
 
-const snow_look bench_linear_look = {
-    .preset = "linear", .range = SNOW_RANGE_VALUES, .low = 0, .high = 255};
+const snow_look bench_linear_look = {.size = sizeof bench_linear_look,
+                                     .preset = "linear",
+                                     .range = SNOW_RANGE_VALUES,
+                                     .low = 0,
+                                     .high = 255};
 
 snow_status bench_volume_open(snow_context *context, bench_set set,
                               const bench_options *options, bench_volume *out) {

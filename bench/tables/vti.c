@@ -132,7 +132,7 @@ static const char *inflate_blocks(const unsigned char *data, size_t size,
 static snow_status open_text(snow_context *context, const char *path,
                              const text *file, unsigned char **voxels,
                              snow_volume **out) {
-    snow_volume_info info = {.type = SNOW_TYPE_UINT8};
+    snow_volume_info info = {.size = sizeof info, .type = SNOW_TYPE_UINT8};
     const char *why = read_head((const char *)file->bytes, &info);
     const char *mark = strstr((const char *)file->bytes, "<AppendedData");
     mark = mark ? strchr(mark, '_') : NULL;

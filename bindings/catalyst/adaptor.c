@@ -110,7 +110,7 @@ static void take_input(const char *input) {
 }
 
 static snow_status take_recipe(const char *path) {
-    snow_recipe recipe;
+    snow_recipe recipe = {.size = sizeof recipe};
     snow_insitu_set_output(adaptor.insitu, "snowglass_%06d.png", NULL);
     if (!path)
         return SNOW_STATUS_OK;
@@ -247,7 +247,7 @@ static snow_status show(const conduit_node *params) {
 
 /* Collective. */
 static void report_figures(int64_t step) {
-    snow_insitu_stats f;
+    snow_insitu_stats f = {.size = sizeof f};
     const char *verbose = getenv("SNOWGLASS_VERBOSE");
     if (snow_insitu_get_stats(adaptor.insitu, &f) != SNOW_STATUS_OK ||
         !verbose || snow_comm_rank(adaptor.comm) != 0)

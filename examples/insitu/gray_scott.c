@@ -179,15 +179,18 @@ static void write_field(const box *b, const char *path) {
 static snow_insitu *open_movie(const box *b, const char *pattern) {
     static const snow_opacity_point opacities[] = {
         {0.08, 0}, {0.15, 0.15}, {0.3, 0.6}};
-    const snow_look look = {.preset = "linear",
-                            .colormap = "viridis",
-                            .range = SNOW_RANGE_VALUES,
-                            .low = 0.05,
-                            .high = 0.35,
-                            .opacities = opacities,
-                            .opacity_count = 3};
+    snow_look look;
+    snow_look_init(&look);
+    look.preset = "linear";
+    look.colormap = "viridis";
+    look.range = SNOW_RANGE_VALUES;
+    look.low = 0.05;
+    look.high = 0.35;
+    look.opacities = opacities;
+    look.opacity_count = 3;
     snow_insitu *movie = NULL;
     snow_view view;
+    snow_view_init(&view);
     if (snow_insitu_new_mpi(NULL, b->comm, &movie) != SNOW_STATUS_OK)
         return NULL;
     snow_insitu_set_grid(movie, b->dims, NULL, NULL);

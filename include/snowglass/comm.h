@@ -37,7 +37,7 @@ typedef bool snow_idle_fn(void *user);
  * snow_context_fail, or none, and after a failure none is called but `end`: the
  * communicator is broken (snow_comm_broken). */
 typedef struct snow_comm_ops {
-    size_t size; /* bytes of this record */
+    size_t size;
     /* Starts a message of 0 or more bytes, which stay as they are until a wait
      * says that it is done: at once, or when its receiver has asked for it.
      * Two ranks that send to each other start both messages, then wait.
@@ -72,6 +72,7 @@ typedef struct snow_comm_ops {
     /* Frees self. */
     void (*end)(void *self);
 } snow_comm_ops;
+SNOW_RECORD(snow_comm_ops);
 
 /* A communicator over a transport.  `ops` is copied; `self` is handed to its
  * functions, and ended with the communicator.  Errors, where self is not ended:

@@ -20,6 +20,27 @@ extern "C" {
 
 typedef struct snow_context snow_context;
 
+/* --- records ---------------------------------------------------------------
+ *
+ * Records that a call reads or fills begin with `size` and may grow at their
+ * end. Initialise each before its first use, whoever fills it:
+ *
+ *   snow_view view;
+ *   snow_view_init(&view);
+ *
+ * snow_x_init sets `size` and the default of every field. A record whose
+ * defaults are zeros (all but snow_view, snow_settings and snow_recipe) may
+ * also be written {.size = sizeof(snow_x), ...}. Fields that are beyond the
+ * caller's `size` have their defaults and are not written. A size of 0 is
+ * SNOW_STATUS_BAD_USAGE, as is a field that this library does not know, unless
+ * it is 0. Records without `size` (points, ranges, boxes) never grow. */
+#define SNOW_RECORD(record)                                       \
+    SNOW_API void record##_init_sized(record *made, size_t size); \
+    static inline void record##_init(record *made) {              \
+        record##_init_sized(made, sizeof *made);                  \
+    }                                                             \
+    struct record
+
 /* The caller's allocator.  `allocate` returns memory aligned as malloc's, or
  * NULL; `release` accepts what `allocate` returned, never NULL.  Neither is
  * called by two threads at once, but threads that render call them too. */

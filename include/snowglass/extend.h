@@ -16,6 +16,33 @@ extern "C" {
 /* The limit of snow_context_set_memory_limit; 0: none. */
 SNOW_API uint64_t snow_context_limit(const snow_context *context);
 
+/* --- records (snowglass/context.h) ---------------------------------------- */
+
+/* What snow_x_init_sized does: zeros, `defaults` (NULL: none) as far as `size`
+ * reaches, and the size. */
+SNOW_API void snow_record_init(void *made, size_t size, const void *defaults,
+                               size_t known);
+
+/* Reads a caller's record into `copy` of `known` bytes, which holds the
+ * defaults; `given` NULL leaves them. Errors: SNOW_STATUS_BAD_USAGE, with a
+ * message unless `context` is NULL; the copy then holds the defaults. A new
+ * field lies behind the last byte of the old record, not in its padding. */
+SNOW_API snow_status snow_record_read(snow_context *context, const char *name,
+                                      const void *given, void *copy,
+                                      size_t known);
+
+/* Copies a record of the library into the caller's, as far as that reaches.
+ * Errors: as above. */
+SNOW_API snow_status snow_record_fill(snow_context *context, const char *name,
+                                      const void *made, size_t known,
+                                      void *out);
+
+#define SNOW_RECORD_READ(context, record, given, copy) \
+    (record##_init(copy),                              \
+     snow_record_read((context), #record, (given), (copy), sizeof *(copy)))
+#define SNOW_RECORD_FILL(context, record, made, out) \
+    snow_record_fill((context), #record, (made), sizeof *(made), (out))
+
 /* --- numbers of all ranks ------------------------------------------------- */
 
 /* Collective, as snow_comm_broadcast is: element by element
@@ -29,11 +56,6 @@ SNOW_API snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,
                                               size_t count, snow_reduction by);
 
 /* --- boxes and voxels ----------------------------------------------------- */
-
-/* Voxels first .. first + count - 1 along x, y, z; empty where a count is 0. */
-typedef struct snow_box {
-    int64_t first[3], count[3];
-} snow_box;
 
 static inline int64_t snow_box_voxels(const snow_box *box) {
     return box->count[0] * box->count[1] * box->count[2];
@@ -98,17 +120,19 @@ SNOW_API snow_status snow_voxels_move(snow_voxels *voxels,
 
 /* Gives a part the matrix of its whole, exactly: computed from that of the part
  * it would differ by rounding from rank to rank. */
-SNOW_API void snow_volume_set_whole(snow_volume *volume,
-                                    const snow_volume_info *whole);
+SNOW_API snow_status snow_volume_set_whole(snow_volume *volume,
+                                           const snow_volume_info *whole);
 
 /* --- what a picture needs ------------------------------------------------- */
 
 /* Of the parts of a volume. */
 typedef struct snow_ranks_needs {
+    size_t size;
     int64_t layers[3]; /* ghost voxels on either side, for all directions of the
                           camera at the view's zoom, angle and size */
     int slice_axis;    /* of the grid: slices of the view lie across it */
 } snow_ranks_needs;
+SNOW_RECORD(snow_ranks_needs);
 
 /* Errors: SNOW_STATUS_BAD_USAGE (view, settings), SNOW_STATUS_BAD_INPUT (a
  * geometry that no float can hold). */

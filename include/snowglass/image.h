@@ -40,6 +40,7 @@ SNOW_API float *snow_image_pixels(snow_image *image);
 SNOW_API uint64_t snow_image_checksum(const snow_image *image);
 
 typedef struct snow_image_options {
+    size_t size;
     bool flatten;         /* PNG, WebP: lay the picture on `background` */
     double background[3]; /* red, green, blue, 0 to 1 */
     int bits;             /* PNG: 8 or 16 bits a channel; 0 means 8 */
@@ -49,6 +50,7 @@ typedef struct snow_image_options {
     const snow_image *depth;     /* EXR: an array of the picture's size, channel
                                     Z beside the picture; NULL: none */
 } snow_image_options;
+SNOW_RECORD(snow_image_options);
 
 /* Writes a picture in the format of the path's suffix; "-" is standard output,
  * as PNG.
@@ -99,9 +101,9 @@ SNOW_API void snow_image_to_rgb8(const snow_image *image,
 
 /* The same with all options: the background where `flatten`, black elsewhere,
  * and the overlay. */
-SNOW_API void snow_image_to_rgb8_with(const snow_image *image,
-                                      const snow_image_options *options,
-                                      unsigned char *rgb);
+SNOW_API snow_status snow_image_to_rgb8_with(const snow_image *image,
+                                             const snow_image_options *options,
+                                             unsigned char *rgb);
 
 /* Whether a path's suffix (or "-") is one that snow_image_save writes: asked
  * before a long rendering.  Errors: SNOW_STATUS_BAD_USAGE,
@@ -133,6 +135,7 @@ SNOW_API snow_status snow_image_load_memory(snow_context *context,
 /* How far two pictures differ, over all four premultiplied channels; the three
  * of colour where one was read from a PFM file, which has no alpha. */
 typedef struct snow_image_difference {
+    size_t size;
     double largest; /* largest absolute difference; 0 when equal */
     double mean;    /* mean absolute difference */
     double psnr;    /* dB for a peak of 1; infinite when equal */
@@ -140,6 +143,7 @@ typedef struct snow_image_difference {
                        windows; 1 when equal */
     int x, y;       /* a pixel of the largest difference */
 } snow_image_difference;
+SNOW_RECORD(snow_image_difference);
 
 /* Compares two pictures of one size (1 and 2 channels count as grey).  NaN
  * equals NaN only, an infinity itself only: else they are infinitely far apart.

@@ -227,6 +227,7 @@ typedef enum snow_degradation {
 
 /* Figures of the last picture, and of all so far. */
 typedef struct snow_insitu_stats {
+    size_t size;
     snow_spread seconds_update; /* voxels copied and exchanged */
     snow_spread seconds_look;   /* transfer function chosen */
     snow_spread seconds_render; /* the local image: stages of snow_stats */
@@ -247,6 +248,7 @@ typedef struct snow_insitu_stats {
     bool recut;                /* work was done where the voxels are not */
     snow_degradation lowering; /* of the last picture */
 } snow_insitu_stats;
+SNOW_RECORD(snow_insitu_stats);
 
 /* Collective. */
 SNOW_API snow_status snow_insitu_get_stats(snow_insitu *insitu,

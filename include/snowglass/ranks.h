@@ -35,16 +35,16 @@ typedef enum snow_combine {
 
 /* Zeros are the defaults. */
 typedef struct snow_ranks_options {
-    size_t size; /* bytes of this record */
+    size_t size;
     snow_partition cut;
     snow_combine combining;
     int radix;      /* of SNOW_COMBINE_RADIX, 2 to 64; 0: chosen */
     int pixel_bits; /* 8: the picture's channels are rounded to whole steps of
                        1/255 before they travel to rank 0 (a quarter of the
                        bytes); 0: floats travel */
-    int turns;      /* not 0: pictures from other sides will follow, at this
+    bool turns;     /* pictures from other sides will follow, at this
                        zoom; parts get ghost voxels enough for all of them */
-    int scattered;  /* not 0: the picture stays where it is made: each rank's
+    bool scattered; /* the picture stays where it is made: each rank's
                        image has the pixels that are its own, and the others
                        transparent; together they are the picture */
     const snow_transfer *transfer; /* for snow_ranks_open: what pictures will be
@@ -52,6 +52,7 @@ typedef struct snow_ranks_options {
                        steps of a movie share; it counts voxels by it and makes
                        none.  NULL: it makes the one that the look asks for */
 } snow_ranks_options;
+SNOW_RECORD(snow_ranks_options);
 
 /* Opens this rank's part of a volume (snow_volume_get_extent), with the ghost
  * voxels around it that kernels of the view and gradients reach.  The cut
@@ -119,7 +120,7 @@ SNOW_API snow_status snow_ranks_partition(const snow_volume *volume,
                                           const snow_transfer *transfer,
                                           double threshold, snow_partition cut,
                                           int slice_axis, int ranks,
-                                          snow_extent *parts, int64_t *loads);
+                                          snow_box *parts, int64_t *loads);
 
 /* Collective.  The picture, on rank 0; NULL on the others, unless it is
  * scattered.

@@ -25,7 +25,7 @@ extern "C" {
 
 /* Texts are NULL where not told, numbers as each field says. */
 typedef struct snow_recipe {
-    size_t size;              /* bytes of this record */
+    size_t size;
     const char *input;        /* path; not used in situ */
     const char *output;       /* path, or a movie's pattern */
     snow_volume_options data; /* how to open the input */
@@ -60,9 +60,7 @@ typedef struct snow_recipe {
     const char *depth; /* path of the depths, or NULL; the output's own .exr
                           gets them as a channel (image.h) */
 } snow_recipe;
-
-/* The defaults. */
-SNOW_API void snow_recipe_init(snow_recipe *recipe);
+SNOW_RECORD(snow_recipe);
 
 /* Reads a recipe from a file, or from `bytes` of text, which messages call
  * `name`.  The record's texts live until snow_recipe_clear, which must follow.
@@ -88,7 +86,9 @@ SNOW_API snow_status snow_recipe_write(snow_context *context,
  * `usual` stands in where the recipe names none; the settings for a volume, in
  * whose unit of length opacities per millimetre are told.  Errors:
  * SNOW_STATUS_BAD_USAGE (no such view; a unit that is no length). */
-SNOW_API void snow_recipe_get_look(const snow_recipe *recipe, snow_look *out);
+SNOW_API snow_status snow_recipe_get_look(snow_context *context,
+                                          const snow_recipe *recipe,
+                                          snow_look *out);
 SNOW_API snow_status snow_recipe_get_view(snow_context *context,
                                           const snow_recipe *recipe,
                                           const snow_view *usual,

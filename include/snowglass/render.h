@@ -89,7 +89,7 @@ typedef enum snow_mode {
  * The record may grow: `size` tells the library which fields the caller knows;
  * the others keep their defaults. */
 typedef struct snow_settings {
-    size_t size;            /* bytes of this record, set by the initialiser */
+    size_t size;
     double threshold;       /* opacity 0 to 255; greater is interesting (0) */
     snow_method method;     /* (auto) */
     snow_encoding encoding; /* (auto) */
@@ -109,26 +109,21 @@ typedef struct snow_settings {
     snow_isa isa;           /* (auto) */
     int threads;            /* 1 to 4096; 0: as many as this process may use;
                                the picture is the same for any number (0) */
-    int deterministic;      /* not 0: the same bits on every machine, by the
-                               scalar kernels (0) */
+    bool deterministic;     /* the same bits on every machine, by the
+                               scalar kernels (false) */
     snow_mode mode;         /* (over) */
     double iso;             /* data value of mode iso, finite (0) */
-    int depth;              /* not 0: with snow_frame_depth, in modes over and
-                               iso (0) */
+    bool depth;             /* with snow_frame_depth, in modes over and iso
+                               (false) */
     snow_stop_fn *stop;     /* asked whether the picture is to end early; NULL:
                                it is not (NULL) */
     void *stop_user;        /* its argument (NULL) */
 } snow_settings;
-
-/* The defaults, as far as a record of `size` bytes reaches. */
-SNOW_API void snow_settings_init_sized(snow_settings *settings, size_t size);
-
-static inline void snow_settings_init(snow_settings *settings) {
-    snow_settings_init_sized(settings, sizeof *settings);
-}
+SNOW_RECORD(snow_settings);
 
 /* What the last picture took.  Seconds are wall time. */
 typedef struct snow_stats {
+    size_t size;
     snow_method method;       /* as chosen */
     snow_encoding encoding;   /* as chosen; AUTO when none was used */
     int footprint;            /* as chosen */
@@ -137,7 +132,7 @@ typedef struct snow_stats {
     snow_isa isa;             /* as chosen */
     snow_kernel kernel;       /* as chosen */
     snow_quality quality;     /* as chosen; it matters to sheared only */
-    int encoded;              /* 1: the volume was encoded for this picture, 0:
+    bool encoded;             /* the volume was encoded for this picture; false:
                                  the encoding of an earlier one was used, or
                                  none */
     int64_t voxels;           /* all voxels */
@@ -177,6 +172,7 @@ typedef struct snow_stats {
      * pixels; the counts of voxels above are those of what came of it. */
     int halvings[3];
 } snow_stats;
+SNOW_RECORD(snow_stats);
 
 /* A frame with empty buffers.  Errors: SNOW_STATUS_NO_MEMORY. */
 SNOW_API snow_status snow_frame_new(snow_context *context, snow_frame **out);

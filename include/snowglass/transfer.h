@@ -103,6 +103,7 @@ typedef struct snow_points {
 
 /* What a user asks of a look.  Zero everywhere: chosen from the histogram. */
 typedef struct snow_look {
+    size_t size;
     const char *preset;   /* "linear", "ct-bone", ...; NULL: automatic */
     const char *colormap; /* "grey", "viridis", ...; NULL: the preset's */
     snow_range range;
@@ -117,6 +118,7 @@ typedef struct snow_look {
     bool log; /* values are spread, and points joined, by their logarithms;
                  what is not above 0 is transparent */
 } snow_look;
+SNOW_RECORD(snow_look);
 
 /* The transfer function that `look` asks for on `volume`.  A preset in data
  * units (ct-*) keeps its values unless a range is given, over which it is then

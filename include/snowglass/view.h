@@ -30,9 +30,9 @@ extern "C" {
     30 /* where perspective is asked for, and no more told \
         */
 
-/* Make one with snow_view_from_name or snow_view_default, or set it to zeros
- * first: it may grow at its end, and 0 is the default of what is added. */
+/* By default: the view "+z" at 512x512 pixels, angles 0, zoom 1, parallel. */
 typedef struct snow_view {
+    size_t size;
     int width, height;  /* image in pixels, 1 to 32768 each */
     double back[3];     /* unit vector, target to camera, in the world */
     double up[3];       /* unit vector, at right angles to back */
@@ -52,6 +52,7 @@ typedef struct snow_view {
                            camera with a position has +z up, or +y where it
                            looks along z, as named views have */
 } snow_view;
+SNOW_RECORD(snow_view);
 
 /* The view by name: anterior posterior left right superior inferior iso +x -x
  * +y -y +z -z, at 512x512, angles 0, zoom 1, parallel.  +z: the camera sits on
@@ -63,7 +64,8 @@ SNOW_API snow_status snow_view_from_name(snow_context *context,
 
 /* The default view of a volume: anterior when its file gives a medical
  * orientation, +z otherwise; at 512x512, angles 0, zoom 1. */
-SNOW_API void snow_view_default(const snow_volume *volume, snow_view *out);
+SNOW_API snow_status snow_view_default(const snow_volume *volume,
+                                       snow_view *out);
 
 /* Name of view `index` (from 0); NULL past the end. */
 SNOW_API const char *snow_view_name(size_t index);

@@ -45,6 +45,7 @@ SNOW_API snow_type snow_type_from_name(const char *name);
 
 /* What is known of a volume beside its voxels. */
 typedef struct snow_volume_info {
+    size_t size;
     int64_t dims[3];     /* voxels along x, y, z; each at least 1 */
     snow_type type;      /* native scalar type */
     double spacing[3];   /* length of the matrix' columns; above 0 */
@@ -64,6 +65,7 @@ typedef struct snow_volume_info {
                             axes, chunks, packing; "" when the reader tells
                             nothing of it */
 } snow_volume_info;
+SNOW_RECORD(snow_volume_info);
 
 /* Byte order of raw data. */
 typedef enum snow_endian {
@@ -85,6 +87,7 @@ typedef struct snow_label_range {
 
 /* How to open a volume.  Zero everywhere is right for every format but raw. */
 typedef struct snow_volume_options {
+    size_t size;
     int64_t dims[3];     /* raw only: voxels along x, y, z; 0: not told */
     snow_type type;      /* raw only: scalar type */
     snow_endian endian;  /* raw only: byte order */
@@ -114,6 +117,7 @@ typedef struct snow_volume_options {
     bool each_time; /* all time steps are opened in turn: no remark tells that
                        this is one of several */
 } snow_volume_options;
+SNOW_RECORD(snow_volume_options);
 
 /* Opens a volume file.  The format is found from the first bytes, then from
  * the name; gzip around any single file is undone.  A file that no reader
@@ -184,14 +188,21 @@ SNOW_API snow_status snow_volume_wrap(snow_context *context,
                                       const snow_volume_info *info,
                                       const void *voxels, snow_volume **out);
 
+/* Voxels first .. first + count - 1 along x, y, z; empty where a count is 0. */
+typedef struct snow_box {
+    int64_t first[3], count[3];
+} snow_box;
+
 /* A processor's part of a volume that many share: a box of voxels, with as many
  * more around it as kernels and gradients reach. */
 typedef struct snow_extent {
+    size_t size;
     int64_t dims[3];   /* of the whole grid */
     int64_t stored[3]; /* voxel of the whole that is the first one here */
     int64_t first[3]; /* voxels of the whole that this processor answers for; */
     int64_t count[3]; /*   the others here are its neighbours'.  0: none */
 } snow_extent;
+SNOW_RECORD(snow_extent);
 
 /* Says that a volume is a part of a larger one: its dims are those of the
  * voxels that it stores, its matrix takes their indices to the world.  A
@@ -201,8 +212,8 @@ SNOW_API snow_status snow_volume_set_extent(snow_volume *volume,
                                             const snow_extent *part);
 
 /* Where it lies in the whole; a volume that is no part is the whole. */
-SNOW_API void snow_volume_get_extent(const snow_volume *volume,
-                                     snow_extent *out);
+SNOW_API snow_status snow_volume_get_extent(const snow_volume *volume,
+                                            snow_extent *out);
 
 /* Promises that shared voxels stay as they are now, until it is called again:
  * frames may keep what they encoded of them from picture to picture.  Without
@@ -256,15 +267,17 @@ SNOW_API const void *snow_volume_voxels(const snow_volume *volume);
  * first, here and wherever values are looked at.  min and max are NaN when no
  * voxel is finite. */
 typedef struct snow_volume_statistics {
+    size_t size;
     int64_t voxels; /* all */
     int64_t finite; /* finite ones */
     double min, max;
     double sum;  /* of values */
     double wsum; /* of value * (linear index mod 1009 + 1) */
 } snow_volume_statistics;
+SNOW_RECORD(snow_volume_statistics);
 
-SNOW_API void snow_volume_get_statistics(const snow_volume *volume,
-                                         snow_volume_statistics *out);
+SNOW_API snow_status snow_volume_get_statistics(const snow_volume *volume,
+                                                snow_volume_statistics *out);
 
 /* Counts the finite data values in `bins` equal bins from lo to hi; value v
  * falls into bin floor((v - lo) / (hi - lo) * bins), hi itself into the last;

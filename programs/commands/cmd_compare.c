@@ -87,7 +87,7 @@ static int judge_difference(const options *asked,
 int cmd_compare(const options *asked) {
     snow_context *context = NULL;
     snow_image *images[2] = {NULL, NULL};
-    snow_image_difference difference;
+    snow_image_difference difference = {.size = sizeof difference};
     int done = open_context(asked, &context);
     if (done == CONTINUE)
         done = load_picture(context, asked->operands[0], &images[0]);

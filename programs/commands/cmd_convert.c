@@ -51,7 +51,7 @@ static bool keeps_scaling(const char *path) {
  * code. */
 static int find_range(const options *asked, const snow_volume *volume,
                       double range[2]) {
-    snow_volume_statistics m;
+    snow_volume_statistics m = {.size = sizeof m};
     switch (asked->range.kind) {
     case SNOW_RANGE_PERCENTILES:
         return fail_usage("--range: percentiles cannot be converted; give two "

@@ -36,6 +36,7 @@ static snow_status gather_facts(const options *asked, facts *f) {
         memcpy(f->thresholds, paper_thresholds, sizeof paper_thresholds);
         f->threshold_count = 3;
     }
+    snow_volume_statistics_init(&f->measures);
     snow_volume_get_statistics(f->volume, &f->measures);
     snow_status status = SNOW_STATUS_OK;
     for (size_t i = 0; i < f->threshold_count && status == SNOW_STATUS_OK; i++)

@@ -103,6 +103,7 @@ static int check_combination(const options *asked) {
 
 snow_image_options picture_form(const options *asked) {
     snow_image_options form = {
+        .size = sizeof form,
         .flatten = asked->background.given,
         .bits = asked->bits ? (asked->bits[0] == '8' ? 8 : 16) : 0,
         .overwrite = asked->overwrite};
@@ -201,6 +202,7 @@ static void place_camera(const options *asked, snow_view *out) {
 int make_view(snow_context *context, const options *asked,
               const snow_volume_info *info, snow_view *out) {
     const char *usual = info->medical ? "anterior" : "+z";
+    snow_view_init(out);
     snow_status status =
         snow_view_from_name(context, asked->view ? asked->view : usual, out);
     if (status != SNOW_STATUS_OK)
@@ -246,7 +248,8 @@ static int write_picture(work *w, const options *asked) {
                              it */
     if (!launch_talks())
         return CONTINUE;
-    const snow_image_options plain = {.overwrite = asked->overwrite};
+    const snow_image_options plain = {.size = sizeof plain,
+                                      .overwrite = asked->overwrite};
     const snow_image *depth = snow_frame_depth(w->scene.frame);
     bool beside = is_beside(asked);
     snow_status status = make_marks(w, &overlay);

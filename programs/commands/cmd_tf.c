@@ -153,7 +153,8 @@ static void paint_transfer(const snow_transfer *transfer, const double ends[2],
 static int save_picture(const options *asked, const named *n) {
     snow_transfer *transfer = NULL;
     snow_image *image = NULL;
-    snow_image_options form = {.overwrite = asked->overwrite};
+    snow_image_options form = {.size = sizeof form,
+                               .overwrite = asked->overwrite};
     double ends[2];
     find_ends(&n->points, ends);
     snow_status status = make_whole(n, &transfer);

@@ -10,7 +10,8 @@
 /* Values that were not given stay 0.  The library refuses options that do not
  * fit a format, so it must be able to see whether they were given. */
 snow_volume_options data_options(const options *asked) {
-    snow_volume_options data = {.type = asked->type,
+    snow_volume_options data = {.size = sizeof data,
+                                .type = asked->type,
                                 .offset = asked->offset,
                                 .time = asked->time,
                                 .each_time = asked->each_time,
@@ -82,7 +83,8 @@ int check_look(const options *asked) {
 }
 
 snow_look look_options(const options *asked) {
-    snow_look look = {.preset = asked->preset,
+    snow_look look = {.size = sizeof look,
+                      .preset = asked->preset,
                       .colormap = asked->colormap,
                       .range = asked->range.kind,
                       .low = asked->range.low,

@@ -209,6 +209,7 @@ static void release(void *user, frame_slot *slot) {
 /* A movie by ffmpeg has no transparency: its background is black unless another
  * is requested.  Its frames are kept as the encoder gets them. */
 static void set_form(sequence *s) {
+    snow_image_options_init(&s->form);
     const color_value *color = &s->asked->background;
     if (color->given)
         memcpy(s->form.background, color->rgb, sizeof s->form.background);

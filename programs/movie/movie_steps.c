@@ -213,7 +213,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     shots->scene.each_time = files->count == 1 && !given;
     shots->whole_files = files->count > 1 && !given;
     if (shots->scene.each_time) {
-        snow_volume_info info;
+        snow_volume_info info = {.size = sizeof info};
         int done = inspect(shots, &first, &info);
         if (done != CONTINUE)
             return done;
@@ -305,7 +305,7 @@ static void pool_slab(value_pool *pool, const snow_volume_info *whole,
     int64_t begin = first * slice, end = begin + slice * info->dims[2];
     int64_t stride = stride_of(whole, pool->quota);
     int64_t at = (begin + stride - 1) / stride;
-    snow_volume_statistics ends;
+    snow_volume_statistics ends = {.size = sizeof ends};
     snow_volume_get_statistics(volume, &ends);
     pool->given = (step_values){0, {ends.min, ends.max}};
     for (; at < pool->quota && at * stride < end; at++)
@@ -320,7 +320,8 @@ static void pool_slab(value_pool *pool, const snow_volume_info *whole,
  * read. */
 static int look_at_pool(scene *s, const snow_volume_info *step,
                         value_pool *pool) {
-    snow_volume_info info = {.dims = {1, 1, 1}, .type = SNOW_TYPE_FLOAT64};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {1, 1, 1}, .type = SNOW_TYPE_FLOAT64};
     int axes = 0;
     for (int i = 0; i < 3; i++)
         axes += step->dims[i] > 1;
@@ -360,7 +361,7 @@ static int read_share(shot_renderer *shots, const movie_shot *shot, int member,
                       value_pool *pool) {
     scene *s = &shots->scene;
     snow_volume *volume = NULL;
-    snow_volume_info whole;
+    snow_volume_info whole = {.size = sizeof whole};
     int64_t slab[2];
     options step = scene_step(s, shot->time);
     snow_volume_options data = data_options(&step);
@@ -472,7 +473,7 @@ static int choose_group(const options *asked, const snow_volume_info *step,
 /* All ranks compare their steps with the first. */
 static int pool_steps(const shot_list *list, shot_renderer *shots,
                       value_pool *pool) {
-    snow_volume_info first;
+    snow_volume_info first = {.size = sizeof first};
     int done = inspect(shots, &list->shots[0], &first);
     if (done == CONTINUE)
         done = shots_check(shots, list->shots[0].path, &first);

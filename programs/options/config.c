@@ -122,7 +122,7 @@ static int take_key(options *out, const verb_row *verb, const char *key,
 /* Whether the file is a recipe. */
 static int check_recipe(const char *path) {
     snow_context *context = NULL;
-    snow_recipe recipe;
+    snow_recipe recipe = {.size = sizeof recipe};
     snow_status status = snow_context_new(NULL, &context);
     if (status != SNOW_STATUS_OK)
         return fail_usage("out of memory for a context; close other programs");
@@ -298,7 +298,7 @@ static json_t *recipe_tree(snow_context *context, const snow_recipe *recipe) {
 
 int config_save(const options *asked) {
     snow_context *context = NULL;
-    snow_recipe recipe;
+    snow_recipe recipe = {.size = sizeof recipe};
     json_t *tree = NULL;
     if (!asked->save_config || !launch_talks())
         return SNOW_STATUS_OK;

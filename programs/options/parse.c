@@ -291,7 +291,7 @@ bool read_colormap(const option_row *row, const char *text, void *field,
 bool read_view(const option_row *row, const char *text, void *field,
                char wrong[WRONG_BYTES]) {
     snow_context *context = NULL;
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     snow_status status = snow_context_new(NULL, &context);
     if (status == SNOW_STATUS_OK)
         status = snow_view_from_name(context, text, &view);

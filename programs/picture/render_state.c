@@ -183,6 +183,7 @@ static snow_ranks_options how_of(const scene *s) {
 
 /* The camera comes first: the partition of the volume depends on it. */
 static int inspect(scene *s, const snow_volume_options *data) {
+    snow_volume_info_init(&s->whole);
     snow_status status =
         snow_volume_inspect(s->context, s->path, data, &s->whole);
     return status == SNOW_STATUS_OK ? place_camera(s)

@@ -93,7 +93,7 @@ typedef struct sizes {
  * inspected, which reading will report. */
 static uint64_t native_bytes(snow_context *context, const char *path,
                              const snow_volume_options *data) {
-    snow_volume_info info;
+    snow_volume_info info = {.size = sizeof info};
     if (snow_volume_inspect(context, path, data, &info) != SNOW_STATUS_OK)
         return 0;
     return (uint64_t)(info.dims[0] * info.dims[1] * info.dims[2]) *
@@ -104,7 +104,7 @@ static uint64_t native_bytes(snow_context *context, const char *path,
  * with the result. */
 static uint64_t masking_bytes(snow_context *context, const char *path,
                               const snow_volume_options *data) {
-    snow_volume_options plain = *data, mask = {.type = SNOW_TYPE_NONE};
+    snow_volume_options plain = *data, mask = {.size = sizeof mask};
     const double *plane = data->clip[0];
     bool clips = plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
     if (!data->mask && !clips)

@@ -1,6 +1,8 @@
 /* annotate/legend.c - explains the colours and lengths of a picture: a colour
  * bar, a scale bar, a line of text. */
 #include "image/font.h"
+
+#include "base/record.h"
 #include "transfer/transfer.h"
 #include "transform/transform.h"
 
@@ -99,9 +101,14 @@ static void write_length(double length, const char *unit, char *out,
 snow_status snow_overlay_scale_bar(snow_overlay *overlay,
                                    const snow_volume_info *info,
                                    const snow_view *view) {
+    snow_context *context = overlay->context;
     snow_camera camera;
+    snow_volume_info volume;
+    snow_view from;
     char text[64];
-    SNOW_TRY(snow_camera_make(overlay->context, info, view, &camera));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, info, &volume));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &from));
+    SNOW_TRY(snow_camera_make(context, &volume, &from, &camera));
     if (camera.distance > 0 || shorter_side(overlay) < BAR_SIDE_LEAST)
         return SNOW_STATUS_OK;
     double height = number_height(overlay);
@@ -109,7 +116,7 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
     double left = floor(height) + 0.5, right = left + length / camera.pitch;
     double y = floor(overlay->height - 1.2 * height) + 0.5,
            tick = 0.35 * height;
-    write_length(length, info->unit, text, sizeof text);
+    write_length(length, volume.unit, text, sizeof text);
     SNOW_TRY(begin_strokes(overlay, height));
     SNOW_TRY(snow_overlay_stroke(overlay, left, y, right, y));
     SNOW_TRY(snow_overlay_stroke(overlay, left, y - tick, left, y + tick));

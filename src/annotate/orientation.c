@@ -6,6 +6,7 @@
  * towards the patient's left is labelled L. */
 #include "transform/transform.h"
 
+#include "base/record.h"
 #include "image/font.h"
 
 #include <snowglass/overlay.h>
@@ -45,10 +46,14 @@ snow_status snow_view_orientation(snow_context *context,
                                   const snow_volume_info *info,
                                   const snow_view *view, char letters[4][4]) {
     snow_camera camera;
-    SNOW_TRY(snow_camera_make(context, info, view, &camera));
+    snow_volume_info volume;
+    snow_view from;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, info, &volume));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &from));
+    SNOW_TRY(snow_camera_make(context, &volume, &from, &camera));
     for (int edge = 0; edge < 4; edge++)
         letters[edge][0] = '\0';
-    if (!info->medical)
+    if (!volume.medical)
         return SNOW_STATUS_OK;
     name_direction(camera.right, -1, letters[0]);
     name_direction(camera.right, 1, letters[1]);

@@ -85,7 +85,7 @@ snow_status snow_count_interesting_blocks(const snow_volume *volume,
     snow_row_block row_block = {0};
     pass p = {.volume = volume, .tally = tally};
     SNOW_TRY(snow_volume_need_voxels(volume));
-    snow_volume_get_extent(volume, &p.part);
+    snow_volume_find_extent(volume, &p.part);
     if (!p.part.count[0] || !p.part.count[1] || !p.part.count[2])
         return SNOW_STATUS_OK;
     snow_status status = find_columns(context, &p);
@@ -112,7 +112,7 @@ snow_status snow_count_interesting(const snow_volume *volume,
                                    int64_t *out) {
     int64_t count = 0;
     snow_extent part;
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     snow_block_counts tally = {.blocks = {1, 1, 1}, .counts = &count};
     for (int axis = 0; axis < 3; axis++)
         tally.grid.dims[axis] = tally.block[axis] = part.dims[axis];

@@ -7,7 +7,7 @@ snow_status snow_transfer_sparse_ratio(const snow_transfer *transfer,
                                        double threshold, double *ratio) {
     int64_t interesting;
     snow_extent part;
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     SNOW_TRY(snow_count_interesting(volume, transfer, threshold, SNOW_ISA_AUTO,
                                     &interesting));
     double voxels =

@@ -6,22 +6,27 @@
  * left. */
 #include "comm/comm.h"
 
-snow_status snow_comm_new(snow_context *context, const snow_comm_ops *ops,
+#include "base/record.h"
+SNOW_RECORD_OF_ZEROS(snow_comm_ops);
+
+snow_status snow_comm_new(snow_context *context, const snow_comm_ops *given,
                           void *self, int rank, int ranks, snow_comm **out) {
-    if (ops->size != sizeof *ops)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "the transport's record has %zu bytes, but this "
-                         "library expects %zu; build both from one version",
-                         ops->size, sizeof *ops);
+    snow_comm_ops ops;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_comm_ops, given, &ops));
     if (ranks < 1 || rank < 0 || rank >= ranks)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "invalid rank %d of %d: ranks count from 0", rank,
                          ranks);
+    if (!ops.send || !ops.receive || !ops.wait_any || !ops.wait_all ||
+        !ops.seconds || !ops.end)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "the transport lacks a function: send, receive, "
+                         "wait_any, wait_all, seconds and end are needed");
     snow_comm *comm = snow_allocate(context, sizeof *comm);
     if (!comm)
         return SNOW_STATUS_NO_MEMORY;
     *comm = (snow_comm){.context = context,
-                        .ops = *ops,
+                        .ops = ops,
                         .self = self,
                         .rank = rank,
                         .ranks = ranks};

@@ -5,6 +5,7 @@
 static snow_status open_file(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
+    snow_volume_info_init(info);
     if (!out)
         return snow_volume_inspect(context, path, options, info);
     SNOW_TRY(snow_volume_open(context, path, options, out));

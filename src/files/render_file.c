@@ -15,7 +15,8 @@ render_volume(snow_context *context, const snow_volume *volume,
     snow_settings_init(&by_default);
     if (snow_transfer_is_unshaded(transfer))
         by_default.shade = SNOW_SHADE_NONE;
-    snow_view_default(volume, &front);
+    snow_view_init(&front);
+    SNOW_TRY(snow_view_default(volume, &front));
     SNOW_TRY(snow_frame_new(context, &frame));
     snow_status status =
         snow_frame_render(frame, volume, transfer, view ? view : &front,
@@ -28,7 +29,7 @@ snow_status snow_render_file(snow_context *context, const char *path,
                              const snow_view *view,
                              const snow_settings *settings,
                              snow_image **image) {
-    const snow_look look = {0}; /* from the histogram */
+    const snow_look look = {.size = sizeof look}; /* from the histogram */
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     SNOW_TRY(snow_volume_open(context, path, NULL, &volume));

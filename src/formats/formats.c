@@ -5,6 +5,8 @@
  * else raw data.  The file's name is added to every message here, so that
  * readers need not do it. */
 #include "formats/image_series.h"
+
+#include "base/record.h"
 #include "formats/masked.h"
 #include "formats/zarr/zarr.h"
 #include "io/folder.h"
@@ -206,8 +208,6 @@ static snow_status name_failure(snow_context *context, snow_status status,
     return status;
 }
 
-static const snow_volume_options no_options;
-
 /* Owns the source from here on: it is closed on every return, after the message
  * has taken its name. */
 static snow_status open_source(snow_source *source,
@@ -339,8 +339,6 @@ static snow_status open_inside(snow_context *context, const char *path,
 static snow_status open_path(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              snow_volume_info *info, snow_volume **out) {
-    if (!options)
-        options = &no_options;
     if (!strncmp(path, PHANTOM, strlen(PHANTOM)))
         return open_phantom(context, path + strlen(PHANTOM), options, info,
                             out);
@@ -358,11 +356,13 @@ static snow_status open_path(snow_context *context, const char *path,
 }
 
 static snow_status open_any(snow_context *context, const char *path,
-                            const snow_volume_options *options,
+                            const snow_volume_options *given,
                             snow_volume_info *info, snow_volume **out) {
-    if (snow_mask_asked(options))
-        return snow_masked_open(context, path, options, open_path, info, out);
-    return open_path(context, path, options, info, out);
+    snow_volume_options options;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));
+    if (snow_mask_asked(&options))
+        return snow_masked_open(context, path, &options, open_path, info, out);
+    return open_path(context, path, &options, info, out);
 }
 
 /* A slab of a picture is read under the picture's monitor. */
@@ -379,7 +379,9 @@ snow_status snow_volume_open(snow_context *context, const char *path,
 snow_status snow_volume_inspect(snow_context *context, const char *path,
                                 const snow_volume_options *options,
                                 snow_volume_info *out) {
-    return open_any(context, path, options, out, NULL);
+    snow_volume_info info;
+    SNOW_TRY(open_any(context, path, options, &info, NULL));
+    return SNOW_RECORD_FILL(context, snow_volume_info, &info, out);
 }
 
 snow_status snow_volume_open_streamed(snow_context *context, const char *path,
@@ -390,12 +392,14 @@ snow_status snow_volume_open_streamed(snow_context *context, const char *path,
 
 snow_status snow_volume_open_memory(snow_context *context, const char *name,
                                     const void *bytes, size_t size,
-                                    const snow_volume_options *options,
+                                    const snow_volume_options *given,
                                     snow_volume **out) {
     snow_monitor monitor;
     snow_source *source;
     snow_volume_info info;
-    if (snow_mask_asked(options))
+    snow_volume_options options;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, given, &options));
+    if (snow_mask_asked(&options))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "%s: bytes in memory have no file of a mask beside "
                          "them; open them and take snow_volume_mask or "
@@ -407,7 +411,6 @@ snow_status snow_volume_open_memory(snow_context *context, const char *name,
     if (status != SNOW_STATUS_OK)
         status = name_failure(context, status, name);
     else
-        status =
-            open_source(source, options ? options : &no_options, &info, out);
+        status = open_source(source, &options, &info, out);
     return snow_monitor_end(&monitor, status);
 }

@@ -111,7 +111,7 @@ static snow_status look_at_both(opening *o) {
  * empty, as that of a rank often is; who reads all boxes looks at all. */
 static void note_empty(const opening *o, const snow_volume *mask,
                        snow_volume *volume) {
-    snow_volume_statistics m = {.min = NAN, .max = NAN};
+    snow_volume_statistics m = {.size = sizeof m, .min = NAN, .max = NAN};
     snow_volume_options options = o->options;
     options.mask = o->mask_path;
     if (mask)

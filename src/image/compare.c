@@ -12,6 +12,7 @@
  * no similarity. */
 #include "image/image.h"
 
+#include "base/record.h"
 #include <math.h>
 
 #define WINDOW 8
@@ -179,6 +180,8 @@ static snow_status measure_similarity(const snow_image *a, const snow_image *b,
     return SNOW_STATUS_OK;
 }
 
+SNOW_RECORD_OF_ZEROS(snow_image_difference);
+
 snow_status snow_image_compare(const snow_image *a, const snow_image *b,
                                snow_image_difference *out) {
     if (a->width != b->width || a->height != b->height)
@@ -193,7 +196,7 @@ snow_status snow_image_compare(const snow_image *a, const snow_image *b,
     for (int y = 0; y < a->height; y++)
         add_row(a, b, y, &sums);
     double samples = (double)sums.channels * a->width * a->height;
-    *out = (snow_image_difference){
+    const snow_image_difference difference = {
         .largest = sums.largest,
         .mean = sums.absolute / samples,
         .psnr = 10 * log10(samples / sums.squared),
@@ -201,5 +204,6 @@ snow_status snow_image_compare(const snow_image *a, const snow_image *b,
         .x = sums.x,
         .y = sums.y,
     };
-    return SNOW_STATUS_OK;
+    return SNOW_RECORD_FILL(a->context, snow_image_difference, &difference,
+                            out);
 }

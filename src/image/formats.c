@@ -6,6 +6,7 @@
 #include "image/image.h"
 
 #include "base/module.h"
+#include "base/record.h"
 #include "image/overlay.h"
 
 #include <string.h>
@@ -164,15 +165,16 @@ static snow_status name_file(snow_context *context, snow_status status,
     return status;
 }
 
-static const snow_image_options standard = {0};
+SNOW_RECORD_OF_ZEROS(snow_image_options);
 
 /* Refusals come first, before there is a file.  Then the writer leaves a
  * complete file or none. */
 snow_status snow_image_save(const snow_image *image, const char *path,
-                            const snow_image_options *options) {
-    if (!options)
-        options = &standard;
+                            const snow_image_options *given) {
+    snow_image_options options;
     const snow_image_format *format = NULL;
+    SNOW_TRY(
+        SNOW_RECORD_READ(image->context, snow_image_options, given, &options));
     SNOW_TRY(choose_format(image->context, path, &format));
     if (format->bits && image->channels == 1)
         return snow_fail(image->context, SNOW_STATUS_BAD_USAGE,
@@ -180,11 +182,11 @@ snow_status snow_image_save(const snow_image *image, const char *path,
                          "write .npy, .exr, .tif or .pfm, or paint them first",
                          path, format->name);
     SNOW_TRY(check_options(image->context, path, image->width, image->height,
-                           format, options));
+                           format, &options));
     snow_writer *writer = NULL;
     SNOW_TRY(
-        snow_writer_open(image->context, path, options->overwrite, &writer));
-    snow_status status = format->write(image, options, writer);
+        snow_writer_open(image->context, path, options.overwrite, &writer));
+    snow_status status = format->write(image, &options, writer);
     if (status != SNOW_STATUS_OK) {
         snow_writer_abandon(writer);
         return name_file(image->context, status, path);
@@ -207,13 +209,13 @@ snow_status snow_image_check_path(snow_context *context, const char *path,
 }
 
 snow_status snow_image_check(snow_context *context, const char *path, int width,
-                             int height, const snow_image_options *options) {
+                             int height, const snow_image_options *given) {
     const snow_image_format *format = NULL;
-    if (!options)
-        options = &standard;
+    snow_image_options options;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_image_options, given, &options));
     SNOW_TRY(choose_format(context, path, &format));
-    SNOW_TRY(check_options(context, path, width, height, format, options));
-    return snow_image_check_path(context, path, options->overwrite);
+    SNOW_TRY(check_options(context, path, width, height, format, &options));
+    return snow_image_check_path(context, path, options.overwrite);
 }
 
 /* The format that the first bytes of an open source show. */

@@ -1,6 +1,8 @@
 /* image/levels.c - rows of a picture as integers of 8 and 16 bits, with the
  * overlay: the contents of PNG and WebP files and of movies' frames. */
 #include "image/image.h"
+
+#include "base/record.h"
 #include "image/overlay.h"
 #include "image/samples.h"
 
@@ -78,26 +80,30 @@ const unsigned char *snow_levels_row(snow_levels *l, int y) {
 }
 
 /* Allocates no memory: frames of a movie are made while others are rendered. */
-void snow_image_to_rgb8_with(const snow_image *image,
-                             const snow_image_options *options,
-                             unsigned char *rgb) {
+snow_status snow_image_to_rgb8_with(const snow_image *image,
+                                    const snow_image_options *given,
+                                    unsigned char *rgb) {
     static const double black[3] = {0, 0, 0};
-    const double *background = options->flatten ? options->background : black;
+    snow_image_options options;
+    SNOW_TRY(
+        SNOW_RECORD_READ(image->context, snow_image_options, given, &options));
+    const double *background = options.flatten ? options.background : black;
     float drawn[4 * SOME];
     double samples[3 * SOME];
     for (int y = 0; y < image->height; y++)
         for (int x = 0; x < image->width; x += SOME) {
             int some = image->width - x < SOME ? image->width - x : SOME;
-            draw_some(image, options->overlay, y, x, some, 4, drawn);
+            draw_some(image, options.overlay, y, x, some, 4, drawn);
             snow_flatten_row(drawn, some, 4, background, 3, samples);
             snow_quantise_8(samples, 3 * (size_t)some, rgb);
             rgb += 3 * some;
         }
+    return SNOW_STATUS_OK;
 }
 
 void snow_image_to_rgb8(const snow_image *image, const double background[3],
                         unsigned char *rgb) {
-    snow_image_options options = {.flatten = true};
+    snow_image_options options = {.size = sizeof options, .flatten = true};
     memcpy(options.background, background, sizeof options.background);
     snow_image_to_rgb8_with(image, &options, rgb);
 }

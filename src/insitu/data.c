@@ -407,7 +407,7 @@ static snow_status lay_out(snow_insitu *insitu) {
     insitu->layout.lowering = insitu->lowering;
     snow_insitu_layout l = {.lowering = insitu->lowering};
     snow_box united = {{0, 0, 0}, {0, 0, 0}};
-    snow_ranks_needs needs;
+    snow_ranks_needs needs = {.size = sizeof needs};
     int64_t facts[FACTS];
     snow_insitu_lowered(insitu, &lowered, &settings);
     snow_status status = look_around(insitu, &lowered, &settings, &needs);
@@ -521,7 +521,7 @@ static snow_status reserve_dense(snow_insitu *insitu, size_t value) {
 static snow_status wrap(snow_insitu *insitu, const void *voxels,
                         const snow_box *memory) {
     snow_volume_info info = insitu->whole;
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     info.type = insitu->type;
     memcpy(info.dims, memory->count, sizeof info.dims);
     for (int i = 0; i < 3; i++) {
@@ -536,7 +536,7 @@ static snow_status wrap(snow_insitu *insitu, const void *voxels,
     INSITU_TRY(
         snow_volume_wrap(insitu->context, &info, voxels, &insitu->volume));
     INSITU_TRY(snow_volume_set_extent(insitu->volume, &part));
-    snow_volume_set_whole(insitu->volume, &insitu->whole);
+    INSITU_TRY(snow_volume_set_whole(insitu->volume, &insitu->whole));
     snow_volume_freeze(insitu->volume); /* until the next update */
     return SNOW_STATUS_OK;
 }

@@ -426,6 +426,10 @@ static void fill_figures(const snow_insitu *insitu, double *out) {
 
 #define FIGURES 12
 
+void snow_insitu_stats_init_sized(snow_insitu_stats *stats, size_t size) {
+    snow_record_init(stats, size, NULL, sizeof *stats);
+}
+
 snow_status snow_insitu_get_stats(snow_insitu *insitu, snow_insitu_stats *out) {
     double least[FIGURES], mean[FIGURES], most[FIGURES];
     snow_comm *comm = insitu->comm;
@@ -451,6 +455,5 @@ snow_status snow_insitu_get_stats(snow_insitu *insitu, snow_insitu_stats *out) {
     for (int i = 0; i < FIGURES; i++)
         *spreads[i] =
             (snow_spread){least[i], mean[i] / snow_comm_size(comm), most[i]};
-    *out = f;
-    return SNOW_STATUS_OK;
+    return SNOW_RECORD_FILL(insitu->context, snow_insitu_stats, &f, out);
 }

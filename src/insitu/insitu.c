@@ -14,7 +14,8 @@
 #define BRICKS_MOST 1000000
 
 static snow_volume_info empty_grid(void) {
-    snow_volume_info info = {.slope = 1, .format = "memory", .times = 1};
+    snow_volume_info info = {
+        .size = sizeof info, .slope = 1, .format = "memory", .times = 1};
     return info;
 }
 
@@ -28,7 +29,9 @@ snow_status snow_insitu_new(snow_comm *comm, snow_insitu **out) {
         insitu->context = context;
         insitu->whole = empty_grid();
         snow_settings_init(&insitu->settings);
-        insitu->how.size = sizeof insitu->how;
+        snow_ranks_options_init(&insitu->how);
+        snow_image_options_init(&insitu->form);
+        snow_look_init(&insitu->look.look);
         status = snow_voxels_new(comm, &insitu->voxels);
     }
     status = snow_comm_agree_status(comm, status);
@@ -315,35 +318,38 @@ snow_status snow_insitu_set_distribution(snow_insitu *insitu,
 
 /* --- the picture ---------------------------------------------------------- */
 
-snow_status snow_insitu_set_view(snow_insitu *insitu, const snow_view *view) {
-    if (view->width < 1 || view->height < 1)
+snow_status snow_insitu_set_view(snow_insitu *insitu, const snow_view *given) {
+    snow_view view;
+    INSITU_TRY(snow_insitu_answer(
+        insitu, SNOW_RECORD_READ(insitu->context, snow_view, given, &view)));
+    if (view.width < 1 || view.height < 1)
         return snow_insitu_refuse(
             insitu,
             "a picture of %dx%d pixels is none; set width "
             "and height of the view",
-            view->width, view->height);
-    insitu->view = *view;
+            view.width, view.height);
+    insitu->view = view;
     insitu->has_view = true;
     return SNOW_STATUS_OK;
 }
 
 snow_status snow_insitu_set_settings(snow_insitu *insitu,
                                      const snow_settings *settings) {
-    snow_settings *own = &insitu->settings;
-    snow_settings_init(own);
-    if (settings)
-        memcpy(own, settings,
-               settings->size < sizeof *own ? settings->size : sizeof *own);
-    own->size = sizeof *own;
+    snow_settings known;
+    INSITU_TRY(snow_insitu_answer(
+        insitu,
+        SNOW_RECORD_READ(insitu->context, snow_settings, settings, &known)));
+    insitu->settings = known;
     return SNOW_STATUS_OK;
 }
 
 snow_status snow_insitu_set_ranks(snow_insitu *insitu,
                                   const snow_ranks_options *how) {
-    insitu->how = (snow_ranks_options){0};
-    memcpy(&insitu->how, how,
-           how->size < sizeof *how ? how->size : sizeof *how);
-    insitu->how.size = sizeof insitu->how;
+    snow_ranks_options known;
+    INSITU_TRY(snow_insitu_answer(
+        insitu,
+        SNOW_RECORD_READ(insitu->context, snow_ranks_options, how, &known)));
+    insitu->how = known;
     return SNOW_STATUS_OK;
 }
 
@@ -364,9 +370,12 @@ static const char *find_number(const char *pattern, int *digits, size_t *end) {
 
 snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
                                    const snow_image_options *options) {
-    static const snow_image_options plain;
+    snow_image_options form;
     int digits;
     size_t end, bytes = strlen(pattern) + 1;
+    INSITU_TRY(snow_insitu_answer(
+        insitu,
+        SNOW_RECORD_READ(insitu->context, snow_image_options, options, &form)));
     if (!find_number(pattern, &digits, &end))
         return snow_insitu_refuse(
             insitu,
@@ -379,7 +388,7 @@ snow_status snow_insitu_set_output(snow_insitu *insitu, const char *pattern,
     memcpy(copy, pattern, bytes);
     snow_context_release(insitu->context, insitu->pattern);
     insitu->pattern = copy;
-    insitu->form = options ? *options : plain;
+    insitu->form = form;
     return SNOW_STATUS_OK;
 }
 
@@ -418,7 +427,7 @@ snow_status snow_insitu_set_limits(snow_insitu *insitu, double seconds,
 snow_view snow_insitu_view(const snow_insitu *insitu) {
     if (insitu->has_view)
         return insitu->view;
-    snow_view view = {0};
-    snow_view_from_name(insitu->context, "+z", &view);
+    snow_view view;
+    snow_view_init(&view);
     return view;
 }

@@ -68,8 +68,12 @@ static snow_status keep_look(snow_insitu *insitu, const snow_look *look,
 }
 
 /* The old one stays where there is no memory for the new one. */
-snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *look) {
-    snow_own_look *own = &insitu->look, next = {.look = *look};
+snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *given) {
+    snow_own_look *own = &insitu->look, next = {.points = {0}};
+    const snow_look *look = &next.look;
+    INSITU_TRY(
+        snow_insitu_answer(insitu, SNOW_RECORD_READ(insitu->context, snow_look,
+                                                    given, &next.look)));
     if ((look->preset && snow_preset_from_name(look->preset) < 0) ||
         (look->colormap && snow_colormap_from_name(look->colormap) < 0))
         return snow_insitu_refuse(

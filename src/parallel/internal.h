@@ -126,7 +126,6 @@ double snow_flight_cpu(const snow_flight *flight);
 /* Figure 8's driver (frame.c) makes pictures between these.  Opens a place for
  * one, whose combiner is that of one process where there is one rank. */
 snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
-                               const snow_view *view,
                                const snow_settings *settings,
                                const snow_ranks_options *how,
                                snow_picture **picture);

@@ -1,6 +1,7 @@
 /* parallel/load_balance.c - see load_balance.h. */
 #include "parallel/load_balance.h"
 
+#include "base/record.h"
 #include "classify/gradient_opacity.h"
 #include "parallel/internal.h"
 #include "parallel/open.h"
@@ -157,7 +158,7 @@ static snow_load_balance_message own_word(const balancing *b,
     const snow_load_balance *w = b->work;
     const int axis = b->order.grid.axis;
     snow_extent part;
-    snow_volume_get_extent(*b->volume, &part);
+    snow_volume_find_extent(*b->volume, &part);
     if (status != SNOW_STATUS_OK)
         return (snow_load_balance_message){.fault = 2};
     return (snow_load_balance_message){
@@ -274,8 +275,14 @@ static snow_status drain(balancing *b, snow_status status, int64_t left) {
 
 static bool is_measured(const snow_ranks_options *how,
                         const snow_settings *settings) {
-    return snow_ranks_options_known(how).cut == SNOW_PARTITION_MEASURED &&
-           !snow_settings_known(settings).deterministic;
+    snow_ranks_options options;
+    snow_settings known;
+    /* A record that cannot be read is refused by snow_ranks_repartition. */
+    return SNOW_RECORD_READ(NULL, snow_ranks_options, how, &options) ==
+               SNOW_STATUS_OK &&
+           SNOW_RECORD_READ(NULL, snow_settings, settings, &known) ==
+               SNOW_STATUS_OK &&
+           options.cut == SNOW_PARTITION_MEASURED && !known.deterministic;
 }
 
 snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,

@@ -1,23 +1,48 @@
 /* parallel/needs.c - what a picture by many ranks asks of the parts, for those
  * who cut them (snowglass/extend.h). */
 #include "decompose/deterministic.h"
+
+#include "base/record.h"
 #include "render/ghosts.h"
 #include "render/settings_resolve.h"
 #include "transfer/look.h"
 #include "transform/clip.h"
+
+SNOW_RECORD_OF_ZEROS(snow_ranks_needs);
+
+/* The caller's records. */
+typedef struct records {
+    snow_volume_info whole;
+    snow_view view;
+    snow_settings settings;
+} records;
+
+static snow_status read_records(snow_context *context,
+                                const snow_volume_info *whole,
+                                const snow_view *view,
+                                const snow_settings *settings, records *out) {
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, whole, &out->whole));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &out->view));
+    return SNOW_RECORD_READ(context, snow_settings, settings, &out->settings);
+}
 
 snow_status
 snow_ranks_find_needs(snow_context *context, const snow_volume_info *whole,
                       const snow_view *view, const snow_settings *settings,
                       const snow_look *look, snow_ranks_needs *out) {
     snow_placement placement;
-    snow_settings known = snow_settings_known(settings);
-    SNOW_TRY(snow_settings_resolve(context, whole, &known));
-    SNOW_TRY(snow_placement_make(context, whole, view, &placement));
-    out->slice_axis = placement.slice_axis;
-    return snow_ghosts_needed(context, whole, view, &known,
-                              snow_look_has_gradient_opacity(look), true,
-                              out->layers);
+    records r;
+    snow_look known;
+    snow_ranks_needs needs;
+    SNOW_TRY(read_records(context, whole, view, settings, &r));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_look, look, &known));
+    SNOW_TRY(snow_settings_resolve(context, &r.whole, &r.settings));
+    SNOW_TRY(snow_placement_make(context, &r.whole, &r.view, &placement));
+    needs.slice_axis = placement.slice_axis;
+    SNOW_TRY(snow_ghosts_needed(context, &r.whole, &r.view, &r.settings,
+                                snow_look_has_gradient_opacity(&known), true,
+                                needs.layers));
+    return SNOW_RECORD_FILL(context, snow_ranks_needs, &needs, out);
 }
 
 snow_status snow_ranks_have_order(snow_context *context,
@@ -26,7 +51,9 @@ snow_status snow_ranks_have_order(snow_context *context,
                                   int count, bool *out) {
     snow_viewer sight;
     snow_placement placement;
-    SNOW_TRY(snow_placement_make(context, whole, view, &placement));
+    records r;
+    SNOW_TRY(read_records(context, whole, view, NULL, &r));
+    SNOW_TRY(snow_placement_make(context, &r.whole, &r.view, &placement));
     int *order = snow_allocate_array(context, (uint64_t)count, sizeof *order);
     if (!order)
         return SNOW_STATUS_NO_MEMORY;

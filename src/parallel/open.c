@@ -13,6 +13,8 @@
  * most that any rank stores does not rise for it.  Invariant: the owned boxes
  * of all ranks cover the grid and do not overlap, before and after. */
 #include "parallel/open.h"
+
+#include "base/record.h"
 #include "classify/gradient_opacity.h"
 #include "comm/comm.h"
 #include "decompose/box.h"
@@ -38,7 +40,7 @@ typedef struct opening {
     const char *path;
     snow_volume_options options;
     snow_volume_info whole; /* of what the options ask for */
-    const snow_look *look;
+    snow_look look;
     const snow_transfer *transfer; /* in the place of the look's, or NULL */
 } opening;
 
@@ -67,14 +69,13 @@ static place place_box(const snow_volume_info *whole, const snow_box *owned,
 
 static snow_status set_part(snow_volume *volume, const snow_volume_info *whole,
                             const place *p) {
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     memcpy(part.dims, whole->dims, sizeof part.dims);
     memcpy(part.stored, p->stored.first, sizeof part.stored);
     memcpy(part.first, p->owned.first, sizeof part.first);
     memcpy(part.count, p->owned.count, sizeof part.count);
     SNOW_TRY(snow_volume_set_extent(volume, &part));
-    snow_volume_set_whole(volume, whole);
-    return SNOW_STATUS_OK;
+    return snow_volume_set_whole(volume, whole);
 }
 
 /* Room for a part; voxels that nobody sends are 0. */
@@ -102,7 +103,7 @@ static snow_brick brick_of(const snow_volume *volume) {
     snow_extent part;
     const int64_t *dims = volume->info.dims;
     size_t size = snow_type_size(volume->info.type);
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     snow_brick brick = {.stride = {1, dims[0], dims[0] * dims[1]}};
     int64_t at = 0;
     for (int i = 0; i < 3; i++) {
@@ -303,7 +304,7 @@ static snow_status warn_empty(const opening *o, const snow_volume *read) {
     if (!snow_mask_asked(&o->options) ||
         memcmp(o->options.crop, none, sizeof none) != 0)
         return SNOW_STATUS_OK;
-    snow_volume_get_extent(read, &part);
+    snow_volume_find_extent(read, &part);
     if (read->emptied) {
         ends[MINUS_LEAST] = fmax(ends[MINUS_LEAST], -read->mask_range[0]);
         ends[MOST] = fmax(ends[MOST], read->mask_range[1]);
@@ -323,7 +324,7 @@ static snow_status make_transfer(const opening *o, const snow_volume *read,
                                  snow_transfer **out) {
     if (o->transfer)
         return SNOW_STATUS_OK;
-    return snow_transfer_new_for_ranks(o->comm, read, o->look, out);
+    return snow_transfer_new_for_ranks(o->comm, read, &o->look, out);
 }
 
 /* Collective.  Equal slabs are known before anything is read. */
@@ -376,12 +377,25 @@ static snow_status open_file(opening *o, const snow_view *view,
     snow_status status = snow_partition_params_make(
         o->context, &o->whole, view, settings, how,
         o->transfer ? snow_transfer_has_gradient_opacity(o->transfer)
-                    : snow_look_has_gradient_opacity(o->look),
+                    : snow_look_has_gradient_opacity(&o->look),
         snow_comm_size(o->comm), &order);
     SNOW_TRY(snow_comm_agree_status(o->comm, status));
     if (order.cut == SNOW_PARTITION_EQUAL && !stream)
         return open_equal(o, &order, volume, transfer);
     return open_shares(o, &order, stream, share, volume, transfer);
+}
+
+static snow_status read_records(opening *o, const snow_volume_options *options,
+                                const snow_look *look,
+                                const snow_ranks_options *asked) {
+    snow_context *context = o->context;
+    snow_ranks_options how;
+    SNOW_TRY(
+        SNOW_RECORD_READ(context, snow_volume_options, options, &o->options));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_look, look, &o->look));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_ranks_options, asked, &how));
+    o->transfer = how.transfer;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_ranks_open_by(snow_open_fn *open,
@@ -396,15 +410,13 @@ snow_status snow_ranks_open_by(snow_open_fn *open,
                  .context = snow_comm_context(comm),
                  .open = open,
                  .format_name = format_name,
-                 .path = path,
-                 .look = look,
-                 .transfer = snow_ranks_options_known(how).transfer};
+                 .path = path};
     snow_volume *share = NULL, *part = NULL;
     snow_transfer *function = NULL;
-    if (options)
-        o.options = *options;
     snow_status status =
-        open_file(&o, view, settings, how, &share, &part, &function);
+        snow_comm_agree_status(comm, read_records(&o, options, look, how));
+    if (status == SNOW_STATUS_OK)
+        status = open_file(&o, view, settings, how, &share, &part, &function);
     snow_volume_close(share);
     if (status != SNOW_STATUS_OK) {
         snow_volume_close(part);
@@ -434,7 +446,7 @@ static bool is_border(const snow_partition_params *order, int64_t slice) {
 bool snow_part_serves(const snow_volume *volume,
                       const snow_partition_params *order) {
     snow_extent part;
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     int axis = order->grid.axis;
     if (!part.count[0] || !part.count[1] || !part.count[2])
         return true;

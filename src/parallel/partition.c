@@ -1,6 +1,7 @@
 /* parallel/partition.c - from a picture and a number of ranks to boxes. */
 #include "parallel/partition.h"
 
+#include "base/record.h"
 #include "classify/count_interesting.h"
 #include "render/ghosts.h"
 #include "render/settings_resolve.h"
@@ -11,13 +12,7 @@
 /* Slabs of fewer slices on the average are too coarse to be made equal. */
 #define LEAST_SLICES 5
 
-snow_ranks_options snow_ranks_options_known(const snow_ranks_options *how) {
-    snow_ranks_options known = {0};
-    size_t size = how ? how->size : 0;
-    if (size > 0)
-        memcpy(&known, how, size < sizeof known ? size : sizeof known);
-    return known;
-}
+SNOW_RECORD_OF_ZEROS(snow_ranks_options);
 
 /* By count, but for one rank, which has all, and for the method that splats
  * every voxel. */
@@ -49,9 +44,14 @@ snow_status snow_partition_params_make(
     snow_context *context, const snow_volume_info *whole, const snow_view *view,
     const snow_settings *settings, const snow_ranks_options *asked,
     bool gradient_factors, int ranks, snow_partition_params *out) {
-    snow_ranks_options how = snow_ranks_options_known(asked);
-    snow_settings resolved = snow_settings_known(settings);
+    snow_view known;
+    snow_ranks_options how;
+    snow_settings resolved;
     snow_placement placement;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, view, &known));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_ranks_options, asked, &how));
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_settings, settings, &resolved));
+    const snow_settings unresolved = resolved;
     bool chooses =
         how.cut == SNOW_PARTITION_AUTO || how.cut == SNOW_PARTITION_MEASURED;
     if (how.cut < SNOW_PARTITION_AUTO || how.cut > SNOW_PARTITION_MEASURED)
@@ -59,13 +59,13 @@ snow_status snow_partition_params_make(
                          "cut %d is none; take a value of snow_partition",
                          how.cut);
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
-    SNOW_TRY(snow_placement_make(context, whole, view, &placement));
+    SNOW_TRY(snow_placement_make(context, whole, &known, &placement));
     *out = (snow_partition_params){.ranks = ranks,
                                    .grid = {.axis = placement.slice_axis},
                                    .threshold = resolved.threshold,
                                    .isa = resolved.isa};
     memcpy(out->grid.dims, whole->dims, sizeof out->grid.dims);
-    SNOW_TRY(snow_ghosts_needed(context, whole, view, settings,
+    SNOW_TRY(snow_ghosts_needed(context, whole, &known, &unresolved,
                                 gradient_factors, how.turns, out->layers));
     if (resolved.deterministic)
         set_borders(out);
@@ -180,7 +180,7 @@ snow_status snow_partition_costs(snow_context *context,
 snow_status snow_ranks_partition(const snow_volume *volume,
                                  const snow_transfer *transfer,
                                  double threshold, snow_partition cut,
-                                 int slice_axis, int ranks, snow_extent *parts,
+                                 int slice_axis, int ranks, snow_box *parts,
                                  int64_t *loads) {
     snow_context *context = volume->context;
     if (ranks < 1 || slice_axis < 0 || slice_axis > 2 ||
@@ -204,14 +204,8 @@ snow_status snow_ranks_partition(const snow_volume *volume,
         return SNOW_STATUS_NO_MEMORY;
     snow_status status =
         snow_partition_boxes(NULL, &order, volume, transfer, boxes, loads);
-    for (int rank = 0; rank < ranks && parts && status == SNOW_STATUS_OK;
-         rank++) {
-        memcpy(parts[rank].dims, dims, sizeof parts[rank].dims);
-        memcpy(parts[rank].stored, boxes[rank].first,
-               sizeof parts[rank].stored);
-        memcpy(parts[rank].first, boxes[rank].first, sizeof parts[rank].first);
-        memcpy(parts[rank].count, boxes[rank].count, sizeof parts[rank].count);
-    }
+    if (parts && status == SNOW_STATUS_OK)
+        memcpy(parts, boxes, (size_t)ranks * sizeof *boxes);
     snow_release(context, boxes);
     return status;
 }

@@ -16,6 +16,8 @@
  * rank does what when changes no bit: bands share nothing, and messages are the
  * same in the same order. */
 #include "parallel/internal.h"
+
+#include "base/record.h"
 #include "parallel/partition.h"
 
 #include <string.h>
@@ -53,7 +55,6 @@ static snow_status fail_in_flight(snow_context *context, const char *what) {
 }
 
 snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
-                               const snow_view *view,
                                const snow_settings *settings,
                                const snow_ranks_options *how,
                                snow_picture **picture) {
@@ -73,10 +74,10 @@ snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
         .picture = {.frame = frame,
                     .combiner = r->ranks == 1 ? &snow_combine_alone
                                               : &snow_combine_ranks,
-                    .view = *view,
                     .aside = snow_pipeline_waiting(frame) != NULL},
-        .ranks = r,
-        .how = snow_ranks_options_known(how)};
+        .ranks = r};
+    f->picture.refused =
+        SNOW_RECORD_READ(frame->context, snow_ranks_options, how, &f->how);
     snow_ranks_drain(r);
     begin_call(f);
     f->drawn_cpu = snow_thread_seconds();

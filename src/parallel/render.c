@@ -70,7 +70,7 @@ static snow_status make_images(snow_flight *f) {
 static snow_status begin(snow_picture *p, snow_status status) {
     snow_flight *f = snow_flight_of(p);
     f->generation = p->job.volume->generation;
-    snow_volume_get_extent(p->job.volume, &f->part);
+    snow_volume_find_extent(p->job.volume, &f->part);
     p->stats.ranks = f->ranks->ranks;
     p->begin_at = f->ranks->begin_at;
     if (status == SNOW_STATUS_OK)

@@ -96,21 +96,6 @@ static json_t *write_flag(const recipe_key *key, const void *field) {
     return *(const bool *)field ? json_true() : NULL;
 }
 
-/* A bool that is stored in an int. */
-static bool read_switch(const recipe_key *key, const json_t *value, void *field,
-                        char wrong[WRONG_BYTES]) {
-    bool flag;
-    if (!read_flag(key, value, &flag, wrong))
-        return false;
-    *(int *)field = flag;
-    return true;
-}
-
-static json_t *write_switch(const recipe_key *key, const void *field) {
-    (void)key;
-    return *(const int *)field ? json_true() : NULL;
-}
-
 /* --- arrays of numbers ---------------------------------------------------- */
 
 static bool refuse_array(const recipe_key *key, char wrong[WRONG_BYTES]) {
@@ -660,7 +645,7 @@ const recipe_key recipe_keys[] = {
     MADE("time-label", flag, time_label, 0, 0, 0),
     {"threads", read_int, write_told_int, AT(settings.threads), 1, 4096, 0,
      NULL, NULL},
-    MADE("deterministic", switch, settings.deterministic, 0, 0, 0),
+    MADE("deterministic", flag, settings.deterministic, 0, 0, 0),
     NAME("isa", settings.isa, isa_name, snow_isa_from_name),
     {"dims", read_longs, write_told_longs, AT(data.dims), 1, 9e15, 3, NULL,
      NULL},

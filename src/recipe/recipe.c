@@ -5,17 +5,20 @@
  * for the whole process. */
 #include "recipe/keys.h"
 
+#include <snowglass/extend.h>
 #include <snowglass/tf.h>
 
 #include <math.h>
 #include <string.h>
 
-void snow_recipe_init(snow_recipe *recipe) {
-    *recipe = (snow_recipe){
-        .size = sizeof *recipe, .width = 512, .height = 512, .zoom = 1};
+void snow_recipe_init_sized(snow_recipe *recipe, size_t size) {
+    snow_recipe defaults = {.width = 512, .height = 512, .zoom = 1};
     for (int i = 0; i < 3; i++)
-        recipe->position[i] = recipe->target[i] = recipe->up[i] = NAN;
-    snow_settings_init(&recipe->settings);
+        defaults.position[i] = defaults.target[i] = defaults.up[i] = NAN;
+    snow_volume_options_init(&defaults.data);
+    snow_settings_init(&defaults.settings);
+    snow_image_options_init(&defaults.image);
+    snow_record_init(recipe, size, &defaults, sizeof defaults);
 }
 
 void snow_recipe_clear(snow_recipe *recipe) {
@@ -105,8 +108,10 @@ static snow_status finish_recipe(snow_context *context, const char *source,
         return status;
     }
     recipe.owned = tree;
-    *out = recipe;
-    return SNOW_STATUS_OK;
+    status = SNOW_RECORD_FILL(context, snow_recipe, &recipe, out);
+    if (status != SNOW_STATUS_OK)
+        json_decref(tree);
+    return status;
 }
 
 snow_status snow_recipe_parse(snow_context *context, const char *name,
@@ -130,12 +135,16 @@ snow_status snow_recipe_load(snow_context *context, const char *path,
 
 /* --- writing -------------------------------------------------------------- */
 
-snow_status snow_recipe_write(snow_context *context, const snow_recipe *recipe,
+snow_status snow_recipe_write(snow_context *context, const snow_recipe *given,
                               char *text, size_t room, size_t *length) {
+    snow_recipe recipe;
+    snow_status status = SNOW_RECORD_READ(context, snow_recipe, given, &recipe);
+    if (status != SNOW_STATUS_OK)
+        return status;
     json_t *tree = json_object();
     int failed = tree == NULL;
     for (const recipe_key *key = recipe_keys; key->name && !failed; key++) {
-        json_t *value = key->write(key, (const char *)recipe + key->field);
+        json_t *value = key->write(key, (const char *)&recipe + key->field);
         if (value)
             failed = json_object_set_new(tree, key->name, value);
     }
@@ -155,21 +164,24 @@ snow_status snow_recipe_write(snow_context *context, const snow_recipe *recipe,
 /* --- applying
  * ---------------------------------------------------------------- */
 
-void snow_recipe_get_look(const snow_recipe *recipe, snow_look *out) {
-    *out = (snow_look){.preset = recipe->preset,
-                       .colormap = recipe->colormap,
-                       .range = recipe->range,
-                       .low = recipe->low,
-                       .high = recipe->high,
-                       .log = recipe->log};
+snow_status snow_recipe_get_look(snow_context *context,
+                                 const snow_recipe *recipe, snow_look *out) {
+    snow_look look = {.size = sizeof look,
+                      .preset = recipe->preset,
+                      .colormap = recipe->colormap,
+                      .range = recipe->range,
+                      .low = recipe->low,
+                      .high = recipe->high,
+                      .log = recipe->log};
     if (recipe->opacity_count) {
-        out->opacities = recipe->opacities;
-        out->opacity_count = recipe->opacity_count;
+        look.opacities = recipe->opacities;
+        look.opacity_count = recipe->opacity_count;
     }
     if (recipe->gradient_opacity_count) {
-        out->gradient_opacities = recipe->gradient_opacities;
-        out->gradient_opacity_count = recipe->gradient_opacity_count;
+        look.gradient_opacities = recipe->gradient_opacities;
+        look.gradient_opacity_count = recipe->gradient_opacity_count;
     }
+    return SNOW_RECORD_FILL(context, snow_look, &look, out);
 }
 
 static bool take_place(const double given[3], double out[3]) {
@@ -182,12 +194,12 @@ static bool take_place(const double given[3], double out[3]) {
 snow_status snow_recipe_get_view(snow_context *context,
                                  const snow_recipe *recipe,
                                  const snow_view *usual, snow_view *out) {
-    snow_view view = *usual;
-    if (recipe->view) {
-        snow_status status = snow_view_from_name(context, recipe->view, &view);
-        if (status != SNOW_STATUS_OK)
-            return status;
-    }
+    snow_view view;
+    snow_status status = SNOW_RECORD_READ(context, snow_view, usual, &view);
+    if (status == SNOW_STATUS_OK && recipe->view)
+        status = snow_view_from_name(context, recipe->view, &view);
+    if (status != SNOW_STATUS_OK)
+        return status;
     view.width = recipe->width;
     view.height = recipe->height;
     view.azimuth = recipe->azimuth;
@@ -202,8 +214,7 @@ snow_status snow_recipe_get_view(snow_context *context,
         return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
                                  "\"position\" and \"view\" both place the "
                                  "camera; give only one of them");
-    *out = view;
-    return SNOW_STATUS_OK;
+    return SNOW_RECORD_FILL(context, snow_view, &view, out);
 }
 
 /* Millimetres in a unit of length; 0 if it is not a length. */
@@ -231,8 +242,7 @@ snow_status snow_recipe_get_settings(snow_context *context,
                                      "use opacities per voxel",
                                      unit);
     }
-    *out = settings;
-    return SNOW_STATUS_OK;
+    return SNOW_RECORD_FILL(context, snow_settings, &settings, out);
 }
 
 snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
@@ -245,8 +255,11 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
         return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
                                  "\"depth\" is for pictures of files; remove "
                                  "it from a recipe for a simulation");
-    snow_recipe_get_look(recipe, &look);
-    snow_status status = snow_view_from_name(context, "+z", &usual);
+    snow_look_init(&look);
+    snow_view_init(&usual);
+    snow_view_init(&view);
+    snow_settings_init(&settings);
+    snow_status status = snow_recipe_get_look(context, recipe, &look);
     if (status == SNOW_STATUS_OK && recipe->tf)
         status = snow_look_load(context, recipe->tf, &tf);
     if (status == SNOW_STATUS_OK && tf)
@@ -276,6 +289,7 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
 snow_status snow_recipe_apply_file(snow_insitu *insitu, const char *path) {
     snow_recipe recipe;
     snow_context *context = snow_comm_context(snow_insitu_comm(insitu));
+    snow_recipe_init(&recipe);
     snow_status status = snow_recipe_load(context, path, &recipe);
     if (status == SNOW_STATUS_OK) {
         status = snow_recipe_apply(&recipe, insitu);

@@ -1,6 +1,7 @@
 /* render/buffers.c - see buffers.h. */
 #include "render/buffers.h"
 
+#include "base/record.h"
 #include "image/image.h"
 #include "render/exact/exact.h"
 #include "render/exact/exact_perspective.h"
@@ -36,6 +37,8 @@ void snow_buffers_free(snow_frame *frame) {
 const snow_image *snow_frame_depth(const snow_frame *frame) {
     return frame->depth;
 }
+
+SNOW_RECORD_OF_ZEROS(snow_stats);
 
 const snow_stats *snow_frame_stats(const snow_frame *frame) {
     return &frame->stats;

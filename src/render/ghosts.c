@@ -257,7 +257,7 @@ snow_status
 snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
                    const snow_view *view, const snow_settings *settings,
                    bool gradient_factors, bool any_turn, int64_t layers[3]) {
-    snow_settings resolved = snow_settings_known(settings);
+    snow_settings resolved = *settings;
     int64_t found[3] = {0, 0, 0};
     int halvings[3] = {0, 0, 0};
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
@@ -278,7 +278,7 @@ snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
 
 static bool is_empty(const snow_volume *volume) {
     snow_extent part;
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     return !part.count[0] || !part.count[1] || !part.count[2];
 }
 
@@ -287,7 +287,7 @@ static snow_status check_layers(snow_context *context,
                                 const int64_t layers[3]) {
     const char names[] = "xyz";
     snow_extent part;
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     for (int axis = 0; axis < 3; axis++) {
         int64_t below = part.first[axis] - part.stored[axis];
         int64_t end = part.first[axis] + part.count[axis];

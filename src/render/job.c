@@ -70,13 +70,13 @@ static snow_status place(snow_job *job, int parts, int part) {
 
 snow_status snow_job_begin(snow_context *context, const snow_request *request,
                            snow_stats *stats, snow_job *job) {
-    *stats = (snow_stats){.ranks = 1};
+    *stats = (snow_stats){.size = sizeof *stats, .ranks = 1};
     *job = (snow_job){
         .context = context,
         .volume = request->volume,
         .transfer = request->transfer,
         .view = request->view,
-        .settings = snow_settings_known(request->settings),
+        .settings = *request->settings,
         .channels = request->transfer->grey ? 2 : 4,
         .stats = stats,
     };
@@ -184,7 +184,7 @@ snow_status snow_job_finish(snow_frame *frame, const snow_job *job) {
     stats->kernel = job->settings.kernel;
     stats->voxels = job->stored.columns * job->stored.rows * job->slab.count;
     if (stats->method == SNOW_METHOD_FOOTPRINT)
-        stats->encoded = 1; /* for every picture */
+        stats->encoded = true; /* for every picture */
     if (has_ghosts(&job->clip) && job->all)
         SNOW_TRY(count_own(frame, job));
     if (stats->voxels > 0)

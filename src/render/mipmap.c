@@ -164,7 +164,7 @@ static snow_status set_level(snow_volume *level, const snow_volume *from,
                              const snow_extent *part,
                              const snow_volume_info *info) {
     snow_extent before;
-    snow_volume_get_extent(from, &before);
+    snow_volume_find_extent(from, &before);
     level->info = *info;
     level->is_part = level->knows_origin = false;
     for (int axis = 0; axis < 3; axis++) {
@@ -174,7 +174,7 @@ static snow_status set_level(snow_volume *level, const snow_volume *from,
     }
     if (!from->is_part)
         return SNOW_STATUS_OK;
-    snow_volume_set_whole(level, whole);
+    SNOW_TRY(snow_volume_set_whole(level, whole));
     return snow_volume_set_extent(level, part);
 }
 

@@ -2,6 +2,7 @@
  * the passes that it is made in. */
 #include "render/picture.h"
 
+#include "base/record.h"
 #include "image/image.h"
 #include "render/settings_resolve.h"
 
@@ -42,7 +43,8 @@ static void add_depth(snow_picture *p) {
     pass->job.stats = &p->unused;
     pass->job.settings.method = SNOW_METHOD_FOOTPRINT;
     pass->job.settings.shade = SNOW_SHADE_NONE;
-    pass->job.settings.deterministic = 0; /* it has one order of operations */
+    pass->job.settings.deterministic =
+        false; /* it has one order of operations */
     pass->method = snow_method_of(&pass->job);
 }
 
@@ -63,9 +65,9 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
         status = snow_modes_value_weight(p->frame, &p->job, &job);
     else if (job.settings.method != SNOW_METHOD_ORIGINAL || job.volume->stream)
         job.settings.method = SNOW_METHOD_FOOTPRINT;
-    job.settings.deterministic = 0; /* bits do not depend on parts */
-    if (job.volume->stream)         /* by depths the nearest surface is found */
-        job.settings.depth |= job.settings.mode == SNOW_MODE_ISO;
+    job.settings.deterministic = false; /* bits do not depend on parts */
+    if (job.volume->stream && job.settings.mode == SNOW_MODE_ISO)
+        job.settings.depth = true; /* by depths the nearest surface is found */
     add_pass(p, &job, job.placement.slice_axis, 1)->method =
         snow_method_of(&job);
     return status;
@@ -116,15 +118,28 @@ static snow_status plan_job(snow_picture *p, const snow_request *request) {
                                                   : SNOW_STATUS_OK;
 }
 
+/* A record that cannot be read is refused by the plan. */
 void snow_picture_watch(snow_picture *p, const snow_settings *settings) {
-    const snow_settings known = snow_settings_known(settings);
+    snow_settings known;
+    SNOW_RECORD_READ(NULL, snow_settings, settings, &known);
     snow_monitor_begin(p->frame->context, &p->monitor, known.stop,
                        known.stop_user);
 }
 
+/* The caller's view and settings; the defaults where they cannot be read. */
+static snow_status read_request(snow_picture *p, const snow_request *asked,
+                                snow_settings *settings) {
+    snow_context *context = p->frame->context;
+    snow_view_init(&p->view);
+    snow_settings_init(settings);
+    SNOW_TRY(p->refused);
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_view, asked->view, &p->view));
+    return SNOW_RECORD_READ(context, snow_settings, asked->settings, settings);
+}
+
 snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
     snow_context *context = p->frame->context;
-    snow_settings settings = snow_settings_known(asked->settings);
+    snow_settings settings;
     snow_request request = *asked;
     int halvings[3] = {0, 0, 0};
     char message[SNOW_MESSAGE_BYTES];
@@ -132,7 +147,9 @@ snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
     p->start_cpu = snow_cpu_seconds();
     request.settings = &settings;
     request.view = &p->view;
-    snow_status found = take_level(p, &request, &settings, halvings);
+    snow_status found = read_request(p, asked, &settings);
+    if (found == SNOW_STATUS_OK)
+        found = take_level(p, &request, &settings, halvings);
     memcpy(message, context->message, sizeof message);
     /* Also where there is no level: all ranks begin in the same way. */
     snow_status status = plan_job(p, &request);

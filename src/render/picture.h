@@ -80,6 +80,7 @@ struct snow_picture {
     snow_frame *frame;
     const snow_combine_ops *combiner;
     snow_monitor monitor; /* stop and progress */
+    snow_status refused;  /* of a record of the caller that cannot be read */
     snow_view view;       /* as job.view */
     snow_job job; /* without volume and transfer function when it is begun
                      ahead, as its passes' */

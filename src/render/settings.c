@@ -1,6 +1,7 @@
 /* render/settings.c - the settings of a picture: their names and defaults.
  * settings_resolve.c finds what they mean for one volume. */
-#include <snowglass/render.h>
+#include "base/record.h"
+
 #include <string.h>
 
 static const char *const methods[] = {
@@ -82,7 +83,5 @@ static const snow_settings defaults = {
 };
 
 void snow_settings_init_sized(snow_settings *settings, size_t size) {
-    memcpy(settings, &defaults,
-           size < sizeof defaults ? size : sizeof defaults);
-    settings->size = size;
+    snow_record_init(settings, size, &defaults, sizeof defaults);
 }

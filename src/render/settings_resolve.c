@@ -9,16 +9,6 @@
 #include <snowglass/snowglass.h>
 #include <string.h>
 
-snow_settings snow_settings_known(const snow_settings *asked) {
-    snow_settings known;
-    snow_settings_init(&known);
-    if (!asked)
-        return known;
-    memcpy(&known, asked,
-           asked->size < sizeof known ? asked->size : sizeof known);
-    return known;
-}
-
 /* Refuses a number outside of [low, high], or not a number. */
 static snow_status check_range(snow_context *context, const char *name,
                                double value, double low, double high) {
@@ -78,11 +68,6 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
 snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *s) {
-    if (s->size < sizeof s->size)
-        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "settings of %zu bytes are none; fill them with "
-                         "snow_settings_init",
-                         s->size);
     SNOW_TRY(check_choice(context, "method", (int)s->method,
                           SNOW_METHOD_SHEAR_WARP + 1));
     SNOW_TRY(check_choice(context, "encoding", (int)s->encoding,

@@ -4,12 +4,7 @@
 #define SNOW_RENDER_SETTINGS_RESOLVE_H
 
 #include "base/base.h"
-
-#include <snowglass/render.h>
-
-/* The settings as far as the caller's record reaches (its `size`), defaults
- * beyond. */
-snow_settings snow_settings_known(const snow_settings *asked);
+#include "base/record.h"
 
 /* Checks every setting and replaces what is 0 or AUTO by what is meant for
  * this volume, but for the encoding, which is measured later.

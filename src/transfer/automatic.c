@@ -219,7 +219,7 @@ static void build_solid(const snow_histogram_split *p, bool slice, bool log,
 /* The number of axes with one voxel: 1 is a slice, 2 a row. */
 static int axes_of_one(const snow_histogram *histogram) {
     snow_extent part;
-    snow_volume_get_extent(histogram->volume, &part);
+    snow_volume_find_extent(histogram->volume, &part);
     return (part.dims[0] == 1) + (part.dims[1] == 1) + (part.dims[2] == 1);
 }
 

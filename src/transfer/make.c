@@ -5,11 +5,15 @@
  * the colours, and opacities replace the opacities.  The gradient opacity is
  * used only if requested. */
 #include "transfer/look.h"
+
+#include "base/record.h"
 #include "volume/stream.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+SNOW_RECORD_OF_ZEROS(snow_look);
 
 typedef const char *name_fn(size_t index);
 
@@ -320,12 +324,17 @@ bool snow_look_has_gradient_opacity(const snow_look *look) {
 }
 
 static snow_status make_among(snow_comm *comm, const snow_volume *volume,
-                              const snow_look *look, snow_transfer **out) {
-    snow_transfer_builder builder;
+                              const snow_look *given, snow_transfer **out) {
+    snow_transfer_builder builder = {.block = NULL};
     snow_histogram histogram;
     snow_transfer *transfer = NULL;
-    SNOW_TRY(check_look(volume->context, look));
-    snow_status status = begin_builder(volume->context, look, &builder);
+    snow_look known, *look = &known;
+    snow_status status =
+        SNOW_RECORD_READ(volume->context, snow_look, given, look);
+    if (status == SNOW_STATUS_OK)
+        status = check_look(volume->context, look);
+    if (status == SNOW_STATUS_OK)
+        status = begin_builder(volume->context, look, &builder);
     if (comm && status == SNOW_STATUS_OK)
         status = snow_volume_need_voxels(volume);
     if (comm)
@@ -355,11 +364,9 @@ snow_status snow_transfer_new_for_ranks(snow_comm *comm,
                                         const snow_volume *volume,
                                         const snow_look *look,
                                         snow_transfer **out) {
-    static const snow_look automatic;
     snow_monitor monitor;
     snow_monitor_begin_reading(volume->context, &monitor);
-    return snow_monitor_end(
-        &monitor, make_among(comm, volume, look ? look : &automatic, out));
+    return snow_monitor_end(&monitor, make_among(comm, volume, look, out));
 }
 
 snow_status snow_transfer_new_for_volume(const snow_volume *volume,

@@ -10,7 +10,7 @@
 snow_voxel_walk snow_voxel_walk_begin(const snow_volume *volume, bool log,
                                       snow_histogram_mode histogram_mode) {
     snow_extent part;
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     snow_voxel_walk w = {.volume = volume, .log = log, .box = {.value = 1}};
     memcpy(w.stored, part.stored, sizeof w.stored);
     memcpy(w.box.dims, part.dims, sizeof w.box.dims);

@@ -15,7 +15,7 @@ void snow_clip_make(const snow_volume *volume, const snow_placement *whole,
     const int axes[3] = {whole->u_axis, whole->v_axis, whole->slice_axis};
     snow_extent part;
     *out = (snow_clip){0};
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
     bool none = !part.count[0] || !part.count[1] || !part.count[2];
     for (int n = 0; n < 3; n++) {
         out->stored[n] = part.stored[axes[n]];

@@ -3,7 +3,10 @@
  * In RAS world space anterior is +y, left -x, superior +z. A frame is right,
  * up, back, with back pointing from the target to the camera. */
 #include "base/vec3.h"
+
+#include "base/record.h"
 #include "transform/transform.h"
+#include "volume/volume.h"
 
 #include <math.h>
 #include <string.h>
@@ -36,31 +39,36 @@ const char *snow_view_name(size_t index) {
     return index < VIEW_COUNT ? views[index].name : NULL;
 }
 
-static void set_view(const struct named_view *named, snow_view *out) {
-    *out = (snow_view){.width = 512, .height = 512, .zoom = 1};
-    memcpy(out->back, named->back, sizeof out->back);
-    memcpy(out->up, named->up, sizeof out->up);
+static const snow_view defaults = {
+    .width = 512, .height = 512, .back = {0, 0, 1}, .up = {0, 1, 0}, .zoom = 1};
+
+void snow_view_init_sized(snow_view *view, size_t size) {
+    snow_record_init(view, size, &defaults, sizeof defaults);
+}
+
+static snow_status fill_view(snow_context *context,
+                             const struct named_view *named, snow_view *out) {
+    snow_view view = defaults;
+    memcpy(view.back, named->back, sizeof view.back);
+    memcpy(view.up, named->up, sizeof view.up);
+    return SNOW_RECORD_FILL(context, snow_view, &view, out);
 }
 
 snow_status snow_view_from_name(snow_context *context, const char *name,
                                 snow_view *out) {
     for (size_t i = 0; i < VIEW_COUNT; i++)
-        if (snow_same_name(name, views[i].name)) {
-            set_view(&views[i], out);
-            return SNOW_STATUS_OK;
-        }
+        if (snow_same_name(name, views[i].name))
+            return fill_view(context, &views[i], out);
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                      "unknown view '%s': must be anterior, posterior, left, "
                      "right, superior, inferior, iso, +x, -x, +y, -y, +z or -z",
                      name);
 }
 
-void snow_view_default(const snow_volume *volume, snow_view *out) {
+snow_status snow_view_default(const snow_volume *volume, snow_view *out) {
     bool medical = snow_volume_get_info(volume)->medical;
-    const char *name = medical ? "anterior" : "+z";
-    for (size_t i = 0; i < VIEW_COUNT; i++)
-        if (strcmp(name, views[i].name) == 0)
-            set_view(&views[i], out);
+    return snow_view_from_name(volume->context, medical ? "anterior" : "+z",
+                               out);
 }
 
 double snow_view_zoom_for_voxels(const snow_volume *volume, int width,

@@ -318,7 +318,8 @@ bool snow_downsampled_part(const snow_volume *volume, const int64_t dims[3],
                            snow_extent *out, int64_t stored[3]) {
     snow_extent part;
     bool any = true;
-    snow_volume_get_extent(volume, &part);
+    snow_volume_find_extent(volume, &part);
+    snow_extent_init(out);
     for (int axis = 0; axis < 3; axis++) {
         int64_t from = part.dims[axis], to = dims[axis];
         int64_t end = part.first[axis] + part.count[axis];
@@ -385,8 +386,8 @@ snow_status snow_volume_downsample(const snow_volume *volume,
                                    snow_volume *out) {
     const int64_t *dims = out->info.dims;
     snow_extent whole, made;
-    snow_volume_get_extent(volume, &whole);
-    snow_volume_get_extent(out, &made);
+    snow_volume_find_extent(volume, &whole);
+    snow_volume_find_extent(out, &made);
     downsampling h = {.volume = volume,
                       .out = out,
                       .lean = lean,

@@ -5,6 +5,7 @@
  * in storage order, so that sums have one order of additions on all machines.
  */
 #include "base/monitor.h"
+#include "base/record.h"
 #include "volume/stream.h"
 
 #include <math.h>
@@ -77,8 +78,8 @@ static void measure_value(snow_volume_statistics *m, double value,
 
 /* One thread and one order: the sums are compared to the last bit with those
  * of other readers. */
-void snow_volume_get_statistics(const snow_volume *volume,
-                                snow_volume_statistics *out) {
+snow_status snow_volume_get_statistics(const snow_volume *volume,
+                                       snow_volume_statistics *out) {
     snow_volume_statistics m = {
         .voxels = voxel_count(volume), .min = NAN, .max = NAN};
     double values[BLOCK];
@@ -92,7 +93,7 @@ void snow_volume_get_statistics(const snow_volume *volume,
         for (size_t i = 0; i < count; i++)
             measure_value(&m, values[i], first + (int64_t)i);
     }
-    *out = m;
+    return SNOW_RECORD_FILL(volume->context, snow_volume_statistics, &m, out);
 }
 
 /* The bin of a value is that of snowglass/volume.h to the last bit: floor of

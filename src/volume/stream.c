@@ -7,6 +7,7 @@
 #include "volume/stream.h"
 
 #include "base/monitor.h"
+#include "base/record.h"
 #include "io/source.h"
 #include "volume/mask.h"
 
@@ -110,19 +111,19 @@ snow_status snow_stream_open(snow_context *context, const char *path,
                              const snow_volume_options *options,
                              uint64_t slab_bytes, snow_open_fn *open,
                              snow_volume **out) {
-    static const snow_volume_options none;
+    snow_volume_options known;
     snow_volume_info info;
     snow_stream *stream;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, options, &known));
     if (snow_source_is_stream(path))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "%s: can be read once only, and a volume that stays "
                          "in its file is read several times; write it to a "
                          "file",
                          strcmp(path, "-") ? path : "standard input");
-    SNOW_TRY(new_stream(context, path, options ? options : &none, slab_bytes,
-                        &stream));
+    SNOW_TRY(new_stream(context, path, &known, slab_bytes, &stream));
     listen_once(context, stream);
-    snow_status status = open(context, path, options, &info, NULL);
+    snow_status status = open(context, path, &known, &info, NULL);
     listen_again(context, stream);
     snow_volume *volume = NULL;
     if (status == SNOW_STATUS_OK) {
@@ -237,7 +238,8 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     int64_t from = first > ghosts ? first - ghosts : 0;
     int64_t end = first + count + ghosts;
     end = end < dims[2] ? end : dims[2];
-    snow_extent part = {.dims = {dims[0], dims[1], dims[2]},
+    snow_extent part = {.size = sizeof part,
+                        .dims = {dims[0], dims[1], dims[2]},
                         .stored = {0, 0, from},
                         .first = {0, 0, first},
                         .count = {dims[0], dims[1], count}};
@@ -249,11 +251,12 @@ static snow_status read_slab(const snow_volume *volume, int64_t first,
     snow_status status = compare(volume, slab, &part, end - from);
     if (status == SNOW_STATUS_OK)
         status = snow_volume_set_extent(slab, &part);
+    if (status == SNOW_STATUS_OK)
+        status = snow_volume_set_whole(slab, &volume->info);
     if (status != SNOW_STATUS_OK) {
         snow_volume_close(slab);
         return status;
     }
-    snow_volume_set_whole(slab, &volume->info);
     *out = slab;
     return SNOW_STATUS_OK;
 }
@@ -371,8 +374,8 @@ snow_status snow_slabs_visit(const snow_volume *volume,
 
 /* `user` is what is known so far; NaN where nothing is. */
 static snow_status measure_slab(const snow_volume *slab, void *user) {
-    snow_volume_statistics *range = user, here;
-    snow_volume_get_statistics(slab, &here);
+    snow_volume_statistics *range = user, here = {.size = sizeof here};
+    SNOW_TRY(snow_volume_get_statistics(slab, &here));
     SNOW_TRY(snow_monitor_status(slab->context->monitor));
     range->voxels += here.voxels;
     range->finite += here.finite;

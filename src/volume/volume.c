@@ -4,6 +4,8 @@
  * memory: every reader goes through snow_volume_new. */
 #include "volume/volume.h"
 
+#include "base/record.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -13,7 +15,8 @@
 /* What a file that says nothing means: unit voxels at the origin, values as
  * they are. */
 snow_volume_info snow_volume_info_default(const char *format) {
-    snow_volume_info info = {.dims = {1, 1, 1},
+    snow_volume_info info = {.size = sizeof info,
+                             .dims = {1, 1, 1},
                              .spacing = {1, 1, 1},
                              .slope = 1,
                              .format = format,
@@ -96,6 +99,7 @@ static snow_status wrap(snow_context *context, const snow_volume_info *info,
     volume->info = *info;
     volume->voxels = voxels;
     snow_volume_info_measure(&volume->info);
+    volume->info.size = sizeof volume->info;
     *out = volume;
     return SNOW_STATUS_OK;
 }
@@ -177,22 +181,31 @@ snow_status snow_volume_need_voxels(const snow_volume *volume) {
 }
 
 snow_status snow_volume_set_extent(snow_volume *volume,
-                                   const snow_extent *part) {
+                                   const snow_extent *given) {
+    snow_extent part;
+    SNOW_TRY(SNOW_RECORD_READ(volume->context, snow_extent, given, &part));
     SNOW_TRY(snow_volume_need_voxels(volume));
-    SNOW_TRY(check_part(volume, part));
-    volume->part = *part;
+    SNOW_TRY(check_part(volume, &part));
+    volume->part = part;
     volume->is_part = true;
     if (volume->generation) /* what was encoded of it was of other slices */
         snow_volume_freeze(volume);
     return SNOW_STATUS_OK;
 }
 
-void snow_volume_get_extent(const snow_volume *volume, snow_extent *out) {
+snow_status snow_volume_get_extent(const snow_volume *volume,
+                                   snow_extent *out) {
+    snow_extent part;
+    snow_volume_find_extent(volume, &part);
+    return SNOW_RECORD_FILL(volume->context, snow_extent, &part, out);
+}
+
+void snow_volume_find_extent(const snow_volume *volume, snow_extent *out) {
     if (volume->is_part) {
         *out = volume->part;
         return;
     }
-    *out = (snow_extent){0};
+    snow_extent_init(out);
     memcpy(out->dims, volume->info.dims, sizeof out->dims);
     memcpy(out->count, volume->info.dims, sizeof out->count);
 }
@@ -210,10 +223,15 @@ void snow_volume_whole(const snow_volume *volume, snow_volume_info *out) {
         out->matrix[row][3] = volume->origin[row];
 }
 
-void snow_volume_set_whole(snow_volume *volume, const snow_volume_info *whole) {
+snow_status snow_volume_set_whole(snow_volume *volume,
+                                  const snow_volume_info *given) {
+    snow_volume_info whole;
+    SNOW_TRY(
+        SNOW_RECORD_READ(volume->context, snow_volume_info, given, &whole));
     for (int row = 0; row < 3; row++)
-        volume->origin[row] = whole->matrix[row][3];
+        volume->origin[row] = whole.matrix[row][3];
     volume->knows_origin = true;
+    return SNOW_STATUS_OK;
 }
 
 snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
@@ -231,21 +249,23 @@ snow_volume_info snow_volume_info_of_box(const snow_volume_info *whole,
 /* Voxels of the caller come without a file: no source is checked against the
  * sizes, whose truth is the caller's word. */
 snow_status snow_volume_wrap(snow_context *context,
-                             const snow_volume_info *info, const void *voxels,
+                             const snow_volume_info *given, const void *voxels,
                              snow_volume **out) {
+    snow_volume_info info;
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, given, &info));
     if (!voxels)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "there are no voxels to share; give their address");
     static const double zero[4][4];
     snow_volume_info own = snow_volume_info_default("memory");
-    memcpy(own.dims, info->dims, sizeof own.dims);
-    own.type = info->type;
-    if (memcmp(info->matrix, zero, sizeof zero) != 0)
-        memcpy(own.matrix, info->matrix, sizeof own.matrix);
-    own.slope = info->slope == 0 ? 1 : info->slope;
-    own.intercept = info->intercept;
-    own.medical = info->medical;
-    memcpy(own.unit, info->unit, sizeof own.unit);
+    memcpy(own.dims, info.dims, sizeof own.dims);
+    own.type = info.type;
+    if (memcmp(info.matrix, zero, sizeof zero) != 0)
+        memcpy(own.matrix, info.matrix, sizeof own.matrix);
+    own.slope = info.slope == 0 ? 1 : info.slope;
+    own.intercept = info.intercept;
+    own.medical = info.medical;
+    memcpy(own.unit, info.unit, sizeof own.unit);
     own.unit[sizeof own.unit - 1] = 0;
     snow_status status = snow_volume_info_check(context, &own);
     if (status != SNOW_STATUS_OK)

@@ -72,6 +72,9 @@ snow_status snow_volume_new(snow_context *context, const snow_volume_info *info,
  * in their file). */
 snow_status snow_volume_need_voxels(const snow_volume *volume);
 
+/* snow_volume_get_extent of the library itself. */
+void snow_volume_find_extent(const snow_volume *volume, snow_extent *out);
+
 /* True on machines that store the high byte first. */
 bool snow_machine_big_endian(void);
 

@@ -17,10 +17,11 @@ static snow_status make_picture(snow_context *context, const test_paths *paths,
     snow_frame *frame = NULL;
     snow_image *image = NULL;
     static const snow_opacity_point curve[] = {{0, 0.1}, {30, 1}};
-    snow_look look = {.colormap = "viridis",
+    snow_look look = {.size = sizeof look,
+                      .colormap = "viridis",
                       .gradient_opacities = paths->fades ? curve : NULL,
                       .gradient_opacity_count = 2};
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     snow_status status = snow_volume_open(context, paths->input, NULL, &volume);
     if (status == SNOW_STATUS_OK)
         status = snow_transfer_new_for_volume(volume, &look, &transfer);

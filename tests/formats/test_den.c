@@ -61,7 +61,8 @@ static void a_box_is_cut_out(void **state) {
     support_files files;
     support_files_begin(&files);
     den_file file = make(false);
-    const snow_volume_options box = {.crop = {{1, 3}, {2, 3}, {0, 2}}};
+    const snow_volume_options box = {.size = sizeof box,
+                                     .crop = {{1, 3}, {2, 3}, {0, 2}}};
     static const unsigned char wanted[] = {9, 10, 21, 22};
     snow_volume *volume = support_opened(&files, put_file(&files, &file), &box);
     assert_memory_equal(snow_volume_voxels(volume), wanted, sizeof wanted);

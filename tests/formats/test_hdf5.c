@@ -61,10 +61,11 @@ static void several_are_listed(void **state) {
     const char *path = write_sets(&files, names);
     support_refused(&files, path, NULL, SNOW_STATUS_BAD_USAGE,
                     "/a (4x3x2), /b/two (4x3x2)", MOST);
-    const snow_volume_options wrong = {.dataset = "c"};
+    const snow_volume_options wrong = {.size = sizeof wrong, .dataset = "c"};
     support_refused(&files, path, &wrong, SNOW_STATUS_BAD_USAGE, "/b/two",
                     MOST);
-    const snow_volume_options right = {.dataset = "b/two"};
+    const snow_volume_options right = {.size = sizeof right,
+                                       .dataset = "b/two"};
     expect_counting(support_opened(&files, path, &right));
     char inside[600];
     snprintf(inside, sizeof inside, "%s:/b/two", path);

@@ -230,7 +230,8 @@ static void one_to_four_axes_are_read(void **state) {
         "ElementType = MET_SHORT\nElementDataFile = LOCAL\n";
     file f = make_file(header, sample_voxels(), 24);
     for (int time = 0; time < 3; time++) {
-        const snow_volume_options options = {.time = time};
+        const snow_volume_options options = {.size = sizeof options,
+                                             .time = time};
         assert_int_equal(snow_volume_open_memory(place->context, "a.mha",
                                                  f.bytes, f.size, &options,
                                                  &volume),
@@ -393,7 +394,7 @@ static void real_numbers_in_text_are_read(void **state) {
                  types[i]);
         file f = make_file(header, text, strlen(text));
         snow_volume *volume = open_file(place, &f);
-        snow_volume_statistics m;
+        snow_volume_statistics m = {.size = sizeof m};
         snow_volume_get_statistics(volume, &m);
         assert_int_equal(m.finite, 1);
         assert_true(m.min == (i ? -1.5e-3 : (double)-1.5e-3f));
@@ -609,7 +610,8 @@ static void a_time_step_is_found_among_files(void **state) {
                  "ElementDataFile = %s\n",
                  data[i / 3]);
         put_text(place, "a.mhd", header);
-        const snow_volume_options options = {.time = i % 3};
+        const snow_volume_options options = {.size = sizeof options,
+                                             .time = i % 3};
         snow_volume *volume = NULL;
         if (snow_volume_open(place->context, support_place_path(place, "a.mhd"),
                              &options, &volume) != SNOW_STATUS_OK)
@@ -687,7 +689,7 @@ static void real_files_have_their_known_figures(void **state) {
         assert_int_equal(info->type, files[i].type);
         assert_int_equal(info->medical, files[i].medical);
         assert_true(fabs(info->spacing[0] - files[i].spacing) < 1e-5);
-        snow_volume_statistics m;
+        snow_volume_statistics m = {.size = sizeof m};
         snow_volume_get_statistics(volume, &m);
         assert_true(fabs(m.min - files[i].min) <= 1e-5 * fabs(m.min));
         assert_true(fabs(m.max - files[i].max) <= 1e-5 * fabs(m.max));

@@ -162,8 +162,8 @@ static void a_wrong_name_lists_the_right_ones(void **state) {
     support_files_begin(&files);
     begin(&f, 0, 4);
     put_voxels(&f, 24);
-    const snow_volume_options wrong = {.dataset = "w"},
-                              right = {.dataset = "v"};
+    const snow_volume_options wrong = {.size = sizeof wrong, .dataset = "w"},
+                              right = {.size = sizeof right, .dataset = "v"};
     support_refused(&files, write_nc(&files, &f), &wrong, SNOW_STATUS_BAD_USAGE,
                     "v (3x2x4)", MOST);
     expect_counting(support_opened(&files, write_nc(&files, &f), &right), 4);

@@ -294,7 +294,8 @@ static void the_time_step_that_is_asked_for_is_read(void **state) {
     for (size_t i = 0; i < 8; i++)
         put_dim(&f, i, dim[i]);
     for (int64_t time = 0; time < 6; time++) {
-        const snow_volume_options options = {.time = time};
+        const snow_volume_options options = {.size = sizeof options,
+                                             .time = time};
         snow_volume *volume = NULL;
         assert_int_equal(snow_volume_open_memory(place->context, "a.nii",
                                                  f.bytes, f.size, &options,
@@ -307,7 +308,7 @@ static void the_time_step_that_is_asked_for_is_read(void **state) {
         snow_volume_close(volume);
     }
     assert_non_null(strstr(place->notices, "volume 0 of 6"));
-    const snow_volume_options beyond = {.time = 6};
+    const snow_volume_options beyond = {.size = sizeof beyond, .time = 6};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open_memory(place->context, "a.nii", f.bytes,
                                              f.size, &beyond, &volume),
@@ -616,7 +617,7 @@ static void real_files_have_their_known_figures(void **state) {
         assert_int_equal(info->times, real->times);
         assert_int_equal(info->type, real->type);
         assert_true(info->medical);
-        snow_volume_statistics m;
+        snow_volume_statistics m = {.size = sizeof m};
         snow_volume_get_statistics(volume, &m);
         double low = real->min * info->slope + info->intercept;
         double high = real->max * info->slope + info->intercept;
@@ -634,7 +635,8 @@ static void range_of_all_steps(support_place *place, const char *name,
     range[0] = INFINITY;
     range[1] = -INFINITY;
     for (int64_t time = 0; time < steps; time++) {
-        const snow_volume_options options = {.time = time};
+        const snow_volume_options options = {.size = sizeof options,
+                                             .time = time};
         snow_volume *volume = NULL;
         assert_int_equal(snow_volume_open(place->context, support_data(name),
                                           &options, &volume),
@@ -643,7 +645,7 @@ static void range_of_all_steps(support_place *place, const char *name,
         assert_int_equal(info->times, steps);
         assert_true(fabs(info->slope - slope) < 1e-12);
         assert_true(fabs(info->intercept - intercept) < 1e-12);
-        snow_volume_statistics m;
+        snow_volume_statistics m = {.size = sizeof m};
         snow_volume_get_statistics(volume, &m);
         range[0] = fmin(range[0], round((m.min - intercept) / slope));
         range[1] = fmax(range[1], round((m.max - intercept) / slope));

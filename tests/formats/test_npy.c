@@ -66,7 +66,8 @@ static void time_comes_before_channel_before_z(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    const snow_volume_options options = {.time = 1, .channel = 2};
+    const snow_volume_options options = {
+        .size = sizeof options, .time = 1, .channel = 2};
     snow_volume *volume = support_opened(
         &files, write_npy(&files, "|u1", "False", "(2, 3, 1, 2, 4)", 48),
         &options);
@@ -159,7 +160,8 @@ static void sizes_that_the_file_cannot_hold_cost_nothing(void **state) {
 static void a_box_costs_little_more_than_its_bytes(void **state) {
     (void)state;
     static const char *const orders[] = {"False", "True"};
-    const snow_volume_options box = {.crop = {{20, 30}, {0, 64}, {40, 44}}};
+    const snow_volume_options box = {.size = sizeof box,
+                                     .crop = {{20, 30}, {0, 64}, {40, 44}}};
     support_files files;
     support_files_begin(&files);
     for (int i = 0; i < 2; i++) {

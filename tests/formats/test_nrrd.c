@@ -239,7 +239,7 @@ static void a_step_among_the_last_bytes_of_gzip_is_found(void **state) {
         MAGIC "type: uint8\nencoding: gzip\ndimension: 4\nsizes: 4 2 2 3\n"
               "kinds: domain domain domain time\nbyte skip: -1\n\n";
     size_t size = support_gzip(data, 52, packed, sizeof packed);
-    const snow_volume_options options = {.time = 1};
+    const snow_volume_options options = {.size = sizeof options, .time = 1};
     snow_volume *volume = support_opened(
         &files, write_nrrd(&files, "a.nrrd", header, packed, size), &options);
     assert_memory_equal(snow_volume_voxels(volume), counting() + 16, 16);
@@ -401,7 +401,8 @@ static void the_users_spacing_replaces_the_files(void **state) {
     const char *path = write_nrrd(&files, "a.nrrd",
                                   SHORTS "encoding: raw\nspacings: 1 -2 3\n\n",
                                   counting(), 48);
-    const snow_volume_options options = {.spacing = {0, 4, 5}};
+    const snow_volume_options options = {.size = sizeof options,
+                                         .spacing = {0, 4, 5}};
     snow_volume *volume = support_opened(&files, path, &options);
     static const double wanted[3][4] = {
         {1, 0, 0, 0}, {0, -4, 0, 0}, {0, 0, 5, 0}};
@@ -451,7 +452,8 @@ static void a_last_axis_of_time_or_list_has_steps(void **state) {
         const char *path =
             write_nrrd(&files, "a.nrrd", headers[i], counting(), 48);
         for (int64_t time = 0; time < 3; time++) {
-            snow_volume_options options = {.time = time};
+            snow_volume_options options = {.size = sizeof options,
+                                           .time = time};
             files.notices = 0;
             snow_volume *volume = support_opened(&files, path, &options);
             assert_int_equal(*(const uint8_t *)snow_volume_voxels(volume),
@@ -461,7 +463,7 @@ static void a_last_axis_of_time_or_list_has_steps(void **state) {
             assert_int_equal(files.notices, 1);
             snow_volume_close(volume);
         }
-        snow_volume_options beyond = {.time = 3};
+        snow_volume_options beyond = {.size = sizeof beyond, .time = 3};
         support_refused(&files, path, &beyond, SNOW_STATUS_BAD_USAGE,
                         "time step 3", MOST);
     }
@@ -842,7 +844,7 @@ static void a_time_step_needs_its_own_files_only(void **state) {
     const char *path = support_write_text(
         &files, "a.nhdr",
         TIMES "kinds: domain domain domain time\ndata file: t%d 0 2 1 3\n");
-    const snow_volume_options options = {.time = 1};
+    const snow_volume_options options = {.size = sizeof options, .time = 1};
     snow_volume *volume = support_opened(&files, path, &options);
     assert_memory_equal(snow_volume_voxels(volume), counting(), 16);
     snow_volume_close(volume);
@@ -889,7 +891,8 @@ static void options_for_raw_data_do_not_fit(void **state) {
     support_files_begin(&files);
     const char *path = write_nrrd(&files, "a.nrrd", SHORTS "encoding: raw\n\n",
                                   counting(), 48);
-    const snow_volume_options options = {.type = SNOW_TYPE_UINT8};
+    const snow_volume_options options = {.size = sizeof options,
+                                         .type = SNOW_TYPE_UINT8};
     support_refused(&files, path, &options, SNOW_STATUS_BAD_USAGE, "nrrd",
                     MOST);
     support_files_end(&files);
@@ -1009,7 +1012,7 @@ static void the_real_files_have_their_figures(void **state) {
             continue;
         snow_volume *volume = support_opened(&files, path, NULL);
         const snow_volume_info *info = snow_volume_get_info(volume);
-        snow_volume_statistics m;
+        snow_volume_statistics m = {.size = sizeof m};
         snow_volume_get_statistics(volume, &m);
         for (int k = 0; k < 3; k++) {
             assert_int_equal(info->dims[k], real[i].dims[k]);

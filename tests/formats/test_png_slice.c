@@ -61,7 +61,7 @@ static void colours_are_channels(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    const snow_volume_options options = {.channel = 2};
+    const snow_volume_options options = {.size = sizeof options, .channel = 2};
     snow_volume *volume = support_opened(
         &files, write_png(&files, "a.png", 4, 2, 8, 3, 0), &options);
     const uint8_t *voxels = snow_volume_voxels(volume);

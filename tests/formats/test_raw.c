@@ -4,8 +4,10 @@
 
 #include <math.h>
 
-static const snow_volume_options given = {
-    .dims = {4, 3, 2}, .type = SNOW_TYPE_UINT16, .endian = SNOW_ENDIAN_BIG};
+static const snow_volume_options given = {.size = sizeof given,
+                                          .dims = {4, 3, 2},
+                                          .type = SNOW_TYPE_UINT16,
+                                          .endian = SNOW_ENDIAN_BIG};
 
 /* 24 values 0x0100, 0x0302, ... as little endian, 48 bytes. */
 static const unsigned char *counting(void) {
@@ -48,6 +50,7 @@ static void check_type(support_files *files, snow_type type, bool big,
             ((const unsigned char *)values)[big != machine_big ? turned : i];
     }
     snow_volume_options options = {
+        .size = sizeof options,
         .dims = {1, 3, 1},
         .type = type,
         .endian = big ? SNOW_ENDIAN_BIG : SNOW_ENDIAN_LITTLE,
@@ -55,7 +58,7 @@ static void check_type(support_files *files, snow_type type, bool big,
     const char *path = support_write(files, "t.raw", bytes, 3 * size);
     snow_volume *volume = support_opened(files, path, &options);
     assert_memory_equal(snow_volume_voxels(volume), values, 3 * size);
-    snow_volume_statistics m;
+    snow_volume_statistics m = {.size = sizeof m};
     snow_volume_get_statistics(volume, &m);
     assert_true(m.sum == 6 && m.wsum == 14);
     snow_volume_close(volume);
@@ -139,7 +142,8 @@ static void a_cut_or_damaged_gzip_is_refused(void **state) {
                     70000);
     packed[0] ^= 1; /* no gzip any more: bytes like any others */
     path = support_write(&files, "magic.raw.gz", packed, size);
-    snow_volume_options tiny = {.dims = {2, 2, 2}, .type = SNOW_TYPE_UINT8};
+    snow_volume_options tiny = {
+        .size = sizeof tiny, .dims = {2, 2, 2}, .type = SNOW_TYPE_UINT8};
     support_refused(&files, path, &tiny, SNOW_STATUS_BAD_INPUT, "is not gzip",
                     70000);
     support_files_end(&files);
@@ -202,7 +206,8 @@ static void nothing_told_is_a_matter_of_usage(void **state) {
     support_files_begin(&files);
     const char *path = support_write(&files, "a.raw", counting(), 48);
     support_refused(&files, path, NULL, SNOW_STATUS_BAD_USAGE, "--dims", 70000);
-    snow_volume_options options = {.dims = {4, 3, 0}, .type = SNOW_TYPE_UINT16};
+    snow_volume_options options = {
+        .size = sizeof options, .dims = {4, 3, 0}, .type = SNOW_TYPE_UINT16};
     support_refused(&files, path, &options, SNOW_STATUS_BAD_USAGE, "--dims",
                     70000);
     support_files_end(&files);
@@ -230,20 +235,22 @@ static void the_real_engine_and_head_have_their_figures(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    snow_volume_statistics m;
+    snow_volume_statistics m = {.size = sizeof m};
     const char *path = support_data("classic/engine_256x256x110_u8.raw.gz");
     if (!path) {
         support_files_end(&files);
         skip();
     }
-    const snow_volume_options engine = {.dims = {256, 256, 110},
+    const snow_volume_options engine = {.size = sizeof engine,
+                                        .dims = {256, 256, 110},
                                         .type = SNOW_TYPE_UINT8};
     snow_volume *volume = support_opened(&files, path, &engine);
     snow_volume_get_statistics(volume, &m);
     assert_true(m.min == 0 && m.max == 255 && m.sum == 187475047 &&
                 m.wsum == 94688151341);
     snow_volume_close(volume);
-    const snow_volume_options head = {.dims = {256, 256, 113},
+    const snow_volume_options head = {.size = sizeof head,
+                                      .dims = {256, 256, 113},
                                       .type = SNOW_TYPE_UINT16,
                                       .endian = SNOW_ENDIAN_BIG,
                                       .spacing = {1, 1, 2}};

@@ -160,7 +160,8 @@ static void a_folder_with_a_gap_is_refused(void **state) {
     for (int z = 0; z < 4; z++)
         assert_int_equal(voxels[6 * z], 8 + z);
     snow_volume_close(volume);
-    const snow_volume_options box = {.crop = {{1, 2}, {0, 0}, {1, 3}}};
+    const snow_volume_options box = {.size = sizeof box,
+                                     .crop = {{1, 2}, {0, 0}, {1, 3}}};
     volume = support_opened(&files, files.folder, &box);
     voxels = snow_volume_voxels(volume);
     assert_true(voxels[0] == 9 && voxels[3] == 10);

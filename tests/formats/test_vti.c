@@ -71,7 +71,8 @@ static void the_scalars_of_the_file_come_before_others(void **state) {
                    "a", "ascii") "9 9 9 9 9 9</DataArray>" ARRAY("b", "binary")
                    BYTES END,
                NULL));
-    const snow_volume_options options = {.dataset = "c"};
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dataset = "c"};
     support_refused(
         files,
         support_write_text(files, "b.vti",

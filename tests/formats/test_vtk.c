@@ -76,10 +76,12 @@ static void an_array_is_chosen_by_name_and_channel(void **state) {
         "FIELD f 1\nthe%20one 2 6 short\n0 0 0 1 0 2 0 3 0 4 0 5\n";
     support_files files;
     support_files_begin(&files);
-    const snow_volume_options options = {.dataset = "the one", .channel = 1};
+    const snow_volume_options options = {
+        .size = sizeof options, .dataset = "the one", .channel = 1};
     expect_counting(opened(&files, text, &options));
     assert_int_equal(files.notices, 1); /* of the channel */
-    const snow_volume_options wrong = {.dataset = "other"};
+    const snow_volume_options wrong = {.size = sizeof wrong,
+                                       .dataset = "other"};
     support_refused(&files, support_write_text(&files, "b.vtk", text), &wrong,
                     SNOW_STATUS_BAD_USAGE, "s, the one", MOST);
     support_files_end(&files);

@@ -47,10 +47,10 @@ static snow_status open_records(support_place *place, const records *r,
                                 const char *path,
                                 const snow_volume_options *options,
                                 snow_volume **out) {
-    const snow_volume_options none = {.time = 0};
+    const snow_volume_options none = {.size = sizeof none, .time = 0};
     const zarr_store store = {
         .context = place->context, .records = r->bytes, .size = r->size};
-    snow_volume_info info;
+    snow_volume_info info = {.size = sizeof info};
     place->largest = 0;
     *place->notices = 0;
     return snow_zarr_read_store(&store, path, options ? options : &none, &info,
@@ -75,7 +75,8 @@ static void only_the_chunks_of_a_box_are_read(void **state) {
     support_place *place = *state;
     static records r;
     const unsigned char ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
-    const snow_volume_options box = {.crop = {{2, 4}, {1, 2}, {0, 2}}};
+    const snow_volume_options box = {.size = sizeof box,
+                                     .crop = {{2, 4}, {1, 2}, {0, 2}}};
     snow_volume *volume;
     describe(&r, "[2, 2, 4]", "[2, 2, 2]", PLAIN);
     add_text(&r, "0.0.0", "damaged");
@@ -112,7 +113,8 @@ static void memory_is_that_of_the_volume_and_a_chunk(void **state) {
     support_place *place = *state;
     static records r;
     static const unsigned char chunk[4096];
-    const snow_volume_options box = {.crop = {{0, 1}, {0, 1}, {0, 0}}};
+    const snow_volume_options box = {.size = sizeof box,
+                                     .crop = {{0, 1}, {0, 1}, {0, 0}}};
     snow_volume *volume;
     describe(&r, "[8, 16, 256]", "[1, 16, 256]", PLAIN);
     for (int i = 0; i < 8; i++) {

@@ -14,7 +14,7 @@ static snow_image *picture(image_fixture *f, int width, int height,
 }
 
 static snow_image_difference compare(snow_image *a, snow_image *b) {
-    snow_image_difference d = {.x = -1};
+    snow_image_difference d = {.size = sizeof d, .x = -1};
     assert_int_equal(snow_image_compare(a, b, &d), SNOW_STATUS_OK);
     return d;
 }
@@ -78,7 +78,7 @@ static void two_channels_count_as_grey(void **state) {
 static void pictures_of_two_sizes_differ(void **state) {
     image_fixture *f = *state;
     snow_image *a = picture(f, 3, 4, 4), *b = picture(f, 4, 3, 4);
-    snow_image_difference d = {.x = -1};
+    snow_image_difference d = {.size = sizeof d, .x = -1};
     assert_int_equal(snow_image_compare(a, b, &d), SNOW_STATUS_DIFFERENT);
     assert_int_equal(d.x, -1);
     assert_non_null(strstr(snow_context_message(f->context), "3 x 4"));

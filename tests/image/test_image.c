@@ -127,15 +127,21 @@ static void an_unknown_suffix_is_bad_usage(void **state) {
 static void options_that_cannot_be_heeded_are_refused(void **state) {
     image_fixture *f = *state;
     snow_image *image = support_picture(f->context, 3, 3, 4, 1);
-    const snow_image_options flat = {.flatten = true};
-    const snow_image_options deep = {.bits = 16};
+    const snow_image_options flat = {.size = sizeof flat, .flatten = true};
+    const snow_image_options deep = {.size = sizeof deep, .bits = 16};
     const snow_image_options wrong[] = {
-        {.bits = 1},
-        {.bits = -8},
-        {.bits = 32},
-        {.flatten = true, .background = {0, 1.5, 0}},
-        {.flatten = true, .background = {-0.1, 0, 0}},
-        {.flatten = true, .background = {0, 0, NAN}},
+        {.size = sizeof(snow_image_options), .bits = 1},
+        {.size = sizeof(snow_image_options), .bits = -8},
+        {.size = sizeof(snow_image_options), .bits = 32},
+        {.size = sizeof(snow_image_options),
+         .flatten = true,
+         .background = {0, 1.5, 0}},
+        {.size = sizeof(snow_image_options),
+         .flatten = true,
+         .background = {-0.1, 0, 0}},
+        {.size = sizeof(snow_image_options),
+         .flatten = true,
+         .background = {0, 0, NAN}},
     };
     for (int i = 1; i < 3; i++) {
         const char *path = support_image_path(f, suffixes[i]);
@@ -168,7 +174,8 @@ static void an_existing_file_is_kept_unless_told(void **state) {
         free(file.bytes);
         assert_int_equal(snow_image_check_path(f->context, path, true),
                          SNOW_STATUS_OK);
-        const snow_image_options over = {.overwrite = true};
+        const snow_image_options over = {.size = sizeof over,
+                                         .overwrite = true};
         assert_int_equal(snow_image_save(image, path, &over), SNOW_STATUS_OK);
         file = support_read_file(path);
         assert_true(file.size > 8);
@@ -235,7 +242,7 @@ static void standard_output_gets_a_png(void **state) {
     assert_int_equal(save_to_stdout(image, path), SNOW_STATUS_OK);
     snow_image *again = NULL;
     assert_int_equal(snow_image_load(f->context, path, &again), SNOW_STATUS_OK);
-    snow_image_difference difference;
+    snow_image_difference difference = {.size = sizeof difference};
     assert_int_equal(snow_image_compare(image, again, &difference),
                      SNOW_STATUS_OK);
     assert_true(difference.largest < 1.01 / 255);
@@ -306,7 +313,7 @@ static bool survive_failure(image_fixture *f, const char *path, int64_t n,
     support_memory memory = {.once = once};
     snow_context *context = support_failing_context(&memory);
     snow_image *image = support_picture(context, 9, 7, 4, 1), *again = NULL;
-    snow_image_difference difference;
+    snow_image_difference difference = {.size = sizeof difference};
     memory.left = n;
     snow_status status = snow_image_save(image, path, NULL);
     if (status == SNOW_STATUS_OK)

@@ -12,6 +12,7 @@
 /* A patient whose voxels lie as given. */
 static snow_volume_info patient(void) {
     return (snow_volume_info){
+        .size = sizeof(snow_volume_info),
         .dims = {20, 30, 40},
         .matrix = {{-1, 0, 0, 3}, {0, 2, 0, 4}, {0, 0, 1, 5}, {0, 0, 0, 1}},
         .spacing = {1, 2, 1},
@@ -20,7 +21,7 @@ static snow_volume_info patient(void) {
 }
 
 static snow_view view_of(snow_context *context, const char *name) {
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     assert_int_equal(snow_view_from_name(context, name, &view), SNOW_STATUS_OK);
     return view;
 }
@@ -369,8 +370,10 @@ static void files_show_it_and_the_picture_stays(void **state) {
         assert_int_equal(snow_overlay_text(overlay, 70, 60, 0.5, 0.5, 40, "S"),
                          SNOW_STATUS_OK);
         for (int flat = 0; flat < 2; flat++) {
-            const snow_image_options options = {
-                .overlay = overlay, .overwrite = true, .flatten = flat};
+            const snow_image_options options = {.size = sizeof options,
+                                                .overlay = overlay,
+                                                .overwrite = true,
+                                                .flatten = flat};
             snow_image *read = NULL;
             const char *path = support_image_path(f, "a.png");
             assert_int_equal(snow_image_save(image, path, &options),
@@ -395,12 +398,14 @@ static void files_show_it_and_the_picture_stays(void **state) {
             snow_image_free(read);
         }
         assert_true(snow_image_checksum(image) == sum);
-        const snow_image_options options = {.overlay = overlay};
+        const snow_image_options options = {.size = sizeof options,
+                                            .overlay = overlay};
         assert_int_equal(
             snow_image_save(image, support_image_path(f, "b.npy"), &options),
             SNOW_STATUS_BAD_USAGE);
         snow_overlay *other = overlay_of(f->context, 140, 131);
-        const snow_image_options wrong = {.overlay = other};
+        const snow_image_options wrong = {.size = sizeof wrong,
+                                          .overlay = other};
         assert_int_equal(
             snow_image_save(image, support_image_path(f, "b.png"), &wrong),
             SNOW_STATUS_BAD_USAGE);
@@ -418,7 +423,8 @@ static void a_grey_picture_with_a_colored_bar_is_colored(void **state) {
     const float red[3] = {1, 0, 0};
     assert_int_equal(snow_overlay_rows(overlay, 3, 4, 9, 5, red),
                      SNOW_STATUS_OK);
-    const snow_image_options options = {.overlay = overlay};
+    const snow_image_options options = {.size = sizeof options,
+                                        .overlay = overlay};
     const char *path = support_image_path(f, "a.png");
     snow_image *read = NULL;
     assert_int_equal(snow_image_save(image, path, &options), SNOW_STATUS_OK);

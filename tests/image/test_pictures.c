@@ -84,9 +84,10 @@ static void floats_come_back_bit_for_bit(void **state) {
                 if (channels > 1)
                     pixels[1] = -1e-30f;
                 const char *path = support_image_path(f, names[n]);
-                const snow_image_options over = {.overwrite = true};
+                const snow_image_options over = {.size = sizeof over,
+                                                 .overwrite = true};
                 snow_image *read = NULL;
-                snow_image_difference difference;
+                snow_image_difference difference = {.size = sizeof difference};
                 assert_int_equal(snow_image_save(image, path, &over),
                                  SNOW_STATUS_OK);
                 assert_int_equal(snow_image_load(f->context, path, &read),
@@ -115,10 +116,11 @@ static void a_depth_lies_beside_an_exr_picture_only(void **state) {
                           : support_picture(f->context, 33, 20, channels, 1);
         snow_image *depth = values_of(f->context, 33, 20);
         snow_image *other = values_of(f->context, 20, 33);
-        const snow_image_options beside = {.depth = depth},
-                                 wrong = {.depth = other};
+        const snow_image_options beside = {.size = sizeof beside,
+                                           .depth = depth},
+                                 wrong = {.size = sizeof wrong, .depth = other};
         snow_image *read = NULL;
-        snow_image_difference difference;
+        snow_image_difference difference = {.size = sizeof difference};
         refuse_save(f, image, "a.npy", &beside, "cannot hold depth");
         refuse_save(f, image, "a.exr", &wrong, "the depth has 20 x 33");
         const char *path = support_image_path(f, "a.exr");
@@ -145,6 +147,7 @@ static void webp_holds_what_png_holds(void **state) {
             snow_image *image = support_picture(f->context, sizes[s][0],
                                                 sizes[s][1], n % 2 ? 2 : 4, s);
             const snow_image_options options = {
+                .size = sizeof options,
                 .flatten = n / 2 > 0,
                 .background = {0.2, n / 2 == 1 ? 0.2 : 0.7, 0.2}};
             snow_image *png = NULL, *webp = NULL;
@@ -169,7 +172,8 @@ static void webp_holds_what_png_holds(void **state) {
 
 static void what_a_format_cannot_hold_is_refused(void **state) {
     image_fixture *f = *state;
-    const snow_image_options deep = {.bits = 16}, flat = {.flatten = true};
+    const snow_image_options deep = {.size = sizeof deep, .bits = 16},
+                             flat = {.size = sizeof flat, .flatten = true};
     snow_image *image = support_picture(f->context, 9, 9, 4, 1);
     snow_image *wide = support_picture(f->context, 16384, 1, 2, 1);
     if (is_built(".webp")) {
@@ -258,7 +262,8 @@ static void they_fail_cleanly_without_memory(void **state) {
             snow_context *context = support_failing_context(&memory);
             snow_image *image = support_picture(context, 40, 30, 4, 7);
             snow_image *read = NULL;
-            const snow_image_options over = {.overwrite = true};
+            const snow_image_options over = {.size = sizeof over,
+                                             .overwrite = true};
             memory.left = at;
             status = snow_image_save(image, path, &over);
             if (status == SNOW_STATUS_OK)

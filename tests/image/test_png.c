@@ -134,7 +134,7 @@ static void alpha_is_divided_out_and_rounded(void **state) {
 
 static void sixteen_bits_are_rounded_likewise(void **state) {
     const float pixels[] = {0.25f, 0.5f, 0.125f, 0.5f};
-    const snow_image_options deep = {.bits = 16};
+    const snow_image_options deep = {.size = sizeof deep, .bits = 16};
     decoded d = store_row(*state, pixels, 1, 4, &deep);
     assert_int_equal(d.bits, 16);
     /* 32767.5 and 16383.75 are rounded up */
@@ -153,8 +153,8 @@ static void grey_pictures_are_stored_as_grey(void **state) {
 
 static void a_background_shows_through_and_takes_alpha_away(void **state) {
     const float pixels[] = {0.25f, 0.5f, 0, 0.5f, 0, 0, 0, 0, 1, 0, 0, 1};
-    const snow_image_options flat = {.flatten = true,
-                                     .background = {0.2, 0.4, 1}};
+    const snow_image_options flat = {
+        .size = sizeof flat, .flatten = true, .background = {0.2, 0.4, 1}};
     decoded d = store_row(*state, pixels, 3, 4, &flat);
     assert_int_equal(d.type, PNG_COLOR_TYPE_RGB);
     const unsigned char wanted[] = {89, 179, 128, 51, 102, 255, 255, 0, 0};
@@ -164,12 +164,13 @@ static void a_background_shows_through_and_takes_alpha_away(void **state) {
 
 static void grey_on_grey_stays_grey(void **state) {
     const float pixels[] = {0.25f, 0.5f, 0, 0};
-    const snow_image_options grey = {.flatten = true,
-                                     .background = {0.5, 0.5, 0.5}};
+    const snow_image_options grey = {
+        .size = sizeof grey, .flatten = true, .background = {0.5, 0.5, 0.5}};
     decoded d = store_row(*state, pixels, 2, 2, &grey);
     assert_int_equal(d.type, PNG_COLOR_TYPE_GRAY);
     assert_memory_equal(d.bytes, ((unsigned char[]){128, 128}), 2);
-    const snow_image_options blue = {.flatten = true, .background = {0, 0, 1}};
+    const snow_image_options blue = {
+        .size = sizeof blue, .flatten = true, .background = {0, 0, 1}};
     d = store_row(*state, pixels, 2, 2, &blue);
     assert_int_equal(d.type, PNG_COLOR_TYPE_RGB);
     assert_memory_equal(d.bytes, ((unsigned char[]){64, 64, 191, 0, 0, 255}),
@@ -179,8 +180,8 @@ static void grey_on_grey_stays_grey(void **state) {
 /* As encoders of movies get them; libpng reads the file, not our reader. */
 static void bytes_for_encoders_are_those_of_a_file(void **state) {
     image_fixture *f = *state;
-    const snow_image_options flat = {.flatten = true,
-                                     .background = {0.2, 0.4, 1}};
+    const snow_image_options flat = {
+        .size = sizeof flat, .flatten = true, .background = {0.2, 0.4, 1}};
     for (int channels = 2; channels <= 4; channels += 2) {
         unsigned char rgb[700 * 3];
         snow_image *image = support_picture(f->context, 700, 1, channels, 5);
@@ -199,8 +200,8 @@ static void not_a_number_is_transparent(void **state) {
     const float pixels[] = {NAN, 1, 1, 1, 1, 1, NAN, 1, 1, 1, 1, NAN};
     decoded d = store_row(*state, pixels, 3, 4, NULL);
     assert_memory_equal(d.bytes, ((unsigned char[12]){0}), 12);
-    const snow_image_options flat = {.flatten = true,
-                                     .background = {0.2, 0.4, 1}};
+    const snow_image_options flat = {
+        .size = sizeof flat, .flatten = true, .background = {0.2, 0.4, 1}};
     d = store_row(*state, pixels, 3, 4, &flat);
     for (int x = 0; x < 3; x++)
         assert_memory_equal(d.bytes + 3 * x, ((unsigned char[]){51, 102, 255}),
@@ -234,7 +235,8 @@ static void every_level_is_the_nearest(void **state) {
             pixels[2 * x] =
                 pixels[2 * x + 1] * (float)(support_random(&seed) % 511) / 510;
         }
-        const snow_image_options options = {.bits = 8 + round % 2 * 8};
+        const snow_image_options options = {.size = sizeof options,
+                                            .bits = 8 + round % 2 * 8};
         decoded d = store_row(*state, pixels, WIDTH, 2, &options);
         for (int x = 0; x < 2 * WIDTH; x++) {
             double value = (double)pixels[x];
@@ -277,7 +279,8 @@ static void stored_levels_survive_a_round_trip(void **state) {
             pixel[2 * i] = alpha * (float)(i % (top + 1)) / (float)top;
             pixel[2 * i + 1] = alpha;
         }
-        const snow_image_options options = {.bits = bits, .overwrite = true};
+        const snow_image_options options = {
+            .size = sizeof options, .bits = bits, .overwrite = true};
         const char *path = support_image_path(f, "levels.png");
         assert_int_equal(snow_image_save(image, path, &options),
                          SNOW_STATUS_OK);
@@ -302,12 +305,12 @@ static void odd_sizes_survive_a_round_trip(void **state) {
         snow_image *image =
             support_picture(f->context, size[0], size[1], i % 2 ? 4 : 2, 5);
         snow_image *again = NULL;
-        const snow_image_options deep = {.bits = 16};
+        const snow_image_options deep = {.size = sizeof deep, .bits = 16};
         const char *path = support_image_path(f, "odd.png");
         assert_int_equal(snow_image_save(image, path, &deep), SNOW_STATUS_OK);
         assert_int_equal(snow_image_load(f->context, path, &again),
                          SNOW_STATUS_OK);
-        snow_image_difference difference;
+        snow_image_difference difference = {.size = sizeof difference};
         assert_int_equal(snow_image_compare(image, again, &difference),
                          SNOW_STATUS_OK);
         assert_true(difference.largest < 1.01 / 65535);

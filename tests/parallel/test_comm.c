@@ -323,7 +323,10 @@ static void wrong_arguments_are_refused(void **state) {
                      SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_comm_new(context, &ops, NULL, 0, 0, &comm),
                      SNOW_STATUS_BAD_USAGE);
-    ops.size--;
+    assert_int_equal(snow_comm_new(context, &ops, NULL, 0, 1, &comm),
+                     SNOW_STATUS_BAD_USAGE);
+    assert_non_null(strstr(snow_context_message(context), "lacks"));
+    ops.size = 0;
     assert_int_equal(snow_comm_new(context, &ops, NULL, 0, 1, &comm),
                      SNOW_STATUS_BAD_USAGE);
     assert_null(comm);

@@ -112,10 +112,12 @@ static snow_look look_of(const scene *s, snow_opacity_point scaled[5]) {
         scaled[i].value *= scale_of(type);
     }
     if (s->preset)
-        return (snow_look){.preset = "ct-cardiac",
+        return (snow_look){.size = sizeof(snow_look),
+                           .preset = "ct-cardiac",
                            .range = SNOW_RANGE_VALUES,
                            .high = 200 * scale_of(type)};
-    return (snow_look){.preset = "linear",
+    return (snow_look){.size = sizeof(snow_look),
+                       .preset = "linear",
                        .colormap = "viridis",
                        .range = SNOW_RANGE_VALUES,
                        .low = 0,
@@ -129,7 +131,7 @@ static snow_look look_of(const scene *s, snow_opacity_point scaled[5]) {
 /* The picture of one process. */
 static snow_image *serial_picture(snow_context *context, const scene *s,
                                   double t, const snow_look *look) {
-    snow_volume_info info = {.type = s->type};
+    snow_volume_info info = {.size = sizeof info, .type = s->type};
     memcpy(info.dims, s->dims, sizeof info.dims);
     void *voxels = whole_field(s, t);
     snow_volume *volume = NULL;
@@ -169,6 +171,7 @@ static scene make_scene(int ranks, int nx, int ny, int nz) {
     }
     s.bricks = nx * ny * nz;
     snow_context *context = support_context();
+    snow_view_init(&s.view);
     snow_view_from_name(context, "iso", &s.view);
     snow_context_free(context);
     s.view.width = 61;
@@ -281,7 +284,7 @@ static double values_difference(const snow_image *a, const snow_image *b) {
 }
 
 static double largest_difference(const snow_image *a, const snow_image *b) {
-    snow_image_difference d;
+    snow_image_difference d = {.size = sizeof d};
     if (a->width != b->width || a->height != b->height)
         return INFINITY;
     if (a->channels == 1 && b->channels == 1)
@@ -308,7 +311,7 @@ static snow_status draw_twice(snow_insitu *insitu, scene *s, int rank) {
         s->difference = INFINITY; /* not on the others */
     snow_image_free(image);
     image = NULL;
-    snow_insitu_stats figures;
+    snow_insitu_stats figures = {.size = sizeof figures};
     SNOW_TRY(snow_insitu_get_stats(insitu, &figures));
     SNOW_TRY(snow_insitu_render(insitu, &image));
     snow_image_free(image);
@@ -794,7 +797,7 @@ static void count_release(void *user, void *block) {
 static snow_status make_movie(snow_insitu *insitu, movie *m, int rank) {
     for (int step = 0; step < m->steps; step++) {
         rank_memory memory = {.count = 0};
-        snow_insitu_stats figures;
+        snow_insitu_stats figures = {.size = sizeof figures};
         snow_status status =
             tell_bricks(insitu, &m->scene, rank, m->speed * step, &memory);
         if (status == SNOW_STATUS_OK)
@@ -811,7 +814,7 @@ static snow_status make_movie(snow_insitu *insitu, movie *m, int rank) {
 static snow_status movie_rank(snow_comm *comm, void *user) {
     movie *m = user;
     snow_insitu *insitu = NULL;
-    const snow_look automatic = {0};
+    const snow_look automatic = {.size = sizeof automatic};
     SNOW_TRY(snow_insitu_new(comm, &insitu));
     snow_insitu_set_warning(insitu, hear, m);
     snow_status status = tell_picture(insitu, &m->scene);
@@ -916,7 +919,7 @@ static void colours_keep_their_meaning_through_a_movie(void **state) {
     run_movie(&m, folder);
     assert_int_equal(m.status, SNOW_STATUS_OK);
     snow_context *context = support_context();
-    const snow_look automatic = {0};
+    const snow_look automatic = {.size = sizeof automatic};
     snow_image *first = load_frame(context, folder, 0);
     snow_image *generation = serial_picture(context, &m.scene, 0, &automatic);
     assert_true(largest_difference(first, generation) < 1.01 / 255);
@@ -945,7 +948,8 @@ static void values_become_colours_in_files_of_colours(void **state) {
         snow_image *values = serial_picture(context, &m.scene, 0, &look);
         snow_volume *volume = NULL;
         snow_transfer *transfer = NULL;
-        snow_volume_info info = {.type = m.scene.type, .dims = {1, 1, 1}};
+        snow_volume_info info = {
+            .size = sizeof info, .type = m.scene.type, .dims = {1, 1, 1}};
         double voxel = 0;
         snow_volume_wrap(context, &info, &voxel, &volume);
         assert_int_equal(snow_transfer_new_for_volume(volume, &look, &transfer),
@@ -1059,7 +1063,7 @@ a_limit_of_time_lowers_pictures_and_then_leaves_some_out(void **state) {
     snow_opacity_point scaled[5];
     snow_look look = look_of(&m.scene, scaled);
     snow_image *generation = serial_picture(context, &m.scene, 0.06, &look);
-    snow_image_difference d;
+    snow_image_difference d = {.size = sizeof d};
     assert_int_equal(snow_image_compare(image, generation, &d), SNOW_STATUS_OK);
     assert_true(d.psnr > 20); /* a quarter of the size, but the same */
     snow_image_free(generation);
@@ -1309,7 +1313,7 @@ static void setters_refuse_what_cannot_be(void **state) {
     const int64_t none[3] = {0, 1, 1}, dims[3] = {4, 4, 4}, zero[3] = {0};
     const double flat[3] = {1, 0, 1};
     const snow_halo halo = {{0, -1, 0}, {0, 0, 0}};
-    const snow_look look = {.preset = "nothing"};
+    const snow_look look = {.size = sizeof look, .preset = "nothing"};
     char voxel = 0;
     assert_int_equal(snow_comm_new_self(context, &comm), SNOW_STATUS_OK);
     assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);

@@ -12,7 +12,7 @@ static void make_steps(image_fixture *f, const char *recipe, uint64_t sums[2]) {
     const int64_t dims[3] = {12, 12, 12}, first[3] = {0, 0, 0};
     snow_comm *comm = NULL;
     snow_insitu *insitu = NULL;
-    snow_recipe r;
+    snow_recipe r = {.size = sizeof r};
     for (int i = 0; i < 12 * 12 * 12; i++)
         field[i] = (float)(i % 12);
     assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
@@ -62,7 +62,7 @@ static void a_depth_is_refused_in_situ(void **state) {
     static const char text[] = "{\"depth\": \"d.npy\"}";
     snow_comm *comm = NULL;
     snow_insitu *insitu = NULL;
-    snow_recipe r;
+    snow_recipe r = {.size = sizeof r};
     assert_int_equal(snow_comm_new_self(f->context, &comm), SNOW_STATUS_OK);
     assert_int_equal(snow_insitu_new(comm, &insitu), SNOW_STATUS_OK);
     assert_int_equal(

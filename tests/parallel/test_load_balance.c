@@ -181,7 +181,7 @@ typedef struct turning {
 } turning;
 
 static snow_view view_at(snow_context *context, const turning *t, int n) {
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     assert_int_equal(snow_view_from_name(context, "+z", &view), SNOW_STATUS_OK);
     view.width = view.height = 80;
     view.azimuth = 10 + t->step * n;
@@ -195,8 +195,9 @@ static void compare(turning *t, int n, const snow_image *image) {
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_image *generation = NULL;
-    snow_image_difference difference;
-    const snow_volume_options options = {.dims = {48, 44, 60}};
+    snow_image_difference difference = {.size = sizeof difference};
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {48, 44, 60}};
     snow_view view = view_at(context, t, n);
     assert_int_equal(
         snow_volume_open(context, "phantom:shells", &options, &volume),
@@ -219,7 +220,7 @@ static void compare(turning *t, int n, const snow_image *image) {
 
 /* As if slices near one end of the volume were five times as dear. */
 static void pretend(snow_frame *frame, const snow_volume *volume) {
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     snow_volume_get_extent(volume, &part);
     int axis = frame->stats.slice_axis;
     double cost = 0;
@@ -263,7 +264,7 @@ static snow_status turn_volume(snow_frame *frame, snow_comm *comm,
             SNOW_TRY(finish(frame, *volume, t, n - t->ahead));
         axis = frame->stats.slice_axis;
     }
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     snow_volume_get_extent(*volume, &part);
     if (talks)
         t->least = part.count[axis];
@@ -273,9 +274,10 @@ static snow_status turn_volume(snow_frame *frame, snow_comm *comm,
 static snow_status perform(snow_comm *comm, void *user) {
     turning *t = user;
     snow_context *context = snow_comm_context(comm);
-    snow_volume_options options = {.dims = {48, 44, 60}};
+    snow_volume_options options = {.size = sizeof options,
+                                   .dims = {48, 44, 60}};
     snow_view view = view_at(context, t, 0);
-    const snow_look look = {0};
+    const snow_look look = {.size = sizeof look};
     snow_volume *volume = NULL;
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
@@ -313,13 +315,16 @@ static void parts_are_cut_anew_and_pictures_stay(void **state) {
     static const int rank_counts[] = {2, 3, 5, 8, 12};
     for (size_t n = 0; n < COUNT(rank_counts); n += support_stride(3))
         for (int ahead = 0; ahead < 2; ahead++) {
-            turning t = play((turning){.how = {.cut = SNOW_PARTITION_MEASURED},
-                                       .pictures = 24,
-                                       .left = 100000,
-                                       .ahead = ahead},
-                             rank_counts[n]);
+            turning t =
+                play((turning){.how = {.size = sizeof(snow_ranks_options),
+                                       .cut = SNOW_PARTITION_MEASURED},
+                               .pictures = 24,
+                               .left = 100000,
+                               .ahead = ahead},
+                     rank_counts[n]);
             turning counted =
-                play((turning){.how = {.cut = SNOW_PARTITION_COUNTED},
+                play((turning){.how = {.size = sizeof(snow_ranks_options),
+                                       .cut = SNOW_PARTITION_COUNTED},
                                .pictures = 1,
                                .left = 100000},
                      rank_counts[n]);
@@ -332,7 +337,8 @@ static void parts_are_cut_anew_and_pictures_stay(void **state) {
 /* A turn goes over other axes; what was learned of one serves again. */
 static void a_whole_turn_is_that_of_one_process(void **state) {
     (void)state;
-    turning t = play((turning){.how = {.cut = SNOW_PARTITION_MEASURED},
+    turning t = play((turning){.how = {.size = sizeof(snow_ranks_options),
+                                       .cut = SNOW_PARTITION_MEASURED},
                                .step = 15,
                                .pictures = 36,
                                .left = 100000,
@@ -361,7 +367,8 @@ static void nothing_is_cut_where_time_must_not_or_cannot_tell(void **state) {
     };
     for (size_t n = 0; n < COUNT(cases); n++) {
         turning t = play(
-            (turning){.how = {.cut = cases[n].cut},
+            (turning){.how = {.size = sizeof(snow_ranks_options),
+                              .cut = cases[n].cut},
                       .settings = {.deterministic = cases[n].deterministic},
                       .pictures = 10,
                       .left = cases[n].left,

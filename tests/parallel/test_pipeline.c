@@ -49,7 +49,7 @@ static void leave(seat *s) {
 }
 
 static snow_status sit_down(snow_comm *comm, flight *f, seat *s) {
-    const snow_look look = {.colormap = "viridis"};
+    const snow_look look = {.size = sizeof look, .colormap = "viridis"};
     *s = (seat){.comm = comm, .f = f};
     SNOW_TRY(snow_ranks_open(comm, f->path, NULL, &look, &f->view, &f->settings,
                              &f->how, &s->volume, &s->transfer));
@@ -136,6 +136,7 @@ static flight *flight_of(const char *folder, const int64_t dims[3], int side) {
         snow_volume_open_phantom(context, "head", dims, 0, &volume),
         SNOW_STATUS_OK);
     assert_int_equal(snow_volume_save(volume, f->path, true), SNOW_STATUS_OK);
+    snow_view_init(&f->view);
     snow_view_default(volume, &f->view);
     snow_volume_close(volume);
     snow_context_free(context);

@@ -112,7 +112,7 @@ static snow_status open_part(snow_context *context, const play *p,
     snow_volume_info info = p->info;
     size_t size = snow_type_size(info.type);
     int64_t layers[3];
-    snow_extent part = {{0}, {0}, {0}, {0}};
+    snow_extent part = {sizeof part, {0}, {0}, {0}, {0}};
     bool none = !snow_box_voxels(box);
     SNOW_TRY(snow_ghosts_needed(context, &p->info, &p->view, &p->settings,
                                 p->transfer->gradient_count > 0, false,
@@ -532,6 +532,7 @@ static void look_around(const char *name, const snow_volume *volume) {
                   .how = {.size = sizeof(snow_ranks_options),
                           .combining = (snow_combine)(n % 5)},
                   .pictures = 1};
+        snow_view_init(&p.view);
         assert_int_equal(snow_view_from_name(context, names[n], &p.view),
                          SNOW_STATUS_OK);
         snow_settings_init(&p.settings);
@@ -592,6 +593,7 @@ static void drafts_of(const char *name, const snow_volume *volume, int side,
                   .transfer = transfer,
                   .how = {.size = sizeof(snow_ranks_options)},
                   .pictures = 1};
+        snow_view_init(&p.view);
         assert_int_equal(snow_view_from_name(context, names[n], &p.view),
                          SNOW_STATUS_OK);
         snow_settings_init(&p.settings);
@@ -651,9 +653,12 @@ static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
         snow_volume_options options;
     } files[] = {
         {"classic/engine_256x256x110_u8.raw.gz",
-         {.dims = {256, 256, 110}, .type = SNOW_TYPE_UINT8}},
+         {.size = sizeof(snow_volume_options),
+          .dims = {256, 256, 110},
+          .type = SNOW_TYPE_UINT8}},
         {"classic/CThead_256x256x113_u16be.raw.gz",
-         {.dims = {256, 256, 113},
+         {.size = sizeof(snow_volume_options),
+          .dims = {256, 256, 113},
           .type = SNOW_TYPE_UINT16,
           .endian = SNOW_ENDIAN_BIG,
           .spacing = {1, 1, 2}}},
@@ -783,7 +788,7 @@ static void bad_threshold(play *p, snow_volume *volume) {
 
 /* Leaves some of its voxels to nobody. */
 static void modest(play *p, snow_volume *volume) {
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     (void)p;
     snow_volume_get_extent(volume, &part);
     for (int axis = 0; axis < 3; axis++)
@@ -793,7 +798,7 @@ static void modest(play *p, snow_volume *volume) {
 
 /* The part without its ghosts: refused by that rank alone. */
 static void ghostless(play *p, snow_volume *volume) {
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     (void)p;
     snow_volume_get_extent(volume, &part);
     for (int axis = 0; axis < 3; axis++) {

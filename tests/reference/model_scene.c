@@ -136,12 +136,14 @@ static void place(reference_scene *scene, model_matrix matrix) {
 
 static reference_scene plain_scene(const int64_t dims[3], snow_type type) {
     reference_scene scene = {
-        .info = {.dims = {dims[0], dims[1], dims[2]},
+        .info = {.size = sizeof(snow_volume_info),
+                 .dims = {dims[0], dims[1], dims[2]},
                  .type = type,
                  .slope = 1,
                  .format = "memory",
                  .times = 1},
-        .view = {.width = 64,
+        .view = {.size = sizeof(snow_view),
+                 .width = 64,
                  .height = 48,
                  .back = {0, 0, 1},
                  .up = {0, 1, 0},
@@ -243,8 +245,10 @@ void model_stand_at(reference_scene *scene, const model_stand *stand,
 
 reference_scene model_phantom(snow_context *context, const char *name,
                               const int64_t dims[3], snow_volume **volume) {
-    reference_scene scene = {
-        .view = {.back = {0, 0, 1}, .up = {0, 1, 0}, .zoom = 1}};
+    reference_scene scene = {.view = {.size = sizeof(snow_view),
+                                      .back = {0, 0, 1},
+                                      .up = {0, 1, 0},
+                                      .zoom = 1}};
     assert_int_equal(snow_volume_open_phantom(context, name, dims, 1, volume),
                      SNOW_STATUS_OK);
     scene.info = *snow_volume_get_info(*volume);

@@ -127,7 +127,7 @@ static void the_usual_place_gives_the_usual_picture(void **state) {
                         (model_matrix)(n % MODEL_MATRICES), (uint64_t)n);
         reference_camera camera;
         const char *names[] = {"+z", "-z", "anterior", "left", "right", "iso"};
-        snow_view named;
+        snow_view named = {.size = sizeof named};
         assert_int_equal(
             snow_view_from_name(stage.context, names[n % 6], &named),
             SNOW_STATUS_OK);

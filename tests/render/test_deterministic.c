@@ -18,6 +18,7 @@
 static snow_volume *small_volume(snow_context *context) {
     static const unsigned char voxels[4 * 5 * 6];
     const snow_volume_info info = {
+        .size = sizeof info,
         .dims = {4, 5, 6},
         .type = SNOW_TYPE_UINT8,
         .matrix = {{2, 0, 0, 10}, {0, 3, 0, 20}, {0, 0, 4, 30}, {0, 0, 0, 1}}};
@@ -31,9 +32,10 @@ static void a_volume_that_is_no_part_is_the_whole(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_volume *volume = small_volume(context);
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     snow_volume_get_extent(volume, &part);
-    const snow_extent whole = {{4, 5, 6}, {0, 0, 0}, {0, 0, 0}, {4, 5, 6}};
+    const snow_extent whole = {
+        sizeof whole, {4, 5, 6}, {0, 0, 0}, {0, 0, 0}, {4, 5, 6}};
     assert_memory_equal(&part, &whole, sizeof part);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -43,9 +45,10 @@ static void a_part_knows_its_place_in_the_whole(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_volume *volume = small_volume(context);
-    const snow_extent part = {{9, 5, 20}, {3, 0, 14}, {4, 0, 15}, {2, 5, 5}};
-    snow_extent given;
-    snow_volume_info whole;
+    const snow_extent part = {
+        sizeof part, {9, 5, 20}, {3, 0, 14}, {4, 0, 15}, {2, 5, 5}};
+    snow_extent given = {.size = sizeof given};
+    snow_volume_info whole = {.size = sizeof whole};
     assert_int_equal(snow_volume_set_extent(volume, &part), SNOW_STATUS_OK);
     snow_volume_get_extent(volume, &given);
     assert_memory_equal(&part, &given, sizeof part);
@@ -61,19 +64,39 @@ static void a_part_knows_its_place_in_the_whole(void **state) {
 static void boxes_that_do_not_lie_in_one_another_are_refused(void **state) {
     (void)state;
     static const snow_extent bad[] = {
-        {{9, 5, 20}, {6, 0, 14}, {6, 0, 14}, {2, 5, 5}},  /* beyond the grid */
-        {{9, 5, 20}, {-1, 0, 14}, {0, 0, 14}, {2, 5, 5}}, /* before it */
-        {{9, 5, 20}, {3, 0, 14}, {2, 0, 14}, {2, 5, 5}},  /* not stored */
-        {{9, 5, 20}, {3, 0, 14}, {3, 0, 14}, {5, 5, 5}},
-        {{9, 5, 20}, {3, 0, 14}, {3, 0, 14}, {-1, 5, 5}},
-        {{9, 0, 20}, {3, 0, 14}, {3, 0, 14}, {1, 5, 5}},
-        {{9, 5, 20}, {3, 0, 14}, {3, 0, 14}, {INT64_MAX, 5, 5}},
-        {{9, 5, 20}, {INT64_MAX, 0, 14}, {INT64_MAX, 0, 14}, {1, 5, 5}},
+        {sizeof(snow_extent),
+         {9, 5, 20},
+         {6, 0, 14},
+         {6, 0, 14},
+         {2, 5, 5}}, /* beyond the grid */
+        {sizeof(snow_extent),
+         {9, 5, 20},
+         {-1, 0, 14},
+         {0, 0, 14},
+         {2, 5, 5}}, /* before it */
+        {sizeof(snow_extent),
+         {9, 5, 20},
+         {3, 0, 14},
+         {2, 0, 14},
+         {2, 5, 5}}, /* not stored */
+        {sizeof(snow_extent), {9, 5, 20}, {3, 0, 14}, {3, 0, 14}, {5, 5, 5}},
+        {sizeof(snow_extent), {9, 5, 20}, {3, 0, 14}, {3, 0, 14}, {-1, 5, 5}},
+        {sizeof(snow_extent), {9, 0, 20}, {3, 0, 14}, {3, 0, 14}, {1, 5, 5}},
+        {sizeof(snow_extent),
+         {9, 5, 20},
+         {3, 0, 14},
+         {3, 0, 14},
+         {INT64_MAX, 5, 5}},
+        {sizeof(snow_extent),
+         {9, 5, 20},
+         {INT64_MAX, 0, 14},
+         {INT64_MAX, 0, 14},
+         {1, 5, 5}},
     };
     snow_context *context = support_context();
     snow_volume *volume = small_volume(context);
     for (size_t n = 0; n < sizeof bad / sizeof *bad; n++) {
-        snow_extent part;
+        snow_extent part = {.size = sizeof part};
         assert_int_equal(snow_volume_set_extent(volume, &bad[n]),
                          SNOW_STATUS_BAD_USAGE);
         assert_non_null(strstr(snow_context_message(context), "does not lie"));
@@ -81,7 +104,8 @@ static void boxes_that_do_not_lie_in_one_another_are_refused(void **state) {
         assert_int_equal(part.dims[0], 4);
     }
     /* A part may own nothing. */
-    const snow_extent none = {{9, 5, 20}, {3, 0, 14}, {0, 0, 0}, {0, 0, 0}};
+    const snow_extent none = {
+        sizeof none, {9, 5, 20}, {3, 0, 14}, {0, 0, 0}, {0, 0, 0}};
     assert_int_equal(snow_volume_set_extent(volume, &none), SNOW_STATUS_OK);
     snow_volume_close(volume);
     snow_context_free(context);
@@ -115,7 +139,7 @@ static void kernels_and_gradients_need_ghosts(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_settings settings;
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     int64_t layers[3];
     snow_settings_init(&settings);
     assert_int_equal(snow_view_from_name(context, "+z", &view), SNOW_STATUS_OK);
@@ -151,7 +175,7 @@ static void a_gradient_opacity_needs_those_of_shading(void **state) {
     whole.type = SNOW_TYPE_UINT8;
     for (int n = 0; n < 12; n++) {
         snow_settings settings;
-        snow_view view;
+        snow_view view = {.size = sizeof view};
         int64_t shaded[3], faded[3], both[3];
         snow_settings_init(&settings);
         settings.quality = (snow_quality)(n % 3);
@@ -177,7 +201,7 @@ static void wide_pixels_need_more_ghosts(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_settings settings;
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     int64_t layers[3];
     snow_settings_init(&settings);
     settings.shade = SNOW_SHADE_NONE;
@@ -201,7 +225,7 @@ static void every_turn_needs_no_more_than_the_bound(void **state) {
     static const double fovs[] = {0, 0.5, 30, 60};
     for (int n = 0; n < 24; n++) {
         snow_settings settings;
-        snow_view view;
+        snow_view view = {.size = sizeof view};
         snow_settings_init(&settings);
         snow_view_from_name(context, "iso", &view);
         settings.quality = (snow_quality)(n % 3);
@@ -221,7 +245,7 @@ static void every_turn_needs_no_more_than_the_bound(void **state) {
     /* And the bound is of use: at about a voxel a pixel no more than without
      * widening. */
     snow_settings settings;
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     int64_t bound[3];
     snow_settings_init(&settings);
     snow_view_from_name(context, "iso", &view);
@@ -267,7 +291,7 @@ static void open_part(stage *s, int n, const int64_t layers[3]) {
     const snow_box *box = &s->boxes[n];
     snow_volume_info info = s->whole->info;
     size_t size = snow_type_size(info.type);
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     for (int axis = 0; axis < 3; axis++) {
         int64_t low = box->first[axis] - layers[axis];
         int64_t high = box->first[axis] + box->count[axis] + layers[axis];
@@ -413,7 +437,7 @@ static flat splat(const stage *s, const snow_volume *volume) {
                                     .settings = &s->settings,
                                     .placement = &p,
                                     .channels = s->transfer->grey ? 2 : 4};
-    snow_volume_info info;
+    snow_volume_info info = {.size = sizeof info};
     snow_volume_whole(volume, &info);
     assert_int_equal(snow_placement_make(s->context, &info, &s->scene.view, &p),
                      SNOW_STATUS_OK);
@@ -667,7 +691,8 @@ static void a_part_without_voxels_of_its_own_is_transparent(void **state) {
         open_whole(&s);
         cut_grid(&s, 1, 1, 1);
         open_parts(&s);
-        const snow_extent none = {.dims = {20, 20, 20}, .stored = {3, 4, 5}};
+        const snow_extent none = {
+            .size = sizeof none, .dims = {20, 20, 20}, .stored = {3, 4, 5}};
         assert_int_equal(snow_volume_set_extent(s.parts[0], &none),
                          SNOW_STATUS_OK);
         flat part = shoot(&s, s.parts[0]);

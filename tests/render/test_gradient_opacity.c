@@ -340,7 +340,8 @@ static void stored_factors_are_as_near_as_said(void **state) {
     uint32_t columns[VOXELS];
     uint16_t codes[VOXELS];
     snow_context *context = support_context();
-    snow_volume_info info = {.dims = {VOXELS, 1, 1}, .type = SNOW_TYPE_FLOAT32};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {VOXELS, 1, 1}, .type = SNOW_TYPE_FLOAT32};
     reference_scene scene = model_blank((int64_t[]){2, 2, 2}, 0.5);
     scene.gradients = curve;
     scene.gradient_count = COUNT(curve);

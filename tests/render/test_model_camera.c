@@ -35,7 +35,7 @@ static void each_view_stands_where_its_name_says(void **state) {
     (void)state;
     snow_context *context = support_context();
     for (size_t n = 0; n < NAMES; n++) {
-        snow_view view = {0};
+        snow_view view = {.size = sizeof view};
         assert_int_equal(snow_view_from_name(context, names[n].name, &view),
                          SNOW_STATUS_OK);
         for (int c = 0; c < 3; c++) {
@@ -63,7 +63,7 @@ static void every_view_has_its_name_listed(void **state) {
 static void an_unknown_view_is_refused(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_view view = {.width = 7};
+    snow_view view = {.size = sizeof view, .width = 7};
     assert_int_equal(snow_view_from_name(context, "above", &view),
                      SNOW_STATUS_BAD_USAGE);
     assert_int_equal(view.width, 7);
@@ -75,10 +75,11 @@ static void medical_volumes_are_seen_from_the_front(void **state) {
     (void)state;
     snow_context *context = support_context();
     const unsigned char voxel = 0;
-    snow_volume_info info = {.dims = {1, 1, 1}, .type = SNOW_TYPE_UINT8};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {1, 1, 1}, .type = SNOW_TYPE_UINT8};
     for (int medical = 0; medical < 2; medical++) {
         snow_volume *volume = NULL;
-        snow_view view;
+        snow_view view = {.size = sizeof view};
         info.medical = medical;
         assert_int_equal(snow_volume_wrap(context, &info, &voxel, &volume),
                          SNOW_STATUS_OK);
@@ -144,7 +145,7 @@ static void what_is_up_is_at_the_top_and_nothing_is_mirrored(void **state) {
     };
     for (size_t n = 0; n < sizeof seen / sizeof *seen; n++)
         for (int axis = 0; axis < 3; axis++) {
-            snow_view view;
+            snow_view view = {.size = sizeof view};
             assert_int_equal(
                 snow_view_from_name(stage.context, seen[n].name, &view),
                 SNOW_STATUS_OK);
@@ -377,19 +378,14 @@ static void settings_and_views_out_of_range_are_refused(void **state) {
     model_close(&stage);
 }
 
-/* A record of an older header ends before the light; one of a newer header goes
- * on behind what this library knows. */
-static void settings_of_other_versions_are_read_as_far_as_known(void **state) {
+/* A record of an older header ends before the light (newer ones: test_api.c).
+ */
+static void
+settings_of_an_older_version_are_read_as_far_as_they_reach(void **state) {
     (void)state;
-    struct {
-        snow_settings settings;
-        double beyond[4];
-    } newer;
     snow_settings older;
-    memset(&newer, 7, sizeof newer);
     memset(&older, 7, sizeof older);
     size_t known = offsetof(snow_settings, light_azimuth);
-    snow_settings_init_sized(&newer.settings, sizeof newer);
     snow_settings_init_sized(&older, known);
     const unsigned char *bytes = (const unsigned char *)&older;
     for (size_t i = known; i < sizeof older; i++)
@@ -398,14 +394,11 @@ static void settings_of_other_versions_are_read_as_far_as_known(void **state) {
     reference_scene scene = model_scene((int64_t[]){9, 8, 7}, SNOW_TYPE_UINT8,
                                         true, MODEL_PLAIN, 1);
     float *plain = model_picture(&stage, &scene);
-    snow_settings *versions[] = {&older, &newer.settings};
-    for (int n = 0; n < 2; n++) {
-        versions[n]->method = SNOW_METHOD_FOOTPRINT;
-        memcpy(&scene.settings, versions[n], sizeof scene.settings);
-        float *picture = model_picture(&stage, &scene);
-        assert_memory_equal(picture, plain, 64 * 48 * 4 * sizeof *plain);
-        free(picture);
-    }
+    older.method = SNOW_METHOD_FOOTPRINT;
+    memcpy(&scene.settings, &older, sizeof scene.settings);
+    float *picture = model_picture(&stage, &scene);
+    assert_memory_equal(picture, plain, 64 * 48 * 4 * sizeof *plain);
+    free(picture);
     free(plain);
     model_free(&scene);
     model_close(&stage);
@@ -460,7 +453,8 @@ int main(void) {
         cmocka_unit_test(slices_are_taken_along_the_most_parallel_normal),
         cmocka_unit_test(of_equally_parallel_axes_the_last_is_taken),
         cmocka_unit_test(any_zoom_is_safe_and_quick),
-        cmocka_unit_test(settings_of_other_versions_are_read_as_far_as_known),
+        cmocka_unit_test(
+            settings_of_an_older_version_are_read_as_far_as_they_reach),
         cmocka_unit_test(settings_and_views_out_of_range_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -66,7 +66,8 @@ static void keep_pair(const model_stage *stage, const subject *what,
     char path[1024];
     snprintf(path, sizeof path, "%s/%s-%s.png", folder, what->name,
              what->look->name);
-    snow_image_options options = {.flatten = true, .overwrite = true};
+    snow_image_options options = {
+        .size = sizeof options, .flatten = true, .overwrite = true};
     assert_int_equal(snow_image_save(pair, path, &options), SNOW_STATUS_OK);
     snow_image_free(pair);
 }
@@ -83,7 +84,7 @@ static double similarity(const model_stage *stage, const subject *what,
         snow_image_pixels(splatted)[n] = picture[n];
         snow_image_pixels(cast)[n] = (float)rays[n];
     }
-    snow_image_difference difference = {0};
+    snow_image_difference difference = {.size = sizeof difference};
     assert_int_equal(snow_image_compare(splatted, cast, &difference),
                      SNOW_STATUS_OK);
     print_message("             %s, %s: SSIM %.4f, PSNR %.1f dB, mean "
@@ -112,7 +113,8 @@ static void check_subject(const subject *what) {
         .color_count = bytes ? 3 : 2,
         .opacities = what->look->opacities,
         .opacity_count = what->look->opacity_count,
-        .view = {.width = 128,
+        .view = {.size = sizeof(snow_view),
+                 .width = 128,
                  .height = 128,
                  .back = {0, 0, 1},
                  .up = {0, 1, 0}},

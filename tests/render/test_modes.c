@@ -294,10 +294,10 @@ static void drafts_are_not_far(void **state) {
 static snow_image *engine_picture(snow_context *context, snow_frame *frame,
                                   const snow_volume *volume,
                                   const snow_settings *settings, double fov) {
-    const snow_look look = {.preset = "linear"};
+    const snow_look look = {.size = sizeof look, .preset = "linear"};
     snow_transfer *transfer = NULL;
     snow_image *image = NULL;
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     assert_int_equal(snow_view_from_name(context, "+z", &view), SNOW_STATUS_OK);
     view.width = view.height = 128;
     view.azimuth = 30, view.elevation = 20, view.fov = fov;
@@ -312,7 +312,8 @@ static snow_image *engine_picture(snow_context *context, snow_frame *frame,
 
 static snow_volume *open_phantom(snow_context *context, snow_type type) {
     static const int64_t sides[3] = {61, 50, 43};
-    snow_volume_info info = {.dims = {61, 50, 43},
+    snow_volume_info info = {.size = sizeof info,
+                             .dims = {61, 50, 43},
                              .type = type,
                              .slope = 1,
                              .spacing = {1, 1, 1.5},

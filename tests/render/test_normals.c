@@ -296,7 +296,8 @@ static void check_floats(snow_type type, double size,
     static float singles[COUNT];
     static double doubles[COUNT];
     snow_context *context = support_context();
-    snow_volume_info info = {.dims = {70, 6, 5}, .type = type};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {70, 6, 5}, .type = type};
     uint64_t seed = 21;
     snow_volume *volume;
     for (int i = 0; i < 4; i++)
@@ -405,7 +406,8 @@ static void shade_of(snow_context *context, const snow_settings *settings,
         voxels[13 - strides[i]] = -n[i];
         voxels[13 + strides[i]] = n[i];
     }
-    snow_volume_info info = {.dims = {3, 3, 3}, .type = SNOW_TYPE_FLOAT64};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {3, 3, 3}, .type = SNOW_TYPE_FLOAT64};
     snow_volume *volume;
     assert_int_equal(snow_volume_wrap(context, &info, voxels, &volume),
                      SNOW_STATUS_OK);

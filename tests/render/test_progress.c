@@ -107,7 +107,7 @@ static void reading_is_reported_and_can_be_stopped(void **state) {
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
         const char *path = write_large(folder, names[n]);
         snow_context *context = support_context();
-        snow_volume_options options = {0};
+        snow_volume_options options = {.size = sizeof options};
         snow_volume *volume = NULL;
         listener l;
         if (n == 3) {
@@ -154,7 +154,7 @@ static void a_picture_is_reported(void **state) {
     snow_context *context = support_context();
     snow_volume *volume;
     snow_transfer *transfer;
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     listener l;
     assert_int_equal(snow_volume_open_phantom(context, "head",
                                               (const int64_t[3]){150, 150, 150},

@@ -100,7 +100,8 @@ static void fill_settings(const way *w, int threads, scene *s) {
 
 static snow_look look_of(const way *w, const snow_opacity_point *gradients) {
     bool fades = w->gradient > 0;
-    return (snow_look){.colormap = "viridis",
+    return (snow_look){.size = sizeof(snow_look),
+                       .colormap = "viridis",
                        .gradient_opacities = fades ? gradients : NULL,
                        .gradient_opacity_count = fades ? 2 : 0};
 }
@@ -119,6 +120,7 @@ static void scene_free(scene *s) {
 }
 
 static void fill_view(const snow_volume *volume, int side, snow_view *view) {
+    snow_view_init(view);
     snow_view_default(volume, view);
     view->azimuth = 25;
     view->elevation = 10;

@@ -133,7 +133,7 @@ static scene make_scene(snow_context *context, snow_type type, int axis,
                         int64_t columns, int64_t rows, int64_t slices,
                         pattern kind, int intervals, uint64_t seed) {
     scene s = {.context = context};
-    snow_volume_info info = {.type = type};
+    snow_volume_info info = {.size = sizeof info, .type = type};
     info.dims[axis] = slices;
     info.dims[axis == 0 ? 1 : 0] = columns;
     info.dims[axis == 2 ? 1 : 2] = rows;

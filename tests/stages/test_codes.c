@@ -22,7 +22,8 @@ static scene scene_of(snow_type type, double slope, double intercept,
                       const snow_opacity_point *opacities,
                       size_t opacity_count) {
     static const double voxel[1];
-    snow_volume_info info = {.dims = {1, 1, 1},
+    snow_volume_info info = {.size = sizeof info,
+                             .dims = {1, 1, 1},
                              .type = type,
                              .slope = slope,
                              .intercept = intercept};

@@ -679,9 +679,10 @@ static void begin_bands(band_case *b, snow_encoding encoding,
                         uint64_t *random) {
     static const snow_color_point white[] = {{0, 1, 1, 1}};
     static const snow_opacity_point step[] = {{128, 0}, {128, 0.5}};
-    snow_volume_info info = {.dims = {b->columns, b->rows, SLICES},
+    snow_volume_info info = {.size = sizeof info,
+                             .dims = {b->columns, b->rows, SLICES},
                              .type = SNOW_TYPE_UINT8};
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     snow_placement placement;
     snow_transfer *transfer = NULL;
     fill_slices(b, random);

@@ -3,7 +3,8 @@
 
 snow_volume *support_row(snow_context *context, snow_type type,
                          const void *values, int64_t n) {
-    snow_volume_info info = {.dims = {n, 1, 1}, .type = type};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {n, 1, 1}, .type = type};
     snow_volume *volume = NULL;
     if (snow_volume_wrap(context, &info, values, &volume) != SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));

@@ -107,12 +107,19 @@ static void cut(whole *w, uint64_t *random, snow_extent box, int first,
 
 static const snow_opacity_point points[] = {{0, 0}, {9, 0.5}};
 static const snow_look looks[] = {
-    {0},
-    {.range = SNOW_RANGE_FULL},
-    {.range = SNOW_RANGE_PERCENTILES, .low = 3, .high = 97.5},
-    {.preset = "ct-bone", .range = SNOW_RANGE_PERCENTILES, .high = 60},
-    {.preset = "linear", .colormap = "viridis"},
-    {.opacities = points,
+    {.size = sizeof(snow_look)},
+    {.size = sizeof(snow_look), .range = SNOW_RANGE_FULL},
+    {.size = sizeof(snow_look),
+     .range = SNOW_RANGE_PERCENTILES,
+     .low = 3,
+     .high = 97.5},
+    {.size = sizeof(snow_look),
+     .preset = "ct-bone",
+     .range = SNOW_RANGE_PERCENTILES,
+     .high = 60},
+    {.size = sizeof(snow_look), .preset = "linear", .colormap = "viridis"},
+    {.size = sizeof(snow_look),
+     .opacities = points,
      .opacity_count = 2,
      .range = SNOW_RANGE_VALUES,
      .low = 1,
@@ -128,6 +135,7 @@ static void check(snow_context *context, whole *w, int ranks,
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++) {
         snow_transfer *expected;
         snow_extent all = {
+            .size = sizeof all,
             .count = {w->info.dims[0], w->info.dims[1], w->info.dims[2]}};
         assert_int_equal(
             snow_transfer_new_for_volume(volume, &looks[i], &expected),
@@ -176,7 +184,8 @@ static void every_type_gives_the_same_function_for_any_cut(void **state) {
     snow_context *context = support_context();
     uint64_t random = 11;
     for (int type = SNOW_TYPE_INT8; type <= SNOW_TYPE_FLOAT64; type++) {
-        whole w = {.info = {.dims = {13, 11, 9},
+        whole w = {.info = {.size = sizeof(snow_volume_info),
+                            .dims = {13, 11, 9},
                             .type = (snow_type)type,
                             .slope = type % 2 ? 0.25 : -3,
                             .intercept = 2},
@@ -193,7 +202,9 @@ static void values_that_are_no_numbers_are_left_out_on_all_ranks(void **state) {
     static float values[VOXELS];
     snow_context *context = support_context();
     uint64_t random = 5;
-    whole w = {.info = {.dims = {13, 11, 9}, .type = SNOW_TYPE_FLOAT32},
+    whole w = {.info = {.size = sizeof(snow_volume_info),
+                        .dims = {13, 11, 9},
+                        .type = SNOW_TYPE_FLOAT32},
                .voxels = (unsigned char *)values};
     fill(SNOW_TYPE_FLOAT32, (unsigned char *)values, VOXELS, &random);
     for (int i = 0; i < VOXELS; i += 2)
@@ -216,7 +227,9 @@ static void padding_is_counted_where_it_is(void **state) {
     static float values[VOXELS];
     snow_context *context = support_context();
     uint64_t random = 5;
-    whole w = {.info = {.dims = {13, 11, 9}, .type = SNOW_TYPE_FLOAT32},
+    whole w = {.info = {.size = sizeof(snow_volume_info),
+                        .dims = {13, 11, 9},
+                        .type = SNOW_TYPE_FLOAT32},
                .voxels = (unsigned char *)values};
     fill(SNOW_TYPE_FLOAT32, (unsigned char *)values, VOXELS, &random);
     for (int i = 0; i < VOXELS; i++)
@@ -232,7 +245,9 @@ static void a_sample_of_a_large_volume_is_the_same_one(void **state) {
     (void)state;
     snow_context *context = support_context();
     uint64_t random = 9;
-    whole w = {.info = {.dims = {509, 401, 165}, .type = SNOW_TYPE_FLOAT32},
+    whole w = {.info = {.size = sizeof(snow_volume_info),
+                        .dims = {509, 401, 165},
+                        .type = SNOW_TYPE_FLOAT32},
                .shared = true};
     const int64_t *dims = w.info.dims;
     size_t voxels = (size_t)(dims[0] * dims[1] * dims[2]);
@@ -251,7 +266,8 @@ static void a_sample_of_a_large_volume_is_the_same_one(void **state) {
     w.expected = expected;
     for (int rank = 0, at = 0; rank < 3; rank++) {
         int count = rank < 2 ? 47 + 8 * rank : 165 - at;
-        w.parts[rank] = (snow_extent){.first = {0, 0, at},
+        w.parts[rank] = (snow_extent){.size = sizeof(snow_extent),
+                                      .first = {0, 0, at},
                                       .count = {dims[0], dims[1], count}};
         at += count;
     }
@@ -266,13 +282,15 @@ static void a_sample_of_a_large_volume_is_the_same_one(void **state) {
 static void a_look_that_is_none_fails_on_all_ranks(void **state) {
     (void)state;
     static const uint8_t values[VOXELS];
-    static const snow_look look = {.preset = "none"};
+    static const snow_look look = {.size = sizeof look, .preset = "none"};
     snow_context *context = support_context();
     uint64_t random = 1;
-    whole w = {.info = {.dims = {13, 11, 9}, .type = SNOW_TYPE_UINT8},
+    whole w = {.info = {.size = sizeof(snow_volume_info),
+                        .dims = {13, 11, 9},
+                        .type = SNOW_TYPE_UINT8},
                .voxels = values,
                .look = &look};
-    snow_extent all = {.count = {13, 11, 9}};
+    snow_extent all = {.size = sizeof all, .count = {13, 11, 9}};
     cut(&w, &random, all, 0, 5);
     assert_int_equal(snow_comm_run_threads(context, 5, make_part, &w),
                      SNOW_STATUS_BAD_USAGE);

@@ -30,7 +30,7 @@ static void linear_over_decades_is_linear_in_decades(void **state) {
     snow_context *context = support_context();
     snow_volume *volume =
         support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
-    snow_look look = {.preset = "linear", .log = true};
+    snow_look look = {.size = sizeof look, .preset = "linear", .log = true};
     snow_transfer *transfer = support_look(volume, look);
     assert_true(snow_transfer_is_log(transfer));
     for (int i = 0; i < 7; i++) {
@@ -54,7 +54,8 @@ static void a_range_is_spread_by_decades(void **state) {
     snow_context *context = support_context();
     snow_volume *volume =
         support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
-    snow_look look = {.preset = "ct-bone",
+    snow_look look = {.size = sizeof look,
+                      .preset = "ct-bone",
                       .range = SNOW_RANGE_VALUES,
                       .low = 0.1,
                       .high = 1000,
@@ -84,9 +85,16 @@ static void what_has_no_logarithm_is_refused(void **state) {
     snow_volume *volume =
         support_row(context, SNOW_TYPE_FLOAT32, decades, DECADES);
     const snow_look looks[] = {
-        {.preset = "ct-soft", .log = true},
-        {.opacities = from_0, .opacity_count = 2, .log = true},
-        {.range = SNOW_RANGE_VALUES, .low = 0, .high = 9, .log = true}};
+        {.size = sizeof(snow_look), .preset = "ct-soft", .log = true},
+        {.size = sizeof(snow_look),
+         .opacities = from_0,
+         .opacity_count = 2,
+         .log = true},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_VALUES,
+         .low = 0,
+         .high = 9,
+         .log = true}};
     for (size_t i = 0; i < 3; i++) {
         snow_transfer *transfer = NULL;
         assert_int_equal(
@@ -111,7 +119,7 @@ static void counted_types_give_the_same_look_by_decades(void **state) {
     snow_context *context = support_context();
     snow_volume *a = support_row(context, SNOW_TYPE_INT16, narrow, 400);
     snow_volume *b = support_row(context, SNOW_TYPE_FLOAT64, wide, 400);
-    snow_look look = {.log = true};
+    snow_look look = {.size = sizeof look, .log = true};
     snow_transfer *first = support_look(a, look),
                   *second = support_look(b, look);
     assert_string_equal(snow_transfer_description(first),
@@ -135,7 +143,8 @@ static void odd_volumes_have_a_logarithmic_look_too(void **state) {
         snow_volume *volume =
             support_row(context, SNOW_TYPE_FLOAT32, odd[i], 3);
         for (size_t p = 0; p < 4; p++) {
-            snow_look look = {.log = true,
+            snow_look look = {.size = sizeof look,
+                              .log = true,
                               .preset = p == 1   ? "linear"
                                         : p == 2 ? "mr-angio"
                                                  : NULL,
@@ -167,15 +176,16 @@ static void points_in_data_units_stay_where_they_are(void **state) {
                                 .gradient_count = 2};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.points = &points});
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .points = &points});
     assert_true(near(opacity_at(transfer, 30), 0.25));
     assert_true(near(red_at(transfer, 30), 0.5));
     assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.5));
     assert_non_null(strstr(snow_transfer_description(transfer), "mine 10..50"));
     snow_transfer_free(transfer);
     /* Over twice the range gradients are half as steep. */
-    transfer = support_look(volume, (snow_look){.points = &points,
+    transfer = support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                                .points = &points,
                                                 .range = SNOW_RANGE_VALUES,
                                                 .low = 100,
                                                 .high = 180});
@@ -200,14 +210,15 @@ static void points_without_values_are_spread(void **state) {
     colors_only.opacity_count = 0;
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.points = &points});
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .points = &points});
     assert_true(near(opacity_at(transfer, 100), 0.25));
     assert_true(near(red_at(transfer, 75), 0.75));
     snow_transfer_free(transfer);
-    transfer = support_look(volume, (snow_look){.points = &colors_only});
-    snow_transfer *automatic =
-        support_look(volume, (snow_look){.preset = NULL});
+    transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .points = &colors_only});
+    snow_transfer *automatic = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = NULL});
     assert_true(near(opacity_at(transfer, 150), opacity_at(automatic, 150)));
     assert_true(red_at(transfer, 150) == 0);
     snow_transfer_free(automatic);
@@ -233,8 +244,8 @@ static void hundreds_of_points_are_taken(void **state) {
                                 .opacity_count = 900};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.points = &points});
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .points = &points});
     assert_true(near(opacity_at(transfer, 655.25), 0.75));
     assert_true(near(red_at(transfer, 350), 0.5));
     snow_transfer_free(transfer);
@@ -269,8 +280,10 @@ static void categories_are_not_mixed(void **state) {
     const float values[] = {0, 10};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
-    snow_transfer *transfer = support_look(
-        volume, (snow_look){.preset = "linear", .colormap = "tab10"});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                         .preset = "linear",
+                                         .colormap = "tab10"});
     for (int i = 0; i < 100; i++) {
         double found[4];
         snow_transfer_evaluate(transfer, i / 10.0 + 0.05, found);
@@ -287,12 +300,14 @@ static void categories_are_not_mixed(void **state) {
 
 static snow_transfer *look_at_block(snow_context *context, const float *values,
                                     const int64_t dims[3]) {
-    snow_volume_info info = {.dims = {dims[0], dims[1], dims[2]},
+    snow_volume_info info = {.size = sizeof info,
+                             .dims = {dims[0], dims[1], dims[2]},
                              .type = SNOW_TYPE_FLOAT32};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_wrap(context, &info, values, &volume),
                      SNOW_STATUS_OK);
-    snow_transfer *transfer = support_look(volume, (snow_look){.preset = NULL});
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = NULL});
     snow_volume_close(volume);
     return transfer;
 }

@@ -53,7 +53,7 @@ static char *write_text(snow_context *context, const snow_recipe *recipe) {
 static void every_key_reaches_its_field(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_recipe r;
+    snow_recipe r = {.size = sizeof r};
     assert_int_equal(parse(context, all_keys, &r), SNOW_STATUS_OK);
     assert_string_equal(r.input, "a.raw");
     assert_string_equal(r.output, "b_%04d.png");
@@ -116,7 +116,7 @@ static void what_is_written_reads_as_it_was(void **state) {
                                         "{\"background\": \"#ff8000\"}"};
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        snow_recipe a, b;
+        snow_recipe a = {.size = sizeof a}, b = {.size = sizeof b};
         assert_int_equal(parse(context, texts[i], &a), SNOW_STATUS_OK);
         char *text = write_text(context, &a);
         assert_int_equal(parse(context, text, &b), SNOW_STATUS_OK);
@@ -147,7 +147,7 @@ static void what_is_written_reads_as_it_was(void **state) {
 static void an_empty_recipe_is_the_defaults(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_recipe a, b;
+    snow_recipe a = {.size = sizeof a}, b = {.size = sizeof b};
     snow_recipe_init(&a);
     assert_int_equal(parse(context, "{}", &b), SNOW_STATUS_OK);
     snow_recipe_clear(&b);
@@ -199,13 +199,13 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
         {"", "not valid JSON"}};
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        snow_recipe r;
+        snow_recipe r = {.size = sizeof r};
         assert_int_equal(parse(context, wrong[i][0], &r),
                          SNOW_STATUS_BAD_INPUT);
         if (!strstr(snow_context_message(context), wrong[i][1]))
             fail_msg("%s: %s", wrong[i][0], snow_context_message(context));
     }
-    snow_recipe r;
+    snow_recipe r = {.size = sizeof r};
     assert_int_equal(snow_recipe_load(context, "no/such/recipe.json", &r),
                      SNOW_STATUS_BAD_INPUT);
     assert_non_null(strstr(snow_context_message(context), "cannot be opened"));
@@ -215,8 +215,9 @@ static void a_wrong_recipe_is_refused_by_its_key(void **state) {
 static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_recipe r;
-    snow_view usual, named, view;
+    snow_recipe r = {.size = sizeof r};
+    snow_view usual = {.size = sizeof usual}, named = {.size = sizeof named},
+              view = {.size = sizeof view};
     assert_int_equal(snow_view_from_name(context, "left", &usual),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_view_from_name(context, "iso", &named),
@@ -250,8 +251,9 @@ static void a_view_without_a_name_is_the_usual_one_turned(void **state) {
 static void opacities_per_millimetre_follow_the_unit(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_recipe r;
+    snow_recipe r = {.size = sizeof r};
     snow_settings s;
+    snow_settings_init(&s);
     snow_recipe_init(&r);
     assert_int_equal(snow_recipe_get_settings(context, &r, "furlong", &s),
                      SNOW_STATUS_OK);

@@ -216,7 +216,8 @@ static void a_look_has_a_gradient_opacity(void **state) {
         many[i] = (snow_opacity_point){-1.23456e-100 / (i + 1), 0.12345};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 3);
-    snow_look look = {.preset = "linear",
+    snow_look look = {.size = sizeof look,
+                      .preset = "linear",
                       .gradient_opacities = curve,
                       .gradient_opacity_count = 2};
     snow_transfer *transfer = support_look(volume, look), *none = NULL;
@@ -249,8 +250,8 @@ static void linear_on_8_bits_is_the_value_itself(void **state) {
         bytes[i] = (uint8_t)i;
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 256);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.preset = "linear"});
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = "linear"});
     for (int i = 0; i < 256; i++) {
         double rgba[4];
         snow_transfer_evaluate(transfer, i, rgba);
@@ -271,13 +272,14 @@ static void table_1_of_the_real_engine_comes_out(void **state) {
     static const double thresholds[] = {0, 10, 30},
                         wanted[] = {27.9, 77.5, 81.7};
     snow_context *context = support_context();
-    const snow_volume_options options = {.dims = {256, 256, 110},
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {256, 256, 110},
                                          .type = SNOW_TYPE_UINT8};
     snow_volume *volume;
     assert_int_equal(snow_volume_open(context, path, &options, &volume),
                      SNOW_STATUS_OK);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.preset = "linear"});
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = "linear"});
     for (int i = 0; i < 3; i++) {
         double found = -1;
         assert_int_equal(
@@ -295,8 +297,11 @@ static void a_range_of_values_spreads_any_look(void **state) {
     const int16_t values[] = {-1000, 0, 100, 3000};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_INT16, values, 4);
-    snow_look look = {
-        .preset = "linear", .range = SNOW_RANGE_VALUES, .low = 20, .high = 60};
+    snow_look look = {.size = sizeof look,
+                      .preset = "linear",
+                      .range = SNOW_RANGE_VALUES,
+                      .low = 20,
+                      .high = 60};
     snow_transfer *linear = support_look(volume, look);
     assert_true(opacity_at(linear, 20) == 0 && opacity_at(linear, 60) == 1);
     assert_true(near(opacity_at(linear, 30), 0.25));
@@ -325,7 +330,8 @@ static void percentiles_are_of_finite_values(void **state) {
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 204);
     snow_transfer *transfer =
-        support_look(volume, (snow_look){.preset = "linear",
+        support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                         .preset = "linear",
                                          .range = SNOW_RANGE_PERCENTILES,
                                          .low = 10,
                                          .high = 90});
@@ -388,11 +394,14 @@ static void all_types_give_one_look(void **state) {
         floats[i] = shorts[i];
     }
     snow_context *context = support_context();
-    snow_volume_info info = {.dims = {N, 1, 1}, .slope = -2, .intercept = 50};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {N, 1, 1}, .slope = -2, .intercept = 50};
     for (int range = SNOW_RANGE_AUTO; range <= SNOW_RANGE_PERCENTILES;
          range++) {
-        const snow_look look = {
-            .range = (snow_range)range, .low = 3, .high = 97};
+        const snow_look look = {.size = sizeof look,
+                                .range = (snow_range)range,
+                                .low = 3,
+                                .high = 97};
         snow_volume *a, *b;
         info.type = SNOW_TYPE_INT16;
         assert_int_equal(snow_volume_wrap(context, &info, shorts, &a),
@@ -416,8 +425,10 @@ static void the_full_range_is_from_smallest_to_largest(void **state) {
     const float values[] = {NAN, -3, 5, 1, INFINITY};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 5);
-    snow_transfer *transfer = support_look(
-        volume, (snow_look){.preset = "linear", .range = SNOW_RANGE_FULL});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                         .preset = "linear",
+                                         .range = SNOW_RANGE_FULL});
     assert_true(opacity_at(transfer, -3) == 0);
     assert_true(near(opacity_at(transfer, 1), 0.5));
     assert_true(opacity_at(transfer, 5) == 1);
@@ -429,7 +440,8 @@ static void the_full_range_is_from_smallest_to_largest(void **state) {
 static void slope_and_intercept_count(void **state) {
     (void)state;
     const uint8_t bytes[] = {0, 1, 2, 3, 4};
-    const snow_volume_info info = {.dims = {5, 1, 1},
+    const snow_volume_info info = {.size = sizeof info,
+                                   .dims = {5, 1, 1},
                                    .type = SNOW_TYPE_UINT8,
                                    .slope = -10,
                                    .intercept = 100};
@@ -437,8 +449,8 @@ static void slope_and_intercept_count(void **state) {
     snow_volume *volume;
     assert_int_equal(snow_volume_wrap(context, &info, bytes, &volume),
                      SNOW_STATUS_OK);
-    snow_transfer *transfer =
-        support_look(volume, (snow_look){.preset = "linear"});
+    snow_transfer *transfer = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = "linear"});
     assert_true(opacity_at(transfer, 60) == 0);
     assert_true(opacity_at(transfer, 100) == 1);
     snow_transfer_free(transfer);
@@ -465,12 +477,14 @@ static void presets_and_maps_are_listed_and_all_work(void **state) {
     for (; snow_preset_name(count); count++) {
         assert_non_null(snow_preset_description(count));
         snow_transfer_free(support_look(
-            volume, (snow_look){.preset = snow_preset_name(count)}));
+            volume, (snow_look){.size = sizeof(snow_look),
+                                .preset = snow_preset_name(count)}));
     }
     assert_null(snow_preset_description(count));
     for (size_t i = 0; snow_colormap_name(i); i++)
         snow_transfer_free(support_look(
-            volume, (snow_look){.colormap = snow_colormap_name(i)}));
+            volume, (snow_look){.size = sizeof(snow_look),
+                                .colormap = snow_colormap_name(i)}));
     snow_volume_close(volume);
     snow_context_free(context);
 }
@@ -480,12 +494,12 @@ static void ct_presets_keep_their_hounsfield_values(void **state) {
     const int16_t values[] = {-1000, 40, 900};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_INT16, values, 3);
-    snow_transfer *bone =
-        support_look(volume, (snow_look){.preset = "ct-bone"});
+    snow_transfer *bone = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = "ct-bone"});
     assert_true(opacity_at(bone, 60) == 0); /* muscle */
     assert_true(opacity_at(bone, 700) > 0.4);
-    snow_transfer *soft =
-        support_look(volume, (snow_look){.preset = "ct-soft"});
+    snow_transfer *soft = support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = "ct-soft"});
     assert_true(opacity_at(soft, -900) == 0); /* lung and air */
     assert_true(opacity_at(soft, 40) > 0.1);
     assert_false(snow_transfer_is_grey(bone));
@@ -507,10 +521,12 @@ static void ct_presets_warn_of_values_with_an_offset(void **state) {
     int notices = 0;
     snow_context_set_warning(context, count_notice, &notices);
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT16, values, 3);
-    snow_transfer_free(support_look(volume, (snow_look){.preset = "ct-soft"}));
+    snow_transfer_free(support_look(
+        volume, (snow_look){.size = sizeof(snow_look), .preset = "ct-soft"}));
     assert_int_equal(notices, 1);
     snow_transfer_free(
-        support_look(volume, (snow_look){.preset = "ct-soft",
+        support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                         .preset = "ct-soft",
                                          .range = SNOW_RANGE_VALUES,
                                          .low = 674,
                                          .high = 1524}));
@@ -525,8 +541,8 @@ static void unknown_names_are_refused_with_a_list(void **state) {
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer = NULL;
-    const snow_look preset = {.preset = "ct-foot"};
-    const snow_look map = {.colormap = "jet"};
+    const snow_look preset = {.size = sizeof preset, .preset = "ct-foot"};
+    const snow_look map = {.size = sizeof map, .colormap = "jet"};
     assert_int_equal(snow_transfer_new_for_volume(volume, &preset, &transfer),
                      SNOW_STATUS_BAD_USAGE);
     const char *message = snow_context_message(context);
@@ -545,12 +561,30 @@ static void unknown_names_are_refused_with_a_list(void **state) {
 static void empty_ranges_are_refused(void **state) {
     (void)state;
     static const snow_look looks[] = {
-        {.range = SNOW_RANGE_VALUES, .low = 5, .high = 5},
-        {.range = SNOW_RANGE_VALUES, .low = 6, .high = 5},
-        {.range = SNOW_RANGE_VALUES, .low = NAN, .high = 5},
-        {.range = SNOW_RANGE_VALUES, .low = 0, .high = INFINITY},
-        {.range = SNOW_RANGE_PERCENTILES, .low = -1, .high = 50},
-        {.range = SNOW_RANGE_PERCENTILES, .low = 1, .high = 101},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_VALUES,
+         .low = 5,
+         .high = 5},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_VALUES,
+         .low = 6,
+         .high = 5},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_VALUES,
+         .low = NAN,
+         .high = 5},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_VALUES,
+         .low = 0,
+         .high = INFINITY},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_PERCENTILES,
+         .low = -1,
+         .high = 50},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_PERCENTILES,
+         .low = 1,
+         .high = 101},
     };
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
@@ -570,8 +604,10 @@ static void a_colour_map_replaces_the_colours_only(void **state) {
     const uint8_t bytes[] = {0, 255};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
-    snow_transfer *transfer = support_look(
-        volume, (snow_look){.preset = "linear", .colormap = "inferno"});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                         .preset = "linear",
+                                         .colormap = "inferno"});
     double rgba[4];
     snow_transfer_evaluate(transfer, 255, rgba);
     assert_true(fabs(rgba[0] - 0.988362) < 1 / 255.0);
@@ -589,8 +625,10 @@ static void given_opacities_replace_the_presets(void **state) {
     const snow_opacity_point falling[] = {{100, 0}, {50, 0.5}};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
-    snow_look look = {
-        .preset = "linear", .opacities = points, .opacity_count = 2};
+    snow_look look = {.size = sizeof look,
+                      .preset = "linear",
+                      .opacities = points,
+                      .opacity_count = 2};
     snow_transfer *transfer = support_look(volume, look);
     assert_true(opacity_at(transfer, 99) == 0);
     assert_true(opacity_at(transfer, 100) == 0.5);
@@ -661,7 +699,8 @@ static void colour_maps_are_the_published_ones(void **state) {
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     for (size_t n = 0; n < sizeof tables / sizeof *tables; n++) {
         snow_transfer *transfer =
-            support_look(volume, (snow_look){.preset = "linear",
+            support_look(volume, (snow_look){.size = sizeof(snow_look),
+                                             .preset = "linear",
                                              .colormap = tables[n].name});
         for (int i = 0; i < 5; i++) {
             double rgba[4];
@@ -734,7 +773,7 @@ static void names_are_free_in_case_and_dashes(void **state) {
 static void a_view_keeps_its_sign(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_view a, b;
+    snow_view a = {.size = sizeof a}, b = {.size = sizeof b};
     assert_int_equal(snow_view_from_name(context, "Anterior", &a),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_view_from_name(context, "+y", &b), SNOW_STATUS_OK);
@@ -767,7 +806,8 @@ static void background_is_transparent_and_the_object_is_not(void **state) {
     snow_context *context = support_context();
     snow_volume *volume =
         support_row(context, SNOW_TYPE_FLOAT32, values, AIR + TISSUE + BONE);
-    snow_transfer *transfer = support_look(volume, (snow_look){0});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look)});
     assert_true(opacity_at(transfer, 50) == 0);
     assert_true(opacity_at(transfer, 950) >= 0.2);
     assert_true(opacity_at(transfer, 2000) > opacity_at(transfer, 1000));
@@ -789,7 +829,8 @@ static void sparse_vessels_are_found_in_an_empty_volume(void **state) {
     scatter(values, VESSEL, 150, 100, &random);
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, ALL);
-    snow_transfer *transfer = support_look(volume, (snow_look){0});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look)});
     assert_true(opacity_at(transfer, 0) == 0);
     assert_true(opacity_at(transfer, 180) > 0.3);
     /* Their brightest half is not cut off. */
@@ -811,7 +852,8 @@ static void a_few_wild_values_do_not_blank_the_picture(void **state) {
         values[i * 400] = i % 2 ? 3e38F : NAN;
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, ALL);
-    snow_transfer *transfer = support_look(volume, (snow_look){0});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look)});
     assert_true(opacity_at(transfer, 12) == 0);
     assert_true(opacity_at(transfer, 110) > 0.2);
     snow_transfer_free(transfer);
@@ -824,7 +866,8 @@ static void a_mask_of_0_and_1_shows_its_ones(void **state) {
     const uint8_t bytes[] = {0, 0, 0, 1, 1, 0, 0, 0};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 8);
-    snow_transfer *transfer = support_look(volume, (snow_look){0});
+    snow_transfer *transfer =
+        support_look(volume, (snow_look){.size = sizeof(snow_look)});
     assert_true(opacity_at(transfer, 0) == 0);
     assert_true(opacity_at(transfer, 1) > 0.3);
     snow_transfer_free(transfer);
@@ -838,7 +881,8 @@ static void check_all_looks(snow_type type, const void *values, int64_t n) {
     snow_volume *volume = support_row(context, type, values, n);
     for (int range = SNOW_RANGE_AUTO; range <= SNOW_RANGE_PERCENTILES; range++)
         for (size_t p = 0; p == 0 || snow_preset_name(p - 1); p++) {
-            snow_look look = {.preset = p ? snow_preset_name(p - 1) : NULL,
+            snow_look look = {.size = sizeof look,
+                              .preset = p ? snow_preset_name(p - 1) : NULL,
                               .range = (snow_range)range,
                               .low = 1,
                               .high = 99,
@@ -891,9 +935,10 @@ a_volume_of_zeros_shows_nothing_and_one_of_sevens_does(void **state) {
     snow_volume *full = support_row(context, SNOW_TYPE_UINT8, sevens, 2);
     for (int i = 0; i < 3; i++) {
         snow_transfer *a =
-            support_look(empty, (snow_look){.preset = presets[i]});
-        snow_transfer *b =
-            support_look(full, (snow_look){.preset = presets[i]});
+            support_look(empty, (snow_look){.size = sizeof(snow_look),
+                                            .preset = presets[i]});
+        snow_transfer *b = support_look(
+            full, (snow_look){.size = sizeof(snow_look), .preset = presets[i]});
         assert_true(opacity_at(a, 0) == 0);
         assert_true(opacity_at(b, 7) > 0.5);
         snow_transfer_free(a);

@@ -58,7 +58,7 @@ static void check_file(support_files *files, const char *name,
     char path[256];
     snprintf(path, sizeof path, "%s",
              strchr(name, ':') ? name : support_path(files, name));
-    snow_volume_options options = {0};
+    snow_volume_options options = {.size = sizeof options};
     if (given)
         options = *given;
     for (options.time = 0; options.time < times; options.time++) {
@@ -69,7 +69,7 @@ static void check_file(support_files *files, const char *name,
             memcpy(options.crop, boxes[i], sizeof options.crop);
             snow_volume *box = support_opened(files, path, &options);
             compare(whole, box, boxes[i]);
-            snow_volume_info info;
+            snow_volume_info info = {.size = sizeof info};
             assert_int_equal(
                 snow_volume_inspect(files->context, path, &options, &info),
                 SNOW_STATUS_OK);
@@ -114,7 +114,8 @@ static void put(support_files *files, const char *name, const char *header,
 
 static void check_raw(support_files *files, snow_type type, bool big) {
     size_t size = VOXELS * snow_type_size(type) + 5;
-    snow_volume_options given = {.dims = {11, 9, 7}, .type = type, .offset = 5};
+    snow_volume_options given = {
+        .size = sizeof given, .dims = {11, 9, 7}, .type = type, .offset = 5};
     given.endian = big ? SNOW_ENDIAN_BIG : SNOW_ENDIAN_LITTLE;
     put(files, "a.raw", "", size, false);
     put(files, "a.raw.gz", "", size, true);
@@ -208,7 +209,8 @@ static void turn(unsigned char *at, size_t size, int count) {
 static void check_nifti(support_files *files, snow_type type, bool big) {
     static unsigned char bytes[VOXELS * TIMES * 8 + 352];
     size_t size = VOXELS * TIMES * snow_type_size(type);
-    snow_volume_info info = {.dims = {11, 9, 7}, .type = type};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {11, 9, 7}, .type = type};
     snow_volume *volume;
     char path[256];
     snprintf(path, sizeof path, "%s", support_path(files, "a.nii"));
@@ -324,7 +326,8 @@ static void files_outside_the_box_are_not_opened(void **state) {
         &files, "p.mhd",
         "NDims = 3\nDimSize = 11 9 7\nElementType = MET_UCHAR\n"
         "ElementDataFile = s%d.raw 0 6 1\n");
-    snow_volume_options options = {.crop = {{0, 3}, {0, 3}, {2, 7}}};
+    snow_volume_options options = {.size = sizeof options,
+                                   .crop = {{0, 3}, {0, 3}, {2, 7}}};
     snow_volume_close(support_opened(&files, nrrd, &options));
     snow_volume_close(support_opened(&files, meta, &options));
     options.crop[2][0] = 1;
@@ -339,8 +342,8 @@ static void a_box_of_a_phantom_equals_that_of_the_whole(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    const snow_volume_options given = {.dims = {11, 9, 7},
-                                       .spacing = {0.5, 0, 3}};
+    const snow_volume_options given = {
+        .size = sizeof given, .dims = {11, 9, 7}, .spacing = {0.5, 0, 3}};
     for (size_t i = 0; snow_phantom_name(i); i++) {
         char name[64];
         snprintf(name, sizeof name, "phantom:%s", snow_phantom_name(i));
@@ -354,7 +357,8 @@ static void the_box_moves_by_the_spacing_that_was_given(void **state) {
     support_files files;
     support_files_begin(&files);
     put(&files, "a.raw", "", VOXELS, false);
-    const snow_volume_options options = {.dims = {11, 9, 7},
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {11, 9, 7},
                                          .type = SNOW_TYPE_UINT8,
                                          .spacing = {2, 3, 4},
                                          .crop = {{1, 3}, {2, 4}, {3, 5}}};
@@ -378,7 +382,8 @@ static void a_box_outside_the_volume_is_refused_with_its_sizes(void **state) {
         {{0, 11}, {0, 9}, {7, 0}},         {{0, 11}, {0, 9}, {0, INT64_MAX}},
         {{0, 11}, {INT64_MIN, 9}, {0, 7}}, {{0, 11}, {0, -9}, {0, 7}}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        snow_volume_options options = {.dims = {11, 9, 7},
+        snow_volume_options options = {.size = sizeof options,
+                                       .dims = {11, 9, 7},
                                        .type = SNOW_TYPE_UINT8};
         memcpy(options.crop, bad[i], sizeof options.crop);
         support_refused(&files, support_path(&files, "a.raw"), &options,
@@ -434,7 +439,7 @@ static void check_large(support_files *files, const char *name,
     snow_volume *volume = support_opened(files, path, &options);
     uint64_t read = snow_context_bytes_read(files->context) - before;
     assert_memory_equal(snow_volume_voxels(volume), marks, sizeof marks);
-    snow_volume_statistics m;
+    snow_volume_statistics m = {.size = sizeof m};
     snow_volume_get_statistics(volume, &m);
     assert_true(m.voxels == 8000 && m.sum == 783);
     assert_in_range(read, 16000, 65536 + 16000);
@@ -446,13 +451,14 @@ static void little_more_than_the_box_is_read_of_a_huge_file(void **state) {
     (void)state;
     support_files files;
     support_files_begin(&files);
-    const snow_volume_options given = {.dims = {3000, 1000, 800},
+    const snow_volume_options given = {.size = sizeof given,
+                                       .dims = {3000, 1000, 800},
                                        .type = SNOW_TYPE_UINT16};
     check_large(&files, "big.raw", "", &given);
     check_large(&files, "big.nrrd",
                 "NRRD0004\ntype: ushort\ndimension: 3\nsizes: 3000 1000 800\n"
                 "endian: little\nencoding: raw\n\n",
-                &(snow_volume_options){0});
+                &(snow_volume_options){.size = sizeof(snow_volume_options)});
     support_files_end(&files);
 }
 
@@ -465,7 +471,8 @@ static void near_rows_are_read_in_one_go_and_far_slices_are_not(void **state) {
     char *bytes = calloc(1, 900000);
     const char *path = support_write(&files, "a.raw", bytes, 900000);
     free(bytes);
-    const snow_volume_options options = {.dims = {100, 90, 100},
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {100, 90, 100},
                                          .type = SNOW_TYPE_UINT8,
                                          .crop = {{50, 80}, {5, 25}, {80, 90}}};
     uint64_t before = snow_context_bytes_read(files.context);
@@ -482,9 +489,10 @@ static void inspect_reads_the_header_alone(void **state) {
     char *bytes = calloc(1, 1000000);
     const char *path = support_write(&files, "a.raw", bytes, 1000000);
     free(bytes);
-    const snow_volume_options options = {.dims = {100, 100, 100},
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {100, 100, 100},
                                          .type = SNOW_TYPE_UINT8};
-    snow_volume_info info;
+    snow_volume_info info = {.size = sizeof info};
     assert_int_equal(snow_volume_inspect(files.context, path, &options, &info),
                      SNOW_STATUS_OK);
     assert_int_equal(info.dims[2], 100);
@@ -510,7 +518,8 @@ static void of_packed_data_only_the_box_is_kept(void **state) {
         bytes[i] = (unsigned char)support_random(&random);
     size_t used = support_gzip(bytes, size, packed, size + 10000);
     const char *path = support_write(&files, "a.raw.gz", packed, used);
-    const snow_volume_options options = {.dims = {160, 160, 160},
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {160, 160, 160},
                                          .type = SNOW_TYPE_UINT8,
                                          .crop = {{3, 9}, {5, 8}, {100, 110}}};
     snow_volume *volume = support_opened(&files, path, &options);
@@ -534,7 +543,8 @@ static void a_file_cut_behind_the_box_is_refused_all_the_same(void **state) {
     support_files files;
     support_files_begin(&files);
     put(&files, "a.raw", "", VOXELS - 1, false);
-    const snow_volume_options options = {.dims = {11, 9, 7},
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {11, 9, 7},
                                          .type = SNOW_TYPE_UINT8,
                                          .crop = {{0, 2}, {0, 2}, {0, 2}}};
     support_refused(&files, support_path(&files, "a.raw"), &options,

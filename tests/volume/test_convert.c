@@ -7,7 +7,8 @@
 
 static snow_volume *shared(support_place *place, snow_type type, int64_t count,
                            const void *voxels, double slope, double intercept) {
-    snow_volume_info info = {.dims = {count, 1, 1},
+    snow_volume_info info = {.size = sizeof info,
+                             .dims = {count, 1, 1},
                              .type = type,
                              .slope = slope,
                              .intercept = intercept};

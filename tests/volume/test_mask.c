@@ -7,7 +7,8 @@
 
 static snow_volume_info info_of(snow_type type, int64_t x, int64_t y,
                                 int64_t z) {
-    return (snow_volume_info){.dims = {x, y, z}, .type = type};
+    return (snow_volume_info){
+        .size = sizeof(snow_volume_info), .dims = {x, y, z}, .type = type};
 }
 
 static snow_volume *shared(support_place *place, const snow_volume_info *info,
@@ -97,16 +98,17 @@ static void what_is_known_of_the_volume_stays(void **state) {
         info.matrix[i][i] = 1;
     info.matrix[0][3] = -20;
     snow_volume *volume = shared(place, &info, v);
-    const snow_extent part = {{5, 1, 1}, {3, 0, 0}, {3, 0, 0}, {2, 1, 1}};
+    const snow_extent part = {
+        sizeof part, {5, 1, 1}, {3, 0, 0}, {3, 0, 0}, {2, 1, 1}};
     assert_int_equal(snow_volume_set_extent(volume, &part), SNOW_STATUS_OK);
     snow_volume *made =
         masked(place, volume, row(place, SNOW_TYPE_UINT8, 2, mask), NULL, 0);
     assert_true(made->info.slope == 0.5 && made->info.intercept == -3);
     assert_true(made->info.medical && made->info.matrix[0][3] == -20);
-    snow_extent now;
+    snow_extent now = {.size = sizeof now};
     snow_volume_get_extent(made, &now);
     assert_memory_equal(&now, &part, sizeof part);
-    snow_volume_statistics m;
+    snow_volume_statistics m = {.size = sizeof m};
     snow_volume_get_statistics(made, &m);
     assert_true(m.finite == 1 && m.min == -2.5 && m.max == -2.5);
     snow_volume_close(made);
@@ -332,10 +334,12 @@ static void a_box_is_masked_by_the_same_box(void **state) {
     }
     const char *a = put(place, "a.nrrd", "4 4 4", 10, v, 64);
     const char *b = put(place, "b.nrrd", "4 4 4", 0, m, 64);
-    snow_volume_options options = {
-        .crop = {{1, 4}, {0, 0}, {2, 3}}, .mask = b, .labels = "2"};
+    snow_volume_options options = {.size = sizeof options,
+                                   .crop = {{1, 4}, {0, 0}, {2, 3}},
+                                   .mask = b,
+                                   .labels = "2"};
     snow_volume *box = NULL;
-    snow_volume_info given;
+    snow_volume_info given = {.size = sizeof given};
     assert_int_equal(snow_volume_inspect(place->context, a, &options, &given),
                      SNOW_STATUS_OK);
     assert_int_equal(snow_volume_open(place->context, a, &options, &box),
@@ -356,7 +360,8 @@ static void a_box_of_another_grid_is_refused(void **state) {
     support_place *place = *state;
     static const unsigned char v[64] = {0};
     const char *a = put(place, "a.nrrd", "4 4 4", 0, v, 64);
-    snow_volume_options options = {.crop = {{0, 2}, {0, 2}, {0, 2}},
+    snow_volume_options options = {.size = sizeof options,
+                                   .crop = {{0, 2}, {0, 2}, {0, 2}},
                                    .mask =
                                        put(place, "b.nrrd", "2 4 4", 0, v, 32)};
     snow_volume *box = NULL;
@@ -379,7 +384,8 @@ static void a_mask_without_voxels_is_told(void **state) {
     support_place *place = *state;
     static const unsigned char v[64] = {5};
     const char *a = put(place, "a.nrrd", "4 4 4", 0, v, 64);
-    snow_volume_options options = {.mask = a, .labels = "1-4"};
+    snow_volume_options options = {
+        .size = sizeof options, .mask = a, .labels = "1-4"};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_open(place->context, a, &options, &volume),
                      SNOW_STATUS_OK);
@@ -393,7 +399,7 @@ static void failures_of_memory_leave_nothing(void **state) {
     support_place *place = *state;
     static const unsigned char v[64] = {5};
     const char *a = put(place, "a.nrrd", "4 4 4", 0, v, 64);
-    snow_volume_options options = {.mask = a};
+    snow_volume_options options = {.size = sizeof options, .mask = a};
     snow_volume *volume = NULL;
     for (int64_t n = 1; !volume; n++) {
         place->fail_at = place->allocations + n;

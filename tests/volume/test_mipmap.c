@@ -167,7 +167,7 @@ static snow_volume *part_of(snow_context *context, const snow_volume *whole,
 static int64_t check_part_of(snow_context *context, const snow_volume *volume,
                              const snow_volume *half, const bool axes[3],
                              const int64_t ghosts[3], int lean) {
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     int64_t stored[3];
     snow_volume *made = NULL;
     snow_downsample_buffers room = {0};
@@ -245,7 +245,8 @@ static void parts_have_the_voxels_of_the_whole_level(void **state) {
         for (int id = 0; id < parts * parts * parts; id++) {
             const int at[3] = {id % parts, id / parts % parts,
                                id / parts / parts};
-            snow_extent part = {.dims = {dims[0], dims[1], dims[2]}};
+            snow_extent part = {.size = sizeof part,
+                                .dims = {dims[0], dims[1], dims[2]}};
             bool none = false;
             for (int axis = 0; axis < 3; axis++) {
                 part.first[axis] = borders[axis][at[axis]];

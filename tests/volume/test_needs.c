@@ -21,7 +21,8 @@ static void a_range_is_that_of_the_counts(void **state) {
         bits[i] = (uint16_t)(support_random(&random) >> 40);
     snow_context *context = support_context();
     for (size_t n = 0; n < 4 * 6 * 2; n++) {
-        snow_volume_info info = {.type = types[n % 4],
+        snow_volume_info info = {.size = sizeof info,
+                                 .type = types[n % 4],
                                  .dims = {N, 1, 1},
                                  .slope = scales[n / 4 % 6][0],
                                  .intercept = scales[n / 4 % 6][1]};
@@ -71,7 +72,8 @@ static void what_is_given_is_not_looked_for(void **state) {
                                 .color_count = 2,
                                 .opacities = opacities,
                                 .opacity_count = 2};
-    snow_look given = {.colormap = "viridis",
+    snow_look given = {.size = sizeof given,
+                       .colormap = "viridis",
                        .range = SNOW_RANGE_VALUES,
                        .low = 5,
                        .high = 95,
@@ -91,9 +93,12 @@ static void what_is_given_is_not_looked_for(void **state) {
     assert_int_equal(snow_volume_open_streamed(context, path, NULL, 0, &volume),
                      SNOW_STATUS_OK);
     assert_false(reads(volume, context, given));
-    assert_false(reads(volume, context, (snow_look){.points = &points}));
+    assert_false(
+        reads(volume, context,
+              (snow_look){.size = sizeof(snow_look), .points = &points}));
     assert_false(reads(volume, context,
-                       (snow_look){.preset = "ct-bone",
+                       (snow_look){.size = sizeof(snow_look),
+                                   .preset = "ct-bone",
                                    .range = SNOW_RANGE_VALUES,
                                    .low = 0,
                                    .high = 200}));
@@ -105,7 +110,9 @@ static void what_is_given_is_not_looked_for(void **state) {
     given.colormap = "viridis";
     given.opacities = NULL;
     assert_true(reads(volume, context, given));
-    assert_true(reads(volume, context, (snow_look){.preset = "linear"}));
+    assert_true(
+        reads(volume, context,
+              (snow_look){.size = sizeof(snow_look), .preset = "linear"}));
     snow_volume_close(volume);
     snow_context_free(context);
     support_folder_remove(folder);

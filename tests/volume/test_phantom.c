@@ -78,7 +78,7 @@ static void the_papers_phantoms_use_all_of_8_bits(void **state) {
     snow_context *context = support_context();
     for (size_t i = 0; i < 4; i++) {
         snow_volume *volume = make(context, names[i], NULL, 0);
-        snow_volume_statistics measures;
+        snow_volume_statistics measures = {.size = sizeof measures};
         snow_volume_get_statistics(volume, &measures);
         assert_true(measures.min == 0 && measures.max == 255);
         snow_volume_close(volume);

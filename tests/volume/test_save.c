@@ -18,7 +18,8 @@ static snow_volume *make_volume(support_place *place, snow_type type,
     uint64_t seed = 77;
     for (size_t i = 0; i < sizeof bits; i++)
         bits[i] = (unsigned char)support_random(&seed);
-    snow_volume_info info = {.dims = {5, 3, 4}, .type = type};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {5, 3, 4}, .type = type};
     memcpy(info.matrix, matrix, sizeof info.matrix);
     info.medical = medical;
     strcpy(info.unit, "mm");
@@ -72,7 +73,8 @@ static void raw_keeps_every_type_when_told_what_it_is(void **state) {
             snow_volume *volume =
                 make_volume(place, (snow_type)type, false, oblique);
             save(place, volume, path);
-            const snow_volume_options options = {.dims = {5, 3, 4},
+            const snow_volume_options options = {.size = sizeof options,
+                                                 .dims = {5, 3, 4},
                                                  .type = (snow_type)type};
             snow_volume *back = NULL;
             assert_int_equal(
@@ -145,7 +147,8 @@ static void scaling_survives_or_is_refused(void **state) {
 static void what_nifti_1_cannot_hold_becomes_nifti_2(void **state) {
     support_place *place = *state;
     static const unsigned char voxels[40000];
-    snow_volume_info info = {.dims = {40000, 1, 1}, .type = SNOW_TYPE_UINT8};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {40000, 1, 1}, .type = SNOW_TYPE_UINT8};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
                      SNOW_STATUS_OK);
@@ -211,7 +214,8 @@ static void a_volume_of_many_buffers_is_packed_whole(void **state) {
     uint64_t seed = 9;
     for (size_t i = 0; i < count; i++)
         voxels[i] = (float)support_uniform(&seed);
-    snow_volume_info info = {.dims = {100, 100, 70}, .type = SNOW_TYPE_FLOAT32};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {100, 100, 70}, .type = SNOW_TYPE_FLOAT32};
     snow_volume *volume = NULL;
     assert_int_equal(snow_volume_wrap(place->context, &info, voxels, &volume),
                      SNOW_STATUS_OK);
@@ -228,8 +232,8 @@ static void a_volume_of_many_buffers_is_packed_whole(void **state) {
  * one succeeds; returns how many allocations that took. */
 static int64_t starve(support_place *place, const snow_volume *volume,
                       const char *path, bool saving) {
-    const snow_volume_options raw = {.dims = {5, 3, 4},
-                                     .type = SNOW_TYPE_INT16};
+    const snow_volume_options raw = {
+        .size = sizeof raw, .dims = {5, 3, 4}, .type = SNOW_TYPE_INT16};
     const snow_volume_options *options = strstr(path, ".raw") ? &raw : NULL;
     for (int64_t n = 1;; n++) {
         snow_volume *back = NULL;

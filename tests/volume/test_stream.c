@@ -194,7 +194,7 @@ static void near_pictures(pair *p, const snow_view *view,
 }
 
 static snow_view stand_at(support_place *place, size_t n) {
-    snow_view view;
+    snow_view view = {.size = sizeof view};
     assert_int_equal(snow_view_from_name(place->context, stands[n].name, &view),
                      SNOW_STATUS_OK);
     view.width = WIDTH;
@@ -393,7 +393,8 @@ static void depths_of_over_are_those_of_the_volume_in_memory(void **state) {
 
 static void opacity_by_gradients_sees_beyond_a_slabs_border(void **state) {
     static const snow_opacity_point curve[] = {{0, 0}, {40, 0.4}, {120, 1}};
-    const snow_look look = {.gradient_opacities = curve,
+    const snow_look look = {.size = sizeof look,
+                            .gradient_opacities = curve,
                             .gradient_opacity_count = COUNT(curve)};
     support_place *place = *state;
     for (size_t t = 0; t < COUNT(types); t++) {
@@ -419,6 +420,7 @@ static void a_box_a_spacing_a_mask_and_a_plane_are_heeded(void **state) {
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT16, "head.nrrd"));
     snow_volume_options options = {
+        .size = sizeof options,
         .spacing = {1, 1.25, 0.5},
         .crop = {{3, 58}, {0, 0}, {7, 99}},
         .mask = path,
@@ -474,12 +476,21 @@ static void packed_files_are_served_as_well(void **state) {
 
 static void looks_are_those_of_the_volume_in_memory(void **state) {
     static const snow_look looks[] = {
-        {0},
-        {.preset = "linear"},
-        {.range = SNOW_RANGE_PERCENTILES, .low = 1, .high = 99.5},
-        {.range = SNOW_RANGE_FULL, .colormap = "viridis"},
-        {.log = true, .range = SNOW_RANGE_PERCENTILES, .low = 30, .high = 90},
-        {.preset = "mr-brain"},
+        {.size = sizeof(snow_look)},
+        {.size = sizeof(snow_look), .preset = "linear"},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_PERCENTILES,
+         .low = 1,
+         .high = 99.5},
+        {.size = sizeof(snow_look),
+         .range = SNOW_RANGE_FULL,
+         .colormap = "viridis"},
+        {.size = sizeof(snow_look),
+         .log = true,
+         .range = SNOW_RANGE_PERCENTILES,
+         .low = 30,
+         .high = 90},
+        {.size = sizeof(snow_look), .preset = "mr-brain"},
     };
     support_place *place = *state;
     for (size_t t = 0; t < COUNT(types); t++) {
@@ -565,7 +576,8 @@ static void the_file_is_read_for_another_slice_axis_only(void **state) {
     } turns[] = {{2, true}, {3, false}, {2, false}, {4, true}, {5, false}};
     support_place *place = *state;
     const char *path = write_head(place, SNOW_TYPE_UINT8, "head.raw");
-    const snow_volume_options options = {.dims = {dims[0], dims[1], dims[2]},
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {dims[0], dims[1], dims[2]},
                                          .type = SNOW_TYPE_UINT8};
     pair p =
         open_pair(place, path, &options, slices_of(SNOW_TYPE_UINT8, 20), NULL);
@@ -728,11 +740,11 @@ static void all_else_that_looks_at_voxels_is_refused(void **state) {
     const char *path = write_head(place, SNOW_TYPE_UINT8, "head.nrrd");
     snow_volume *stream = stream_of(place, path, NULL, 0), *made = NULL;
     snow_volume *whole = support_place_open(place, path);
-    snow_volume_statistics measures;
+    snow_volume_statistics measures = {.size = sizeof measures};
     snow_transfer *transfer;
     uint64_t counts[2];
     double ratio;
-    snow_extent part;
+    snow_extent part = {.size = sizeof part};
     assert_int_equal(snow_volume_histogram(stream, 0, 1, 2, counts),
                      SNOW_STATUS_BAD_USAGE);
     assert_int_equal(snow_volume_convert(stream, SNOW_TYPE_UINT16, NULL, &made),

@@ -119,7 +119,8 @@ static void a_shared_volume_gets_its_defaults(void **state) {
     (void)state;
     snow_context *context = support_context();
     static const uint8_t voxels[24] = {0};
-    snow_volume_info info = {.dims = {4, 3, 2}, .type = SNOW_TYPE_UINT8};
+    snow_volume_info info = {
+        .size = sizeof info, .dims = {4, 3, 2}, .type = SNOW_TYPE_UINT8};
     snow_volume *volume = shared(context, &info, voxels);
     const snow_volume_info *known = snow_volume_get_info(volume);
     assert_ptr_equal(snow_volume_voxels(volume), voxels);
@@ -166,7 +167,7 @@ static void figures_are_right_for_every_type(void **state) {
         info.slope = 2;                                                \
         info.intercept = 3;                                            \
         snow_volume *volume = shared(context, &info, voxels);          \
-        snow_volume_statistics m;                                      \
+        snow_volume_statistics m = {.size = sizeof m};                 \
         snow_volume_get_statistics(volume, &m);                        \
         assert_true(m.voxels == 2018 && m.finite == 2018);             \
         assert_true(m.min == 3 && m.max == 201);                       \
@@ -185,7 +186,7 @@ static void only_finite_values_are_measured(void **state) {
     const float voxels[6] = {NAN, 2, INFINITY, -4, -INFINITY, NAN};
     snow_volume_info info = info_of(3, 2, 1, SNOW_TYPE_FLOAT32);
     snow_volume *volume = shared(context, &info, voxels);
-    snow_volume_statistics m;
+    snow_volume_statistics m = {.size = sizeof m};
     snow_volume_get_statistics(volume, &m);
     assert_true(m.voxels == 6 && m.finite == 2);
     assert_true(m.min == -4 && m.max == 2 && m.sum == -2);
@@ -200,7 +201,7 @@ static void nothing_finite_has_no_range(void **state) {
     const double voxels[2] = {NAN, NAN};
     snow_volume_info info = info_of(2, 1, 1, SNOW_TYPE_FLOAT64);
     snow_volume *volume = shared(context, &info, voxels);
-    snow_volume_statistics m;
+    snow_volume_statistics m = {.size = sizeof m};
     snow_volume_get_statistics(volume, &m);
     assert_true(m.finite == 0 && isnan(m.min) && isnan(m.max) && m.sum == 0);
     snow_volume_close(volume);
@@ -280,7 +281,8 @@ static void a_phantom_has_its_own_type(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_volume *volume = NULL;
-    const snow_volume_options options = {.type = SNOW_TYPE_UINT8};
+    const snow_volume_options options = {.size = sizeof options,
+                                         .type = SNOW_TYPE_UINT8};
     assert_int_equal(
         snow_volume_open(context, "phantom:cube", &options, &volume),
         SNOW_STATUS_BAD_USAGE);
@@ -294,8 +296,10 @@ static void a_spacing_that_makes_no_space_is_refused(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_volume *volume = NULL;
-    const snow_volume_options options = {
-        .dims = {1, 1, 1}, .type = SNOW_TYPE_UINT8, .spacing = {1, 1, 1e-320}};
+    const snow_volume_options options = {.size = sizeof options,
+                                         .dims = {1, 1, 1},
+                                         .type = SNOW_TYPE_UINT8,
+                                         .spacing = {1, 1, 1e-320}};
     assert_int_equal(
         snow_volume_open_memory(context, "a", "x", 1, &options, &volume),
         SNOW_STATUS_BAD_USAGE);

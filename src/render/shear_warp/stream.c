@@ -71,7 +71,7 @@ static snow_status encode_slab(const snow_volume *slab, void *user) {
     snow_bands_params bands;
     snow_clip clip;
     snow_extent part;
-    snow_volume_get_extent(slab, &part);
+    snow_volume_find_extent(slab, &part);
     snow_clip_make(slab, r->params->placement, &clip);
     SNOW_TRY(snow_shear_warp_bands_params(r->shear_warp, r->params, r->key,
                                           slab, &clip, &tools, &bands));
