@@ -137,7 +137,8 @@ static bool is_read_once(const char *path) {
  * file repeats them and reports its errors.  Returns false on error. */
 static bool measure(const options *asked, const char *path,
                     const snow_volume_options *data, sizes *out) {
-    sizes s = {.picture = picture_bytes(asked)};
+    sizes s = {.info = {.size = sizeof s.info},
+               .picture = picture_bytes(asked)};
     snow_context *context;
     if (is_read_once(path) ||
         snow_context_new(NULL, &context) != SNOW_STATUS_OK)

@@ -2,10 +2,10 @@
  * bar, a scale bar, a line of text. */
 #include "image/font.h"
 
-#include "base/record.h"
 #include "transfer/transfer.h"
 #include "transform/transform.h"
 
+#include <snowglass/extend.h>
 #include <snowglass/overlay.h>
 
 #include <math.h>

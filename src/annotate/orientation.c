@@ -6,9 +6,9 @@
  * towards the patient's left is labelled L. */
 #include "transform/transform.h"
 
-#include "base/record.h"
 #include "image/font.h"
 
+#include <snowglass/extend.h>
 #include <snowglass/overlay.h>
 
 #include <math.h>

@@ -180,8 +180,6 @@ static snow_status measure_similarity(const snow_image *a, const snow_image *b,
     return SNOW_STATUS_OK;
 }
 
-SNOW_RECORD_OF_ZEROS(snow_image_difference);
-
 snow_status snow_image_compare(const snow_image *a, const snow_image *b,
                                snow_image_difference *out) {
     if (a->width != b->width || a->height != b->height)

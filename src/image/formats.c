@@ -165,8 +165,6 @@ static snow_status name_file(snow_context *context, snow_status status,
     return status;
 }
 
-SNOW_RECORD_OF_ZEROS(snow_image_options);
-
 /* Refusals come first, before there is a file.  Then the writer leaves a
  * complete file or none. */
 snow_status snow_image_save(const snow_image *image, const char *path,

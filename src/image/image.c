@@ -6,7 +6,12 @@
  * not depend on the machine. */
 #include "image/image.h"
 
+#include "base/record.h"
+
 #include <string.h>
+
+SNOW_RECORD_OF_ZEROS(snow_image_options);
+SNOW_RECORD_OF_ZEROS(snow_image_difference);
 
 snow_status snow_image_make(snow_context *context, int width, int height,
                             int channels, snow_image **out) {
