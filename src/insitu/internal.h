@@ -1,6 +1,12 @@
-/* insitu/internal.h - the inside of snowglass/insitu.h, which three files
- * share: insitu.c is told things, data.c takes voxels, draw.c makes pictures of
- * them. */
+/* insitu/internal.h - the inside of snowglass/insitu.h, which these files
+ * share:
+ *
+ *   insitu.c  view and settings          grid.c    the grid and its bricks
+ *   look.c    the look                   place.c   bricks by their positions
+ *   data.c    takes voxels, by way of    agree.c   what all ranks know
+ *                                        layout.c  who draws what
+ *   draw.c    makes pictures of them     limits.c  with less and less work
+ *   output.c  and writes them            enlarge.c at the size asked for */
 #ifndef SNOW_INSITU_INTERNAL_H
 #define SNOW_INSITU_INTERNAL_H
 
@@ -119,9 +125,8 @@ struct snow_insitu {
 snow_status snow_insitu_reserve(snow_insitu *insitu, void *block_pointer,
                                 size_t *room, size_t keep, size_t bytes);
 
-/* For setters: the first failure is the one that is passed on; `refuse` is one
- * of SNOW_STATUS_BAD_USAGE with that message. */
-snow_status snow_insitu_answer(snow_insitu *insitu, snow_status status);
+/* For setters, beside snow_insitu_set_error: SNOW_STATUS_BAD_USAGE with that
+ * message. */
 snow_status snow_insitu_refuse(snow_insitu *insitu, const char *format, ...)
     SNOW_PRINTF(2, 3);
 
@@ -145,12 +150,8 @@ void snow_insitu_forget(snow_insitu *insitu);
 /* The view of the picture: as told, or the default one. */
 snow_view snow_insitu_view(const snow_insitu *insitu);
 
-/* The path of a step's picture; false where it is too long. */
-bool snow_insitu_path(const snow_insitu *insitu, int64_t step, char *out,
-                      size_t room);
-
 /* View and settings of pictures of the voxels last taken, lowered for limits
- * (data.c). */
+ * (limits.c). */
 void snow_insitu_lowered(const snow_insitu *insitu, snow_view *view,
                          snow_settings *settings);
 
@@ -159,7 +160,62 @@ void snow_insitu_lowered(const snow_insitu *insitu, snow_view *view,
 snow_status snow_insitu_take(snow_insitu *insitu);
 
 /* Collective: refuses a view, settings or limits that differ from rank to rank
- * (data.c). */
+ * (agree.c). */
 snow_status snow_insitu_check(snow_insitu *insitu);
+
+/* --- agree.c, layout.c, data.c ---
+
+ * What ranks tell each other before voxels are taken; reduced to the least. */
+enum {
+    SNOW_FACT_TYPE,       /* of the voxels; the greatest number where none */
+    SNOW_FACT_TYPE_MOST,  /* minus the type; 0 where none */
+    SNOW_FACT_PRINT,      /* of all that must be the same on all ranks */
+    SNOW_FACT_PRINT_MOST, /* minus that */
+    SNOW_FACT_UNCHANGED,  /* 1: what was planned still holds */
+    SNOW_FACT_UNITED,     /* 1: the bricks are one box together, or none */
+    SNOW_FACT_HALOS,      /* 1: halos are as wide as the layers */
+    SNOW_FACT_BOXES,      /* 1: every rank's bricks united are known */
+    SNOW_INSITU_FACTS
+};
+/* Collective.  What is found here is the same everywhere, failures too. */
+snow_status snow_insitu_share_facts(snow_insitu *insitu, const snow_view *view,
+                                    const int64_t layers[3], bool united,
+                                    int64_t facts[SNOW_INSITU_FACTS]);
+
+/* Collective.  Looks whether the plan still holds, and makes a new one where it
+ * does not. */
+snow_status snow_insitu_lay_out(snow_insitu *insitu);
+
+/* A box with so many layers more on all sides, as far as the grid goes. */
+snow_box snow_insitu_grow_box(const snow_box *box, const int64_t low[3],
+                              const int64_t high[3], const int64_t dims[3]);
+
+bool snow_insitu_box_holds(const snow_box *outer, const snow_box *inner);
+
+/* The record of a grid without sizes (grid.c). */
+snow_volume_info snow_insitu_empty_grid(void);
+
+/* --- limits.c ---
+
+ * Lowers or raises the quality by the seconds of the slowest rank, the same on
+ * all. */
+void snow_insitu_steer(snow_insitu *insitu, double seconds);
+
+/* The picture of this step is left out. */
+void snow_insitu_leave_out(snow_insitu *insitu);
+
+/* The limit of bytes holds from the first to the second; the context's own
+ * limit holds as well. Where it did not suffice there is no error, but a
+ * picture that is left out. */
+void snow_insitu_begin_limit(snow_insitu *insitu);
+snow_status snow_insitu_end_limit(snow_insitu *insitu, snow_status status);
+
+/* Replaces a picture by one of another size (enlarge.c). */
+snow_status snow_insitu_enlarge(snow_insitu *insitu, snow_image **image,
+                                int width, int height);
+
+/* Collective.  Rank 0 writes its picture, all hear how it went (output.c). */
+snow_status snow_insitu_write(snow_insitu *insitu, int64_t step,
+                              const snow_image *image);
 
 #endif

@@ -28,7 +28,7 @@ static snow_status keep_points(snow_insitu *insitu,
         return SNOW_STATUS_OK;
     *out = snow_context_allocate(insitu->context, bytes);
     if (!*out)
-        return snow_insitu_answer(insitu, SNOW_STATUS_NO_MEMORY);
+        return snow_insitu_set_error(insitu, SNOW_STATUS_NO_MEMORY);
     memcpy(*out, points, bytes);
     return SNOW_STATUS_OK;
 }
@@ -42,7 +42,7 @@ static snow_status keep_form(snow_insitu *insitu, const snow_points *points,
     char *block = snow_context_allocate(insitu->context,
                                         colors + opacities + gradients + 1);
     if (!block)
-        return snow_insitu_answer(insitu, SNOW_STATUS_NO_MEMORY);
+        return snow_insitu_set_error(insitu, SNOW_STATUS_NO_MEMORY);
     own->point_block = block;
     own->points = *points;
     own->points.colors = (void *)block;
@@ -71,9 +71,9 @@ static snow_status keep_look(snow_insitu *insitu, const snow_look *look,
 snow_status snow_insitu_set_look(snow_insitu *insitu, const snow_look *given) {
     snow_own_look *own = &insitu->look, next = {.points = {0}};
     const snow_look *look = &next.look;
-    INSITU_TRY(
-        snow_insitu_answer(insitu, SNOW_RECORD_READ(insitu->context, snow_look,
-                                                    given, &next.look)));
+    INSITU_TRY(snow_insitu_set_error(
+        insitu,
+        SNOW_RECORD_READ(insitu->context, snow_look, given, &next.look)));
     if ((look->preset && snow_preset_from_name(look->preset) < 0) ||
         (look->colormap && snow_colormap_from_name(look->colormap) < 0))
         return snow_insitu_refuse(

@@ -1,0 +1,128 @@
+/* insitu/agree.c - what all ranks know of one another: that they were given the
+ * same view and settings, and what their voxels are, from one reduction of a
+ * few numbers. */
+#include "insitu/internal.h"
+
+#include <string.h>
+
+/* FNV-1a over bytes. */
+static uint64_t add_print(uint64_t print, const void *bytes, size_t count) {
+    const unsigned char *at = bytes;
+    for (size_t i = 0; i < count; i++)
+        print = (print ^ at[i]) * UINT64_C(0x100000001b3);
+    return print;
+}
+
+/* Points that place the camera, where there are any. */
+static uint64_t add_points(uint64_t print, const snow_view *view) {
+    const bool has[] = {view->has_position, view->has_target, view->has_up};
+    const double *points[] = {view->position, view->target, view->upward};
+    for (int n = 0; n < 3; n++)
+        if (has[n])
+            print = add_print(add_print(print, &n, sizeof n), points[n],
+                              sizeof view->position);
+    return print;
+}
+
+/* A print of what must be the same everywhere, as numbers, since records have
+ * gaps between their fields. */
+static int64_t print_of(const snow_insitu *insitu, const snow_view *view) {
+    const snow_settings *s = &insitu->settings;
+    const double reals[] = {
+        view->back[0],     view->back[1],        view->back[2], view->up[0],
+        view->up[1],       view->up[2],          view->azimuth, view->elevation,
+        view->roll,        view->zoom,           view->fov,     s->threshold,
+        s->opacity_length, insitu->limit_seconds};
+    const int64_t wholes[] = {view->width,
+                              view->height,
+                              (int64_t)s->method,
+                              (int64_t)s->kernel,
+                              s->footprint,
+                              (int64_t)s->quality,
+                              s->deterministic,
+                              (int64_t)insitu->limit_bytes,
+                              (int64_t)insitu->ghosts,
+                              (int64_t)insitu->balance,
+                              insitu->pattern != NULL,
+                              insitu->transfer != NULL};
+    uint64_t print = UINT64_C(0xcbf29ce484222325);
+    print = add_print(print, reals, sizeof reals);
+    print = add_print(print, wholes, sizeof wholes);
+    print = add_points(print, view);
+    print = add_print(print, insitu->whole.dims, sizeof insitu->whole.dims);
+    print = add_print(print, insitu->whole.matrix, sizeof insitu->whole.matrix);
+    return (int64_t)(print >> 2);
+}
+
+static snow_status check_prints(snow_insitu *insitu, int64_t least,
+                                int64_t most) {
+    if (least == most)
+        return SNOW_STATUS_OK;
+    return snow_context_fail(
+        insitu->context, SNOW_STATUS_BAD_USAGE,
+        "ranks were told different grids, views, settings or "
+        "limits; call the setters alike on all of them");
+}
+
+snow_status snow_insitu_check(snow_insitu *insitu) {
+    snow_view view = snow_insitu_view(insitu);
+    int64_t print = print_of(insitu, &view), prints[2] = {print, -print};
+    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, prints, 2, SNOW_MIN));
+    return check_prints(insitu, prints[0], -prints[1]);
+}
+
+/* Whether each brick's halo has all layers that lie within the grid. */
+static bool snow_insitu_halos_suffice(const snow_insitu *insitu,
+                                      const int64_t layers[3]) {
+    for (int id = 0; id < insitu->brick_count; id++) {
+        const snow_insitu_brick *brick = &insitu->bricks[id];
+        if (!snow_box_voxels(&brick->box))
+            continue;
+        snow_box has = snow_insitu_grow_box(
+            &brick->box, brick->halo.low, brick->halo.high, insitu->whole.dims);
+        snow_box needs = snow_insitu_grow_box(&brick->box, layers, layers,
+                                              insitu->whole.dims);
+        if (!snow_insitu_box_holds(&has, &needs))
+            return false;
+    }
+    return true;
+}
+
+static snow_status check_facts(snow_insitu *insitu, const int64_t *facts) {
+    INSITU_TRY(check_prints(insitu, facts[SNOW_FACT_PRINT],
+                            -facts[SNOW_FACT_PRINT_MOST]));
+    if (facts[SNOW_FACT_TYPE] == INT64_MAX)
+        return snow_context_fail(
+            insitu->context, SNOW_STATUS_BAD_USAGE,
+            "no rank has a brick; call snow_insitu_set_brick");
+    if (facts[SNOW_FACT_TYPE] != -facts[SNOW_FACT_TYPE_MOST])
+        return snow_context_fail(
+            insitu->context, SNOW_STATUS_BAD_USAGE,
+            "voxels are %s on one rank and %s on another; give "
+            "all the same type",
+            snow_type_name((snow_type)facts[SNOW_FACT_TYPE]),
+            snow_type_name((snow_type)-facts[SNOW_FACT_TYPE_MOST]));
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_insitu_share_facts(snow_insitu *insitu, const snow_view *view,
+                                    const int64_t layers[3], bool united,
+                                    int64_t facts[SNOW_INSITU_FACTS]) {
+    bool same = insitu->layout.planned && !insitu->changed &&
+                memcmp(layers, insitu->layout.layers, 3 * sizeof *layers) == 0;
+    insitu->boxes_known &= !insitu->changed;
+    int64_t type = (int64_t)insitu->type;
+    facts[SNOW_FACT_TYPE] = type ? type : INT64_MAX;
+    facts[SNOW_FACT_TYPE_MOST] = -type;
+    facts[SNOW_FACT_PRINT] = print_of(insitu, view);
+    facts[SNOW_FACT_PRINT_MOST] = -facts[SNOW_FACT_PRINT];
+    facts[SNOW_FACT_UNCHANGED] = same;
+    facts[SNOW_FACT_UNITED] = united;
+    facts[SNOW_FACT_HALOS] = snow_insitu_halos_suffice(insitu, layers);
+    facts[SNOW_FACT_BOXES] = insitu->boxes_known;
+    INSITU_TRY(snow_comm_reduce_ints(insitu->comm, facts, SNOW_INSITU_FACTS,
+                                     SNOW_MIN));
+    INSITU_TRY(check_facts(insitu, facts));
+    insitu->type = (snow_type)facts[SNOW_FACT_TYPE];
+    return SNOW_STATUS_OK;
+}
