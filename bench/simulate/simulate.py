@@ -28,7 +28,7 @@ SOURCES = ["bench/combine/*.c", "bench/hosts.c", "bench/line.c", "bench/words.c"
            "src/combine/exchange.c", "src/combine/gather.c",
            "src/combine/pixels.c", "src/combine/rounds.c", "src/simd/isa.c",
            "src/comm/*.c", "src/base/*.c", "src/io/*.c", "src/image/*.c",
-           "src/mpi/comm_mpi.c"]
+           "src/mpi/comm_mpi.c", "src/mpi/messages.c"]
 ABSENT = [f"-DSNOW_HAVE_{name}=0" for name in ("EXR", "TIFF", "WEBP")]
 
 # --- networks ----------------------------------------------------------------

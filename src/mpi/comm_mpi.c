@@ -1,360 +1,8 @@
-/* mpi/comm_mpi.c - a communicator's record of functions, implemented with MPI.
+/* mpi/comm_mpi.c - makes communicators of MPI's groups.
  *
- * MPI counts in int. A message of more bytes than SNOW_MPI_CHUNK is one element
- * of a datatype made for it, of whole chunks and a rest; its signature is still
- * that number of bytes, so that the receiver's type, made for its buffer,
- * matches it.
- *
- * Requests are stored in a table; a message's handle is its index there, from
- * 1. This file uses public headers only, and none of the names that SimGrid's
- * mpi.h replaces by macros (malloc, free, sleep, ...). */
-#include <snowglass/mpi.h>
-
-#ifndef SMPI_H /* tests would take simulated time */
-#include "mpi/watchdog.h"
-#endif
-
-#include <stdint.h>
-#include <string.h>
-
-#ifndef SNOW_MPI_CHUNK
-#define SNOW_MPI_CHUNK ((size_t)1 << 30)
-#endif
-
-typedef struct mpi_slot {
-    MPI_Request request; /* MPI_REQUEST_NULL: the slot is spare */
-    bool receives, large;
-    int peer;
-} mpi_slot;
-
-/* The side of one rank. */
-typedef struct mpi_side {
-    snow_context *context;
-    MPI_Comm group; /* a duplicate of the caller's */
-    bool failed;    /* MPI's state is unknown: it is not used any more */
-    mpi_slot *slots;
-    int slot_count;
-    /* Of the last wait: its requests. */
-    MPI_Request *requests;
-    int *places;  /* indices of the requests among the messages */
-    int *peers;   /* of the requests */
-    int capacity; /* of the three */
-#ifndef SMPI_H
-    snow_idle_fn *meanwhile; /* other work done in waits, or NULL */
-    void *meanwhile_user;
-    mpi_watchdog *watchdog;
-#endif
-} mpi_side;
-
-/* --- failures --------------------------------------------------------------
- */
-
-/* Reports the MPI error of a call that concerns `peer` (-1: no particular
- * rank). */
-static snow_status fail_mpi(snow_context *context, int error, const char *what,
-                            int peer) {
-    char text[MPI_MAX_ERROR_STRING + 1] = "";
-    int length = 0, kind = MPI_ERR_OTHER;
-    MPI_Error_class(error, &kind);
-    MPI_Error_string(error, text, &length);
-    for (char *at = text; *at; at++)
-        if (*at == '\n')
-            *at = ' ';
-    if (kind == MPI_ERR_TRUNCATE)
-        return snow_context_fail(context, SNOW_STATUS_FAILED,
-                                 "a message from rank %d exceeds its buffer: "
-                                 "all ranks must make the same calls",
-                                 peer);
-    if (peer < 0)
-        return snow_context_fail(context, SNOW_STATUS_FAILED,
-                                 "MPI cannot %s: %s", what, text);
-    return snow_context_fail(
-        context, SNOW_STATUS_FAILED,
-        "MPI cannot %s rank %d: %s; check whether all processes are running",
-        what, peer, text);
-}
-
-static snow_status fail_side(mpi_side *side, int error, const char *what,
-                             int peer) {
-    side->failed = true;
-    return fail_mpi(side->context, error, what, peer);
-}
-
-/* --- memory ----------------------------------------------------------------
- */
-
-/* Replaces a block by a larger one; the first `keep` bytes are copied. */
-static snow_status grow_block(mpi_side *side, void *block_pointer, size_t keep,
-                              size_t bytes) {
-    void *old;
-    void *block = snow_context_allocate(side->context, bytes);
-    if (!block)
-        return SNOW_STATUS_NO_MEMORY;
-    memcpy(&old, block_pointer, sizeof old);
-    if (keep)
-        memcpy(block, old, keep);
-    snow_context_release(side->context, old);
-    memcpy(block_pointer, &block, sizeof block);
-    return SNOW_STATUS_OK;
-}
-
-static snow_status spare_slot(mpi_side *side, int *out) {
-    for (int i = 0; i < side->slot_count; i++)
-        if (side->slots[i].request == MPI_REQUEST_NULL) {
-            *out = i;
-            return SNOW_STATUS_OK;
-        }
-    int count = side->slot_count * 2 + 8;
-    snow_status status = grow_block(side, &side->slots,
-                                    (size_t)side->slot_count * sizeof(mpi_slot),
-                                    (size_t)count * sizeof(mpi_slot));
-    if (status != SNOW_STATUS_OK)
-        return status;
-    for (int i = side->slot_count; i < count; i++)
-        side->slots[i].request = MPI_REQUEST_NULL;
-    *out = side->slot_count;
-    side->slot_count = count;
-    return SNOW_STATUS_OK;
-}
-
-/* Reserves memory for the requests of a wait. */
-static snow_status make_room(mpi_side *side, int count) {
-    if (count <= side->capacity)
-        return SNOW_STATUS_OK;
-    size_t capacity = (size_t)count * 2;
-    snow_status status =
-        grow_block(side, &side->requests, 0, capacity * sizeof(MPI_Request));
-    if (status == SNOW_STATUS_OK)
-        status = grow_block(side, &side->places, 0, capacity * sizeof(int));
-    if (status == SNOW_STATUS_OK)
-        status = grow_block(side, &side->peers, 0, capacity * sizeof(int));
-    if (status == SNOW_STATUS_OK)
-        side->capacity = (int)capacity;
-    return status;
-}
-
-/* --- messages --------------------------------------------------------------
- */
-
-/* A type of `bytes` bytes, more than a chunk; the caller frees it. */
-static int large_type(size_t bytes, MPI_Datatype *out) {
-    MPI_Datatype chunk, parts[2];
-    size_t chunks = bytes / SNOW_MPI_CHUNK, rest = bytes % SNOW_MPI_CHUNK;
-    int lengths[2] = {(int)chunks, (int)rest};
-    MPI_Aint places[2] = {0, (MPI_Aint)(bytes - rest)};
-    int error = MPI_Type_contiguous((int)SNOW_MPI_CHUNK, MPI_BYTE, &chunk);
-    if (error != MPI_SUCCESS)
-        return error;
-    parts[0] = chunk;
-    parts[1] = MPI_BYTE;
-    error = MPI_Type_create_struct(rest ? 2 : 1, lengths, places, parts, out);
-    MPI_Type_free(&chunk);
-    if (error == MPI_SUCCESS)
-        error = MPI_Type_commit(out);
-    return error;
-}
-
-static int start(mpi_side *side, mpi_slot *slot, void *bytes, int count,
-                 MPI_Datatype type, int tag) {
-    return slot->receives ? MPI_Irecv(bytes, count, type, slot->peer, tag,
-                                      side->group, &slot->request)
-                          : MPI_Isend(bytes, count, type, slot->peer, tag,
-                                      side->group, &slot->request);
-}
-
-/* Starts a send or a receive. */
-static snow_status begin(mpi_side *side, bool receives, void *bytes,
-                         size_t count, int peer, int tag,
-                         snow_message *message) {
-    int place, error;
-    snow_status status = spare_slot(side, &place);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    mpi_slot *slot = &side->slots[place];
-    slot->receives = receives;
-    slot->peer = peer;
-    slot->large = count > SNOW_MPI_CHUNK;
-    if (!slot->large) {
-        error = start(side, slot, bytes, (int)count, MPI_BYTE, tag);
-    } else {
-        MPI_Datatype type;
-        error = large_type(count, &type);
-        if (error == MPI_SUCCESS) {
-            error = start(side, slot, bytes, 1, type, tag);
-            MPI_Type_free(&type); /* waits until it is not needed */
-        }
-    }
-    if (error != MPI_SUCCESS) {
-        slot->request = MPI_REQUEST_NULL;
-        return fail_side(side, error, receives ? "receive from" : "send to",
-                         peer);
-    }
-    message->handle = (void *)(uintptr_t)(place + 1);
-    message->bytes = receives ? 0 : count;
-    return SNOW_STATUS_OK;
-}
-
-static snow_status send_bytes(void *self, const void *bytes, size_t count,
-                              int to, int tag, snow_message *message) {
-    void *unchanged; /* old MPI headers have no const here */
-    memcpy(&unchanged, &bytes, sizeof unchanged);
-    return begin(self, false, unchanged, count, to, tag, message);
-}
-
-static snow_status receive_bytes(void *self, void *bytes, size_t capacity,
-                                 int from, int tag, snow_message *message) {
-    return begin(self, true, bytes, capacity, from, tag, message);
-}
-
-static mpi_slot *slot_of(const mpi_side *side, const snow_message *message) {
-    return &side->slots[(uintptr_t)message->handle - 1];
-}
-
-/* Collects the requests of the messages in flight; returns their number. */
-static int collect_requests(mpi_side *side, const snow_message *messages,
-                            int count) {
-    int asked = 0;
-    for (int i = 0; i < count; i++)
-        if (messages[i].handle) {
-            const mpi_slot *slot = slot_of(side, &messages[i]);
-            side->requests[asked] = slot->request;
-            side->peers[asked] = slot->peer;
-            side->places[asked++] = i;
-        }
-    return asked;
-}
-
-/* The bytes received. Only with a large type they may exceed an int, and only
- * there they are counted as basic elements: SimGrid does not support that. */
-static size_t count_bytes(const mpi_slot *slot, const MPI_Status *status) {
-    MPI_Status copy = *status; /* SimGrid needs it without const */
-    MPI_Count many = 0;
-    int some = 0;
-    if (slot->large)
-        MPI_Get_elements_x(&copy, MPI_BYTE, &many);
-    else
-        MPI_Get_count(&copy, MPI_BYTE, &some);
-    return (size_t)(slot->large ? many : some);
-}
-
-/* Completes a message: its slot is spare, its length known. */
-static void complete_message(mpi_side *side, snow_message *message,
-                             const MPI_Status *status) {
-    mpi_slot *slot = slot_of(side, message);
-    if (slot->receives)
-        message->bytes = count_bytes(slot, status);
-    slot->request = MPI_REQUEST_NULL;
-    message->handle = NULL;
-}
-
-/* Waits for one of the first `asked` requests, and sets *found if MPI reports
- * it; *error is its error. Errors: of the watchdog. */
-static snow_status await(mpi_side *side, int asked, int *found,
-                         MPI_Status *done, int *error) {
-    *found = -1;
-#ifdef SMPI_H
-    *error = MPI_Waitany(asked, side->requests, found, done);
-    return SNOW_STATUS_OK;
-#else
-    bool busy = side->meanwhile != NULL; /* while there is work */
-    snow_status status = snow_watchdog_begin(side->watchdog);
-    while (status == SNOW_STATUS_OK) {
-        int there = 0;
-        *error = MPI_Testany(asked, side->requests, found, &there, done);
-        if (*error != MPI_SUCCESS || there)
-            return SNOW_STATUS_OK;
-        busy = busy && side->meanwhile(side->meanwhile_user);
-        status = snow_watchdog_turn(side->watchdog, side->peers, asked);
-    }
-    side->failed = true;
-    return status;
-#endif
-}
-
-static snow_status wait_any(void *self, snow_message *messages, int count,
-                            int *which) {
-    mpi_side *side = self;
-    snow_status status = make_room(side, count);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    int asked = collect_requests(side, messages, count), found, error;
-    if (!asked) {
-        *which = -1;
-        return SNOW_STATUS_OK;
-    }
-    MPI_Status done;
-    status = await(side, asked, &found, &done, &error);
-    if (status != SNOW_STATUS_OK)
-        return status;
-    if (error != MPI_SUCCESS) {
-        bool known = found >= 0 && found < asked;
-        return fail_side(
-            side, error, known ? "exchange messages with" : "exchange messages",
-            known ? slot_of(side, &messages[side->places[found]])->peer : -1);
-    }
-    *which = side->places[found];
-    complete_message(side, &messages[*which], &done);
-    return SNOW_STATUS_OK;
-}
-
-/* One after another: all must complete anyway, and MPI then reports which
- * failed. */
-static snow_status wait_all(void *self, snow_message *messages, int count) {
-    mpi_side *side = self;
-    snow_status status = make_room(side, 1);
-    for (int i = 0; i < count && status == SNOW_STATUS_OK; i++) {
-        if (!messages[i].handle)
-            continue;
-        MPI_Status done;
-        int found, error;
-        collect_requests(side, &messages[i], 1);
-        status = await(side, 1, &found, &done, &error);
-        if (status != SNOW_STATUS_OK)
-            return status;
-        if (error != MPI_SUCCESS)
-            return fail_side(side, error, "exchange messages with",
-                             side->peers[0]);
-        complete_message(side, &messages[i], &done);
-    }
-    return status;
-}
-
-static double seconds(void *self) {
-    (void)self;
-    return MPI_Wtime();
-}
-
-#ifndef SMPI_H
-static void occupy(void *self, snow_idle_fn *meanwhile, void *user) {
-    mpi_side *side = self;
-    side->meanwhile = meanwhile;
-    side->meanwhile_user = user;
-}
-
-/* Any test of a message lets all messages progress. */
-static void progress(void *self) {
-    mpi_side *side = self;
-    int there = 0;
-    MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, side->group, &there,
-               MPI_STATUS_IGNORE);
-}
-#endif
-
-#ifdef SMPI_H
-/* In a simulation work takes the given time. */
-static void work(void *self, double length) {
-    (void)self;
-    smpi_execute(length);
-}
-#else
-static void limit_waits(void *self, double length) {
-    mpi_side *side = self;
-    snow_watchdog_limit(side->watchdog, length);
-}
-#endif
-
-/* --- the communicator ------------------------------------------------------
- */
+ * The files of this folder use public headers only, and none of the names that
+ * SimGrid's mpi.h replaces by macros (malloc, free, sleep, ...). */
+#include "mpi/messages.h"
 
 /* A duplicate separates our messages from the caller's. In SimGrid that takes
  * time quadratic in the number of ranks, and simulations send no other
@@ -368,46 +16,12 @@ static int take_group(MPI_Comm group, MPI_Comm *ours) {
 #endif
 }
 
-static void drop_group(MPI_Comm *ours) {
+void snow_mpi_drop_group(MPI_Comm *ours) {
 #ifdef SMPI_H
     (void)ours;
 #else
     MPI_Comm_free(ours);
 #endif
-}
-
-/* Cancels messages that were not waited for: nothing may arrive in a buffer
- * that the caller is about to free. */
-static void give_up(mpi_slot *slot) {
-    if (slot->request == MPI_REQUEST_NULL)
-        return;
-    if (!slot->receives) {
-        MPI_Request_free(&slot->request);
-        return;
-    }
-    MPI_Cancel(&slot->request);
-    MPI_Wait(&slot->request, MPI_STATUS_IGNORE);
-}
-
-/* A group that has failed is left alone: freeing it is collective, peers may
- * have ended, and the state of its requests is unknown. */
-static void end(void *self) {
-    mpi_side *side = self;
-    int finalized = 0;
-    MPI_Finalized(&finalized);
-    if (!finalized && !side->failed) {
-        for (int i = 0; i < side->slot_count; i++)
-            give_up(&side->slots[i]);
-        drop_group(&side->group);
-    }
-#ifndef SMPI_H
-    snow_watchdog_free(side->watchdog, !finalized && !side->failed);
-#endif
-    snow_context_release(side->context, side->slots);
-    snow_context_release(side->context, side->requests);
-    snow_context_release(side->context, side->places);
-    snow_context_release(side->context, side->peers);
-    snow_context_release(side->context, side);
 }
 
 static snow_status check_group(snow_context *context, MPI_Comm group) {
@@ -424,7 +38,7 @@ static snow_status check_group(snow_context *context, MPI_Comm group) {
                                  "communicator of the rendering ranks");
     int error = MPI_Comm_test_inter(group, &between);
     if (error != MPI_SUCCESS)
-        return fail_mpi(context, error, "query the group", -1);
+        return snow_mpi_fail(context, error, "query the group", -1);
     if (between)
         return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
                                  "an intercommunicator is not a single group: "
@@ -445,20 +59,6 @@ static void remark_threads(snow_context *context) {
 /* This rank's objects over `ours`. */
 static snow_status make_communicator(snow_context *context, MPI_Comm ours,
                                      mpi_side **out_side, snow_comm **out) {
-    static const snow_comm_ops ops = {.size = sizeof ops,
-                                      .send = send_bytes,
-                                      .receive = receive_bytes,
-                                      .wait_any = wait_any,
-                                      .wait_all = wait_all,
-                                      .seconds = seconds,
-#ifdef SMPI_H
-                                      .work = work,
-#else
-                                      .timeout = limit_waits,
-                                      .occupy = occupy,
-                                      .progress = progress,
-#endif
-                                      .end = end};
     int rank = 0, ranks = 1;
     MPI_Comm_rank(ours, &rank);
     MPI_Comm_size(ours, &ranks);
@@ -466,7 +66,8 @@ static snow_status make_communicator(snow_context *context, MPI_Comm ours,
     if (!side)
         return SNOW_STATUS_NO_MEMORY;
     *side = (mpi_side){.context = context, .group = ours};
-    snow_status status = snow_comm_new(context, &ops, side, rank, ranks, out);
+    snow_status status =
+        snow_comm_new(context, &snow_mpi_ops, side, rank, ranks, out);
     if (status != SNOW_STATUS_OK)
         snow_context_release(context, side);
     else
@@ -480,7 +81,7 @@ static snow_status agree(snow_context *context, MPI_Comm ours,
     int worst = (int)status;
     int error = MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, ours);
     if (error != MPI_SUCCESS)
-        return fail_mpi(context, error, "agree on a new communicator", -1);
+        return snow_mpi_fail(context, error, "agree on a new communicator", -1);
     if (status == SNOW_STATUS_OK && worst != SNOW_STATUS_OK)
         return snow_context_fail(context, (snow_status)worst,
                                  "another rank: %s",
@@ -498,7 +99,7 @@ snow_status snow_comm_new_mpi(snow_context *context, MPI_Comm group,
         return status;
     int error = take_group(group, &ours);
     if (error != MPI_SUCCESS)
-        return fail_mpi(context, error, "duplicate the group", -1);
+        return snow_mpi_fail(context, error, "duplicate the group", -1);
     MPI_Comm_set_errhandler(ours, MPI_ERRORS_RETURN);
     status =
         agree(context, ours, make_communicator(context, ours, &side, &comm));
@@ -511,7 +112,7 @@ snow_status snow_comm_new_mpi(snow_context *context, MPI_Comm group,
         if (comm)
             snow_comm_free(comm); /* frees the duplicate too */
         else
-            drop_group(&ours);
+            snow_mpi_drop_group(&ours);
         return status;
     }
     remark_threads(context);

@@ -1,0 +1,47 @@
+/* mpi/messages.h - the messages of one rank, by MPI's requests. */
+#ifndef SNOW_MPI_MESSAGES_H
+#define SNOW_MPI_MESSAGES_H
+
+#include <snowglass/mpi.h>
+
+#ifndef SMPI_H /* tests would take simulated time */
+#include "mpi/watchdog.h"
+#endif
+
+typedef struct mpi_slot {
+    MPI_Request request; /* MPI_REQUEST_NULL: the slot is spare */
+    bool receives, large;
+    int peer;
+} mpi_slot;
+
+/* The side of one rank. */
+typedef struct mpi_side {
+    snow_context *context;
+    MPI_Comm group; /* a duplicate of the caller's */
+    bool failed;    /* MPI's state is unknown: it is not used any more */
+    mpi_slot *slots;
+    int slot_count;
+    /* Of the last wait: its requests. */
+    MPI_Request *requests;
+    int *places;  /* indices of the requests among the messages */
+    int *peers;   /* of the requests */
+    int capacity; /* of the three */
+#ifndef SMPI_H
+    snow_idle_fn *meanwhile; /* other work done in waits, or NULL */
+    void *meanwhile_user;
+    mpi_watchdog *watchdog;
+#endif
+} mpi_side;
+
+/* What a communicator does by MPI. */
+extern const snow_comm_ops snow_mpi_ops;
+
+/* Frees the duplicate of the caller's group (comm_mpi.c). */
+void snow_mpi_drop_group(MPI_Comm *ours);
+
+/* Reports the MPI error of a call that concerns `peer` (-1: no particular
+ * rank). */
+snow_status snow_mpi_fail(snow_context *context, int error, const char *what,
+                          int peer);
+
+#endif
