@@ -83,6 +83,7 @@ static void finish(frame_rank *s) {
 /* What the library says of the last picture. */
 static void take_stats(frame_rank *s, bool first) {
     const snow_stats *stats = snow_frame_stats(s->frame);
+    const snow_ranks_stats *shared = snow_frame_ranks_stats(s->frame);
     double *seconds = s->mine.seconds;
     snow_extent part = {.size = sizeof part};
     snow_volume_get_extent(s->volume, &part);
@@ -90,24 +91,25 @@ static void take_stats(frame_rank *s, bool first) {
         seconds[FRAME_ENCODE] = stats->seconds_classify + stats->seconds_shade +
                                 stats->seconds_encode;
     seconds[FRAME_SPLAT] = stats->seconds_splat + stats->seconds_composite;
-    seconds[FRAME_EXCHANGE] = stats->seconds_combine;
+    seconds[FRAME_EXCHANGE] = shared->seconds_combine;
     seconds[FRAME_WARP] = stats->seconds_warp;
-    seconds[FRAME_GATHER] = stats->seconds_gather;
+    seconds[FRAME_GATHER] = shared->seconds_gather;
     if (first)
-        s->mine.first_local = stats->cpu_splat;
+        s->mine.first_local = shared->cpu_splat;
     else
-        seconds[FRAME_ENCODE_CPU] = s->mine.first_local > stats->cpu_splat
-                                        ? s->mine.first_local - stats->cpu_splat
-                                        : 0;
-    seconds[FRAME_SPLAT_CPU] = stats->cpu_splat;
-    seconds[FRAME_EXCHANGE_CPU] = stats->cpu_combine;
-    seconds[FRAME_WARP_CPU] = stats->cpu_warp;
-    seconds[FRAME_GATHER_CPU] = stats->cpu_gather;
-    s->mine.active = stats->active_pixels;
-    s->mine.early = stats->bytes_early;
+        seconds[FRAME_ENCODE_CPU] =
+            s->mine.first_local > shared->cpu_splat
+                ? s->mine.first_local - shared->cpu_splat
+                : 0;
+    seconds[FRAME_SPLAT_CPU] = shared->cpu_splat;
+    seconds[FRAME_EXCHANGE_CPU] = shared->cpu_combine;
+    seconds[FRAME_WARP_CPU] = shared->cpu_warp;
+    seconds[FRAME_GATHER_CPU] = shared->cpu_gather;
+    s->mine.active = shared->active_pixels;
+    s->mine.early = shared->bytes_early;
     s->mine.rounds =
-        stats->rounds < FRAME_ROUNDS_MOST ? stats->rounds : FRAME_ROUNDS_MOST;
-    memcpy(s->mine.radices, stats->radices, sizeof s->mine.radices);
+        shared->rounds < FRAME_ROUNDS_MOST ? shared->rounds : FRAME_ROUNDS_MOST;
+    memcpy(s->mine.radices, shared->radices, sizeof s->mine.radices);
     s->mine.voxels = stats->interesting;
     s->mine.slices = part.count[stats->slice_axis];
     s->mine.method = stats->method;

@@ -44,7 +44,8 @@ static snow_status finish(frame_rank *s, turning *t, bool looks) {
     snow_status status = snow_ranks_finish(s->frame, &image);
     if (status != SNOW_STATUS_OK)
         return status;
-    t->hidden += snow_frame_stats(s->frame)->seconds_hidden / s->options->turn;
+    t->hidden +=
+        snow_frame_ranks_stats(s->frame)->seconds_hidden / s->options->turn;
     if (image && looks)
         add_picture(t, image);
     snow_image_free(image);

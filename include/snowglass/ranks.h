@@ -135,7 +135,7 @@ SNOW_API snow_status snow_ranks_partition(const snow_volume *volume,
  * along several axes, floats travel and the blend is rank 0's.
  *
  * Parts of a local image by the sheared method travel while the rest of it is
- * splatted (snow_stats.bytes_early); that changes no bit.
+ * splatted (snow_ranks_stats.bytes_early); that changes no bit.
  *
  * With settings->deterministic it is the same bit for bit as
  * snow_frame_render's, for any number of ranks: parts then are slabs across the
@@ -154,6 +154,31 @@ SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
                                        const snow_ranks_options *how,
                                        snow_image **image);
 
+/* What the last picture by several ranks took on this one; all else is in
+ * snow_stats. Processor time is that of the calling thread where it renders
+ * alone (threads 1), else of the process. */
+typedef struct snow_ranks_stats {
+    size_t size;
+    int ranks;              /* that made the picture; 1 of snow_frame_render */
+    double seconds_combine; /* local images composited */
+    double seconds_gather;  /* the picture brought to rank 0 */
+    double seconds_hidden;  /* of splatting and compositing, done while the
+                               thread would have waited for messages */
+    double cpu_splat;       /* all up to the local image, encoding too; of a
+                               group of one rank, the warp too */
+    double cpu_combine, cpu_warp, cpu_gather;
+    int rounds, radices[16]; /* of the combination: ranks that exchange at once
+                                in each round, of at most 16 */
+    int64_t active_pixels;   /* of this rank's local image */
+    uint64_t bytes_early;    /* of the local image, sent while the rest of it
+                                was still drawn */
+} snow_ranks_stats;
+SNOW_RECORD(snow_ranks_stats);
+
+/* Owned by the frame; zeros but for `ranks` before the first picture. */
+SNOW_API const snow_ranks_stats *
+snow_frame_ranks_stats(const snow_frame *frame);
+
 /* The same in two halves, for pictures one after another: while one is combined
  * and brought to rank 0, the next is splatted.
  *
@@ -162,10 +187,10 @@ SNOW_API snow_status snow_ranks_render(snow_frame *frame, snow_comm *comm,
  * Two pictures may be under way; finish answers for the one begun first.  Where
  * waiting for messages, of this communicator and whatever collective call, a
  * rank splats the other picture, and so do its other threads
- * (settings->threads) all the time: snow_stats.seconds_hidden tells how long.
- * Pictures are the same to the bit.  Only the sheared method's are splatted
- * ahead, and not those blended of several axes: the others are wholly made when
- * they are begun.
+ * (settings->threads) all the time: snow_ranks_stats.seconds_hidden tells how
+ * long. Pictures are the same to the bit.  Only the sheared method's are
+ * splatted ahead, and not those blended of several axes: the others are wholly
+ * made when they are begun.
  *
  * All that is handed over may be freed or changed after the begin, but for the
  * frame, which has a second local image then, and the communicator.  A begin

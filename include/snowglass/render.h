@@ -149,25 +149,6 @@ typedef struct snow_stats {
     double seconds_warp;      /* the intermediate image into the picture */
     double seconds_frame;     /* the whole picture */
     double cpu_frame;         /* the same in processor time of the process */
-    /* Of snow_ranks_render (snowglass/ranks.h), where all else is what this
-     * rank did: */
-    int ranks;              /* that made the picture; else 1 */
-    double seconds_combine; /* local images laid over one another */
-    double seconds_gather;  /* the picture brought to rank 0 */
-    double seconds_hidden;  /* of splatting and compositing, done where the
-                               thread would have waited for messages */
-    /* Processor time: of the calling thread where it renders alone (threads 1),
-     * else of the process. */
-    double cpu_splat; /* all up to the local image, encoding too; of a group
-                         of one rank, the warp too */
-    double cpu_combine, cpu_warp, cpu_gather;
-    /* What the combination was like: ranks that exchange at once in each of its
-     * rounds, the first of which are told, and active pixels of this rank's
-     * local image. */
-    int rounds, radices[16];
-    int64_t active_pixels;
-    uint64_t bytes_early; /* of the local image that were sent while the rest of
-                             it was still drawn */
     /* How often each axis of the volume was halved for a picture that has few
      * pixels; the counts of voxels above are those of what came of it. */
     int halvings[3];

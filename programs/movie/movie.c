@@ -393,7 +393,7 @@ static void hand_over(run *r, int64_t index, snow_image *image) {
     }
     render_report report = {0};
     r->renderer->report(r->renderer->self, &report);
-    movie_figures_add(&r->figures, report.stats);
+    movie_figures_add(&r->figures, &report);
     if (!r->s->has_marks) /* the queue's lock makes them visible to the workers
                            */
         r->renderer->marks(r->renderer->self, &r->s->marks);

@@ -77,7 +77,8 @@ bool movie_figures_begin(movie_figures *figures, int64_t count) {
     return figures->seconds != NULL;
 }
 
-void movie_figures_add(movie_figures *figures, const snow_stats *stats) {
+void movie_figures_add(movie_figures *figures, const render_report *report) {
+    const snow_stats *stats = report->stats;
     snow_stats *sums = &figures->sums;
     figures->seconds[figures->rendered++] = stats->seconds_frame;
     sums->seconds_classify += stats->seconds_classify;
@@ -86,8 +87,8 @@ void movie_figures_add(movie_figures *figures, const snow_stats *stats) {
     sums->seconds_splat += stats->seconds_splat;
     sums->seconds_composite += stats->seconds_composite;
     sums->seconds_warp += stats->seconds_warp;
-    sums->seconds_combine += stats->seconds_combine;
-    sums->seconds_gather += stats->seconds_gather;
+    figures->combine += report->combine;
+    figures->gather += report->gather;
     sums->seconds_frame += stats->seconds_frame;
 }
 
@@ -136,8 +137,8 @@ static void set_seconds(json_t *seconds, const movie_figures *figures,
                 {"splat", sums->seconds_splat},
                 {"composite", sums->seconds_composite},
                 {"warp", sums->seconds_warp},
-                {"combine", sums->seconds_combine},
-                {"gather", sums->seconds_gather},
+                {"combine", figures->combine},
+                {"gather", figures->gather},
                 {"frame", median(figures->seconds, figures->rendered)},
                 {"total", times->total}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)

@@ -28,11 +28,12 @@ typedef struct movie_figures {
     double *seconds; /* of each, rendering only */
     int64_t rendered, kept;
     snow_stats sums; /* seconds of all stages, added up */
+    double combine, gather;
 } movie_figures;
 
 /* Returns false if out of memory. */
 bool movie_figures_begin(movie_figures *figures, int64_t count);
-void movie_figures_add(movie_figures *figures, const snow_stats *stats);
+void movie_figures_add(movie_figures *figures, const render_report *report);
 void movie_figures_end(movie_figures *figures);
 
 /* The object of --stats: that of the last picture, with the seconds of all

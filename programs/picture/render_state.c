@@ -7,6 +7,7 @@
 #include "run/log.h"
 #include "run/start.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,7 @@
 /* What each rank reports to the others about a picture. */
 typedef struct rank_figures {
     snow_stats stats;
+    double combine, gather; /* seconds */
     uint64_t peak;
 } rank_figures;
 
@@ -242,9 +244,7 @@ static void add_figures(snow_stats *sum, const snow_stats *stats) {
                 {&sum->seconds_splat, stats->seconds_splat},
                 {&sum->seconds_composite, stats->seconds_composite},
                 {&sum->seconds_warp, stats->seconds_warp},
-                {&sum->seconds_frame, stats->seconds_frame},
-                {&sum->seconds_combine, stats->seconds_combine},
-                {&sum->seconds_gather, stats->seconds_gather}};
+                {&sum->seconds_frame, stats->seconds_frame}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (rows[i].from > *rows[i].to)
             *rows[i].to = rows[i].from;
@@ -260,10 +260,13 @@ static void sum_up(scene *s) {
     const int ranks = launch_ranks();
     int64_t most = 0;
     s->stats = figures[0].stats;
+    s->combine = s->gather = 0;
     s->peak = 0;
     for (int rank = 0; rank < ranks; rank++) {
         if (rank)
             add_figures(&s->stats, &figures[rank].stats);
+        s->combine = fmax(s->combine, figures[rank].combine);
+        s->gather = fmax(s->gather, figures[rank].gather);
         if (figures[rank].peak > s->peak)
             s->peak = figures[rank].peak;
         if (figures[rank].stats.interesting > most)
@@ -277,7 +280,9 @@ static void sum_up(scene *s) {
 }
 
 static int take_figures(scene *s) {
-    rank_figures mine = {*snow_frame_stats(s->frame),
+    const snow_ranks_stats *shared = snow_frame_ranks_stats(s->frame);
+    rank_figures mine = {*snow_frame_stats(s->frame), shared->seconds_combine,
+                         shared->seconds_gather,
                          snow_context_peak_bytes(s->context)};
     snow_status status = SNOW_STATUS_OK;
     if (launch_ranks() > 1)
@@ -379,6 +384,8 @@ int scene_draw(scene *s, double azimuth, snow_image **image) {
 render_report scene_report(const scene *s) {
     return (render_report){.volume = &s->drawn.whole,
                            .stats = &s->stats,
+                           .combine = s->combine,
+                           .gather = s->gather,
                            .peak = s->peak,
                            .load = s->load,
                            .settings = &s->settings,

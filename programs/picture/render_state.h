@@ -42,7 +42,8 @@ typedef struct scene {
     /* The last picture; for ranks sums, and seconds of the slowest. */
     scene_shot drawn;
     snow_stats stats;
-    uint64_t peak; /* bytes; for ranks the maximum */
+    double combine, gather; /* seconds of stages of several ranks */
+    uint64_t peak;          /* bytes; for ranks the maximum */
     double load;   /* most interesting voxels of a rank, divided by the mean */
     void *figures; /* figures of all ranks */
 } scene;

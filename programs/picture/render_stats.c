@@ -67,8 +67,8 @@ static json_t *seconds_json(const render_report *report) {
                 {"splat", stats->seconds_splat},
                 {"composite", stats->seconds_composite},
                 {"warp", stats->seconds_warp},
-                {"combine", stats->seconds_combine},
-                {"gather", stats->seconds_gather},
+                {"combine", report->combine},
+                {"gather", report->gather},
                 {"write", report->times->write},
                 {"frame", stats->seconds_frame},
                 {"total", report->times->total}};
@@ -148,6 +148,5 @@ void log_stats(const render_report *report) {
     if (launch_ranks() > 1)
         say("ranks: %d, load of the largest part %.2f; combine %.3f s, gather "
             "%.3f s",
-            launch_ranks(), report->load, stats->seconds_combine,
-            stats->seconds_gather);
+            launch_ranks(), report->load, report->combine, report->gather);
 }

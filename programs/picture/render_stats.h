@@ -16,8 +16,9 @@ typedef struct render_times {
 typedef struct render_report {
     const snow_volume_info *volume;
     const snow_stats *stats;
-    uint64_t peak; /* bytes; for ranks the maximum */
-    double load;   /* ranks: most interesting voxels, divided by the mean */
+    double combine, gather; /* seconds of stages of several ranks */
+    uint64_t peak;          /* bytes; for ranks the maximum */
+    double load; /* ranks: most interesting voxels, divided by the mean */
     const snow_settings *settings;
     const snow_image *image;
     const render_times *times;

@@ -35,7 +35,7 @@ double snow_ranks_pause(snow_ranks *r) {
     r->overlapped += took;
     r->overlapped_cpu += cpu;
     r->drawn->overlapped += took;
-    r->drawn->picture.stats.cpu_splat += cpu;
+    r->drawn->picture.ranks_stats.cpu_splat += cpu;
     return took;
 }
 

@@ -144,7 +144,7 @@ snow_status snow_flight_prepare(snow_flight *p, const snow_job *job) {
 }
 
 static void set_rounds(snow_flight *p, const snow_exchange_figures *given) {
-    snow_stats *stats = &p->picture.stats;
+    snow_ranks_stats *stats = &p->picture.ranks_stats;
     const int most = (int)(sizeof stats->radices / sizeof *stats->radices);
     stats->rounds = given->rounds;
     for (int i = 0; i < given->rounds && i < most; i++)
@@ -206,7 +206,7 @@ static snow_status exchange(snow_flight *p, const snow_job *job) {
 
 snow_status snow_flight_exchange(snow_flight *p, const snow_job *job) {
     snow_ranks *r = p->ranks;
-    snow_stats *stats = &p->picture.stats;
+    snow_ranks_stats *stats = &p->picture.ranks_stats;
     double mark = snow_ranks_clock(r), cpu = snow_flight_cpu(p);
     if (is_empty(p))
         return SNOW_STATUS_OK;
@@ -239,7 +239,7 @@ static void keep_pixels(const snow_flight *p, int pixel_bits,
 
 static snow_status gather(snow_flight *p, const snow_job *job, int pixel_bits,
                           snow_image *image) {
-    snow_stats *stats = &p->picture.stats;
+    snow_ranks_stats *stats = &p->picture.ranks_stats;
     if (p->how.scattered) {
         keep_pixels(p, pixel_bits, image);
         return SNOW_STATUS_OK;
@@ -262,7 +262,7 @@ static snow_status make_pixels(snow_flight *p, const snow_job *job,
     snow_status status = snow_pixels_warp(r, &p->picture.local.image, job,
                                           &p->region, pixel_bits);
     stats->seconds_warp += snow_ranks_clock(r) - mark;
-    stats->cpu_warp += snow_flight_cpu(p) - cpu;
+    p->picture.ranks_stats.cpu_warp += snow_flight_cpu(p) - cpu;
     /* Bands that were sent may not have been drawn. */
     return status == SNOW_STATUS_OK ? snow_monitor_status(&p->picture.monitor)
                                     : status;

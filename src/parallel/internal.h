@@ -120,7 +120,8 @@ bool snow_ranks_busy(const snow_ranks *ranks);
  * while they are exchanged. */
 double snow_ranks_clock(const snow_ranks *ranks);
 
-/* Processor time for a picture (snow_stats.cpu_splat), which stands alike. */
+/* Processor time for a picture (snow_ranks_stats.cpu_splat), which stands
+ * alike. */
 double snow_flight_cpu(const snow_flight *flight);
 
 /* Figure 8's driver (frame.c) makes pictures between these.  Opens a place for
@@ -209,7 +210,7 @@ typedef struct snow_gather_params {
     int pixel_bits;       /* 8: as bytes; 0: as floats */
     snow_image *image;    /* of rank 0, transparent; elsewhere NULL */
     unsigned char *bytes; /* of rank 0 where pixels are bytes, cleared */
-    snow_stats *stats;
+    snow_ranks_stats *stats;
 } snow_gather_params;
 
 /* Local work: makes room for the exchange of layers, which are this rank's

@@ -52,8 +52,8 @@ static void start_anew(snow_load_balance *w, uint64_t generation) {
 }
 
 void snow_load_balance_record(snow_context *context, snow_load_balance *w,
-                              uint64_t generation, int in_flight,
-                              const snow_stats *last) {
+                              uint64_t generation, int in_flight, bool encoded,
+                              double seconds) {
     if (w->generation !=
         generation) { /* another volume, for all that is known */
         snow_load_balance_fini(context, w);
@@ -63,11 +63,11 @@ void snow_load_balance_record(snow_context *context, snow_load_balance *w,
     w->calls++;
     if (!generation || w->calls <= in_flight)
         return;
-    if (last->encoded) {
-        w->encoding = last->cpu_splat;
+    if (encoded) {
+        w->encoding = seconds;
         return;
     }
-    w->seconds[w->pictures % SNOW_LOAD_BALANCE_PICTURES] = last->cpu_splat;
+    w->seconds[w->pictures % SNOW_LOAD_BALANCE_PICTURES] = seconds;
     w->pictures++;
 }
 
@@ -303,7 +303,8 @@ snow_status snow_ranks_rebalance(snow_frame *frame, snow_comm *comm,
     uint64_t before = (*volume)->generation;
     snow_load_balance_record(frame->context, b.work, before,
                              frame->ranks ? frame->ranks->in_flight : 0,
-                             &frame->stats);
+                             frame->stats.encoded,
+                             frame->ranks_stats.cpu_splat);
     snow_volume_whole(*volume, &b.whole);
     snow_status status = snow_partition_params_make(
         b.context, &b.whole, view, settings, how,

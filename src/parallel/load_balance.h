@@ -59,8 +59,8 @@ typedef struct snow_load_balance_message {
  * took, where it was of the part that the next will be of.  `in_flight` have
  * been begun since. */
 void snow_load_balance_record(snow_context *context, snow_load_balance *work,
-                              uint64_t generation, int in_flight,
-                              const snow_stats *last);
+                              uint64_t generation, int in_flight, bool encoded,
+                              double seconds);
 
 /* The least of the seconds that are known: what disturbs a rank now and then is
  * not its part's.  0 where none are. */

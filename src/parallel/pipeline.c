@@ -25,7 +25,7 @@
 static bool draw_meanwhile(void *of) {
     snow_ranks *r = of;
     bool any = snow_ranks_draw(r);
-    r->drawn->picture.stats.seconds_hidden += snow_ranks_pause(r);
+    r->drawn->picture.ranks_stats.seconds_hidden += snow_ranks_pause(r);
     return any;
 }
 
@@ -94,7 +94,7 @@ static void begin_early(snow_flight *f, snow_status status) {
     snow_picture *p = &f->picture;
     snow_ranks *r = f->ranks;
     if (status == SNOW_STATUS_OK) {
-        p->stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;
+        p->ranks_stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;
         status = snow_method_figures(p->pass->method, p, &p->pass->job);
     }
     keep_status(f, status);
@@ -159,9 +159,9 @@ static void end_alone(snow_flight *f, snow_status status) {
     if (status == SNOW_STATUS_OK && f->how.pixel_bits == 8 &&
         p->image->channels > 1)
         snow_round_pixels(p->image);
-    p->stats.cpu_splat = p->stats.threads == 1
-                             ? snow_thread_seconds() - f->drawn_cpu
-                             : p->stats.cpu_frame;
+    p->ranks_stats.cpu_splat = p->stats.threads == 1
+                                   ? snow_thread_seconds() - f->drawn_cpu
+                                   : p->stats.cpu_frame;
 }
 
 void snow_pipeline_done(snow_picture *p, snow_status status) {

@@ -71,7 +71,7 @@ static snow_status begin(snow_picture *p, snow_status status) {
     snow_flight *f = snow_flight_of(p);
     f->generation = p->job.volume->generation;
     snow_volume_find_extent(p->job.volume, &f->part);
-    p->stats.ranks = f->ranks->ranks;
+    p->ranks_stats.ranks = f->ranks->ranks;
     p->begin_at = f->ranks->begin_at;
     if (status == SNOW_STATUS_OK)
         status = make_images(f);
@@ -279,7 +279,7 @@ static snow_status end_local(snow_flight *f, const snow_job *job) {
         p->drawing = false;
         p->stats.seconds_splat += snow_ranks_clock(f->ranks) - mark;
     }
-    p->stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;
+    p->ranks_stats.cpu_splat += snow_flight_cpu(f) - f->drawn_cpu;
     SNOW_TRY(snow_monitor_status(&p->monitor));
     return snow_flight_prepare(f, job);
 }

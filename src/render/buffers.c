@@ -39,7 +39,12 @@ const snow_image *snow_frame_depth(const snow_frame *frame) {
 }
 
 SNOW_RECORD_OF_ZEROS(snow_stats);
+SNOW_RECORD_OF_ZEROS(snow_ranks_stats);
 
 const snow_stats *snow_frame_stats(const snow_frame *frame) {
     return &frame->stats;
+}
+
+const snow_ranks_stats *snow_frame_ranks_stats(const snow_frame *frame) {
+    return &frame->ranks_stats;
 }

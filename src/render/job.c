@@ -70,7 +70,7 @@ static snow_status place(snow_job *job, int parts, int part) {
 
 snow_status snow_job_begin(snow_context *context, const snow_request *request,
                            snow_stats *stats, snow_job *job) {
-    *stats = (snow_stats){.size = sizeof *stats, .ranks = 1};
+    *stats = (snow_stats){.size = sizeof *stats};
     *job = (snow_job){
         .context = context,
         .volume = request->volume,

@@ -15,6 +15,7 @@
 #include "splat/splat.h"
 #include "transform/clip.h"
 
+#include <snowglass/ranks.h>
 #include <snowglass/render.h>
 
 typedef struct snow_exact snow_exact;         /* render/exact/exact.h */
@@ -27,6 +28,7 @@ typedef struct snow_load_balance
 struct snow_frame {
     snow_context *context;
     snow_stats stats;
+    snow_ranks_stats ranks_stats;
     snow_exact *exact;
     snow_exact_eye *exact_eye; /* in perspective; NULL until needed */
     /* Made when first used; one for each axis where a picture is blended of

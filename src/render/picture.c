@@ -143,6 +143,8 @@ snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
     snow_request request = *asked;
     int halvings[3] = {0, 0, 0};
     char message[SNOW_MESSAGE_BYTES];
+    p->ranks_stats =
+        (snow_ranks_stats){.size = sizeof p->ranks_stats, .ranks = 1};
     p->start = snow_seconds();
     p->start_cpu = snow_cpu_seconds();
     request.settings = &settings;
@@ -169,6 +171,7 @@ snow_status snow_picture_end(snow_picture *p, snow_status status,
                              snow_image **image) {
     snow_frame *frame = p->frame;
     frame->stats = p->stats;
+    frame->ranks_stats = p->ranks_stats;
     snow_image_free(p->near);
     snow_image_free(frame->depth);
     frame->depth = NULL;

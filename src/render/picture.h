@@ -90,6 +90,7 @@ struct snow_picture {
     snow_image *image, *depth; /* NULL where another rank has them */
     snow_image *near;          /* depths of the local image */
     snow_stats stats, unused; /* of the passes that draw the picture; depths' */
+    snow_ranks_stats ranks_stats;
     double start, start_cpu;
     bool layered;    /* passes' pictures are added up */
     bool ahead;      /* the local image is begun before it is asked for */

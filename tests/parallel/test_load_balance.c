@@ -23,31 +23,30 @@ static void pictures_of_the_present_part_are_noted(void **state) {
     (void)state;
     snow_context *context = support_context();
     snow_load_balance work = {0};
-    snow_stats last = {.encoded = 1, .cpu_splat = 9};
-    snow_load_balance_record(context, &work, 5, 0, &last); /* of another part */
+    snow_load_balance_record(context, &work, 5, 0, true,
+                             9); /* of another part */
     assert_int_equal(work.pictures, 0);
-    snow_load_balance_record(context, &work, 5, 1,
-                             &last); /* none is finished */
+    snow_load_balance_record(context, &work, 5, 1, true,
+                             9); /* none is finished */
     assert_int_equal(work.pictures, 0);
     assert_true(work.encoding == 0);
-    snow_load_balance_record(context, &work, 5, 1,
-                             &last); /* that which encoded */
+    snow_load_balance_record(context, &work, 5, 1, true,
+                             9); /* that which encoded */
     assert_int_equal(work.pictures, 0);
     assert_true(work.encoding == 9);
     assert_true(snow_load_balance_seconds(&work) == 0);
-    last.encoded = 0;
     for (int n = 0; n < 20; n++) {
-        last.cpu_splat = 2 + n % 3;
-        snow_load_balance_record(context, &work, 5, 1, &last);
+        const double took = 2 + n % 3;
+        snow_load_balance_record(context, &work, 5, 1, false, took);
     }
     assert_int_equal(work.pictures, 20);
     assert_true(snow_load_balance_seconds(&work) == 2);
     for (int n = 0; n < SNOW_LOAD_BALANCE_PICTURES; n++) {
-        last.cpu_splat = 7;
-        snow_load_balance_record(context, &work, 5, 1, &last);
+        const double took = 7;
+        snow_load_balance_record(context, &work, 5, 1, false, took);
     }
     assert_true(snow_load_balance_seconds(&work) == 7); /* the last ones only */
-    snow_load_balance_record(context, &work, 6, 1, &last);
+    snow_load_balance_record(context, &work, 6, 1, false, 7);
     assert_int_equal(work.pictures, 0);
     assert_true(work.encoding == 0);
     snow_load_balance_fini(context, &work);
@@ -226,7 +225,7 @@ static void pretend(snow_frame *frame, const snow_volume *volume) {
     double cost = 0;
     for (int64_t n = 0; n < part.count[axis]; n++)
         cost += part.first[axis] + n < part.dims[axis] / 4 ? 5e-3 : 1e-3;
-    frame->stats.cpu_splat = cost;
+    frame->ranks_stats.cpu_splat = cost;
 }
 
 static snow_status finish(snow_frame *frame, const snow_volume *volume,

@@ -84,10 +84,11 @@ static snow_status finish(seat *s, int number, bool keep) {
             memcpy(pixels, image->pixels, bytes);
         else
             good = memcmp(pixels, image->pixels, bytes) == 0;
-        s->f->hidden += snow_frame_stats(s->frame)->seconds_hidden;
+        s->f->hidden += snow_frame_ranks_stats(s->frame)->seconds_hidden;
     }
     if (keep)
-        atomic_fetch_add(&s->f->early, snow_frame_stats(s->frame)->bytes_early);
+        atomic_fetch_add(&s->f->early,
+                         snow_frame_ranks_stats(s->frame)->bytes_early);
     snow_image_free(image);
     REQUIRE(s->comm, good);
     return SNOW_STATUS_OK;
