@@ -24,6 +24,8 @@ set(SNOW_LABEL_threads test_affinity test_bands test_combine test_comm test_earl
     test_load_balance)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
+    test_value_field test_value_model test_value_truth
+    test_value_views
     test_shear_warp_quality test_phantom test_perspective test_camera_points
     test_normals cli_documents cli_bench cli_figures cli_frame cli_stream
     cli_matrix cli_balance cli_turntable cli_modules cli_memory cli_progress

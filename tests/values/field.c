@@ -1,0 +1,278 @@
+/* tests/values/field.c - the value model's voxels and sheets.
+ *
+ * docs/model.md, points 2 and 3 of the second part: voxels as integers, odd
+ * beyond the box, holes by weights; sheets interpolated from them. */
+#include "values/value_model.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define FULL 16384 /* the weight of a voxel that is there */
+
+int value_saturate(int64_t x) {
+    return x < INT16_MIN ? INT16_MIN : x > INT16_MAX ? INT16_MAX : (int)x;
+}
+
+static int64_t divide_down(int64_t x, int64_t by) {
+    return x >= 0 ? x / by : -((-x + by - 1) / by);
+}
+
+int value_scale(int64_t x, int w) {
+    return (int)divide_down(x * w + 16384, 32768);
+}
+
+int value_between(int a, int b, int w) {
+    return a + value_scale(value_saturate((int64_t)b - a), w);
+}
+
+int value_weight(double part) {
+    int w = (int)floor(32768 * part + 0.5);
+    return w > 32767 ? 32767 : w;
+}
+
+/* --- voxels ----------------------------------------------------------------
+ */
+
+static int code_of(const value_plan *plan, double value) {
+    if (isnan(value))
+        return VALUE_HOLE;
+    if (!(plan->high > plan->low))
+        return 0;
+    value = fmin(fmax(value, plan->low), plan->high);
+    return (int)rint((value - plan->low) * VALUE_MOST /
+                     (plan->high - plan->low));
+}
+
+/* The number of a label, which is given when it is seen first. */
+static int number_of(value_field *field, double name) {
+    if (isnan(name))
+        return VALUE_HOLE;
+    for (int n = 0; n < field->name_count; n++)
+        if (field->names[n] == name)
+            return n;
+    field->names =
+        realloc(field->names, (size_t)(field->name_count + 1) * sizeof(double));
+    field->names[field->name_count] = name;
+    return field->name_count++;
+}
+
+double value_data(const value_scene *scene, const int64_t at[3]) {
+    const snow_volume_info *info = &scene->base.info;
+    double native = reference_native(&scene->base, at[0], at[1], at[2]);
+    double value = info->slope * native + info->intercept;
+    if (!scene->base.log)
+        return value;
+    return value > 0 ? log10(value) : (double)NAN;
+}
+
+void value_field_make(const value_plan *plan, value_field *field) {
+    const int64_t *n = plan->dims;
+    size_t count = (size_t)n[0] * (size_t)n[1] * (size_t)n[2], to = 0;
+    *field = (value_field){.plan = plan, .member = -1};
+    field->codes = calloc(count, sizeof *field->codes);
+    if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
+        field->data = calloc(count, sizeof *field->data);
+    for (int64_t p = 0; p < n[2]; p++)
+        for (int64_t v = 0; v < n[1]; v++)
+            for (int64_t u = 0; u < n[0]; u++, to++) {
+                int64_t at[3];
+                at[plan->axis[0]] = u;
+                at[plan->axis[1]] = v;
+                at[plan->axis[2]] = p;
+                double value = value_data(plan->scene, at);
+                field->codes[to] = plan->scene->labels ? number_of(field, value)
+                                                       : code_of(plan, value);
+                if (field->data)
+                    field->data[to] =
+                        isnan(value) ? value
+                                     : fmin(fmax(value, plan->low), plan->high);
+            }
+}
+
+void value_field_free(value_field *field) {
+    free(field->codes);
+    free(field->data);
+    free(field->names);
+}
+
+/* Slices below and above a sheet; they are one where the sheet is a slice. */
+static void slices_of(const value_plan *plan, int sheet, int64_t slices[2]) {
+    double p = value_sheet_at(plan, sheet);
+    slices[0] = (int64_t)floor(p);
+    slices[1] = (int64_t)ceil(p);
+    if (plan->dims[2] == 1)
+        slices[0] = slices[1] = 0;
+}
+
+static size_t offset(const value_plan *plan, int64_t i, int64_t j, int64_t k) {
+    return (size_t)((k * plan->dims[1] + j) * plan->dims[0] + i);
+}
+
+static value_part slice_voxel(const value_field *field, int64_t i, int64_t j,
+                              int64_t k) {
+    int code = field->codes[offset(field->plan, i, j, k)];
+    if (code == VALUE_HOLE)
+        return (value_part){0};
+    if (field->member >= 0)
+        code = code == field->member ? VALUE_MOST : 0;
+    return (value_part){code, FULL};
+}
+
+/* A voxel of a whole slice by the cubic kernel along P: 1, 4, 1 sixths. */
+static value_part smooth_voxel(const value_field *field, int64_t i, int64_t j,
+                               int64_t k) {
+    int64_t last = field->plan->dims[2] - 1;
+    value_part here = slice_voxel(field, i, j, k);
+    if (!here.weight || last == 0)
+        return here;
+    value_part side[2];
+    for (int n = 0; n < 2; n++) {
+        int64_t to = n ? k + 1 : k - 1, from = n ? k - 1 : k + 1;
+        side[n] = slice_voxel(field, i, j, to < 0 || to > last ? from : to);
+        if (!side[n].weight)
+            side[n].value = here.value;
+        else if (to < 0 || to > last)
+            side[n].value = 2 * here.value - side[n].value;
+    }
+    here.value =
+        divide_down(side[0].value + 4 * here.value + side[1].value + 3, 6);
+    return here;
+}
+
+/* A voxel inside the box, of a slice or half way between two. */
+static value_part inner_voxel(const value_field *field, int sheet, int64_t i,
+                              int64_t j) {
+    int64_t k[2];
+    value_part part[2];
+    slices_of(field->plan, sheet, k);
+    for (int n = 0; n < 2; n++)
+        part[n] = field->plan->scene->cubic ? smooth_voxel(field, i, j, k[n])
+                                            : slice_voxel(field, i, j, k[n]);
+    return k[0] == k[1]
+               ? part[0]
+               : (value_part){divide_down(part[0].value + part[1].value + 1, 2),
+                              (part[0].weight + part[1].weight) / 2};
+}
+
+value_part value_voxel(const value_field *field, int sheet, int64_t i,
+                       int64_t j) {
+    const int64_t *n = field->plan->dims;
+    int64_t u = i < 0 ? 0 : i >= n[0] ? n[0] - 1 : i;
+    int64_t v = j < 0 ? 0 : j >= n[1] ? n[1] - 1 : j;
+    value_part border = inner_voxel(field, sheet, u, v);
+    if ((u == i && v == j) || border.weight < FULL)
+        return border;
+    /* Beyond two sides the odd reflection is along u alone. */
+    int64_t next[2] = {u, v};
+    if (u != i)
+        next[0] = n[0] == 1 ? u : i < 0 ? 1 : n[0] - 2;
+    else
+        next[1] = n[1] == 1 ? v : j < 0 ? 1 : n[1] - 2;
+    value_part inside = inner_voxel(field, sheet, next[0], next[1]);
+    if (inside.weight == FULL)
+        border.value = 2 * border.value - inside.value;
+    return border;
+}
+
+/* --- sheets ----------------------------------------------------------------
+ */
+
+/* A mean that has its weights: no value where less than half is there. */
+static int weighed(int64_t value, int64_t weight) {
+    if (weight >= FULL)
+        return (int)value;
+    if (weight < FULL / 2)
+        return VALUE_HOLE;
+    return (int)floor((double)value * FULL / (double)weight + 0.5);
+}
+
+static void cubic_weights(double t, double w[4]) {
+    double s = 1 - t;
+    w[0] = s * s * s / 6;
+    w[1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
+    w[2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
+    w[3] = t * t * t / 6;
+}
+
+static int cubic_sheet(const value_field *field, int sheet, double u,
+                       double v) {
+    int64_t i = (int64_t)floor(u), j = (int64_t)floor(v);
+    double wu[4], wv[4], value = 0, weight = 0;
+    cubic_weights(u - (double)i, wu);
+    cubic_weights(v - (double)j, wv);
+    for (int y = 0; y < 4; y++)
+        for (int x = 0; x < 4; x++) {
+            value_part part = value_voxel(field, sheet, i - 1 + x, j - 1 + y);
+            value += wu[x] * wv[y] * (double)part.value;
+            weight += wu[x] * wv[y] * (double)part.weight;
+        }
+    return weighed((int64_t)floor(value + 0.5), (int64_t)floor(weight + 0.5));
+}
+
+int value_sheet(const value_field *field, int sheet, double u, double v) {
+    if (field->plan->scene->cubic)
+        return cubic_sheet(field, sheet, u, v);
+    int64_t i = (int64_t)floor(u), j = (int64_t)floor(v);
+    int wu = value_weight(u - (double)i), wv = value_weight(v - (double)j);
+    int row[2], weight[2];
+    for (int y = 0; y < 2; y++) {
+        value_part a = value_voxel(field, sheet, i, j + y);
+        value_part b = value_voxel(field, sheet, i + 1, j + y);
+        row[y] = value_between((int)a.value, (int)b.value, wu);
+        weight[y] = value_between((int)a.weight, (int)b.weight, wu);
+    }
+    return weighed(value_between(row[0], row[1], wv),
+                   value_between(weight[0], weight[1], wv));
+}
+
+static double data_at(const value_field *field, int64_t i, int64_t j,
+                      const int64_t k[2]) {
+    return (field->data[offset(field->plan, i, j, k[0])] +
+            field->data[offset(field->plan, i, j, k[1])]) /
+           2;
+}
+
+/* Odd reflection by one voxel along both axes: here nothing overflows. */
+static double data_voxel(const value_field *field, const int64_t k[2],
+                         int64_t i, int64_t j) {
+    const int64_t *n = field->plan->dims;
+    int64_t u = i < 0 ? 0 : i >= n[0] ? n[0] - 1 : i;
+    int64_t v = j < 0 ? 0 : j >= n[1] ? n[1] - 1 : j;
+    double border = data_at(field, u, v, k), inside = (double)NAN;
+    if (u == i && v == j)
+        return border;
+    if (u != i) {
+        border = data_voxel(field, k, u, j);
+        inside = data_voxel(field, k, n[0] == 1 ? u : i < 0 ? 1 : n[0] - 2, j);
+    } else {
+        inside = data_at(field, u, n[1] == 1 ? v : j < 0 ? 1 : n[1] - 2, k);
+    }
+    return isnan(inside) ? border : 2 * border - inside;
+}
+
+double value_sheet_data(const value_field *field, int sheet, double u,
+                        double v) {
+    int64_t i = (int64_t)floor(u), j = (int64_t)floor(v), k[2];
+    double sum = 0, weights = 0;
+    slices_of(field->plan, sheet, k);
+    for (int corner = 0; corner < 4; corner++) {
+        double x = u - (double)i, y = v - (double)j;
+        double weight = (corner & 1 ? x : 1 - x) * (corner >> 1 ? y : 1 - y);
+        double value =
+            data_voxel(field, k, i + (corner & 1), j + (corner >> 1));
+        if (isnan(value))
+            continue;
+        sum += weight * value;
+        weights += weight;
+    }
+    return weights >= 0.499 ? sum / weights : (double)NAN;
+}
+
+int value_sheet_label(const value_field *field, int sheet, double u, double v) {
+    const int64_t *n = field->plan->dims;
+    int64_t i = (int64_t)floor(u + 0.5), j = (int64_t)floor(v + 0.5), k[2];
+    slices_of(field->plan, sheet, k);
+    i = i < 0 ? 0 : i >= n[0] ? n[0] - 1 : i;
+    j = j < 0 ? 0 : j >= n[1] ? n[1] - 1 : j;
+    return field->codes[offset(field->plan, i, j, k[0])];
+}

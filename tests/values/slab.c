@@ -1,0 +1,333 @@
+/* tests/values/slab.c - the value model's gradients, cuts and light.
+ *
+ * docs/model.md, points 4, 6, 7 and 9 of the second part. */
+#include "values/value_model.h"
+
+#include <math.h>
+
+/* --- gradients --------------------------------------------------------------
+ */
+
+/* Twice a difference quotient over a way of one to either side: of both
+ * neighbours, of the one that is there, or none. */
+static int quotient(int before, int here, int after) {
+    if (before != VALUE_HOLE && after != VALUE_HOLE)
+        return value_saturate((int64_t)after - before);
+    if (after != VALUE_HOLE)
+        return value_saturate(2 * ((int64_t)after - here));
+    if (before != VALUE_HOLE)
+        return value_saturate(2 * ((int64_t)here - before));
+    return 0;
+}
+
+/* How much wider the lattice is on a sheet than on the front one. */
+static double widening(const value_plan *plan, int sheet) {
+    if (!plan->perspective)
+        return 1;
+    return (value_sheet_at(plan, sheet) - plan->eye[2]) /
+           (plan->first - plan->eye[2]);
+}
+
+/* Along u (`n` 0) or v: the lattice pixels that are one voxel away, or the
+ * nearest to that. */
+static int slope_in_plane(const value_field *field, const value_ray *ray,
+                          int sheet, int n) {
+    const value_plan *plan = field->plan;
+    double m = widening(plan, sheet), at[3];
+    int cells = plan->cells[n], reach = (int)rint(cells / m);
+    reach = reach < 1 ? 1 : reach;
+    double far = reach * m / cells;
+    int value[3];
+    value_ray_at(plan, ray, sheet, at);
+    for (int side = -1; side <= 1; side++)
+        value[side + 1] =
+            value_sheet(field, sheet, at[0] + (n == 0 ? side * far : 0),
+                        at[1] + (n == 1 ? side * far : 0));
+    int twice = quotient(value[0], value[1], value[2]);
+    return m == 1 ? twice : value_saturate((int64_t)floor(twice / far + 0.5));
+}
+
+/* The lattice sample of either phase that is nearest to a way, in cells. */
+static void nearest_sample(const value_plan *plan, const double way[2],
+                           double nearest[2]) {
+    for (int n = 0; n < 2; n++)
+        nearest[n] = rint(way[n]);
+    if (!plan->quincunx)
+        return;
+    double odd[2];
+    for (int n = 0; n < 2; n++)
+        odd[n] = way[n] < 0 ? ceil(way[n]) - 0.5 : floor(way[n]) + 0.5;
+    if (hypot(way[0] - odd[0], way[1] - odd[1]) <
+        hypot(way[0] - nearest[0], way[1] - nearest[1]))
+        for (int n = 0; n < 2; n++)
+            nearest[n] = odd[n];
+}
+
+/* The value of another sheet at a lattice sample that is `cells` away from the
+ * ray, and by how much that is beside the position `at` of the ray's sheet. */
+static int load_at(const value_field *field, const value_ray *ray, int sheet,
+                   const double cells[2], const double at[3], double off[2]) {
+    const value_plan *plan = field->plan;
+    double there[3];
+    value_ray other =
+        value_ray_of(plan, ray->front[0] + cells[0] / plan->cells[0],
+                     ray->front[1] + cells[1] / plan->cells[1]);
+    value_ray_at(plan, &other, sheet, there);
+    for (int n = 0; n < 2; n++)
+        off[n] = there[n] - at[n];
+    return value_sheet(field, sheet, there[0], there[1]);
+}
+
+/* Bi-linear of the four lattice samples around. */
+static int load_between(const value_field *field, const value_ray *ray,
+                        int sheet, const double way[2], const double at[3]) {
+    int value[4], w[2];
+    for (int n = 0; n < 2; n++)
+        w[n] = value_weight(way[n] - floor(way[n]));
+    for (int corner = 0; corner < 4; corner++) {
+        double cells[2] = {floor(way[0]) + (corner & 1),
+                           floor(way[1]) + (corner >> 1)},
+               off[2];
+        value[corner] = load_at(field, ray, sheet, cells, at, off);
+        if (value[corner] == VALUE_HOLE)
+            return VALUE_HOLE;
+    }
+    return value_between(value_between(value[0], value[1], w[0]),
+                         value_between(value[2], value[3], w[0]), w[1]);
+}
+
+/* The value of sheet `other` at the place in the plane where the ray meets
+ * `sheet`, or near it: `off` is by how much beside it. */
+static int load(const value_field *field, const value_ray *ray, int sheet,
+                int other, double off[2]) {
+    const value_plan *plan = field->plan;
+    double at[3], way[2], nearest[2];
+    off[0] = off[1] = 0;
+    if (other < 0 || other >= plan->sheets)
+        return VALUE_HOLE;
+    value_ray_at(plan, ray, sheet, at);
+    for (int n = 0; n < 2; n++) {
+        double front =
+            plan->perspective
+                ? (ray->front[n] - plan->eye[n]) *
+                      (widening(plan, sheet) / widening(plan, other) - 1)
+                : plan->direction * (sheet - other) * plan->slope[n] /
+                      plan->halves;
+        way[n] = front * plan->cells[n];
+    }
+    if (plan->exact_loads)
+        return load_between(field, ray, other, way, at);
+    nearest_sample(plan, way, nearest);
+    return load_at(field, ray, other, nearest, at, off);
+}
+
+/* Along P, at a fixed place in the plane. */
+static void slope_across(const value_field *field, const value_ray *ray,
+                         int sheet, value_slopes *out) {
+    const value_plan *plan = field->plan;
+    int step = plan->direction * plan->halves, value[3];
+    double off[2][2], at[3], share[2] = {0};
+    if (plan->dims[2] == 1)
+        return;
+    value_ray_at(plan, ray, sheet, at);
+    value[1] = value_sheet(field, sheet, at[0], at[1]);
+    value[0] = load(field, ray, sheet, sheet - step, off[0]);
+    value[2] = load(field, ray, sheet, sheet + step, off[1]);
+    bool below = value[0] != VALUE_HOLE, above = value[2] != VALUE_HOLE;
+    out->along[2] = quotient(value[0], value[1], value[2]);
+    share[0] = below ? above ? 0.5 : 1 : 0;
+    share[1] = above ? below ? 0.5 : 1 : 0;
+    if (!below && !above && plan->halves == 2) {
+        /* Half way between two slices that have no others: these two. */
+        step /= 2;
+        value[0] = load(field, ray, sheet, sheet - step, off[0]);
+        value[2] = load(field, ray, sheet, sheet + step, off[1]);
+        if (value[0] != VALUE_HOLE && value[2] != VALUE_HOLE) {
+            out->along[2] = value_saturate(2 * ((int64_t)value[2] - value[0]));
+            share[0] = share[1] = 1;
+        }
+    }
+    for (int n = 0; n < 2; n++)
+        out->mend[n] = share[0] * off[0][n] - share[1] * off[1][n];
+}
+
+value_slopes value_slopes_at(const value_field *field, const value_ray *ray,
+                             int sheet) {
+    value_slopes out = {{0}, {0}};
+    for (int n = 0; n < 2; n++)
+        out.along[n] = slope_in_plane(field, ray, sheet, n);
+    slope_across(field, ray, sheet, &out);
+    return out;
+}
+
+void value_gradient(const value_field *field, const value_ray *ray, int slab,
+                    int place, double gradient[3]) {
+    value_slopes f = value_slopes_at(field, ray, slab);
+    value_slopes b = value_slopes_at(field, ray, slab + 1);
+    for (int n = 0; n < 3; n++)
+        gradient[n] = value_between(f.along[n], b.along[n], place);
+    for (int n = 0; n < 2; n++)
+        gradient[2] += gradient[n] *
+                       (f.mend[n] + place / 32768.0 * (b.mend[n] - f.mend[n]));
+}
+
+/* --- cuts -------------------------------------------------------------------
+ */
+
+/* Keeps the part of [t[0], t[1]] where from + t (to - from) <= most. */
+static void keep_below(double from, double to, double most, double t[2]) {
+    double rest = most - from, way = to - from;
+    if (way > 0)
+        t[1] = fmin(t[1], rest / way);
+    else if (way < 0)
+        t[0] = fmax(t[0], rest / way);
+    else if (rest < 0)
+        t[1] = -1;
+}
+
+static double height_of(const value_plan *plan, const double at[3],
+                        const double clip[4]) {
+    double sum = 0;
+    for (int r = 0; r < 3; r++) {
+        double world = plan->scene->base.info.matrix[r][3];
+        for (int n = 0; n < 3; n++)
+            world += plan->scene->base.info.matrix[r][plan->axis[n]] * at[n];
+        sum += clip[r] * world;
+    }
+    return sum;
+}
+
+bool value_cut(const value_plan *plan, const value_ray *ray, int slab,
+               int part[2]) {
+    const value_scene *scene = plan->scene;
+    double from[3], to[3], t[2] = {0, 1};
+    value_ray_at(plan, ray, slab, from);
+    value_ray_at(plan, ray, slab + 1, to);
+    for (int n = 0; n < 3; n++) {
+        bool single = plan->dims[n] == 1;
+        double low = single ? -0.5 : 0;
+        double high = single ? 0.5 : (double)plan->dims[n] - 1;
+        if (scene->cropped && !single) {
+            low = fmax(low, scene->keep[plan->axis[n]][0]);
+            high = fmin(high, scene->keep[plan->axis[n]][1]);
+        }
+        keep_below(from[n], to[n], high, t);
+        keep_below(-from[n], -to[n], -low, t);
+    }
+    for (size_t n = 0; n < scene->clip_count; n++)
+        keep_below(height_of(plan, from, scene->clips[n]),
+                   height_of(plan, to, scene->clips[n]), scene->clips[n][3], t);
+    for (int n = 0; n < 2; n++)
+        part[n] = (int)floor(32768 * fmin(fmax(t[n], -1), 2) + 0.5);
+    return part[1] > part[0];
+}
+
+/* --- light ------------------------------------------------------------------
+ */
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static double normalise(double a[3]) {
+    double length = sqrt(dot(a, a));
+    if (length > 0)
+        for (int n = 0; n < 3; n++)
+            a[n] /= length;
+    return length;
+}
+
+/* A direction in the frame of the camera. */
+static void from_camera(const value_plan *plan, double azimuth,
+                        double elevation, double light[3]) {
+    const reference_camera *c = &plan->camera;
+    double a = azimuth * acos(-1.0) / 180, e = elevation * acos(-1.0) / 180;
+    for (int n = 0; n < 3; n++)
+        light[n] = cos(e) * (cos(a) * c->back[n] + sin(a) * c->right[n]) +
+                   sin(e) * c->up[n];
+}
+
+/* Adds what one light gives; `n` is turned to the viewer. */
+static void add_light(const value_plan *plan, const double n[3],
+                      const double eye[3], const double light[3], double share,
+                      double lit[2]) {
+    const snow_settings *s = &plan->scene->base.settings;
+    double half[3], diffuse = dot(n, light);
+    if (!(diffuse > 0))
+        return;
+    for (int c = 0; c < 3; c++)
+        half[c] = light[c] + eye[c];
+    normalise(half);
+    lit[0] += share * s->diffuse * fmin(1, diffuse);
+    lit[1] +=
+        share * s->specular * pow(fmin(1, fmax(0, dot(n, half))), s->shininess);
+}
+
+/* Ambient and diffuse light, and the specular one, of a normal. */
+static void light_on(const value_plan *plan, const double n[3],
+                     const double eye[3], double lit[2]) {
+    const snow_settings *s = &plan->scene->base.settings;
+    double light[3];
+    lit[0] = s->ambient;
+    lit[1] = 0;
+    if (plan->scene->key_light) {
+        from_camera(plan, -25, 35, light);
+        add_light(plan, n, eye, light, 0.65, lit);
+        add_light(plan, n, eye, eye, 0.35, lit);
+    } else if (s->light_azimuth == 0 && s->light_elevation == 0) {
+        add_light(plan, n, eye, eye, 1, lit);
+    } else {
+        from_camera(plan, s->light_azimuth, s->light_elevation, light);
+        add_light(plan, n, eye, light, 1, lit);
+    }
+}
+
+void value_shade(const value_plan *plan, const value_ray *ray,
+                 const double gradient[3], double rgba[4]) {
+    const reference_scene *scene = &plan->scene->base;
+    double inverse[3][3], n[3] = {0}, eye[3] = {0}, lit[2];
+    reference_inverse(scene->info.matrix, inverse);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
+            n[r] += inverse[plan->axis[c]][r] * gradient[c];
+            eye[r] += scene->info.matrix[r][plan->axis[c]] * ray->eye[c];
+        }
+    lit[0] = scene->settings.ambient;
+    lit[1] = 0;
+    if (normalise(n) > 0) {
+        double side = dot(n, eye) < 0 ? -1 : 1;
+        for (int c = 0; c < 3; c++)
+            n[c] *= side;
+        light_on(plan, n, eye, lit);
+    }
+    for (int c = 0; c < 3; c++)
+        rgba[c] = fmin(rgba[3], rgba[c] * lit[0] + rgba[3] * lit[1]);
+}
+
+void value_lengthen(double rgba[4], double share) {
+    if (share == 1 || !(rgba[3] > 0))
+        return;
+    double alpha = 1 - pow(1 - fmin(1, rgba[3]), share);
+    for (int c = 0; c < 3; c++)
+        rgba[c] *= alpha / rgba[3];
+    rgba[3] = alpha;
+}
+
+void value_fade(const value_plan *plan, const double gradient[3],
+                double rgba[4]) {
+    const reference_scene *scene = &plan->scene->base;
+    double native[3], factor;
+    if (!scene->gradient_count)
+        return;
+    for (int n = 0; n < 3; n++)
+        native[plan->axis[n]] = gradient[n] / 2 * (plan->high - plan->low) /
+                                VALUE_MOST / scene->info.slope;
+    factor = reference_fade(scene, native);
+    double share = plan->path / reference_opacity_length(scene);
+    if (!plan->plain_fade)
+        value_lengthen(rgba, 1 / share);
+    for (int c = 0; c < 4; c++)
+        rgba[c] *= factor;
+    if (!plan->plain_fade)
+        value_lengthen(rgba, share);
+}
