@@ -4,7 +4,7 @@
 #include "base/record.h"
 #include "classify/gradient_opacity.h"
 #include "parallel/internal.h"
-#include "parallel/open.h"
+#include "parallel/part.h"
 #include "volume/volume.h"
 
 #include <math.h>

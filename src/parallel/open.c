@@ -16,20 +16,14 @@
 
 #include "base/record.h"
 #include "classify/gradient_opacity.h"
-#include "comm/comm.h"
-#include "decompose/box.h"
 #include "decompose/slab.h"
+#include "parallel/part.h"
 #include "transfer/look.h"
 #include "volume/mask.h"
 #include "volume/volume.h"
 
 #include <math.h>
 #include <string.h>
-
-/* A rank's box, and with its ghosts. */
-typedef struct place {
-    snow_box owned, stored;
-} place;
 
 /* A file that many open. */
 typedef struct opening {
@@ -41,142 +35,12 @@ typedef struct opening {
     snow_volume_options options;
     snow_volume_info whole; /* of what the options ask for */
     snow_look look;
-    const snow_transfer *transfer; /* in the place of the look's, or NULL */
+    const snow_transfer
+        *transfer; /* in the snow_part_place of the look's, or NULL */
 } opening;
 
-static snow_box whole_box(const snow_volume_info *whole) {
-    snow_box box = {{0, 0, 0}, {0, 0, 0}};
-    memcpy(box.count, whole->dims, sizeof box.count);
-    return box;
-}
-
-/* A rank without voxels stores one, since a volume has at least one. */
-static place place_box(const snow_volume_info *whole, const snow_box *owned,
-                       const int64_t layers[3]) {
-    place p = {{{0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {1, 1, 1}}};
-    if (!snow_box_voxels(owned))
-        return p;
-    p.owned = *owned;
-    for (int i = 0; i < 3; i++) {
-        int64_t first = owned->first[i], end = first + owned->count[i];
-        int64_t most = whole->dims[i] - end;
-        p.stored.first[i] = first > layers[i] ? first - layers[i] : 0;
-        end += layers[i] < most ? layers[i] : most;
-        p.stored.count[i] = end - p.stored.first[i];
-    }
-    return p;
-}
-
-static snow_status set_part(snow_volume *volume, const snow_volume_info *whole,
-                            const place *p) {
-    snow_extent part = {.size = sizeof part};
-    memcpy(part.dims, whole->dims, sizeof part.dims);
-    memcpy(part.stored, p->stored.first, sizeof part.stored);
-    memcpy(part.first, p->owned.first, sizeof part.first);
-    memcpy(part.count, p->owned.count, sizeof part.count);
-    SNOW_TRY(snow_volume_set_extent(volume, &part));
-    return snow_volume_set_whole(volume, whole);
-}
-
-/* Room for a part; voxels that nobody sends are 0. */
-static snow_status make_part(snow_context *context,
-                             const snow_volume_info *whole, const place *p,
-                             snow_volume **out) {
-    snow_volume *volume;
-    snow_volume_info info =
-        snow_volume_info_of_box(whole, p->stored.first, p->stored.count);
-    SNOW_TRY(snow_volume_new(context, &info, &volume));
-    if (!snow_box_voxels(&p->owned))
-        memset(volume->owned, 0, snow_type_size(info.type));
-    snow_status status = set_part(volume, whole, p);
-    if (status == SNOW_STATUS_OK)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
-}
-
-/* --- voxels that change hands --------------------------------------------- */
-
-/* What a volume answers for, as it lies in memory. */
-static snow_brick brick_of(const snow_volume *volume) {
-    snow_extent part;
-    const int64_t *dims = volume->info.dims;
-    size_t size = snow_type_size(volume->info.type);
-    snow_volume_find_extent(volume, &part);
-    snow_brick brick = {.stride = {1, dims[0], dims[0] * dims[1]}};
-    int64_t at = 0;
-    for (int i = 0; i < 3; i++) {
-        brick.box.first[i] = part.first[i];
-        brick.box.count[i] = part.count[i];
-        at += (part.first[i] - part.stored[i]) * brick.stride[i];
-    }
-    brick.voxels = volume->voxels;
-    if (snow_box_voxels(&brick.box))
-        brick.voxels = (const char *)volume->voxels + (size_t)at * size;
-    return brick;
-}
-
-/* Collective.  Fills the part `to` from the parts that all ranks hold. */
-static snow_status move_voxels(snow_comm *comm, const snow_volume *from,
-                               const place *p, snow_volume *to) {
-    static const snow_box nothing;
-    snow_voxels *voxels = NULL;
-    const snow_brick held = brick_of(from);
-    bool any = snow_box_voxels(&p->owned) > 0;
-    snow_status status =
-        snow_comm_agree_status(comm, snow_voxels_new(comm, &voxels));
-    if (status == SNOW_STATUS_OK)
-        status =
-            snow_voxels_plan(voxels, &held.box, 1, any ? &p->stored : &nothing);
-    if (status == SNOW_STATUS_OK)
-        status = snow_voxels_move(voxels, &held,
-                                  snow_type_size(from->info.type), to->owned);
-    snow_voxels_free(voxels);
-    return status;
-}
-
-/* Collective.  Voxels that all ranks hold go where the boxes say. */
-static snow_status send_share(snow_comm *comm, const snow_volume_info *whole,
-                              const snow_partition_params *order,
-                              const snow_box *boxes, const snow_volume *held,
-                              snow_volume **out) {
-    snow_volume *volume = NULL;
-    place p = place_box(whole, &boxes[snow_comm_rank(comm)], order->layers);
-    snow_status status = snow_comm_agree_status(
-        comm, make_part(snow_comm_context(comm), whole, &p, &volume));
-    if (status == SNOW_STATUS_OK)
-        status = move_voxels(comm, held, &p, volume);
-    if (status == SNOW_STATUS_OK)
-        *out = volume;
-    else
-        snow_volume_close(volume);
-    return status;
-}
-
-/* Collective.  Cuts what all ranks hold as the order says. */
-static snow_status distribute(snow_comm *comm, const snow_volume_info *whole,
-                              const snow_partition_params *order,
-                              const snow_volume *held,
-                              const snow_transfer *transfer,
-                              snow_volume **out) {
-    snow_context *context = snow_comm_context(comm);
-    snow_box *boxes =
-        snow_allocate_array(context, (uint64_t)order->ranks, sizeof *boxes);
-    snow_status status = snow_comm_agree_status(
-        comm, boxes ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
-    if (status == SNOW_STATUS_OK)
-        status = snow_partition_boxes(comm, order, held, transfer, boxes, NULL);
-    if (status == SNOW_STATUS_OK)
-        status = send_share(comm, whole, order, boxes, held, out);
-    snow_release(context, boxes);
-    return status;
-}
-
-/* --- files ---------------------------------------------------------------- */
-
 /* Opens a box of what the options ask for, which is a box itself perhaps. */
-static snow_status read_box(const opening *o, const place *p,
+static snow_status read_box(const opening *o, const snow_part_place *p,
                             snow_volume **out) {
     snow_volume_options options = o->options;
     snow_volume_info info;
@@ -186,7 +50,7 @@ static snow_status read_box(const opening *o, const place *p,
         options.crop[i][1] = options.crop[i][0] + p->stored.count[i];
     }
     SNOW_TRY(o->open(o->context, o->path, &options, &info, &volume));
-    snow_status status = set_part(volume, &o->whole, p);
+    snow_status status = snow_part_set(volume, &o->whole, p);
     if (status == SNOW_STATUS_OK)
         *out = volume;
     else
@@ -197,7 +61,7 @@ static snow_status read_box(const opening *o, const place *p,
 /* Equal runs of slices, or, with more ranks than slices, of each slice's rows;
  * those of the last ranks may be empty. */
 static snow_box share_of(const snow_volume_info *whole, int rank, int ranks) {
-    snow_box box = whole_box(whole);
+    snow_box box = {{0, 0, 0}, {whole->dims[0], 0, 0}};
     int slabs = ranks < whole->dims[2] ? ranks : (int)whole->dims[2];
     int parts = ranks / slabs;
     snow_slab z = {0, 0}, y = {0, 0};
@@ -284,12 +148,12 @@ static snow_status read_share(const opening *o, bool stream,
     int ranks = snow_comm_size(o->comm), rank = snow_comm_rank(o->comm);
     snow_box box = stream ? (snow_box){{0, 0, 0}, {0, 0, 0}}
                           : share_of(&o->whole, rank, ranks);
-    place p = place_box(&o->whole, &box, no_layers);
+    snow_part_place p = snow_part_place_of(&o->whole, &box, no_layers);
     snow_status status = SNOW_STATUS_OK;
     if (!*share)
         status = snow_box_voxels(&box)
                      ? read_box(o, &p, share)
-                     : make_part(o->context, &o->whole, &p, share);
+                     : snow_part_new(o->context, &o->whole, &p, share);
     return snow_comm_agree_status(o->comm, status);
 }
 
@@ -336,11 +200,11 @@ static snow_status open_equal(const opening *o,
     snow_status status = SNOW_STATUS_NO_MEMORY;
     if (boxes) {
         snow_partition_equal(&order->grid, order->ranks, boxes);
-        place p = place_box(&o->whole, &boxes[snow_comm_rank(o->comm)],
-                            order->layers);
+        snow_part_place p = snow_part_place_of(
+            &o->whole, &boxes[snow_comm_rank(o->comm)], order->layers);
         status = snow_box_voxels(&p.owned)
                      ? read_box(o, &p, volume)
-                     : make_part(o->context, &o->whole, &p, volume);
+                     : snow_part_new(o->context, &o->whole, &p, volume);
     }
     snow_release(o->context, boxes);
     SNOW_TRY(snow_comm_agree_status(o->comm, status));
@@ -362,8 +226,8 @@ static snow_status open_shares(const opening *o,
         *share = NULL;
         return SNOW_STATUS_OK;
     }
-    return distribute(o->comm, &o->whole, order, *share,
-                      o->transfer ? o->transfer : *transfer, volume);
+    return snow_part_cut(o->comm, &o->whole, order, *share,
+                         o->transfer ? o->transfer : *transfer, volume);
 }
 
 /* What is there when it fails is freed by the caller. */
@@ -432,68 +296,4 @@ snow_status snow_ranks_new_transfer(snow_comm *comm, const snow_volume *volume,
                                     const snow_look *look,
                                     snow_transfer **out) {
     return snow_transfer_new_for_ranks(comm, volume, look, out);
-}
-
-/* --- other views ---------------------------------------------------------- */
-
-static bool is_border(const snow_partition_params *order, int64_t slice) {
-    for (int64_t n = 0; n <= order->grid.count && order->grid.borders; n++)
-        if (order->borders[n] == slice)
-            return true;
-    return !order->grid.borders;
-}
-
-bool snow_part_serves(const snow_volume *volume,
-                      const snow_partition_params *order) {
-    snow_extent part;
-    snow_volume_find_extent(volume, &part);
-    int axis = order->grid.axis;
-    if (!part.count[0] || !part.count[1] || !part.count[2])
-        return true;
-    for (int i = 0; i < 3; i++) {
-        int64_t below = part.first[i] - part.stored[i];
-        int64_t end = part.first[i] + part.count[i];
-        int64_t above = part.stored[i] + volume->info.dims[i] - end;
-        if ((below < order->layers[i] && part.stored[i] > 0) ||
-            (above < order->layers[i] && end + above < part.dims[i]))
-            return false;
-        if (order->slabs_only && i != axis && part.count[i] != part.dims[i])
-            return false;
-    }
-    return is_border(order, part.first[axis]) &&
-           is_border(order, part.first[axis] + part.count[axis]);
-}
-
-snow_status
-snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
-                      const snow_partition_params *order, const snow_box *boxes,
-                      const snow_transfer *transfer, snow_volume **volume) {
-    snow_volume *recut;
-    SNOW_TRY(boxes ? send_share(comm, whole, order, boxes, *volume, &recut)
-                   : distribute(comm, whole, order, *volume, transfer, &recut));
-    snow_volume_close(*volume);
-    *volume = recut;
-    return SNOW_STATUS_OK;
-}
-
-snow_status
-snow_ranks_repartition(snow_comm *comm, const snow_transfer *transfer,
-                       const snow_view *view, const snow_settings *settings,
-                       const snow_ranks_options *how, snow_volume **volume) {
-    snow_volume_info whole;
-    snow_partition_params order;
-    snow_volume_whole(*volume, &whole);
-    snow_status status = snow_partition_params_make(
-        snow_comm_context(comm), &whole, view, settings, how,
-        snow_transfer_has_gradient_opacity(transfer), snow_comm_size(comm),
-        &order);
-    /* One round: 0, all serve; 1, some do not; 2, some failed. */
-    int64_t worst =
-        status != SNOW_STATUS_OK ? 2 : !snow_part_serves(*volume, &order);
-    SNOW_TRY(snow_comm_reduce_ints(comm, &worst, 1, SNOW_MAX));
-    if (worst == 0)
-        return SNOW_STATUS_OK;
-    if (worst == 2)
-        return snow_comm_agree_status(comm, status);
-    return snow_ranks_distribute(comm, &whole, &order, NULL, transfer, volume);
 }

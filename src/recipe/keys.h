@@ -20,10 +20,14 @@ typedef bool key_read(const recipe_key *key, const json_t *value, void *field,
 /* The value of a field, a new reference; NULL to omit the key. */
 typedef json_t *key_write(const recipe_key *key, const void *field);
 
-struct recipe_key {
-    const char *name;
+typedef struct recipe_kind {
     key_read *read;
     key_write *write;
+} recipe_kind;
+
+struct recipe_key {
+    const char *name;
+    const recipe_kind *kind;
     size_t field;     /* offset in snow_recipe */
     double low, high; /* of numbers; both 0: any finite number */
     int count;        /* of arrays */

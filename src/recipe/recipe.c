@@ -45,7 +45,7 @@ static snow_status take_key(snow_context *context, const char *source,
                                  "%s: \"%.64s\" is not a key of a recipe; use "
                                  "the tool's long options without dashes",
                                  source, name);
-    if (key->read(key, value, (char *)out + key->field, wrong))
+    if (key->kind->read(key, value, (char *)out + key->field, wrong))
         return SNOW_STATUS_OK;
     return snow_context_fail(context, SNOW_STATUS_BAD_INPUT, "%s: \"%s\" %s",
                              source, name, wrong);
@@ -144,7 +144,8 @@ snow_status snow_recipe_write(snow_context *context, const snow_recipe *given,
     json_t *tree = json_object();
     int failed = tree == NULL;
     for (const recipe_key *key = recipe_keys; key->name && !failed; key++) {
-        json_t *value = key->write(key, (const char *)&recipe + key->field);
+        json_t *value =
+            key->kind->write(key, (const char *)&recipe + key->field);
         if (value)
             failed = json_object_set_new(tree, key->name, value);
     }

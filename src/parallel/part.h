@@ -1,0 +1,44 @@
+/* parallel/part.h - a rank's part of a volume. */
+#ifndef SNOW_PARALLEL_PART_H
+#define SNOW_PARALLEL_PART_H
+
+#include "decompose/box.h"
+#include "parallel/partition.h"
+
+/* A rank's box, and with its ghosts. */
+typedef struct snow_part_place {
+    snow_box owned, stored;
+} snow_part_place;
+
+/* A rank without voxels stores one, since a volume has at least one. */
+snow_part_place snow_part_place_of(const snow_volume_info *whole,
+                                   const snow_box *owned,
+                                   const int64_t layers[3]);
+
+/* Makes a volume the part of a whole. */
+snow_status snow_part_set(snow_volume *volume, const snow_volume_info *whole,
+                          const snow_part_place *place);
+
+/* Room for a part; voxels that nobody sends are 0. */
+snow_status snow_part_new(snow_context *context, const snow_volume_info *whole,
+                          const snow_part_place *place, snow_volume **out);
+
+/* Collective.  Cuts what all ranks hold as the order says. */
+snow_status snow_part_cut(snow_comm *comm, const snow_volume_info *whole,
+                          const snow_partition_params *order,
+                          const snow_volume *held,
+                          const snow_transfer *transfer, snow_volume **out);
+
+/* Whether this rank's part gives its share of a picture. */
+bool snow_part_serves(const snow_volume *volume,
+                      const snow_partition_params *order);
+
+/* Collective.  Voxels of the whole, of which all ranks hold a part, go where
+ * the boxes say; NULL: where the order says.  *volume is closed and replaced,
+ * unless it fails. */
+snow_status
+snow_ranks_distribute(snow_comm *comm, const snow_volume_info *whole,
+                      const snow_partition_params *order, const snow_box *boxes,
+                      const snow_transfer *transfer, snow_volume **volume);
+
+#endif

@@ -1,0 +1,81 @@
+/* recipe/names.c - texts, and names of values. */
+#include "recipe/kinds.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static bool read_text(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    (void)key;
+    const char *text = json_string_value(value);
+    if (!text)
+        return recipe_refuse(wrong, "a text");
+    *(const char **)field = text;
+    return true;
+}
+
+static json_t *write_text(const recipe_key *key, const void *field) {
+    (void)key;
+    const char *text = *(const char *const *)field;
+    return text ? json_string(text) : NULL;
+}
+
+/* Labels of a mask, stored as text. */
+static bool read_labels(const recipe_key *key, const json_t *value, void *field,
+                        char wrong[WRONG_BYTES]) {
+    snow_label_range ranges[SNOW_LABELS_MAX];
+    size_t count;
+    const char *text = json_string_value(value);
+    if (!text || !snow_labels_parse(text, ranges, SNOW_LABELS_MAX, &count))
+        return recipe_refuse(wrong,
+                             "a text of whole numbers and ranges such as "
+                             "\"1,4-7\"");
+    return read_text(key, value, field, wrong);
+}
+
+/* Lists names, "a, b or c", after "must be ". */
+static bool refuse_name(const recipe_key *key, char wrong[WRONG_BYTES]) {
+    size_t at = (size_t)snprintf(wrong, WRONG_BYTES, "must be one of");
+    for (int i = 0; key->name_of(i) && at < WRONG_BYTES; i++)
+        at += (size_t)snprintf(wrong + at, WRONG_BYTES - at, "%s %s",
+                               i ? "," : "", key->name_of(i));
+    return false;
+}
+
+/* A text that must be a known name; it is stored as text. */
+static bool read_known(const recipe_key *key, const json_t *value, void *field,
+                       char wrong[WRONG_BYTES]) {
+    const char *text = json_string_value(value);
+    if (!text || key->named(text) < 0)
+        return refuse_name(key, wrong);
+    return read_text(key, value, field, wrong);
+}
+
+/* The value of a name: all enumerations here are as wide as an int. */
+static bool read_name(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    const char *text = json_string_value(value);
+    int named = text ? key->named(text) : -1;
+    if (named < 0)
+        return refuse_name(key, wrong);
+    memcpy(field, &named, sizeof named);
+    return true;
+}
+
+static json_t *write_name(const recipe_key *key, const void *field) {
+    int value;
+    memcpy(&value, field, sizeof value);
+    return json_string(key->name_of(value));
+}
+
+static json_t *write_told_name(const recipe_key *key, const void *field) {
+    int value;
+    memcpy(&value, field, sizeof value);
+    return value ? json_string(key->name_of(value)) : NULL;
+}
+
+const recipe_kind recipe_text = {read_text, write_text};
+const recipe_kind recipe_labels = {read_labels, write_text};
+const recipe_kind recipe_known = {read_known, write_text};
+const recipe_kind recipe_name = {read_name, write_name};
+const recipe_kind recipe_given_name = {read_name, write_told_name};

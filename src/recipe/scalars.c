@@ -1,0 +1,98 @@
+/* recipe/scalars.c - numbers and flags. */
+#include "recipe/kinds.h"
+
+#include <math.h>
+#include <stdio.h>
+
+bool recipe_refuse(char wrong[WRONG_BYTES], const char *text) {
+    snprintf(wrong, WRONG_BYTES, "must be %s", text);
+    return false;
+}
+
+static bool refuse_range(const recipe_key *key, char wrong[WRONG_BYTES],
+                         const char *what) {
+    if (key->low == 0 && key->high == 0)
+        snprintf(wrong, WRONG_BYTES, "must be %s", what);
+    else
+        snprintf(wrong, WRONG_BYTES, "must be %s from %.17g to %.17g", what,
+                 key->low, key->high);
+    return false;
+}
+
+static bool in_range(const recipe_key *key, double value) {
+    return isfinite(value) && ((key->low == 0 && key->high == 0) ||
+                               (value >= key->low && value <= key->high));
+}
+
+bool recipe_read_real(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    double number = json_number_value(value);
+    if (!json_is_number(value) || !in_range(key, number))
+        return refuse_range(key, wrong, "a number");
+    *(double *)field = number;
+    return true;
+}
+
+json_t *recipe_write_real(const recipe_key *key, const void *field) {
+    (void)key;
+    return json_real(*(const double *)field);
+}
+
+bool recipe_read_whole(const recipe_key *key, const json_t *value, int64_t *out,
+                       char wrong[WRONG_BYTES]) {
+    json_int_t number = json_integer_value(value);
+    if (!json_is_integer(value) || !in_range(key, (double)number))
+        return refuse_range(key, wrong, "a whole number");
+    *out = number;
+    return true;
+}
+
+bool recipe_read_int(const recipe_key *key, const json_t *value, void *field,
+                     char wrong[WRONG_BYTES]) {
+    int64_t number;
+    if (!recipe_read_whole(key, value, &number, wrong))
+        return false;
+    *(int *)field = (int)number;
+    return true;
+}
+
+static json_t *write_int(const recipe_key *key, const void *field) {
+    (void)key;
+    return json_integer(*(const int *)field);
+}
+
+/* A number that is omitted if it is 0. */
+json_t *recipe_write_given_int(const recipe_key *key, const void *field) {
+    return *(const int *)field ? write_int(key, field) : NULL;
+}
+
+/* int64_t and, for numbers from 0 on, uint64_t. */
+static bool read_long(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    return recipe_read_whole(key, value, field, wrong);
+}
+
+static json_t *write_told_long(const recipe_key *key, const void *field) {
+    (void)key;
+    int64_t value = *(const int64_t *)field;
+    return value ? json_integer(value) : NULL;
+}
+
+static bool read_flag(const recipe_key *key, const json_t *value, void *field,
+                      char wrong[WRONG_BYTES]) {
+    (void)key;
+    if (!json_is_boolean(value))
+        return recipe_refuse(wrong, "true or false");
+    *(bool *)field = json_is_true(value);
+    return true;
+}
+
+static json_t *write_flag(const recipe_key *key, const void *field) {
+    (void)key;
+    return *(const bool *)field ? json_true() : NULL;
+}
+
+const recipe_kind recipe_real = {recipe_read_real, recipe_write_real};
+const recipe_kind recipe_int = {recipe_read_int, recipe_write_given_int};
+const recipe_kind recipe_long = {read_long, write_told_long};
+const recipe_kind recipe_flag = {read_flag, write_flag};
