@@ -112,7 +112,8 @@ static double fraction_of(const snow_monitor *monitor, snow_stage stage,
 
 void snow_monitor_report(snow_monitor *monitor, snow_stage stage, double done,
                          double all) {
-    if (!monitor || !monitor->context->progress)
+    if (!monitor || !monitor->context->progress ||
+        atomic_load_explicit(&monitor->stopped, memory_order_relaxed))
         return;
     double now = snow_seconds();
     if (now >= monitor->context->progress_due)

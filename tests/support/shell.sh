@@ -113,6 +113,16 @@ need_modules() {
     exit 77
 }
 
+# await PATTERN FILE: until a line of the file matches; fails after minutes.
+await() {
+    local i
+    for i in $(seq 6000); do
+        grep -Eqs -- "$1" "$2" && return 0
+        sleep 0.02
+    done
+    return 1
+}
+
 absent() { [ ! -e "$1" ]; }
 
 # number KEY: the number that follows "KEY": in the JSON of $OUT.

@@ -224,9 +224,15 @@ check "PNG and JSON keep apart" grep -q '"checksum"' figures.json
 
 # Interruption: no picture, nothing aside, 130.
 for signal in TERM INT; do
-    run 130 "SIG$signal while rendering" timeout --preserve-status \
-        -s $signal 1 "$TOOL" phantom:head --dims 500x500x500 -s 4000x4000 \
-        --method original --footprint 9 -o late.png
+    set -m # else a job would ignore SIGINT
+    "$TOOL" phantom:head --dims 200x200x200 -s 4000x4000 --progress always \
+        --method original --footprint 9 -o late.png 2>stages &
+    job=$!
+    set +m
+    await rendering stages
+    kill -$signal $job
+    wait $job
+    check "SIG$signal while rendering" [ $? -eq 130 ]
     check "leaves nothing" [ -z "$(ls -A | grep late)" ]
 done
 
@@ -234,31 +240,35 @@ done
 "$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
     -o large.png 2>stages &
 job=$!
-for _ in $(seq 600); do
-    grep -q writing stages && break
-    sleep 0.05
-done
+await writing stages
 kill -TERM $job
 wait $job
 check "SIGTERM while writing ends as usual" [ $? -eq 0 ]
 check "with a whole picture" is_png large.png
-"$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 --progress always \
-    -o second.png 2>stages &
-job=$!
-for _ in $(seq 600); do
-    grep -q writing stages && break
-    sleep 0.05
+# Where this script comes too late, the picture is whole: then once more.
+for _ in $(seq 20); do
+    "$TOOL" phantom:cube --dims 8x8x8 -s 4000x4000 --bits 16 -y \
+        --progress always -o second.png 2>stages &
+    job=$!
+    await writing stages
+    kill -TERM $job
+    kill -HUP $job
+    wait $job
+    code=$?
+    [ $code -eq 0 ] && is_png second.png || break
+    rm second.png
 done
-kill -TERM $job
-kill -HUP $job
-wait $job
-check "a second signal ends the writing at once" [ $? -eq 130 ]
+check "a second signal ends the writing at once" [ $code -eq 130 ]
 check "and leaves no picture" absent second.png
 rm -f .second.png.snow-*
 mkfifo pipe.png
-run 130 "SIGTERM while a pipe waits for its reader" timeout \
-    --preserve-status -s TERM 3 "$TOOL" phantom:cube --dims 8x8x8 -s 9x9 \
-    -o pipe.png
+"$TOOL" phantom:cube --dims 8x8x8 -s 9x9 --progress always -o pipe.png 2>stages &
+job=$!
+await writing stages
+sleep 0.2 # for the pipe to be opened; a signal before ends the tool as well
+kill -TERM $job
+wait $job
+check "SIGTERM while a pipe waits for its reader" [ $? -eq 130 ]
 
 # At any moment: 130 and no picture, or 0 and a whole one.
 broken=0 early=0

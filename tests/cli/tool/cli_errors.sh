@@ -104,11 +104,12 @@ check "nothing is left aside" [ -z "$(find . -name '*.snow-*')" ]
 # What comes into being while the picture is made is kept: the picture goes to
 # a pipe, and the figures' place is taken before the pipe is read.
 mkfifo slow.png
-render -q -o slow.png --stats raced.json 2>"$ERR" &
+render --progress always -o slow.png --stats raced.json 2>"$ERR" &
 job=$!
-sleep 0.5
+await writing "$ERR" || fail "a picture waits for its pipe"
 echo precious >raced.json
 timeout 60 cat slow.png >"$OUT"
+check "a picture through a pipe is whole" is_png "$OUT"
 wait $job
 check "figures whose place was taken meanwhile are refused" [ $? -eq 4 ]
 NAME="they"
