@@ -18,15 +18,18 @@ typedef struct snow_frame snow_frame;
 /* How voxels reach the picture. */
 typedef enum snow_method {
     SNOW_METHOD_AUTO = 0,
-    SNOW_METHOD_ORIGINAL,  /* every voxel, no sparse matrix, whatever the
-                               threshold: the baseline */
-    SNOW_METHOD_TESTED,    /* as original, but each voxel's opacity is tested
-                              against the threshold first: the honest one */
-    SNOW_METHOD_FOOTPRINT, /* interesting voxels only, through an encoding;
-                              each onto the image itself: the exact one */
-    SNOW_METHOD_SHEAR_WARP /* interesting voxels only; slices are splatted and
+    SNOW_METHOD_ORIGINAL,   /* every voxel, no sparse matrix, whatever the
+                                threshold: the baseline */
+    SNOW_METHOD_TESTED,     /* as original, but each voxel's opacity is tested
+                               against the threshold first: the honest one */
+    SNOW_METHOD_FOOTPRINT,  /* interesting voxels only, through an encoding;
+                               each onto the image itself: the exact one */
+    SNOW_METHOD_SHEAR_WARP, /* interesting voxels only; slices are splatted and
                            composited on their own grid, sheared, and the
                            result is warped to the image once: the fast one */
+    SNOW_METHOD_RAYCAST /* values are interpolated along each ray and coloured
+                           after: the truth that the others are held against,
+                           and slow.  One process, all voxels in memory */
 } snow_method;
 
 /* How the places of interesting voxels are written: section 3.2. */
@@ -45,7 +48,9 @@ typedef enum snow_kernel {
     SNOW_KERNEL_BOX
 } snow_kernel;
 
-/* How much work the sheared method puts into a picture. */
+/* How much work the sheared method puts into a picture; by raycast the longest
+ * step of a ray: 1/4 (normal), 1/2 (draft), 1/16 (high) of the smallest
+ * spacing. */
 typedef enum snow_quality {
     SNOW_QUALITY_NORMAL = 0, /* two intermediate pixels a voxel, one where
                                 pixels are wide */
@@ -95,7 +100,10 @@ typedef struct snow_settings {
     snow_encoding encoding; /* (auto) */
     snow_kernel kernel;     /* (bspline) */
     int footprint;          /* support in voxels, 2 to 9; 0: the kernel's
-                               own, 2 for tent and box, else 4 (0) */
+                               own, 2 for tent and box, else 4 (0).  Raycast
+                               takes the tent for bspline and 0, and knows no
+                               other kernels than the tent of 2 and the
+                               B-spline of 4 */
     double opacity_length;  /* world length that an opacity is for; 0: the
                                smallest voxel spacing (0) */
     snow_shade shade;       /* (phong) */

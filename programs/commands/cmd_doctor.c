@@ -24,8 +24,9 @@ static const char *kernel_at(size_t i) {
  * paper's tables. */
 static const char *method_at(size_t i) {
     static const snow_method methods[] = {
-        SNOW_METHOD_ORIGINAL, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_SHEAR_WARP};
-    return i < 3 ? snow_method_name(methods[i]) : NULL;
+        SNOW_METHOD_ORIGINAL, SNOW_METHOD_FOOTPRINT, SNOW_METHOD_SHEAR_WARP,
+        SNOW_METHOD_RAYCAST};
+    return i < 4 ? snow_method_name(methods[i]) : NULL;
 }
 
 static const char *mode_at(size_t i) {

@@ -156,6 +156,15 @@ static int opacity_length(const options *asked, const snow_volume_info *info,
                       info->unit);
 }
 
+/* A kernel that was asked for has its own size; the default one is raycast's to
+ * choose. */
+static int find_footprint(const options *asked) {
+    bool cubic = strcmp(asked->method, "raycast") == 0 &&
+                 strcmp(asked->kernel, "bspline") == 0 &&
+                 options_given(asked, "kernel");
+    return cubic && !asked->footprint ? 4 : (int)asked->footprint;
+}
+
 /* The option table has checked the words, so the library knows every name. */
 void fill_settings(const options *asked, snow_settings *out) {
     snow_settings_init(out);
@@ -163,7 +172,7 @@ void fill_settings(const options *asked, snow_settings *out) {
     out->method = (snow_method)snow_method_from_name(asked->method);
     out->encoding = (snow_encoding)snow_encoding_from_name(asked->encoding);
     out->kernel = (snow_kernel)snow_kernel_from_name(asked->kernel);
-    out->footprint = (int)asked->footprint;
+    out->footprint = find_footprint(asked);
     out->shade =
         strcmp(asked->shade, "none") == 0 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
     out->ambient = asked->ambient;

@@ -80,14 +80,17 @@ const option_row option_table[] = {
     {"encoding", 0, "auto|crs|bitmap|rle", TOPIC_SPARSE, RENDER, read_choice,
      FIELD(encoding), 0, 0, "",
      "how the positions of interesting voxels are stored (default auto)"},
-    {"method", 0, "auto|original|footprint|shear-warp", TOPIC_SPARSE, RENDER,
+    {"method", 0, "auto|original|footprint|shear-warp|raycast", TOPIC_SPARSE, RENDER,
      read_method, FIELD(method), 0, 0, "",
      "rendering method. shear-warp: the fastest; sheared is its old name; "
      "footprint: splats interesting voxels straight onto the picture; "
-     "original: the same with every voxel (default auto: shear-warp)"},
+     "original: the same with every voxel; raycast: interpolates values along "
+     "each ray and colours them after, slow, the truth that the others are "
+     "held against (default auto: shear-warp)"},
 
     {"kernel", 0, "tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
-     FIELD(kernel), 0, 0, "", "reconstruction kernel (default bspline)"},
+     FIELD(kernel), 0, 0, "", "reconstruction kernel; method raycast takes tent and bspline (default "
+     "bspline; tent with raycast)"},
     {"footprint", 0, "K", TOPIC_KERNEL, RENDER, read_integer, FIELD(footprint),
      2, 9, "",
      "support of the kernel in voxels, 2 to 9 (default 2 for tent and box, "
@@ -143,8 +146,9 @@ const option_row option_table[] = {
     {"quality", 0, "draft|normal|high", TOPIC_QUALITY, RENDER, read_choice,
      FIELD(quality), 0, 0, "",
      "draft: one intermediate pixel per voxel and linear filters; normal: two "
-     "pixels and cubic filters; high: also interpolates between slices; "
-     "affects method shear-warp (default normal)"},
+     "pixels and cubic filters; high: also interpolates between slices. With "
+     "method raycast: steps of 1/2, 1/4 or 1/16 voxel. The other methods have "
+     "one quality (default normal)"},
 
     {"view", 0, "NAME", TOPIC_CAMERA, RENDER, read_view, FIELD(view), 0, 0, "",
      "side that the camera is on (default anterior for a file with a medical "

@@ -37,7 +37,8 @@ static double shear_warp_bytes(const options *asked, double value_bytes) {
 /* Bytes of an interesting voxel, without the arrays that all voxels share. */
 static double encoded_bytes(const options *asked,
                             const snow_volume_info *info) {
-    if (strcmp(asked->method, "original") == 0)
+    if (strcmp(asked->method, "original") == 0 ||
+        strcmp(asked->method, "raycast") == 0)
         return 0;
     if (strcmp(asked->method, "footprint") == 0)
         return PIXEL_BYTES + 1.0 / PLACE_SHARE;

@@ -147,6 +147,9 @@ typedef struct snow_shader {
     int whole;    /* shininess if it is a whole number up to 1024, else -1 */
     double light[3], half[3], viewer[3]; /* W^T times the world vector */
     double metric[3][3];                 /* W^T W: |W g|^2 = g . metric g */
+    double inverse[3][3];                /* W^T */
+    double to_light[3];                  /* in the world */
+    bool head;                           /* the light is at the viewer */
 } snow_shader;
 
 /* The unit vectors to the light and half-way between light and viewer. Returns
@@ -165,6 +168,11 @@ int snow_whole_shininess(double shininess);
 snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
                              const snow_placement *placement,
                              const snow_settings *settings, snow_shader *out);
+
+/* Turns the shader to another viewer, whose direction is a unit vector of the
+ * world: for rays of a perspective view, each of which has its own.  A head
+ * light goes with the viewer, any other stays. */
+void snow_shader_turn(snow_shader *shader, const double viewer[3]);
 
 /* Shades the samples of a row block (straight colours) and multiplies colour by
  * opacity (model, point 4). Samples of opacity 0 stay 0. */

@@ -100,6 +100,10 @@ static snow_status place_over(snow_picture *p) {
     SNOW_TRY(make_image(p));
     if (p->layered)
         return take_layer(p, snow_job_bytes(job), false);
+    if (job->settings.depth && p->pass->method->depths) {
+        SNOW_TRY(new_depths(p, &p->depth));
+        p->local.depths = p->depth->pixels;
+    }
     p->local.pixels = p->image->pixels;
     p->local.layers = 1;
     p->local.nodes[0] = root;

@@ -44,6 +44,24 @@ static snow_status check_stream(const snow_job *job, int parts) {
                      "rendered as a whole; open it with snow_volume_open");
 }
 
+/* Rays are walked from end to end by one process. */
+static snow_status check_raycast(const snow_job *job) {
+    if (job->settings.method != SNOW_METHOD_RAYCAST)
+        return SNOW_STATUS_OK;
+    if (job->volume->stream)
+        return snow_fail(job->context, SNOW_STATUS_NO_MEMORY,
+                         "%s: method raycast needs all voxels in memory, and "
+                         "they stay in the file; allow more memory, give "
+                         "--crop, or take another method",
+                         job->volume->path);
+    if (!snow_job_whole(job))
+        return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
+                         "method raycast needs all voxels in one process, and "
+                         "this is a part of a volume; render on one rank, or "
+                         "take another method");
+    return SNOW_STATUS_OK;
+}
+
 /* What the kernel has to know of a level. */
 static void set_level(const snow_volume *volume, snow_placement *p) {
     if (volume->fine[0] == 0)
@@ -65,6 +83,7 @@ static snow_status place(snow_job *job, int parts, int part) {
         job->settings.method = SNOW_METHOD_FOOTPRINT;
     SNOW_TRY(check_stream(job, parts));
     cut_slab(job, parts, part);
+    SNOW_TRY(check_raycast(job));
     return check_part(job);
 }
 

@@ -76,17 +76,6 @@ snow_status snow_mipmap_wanted(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* Whether colours have steps, as those of categories have. */
-static bool has_categories(const snow_transfer *transfer) {
-    const snow_color_point *c = transfer->colors;
-    for (size_t n = 1; n < transfer->color_count; n++)
-        if (c[n].value == c[n - 1].value &&
-            (c[n].red != c[n - 1].red || c[n].green != c[n - 1].green ||
-             c[n].blue != c[n - 1].blue))
-            return true;
-    return false;
-}
-
 /* Values lean to where opacities rise, all in all; to neither side where they
  * rise and fall. */
 static int lean_of(const snow_transfer *transfer,
@@ -236,7 +225,7 @@ snow_status snow_mipmap_select(snow_mipmap **levels, const snow_volume *volume,
     snow_volume_whole(volume, &whole);
     /* Voxels that stay in their file are not read for a level. */
     if (snow_mipmap_serve(settings) && !volume->stream &&
-        !has_categories(transfer))
+        !snow_transfer_has_categories(transfer))
         SNOW_TRY(snow_mipmap_wanted(context, &whole, view, wanted));
     if (largest_lod(wanted)) {
         SNOW_TRY(snow_ghosts_check_level(

@@ -50,7 +50,7 @@ static void add_depth(snow_picture *p) {
 
 static snow_status plan_over(snow_picture *p) {
     SNOW_TRY(add_axes(p));
-    if (p->job.settings.depth)
+    if (p->job.settings.depth && !p->passes[0].method->depths)
         add_depth(p);
     return SNOW_STATUS_OK;
 }
@@ -63,6 +63,8 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
         return SNOW_STATUS_OK;
     if (job.settings.mode != SNOW_MODE_ISO)
         status = snow_modes_value_weight(p->frame, &p->job, &job);
+    else if (job.settings.method == SNOW_METHOD_RAYCAST)
+        status = SNOW_STATUS_OK; /* as it is */
     else if (job.settings.method != SNOW_METHOD_ORIGINAL || job.volume->stream)
         job.settings.method = SNOW_METHOD_FOOTPRINT;
     job.settings.deterministic = false; /* bits do not depend on parts */
@@ -75,6 +77,8 @@ snow_status snow_picture_plan_mode(snow_picture *p) {
 
 const snow_render_method *snow_method_of(const snow_job *job) {
     const snow_settings *s = &job->settings;
+    if (s->method == SNOW_METHOD_RAYCAST)
+        return &snow_method_raycast;
     if (s->mode == SNOW_MODE_ISO)
         return &snow_method_iso;
     if (s->method == SNOW_METHOD_SHEAR_WARP)

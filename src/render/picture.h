@@ -9,7 +9,7 @@
  *
  * Most pictures take one pass.  One of quality high that is blended of several
  * axes takes one for each axis, and depths of mode over are a pass of
- * footprints after the others. */
+ * footprints after the others, unless the method makes them itself. */
 #ifndef SNOW_RENDER_PICTURE_H
 #define SNOW_RENDER_PICTURE_H
 
@@ -28,9 +28,10 @@ typedef struct snow_render_method {
     snow_method_fn *splat_and_composite; /* 07 - 13 */
     snow_method_fn *figures;             /* of a job whose image is made; NULL:
                                             snow_job_finish */
-    bool slabs; /* of a volume in its file local images are made slab by slab;
-                   else the encoding is (shear_warp/stream.c) */
-    bool warps; /* the local image is an intermediate one */
+    bool slabs;  /* of a volume in its file local images are made slab by slab;
+                    else the encoding is (shear_warp/stream.c) */
+    bool warps;  /* the local image is an intermediate one */
+    bool depths; /* those of mode over are made with the local image */
 } snow_render_method;
 
 /* How local images become the picture.  The functions are collective, and each
@@ -130,7 +131,7 @@ const snow_render_method *snow_method_of(const snow_job *job);
 
 extern const snow_render_method snow_method_exact,
     snow_method_exact_perspective, snow_method_groups, snow_method_shear_warp,
-    snow_method_projection, snow_method_iso;
+    snow_method_projection, snow_method_iso, snow_method_raycast;
 
 /* Of one process. */
 extern const snow_combine_ops snow_combine_alone;

@@ -10,6 +10,7 @@ static const char *const methods[] = {
     [SNOW_METHOD_TESTED] = "tested",
     [SNOW_METHOD_FOOTPRINT] = "footprint",
     [SNOW_METHOD_SHEAR_WARP] = "shear-warp",
+    [SNOW_METHOD_RAYCAST] = "raycast",
 };
 
 static const char *const encodings[] = {

@@ -65,11 +65,32 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
     return SNOW_STATUS_OK;
 }
 
+/* A draft's default kernel is the cheapest that is continuous, and raycast's
+ * the one that goes through the voxels' values. */
+static bool takes_tent(const snow_settings *s) {
+    return s->method == SNOW_METHOD_RAYCAST ||
+           (s->method == SNOW_METHOD_SHEAR_WARP &&
+            s->quality == SNOW_QUALITY_DRAFT);
+}
+
+static snow_status check_raycast(snow_context *context,
+                                 const snow_settings *s) {
+    if (s->method != SNOW_METHOD_RAYCAST ||
+        (s->kernel == SNOW_KERNEL_TENT && s->footprint == 2) ||
+        (s->kernel == SNOW_KERNEL_BSPLINE && s->footprint == 4))
+        return SNOW_STATUS_OK;
+    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                     "method raycast interpolates with the tent of 2 voxels or "
+                     "the B-spline of 4: %s of %d is for footprints; take "
+                     "another kernel, or method footprint",
+                     snow_kernel_name(s->kernel), s->footprint);
+}
+
 snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *s) {
     SNOW_TRY(check_choice(context, "method", (int)s->method,
-                          SNOW_METHOD_SHEAR_WARP + 1));
+                          SNOW_METHOD_RAYCAST + 1));
     SNOW_TRY(check_choice(context, "encoding", (int)s->encoding,
                           SNOW_ENCODING_RLE + 1));
     SNOW_TRY(
@@ -87,12 +108,11 @@ snow_status snow_settings_resolve(snow_context *context,
     SNOW_TRY(resolve_machine(context, s));
     if (s->method == SNOW_METHOD_AUTO)
         s->method = SNOW_METHOD_SHEAR_WARP;
-    /* A draft's default kernel is the cheapest that is continuous. */
-    if (s->method == SNOW_METHOD_SHEAR_WARP && s->footprint == 0 &&
-        s->quality == SNOW_QUALITY_DRAFT && s->kernel == SNOW_KERNEL_BSPLINE)
+    if (s->footprint == 0 && s->kernel == SNOW_KERNEL_BSPLINE && takes_tent(s))
         s->kernel = SNOW_KERNEL_TENT;
     if (s->footprint == 0)
         s->footprint = snow_kernel_default_support(s->kernel);
+    SNOW_TRY(check_raycast(context, s));
     const double *spacing = info->spacing;
     if (s->opacity_length == 0)
         s->opacity_length = fmin(spacing[0], fmin(spacing[1], spacing[2]));

@@ -9,6 +9,8 @@
  * have the same. */
 #include "volume/mask.h"
 
+#include "volume/clip_planes.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -152,71 +154,6 @@ snow_status snow_mask_check_grid(snow_context *context,
     return check_place(context, volume, mask);
 }
 
-/* --- planes --------------------------------------------------------------- */
-
-/* Of the least spacing: a voxel that lies in a plane stays, however the place
- * is rounded, which parts of a volume do differently. */
-#define PLANE_TOLERANCE 1e-6
-
-/* Planes over voxel indices: outside where [0] x + [1] y + [2] z > [3]. */
-typedef struct index_planes {
-    double planes[SNOW_CLIPS_MAX][4];
-    int count;
-} index_planes;
-
-static bool is_plane(const double plane[4]) {
-    return plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
-}
-
-static index_planes index_planes_of(const snow_volume_info *info,
-                                    const double *planes, size_t count) {
-    const double *s = info->spacing;
-    double least = fmin(fmin(s[0], s[1]), s[2]);
-    index_planes out = {.count = 0};
-    for (size_t n = 0; n < count; n++) {
-        const double *plane = planes + 4 * n;
-        if (!is_plane(plane))
-            continue;
-        double *index = out.planes[out.count++];
-        double length = hypot(hypot(plane[0], plane[1]), plane[2]);
-        index[3] = plane[3] + PLANE_TOLERANCE * least * length;
-        for (int row = 0; row < 3; row++) {
-            index[3] -= plane[row] * info->matrix[row][3];
-            for (int axis = 0; axis < 3; axis++)
-                index[axis] += plane[row] * info->matrix[row][axis];
-        }
-    }
-    return out;
-}
-
-static bool is_clipped(const index_planes *planes, const int64_t at[3]) {
-    for (int n = 0; n < planes->count; n++) {
-        const double *p = planes->planes[n];
-        if (p[0] * (double)at[0] + p[1] * (double)at[1] + p[2] * (double)at[2] >
-            p[3])
-            return true;
-    }
-    return false;
-}
-
-/* Takes values of voxels from linear index `first` on. */
-static void clip_values(const index_planes *planes, const int64_t dims[3],
-                        int64_t first, size_t count, double *values) {
-    int64_t at[3] = {first % dims[0], first / dims[0] % dims[1],
-                     first / dims[0] / dims[1]};
-    for (size_t i = 0; i < count && planes->count; i++) {
-        if (is_clipped(planes, at))
-            values[i] = NAN;
-        if (++at[0] < dims[0])
-            continue;
-        at[0] = 0;
-        if (++at[1] < dims[1])
-            continue;
-        at[1] = 0;
-        at[2]++;
-    }
-}
-
 /* --- voxels --------------------------------------------------------------- */
 
 snow_type snow_masked_type(snow_type type) {
@@ -275,32 +212,40 @@ static void mask_values(const snow_volume *mask, inside *in, int64_t first,
             values[i] = NAN;
 }
 
-/* Whether any voxel is left.  `mask` NULL: none. */
-static bool leave_out(const snow_volume *volume, const snow_volume *mask,
-                      inside *in, const index_planes *planes,
-                      snow_volume *made) {
+/* What an earlier cut has left out is beyond its planes, which cut again. */
+static void restore(const snow_clip_planes *before, int64_t first, size_t count,
+                    double *values) {
+    for (size_t i = 0; before && i < count; i++)
+        if (isnan(values[i]))
+            values[i] = snow_clip_planes_value(before, first + (int64_t)i);
+}
+
+/* *any: whether any voxel is left.  `mask` NULL: none. */
+static snow_status leave_out(const snow_volume *volume, const snow_volume *mask,
+                             inside *in, snow_volume *made, bool *any) {
     const int64_t *dims = volume->info.dims;
     int64_t all = dims[0] * dims[1] * dims[2];
-    bool any = false;
     double values[BLOCK];
+    *any = false;
     for (int64_t first = 0; first < all; first += BLOCK) {
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
         snow_volume_natives(volume, first, count, values);
+        restore(volume->clip, first, count, values);
         if (mask)
             mask_values(mask, in, first, count, values);
-        clip_values(planes, dims, first, count, values);
-        for (size_t i = 0; i < count && !any; i++)
-            any = !isnan(values[i]);
+        if (made->clip)
+            SNOW_TRY(snow_clip_planes_apply(made->clip, dims, first, count,
+                                            !volume->is_part, values));
+        for (size_t i = 0; i < count && !*any; i++)
+            *any = !isnan(values[i]);
         store(made, first, count, values);
     }
-    return any;
+    return SNOW_STATUS_OK;
 }
 
 snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
                             bool *any, snow_volume **out) {
     inside in = {.labels = by->labels, .count = by->label_count, .last = NAN};
-    index_planes planes =
-        index_planes_of(&volume->info, by->planes, by->plane_count);
     snow_volume_info info = volume->info;
     snow_volume *made;
     info.type = snow_masked_type(info.type);
@@ -310,9 +255,16 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
     made->knows_origin = volume->knows_origin;
     memcpy(made->origin, volume->origin, sizeof made->origin);
     memcpy(made->patient, volume->patient, sizeof made->patient);
-    *any = leave_out(volume, by->mask, &in, &planes, made);
-    *out = made;
-    return SNOW_STATUS_OK;
+    snow_status status =
+        snow_clip_planes_new(volume->context, &info, volume->clip, by->planes,
+                             by->plane_count, &made->clip);
+    if (status == SNOW_STATUS_OK)
+        status = leave_out(volume, by->mask, &in, made, any);
+    if (status == SNOW_STATUS_OK)
+        *out = made;
+    else
+        snow_volume_close(made);
+    return status;
 }
 
 snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
@@ -345,7 +297,7 @@ bool snow_mask_asked(const snow_volume_options *options) {
         return false;
     bool clips = false;
     for (int n = 0; n < SNOW_CLIPS_MAX; n++)
-        clips |= is_plane(options->clip[n]);
+        clips |= snow_is_plane(options->clip[n]);
     return options->mask || options->labels || clips;
 }
 

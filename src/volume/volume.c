@@ -5,6 +5,7 @@
 #include "volume/volume.h"
 
 #include "base/record.h"
+#include "volume/clip_planes.h"
 
 #include <math.h>
 #include <string.h>
@@ -276,6 +277,7 @@ snow_status snow_volume_wrap(snow_context *context,
 /* Shared voxels are not owned and stay. */
 void snow_volume_close(snow_volume *volume) {
     if (volume) {
+        snow_clip_planes_free(volume->clip);
         snow_release(volume->context, volume->stream);
         snow_release(volume->context, volume->owned);
         snow_release(volume->context, volume);

@@ -9,14 +9,17 @@
 #include <snowglass/extend.h>
 #include <snowglass/volume.h>
 
-typedef struct snow_stream snow_stream; /* volume/stream.h */
+typedef struct snow_stream snow_stream;           /* volume/stream.h */
+typedef struct snow_clip_planes snow_clip_planes; /* volume/clip_planes.h */
 
 struct snow_volume {
     snow_context *context;
     snow_volume_info info;
-    const void *voxels;  /* NULL where they stay in the file: */
-    snow_stream *stream; /* how slabs are read, one block; else NULL */
-    const char *path;    /* of that file, within the block; else NULL */
+    const void *voxels;     /* NULL where they stay in the file: */
+    snow_stream *stream;    /* how slabs are read, one block; else NULL */
+    const char *path;       /* of that file, within the block; else NULL */
+    snow_clip_planes *clip; /* planes that have cut it, and values next to them;
+                      NULL: none */
     void *owned; /* the block to free, NULL when the voxels are shared */
     /* A number that no other volume of the context ever had, by which a frame
      * knows that it has encoded this one; 0 while the voxels may change. */

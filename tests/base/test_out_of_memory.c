@@ -133,6 +133,7 @@ static void a_picture_fails_cleanly_at_every_allocation(void **state) {
     fail_each(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_CRS, false, 1);
     fail_each(".nrrd", SNOW_METHOD_SHEAR_WARP, SNOW_ENCODING_AUTO, false, 3);
     fail_each(".mha", SNOW_METHOD_FOOTPRINT, SNOW_ENCODING_AUTO, false, 3);
+    fail_each(".mha", SNOW_METHOD_RAYCAST, SNOW_ENCODING_AUTO, false, 1);
 }
 
 static void a_picture_fails_cleanly_when_memory_ends_for_good(void **state) {

@@ -1,98 +1,243 @@
-/* tests/reference/raycast.c - an ordinary ray caster, to say how a volume looks
- * to everybody else (Levoy 1988; classification after interpolation). */
-#include "reference/reference.h"
+/* tests/reference/raycast.c - see raycast.h. */
+#include "reference/raycast.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* Steps per smallest spacing. */
-#define OVERSAMPLING 4
+/* --- the field --------------------------------------------------------------
+ */
 
-/* The trilinear value at an index position; the outer half of the border's
- * boxes has the border's value. */
-static double value_at(const reference_scene *scene, const double at[3]) {
+/* A voxel's data value, or its logarithm; NaN is a hole.  In mode over an
+ * infinite one is the largest, or smallest, of the others. */
+static double voxel_value(const reference_cast *cast, const int64_t at[3]) {
+    const reference_scene *scene = cast->scene;
     const int64_t *dims = scene->info.dims;
-    int64_t cell[3];
-    double part[3], value = 0;
-    for (int n = 0; n < 3; n++) {
-        double clamped = fmin(fmax(at[n], 0), (double)(dims[n] - 1));
-        cell[n] = (int64_t)floor(clamped);
-        part[n] = clamped - (double)cell[n];
-    }
-    for (int corner = 0; corner < 8; corner++) {
-        double weight = 1;
-        int64_t p[3];
-        for (int n = 0; n < 3; n++) {
-            int far = corner >> n & 1;
-            weight *= far ? part[n] : 1 - part[n];
-            p[n] = cell[n] + far;
+    double value =
+        scene->info.slope * reference_native(scene, at[0], at[1], at[2]) +
+        scene->info.intercept;
+    bool over = scene->settings.mode == SNOW_MODE_OVER;
+    if (isinf(value) && !over)
+        return NAN;
+    if (isinf(value)) {
+        double end = value > 0 ? -INFINITY : INFINITY;
+        for (int64_t n = 0; n < dims[0] * dims[1] * dims[2]; n++) {
+            double other =
+                scene->info.slope * reference_native(scene, n % dims[0],
+                                                     n / dims[0] % dims[1],
+                                                     n / dims[0] / dims[1]) +
+                scene->info.intercept;
+            if (isfinite(other))
+                end = value > 0 ? fmax(end, other) : fmin(end, other);
         }
-        if (weight > 0)
-            value += weight * reference_native(scene, p[0], p[1], p[2]);
+        value = end;
     }
+    if (scene->log && over)
+        return value > 0 ? log10(value) : NAN;
     return value;
 }
 
-/* Central differences of the interpolated value, one voxel to either side. */
-static void slope_at(const reference_scene *scene, const double at[3],
-                     double gradient[3]) {
+/* Beyond the ends: v[-k] = 2 v[0] - v[k], along each axis in turn. */
+static double voxel(const reference_cast *cast, const int64_t at[3]) {
+    const int64_t *dims = cast->scene->info.dims;
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t last = dims[axis] - 1, end = at[axis] < 0 ? 0 : last;
+        int64_t border[3] = {at[0], at[1], at[2]};
+        int64_t mirrored[3] = {at[0], at[1], at[2]};
+        border[axis] = end;
+        mirrored[axis] = 2 * end - at[axis];
+        if (at[axis] >= 0 && at[axis] <= last)
+            continue;
+        if (last == 0)
+            return voxel(cast, border);
+        return 2 * voxel(cast, border) - voxel(cast, mirrored);
+    }
+    return voxel_value(cast, at);
+}
+
+/* The kernel at distance t: the tent, or the cubic B-spline. */
+static double kernel(const reference_cast *cast, double t) {
+    t = fabs(t);
+    if (cast->scene->settings.kernel != SNOW_KERNEL_BSPLINE)
+        return fmax(1 - t, 0);
+    if (t < 1)
+        return 2.0 / 3 - t * t + t * t * t / 2;
+    return t < 2 ? (2 - t) * (2 - t) * (2 - t) / 6 : 0;
+}
+
+typedef void visit_fn(void *user, double weight, double value);
+
+/* Visits the voxels around a position. */
+static void visit(const reference_cast *cast, const double position[3],
+                  visit_fn *fn, void *user) {
+    int64_t from[3];
+    double weights[3][4];
+    for (int n = 0; n < 3; n++) {
+        double last = (double)(cast->scene->info.dims[n] - 1);
+        double here = position[n];
+        if (cast->boxes || last == 0)
+            here = fmin(fmax(here, 0), last);
+        from[n] = (int64_t)floor(here) - 1;
+        for (int i = 0; i < 4; i++)
+            weights[n][i] = kernel(cast, here - (double)(from[n] + i));
+    }
+    for (int k = 0; k < 4; k++)
+        for (int j = 0; j < 4 && weights[2][k] > 0; j++)
+            for (int i = 0; i < 4 && weights[1][j] > 0; i++)
+                if (weights[0][i] > 0)
+                    fn(user, weights[0][i] * weights[1][j] * weights[2][k],
+                       voxel(cast, (int64_t[]){from[0] + i, from[1] + j,
+                                               from[2] + k}));
+}
+
+typedef struct field_sums {
+    double values, weights, missing;
+    double label; /* whose weights are summed */
+} field_sums;
+
+static void add_value(void *user, double weight, double value) {
+    field_sums *sums = user;
+    if (isnan(value)) {
+        sums->missing += weight;
+        return;
+    }
+    sums->values += weight * value;
+    sums->weights += weight;
+}
+
+/* Whether a position lies within the field, but for rounding. */
+static bool is_within(const reference_cast *cast, const double at[3]) {
+    for (int n = 0; n < 3; n++) {
+        double last = (double)(cast->scene->info.dims[n] - 1);
+        if (last > 0 && (at[n] < -1e-7 || at[n] > last + 1e-7))
+            return false;
+    }
+    return true;
+}
+
+double reference_field(const reference_cast *cast, const double at[3]) {
+    field_sums sums = {0};
+    visit(cast, at, add_value, &sums);
+    bool enough =
+        is_within(cast, at) ? sums.weights >= 0.5 - 1e-9 : sums.missing == 0;
+    return enough ? sums.values / sums.weights : (double)NAN;
+}
+
+/* --- labels -----------------------------------------------------------------
+ */
+
+static void add_label(void *user, double weight, double value) {
+    field_sums *sums = user;
+    if (value == sums->label)
+        sums->weights += weight;
+}
+
+static double share_of(const reference_cast *cast, const double at[3],
+                       double label) {
+    const int64_t *dims = cast->scene->info.dims;
+    field_sums sums = {.label = label};
+    /* Beyond the ends shares go on oddly, as values do. */
+    for (int n = 0; n < 3; n++) {
+        double last = (double)(dims[n] - 1);
+        double end = at[n] < 0 ? 0 : last;
+        double border[3] = {at[0], at[1], at[2]};
+        double mirrored[3] = {at[0], at[1], at[2]};
+        if (last == 0 || (at[n] >= 0 && at[n] <= last))
+            continue;
+        border[n] = end;
+        mirrored[n] = 2 * end - at[n];
+        return 2 * share_of(cast, border, label) -
+               share_of(cast, mirrored, label);
+    }
+    visit(cast, at, add_label, &sums);
+    return sums.weights;
+}
+
+/* Labels are whole numbers up to 255 in the tests. */
+static double label_at(const reference_cast *cast, const double at[3]) {
+    double best = (double)NAN, most = 1e-9;
+    if (cast->scene->settings.quality == SNOW_QUALITY_DRAFT) {
+        int64_t nearest[3];
+        for (int n = 0; n < 3; n++)
+            nearest[n] =
+                cast->scene->info.dims[n] == 1 ? 0 : (int64_t)rint(at[n]);
+        return voxel_value(cast, nearest);
+    }
+    for (int label = 0; label < 256; label++) {
+        double share = share_of(cast, at, label);
+        if (share >= most - 1e-12) {
+            most = share;
+            best = label;
+        }
+    }
+    return best;
+}
+
+/* --- gradients --------------------------------------------------------------
+ */
+
+static void gradient_at(const reference_cast *cast, const double at[3],
+                        double label, double gradient[3]) {
+    double here = reference_field(cast, at);
     for (int n = 0; n < 3; n++) {
         double before[3] = {at[0], at[1], at[2]};
         double after[3] = {at[0], at[1], at[2]};
         before[n] -= 1;
         after[n] += 1;
-        gradient[n] = (value_at(scene, after) - value_at(scene, before)) / 2;
+        double a = cast->labels ? share_of(cast, before, label)
+                                : reference_field(cast, before);
+        double b = cast->labels ? share_of(cast, after, label)
+                                : reference_field(cast, after);
+        gradient[n] = (b - a) / 2;
+        if (isnan(a))
+            gradient[n] = b - here;
+        if (isnan(b))
+            gradient[n] = here - a;
+        if (isnan(gradient[n]) || cast->scene->info.dims[n] == 1)
+            gradient[n] = 0;
     }
 }
 
-/* The stretch of a ray within the voxel boxes; false when it misses them. */
-static bool clip(const reference_scene *scene, const reference_ray *ray,
-                 double *enter, double *leave) {
-    *enter = scene->view.fov > 0 ? 0 : -INFINITY; /* from the eye on */
-    *leave = INFINITY;
-    for (int n = 0; n < 3; n++) {
-        double low = -0.5, high = (double)scene->info.dims[n] - 0.5;
-        if (fabs(ray->step[n]) < 1e-12) {
-            if (ray->start[n] < low || ray->start[n] > high)
-                return false;
-            continue;
+/* --- rays -------------------------------------------------------------------
+ */
+
+typedef struct walk {
+    const reference_cast *cast;
+    const reference_camera *camera;
+    reference_ray ray;
+    double enter, leave, step;
+    int64_t steps;
+} walk;
+
+/* Leaves of a walk what lies where a + t b <= most. */
+static void cut(walk *w, double a, double b, double most) {
+    if (fabs(b) < 1e-12) {
+        if (a > most)
+            w->leave = -INFINITY;
+    } else if (b > 0)
+        w->leave = fmin(w->leave, (most - a) / b);
+    else
+        w->enter = fmax(w->enter, (most - a) / b);
+}
+
+static void cut_planes(walk *w) {
+    const double(*m)[4] = w->cast->scene->info.matrix;
+    for (int n = 0; n < w->cast->plane_count; n++) {
+        const double *plane = w->cast->planes[n];
+        double a = 0, b = 0;
+        for (int r = 0; r < 3; r++) {
+            double from = m[r][3], along = 0;
+            for (int c = 0; c < 3; c++) {
+                from += m[r][c] * w->ray.start[c];
+                along += m[r][c] * w->ray.step[c];
+            }
+            a += plane[r] * from;
+            b += plane[r] * along;
         }
-        double a = (low - ray->start[n]) / ray->step[n];
-        double b = (high - ray->start[n]) / ray->step[n];
-        *enter = fmax(*enter, fmin(a, b));
-        *leave = fmin(*leave, fmax(a, b));
-    }
-    return *enter < *leave;
-}
-
-static void march(const reference_scene *scene, const reference_camera *camera,
-                  const reference_ray *ray, double step, double length,
-                  double pixel[4]) {
-    double enter, leave;
-    if (!clip(scene, ray, &enter, &leave))
-        return;
-    for (double t = enter + step / 2; t < leave; t += step) {
-        double at[3], rgba[4], gradient[3];
-        for (int n = 0; n < 3; n++)
-            at[n] = ray->start[n] + t * ray->step[n];
-        double value = value_at(scene, at);
-        reference_classify(
-            scene, scene->info.slope * value + scene->info.intercept, rgba);
-        if (!(rgba[3] > 0))
-            continue;
-        if (scene->settings.shade == SNOW_SHADE_PHONG) {
-            slope_at(scene, at, gradient);
-            reference_shade(scene, camera, gradient, rgba);
-        }
-        double alpha = 1 - pow(1 - rgba[3], step / length);
-        double through = 1 - pixel[3];
-        for (int c = 0; c < 3; c++)
-            pixel[c] += through * rgba[c] * alpha;
-        pixel[3] += through * alpha;
+        cut(w, a, b, plane[3]);
     }
 }
 
-/* The length of the shortest column: of a step, and of an opacity. */
 static double smallest_spacing(const reference_scene *scene) {
     double smallest = INFINITY;
     for (int c = 0; c < 3; c++)
@@ -102,22 +247,249 @@ static double smallest_spacing(const reference_scene *scene) {
     return smallest;
 }
 
-double *reference_raycast(const reference_scene *scene) {
+/* False where the ray misses the field. */
+static bool begin(walk *w) {
+    const reference_scene *scene = w->cast->scene;
+    double parts = scene->settings.quality == SNOW_QUALITY_DRAFT  ? 2
+                   : scene->settings.quality == SNOW_QUALITY_HIGH ? 16
+                                                                  : 4;
+    w->enter = scene->view.fov > 0 ? 0 : -INFINITY;
+    w->leave = INFINITY;
+    for (int n = 0; n < 3; n++) {
+        bool half = w->cast->boxes || scene->info.dims[n] == 1;
+        double low = half ? -0.5 : 0;
+        double high = (double)(scene->info.dims[n] - 1) - low;
+        cut(w, w->ray.start[n], w->ray.step[n], high);
+        cut(w, -w->ray.start[n], -w->ray.step[n], -low);
+    }
+    cut_planes(w);
+    double length = w->leave - w->enter;
+    if (!(length > 0))
+        return false;
+    w->steps = (int64_t)ceil(length * parts / smallest_spacing(scene) - 1e-9);
+    w->steps = w->steps < 1 ? 1 : w->steps;
+    w->step = length / (double)w->steps;
+    return true;
+}
+
+static void at_step(const walk *w, double i, double at[3]) {
+    for (int n = 0; n < 3; n++)
+        at[n] = w->ray.start[n] + (w->enter + i * w->step) * w->ray.step[n];
+}
+
+/* How far behind the target's plane. */
+static double depth_at(const walk *w, double i) {
+    const double(*m)[4] = w->cast->scene->info.matrix;
+    double at[3], depth = 0;
+    at_step(w, i, at);
+    for (int r = 0; r < 3; r++) {
+        double world = m[r][3];
+        for (int c = 0; c < 3; c++)
+            world += m[r][c] * at[c];
+        depth -= (world - w->camera->target[r]) * w->camera->back[r];
+    }
+    return depth;
+}
+
+static double dot(const double a[3], const double b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void normalise(double a[3]) {
+    double length = sqrt(dot(a, a));
+    for (int n = 0; length > 0 && n < 3; n++)
+        a[n] /= length;
+}
+
+/* Where the light is: at the viewer's, or fixed to the camera. */
+static void light_of(const walk *w, const double viewer[3], double light[3]) {
+    const snow_settings *s = &w->cast->scene->settings;
+    double turn = s->light_azimuth * acos(-1.0) / 180;
+    double lift = s->light_elevation * acos(-1.0) / 180;
+    for (int n = 0; n < 3; n++)
+        light[n] = turn == 0 && lift == 0
+                       ? viewer[n]
+                       : cos(lift) * (cos(turn) * w->camera->back[n] +
+                                      sin(turn) * w->camera->right[n]) +
+                             sin(lift) * w->camera->up[n];
+}
+
+/* Phong's model, seen along the ray. */
+static void shade(const walk *w, const double gradient[3], double rgb[3]) {
+    const snow_settings *s = &w->cast->scene->settings;
+    const double(*m)[4] = w->cast->scene->info.matrix;
+    double inverse[3][3], normal[3], viewer[3], light[3], half[3];
+    reference_inverse(m, inverse);
+    for (int c = 0; c < 3; c++) {
+        normal[c] = inverse[0][c] * gradient[0] + inverse[1][c] * gradient[1] +
+                    inverse[2][c] * gradient[2];
+        viewer[c] = -m[c][0] * w->ray.step[0] - m[c][1] * w->ray.step[1] -
+                    m[c][2] * w->ray.step[2];
+    }
+    normalise(normal);
+    normalise(viewer);
+    light_of(w, viewer, light);
+    double side = dot(normal, viewer) < 0 ? -1 : 1;
+    for (int c = 0; c < 3; c++) {
+        half[c] = light[c] + viewer[c];
+    }
+    normalise(half);
+    double lit = side * dot(normal, light);
+    double shine = fmax(side * dot(normal, half), 0);
+    for (int c = 0; c < 3; c++)
+        rgb[c] = lit > 0 ? fmin(1, rgb[c] * (s->ambient + s->diffuse * lit) +
+                                       s->specular * pow(shine, s->shininess))
+                         : rgb[c] * s->ambient;
+}
+
+/* --- mode over --------------------------------------------------------------
+ */
+
+/* The opacity of a reference length, and a shaded colour. */
+static void sample_at(const walk *w, const double at[3], double rgba[4]) {
+    const reference_scene *scene = w->cast->scene;
+    double value =
+        w->cast->labels ? label_at(w->cast, at) : reference_field(w->cast, at);
+    double data = scene->log ? pow(10, value) : value, gradient[3], native[3];
+    rgba[3] = 0;
+    if (isnan(value))
+        return;
+    reference_classify(scene, data, rgba);
+    if (!(rgba[3] > 0))
+        return;
+    gradient_at(w->cast, at, value, gradient);
+    for (int n = 0; n < 3; n++)
+        native[n] =
+            gradient[n] * (scene->log ? log(10) * data : 1) / scene->info.slope;
+    rgba[3] *= reference_fade(scene, native);
+    if (scene->settings.threshold > 0 &&
+        255 * rgba[3] <= scene->settings.threshold + 0.0001)
+        rgba[3] = 0;
+    if (scene->settings.shade == SNOW_SHADE_PHONG)
+        shade(w, gradient, rgba);
+}
+
+static void cast_over(const walk *w, double pixel[4], double *depth) {
+    double length = reference_opacity_length(w->cast->scene);
+    for (int64_t i = 0; i < w->steps; i++) {
+        double at[3], rgba[4], through = 1 - pixel[3];
+        at_step(w, (double)i + 0.5, at);
+        sample_at(w, at, rgba);
+        if (!(rgba[3] > 0))
+            continue;
+        double alpha = 1 - pow(1 - rgba[3], w->step / length);
+        for (int c = 0; c < 3; c++)
+            pixel[c] += through * rgba[c] * alpha;
+        pixel[3] += through * alpha;
+        /* through (1 - alpha)^share = 1/2 */
+        if (depth && through > 0.5 && pixel[3] >= 0.5)
+            *depth = depth_at(
+                w, (double)i +
+                       (alpha < 1 ? log(0.5 / through) / log1p(-alpha) : 0));
+    }
+}
+
+/* --- other modes ------------------------------------------------------------
+ */
+
+static double value_at(const walk *w, double i) {
+    double at[3];
+    at_step(w, i, at);
+    for (int n = 0; n < 3; n++) { /* rounding */
+        double last = (double)(w->cast->scene->info.dims[n] - 1);
+        if (last > 0)
+            at[n] = fmin(fmax(at[n], 0), last);
+    }
+    return reference_field(w->cast, at);
+}
+
+static void cast_largest(const walk *w, double pixel[4]) {
+    double sign = w->cast->scene->settings.mode == SNOW_MODE_MIP ? 1 : -1;
+    double largest = -INFINITY;
+    for (int64_t i = 0; i <= w->steps; i++)
+        largest = fmax(largest, sign * value_at(w, (double)i));
+    if (isinf(largest))
+        return;
+    reference_classify(w->cast->scene, sign * largest, pixel);
+    pixel[3] = 1;
+}
+
+static double cast_sum(const walk *w) {
+    double length = reference_opacity_length(w->cast->scene);
+    double sum = 0, weights = 0;
+    for (int64_t i = 0; i < w->steps; i++) {
+        double mean = (value_at(w, (double)i) + value_at(w, (double)i + 1)) / 2;
+        if (isnan(mean))
+            continue;
+        sum += mean * w->step / length;
+        weights += w->step / length;
+    }
+    if (!(weights > 0))
+        return (double)NAN;
+    return w->cast->scene->settings.mode == SNOW_MODE_MEAN ? sum / weights
+                                                           : sum;
+}
+
+static void cast_iso(const walk *w, double pixel[4], double *depth) {
+    const reference_scene *scene = w->cast->scene;
+    double level = scene->settings.iso, at[3], gradient[3];
+    int64_t i = 0;
+    while (i <= w->steps && !(value_at(w, (double)i) >= level))
+        i++;
+    if (i > w->steps)
+        return;
+    double low = (double)i - 1, high = (double)i;
+    for (int n = 0; n < 60 && i > 0; n++) {
+        double middle = (low + high) / 2;
+        if (value_at(w, middle) >= level)
+            high = middle;
+        else
+            low = middle;
+    }
+    at_step(w, high, at);
+    reference_classify(scene, level, pixel);
+    pixel[3] = 1;
+    if (depth)
+        *depth = depth_at(w, high);
+    if (scene->settings.shade != SNOW_SHADE_PHONG)
+        return;
+    gradient_at(w->cast, at, 0, gradient);
+    shade(w, gradient, pixel);
+}
+
+double *reference_cast_rays(const reference_cast *cast, double *depth) {
+    const reference_scene *scene = cast->scene;
+    snow_mode mode = scene->settings.mode;
+    bool sums = mode == SNOW_MODE_MEAN || mode == SNOW_MODE_SUM;
+    int width = scene->view.width, height = scene->view.height;
+    size_t count = (size_t)width * (size_t)height;
+    double *pixels = calloc(count * (sums ? 1 : 4), sizeof *pixels);
     reference_camera camera;
     reference_camera_of(scene, &camera);
-    double spacing = smallest_spacing(scene);
-    double length = scene->settings.opacity_length > 0
-                        ? scene->settings.opacity_length
-                        : spacing;
-    int width = scene->view.width, height = scene->view.height;
-    double *pixels = calloc((size_t)width * (size_t)height * 4, sizeof(double));
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            reference_ray ray =
-                reference_ray_at(scene, &camera, x + 0.5, y + 0.5);
-            size_t at = (size_t)y * (size_t)width + (size_t)x;
-            march(scene, &camera, &ray, spacing / OVERSAMPLING, length,
-                  pixels + 4 * at);
-        }
+    for (size_t n = 0; n < count; n++) {
+        walk w = {.cast = cast, .camera = &camera};
+        double *pixel = pixels + n * (sums ? 1 : 4);
+        w.ray =
+            reference_ray_at(scene, &camera, (double)(n % (size_t)width) + 0.5,
+                             (double)(n / (size_t)width) + 0.5);
+        if (depth)
+            depth[n] = (double)NAN;
+        bool met = begin(&w);
+        if (sums)
+            *pixel = met ? cast_sum(&w) : (double)NAN;
+        else if (met && mode == SNOW_MODE_OVER)
+            cast_over(&w, pixel, depth ? depth + n : NULL);
+        else if (met && mode == SNOW_MODE_ISO)
+            cast_iso(&w, pixel, depth ? depth + n : NULL);
+        else if (met)
+            cast_largest(&w, pixel);
+    }
     return pixels;
+}
+
+double *reference_raycast(const reference_scene *scene) {
+    reference_scene linear = *scene;
+    const reference_cast cast = {.scene = &linear, .boxes = true};
+    linear.settings.kernel = SNOW_KERNEL_TENT;
+    return reference_cast_rays(&cast, NULL);
 }

@@ -122,9 +122,7 @@ double *reference_mode(const reference_scene *scene);
  * where there is none. */
 double *reference_depth(const reference_scene *scene);
 
-/* The ray caster: trilinear values every quarter of the smallest spacing along
- * each ray within the voxel boxes, classified after interpolation, shaded as
- * the model says, composited front to back with the opacity of that step. */
+/* The picture of raycast.h of trilinear values that fill the voxels' boxes. */
 double *reference_raycast(const reference_scene *scene);
 
 #endif

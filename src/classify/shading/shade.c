@@ -53,8 +53,9 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
         .shininess = settings->shininess,
         .whole = snow_whole_shininess(settings->shininess),
         .isa = snow_isa_resolve(settings->isa),
+        .head = settings->light_azimuth == 0 && settings->light_elevation == 0,
     };
-    double inverse[3][3], light[3], half[3];
+    double(*inverse)[3] = shader.inverse, *light = shader.to_light, half[3];
     if (!snow_matrix_invert3(volume->info.matrix, inverse))
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
@@ -70,6 +71,18 @@ snow_status snow_shader_init(snow_context *context, const snow_volume *volume,
             shader.metric[i][j] = snow_dot(inverse[i], inverse[j]);
     *out = shader;
     return SNOW_STATUS_OK;
+}
+
+void snow_shader_turn(snow_shader *shader, const double viewer[3]) {
+    const double *light = shader->head ? viewer : shader->to_light;
+    double half[3];
+    for (int i = 0; i < 3; i++)
+        half[i] = light[i] + viewer[i];
+    if (snow_length(half) > 1e-9)
+        snow_normalize(half);
+    to_index(shader->inverse, light, shader->light);
+    to_index(shader->inverse, half, shader->half);
+    to_index(shader->inverse, viewer, shader->viewer);
 }
 
 /* Voxels shaded at once: their gradients stay in the first-level cache. */

@@ -9,6 +9,7 @@
 #include "transform/perspective.h"
 #include "volume/stream.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -289,6 +290,8 @@ static snow_status finish(snow_frame *frame, const snow_job *job,
                           snow_image *image) {
     double path = job->placement.path / job->settings.opacity_length;
     bool shear_warp = job->settings.method == SNOW_METHOD_SHEAR_WARP;
+    /* Pairs of raycast hold lengths of rays, however short these are. */
+    bool raycast = job->settings.method == SNOW_METHOD_RAYCAST;
     bool seen = job->placement.perspective;
     bool weighed = job->settings.mode == SNOW_MODE_SUM && seen;
     double slices = shear_warp ? (double)job->placement.slices : 1;
@@ -300,8 +303,10 @@ static snow_status finish(snow_frame *frame, const snow_job *job,
                     .shear_warp = drawn,
                     .pairs = pairs,
                     .image = image,
-                    .share = (weighed ? 1 : path) * slices,
-                    .least = SNOW_WEIGHT_ENOUGH * (weighed ? path : 1) / slices,
+                    .share = raycast ? 1 : (weighed ? 1 : path) * slices,
+                    .least = raycast ? (double)FLT_MIN
+                                     : SNOW_WEIGHT_ENOUGH *
+                                           (weighed ? path : 1) / slices,
                     .weigh = weighed && shear_warp};
     return snow_parallel(job->context, job->settings.threads, image->height,
                          finish_line, &f);

@@ -1,0 +1,318 @@
+/* render/raycast/field.c - see field.h. */
+#include "render/raycast/field.h"
+
+#include "base/exp_log.h"
+#include "volume/clip_planes.h"
+
+#include <math.h>
+#include <string.h>
+
+/* So that rounding does not decide where half of the weights is just there. */
+#define ENOUGH (0.5 - 1e-9)
+
+#define FIELD_TYPE int8_t
+#define FIELD_NAME load_INT8
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE uint8_t
+#define FIELD_NAME load_UINT8
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE int16_t
+#define FIELD_NAME load_INT16
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE uint16_t
+#define FIELD_NAME load_UINT16
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE int32_t
+#define FIELD_NAME load_INT32
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE uint32_t
+#define FIELD_NAME load_UINT32
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE int64_t
+#define FIELD_NAME load_INT64
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE uint64_t
+#define FIELD_NAME load_UINT64
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE float
+#define FIELD_NAME load_FLOAT32
+#include "render/raycast/field.tmpl.h"
+#define FIELD_TYPE double
+#define FIELD_NAME load_FLOAT64
+#include "render/raycast/field.tmpl.h"
+
+static snow_field_load_fn *const loads[] = {
+#define LOAD(name, type, text) [SNOW_TYPE_##name] = load_##name,
+    SNOW_TYPE_MAP(LOAD)
+#undef LOAD
+};
+
+snow_status snow_field_make(const snow_volume *volume,
+                            const snow_transfer *transfer,
+                            const snow_settings *settings, bool modes,
+                            snow_field *out) {
+    const int64_t *dims = volume->info.dims;
+    snow_volume_statistics figures;
+    snow_field field = {
+        .volume = volume,
+        .load = loads[volume->info.type],
+        .steps = {1, dims[0], dims[0] * dims[1]},
+        .taps = settings->kernel == SNOW_KERNEL_BSPLINE ? 4 : 2,
+        .log = transfer->log && !modes,
+        .infinite_is_hole = modes,
+    };
+    snow_volume_statistics_init(&figures);
+    if (!modes && volume->info.type >= SNOW_TYPE_FLOAT32)
+        SNOW_TRY(snow_volume_get_statistics(volume, &figures));
+    field.least = figures.min;
+    field.most = figures.max;
+    for (int axis = 0; axis < 3; axis++) {
+        field.low[axis] = dims[axis] > 1 ? 0 : -0.5;
+        field.high[axis] = dims[axis] > 1 ? (double)(dims[axis] - 1) : 0.5;
+    }
+    *out = field;
+    return SNOW_STATUS_OK;
+}
+
+/* --- windows ----------------------------------------------------------------
+ */
+
+/* A native value as the field knows it: NaN where it is a hole. */
+static double field_value_of(const snow_field *field, double native) {
+    const snow_volume_info *info = &field->volume->info;
+    double value = info->slope * native + info->intercept;
+    if (isinf(value)) {
+        if (field->infinite_is_hole)
+            return NAN;
+        value = value > 0 ? field->most : field->least;
+    }
+    if (!field->log)
+        return value;
+    return value > 0 ? snow_log2_rising(value) : NAN;
+}
+
+/* Values that clip planes have left out are those of a field that is cut. */
+static void fill(const snow_field *field, snow_field_window *w) {
+    const snow_clip_planes *clip = field->volume->clip;
+    double *value = w->values;
+    int64_t at[3];
+    field->load(field, w->first, w->count, w->values);
+    w->holes = false;
+    w->least = INFINITY;
+    w->most = -INFINITY;
+    for (at[2] = 0; at[2] < w->count[2]; at[2]++)
+        for (at[1] = 0; at[1] < w->count[1]; at[1]++)
+            for (at[0] = 0; at[0] < w->count[0]; at[0]++, value++) {
+                if (clip && isnan(*value))
+                    *value = snow_clip_planes_value(
+                        clip, (w->first[0] + at[0]) * field->steps[0] +
+                                  (w->first[1] + at[1]) * field->steps[1] +
+                                  (w->first[2] + at[2]) * field->steps[2]);
+                *value = field_value_of(field, *value);
+                w->holes |= isnan(*value);
+                w->least = fmin(w->least, *value);
+                w->most = fmax(w->most, *value);
+            }
+    w->filled = true;
+}
+
+/* The kernel's weights of voxels floor(x) - taps / 2 + 1 and on. */
+static void kernel_weights(int taps, double part, double weights[4]) {
+    double rest = 1 - part, square = part * part, cube = square * part;
+    if (taps == 2) {
+        weights[0] = rest;
+        weights[1] = part;
+        return;
+    }
+    weights[0] = rest * rest * rest / 6;
+    weights[1] = (4 - 6 * square + 3 * cube) / 6;
+    weights[2] = (1 + 3 * part + 3 * square - 3 * cube) / 6;
+    weights[3] = cube / 6;
+}
+
+/* Adds the weight of a voxel to those of the voxels that it is made of, where
+ * it is beyond the ends: v[-k] = 2 v[0] - v[k]. */
+static void add_weight(int64_t voxel, double weight, int64_t last,
+                       int64_t first, double *weights) {
+    if (voxel < 0 || voxel > last) {
+        int64_t end = voxel < 0 ? 0 : last;
+        weights[end - first] += 2 * weight;
+        add_weight(2 * end - voxel, -weight, last, first, weights);
+        return;
+    }
+    weights[voxel - first] += weight;
+}
+
+/* Voxels and weights along one axis. */
+static void place_axis(int taps, int64_t dims, double at, int64_t *first,
+                       int *count, double weights[SNOW_FIELD_TAPS]) {
+    double whole = floor(at), kernel[SNOW_FIELD_TAPS];
+    int64_t begin = (int64_t)whole - taps / 2 + 1, least = dims - taps;
+    *count = dims < taps ? (int)dims : taps;
+    *first = begin < least ? begin : least;
+    *first = *first > 0 ? *first : 0;
+    memset(weights, 0, SNOW_FIELD_TAPS * sizeof *weights);
+    if (dims == 1) {
+        weights[0] = 1;
+        return;
+    }
+    kernel_weights(taps, at - whole, kernel);
+    for (int n = 0; n < taps; n++)
+        if (kernel[n] != 0)
+            add_weight(begin + n, kernel[n], dims - 1, *first, weights);
+}
+
+void snow_field_place(const snow_field *field, const double at[3],
+                      snow_field_window *w) {
+    int64_t first[3];
+    w->beyond = false;
+    for (int axis = 0; axis < 3; axis++) {
+        place_axis(field->taps, field->volume->info.dims[axis], at[axis],
+                   &first[axis], &w->count[axis], w->weights[axis]);
+        w->beyond |= at[axis] < field->low[axis] - 1e-9 ||
+                     at[axis] > field->high[axis] + 1e-9;
+    }
+    if (w->filled && memcmp(first, w->first, sizeof first) == 0)
+        return;
+    memcpy(w->first, first, sizeof first);
+    fill(field, w);
+}
+
+/* The sum of weighted values, those that are not holes, and of their weights;
+ * false where one beyond the ends is a hole. */
+static bool add_values(const snow_field_window *w, double sums[2]) {
+    const double *value = w->values;
+    sums[0] = sums[1] = 0;
+    for (int z = 0; z < w->count[2]; z++)
+        for (int y = 0; y < w->count[1]; y++)
+            for (int x = 0; x < w->count[0]; x++, value++) {
+                double weight =
+                    w->weights[2][z] * w->weights[1][y] * w->weights[0][x];
+                if (weight == 0)
+                    continue;
+                if (!isnan(*value)) {
+                    sums[0] += weight * *value;
+                    sums[1] += weight;
+                } else if (w->beyond)
+                    return false;
+            }
+    return true;
+}
+
+static double whole_value(const snow_field_window *w) {
+    const double *value = w->values;
+    double sum = 0;
+    for (int z = 0; z < w->count[2]; z++) {
+        double slice = 0;
+        for (int y = 0; y < w->count[1]; y++) {
+            double row = 0;
+            for (int x = 0; x < w->count[0]; x++)
+                row += w->weights[0][x] * *value++;
+            slice += w->weights[1][y] * row;
+        }
+        sum += w->weights[2][z] * slice;
+    }
+    return sum;
+}
+
+double snow_field_value(const snow_field_window *w) {
+    double sums[2];
+    if (!w->holes)
+        return whole_value(w);
+    return add_values(w, sums) && sums[1] >= ENOUGH ? sums[0] / sums[1] : NAN;
+}
+
+/* --- gradients --------------------------------------------------------------
+ */
+
+static double difference(double before, double here, double after) {
+    if (!isnan(before) && !isnan(after))
+        return (after - before) / 2;
+    if (!isnan(after) && !isnan(here))
+        return after - here;
+    if (!isnan(before) && !isnan(here))
+        return here - before;
+    return 0;
+}
+
+/* What differences are taken of. */
+typedef double side_fn(const snow_field_window *window, double label);
+
+static double side_value(const snow_field_window *w, double label) {
+    (void)label;
+    return snow_field_value(w);
+}
+
+static double membership(const snow_field_window *w, double label) {
+    const double *value = w->values;
+    double sum = 0;
+    for (int z = 0; z < w->count[2]; z++)
+        for (int y = 0; y < w->count[1]; y++)
+            for (int x = 0; x < w->count[0]; x++)
+                if (*value++ == label)
+                    sum +=
+                        w->weights[2][z] * w->weights[1][y] * w->weights[0][x];
+    return sum;
+}
+
+static void gradient_of(const snow_field *field, const double at[3],
+                        double here, double label, side_fn *side,
+                        snow_field_window sides[6], double gradient[3]) {
+    for (int axis = 0; axis < 3; axis++) {
+        double ends[2];
+        gradient[axis] = 0;
+        if (field->volume->info.dims[axis] == 1)
+            continue;
+        for (int n = 0; n < 2; n++) {
+            double there[3] = {at[0], at[1], at[2]};
+            there[axis] += n ? 1 : -1;
+            snow_field_place(field, there, &sides[2 * axis + n]);
+            ends[n] = side(&sides[2 * axis + n], label);
+        }
+        gradient[axis] = difference(ends[0], here, ends[1]);
+    }
+}
+
+void snow_field_gradient(const snow_field *field, const double at[3],
+                         double here, snow_field_window sides[6],
+                         double gradient[3]) {
+    gradient_of(field, at, here, 0, side_value, sides, gradient);
+}
+
+/* --- labels -----------------------------------------------------------------
+ */
+
+double snow_field_label(const snow_field *field, const double at[3],
+                        const snow_field_window *w, bool nearest) {
+    int count = w->count[0] * w->count[1] * w->count[2];
+    double sums[2], most = 0, found = NAN;
+    if (nearest) {
+        int64_t place[3];
+        for (int axis = 0; axis < 3; axis++) {
+            double end = (double)(field->volume->info.dims[axis] - 1);
+            place[axis] = (int64_t)fmin(fmax(floor(at[axis] + 0.5), 0), end) -
+                          w->first[axis];
+        }
+        return w->values[place[0] +
+                         w->count[0] * (place[1] + w->count[1] * place[2])];
+    }
+    if (!add_values(w, sums) || !(sums[1] >= ENOUGH))
+        return NAN;
+    for (int n = 0; n < count; n++) {
+        double label = w->values[n];
+        if (isnan(label) || label == found)
+            continue;
+        double share = membership(w, label);
+        if (share > most + 1e-12 || (share > most - 1e-12 && label > found)) {
+            most = share;
+            found = label;
+        }
+    }
+    return found;
+}
+
+void snow_field_label_gradient(const snow_field *field, const double at[3],
+                               double label, snow_field_window sides[6],
+                               double gradient[3]) {
+    gradient_of(field, at, 0, label, membership, sides, gradient);
+}

@@ -1,0 +1,260 @@
+/* render/raycast/raycast.c - see raycast.h: the rays of a picture, and the
+ * method as figure 8 knows it. */
+#include "render/raycast/raycast.h"
+
+#include "base/thread_pool.h"
+#include "base/vec3.h"
+#include "classify/count_interesting.h"
+#include "render/modes/depth.h"
+#include "volume/clip_planes.h"
+
+#include <math.h>
+#include <string.h>
+
+/* --- rays -------------------------------------------------------------------
+ */
+
+/* Cuts a ray to where `at` + t `slope` is at most `most`. */
+static void cut_ray(snow_ray *ray, double at, double slope, double most) {
+    double t = (most - at) / slope;
+    if (slope > 0)
+        ray->leave = fmin(ray->leave, t);
+    else if (slope < 0)
+        ray->enter = fmax(ray->enter, t);
+    else if (at > most)
+        ray->leave = -INFINITY;
+}
+
+/* The stretch within the field and on the inner side of all planes. */
+static void cut_to_field(const snow_raycast_pass *pass, snow_ray *ray) {
+    const snow_field *field = &pass->field;
+    const snow_clip_planes *clip = field->volume->clip;
+    for (int axis = 0; axis < 3; axis++) {
+        double at = ray->start[axis], slope = ray->along[axis];
+        cut_ray(ray, at, slope, field->high[axis]);
+        cut_ray(ray, -at, -slope, -field->low[axis]);
+    }
+    for (size_t n = 0; clip && n < clip->plane_count; n++)
+        cut_ray(ray, snow_dot(clip->planes[n], ray->start),
+                snow_dot(clip->planes[n], ray->along), clip->planes[n][3]);
+}
+
+/* From (u, v, slice) of a placement to (x, y, z). */
+static void to_axes(const snow_placement *p, const double from[3],
+                    double to[3]) {
+    to[p->u_axis] = from[0];
+    to[p->v_axis] = from[1];
+    to[p->slice_axis] = from[2];
+}
+
+static void start_parallel(const snow_placement *p, double x, double y,
+                           double start[3]) {
+    for (int axis = 0; axis < 2; axis++)
+        start[axis] = p->inverse[axis][0] * (x - p->origin[0]) +
+                      p->inverse[axis][1] * (y - p->origin[1]);
+    start[2] = 0;
+}
+
+/* The world vector of a step in index space. */
+static void to_world(const snow_volume_info *info, const double step[3],
+                     double world[3]) {
+    for (int row = 0; row < 3; row++) {
+        world[row] = 0;
+        for (int axis = 0; axis < 3; axis++)
+            world[row] += info->matrix[row][axis] * step[axis];
+    }
+}
+
+/* The ray through pixel position (x, y), and the direction to its viewer. */
+static void aim(const snow_raycast_pass *pass, double x, double y,
+                snow_ray *ray, double viewer[3]) {
+    const snow_placement *p = &pass->job->placement;
+    double start[3], along[3], world[3];
+    ray->enter = p->perspective ? 0 : -INFINITY;
+    ray->leave = INFINITY;
+    if (p->perspective) {
+        memcpy(start, p->eye.at, sizeof start);
+        snow_perspective_ray(&p->eye, x, y, along);
+        to_axes(p, along, ray->along);
+        to_world(&pass->field.volume->info, ray->along, world);
+        double length = snow_length(world);
+        for (int n = 0; n < 3; n++) {
+            ray->along[n] /= length;
+            viewer[n] = -world[n] / length;
+        }
+    } else {
+        start_parallel(p, x, y, start);
+        memcpy(viewer, p->back, 3 * sizeof *viewer);
+        for (int n = 0; n < 3; n++)
+            ray->along[n] = -snow_dot(pass->inverse[n], viewer);
+    }
+    to_axes(p, start, ray->start);
+}
+
+static bool make_ray(const snow_raycast_pass *pass, double x, double y,
+                     snow_ray *ray, double viewer[3]) {
+    aim(pass, x, y, ray, viewer);
+    cut_to_field(pass, ray);
+    double length = ray->leave - ray->enter;
+    if (!(length > 0) || !isfinite(length))
+        return false;
+    ray->steps = (int64_t)ceil(length / pass->step - 1e-9);
+    ray->steps = ray->steps > 0 ? ray->steps : 1;
+    ray->step = length / (double)ray->steps;
+    return true;
+}
+
+int64_t snow_ray_skip(const snow_ray *ray, const double at[3]) {
+    double least = INFINITY;
+    for (int axis = 0; axis < 3; axis++) {
+        double slope = ray->along[axis] * ray->step;
+        double border = floor(at[axis]) + (slope > 0);
+        if (slope != 0)
+            least = fmin(least, (border - at[axis]) / slope);
+    }
+    return least > 1 && least < (double)ray->steps ? (int64_t)least : 1;
+}
+
+float snow_raycast_depth(const snow_raycast_pass *pass, const snow_ray *ray,
+                         double t) {
+    double at[3];
+    snow_ray_at(ray, t, at);
+    return (float)(snow_dot(pass->depth, at) + pass->depth[3]);
+}
+
+/* --- lines ------------------------------------------------------------------
+ */
+
+static void cast_line(void *of, int64_t y, int worker) {
+    const snow_raycast_pass *pass = of;
+    const snow_job *job = pass->job;
+    size_t width = (size_t)job->view->width, line = (size_t)y * width;
+    size_t channels = (size_t)job->channels;
+    snow_raycast_eye eye;
+    memset(&eye, 0, sizeof eye);
+    eye.shader = pass->shader;
+    for (size_t x = 0; x < width; x++) {
+        float *pixel = job->pixels + (line + x) * channels;
+        float *depth = job->depths ? job->depths + line + x : NULL;
+        snow_ray ray;
+        double viewer[3];
+        if (snow_monitor_look(job->context->monitor, worker))
+            return;
+        memset(pixel, 0, channels * sizeof *pixel);
+        if (depth)
+            *depth = NAN;
+        if (!make_ray(pass, (double)x + 0.5, (double)y + 0.5, &ray, viewer))
+            continue;
+        if (job->placement.perspective)
+            snow_shader_turn(&eye.shader, viewer);
+        pass->cast(pass, &ray, &eye, pixel, depth);
+    }
+}
+
+/* --- a picture --------------------------------------------------------------
+ */
+
+static double longest_step(const snow_volume_info *info, snow_quality quality) {
+    const double *s = info->spacing;
+    double least = fmin(fmin(s[0], s[1]), s[2]);
+    return least / (quality == SNOW_QUALITY_DRAFT  ? 2
+                    : quality == SNOW_QUALITY_HIGH ? 16
+                                                   : 4);
+}
+
+static void choose_cast(const snow_picture *p, snow_raycast_pass *pass) {
+    const snow_identity_transfer *identity = &p->frame->identity;
+    snow_mode mode = p->job.settings.mode;
+    double range = identity->high - identity->low;
+    pass->visible[0] = -INFINITY;
+    pass->visible[1] = INFINITY;
+    if (mode == SNOW_MODE_OVER) {
+        pass->cast = snow_raycast_over;
+        snow_raycast_see_look(pass);
+    } else if (mode == SNOW_MODE_ISO) {
+        pass->cast = snow_raycast_iso;
+        pass->visible[0] = pass->level;
+    } else {
+        pass->cast = mode == SNOW_MODE_MIP || mode == SNOW_MODE_MINIP
+                         ? snow_raycast_largest
+                         : snow_raycast_sum;
+        range = range > 0 ? range : 1;
+        pass->from = identity->inverted ? identity->high : identity->low;
+        pass->range = identity->inverted ? -range : range;
+    }
+}
+
+static void set_colors(snow_raycast_pass *pass) {
+    double rgb[3];
+    pass->level = pass->job->settings.iso;
+    snow_transfer_color(pass->transfer, pass->level, rgb);
+    for (int n = 0; n < 3; n++)
+        pass->rgb[n] = (float)rgb[n];
+}
+
+static void set_depth(snow_raycast_pass *pass) {
+    double of[4];
+    snow_depth_place(pass->job, of);
+    to_axes(&pass->job->placement, of, pass->depth);
+    pass->depth[3] = of[3];
+}
+
+static snow_status prepare(const snow_picture *p, const snow_job *job,
+                           snow_raycast_pass *pass) {
+    const snow_settings *s = &p->job.settings;
+    bool over = s->mode == SNOW_MODE_OVER;
+    *pass = (snow_raycast_pass){
+        .job = job,
+        .transfer = p->job.transfer,
+        .shaded = s->shade == SNOW_SHADE_PHONG,
+        .gradient_factors =
+            over && snow_transfer_has_gradient_opacity(p->job.transfer),
+        .labels = over && snow_transfer_has_labels(p->job.transfer,
+                                                   job->volume->info.type),
+        .nearest = s->quality == SNOW_QUALITY_DRAFT,
+        .step = longest_step(&job->volume->info, s->quality),
+    };
+    SNOW_TRY(
+        snow_field_make(job->volume, p->job.transfer, s, !over, &pass->field));
+    SNOW_TRY(snow_shader_init(job->context, job->volume, &job->placement, s,
+                              &pass->shader));
+    memcpy(pass->inverse, pass->shader.inverse, sizeof pass->inverse);
+    set_colors(pass);
+    set_depth(pass);
+    choose_cast(p, pass);
+    return SNOW_STATUS_OK;
+}
+
+static snow_status cast_rays(snow_picture *p, snow_job *job) {
+    snow_raycast_pass pass;
+    double mark = snow_seconds();
+    SNOW_TRY(prepare(p, job, &pass));
+    snow_monitor_next(job->context->monitor, SNOW_STAGE_RENDER, 0, 1);
+    SNOW_TRY(snow_parallel(job->context, job->settings.threads,
+                           job->view->height, cast_line, &pass));
+    job->stats->seconds_splat += snow_seconds() - mark;
+    return SNOW_STATUS_OK;
+}
+
+/* Nothing is encoded; the voxels that a look shows are counted all the same. */
+static snow_status find_figures(snow_picture *p, snow_job *job) {
+    const snow_settings *s = &p->job.settings;
+    SNOW_TRY(snow_job_finish(p->frame, job));
+    job->stats->quality = s->quality;
+    if (s->mode == SNOW_MODE_ISO)
+        SNOW_TRY(snow_identity_transfer_above(job, &p->frame->identity));
+    SNOW_TRY(snow_count_interesting(
+        job->volume,
+        s->mode == SNOW_MODE_OVER ? job->transfer : p->frame->identity.transfer,
+        s->mode == SNOW_MODE_OVER ? s->threshold : 0, s->isa,
+        &job->stats->interesting));
+    job->stats->sparse_ratio =
+        1 - (double)job->stats->interesting / (double)job->stats->voxels;
+    return SNOW_STATUS_OK;
+}
+
+const snow_render_method snow_method_raycast = {
+    .splat_and_composite = cast_rays,
+    .figures = find_figures,
+    .depths = true,
+};

@@ -1,0 +1,131 @@
+/* volume/clip_planes.c - see clip_planes.h. */
+#include "volume/clip_planes.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of the least spacing: a voxel that lies in a plane stays, however the place
+ * is rounded, which parts of a volume do differently. */
+#define PLANE_TOLERANCE 1e-6
+
+bool snow_is_plane(const double plane[4]) {
+    return plane[0] != 0 || plane[1] != 0 || plane[2] != 0;
+}
+
+static void to_index(const snow_volume_info *info, const double plane[4],
+                     snow_index_plane index) {
+    const double *s = info->spacing;
+    double least = fmin(fmin(s[0], s[1]), s[2]);
+    double length = hypot(hypot(plane[0], plane[1]), plane[2]);
+    index[3] = plane[3] + PLANE_TOLERANCE * least * length;
+    for (int axis = 0; axis < 3; axis++)
+        index[axis] = 0;
+    for (int row = 0; row < 3; row++) {
+        index[3] -= plane[row] * info->matrix[row][3];
+        for (int axis = 0; axis < 3; axis++)
+            index[axis] += plane[row] * info->matrix[row][axis];
+    }
+}
+
+snow_status snow_clip_planes_new(snow_context *context,
+                                 const snow_volume_info *info,
+                                 const snow_clip_planes *before,
+                                 const double *planes, size_t count,
+                                 snow_clip_planes **out) {
+    size_t most = count + (before ? before->plane_count : 0), used = 0;
+    *out = NULL;
+    for (size_t n = 0; n < count; n++)
+        used += snow_is_plane(planes + 4 * n);
+    if (!used && !before)
+        return SNOW_STATUS_OK;
+    snow_clip_planes *clip = snow_allocate_clear(context, sizeof *clip);
+    if (!clip)
+        return SNOW_STATUS_NO_MEMORY;
+    clip->context = context;
+    clip->planes = snow_allocate_array(context, most, sizeof *clip->planes);
+    if (!clip->planes) {
+        snow_clip_planes_free(clip);
+        return SNOW_STATUS_NO_MEMORY;
+    }
+    for (size_t n = 0; before && n < before->plane_count; n++)
+        memcpy(clip->planes[clip->plane_count++], before->planes[n],
+               sizeof *clip->planes);
+    for (size_t n = 0; n < count; n++)
+        if (snow_is_plane(planes + 4 * n))
+            to_index(info, planes + 4 * n, clip->planes[clip->plane_count++]);
+    *out = clip;
+    return SNOW_STATUS_OK;
+}
+
+void snow_clip_planes_free(snow_clip_planes *clip) {
+    if (!clip)
+        return;
+    snow_release(clip->context, clip->planes);
+    snow_release(clip->context, clip->voxels);
+    snow_release(clip->context, clip);
+}
+
+/* Whether a voxel is beyond a plane; *reached: it is in reach of all planes
+ * that it is beyond. */
+static bool is_beyond(const snow_clip_planes *clip, const int64_t at[3],
+                      bool *reached) {
+    bool beyond = false;
+    *reached = true;
+    for (size_t n = 0; n < clip->plane_count; n++) {
+        const double *p = clip->planes[n];
+        double place =
+            p[0] * (double)at[0] + p[1] * (double)at[1] + p[2] * (double)at[2];
+        if (!(place > p[3]))
+            continue;
+        beyond = true;
+        *reached &= place - p[3] <=
+                    SNOW_CLIPPED_REACH * (fabs(p[0]) + fabs(p[1]) + fabs(p[2]));
+    }
+    return beyond;
+}
+
+static snow_status keep_voxel(snow_clip_planes *clip, int64_t index,
+                              double native) {
+    size_t size = sizeof *clip->voxels, used = clip->voxel_count * size;
+    SNOW_TRY(snow_reserve(clip->context, &clip->voxels, &clip->capacity, used,
+                          used + size));
+    clip->voxels[clip->voxel_count++] = (snow_clipped_voxel){index, native};
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_clip_planes_apply(snow_clip_planes *clip,
+                                   const int64_t dims[3], int64_t first,
+                                   size_t count, bool keep, double *natives) {
+    int64_t at[3] = {first % dims[0], first / dims[0] % dims[1],
+                     first / dims[0] / dims[1]};
+    for (size_t i = 0; i < count; i++) {
+        bool reached;
+        if (is_beyond(clip, at, &reached)) {
+            if (keep && reached && !isnan(natives[i]))
+                SNOW_TRY(keep_voxel(clip, first + (int64_t)i, natives[i]));
+            natives[i] = NAN;
+        }
+        if (++at[0] < dims[0])
+            continue;
+        at[0] = 0;
+        if (++at[1] < dims[1])
+            continue;
+        at[1] = 0;
+        at[2]++;
+    }
+    return SNOW_STATUS_OK;
+}
+
+double snow_clip_planes_value(const snow_clip_planes *clip, int64_t index) {
+    size_t low = 0, high = clip->voxel_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (clip->voxels[middle].at < index)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < clip->voxel_count && clip->voxels[low].at == index
+               ? clip->voxels[low].native
+               : NAN;
+}
