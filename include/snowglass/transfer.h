@@ -85,38 +85,38 @@ typedef enum snow_domain {
                              both read from the histogram */
 } snow_domain;
 
-/* A transfer function as data, before there is a volume: what presets are, and
- * what files hold.  Points as in snow_transfer_new, or none: then the histogram
- * says. */
-typedef struct snow_points {
-    const char *name; /* for people */
-    snow_domain values;
-    bool log;    /* points are joined by the logarithm of values */
-    bool per_mm; /* opacities are of a millimetre; false: of a voxel */
+/* A look: what a transfer function is made of, before there is a volume. By
+ * default all of it is chosen from the histogram. Points are as in
+ * snow_transfer_new; arrays and texts stay the caller's.
+ *
+ * Colours come from `colors`, else from `base`, else from `preset`. A look with
+ * colours, or with a domain other than data, stands for a preset itself, and
+ * takes what it lacks from the histogram; one with opacities alone replaces
+ * those of its base or preset by opacities at data values. */
+typedef struct snow_look {
+    size_t size;
+    const char *name;             /* for people; NULL: none */
+    const char *preset;           /* "linear", "ct-bone", ...; NULL: none */
+    const char *colormap;         /* "grey", "viridis", ...: replaces the
+                                     colours; NULL: keep them */
+    const struct snow_look *base; /* a look that stands for a preset, as of
+                                     snow_look_load; only its name, points,
+                                     domain, log and per_mm count; NULL: none */
+    snow_range range;             /* over which points are spread */
+    double low, high;             /* of VALUES and PERCENTILES; low < high */
+    bool log;                     /* points are joined, and values spread, by
+                                     logarithms; 0 and below is transparent */
+    snow_domain domain;           /* what the points' values mean */
+    bool per_mm;                  /* opacities are of a millimetre; false: of
+                                     a voxel.  For the caller, who sets
+                                     snow_settings.opacity_length by it */
     const snow_color_point *colors;
     size_t color_count;
     const snow_opacity_point *opacities;
     size_t opacity_count;
-    const snow_opacity_point *gradients; /* as gradient_opacities below */
-    size_t gradient_count;
-} snow_points;
-
-/* What a user asks of a look.  Zero everywhere: chosen from the histogram. */
-typedef struct snow_look {
-    size_t size;
-    const char *preset;   /* "linear", "ct-bone", ...; NULL: automatic */
-    const char *colormap; /* "grey", "viridis", ...; NULL: the preset's */
-    snow_range range;
-    double low, high; /* for VALUES and PERCENTILES; low < high */
-    const snow_opacity_point *opacities; /* replace the preset's; NULL: keep */
-    size_t opacity_count;
-    /* Factors by gradient magnitude, as in snow_transfer_set_gradient_opacity;
-     * NULL: none. */
-    const snow_opacity_point *gradient_opacities;
+    const snow_opacity_point *gradient_opacities; /* as in
+                                        snow_transfer_set_gradient_opacity */
     size_t gradient_opacity_count;
-    const snow_points *points; /* stand for a preset; NULL: none */
-    bool log; /* values are spread, and points joined, by their logarithms;
-                 what is not above 0 is transparent */
 } snow_look;
 SNOW_RECORD(snow_look);
 
@@ -166,8 +166,8 @@ SNOW_API const char *snow_preset_name(size_t index);
 SNOW_API const char *snow_preset_description(size_t index);
 SNOW_API const char *snow_colormap_name(size_t index);
 
-/* A preset as data, which live as long as the program; NULL past the end. */
-SNOW_API const snow_points *snow_preset_points(size_t index);
+/* A preset as a look, which lives as long as the program; NULL past the end. */
+SNOW_API const snow_look *snow_preset_look(size_t index);
 
 /* The control points of a colour map, for values of 0 to 1: into `room` points,
  * SNOW_COLORMAP_POINTS_MAX suffice.  How many there are; 0 past the end. */

@@ -130,7 +130,7 @@ static int check_paths(snow_context *context, const options *asked) {
  * so, but the command line has priority. */
 static bool is_per_mm(const options *asked) {
     if (asked->loaded && !options_given(asked, "opacity-unit"))
-        return snow_tf_points(asked->loaded)->per_mm;
+        return snow_look_file_look(asked->loaded)->per_mm;
     return strcmp(asked->opacity_unit, "mm") == 0;
 }
 

@@ -42,18 +42,19 @@ static int list(const options *asked) {
  * map. */
 typedef struct named {
     snow_context *context;
-    snow_tf *tf;
+    snow_look_file *tf;
     const char *kind;
-    snow_points points;
+    snow_look look;
     snow_color_point colors[SNOW_COLORMAP_POINTS_MAX];
 } named;
 
 static void take_colormap(int index, const char *name, named *out) {
     out->kind = "colour map";
-    out->points = (snow_points){.name = name, .values = SNOW_DOMAIN_RANGE};
-    out->points.color_count = snow_colormap_points((size_t)index, out->colors,
-                                                   SNOW_COLORMAP_POINTS_MAX);
-    out->points.colors = out->colors;
+    out->look = (snow_look){
+        .size = sizeof(snow_look), .name = name, .domain = SNOW_DOMAIN_RANGE};
+    out->look.color_count = snow_colormap_points((size_t)index, out->colors,
+                                                 SNOW_COLORMAP_POINTS_MAX);
+    out->look.colors = out->colors;
 }
 
 /* A file has priority over a preset of the same name. */
@@ -66,8 +67,8 @@ static int find_transfer(const options *asked, const char *name, named *out) {
     bool file = access(name, F_OK) == 0 || (preset < 0 && map < 0);
     if (!file && preset >= 0) {
         out->kind = "preset";
-        out->points = *snow_preset_points((size_t)preset);
-        out->points.name = snow_preset_name((size_t)preset);
+        out->look = *snow_preset_look((size_t)preset);
+        out->look.name = snow_preset_name((size_t)preset);
         return CONTINUE;
     }
     if (!file) {
@@ -83,13 +84,13 @@ static int find_transfer(const options *asked, const char *name, named *out) {
     }
     if (status != SNOW_STATUS_OK)
         return fail_status(out->context, status);
-    out->kind = snow_tf_format(out->tf);
-    out->points = *snow_tf_points(out->tf);
+    out->kind = snow_look_file_format(out->tf);
+    out->look = *snow_look_file_look(out->tf);
     return CONTINUE;
 }
 
 static void lose(named *n) {
-    snow_tf_free(n->tf);
+    snow_look_file_free(n->tf);
     snow_context_free(n->context);
 }
 
@@ -104,7 +105,7 @@ static void lose(named *n) {
 static snow_status make_whole(const named *n, snow_transfer **out) {
     static const snow_color_point white[] = {{1, 1, 1, 1}};
     static const snow_opacity_point solid[] = {{1, 1}};
-    const snow_points *p = &n->points;
+    const snow_look *p = &n->look;
     snow_status status =
         snow_transfer_new(n->context, p->color_count ? p->colors : white,
                           p->color_count ? p->color_count : 1,
@@ -121,7 +122,7 @@ static void widen(double value, double ends[2]) {
 }
 
 /* From the first to the last control point of either kind. */
-static void find_ends(const snow_points *p, double ends[2]) {
+static void find_ends(const snow_look *p, double ends[2]) {
     ends[0] = ends[1] =
         p->color_count ? p->colors[0].value : p->opacities[0].value;
     if (p->color_count)
@@ -156,7 +157,7 @@ static int save_picture(const options *asked, const named *n) {
     snow_image_options form = {.size = sizeof form,
                                .overwrite = asked->overwrite};
     double ends[2];
-    find_ends(&n->points, ends);
+    find_ends(&n->look, ends);
     snow_status status = make_whole(n, &transfer);
     if (status == SNOW_STATUS_OK)
         status = snow_image_new(n->context, WIDE, CURVE + BAR, 4, &image);
@@ -171,30 +172,29 @@ static int save_picture(const options *asked, const named *n) {
                                     : fail_status(n->context, status);
 }
 
-static void print_points(const snow_points *p) {
+static void print_points(const snow_look *p) {
     for (size_t i = 0; i < p->color_count; i++)
         printf("colour   %12.6g  %.4f %.4f %.4f\n", p->colors[i].value,
                p->colors[i].red, p->colors[i].green, p->colors[i].blue);
     for (size_t i = 0; i < p->opacity_count; i++)
         printf("opacity  %12.6g  %.4f\n", p->opacities[i].value,
                p->opacities[i].opacity);
-    for (size_t i = 0; i < p->gradient_count; i++)
-        printf("gradient %12.6g  %.4f\n", p->gradients[i].value,
-               p->gradients[i].opacity);
+    for (size_t i = 0; i < p->gradient_opacity_count; i++)
+        printf("gradient %12.6g  %.4f\n", p->gradient_opacities[i].value,
+               p->gradient_opacities[i].opacity);
 }
 
 /* A function of the library that returns a text, to be freed; NULL after the
  * error was printed. */
-typedef snow_status text_writer(snow_context *context,
-                                const snow_points *points, char *text,
-                                size_t room, size_t *length);
+typedef snow_status text_writer(snow_context *context, const snow_look *points,
+                                char *text, size_t room, size_t *length);
 
 static char *text_of(const named *n, text_writer *write, size_t *length,
                      int *done) {
-    snow_status status = write(n->context, &n->points, NULL, 0, length);
+    snow_status status = write(n->context, &n->look, NULL, 0, length);
     char *text = status == SNOW_STATUS_OK ? malloc(*length + 1) : NULL;
     if (text)
-        status = write(n->context, &n->points, text, *length + 1, length);
+        status = write(n->context, &n->look, text, *length + 1, length);
     *done =
         status != SNOW_STATUS_OK ? fail_status(n->context, status) : CONTINUE;
     if (status == SNOW_STATUS_OK && !text)
@@ -221,10 +221,10 @@ static int show(const options *asked, const named *n) {
     }
     printf("name     %s\nkind     %s\nvalues   %s\njoined   %s\nopacity  per "
            "%s\n",
-           n->points.name, n->kind, values[n->points.values],
-           n->points.log ? "by logarithms" : "linearly",
-           n->points.per_mm ? "mm" : "voxel");
-    print_points(&n->points);
+           n->look.name, n->kind, values[n->look.domain],
+           n->look.log ? "by logarithms" : "linearly",
+           n->look.per_mm ? "mm" : "voxel");
+    print_points(&n->look);
     return finish_stdout();
 }
 
@@ -236,12 +236,14 @@ static bool ends_with(const char *text, const char *suffix) {
 }
 
 /* Reports what a table cannot hold. */
-static void report_losses(const options *asked, const snow_points *p) {
-    if (asked->verbosity >= 0 && (p->gradient_count || p->log || p->values))
+static void report_losses(const options *asked, const snow_look *p) {
+    if (asked->verbosity >= 0 &&
+        (p->gradient_opacity_count || p->log || p->domain))
         say("%s: a table cannot hold%s%s%s; write .json to keep it",
-            asked->output, p->gradient_count ? " the gradient opacity" : "",
+            asked->output,
+            p->gradient_opacity_count ? " the gradient opacity" : "",
             p->log ? " the logarithmic scale" : "",
-            p->values ? " values as shares of a range" : "");
+            p->domain ? " values as shares of a range" : "");
 }
 
 static int convert(const options *asked, const named *n) {
@@ -251,7 +253,7 @@ static int convert(const options *asked, const named *n) {
     char *text = text_of(n, csv ? snow_look_write_csv : snow_look_write_json,
                          &length, &done);
     if (done == CONTINUE && csv)
-        report_losses(asked, &n->points);
+        report_losses(asked, &n->look);
     if (done == CONTINUE) {
         if (!csv)
             text[length++] = '\n';

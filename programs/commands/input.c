@@ -61,7 +61,7 @@ int look_load(options *asked) {
 }
 
 void look_unload(options *asked) {
-    snow_tf_free(asked->loaded);
+    snow_look_file_free(asked->loaded);
     snow_context_free(asked->tf_context);
     asked->loaded = NULL;
     asked->tf_context = NULL;
@@ -90,11 +90,11 @@ snow_look look_options(const options *asked) {
                       .low = asked->range.low,
                       .high = asked->range.high,
                       .log = asked->log,
-                      .points =
-                          asked->loaded ? snow_tf_points(asked->loaded) : NULL};
+                      .base = asked->loaded ? snow_look_file_look(asked->loaded)
+                                            : NULL};
     /* The projections are grey over the full range by default, as usual. */
     if (strcmp(asked->mode, "over") != 0 && strcmp(asked->mode, "iso") != 0 &&
-        !look.preset && !look.points)
+        !look.preset && !look.base)
         look.preset = "linear";
     if (!isnan(asked->window)) { /* --window and --level give the range */
         look.range = SNOW_RANGE_VALUES;

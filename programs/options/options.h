@@ -8,8 +8,8 @@
 
 #include "options/option_values.h"
 
+#include <snowglass/look_file.h>
 #include <snowglass/snowglass.h>
-#include <snowglass/tf.h>
 
 /* Exit code of an interrupted run; all others are a snow_status. */
 #define EXIT_INTERRUPTED 130
@@ -69,7 +69,7 @@ typedef struct options {
     const char *depth;             /* NULL: none */
     const char *colormap, *preset; /* NULL: automatic */
     const char *tf;                /* a file; NULL: none */
-    snow_tf *loaded;          /* the content of that file, set by look_load */
+    snow_look_file *loaded;   /* the content of that file, set by look_load */
     snow_context *tf_context; /* that owns it */
     bool log;
     point_list opacities, gradient_opacities;

@@ -35,11 +35,9 @@ typedef struct snow_insitu_brick {
 
 /* A look with its texts and points, which live as long as it. */
 typedef struct snow_own_look {
-    snow_look look;
-    snow_points points; /* of the look, over the block */
-    void *point_block;
-    char preset[64], colormap[64], name[64];
-    snow_opacity_point *opacities, *gradients;
+    snow_look look, base;
+    void *blocks[2]; /* points of both */
+    char preset[64], colormap[64], names[2][64];
 } snow_own_look;
 
 /* Of the last picture. */

@@ -6,7 +6,7 @@
 #include "recipe/keys.h"
 
 #include <snowglass/extend.h>
-#include <snowglass/tf.h>
+#include <snowglass/look_file.h>
 
 #include <math.h>
 #include <string.h>
@@ -251,7 +251,7 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
     snow_look look;
     snow_view usual, view;
     snow_settings settings;
-    snow_tf *tf = NULL;
+    snow_look_file *tf = NULL;
     if (recipe->depth)
         return snow_context_fail(context, SNOW_STATUS_BAD_USAGE,
                                  "\"depth\" is for pictures of files; remove "
@@ -264,17 +264,17 @@ snow_status snow_recipe_apply(const snow_recipe *recipe, snow_insitu *insitu) {
     if (status == SNOW_STATUS_OK && recipe->tf)
         status = snow_look_load(context, recipe->tf, &tf);
     if (status == SNOW_STATUS_OK && tf)
-        look.points = snow_tf_points(tf);
+        look.base = snow_look_file_look(tf);
     if (status == SNOW_STATUS_OK)
         status = snow_recipe_get_view(context, recipe, &usual, &view);
     if (status == SNOW_STATUS_OK)
         status = snow_recipe_get_settings(context, recipe, "", &settings);
-    if (status == SNOW_STATUS_OK && tf && look.points->per_mm &&
+    if (status == SNOW_STATUS_OK && tf && look.base->per_mm &&
         !recipe->opacity_per_voxel)
         settings.opacity_length = length_of_mm("");
     if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_look(insitu, &look);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     if (status == SNOW_STATUS_OK)
         status = snow_insitu_set_view(insitu, &view);
     if (status == SNOW_STATUS_OK)

@@ -72,9 +72,9 @@ static snow_status object_range(const snow_histogram *histogram, double *low,
 
 /* Copies points; their values are shares of a range unless they are data
  * values. */
-static void copy_colors(const snow_points *points, bool log, double low,
+static void copy_colors(const snow_look *points, bool log, double low,
                         double high, snow_transfer_builder *builder) {
-    bool shares = points->values != SNOW_DOMAIN_DATA;
+    bool shares = points->domain != SNOW_DOMAIN_DATA;
     builder->color_count = points->color_count;
     for (size_t i = 0; i < points->color_count; i++) {
         builder->colors[i] = points->colors[i];
@@ -84,9 +84,9 @@ static void copy_colors(const snow_points *points, bool log, double low,
     }
 }
 
-static void copy_opacities(const snow_points *points, bool log, double low,
+static void copy_opacities(const snow_look *points, bool log, double low,
                            double high, snow_transfer_builder *builder) {
-    bool shares = points->values != SNOW_DOMAIN_DATA;
+    bool shares = points->domain != SNOW_DOMAIN_DATA;
     builder->opacity_count = points->opacity_count;
     for (size_t i = 0; i < points->opacity_count; i++) {
         builder->opacities[i] = points->opacities[i];
@@ -103,7 +103,7 @@ static void widen(double value, double *low, double *high) {
 }
 
 /* The range of values of points in data units. */
-static void own_range(const snow_points *points, double *low, double *high) {
+static void own_range(const snow_look *points, double *low, double *high) {
     *low = INFINITY;
     *high = -INFINITY;
     if (points->color_count) {
@@ -116,13 +116,13 @@ static void own_range(const snow_points *points, double *low, double *high) {
     }
 }
 
-snow_status snow_transfer_builder_points(const snow_points *points,
+snow_status snow_transfer_builder_points(const snow_look *points,
                                          const snow_histogram *histogram,
                                          snow_transfer_builder *builder) {
     double low, high;
-    if (points->values == SNOW_DOMAIN_OBJECT)
+    if (points->domain == SNOW_DOMAIN_OBJECT)
         SNOW_TRY(object_range(histogram, &low, &high));
-    else if (points->values == SNOW_DOMAIN_RANGE)
+    else if (points->domain == SNOW_DOMAIN_RANGE)
         snow_full_range(histogram, &low, &high);
     else
         own_range(points, &low, &high);
@@ -133,9 +133,10 @@ snow_status snow_transfer_builder_points(const snow_points *points,
         copy_colors(points, histogram->log, low, high, builder);
     if (points->opacity_count)
         copy_opacities(points, histogram->log, low, high, builder);
-    builder->gradient_count = points->gradient_count;
-    if (points->gradient_count)
-        memcpy(builder->gradients, points->gradients,
-               points->gradient_count * sizeof *points->gradients);
+    builder->gradient_count = points->gradient_opacity_count;
+    if (points->gradient_opacity_count)
+        memcpy(builder->gradients, points->gradient_opacities,
+               points->gradient_opacity_count *
+                   sizeof *points->gradient_opacities);
     return SNOW_STATUS_OK;
 }

@@ -108,7 +108,7 @@ snow_status snow_transfer_builder_automatic(const snow_histogram *histogram,
 
 /* Builds from points; if they lack colours or opacities, the builder's stay.
  * Errors: SNOW_STATUS_NO_MEMORY. */
-snow_status snow_transfer_builder_points(const snow_points *points,
+snow_status snow_transfer_builder_points(const snow_look *points,
                                          const snow_histogram *histogram,
                                          snow_transfer_builder *builder);
 

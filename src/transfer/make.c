@@ -113,25 +113,25 @@ static void stretch(snow_transfer_builder *builder, bool log, double low,
     builder->high = high;
 }
 
-static const snow_points *points_of(const snow_look *look) {
-    if (look->points)
-        return look->points;
+static const snow_look *points_of(const snow_look *look) {
+    if (look->base)
+        return look->base;
     return look->preset
-               ? snow_preset_points((size_t)snow_preset_from_name(look->preset))
+               ? snow_preset_look((size_t)snow_preset_from_name(look->preset))
                : NULL;
 }
 
 /* Allocates the points. */
 static snow_status begin_builder(snow_context *context, const snow_look *look,
                                  snow_transfer_builder *builder) {
-    const snow_points *points = points_of(look);
+    const snow_look *points = points_of(look);
     size_t colors = SNOW_TRANSFER_BUILDER_POINTS,
            opacities = SNOW_TRANSFER_BUILDER_POINTS;
     if (points && points->color_count > colors)
         colors = points->color_count;
     if (points && points->opacity_count > opacities)
         opacities = points->opacity_count;
-    size_t gradients = points ? points->gradient_count : 0;
+    size_t gradients = points ? points->gradient_opacity_count : 0;
     uint64_t bytes;
     if (!snow_mul_u64(opacities + gradients, sizeof(snow_opacity_point),
                       &bytes) ||
@@ -150,17 +150,16 @@ static snow_status begin_builder(snow_context *context, const snow_look *look,
 
 /* Checks that the values suit those of a preset or a file. */
 static snow_status check_values(const snow_histogram *histogram,
-                                const snow_look *look,
-                                const snow_points *points,
+                                const snow_look *look, const snow_look *points,
                                 const snow_transfer_builder *builder) {
-    if (points->values != SNOW_DOMAIN_DATA || look->range != SNOW_RANGE_AUTO)
+    if (points->domain != SNOW_DOMAIN_DATA || look->range != SNOW_RANGE_AUTO)
         return SNOW_STATUS_OK;
     if (builder->log && !(builder->low > 0))
         return snow_fail(histogram->volume->context, SNOW_STATUS_BAD_USAGE,
                          "%.64s has values of 0 and below, which a logarithmic "
                          "scale cannot show; give a range too",
                          points->name);
-    if (!look->points && histogram->min >= 0)
+    if (!look->base && histogram->min >= 0)
         snow_notify(histogram->volume->context,
                     "%s is for Hounsfield units, but the smallest value is %g: "
                     "if the values have an offset, give a range",
@@ -171,28 +170,32 @@ static snow_status check_values(const snow_histogram *histogram,
 /* What has to be known of the values where no colour and no opacity is to be
  * guessed. */
 static snow_histogram_need need_of_range(const snow_look *look,
-                                         const snow_points *points) {
-    snow_domain values = points ? points->values : SNOW_DOMAIN_DATA;
+                                         const snow_look *points) {
+    snow_domain values = points ? points->domain : SNOW_DOMAIN_DATA;
     if (look->range == SNOW_RANGE_PERCENTILES || values == SNOW_DOMAIN_OBJECT)
         return SNOW_NEED_COUNTS;
     if (look->range == SNOW_RANGE_FULL || values == SNOW_DOMAIN_RANGE)
         return SNOW_NEED_RANGE;
     /* Hounsfield units (check_values). */
-    bool preset = look->range == SNOW_RANGE_AUTO && !look->points;
+    bool preset = look->range == SNOW_RANGE_AUTO && !look->base;
     return preset ? SNOW_NEED_SIGN : SNOW_NEED_NOTHING;
 }
 
 static snow_histogram_need need_of(const snow_look *look) {
-    const snow_points *points = points_of(look);
+    const snow_look *points = points_of(look);
     bool colors = look->colormap || (points && points->color_count);
     bool opacities = look->opacities || (points && points->opacity_count);
     if (!colors || !opacities)
         return SNOW_NEED_COUNTS;
     if (!points && look->range == SNOW_RANGE_AUTO)
         return SNOW_NEED_COUNTS;
-    if (points && !points->opacity_count && points->values != SNOW_DOMAIN_DATA)
+    if (points && !points->opacity_count && points->domain != SNOW_DOMAIN_DATA)
         return SNOW_NEED_COUNTS;
     return need_of_range(look, points);
+}
+
+static const char *reason_of(const snow_look *look) {
+    return look->name ? look->name : "from the file";
 }
 
 /* The points of a preset or a file, and where they say nothing, or nothing is
@@ -200,19 +203,19 @@ static snow_histogram_need need_of(const snow_look *look) {
 static snow_status fill_builder(const snow_histogram *histogram,
                                 const snow_look *look,
                                 snow_transfer_builder *builder) {
-    const snow_points *points = points_of(look);
+    const snow_look *points = points_of(look);
     builder->high = 1; /* without points, until it is stretched */
     if (need_of(look) == SNOW_NEED_COUNTS &&
         (!points || !points->color_count || !points->opacity_count))
         SNOW_TRY(snow_transfer_builder_automatic(histogram, builder));
     if (!points)
         return SNOW_STATUS_OK;
-    builder->reason = look->points ? "from the file" : look->preset;
+    builder->reason = look->base ? reason_of(look) : look->preset;
     double low = builder->low, high = builder->high;
     SNOW_TRY(snow_transfer_builder_points(points, histogram, builder));
     builder->unshaded = builder->unshaded && !points->opacity_count;
     /* Colours without values and opacities use the range of the histogram. */
-    if (!points->opacity_count && points->values != SNOW_DOMAIN_DATA) {
+    if (!points->opacity_count && points->domain != SNOW_DOMAIN_DATA) {
         for (size_t i = 0; i < builder->color_count; i++)
             builder->colors[i].value = snow_between_on(builder->log, low, high,
                                                        points->colors[i].value);
@@ -235,11 +238,11 @@ static void keep_rising(snow_transfer_builder *builder) {
 static snow_status build_look(const snow_histogram *histogram,
                               const snow_look *look,
                               snow_transfer_builder *builder) {
-    const snow_points *points = points_of(look);
+    const snow_look *points = points_of(look);
     SNOW_TRY(fill_builder(histogram, look, builder));
     if (look->range != SNOW_RANGE_AUTO) {
         double low, high;
-        bool data = points && points->values == SNOW_DOMAIN_DATA;
+        bool data = points && points->domain == SNOW_DOMAIN_DATA;
         SNOW_TRY(resolve_range(histogram, look, &low, &high));
         if (builder->log && !(low > 0))
             return snow_fail(histogram->volume->context, SNOW_STATUS_BAD_USAGE,
@@ -319,8 +322,52 @@ bool snow_look_has_gradient_opacity(const snow_look *look) {
         return look != NULL;
     if (look->preset && snow_preset_from_name(look->preset) < 0)
         return false;
-    const snow_points *points = points_of(look);
-    return points && points->gradient_count > 0;
+    snow_look base;
+    return SNOW_RECORD_READ(NULL, snow_look, points_of(look), &base) ==
+               SNOW_STATUS_OK &&
+           base.gradient_opacity_count > 0;
+}
+
+/* A look, and the points that stand for a preset. */
+typedef struct known_look {
+    snow_look look, base;
+} known_look;
+
+/* The look's own points become its base. */
+static void take_own_points(known_look *r) {
+    r->base = r->look;
+    if (!r->base.name)
+        r->base.name = "own";
+    r->look.name = "as given";
+    r->look.colors = NULL;
+    r->look.opacities = r->look.gradient_opacities = NULL;
+    r->look.color_count = r->look.opacity_count = 0;
+    r->look.gradient_opacity_count = 0;
+    r->look.domain = SNOW_DOMAIN_DATA;
+    r->look.base = &r->base;
+}
+
+static snow_status read_look(snow_context *context, const snow_look *given,
+                             known_look *out) {
+    SNOW_TRY(SNOW_RECORD_READ(context, snow_look, given, &out->look));
+    const snow_look *look = &out->look;
+    bool own = look->colors || look->domain != SNOW_DOMAIN_DATA;
+    if ((own || look->base) + (own && look->base) + (look->preset != NULL) > 1)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "a look has two sources of colours; give only one of "
+                         "colors, base and preset");
+    if (look->domain < SNOW_DOMAIN_DATA || look->domain > SNOW_DOMAIN_OBJECT)
+        return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                         "domain %d is out of range; take a value of "
+                         "snow_domain",
+                         (int)look->domain);
+    if (own)
+        take_own_points(out);
+    else if (look->base) {
+        SNOW_TRY(SNOW_RECORD_READ(context, snow_look, look->base, &out->base));
+        out->look.base = &out->base;
+    }
+    return SNOW_STATUS_OK;
 }
 
 static snow_status make_among(snow_comm *comm, const snow_volume *volume,
@@ -328,9 +375,9 @@ static snow_status make_among(snow_comm *comm, const snow_volume *volume,
     snow_transfer_builder builder = {.block = NULL};
     snow_histogram histogram;
     snow_transfer *transfer = NULL;
-    snow_look known, *look = &known;
-    snow_status status =
-        SNOW_RECORD_READ(volume->context, snow_look, given, look);
+    known_look known;
+    const snow_look *look = &known.look;
+    snow_status status = read_look(volume->context, given, &known);
     if (status == SNOW_STATUS_OK)
         status = check_look(volume->context, look);
     if (status == SNOW_STATUS_OK)

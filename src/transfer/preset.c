@@ -233,24 +233,26 @@ static const opacity linear_opacities[] = {{0, 0}, {1, 1}};
 
 typedef struct preset_row {
     const char *name, *text;
-    snow_points points;
+    snow_look look;
 } preset_row;
 
-#define POINTS(word, spread, colors, opacities, gradients, count)     \
-    {                                                                 \
-        word, spread, false, false, colors, COUNT(colors), opacities, \
-            COUNT(opacities), gradients, count                        \
+#define LOOK(word, spread, own_colors, own_opacities, edges, edge_count)   \
+    {                                                                      \
+        .size = sizeof(snow_look), .name = word, .domain = spread,         \
+        .colors = own_colors, .color_count = COUNT(own_colors),            \
+        .opacities = own_opacities, .opacity_count = COUNT(own_opacities), \
+        .gradient_opacities = edges, .gradient_opacity_count = edge_count  \
     }
 #define CT(name, text, word, colors, opacities) \
-    { name, text, POINTS(word, SNOW_DOMAIN_DATA, colors, opacities, NULL, 0) }
-#define EDGES(name, text, word, colors, opacities, edges)            \
-    {                                                                \
-        name, text,                                                  \
-            POINTS(word, SNOW_DOMAIN_DATA, colors, opacities, edges, \
-                   COUNT(edges))                                     \
+    { name, text, LOOK(word, SNOW_DOMAIN_DATA, colors, opacities, NULL, 0) }
+#define EDGES(name, text, word, colors, opacities, edges)          \
+    {                                                              \
+        name, text,                                                \
+            LOOK(word, SNOW_DOMAIN_DATA, colors, opacities, edges, \
+                 COUNT(edges))                                     \
     }
 #define SHARES(name, text, word, spread, colors, opacities) \
-    { name, text, POINTS(word, spread, colors, opacities, NULL, 0) }
+    { name, text, LOOK(word, spread, colors, opacities, NULL, 0) }
 
 /* clang-format off */
 static const preset_row presets[] = {
@@ -319,8 +321,8 @@ const char *snow_preset_description(size_t index) {
     return index < COUNT(presets) ? presets[index].text : NULL;
 }
 
-const snow_points *snow_preset_points(size_t index) {
-    return index < COUNT(presets) ? &presets[index].points : NULL;
+const snow_look *snow_preset_look(size_t index) {
+    return index < COUNT(presets) ? &presets[index].look : NULL;
 }
 
 int snow_preset_from_name(const char *name) {

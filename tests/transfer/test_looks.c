@@ -167,25 +167,34 @@ static void points_in_data_units_stay_where_they_are(void **state) {
     const snow_opacity_point opacities[] = {{10, 0}, {50, 0.5}};
     const snow_opacity_point gradients[] = {{0, 0}, {4, 1}};
     const uint8_t bytes[] = {0, 255};
-    const snow_points points = {.name = "mine",
-                                .colors = colors,
-                                .color_count = 2,
-                                .opacities = opacities,
-                                .opacity_count = 2,
-                                .gradients = gradients,
-                                .gradient_count = 2};
+    const snow_look points = {.size = sizeof points,
+                              .name = "mine",
+                              .colors = colors,
+                              .color_count = 2,
+                              .opacities = opacities,
+                              .opacity_count = 2,
+                              .gradient_opacities = gradients,
+                              .gradient_opacity_count = 2};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .points = &points});
+        volume, (snow_look){.size = sizeof(snow_look), .base = &points});
     assert_true(near(opacity_at(transfer, 30), 0.25));
     assert_true(near(red_at(transfer, 30), 0.5));
     assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.5));
     assert_non_null(strstr(snow_transfer_description(transfer), "mine 10..50"));
     snow_transfer_free(transfer);
+    /* The same without a base: a look with colours stands for a preset. */
+    transfer = support_look(volume, points);
+    assert_true(near(opacity_at(transfer, 30), 0.25));
+    assert_true(near(red_at(transfer, 30), 0.5));
+    assert_true(near(snow_transfer_evaluate_gradient(transfer, 2), 0.5));
+    assert_non_null(strstr(snow_transfer_description(transfer),
+                           "mine 10..50; opacity 0 at 10, 0.5 at 50 (as "));
+    snow_transfer_free(transfer);
     /* Over twice the range gradients are half as steep. */
     transfer = support_look(volume, (snow_look){.size = sizeof(snow_look),
-                                                .points = &points,
+                                                .base = &points,
                                                 .range = SNOW_RANGE_VALUES,
                                                 .low = 100,
                                                 .high = 180});
@@ -197,26 +206,53 @@ static void points_in_data_units_stay_where_they_are(void **state) {
     snow_context_free(context);
 }
 
+static void two_sources_of_colours_are_refused(void **state) {
+    (void)state;
+    const uint8_t bytes[] = {0, 255};
+    const snow_look base = {
+        .size = sizeof base, .colors = red_blue, .color_count = 2};
+    const snow_look looks[] = {
+        {.size = sizeof base, .preset = "linear", .base = &base},
+        {.size = sizeof base,
+         .preset = "linear",
+         .colors = red_blue,
+         .color_count = 2},
+        {.size = sizeof base, .base = &base, .domain = SNOW_DOMAIN_RANGE}};
+    snow_context *context = support_context();
+    snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
+    snow_transfer *transfer = NULL;
+    for (int n = 0; n < 3; n++) {
+        assert_int_equal(
+            snow_transfer_new_for_volume(volume, &looks[n], &transfer),
+            SNOW_STATUS_BAD_USAGE);
+        assert_non_null(strstr(snow_context_message(context), "only one of"));
+    }
+    assert_null(transfer);
+    snow_volume_close(volume);
+    snow_context_free(context);
+}
+
 static void points_without_values_are_spread(void **state) {
     (void)state;
     const uint8_t bytes[] = {50, 150};
-    const snow_points points = {.name = "mine",
-                                .values = SNOW_DOMAIN_RANGE,
-                                .colors = red_blue,
-                                .color_count = 2,
-                                .opacities = half,
-                                .opacity_count = 2};
-    snow_points colors_only = points;
+    const snow_look points = {.size = sizeof points,
+                              .name = "mine",
+                              .domain = SNOW_DOMAIN_RANGE,
+                              .colors = red_blue,
+                              .color_count = 2,
+                              .opacities = half,
+                              .opacity_count = 2};
+    snow_look colors_only = points;
     colors_only.opacity_count = 0;
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_UINT8, bytes, 2);
     snow_transfer *transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .points = &points});
+        volume, (snow_look){.size = sizeof(snow_look), .base = &points});
     assert_true(near(opacity_at(transfer, 100), 0.25));
     assert_true(near(red_at(transfer, 75), 0.75));
     snow_transfer_free(transfer);
     transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .points = &colors_only});
+        volume, (snow_look){.size = sizeof(snow_look), .base = &colors_only});
     snow_transfer *automatic = support_look(
         volume, (snow_look){.size = sizeof(snow_look), .preset = NULL});
     assert_true(near(opacity_at(transfer, 150), opacity_at(automatic, 150)));
@@ -237,15 +273,16 @@ static void hundreds_of_points_are_taken(void **state) {
     for (int i = 0; i < 900; i++)
         opacities[i] = (snow_opacity_point){i, i % 2};
     const float values[] = {0, 1000};
-    const snow_points points = {.name = "many",
-                                .colors = colors,
-                                .color_count = 700,
-                                .opacities = opacities,
-                                .opacity_count = 900};
+    const snow_look points = {.size = sizeof points,
+                              .name = "many",
+                              .colors = colors,
+                              .color_count = 700,
+                              .opacities = opacities,
+                              .opacity_count = 900};
     snow_context *context = support_context();
     snow_volume *volume = support_row(context, SNOW_TYPE_FLOAT32, values, 2);
     snow_transfer *transfer = support_look(
-        volume, (snow_look){.size = sizeof(snow_look), .points = &points});
+        volume, (snow_look){.size = sizeof(snow_look), .base = &points});
     assert_true(near(opacity_at(transfer, 655.25), 0.75));
     assert_true(near(red_at(transfer, 350), 0.5));
     snow_transfer_free(transfer);
@@ -257,11 +294,11 @@ static void presets_and_colour_maps_are_data(void **state) {
     (void)state;
     snow_color_point points[SNOW_COLORMAP_POINTS_MAX];
     for (size_t i = 0; snow_preset_name(i); i++) {
-        const snow_points *preset = snow_preset_points(i);
+        const snow_look *preset = snow_preset_look(i);
         assert_true(preset->color_count && preset->opacity_count);
         assert_true(preset->opacities[0].opacity == 0);
     }
-    assert_null(snow_preset_points(1000));
+    assert_null(snow_preset_look(1000));
     for (size_t i = 0; snow_colormap_name(i); i++) {
         size_t count =
             snow_colormap_points(i, points, SNOW_COLORMAP_POINTS_MAX);
@@ -363,6 +400,7 @@ int main(void) {
         cmocka_unit_test(odd_volumes_have_a_logarithmic_look_too),
         cmocka_unit_test(points_in_data_units_stay_where_they_are),
         cmocka_unit_test(points_without_values_are_spread),
+        cmocka_unit_test(two_sources_of_colours_are_refused),
         cmocka_unit_test(hundreds_of_points_are_taken),
         cmocka_unit_test(presets_and_colour_maps_are_data),
         cmocka_unit_test(categories_are_not_mixed),

@@ -4,7 +4,7 @@
 #include "support/volumes.h"
 
 #include <math.h>
-#include <snowglass/tf.h>
+#include <snowglass/look_file.h>
 
 static char remark[1024];
 
@@ -13,9 +13,10 @@ static void listen(void *user, const char *text) {
     snprintf(remark, sizeof remark, "%s", text);
 }
 
-static snow_tf *take(snow_context *context, const char *name, const void *bytes,
-                     size_t size, const char *wanted) {
-    snow_tf *tf = NULL;
+static snow_look_file *take(snow_context *context, const char *name,
+                            const void *bytes, size_t size,
+                            const char *wanted) {
+    snow_look_file *tf = NULL;
     remark[0] = 0;
     snow_context_set_warning(context, listen, NULL);
     if (snow_look_parse(context, name, bytes, size, wanted, &tf) !=
@@ -24,15 +25,15 @@ static snow_tf *take(snow_context *context, const char *name, const void *bytes,
     return tf;
 }
 
-static snow_tf *take_text(snow_context *context, const char *name,
-                          const char *text) {
+static snow_look_file *take_text(snow_context *context, const char *name,
+                                 const char *text) {
     return take(context, name, text, strlen(text), NULL);
 }
 
-static void look_up(const snow_tf *tf, double value, double rgba[4]) {
+static void look_up(const snow_look_file *tf, double value, double rgba[4]) {
     static const snow_color_point white[] = {{0, 1, 1, 1}};
     static const snow_opacity_point solid[] = {{0, 1}};
-    const snow_points *p = snow_tf_points(tf);
+    const snow_look *p = snow_look_file_look(tf);
     snow_context *context = support_context();
     snow_transfer *transfer = NULL;
     assert_int_equal(
@@ -46,7 +47,7 @@ static void look_up(const snow_tf *tf, double value, double rgba[4]) {
     snow_context_free(context);
 }
 
-static void expect(const snow_tf *tf, double value, double r, double g,
+static void expect(const snow_look_file *tf, double value, double r, double g,
                    double b, double a, double bound) {
     double rgba[4], wanted[4] = {r, g, b, a};
     look_up(tf, value, rgba);
@@ -66,22 +67,23 @@ static const char vp[] =
 static void a_volume_property_of_slicer(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_tf *tf = take_text(context, "dir/My CT.vp", vp);
-    const snow_points *p = snow_tf_points(tf);
-    assert_string_equal(snow_tf_format(tf), "slicer-vp");
+    snow_look_file *tf = take_text(context, "dir/My CT.vp", vp);
+    const snow_look *p = snow_look_file_look(tf);
+    assert_string_equal(snow_look_file_format(tf), "slicer-vp");
     assert_string_equal(p->name, "My CT");
-    assert_int_equal(p->values, SNOW_DOMAIN_DATA);
+    assert_int_equal(p->domain, SNOW_DOMAIN_DATA);
     assert_int_equal(p->color_count, 3);
     assert_int_equal(p->opacity_count, 4);
-    assert_int_equal(p->gradient_count, 3);
-    assert_true(p->gradients[1].value == 20 && p->gradients[1].opacity == 0.5);
+    assert_int_equal(p->gradient_opacity_count, 3);
+    assert_true(p->gradient_opacities[1].value == 20 &&
+                p->gradient_opacities[1].opacity == 0.5);
     expect(tf, 200, 0.9, 0.5, 0.25, 0.25, 1e-12);
     assert_non_null(strstr(remark, "--ambient 0.1 --diffuse 0.9 --specular 0.2 "
                                    "--shininess 10"));
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     tf = take_text(context, "no suffix", vp);
-    assert_string_equal(snow_tf_format(tf), "slicer-vp");
-    snow_tf_free(tf);
+    assert_string_equal(snow_look_file_format(tf), "slicer-vp");
+    snow_look_file_free(tf);
     snow_context_free(context);
 }
 
@@ -94,17 +96,17 @@ static const char presets[] =
 static void a_preset_of_slicer_by_name(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_tf *tf = NULL;
+    snow_look_file *tf = NULL;
 #if SNOW_HAVE_EXPAT
     tf = take(context, "presets.xml", presets, strlen(presets), "ct_bone");
-    assert_string_equal(snow_tf_points(tf)->name, "CT-Bone");
-    assert_string_equal(snow_tf_format(tf), "slicer-xml");
+    assert_string_equal(snow_look_file_look(tf)->name, "CT-Bone");
+    assert_string_equal(snow_look_file_format(tf), "slicer-xml");
     expect(tf, 525, 0.5, 0.5, 0.5, 0.375, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     tf = take_text(context, "presets.xml", presets);
-    assert_string_equal(snow_tf_points(tf)->name, "CT-Fat");
+    assert_string_equal(snow_look_file_look(tf)->name, "CT-Fat");
     assert_non_null(strstr(remark, "2 presets"));
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     tf = NULL;
     assert_int_equal(snow_look_parse(context, "p.xml", presets, strlen(presets),
                                      "CT-Skin", &tf),
@@ -129,15 +131,15 @@ static void check_space(const char *space, const double expected[3][3]) {
              "[{\"ColorSpace\": \"%s\", \"Name\": \"two\", \"RGBPoints\": "
              "[10, 0.23, 0.3, 0.75, 20, 0.7, 0.02, 0.15]}]",
              space);
-    snow_tf *tf = take_text(context, "a.json", text);
-    assert_string_equal(snow_tf_format(tf), "paraview");
-    assert_string_equal(snow_tf_points(tf)->name, "two");
+    snow_look_file *tf = take_text(context, "a.json", text);
+    assert_string_equal(snow_look_file_format(tf), "paraview");
+    assert_string_equal(snow_look_file_look(tf)->name, "two");
     for (int i = 0; i < 3; i++)
         expect(tf, 10 + 10 * parts[i], expected[i][0], expected[i][1],
                expected[i][2], 1, 0.002);
     expect(tf, 10, 0.23, 0.3, 0.75, 1, 1e-12);
     expect(tf, 20, 0.7, 0.02, 0.15, 1, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     snow_context_free(context);
 }
 
@@ -167,33 +169,34 @@ static void midpoints_and_sharpness_are_those_of_vtk(void **state) {
     static const double expected[] = {0.16667, 0.5, 0.71429, 0.99918, 0.92876,
                                       0.20997, 0.2, 0.2,     0.9,     0.9};
     snow_context *context = support_context();
-    snow_tf *tf = take_text(context, "a.json",
-                            "{\"Points\": [0,0,0.3,0, 1,1,0.5,0.5, "
-                            "2,0.2,0.5,1, 3,0.9,0.5,0]}");
+    snow_look_file *tf = take_text(context, "a.json",
+                                   "{\"Points\": [0,0,0.3,0, 1,1,0.5,0.5, "
+                                   "2,0.2,0.5,1, 3,0.9,0.5,0]}");
     for (size_t i = 0; i < sizeof at / sizeof *at; i++)
         expect(tf, at[i], 1, 1, 1, expected[i], 0.003);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     snow_context_free(context);
 }
 
 static void a_map_of_niivue(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_tf *tf = take_text(context, "ct_bones.json",
-                            "{\"R\":[0,51,255],\"G\":[0,0,255],\"B\":[0,0,0],"
-                            "\"A\":[0,51,102],\"I\":[0,51,255],"
-                            "\"min\":100,\"max\":355}");
-    assert_string_equal(snow_tf_format(tf), "niivue");
-    assert_string_equal(snow_tf_points(tf)->name, "ct_bones");
-    assert_int_equal(snow_tf_points(tf)->values, SNOW_DOMAIN_DATA);
+    snow_look_file *tf =
+        take_text(context, "ct_bones.json",
+                  "{\"R\":[0,51,255],\"G\":[0,0,255],\"B\":[0,0,0],"
+                  "\"A\":[0,51,102],\"I\":[0,51,255],"
+                  "\"min\":100,\"max\":355}");
+    assert_string_equal(snow_look_file_format(tf), "niivue");
+    assert_string_equal(snow_look_file_look(tf)->name, "ct_bones");
+    assert_int_equal(snow_look_file_look(tf)->domain, SNOW_DOMAIN_DATA);
     expect(tf, 151, 0.2, 0, 0, 0.2, 1e-12);
     expect(tf, 355, 1, 1, 0, 0.4, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     tf =
         take_text(context, "a.json", "{\"R\":[0,255],\"G\":[0,0],\"B\":[0,0]}");
-    assert_int_equal(snow_tf_points(tf)->values, SNOW_DOMAIN_RANGE);
+    assert_int_equal(snow_look_file_look(tf)->domain, SNOW_DOMAIN_RANGE);
     expect(tf, 0.5, 0.5, 0, 0, 0.5, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     snow_context_free(context);
 }
 
@@ -207,45 +210,45 @@ static void palettes_of_amrvis(void **state) {
         bytes[i + 768] = (unsigned char)(i * 100 / 255);
     }
     snow_context *context = support_context();
-    snow_tf *tf = take(context, "a.pal", bytes, 1024, NULL);
-    assert_string_equal(snow_tf_format(tf), "pal");
-    assert_int_equal(snow_tf_points(tf)->values, SNOW_DOMAIN_RANGE);
+    snow_look_file *tf = take(context, "a.pal", bytes, 1024, NULL);
+    assert_string_equal(snow_look_file_format(tf), "pal");
+    assert_int_equal(snow_look_file_look(tf)->domain, SNOW_DOMAIN_RANGE);
     expect(tf, 0.2, 0.2, 0.8, 0.2, 0.2, 1e-12);
     expect(tf, 1, 1, 0, 0.2, 1, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     tf = take(context, "a", bytes, 768, NULL);
-    assert_int_equal(snow_tf_points(tf)->opacity_count, 0);
-    assert_int_equal(snow_tf_points(tf)->color_count, 256);
-    snow_tf_free(tf);
+    assert_int_equal(snow_look_file_look(tf)->opacity_count, 0);
+    assert_int_equal(snow_look_file_look(tf)->color_count, 256);
+    snow_look_file_free(tf);
     snow_context_free(context);
 }
 
 static void tables_with_and_without_a_head(void **state) {
     (void)state;
     snow_context *context = support_context();
-    snow_tf *tf = take_text(context, "a.csv",
-                            "# mine\nvalue,red,green,blue,opacity\r\n"
-                            "0,0,0,0,0\r\n\n100,255,128,0,0.5\n");
+    snow_look_file *tf = take_text(context, "a.csv",
+                                   "# mine\nvalue,red,green,blue,opacity\r\n"
+                                   "0,0,0,0,0\r\n\n100,255,128,0,0.5\n");
     expect(tf, 50, 0.5, 64 / 255.0, 0, 0.25, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     tf = take_text(context, "a.csv", "-5; 0\n5.0; 1 # top");
-    assert_int_equal(snow_tf_points(tf)->color_count, 0);
+    assert_int_equal(snow_look_file_look(tf)->color_count, 0);
     expect(tf, 0, 1, 1, 1, 0.5, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     tf = take_text(context, "a.txt", "0 0 0 0\n1 1 0.5 0\n");
-    assert_int_equal(snow_tf_points(tf)->opacity_count, 0);
+    assert_int_equal(snow_look_file_look(tf)->opacity_count, 0);
     expect(tf, 0.5, 0.5, 0.25, 0, 1, 1e-12);
-    snow_tf_free(tf);
+    snow_look_file_free(tf);
     snow_context_free(context);
 }
 
 /* --- our own -------------------------------------------------------------- */
 
-static bool same_points(const snow_points *a, const snow_points *b) {
-    return a->values == b->values && a->log == b->log &&
+static bool same_points(const snow_look *a, const snow_look *b) {
+    return a->domain == b->domain && a->log == b->log &&
            a->per_mm == b->per_mm && a->color_count == b->color_count &&
            a->opacity_count == b->opacity_count &&
-           a->gradient_count == b->gradient_count &&
+           a->gradient_opacity_count == b->gradient_opacity_count &&
            strcmp(a->name, b->name) == 0 &&
            (!a->color_count ||
             memcmp(a->colors, b->colors, a->color_count * sizeof *a->colors) ==
@@ -253,9 +256,10 @@ static bool same_points(const snow_points *a, const snow_points *b) {
            (!a->opacity_count ||
             memcmp(a->opacities, b->opacities,
                    a->opacity_count * sizeof *a->opacities) == 0) &&
-           (!a->gradient_count ||
-            memcmp(a->gradients, b->gradients,
-                   a->gradient_count * sizeof *a->gradients) == 0);
+           (!a->gradient_opacity_count ||
+            memcmp(a->gradient_opacities, b->gradient_opacities,
+                   a->gradient_opacity_count * sizeof *a->gradient_opacities) ==
+                0);
 }
 
 static void what_is_written_reads_as_the_same_bits(void **state) {
@@ -274,28 +278,29 @@ static void what_is_written_reads_as_the_same_bits(void **state) {
                 (snow_opacity_point){value / 3, support_uniform(&seed)};
             gradients[i] = (snow_opacity_point){value / 7, 1 / (i + 1.0)};
         }
-        const snow_points points = {.name = "some name",
-                                    .values = (snow_domain)(n % 3),
-                                    .log = n % 2 == 1,
-                                    .per_mm = n % 5 == 0,
-                                    .colors = colors,
-                                    .color_count = 40,
-                                    .opacities = opacities,
-                                    .opacity_count = n % 7 ? 40 : 0,
-                                    .gradients = gradients,
-                                    .gradient_count = n % 4 ? 40 : 0};
+        const snow_look points = {.size = sizeof points,
+                                  .name = "some name",
+                                  .domain = (snow_domain)(n % 3),
+                                  .log = n % 2 == 1,
+                                  .per_mm = n % 5 == 0,
+                                  .colors = colors,
+                                  .color_count = 40,
+                                  .opacities = opacities,
+                                  .opacity_count = n % 7 ? 40 : 0,
+                                  .gradient_opacities = gradients,
+                                  .gradient_opacity_count = n % 4 ? 40 : 0};
         char text[16384], again[16384];
         size_t length, size;
         assert_int_equal(
             snow_look_write_json(context, &points, text, sizeof text, &length),
             SNOW_STATUS_OK);
-        snow_tf *tf = take(context, "x", text, length, NULL);
-        assert_true(same_points(&points, snow_tf_points(tf)));
-        assert_int_equal(snow_look_write_json(context, snow_tf_points(tf),
+        snow_look_file *tf = take(context, "x", text, length, NULL);
+        assert_true(same_points(&points, snow_look_file_look(tf)));
+        assert_int_equal(snow_look_write_json(context, snow_look_file_look(tf),
                                               again, sizeof again, &size),
                          SNOW_STATUS_OK);
         assert_string_equal(text, again);
-        snow_tf_free(tf);
+        snow_look_file_free(tf);
     }
     snow_context_free(context);
 }
@@ -305,18 +310,18 @@ static void presets_survive_our_json_and_tables(void **state) {
     snow_context *context = support_context();
     char text[16384];
     for (size_t n = 0; snow_preset_name(n); n++) {
-        const snow_points *preset = snow_preset_points(n);
+        const snow_look *preset = snow_preset_look(n);
         size_t length;
         assert_int_equal(
             snow_look_write_json(context, preset, text, sizeof text, &length),
             SNOW_STATUS_OK);
-        snow_tf *tf = take(context, "x.json", text, length, NULL);
-        assert_true(same_points(preset, snow_tf_points(tf)));
+        snow_look_file *tf = take(context, "x.json", text, length, NULL);
+        assert_true(same_points(preset, snow_look_file_look(tf)));
         assert_int_equal(
             snow_look_write_csv(context, preset, text, sizeof text, &length),
             SNOW_STATUS_OK);
         assert_int_equal(length, strlen(text));
-        snow_tf *table = take(context, "x.csv", text, length, NULL);
+        snow_look_file *table = take(context, "x.csv", text, length, NULL);
         double low = preset->opacities[0].value;
         double high = preset->opacities[preset->opacity_count - 1].value;
         for (int i = -5; i < 105; i++) {
@@ -324,8 +329,8 @@ static void presets_survive_our_json_and_tables(void **state) {
             look_up(tf, value, rgba);
             expect(table, value, rgba[0], rgba[1], rgba[2], rgba[3], 1e-12);
         }
-        snow_tf_free(table);
-        snow_tf_free(tf);
+        snow_look_file_free(table);
+        snow_look_file_free(tf);
     }
     snow_context_free(context);
 }
@@ -335,11 +340,11 @@ static void a_text_that_does_not_fit_is_not_written(void **state) {
     char text[50] = "old";
     size_t length = 0;
     snow_context *context = support_context();
-    assert_int_equal(snow_look_write_json(context, snow_preset_points(1), text,
+    assert_int_equal(snow_look_write_json(context, snow_preset_look(1), text,
                                           sizeof text, &length),
                      SNOW_STATUS_OK);
     assert_true(length > sizeof text && text[0] == 0);
-    assert_int_equal(snow_look_write_csv(context, snow_preset_points(1), text,
+    assert_int_equal(snow_look_write_csv(context, snow_preset_look(1), text,
                                          sizeof text, &length),
                      SNOW_STATUS_OK);
     assert_true(length > sizeof text && text[0] == 0);
@@ -386,7 +391,7 @@ static void bad_files_are_refused_in_one_line(void **state) {
     };
     snow_context *context = support_context();
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        snow_tf *tf = NULL;
+        snow_look_file *tf = NULL;
         assert_int_equal(snow_look_parse(context, rows[i].name, rows[i].text,
                                          strlen(rows[i].text), NULL, &tf),
                          SNOW_STATUS_BAD_INPUT);
@@ -398,7 +403,7 @@ static void bad_files_are_refused_in_one_line(void **state) {
             fail_msg("row %zu: %s", i, message);
         assert_int_equal(snow_context_bytes(context), 0);
     }
-    snow_tf *tf = NULL;
+    snow_look_file *tf = NULL;
     assert_int_equal(snow_look_parse(context, "a", "\1\0\2", 3, NULL, &tf),
                      SNOW_STATUS_BAD_INPUT);
     assert_int_equal(snow_look_load(context, "none.vp", &tf),
@@ -418,7 +423,7 @@ static void no_memory_leaves_nothing_behind(void **state) {
         snow_status status = SNOW_STATUS_NO_MEMORY;
         int64_t failures = 0;
         for (; status != SNOW_STATUS_OK; failures++) {
-            snow_tf *tf = NULL;
+            snow_look_file *tf = NULL;
             place->allocations = 0;
             place->fail_at = failures + 1;
             status = snow_look_parse(place->context, "x", texts[n],
@@ -427,7 +432,7 @@ static void no_memory_leaves_nothing_behind(void **state) {
             assert_true(status == SNOW_STATUS_OK || !tf);
             assert_true(status == SNOW_STATUS_OK ||
                         status == SNOW_STATUS_NO_MEMORY);
-            snow_tf_free(tf);
+            snow_look_file_free(tf);
             assert_int_equal(snow_context_bytes(place->context), 0);
         }
         assert_true(failures > 2);

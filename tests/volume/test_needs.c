@@ -67,11 +67,12 @@ static void what_is_given_is_not_looked_for(void **state) {
     (void)state;
     const snow_opacity_point opacities[] = {{10, 0}, {90, 0.5}};
     const snow_color_point colors[] = {{10, 0, 0, 0}, {90, 1, 1, 1}};
-    const snow_points points = {.name = "own",
-                                .colors = colors,
-                                .color_count = 2,
-                                .opacities = opacities,
-                                .opacity_count = 2};
+    const snow_look points = {.size = sizeof points,
+                              .name = "own",
+                              .colors = colors,
+                              .color_count = 2,
+                              .opacities = opacities,
+                              .opacity_count = 2};
     snow_look given = {.size = sizeof given,
                        .colormap = "viridis",
                        .range = SNOW_RANGE_VALUES,
@@ -95,7 +96,7 @@ static void what_is_given_is_not_looked_for(void **state) {
     assert_false(reads(volume, context, given));
     assert_false(
         reads(volume, context,
-              (snow_look){.size = sizeof(snow_look), .points = &points}));
+              (snow_look){.size = sizeof(snow_look), .base = &points}));
     assert_false(reads(volume, context,
                        (snow_look){.size = sizeof(snow_look),
                                    .preset = "ct-bone",

@@ -35,7 +35,7 @@ static row read_row(const char *at, const char *end) {
     return r;
 }
 
-static snow_status add_row(const tf_input *in, snow_tf *tf, const row *r,
+static snow_status add_row(const tf_input *in, snow_look_file *tf, const row *r,
                            double scale) {
     const double *n = r->number;
     const double rgb[3] = {n[1] / scale, n[2] / scale, n[3] / scale};
@@ -63,7 +63,8 @@ static bool is_title(const char *at) {
     return (*at >= 'A' && *at <= 'Z') || (*at >= 'a' && *at <= 'z');
 }
 
-static snow_status walk_lines(const tf_input *in, snow_tf *tf, table *t) {
+static snow_status walk_lines(const tf_input *in, snow_look_file *tf,
+                              table *t) {
     const char *at = in->bytes, *end = in->bytes + in->size;
     for (long number = 1; at < end; number++) {
         const char *stop = memchr(at, '\n', (size_t)(end - at));
@@ -94,7 +95,7 @@ static snow_status walk_lines(const tf_input *in, snow_tf *tf, table *t) {
     return SNOW_STATUS_OK;
 }
 
-snow_status tf_read_csv(const tf_input *in, snow_tf *tf) {
+snow_status tf_read_csv(const tf_input *in, snow_look_file *tf) {
     table t = {.columns = 0};
     TF_TRY(walk_lines(in, tf, &t));
     if (!t.columns)

@@ -31,8 +31,8 @@ static double risen(double part, double middle, double sharpness) {
 
 /* `a` and `b` are value, opacity, midpoint and sharpness; the curve uses a's.
  * The point b itself is not added. */
-snow_status tf_join_opacity(const tf_input *in, snow_tf *tf, const double a[4],
-                            const double b[4]) {
+snow_status tf_join_opacity(const tf_input *in, snow_look_file *tf,
+                            const double a[4], const double b[4]) {
     double middle = fmin(fmax(a[2], 0.00001), 0.99999);
     double sharpness = a[3], rise = b[1] - a[1];
     double at = a[0] * (1 - middle) + b[0] * middle;

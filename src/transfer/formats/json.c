@@ -14,7 +14,7 @@ static const json_t *first_of(const tf_input *in, const json_t *tree) {
     return in->wanted ? NULL : json_array_get(tree, 0);
 }
 
-static snow_status take_tree(const tf_input *in, snow_tf *tf,
+static snow_status take_tree(const tf_input *in, snow_look_file *tf,
                              const json_t *tree) {
     const json_t *map = first_of(in, tree);
     if (!map && in->wanted)
@@ -31,7 +31,7 @@ static snow_status take_tree(const tf_input *in, snow_tf *tf,
             "\"RGBPoints\" and niivue's \"R\" and \"G\" are all missing");
 }
 
-snow_status tf_read_json(const tf_input *in, snow_tf *tf) {
+snow_status tf_read_json(const tf_input *in, snow_look_file *tf) {
     json_error_t error;
     json_t *tree = json_loadb(in->bytes, in->size, 0, &error);
     if (!tree)

@@ -6,10 +6,12 @@
 
 #include <jansson.h>
 
-snow_status tf_take_own(const tf_input *in, snow_tf *tf, const json_t *tree);
-snow_status tf_take_paraview(const tf_input *in, snow_tf *tf,
+snow_status tf_take_own(const tf_input *in, snow_look_file *tf,
+                        const json_t *tree);
+snow_status tf_take_paraview(const tf_input *in, snow_look_file *tf,
                              const json_t *tree);
-snow_status tf_take_niivue(const tf_input *in, snow_tf *tf, const json_t *tree);
+snow_status tf_take_niivue(const tf_input *in, snow_look_file *tf,
+                           const json_t *tree);
 
 /* Number `index` of an array; false where it is none. */
 static inline bool tf_json_number(const json_t *array, size_t index,

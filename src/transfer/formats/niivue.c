@@ -26,7 +26,8 @@ static bool take_entry(const json_t *map, size_t n, size_t count,
     return true;
 }
 
-snow_status tf_take_niivue(const tf_input *in, snow_tf *tf, const json_t *map) {
+snow_status tf_take_niivue(const tf_input *in, snow_look_file *tf,
+                           const json_t *map) {
     const json_t *min = json_object_get(map, "min");
     const json_t *max = json_object_get(map, "max");
     double low = json_number_value(min), high = json_number_value(max);
@@ -47,7 +48,7 @@ snow_status tf_take_niivue(const tf_input *in, snow_tf *tf, const json_t *map) {
         TF_TRY(
             tf_add_opacity(in, tf, &tf->opacities, "opacity", value, entry[3]));
     }
-    tf->points.values = data ? SNOW_DOMAIN_DATA : SNOW_DOMAIN_RANGE;
+    tf->look.domain = data ? SNOW_DOMAIN_DATA : SNOW_DOMAIN_RANGE;
     tf->format = "niivue";
     return SNOW_STATUS_OK;
 }

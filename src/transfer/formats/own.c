@@ -37,7 +37,7 @@ static bool take_point(const json_t *point, size_t count, double *numbers) {
     return true;
 }
 
-static snow_status take_colors(const tf_input *in, snow_tf *tf,
+static snow_status take_colors(const tf_input *in, snow_look_file *tf,
                                const json_t *list, tf_space space) {
     double last[4], point[4];
     for (size_t n = 0; n < json_array_size(list); n++) {
@@ -52,8 +52,9 @@ static snow_status take_colors(const tf_input *in, snow_tf *tf,
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_pairs(const tf_input *in, snow_tf *tf, tf_list *to,
-                              const char *what, const json_t *list) {
+static snow_status take_pairs(const tf_input *in, snow_look_file *tf,
+                              tf_list *to, const char *what,
+                              const json_t *list) {
     double pair[2];
     for (size_t n = 0; n < json_array_size(list); n++) {
         if (!take_point(json_array_get(list, n), 2, pair))
@@ -64,7 +65,7 @@ static snow_status take_pairs(const tf_input *in, snow_tf *tf, tf_list *to,
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_words(const tf_input *in, snow_tf *tf,
+static snow_status take_words(const tf_input *in, snow_look_file *tf,
                               const json_t *map, tf_space *space) {
     static const char *const values[] = {"data", "range", "object"};
     static const char *const scales[] = {"linear", "log"};
@@ -83,14 +84,15 @@ static snow_status take_words(const tf_input *in, snow_tf *tf,
                        : scale < 0 ? "interpolation"
                        : unit < 0  ? "opacity-unit"
                                    : "color-space");
-    tf->points.values = (snow_domain)value;
-    tf->points.log = scale == 1;
-    tf->points.per_mm = unit == 1;
+    tf->look.domain = (snow_domain)value;
+    tf->look.log = scale == 1;
+    tf->look.per_mm = unit == 1;
     *space = (tf_space)found;
     return SNOW_STATUS_OK;
 }
 
-snow_status tf_take_own(const tf_input *in, snow_tf *tf, const json_t *map) {
+snow_status tf_take_own(const tf_input *in, snow_look_file *tf,
+                        const json_t *map) {
     const json_t *version = json_object_get(map, "snowglass-tf");
     const char *name = json_string_value(json_object_get(map, "name"));
     tf_space space = TF_RGB;

@@ -5,7 +5,7 @@
 
 #define ENTRIES 256
 
-snow_status tf_read_pal(const tf_input *in, snow_tf *tf) {
+snow_status tf_read_pal(const tf_input *in, snow_look_file *tf) {
     const unsigned char *bytes = (const unsigned char *)in->bytes;
     for (size_t n = 0; n < ENTRIES; n++) {
         const double rgb[3] = {bytes[n] / 255.0, bytes[n + ENTRIES] / 255.0,
@@ -23,6 +23,6 @@ snow_status tf_read_pal(const tf_input *in, snow_tf *tf) {
                               (double)n / (ENTRIES - 1), percent / 100.0));
     }
     tf->format = "pal";
-    tf->points.values = SNOW_DOMAIN_RANGE;
+    tf->look.domain = SNOW_DOMAIN_RANGE;
     return SNOW_STATUS_OK;
 }

@@ -52,7 +52,7 @@ static bool take_four(const json_t *list, size_t n, double four[4]) {
     return true;
 }
 
-static snow_status take_colors(const tf_input *in, snow_tf *tf,
+static snow_status take_colors(const tf_input *in, snow_look_file *tf,
                                const json_t *list, tf_space space) {
     size_t size = json_array_size(list);
     double last[4], point[4];
@@ -67,7 +67,7 @@ static snow_status take_colors(const tf_input *in, snow_tf *tf,
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_opacities(const tf_input *in, snow_tf *tf,
+static snow_status take_opacities(const tf_input *in, snow_look_file *tf,
                                   const json_t *list) {
     size_t size = json_array_size(list);
     double last[4], point[4];
@@ -91,7 +91,7 @@ static bool has_log(const json_t *map) {
     return json_is_true(log) || json_integer_value(log) == 1;
 }
 
-snow_status tf_take_paraview(const tf_input *in, snow_tf *tf,
+snow_status tf_take_paraview(const tf_input *in, snow_look_file *tf,
                              const json_t *map) {
     const char *name = json_string_value(json_object_get(map, "Name"));
     tf_space space = TF_RGB;
@@ -101,7 +101,7 @@ snow_status tf_take_paraview(const tf_input *in, snow_tf *tf,
     if (json_array_size(json_object_get(map, "IndexedColors")))
         snow_context_warn(
             in->context, "%s: its colours of categories are ignored", in->name);
-    tf->points.log = has_log(map);
+    tf->look.log = has_log(map);
     tf->format = "paraview";
     if (name)
         tf_set_name(tf, name);

@@ -65,7 +65,7 @@ static bool clamp_share(double *part) {
     return true;
 }
 
-snow_status tf_add_color(const tf_input *in, snow_tf *tf, double value,
+snow_status tf_add_color(const tf_input *in, snow_look_file *tf, double value,
                          const double rgb[3]) {
     snow_color_point point = {value, rgb[0], rgb[1], rgb[2]};
     TF_TRY(check_value(in, &tf->colors, "colour", value));
@@ -78,8 +78,9 @@ snow_status tf_add_color(const tf_input *in, snow_tf *tf, double value,
     return append_point(in, &tf->colors, &point);
 }
 
-snow_status tf_add_opacity(const tf_input *in, snow_tf *tf, tf_list *list,
-                           const char *what, double value, double opacity) {
+snow_status tf_add_opacity(const tf_input *in, snow_look_file *tf,
+                           tf_list *list, const char *what, double value,
+                           double opacity) {
     snow_opacity_point point = {value, opacity};
     (void)tf;
     TF_TRY(check_value(in, list, what, value));
@@ -111,7 +112,7 @@ bool tf_is_wanted(const tf_input *in, const char *name) {
 }
 
 /* Names are printed: what is no letter of ASCII becomes one. */
-void tf_set_name(snow_tf *tf, const char *name) {
+void tf_set_name(snow_look_file *tf, const char *name) {
     snprintf(tf->name, sizeof tf->name, "%s", name);
     for (char *at = tf->name; *at; at++)
         *at = (unsigned char)*at < ' ' || (unsigned char)*at > '~' ? '?' : *at;

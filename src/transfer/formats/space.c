@@ -189,7 +189,7 @@ void tf_mix(tf_space space, const double a[3], const double b[3], double part,
 
 typedef struct stretch {
     const tf_input *in;
-    snow_tf *tf;
+    snow_look_file *tf;
     tf_space space;
     double value[2];
     const double *color[2];
@@ -224,9 +224,9 @@ static snow_status add_between(const stretch *s, double from, const double a[3],
     return add_between(s, middle, color, to, b, depth + 1);
 }
 
-snow_status tf_join_color(const tf_input *in, snow_tf *tf, tf_space space,
-                          double last_value, const double *last, double value,
-                          const double rgb[3]) {
+snow_status tf_join_color(const tf_input *in, snow_look_file *tf,
+                          tf_space space, double last_value, const double *last,
+                          double value, const double rgb[3]) {
     if (last && space == TF_STEP)
         TF_TRY(tf_add_color(in, tf, nextafter(last_value, value), rgb));
     else if (last && space != TF_RGB && last_value < value) {

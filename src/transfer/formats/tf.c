@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 
 /* The file's own name without folders and what follows the first point. */
-static void name_by_file(snow_tf *tf, const char *path) {
+static void name_by_file(snow_look_file *tf, const char *path) {
     const char *slash = strrchr(path, '/');
     char name[TF_NAME_BYTES];
     snprintf(name, sizeof name, "%s", slash ? slash + 1 : path);
@@ -40,7 +40,7 @@ static bool looks_like_vp(const tf_input *in) {
     return at == end && count >= 9 && line > 0 && line < 4;
 }
 
-static snow_status read_bytes(const tf_input *in, snow_tf *tf) {
+static snow_status read_bytes(const tf_input *in, snow_look_file *tf) {
     const char *at = in->bytes;
     bool palette = in->size == 768 || in->size == 1024;
     if (in->size >= 3 && memcmp(at, "\xef\xbb\xbf", 3) == 0)
@@ -65,15 +65,15 @@ static snow_status read_bytes(const tf_input *in, snow_tf *tf) {
 }
 
 /* Fills the public record with the lists. */
-static snow_status finish(const tf_input *in, snow_tf *tf) {
-    snow_points *p = &tf->points;
+static snow_status finish(const tf_input *in, snow_look_file *tf) {
+    snow_look *p = &tf->look;
     p->name = tf->name;
     p->colors = tf->colors.points;
     p->color_count = tf->colors.count;
     p->opacities = tf->opacities.points;
     p->opacity_count = tf->opacities.count;
-    p->gradients = tf->gradients.points;
-    p->gradient_count = tf->gradients.count;
+    p->gradient_opacities = tf->gradients.points;
+    p->gradient_opacity_count = tf->gradients.count;
     if (!p->color_count && !p->opacity_count)
         return tf_fail(
             in, "has neither colours nor opacities; give a transfer function");
@@ -86,7 +86,7 @@ static snow_status finish(const tf_input *in, snow_tf *tf) {
 
 snow_status snow_look_parse(snow_context *context, const char *name,
                             const void *bytes, size_t size, const char *wanted,
-                            snow_tf **out) {
+                            snow_look_file **out) {
     tf_input in = {context, name, bytes, size, wanted};
     if (size > SNOW_LOOK_BYTES_MAX)
         return tf_fail(
@@ -94,7 +94,8 @@ snow_status snow_look_parse(snow_context *context, const char *name,
             SNOW_LOOK_BYTES_MAX);
     /* Readers of text may read one byte beyond its end. */
     char *copy = snow_context_allocate(context, size + 1);
-    snow_tf *tf = copy ? snow_context_allocate(context, sizeof *tf) : NULL;
+    snow_look_file *tf =
+        copy ? snow_context_allocate(context, sizeof *tf) : NULL;
     if (!tf) {
         snow_context_release(context, copy);
         return SNOW_STATUS_NO_MEMORY;
@@ -108,25 +109,26 @@ snow_status snow_look_parse(snow_context *context, const char *name,
         in.bytes += 3;
         in.size -= 3;
     }
-    *tf = (snow_tf){.context = context,
-                    .format = "",
-                    .colors = {.size = sizeof(snow_color_point)},
-                    .opacities = {.size = sizeof(snow_opacity_point)},
-                    .gradients = {.size = sizeof(snow_opacity_point)}};
+    *tf = (snow_look_file){.context = context,
+                           .format = "",
+                           .colors = {.size = sizeof(snow_color_point)},
+                           .opacities = {.size = sizeof(snow_opacity_point)},
+                           .gradients = {.size = sizeof(snow_opacity_point)},
+                           .look = {.size = sizeof(snow_look)}};
     name_by_file(tf, name);
     snow_status status = read_bytes(&in, tf);
     if (status == SNOW_STATUS_OK)
         status = finish(&in, tf);
     snow_context_release(context, copy);
     if (status != SNOW_STATUS_OK) {
-        snow_tf_free(tf);
+        snow_look_file_free(tf);
         return status;
     }
     *out = tf;
     return SNOW_STATUS_OK;
 }
 
-void snow_tf_free(snow_tf *tf) {
+void snow_look_file_free(snow_look_file *tf) {
     if (!tf)
         return;
     snow_context_release(tf->context, tf->colors.points);
@@ -135,11 +137,11 @@ void snow_tf_free(snow_tf *tf) {
     snow_context_release(tf->context, tf);
 }
 
-const snow_points *snow_tf_points(const snow_tf *tf) {
-    return &tf->points;
+const snow_look *snow_look_file_look(const snow_look_file *tf) {
+    return &tf->look;
 }
 
-const char *snow_tf_format(const snow_tf *tf) {
+const char *snow_look_file_format(const snow_look_file *tf) {
     return tf->format;
 }
 
@@ -147,7 +149,7 @@ const char *snow_tf_format(const snow_tf *tf) {
 
 /* Reads a regular file as a whole, if it is not too large. */
 static snow_status load(snow_context *context, const char *path,
-                        const char *wanted, snow_tf **out) {
+                        const char *wanted, snow_look_file **out) {
     const tf_input in = {context, path, NULL, 0, wanted};
     struct stat about;
     FILE *file = NULL;
@@ -172,7 +174,7 @@ static snow_status load(snow_context *context, const char *path,
 }
 
 snow_status snow_look_load(snow_context *context, const char *path,
-                           snow_tf **out) {
+                           snow_look_file **out) {
     char name[4096];
     struct stat about;
     const char *hash = strrchr(path, '#');

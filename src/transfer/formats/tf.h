@@ -4,7 +4,7 @@
 #define SNOW_TRANSFER_FORMATS_TF_H
 
 #include <snowglass/context.h>
-#include <snowglass/tf.h>
+#include <snowglass/look_file.h>
 #include <stdbool.h>
 
 #define TF_NAME_BYTES 64
@@ -23,12 +23,12 @@ typedef struct tf_list {
     size_t size, count, room;
 } tf_list;
 
-struct snow_tf {
+struct snow_look_file {
     snow_context *context;
     const char *format;
     char name[TF_NAME_BYTES];
     tf_list colors, opacities, gradients;
-    snow_points points; /* points to the lists, after reading */
+    snow_look look; /* points to the lists, after reading */
 };
 
 /* The bytes of a file, followed by a zero byte, and the name of the wanted
@@ -47,14 +47,15 @@ snow_status tf_fail(const tf_input *in, const char *format, ...)
 
 /* Appends a point: finite, not below the one before it, 0 to 1 (rounding errors
  * are clamped).  `what` and the count name it in messages. */
-snow_status tf_add_color(const tf_input *in, snow_tf *tf, double value,
+snow_status tf_add_color(const tf_input *in, snow_look_file *tf, double value,
                          const double rgb[3]);
-snow_status tf_add_opacity(const tf_input *in, snow_tf *tf, tf_list *list,
-                           const char *what, double value, double opacity);
+snow_status tf_add_opacity(const tf_input *in, snow_look_file *tf,
+                           tf_list *list, const char *what, double value,
+                           double opacity);
 
 /* Whether a name is the wanted one. */
 bool tf_is_wanted(const tf_input *in, const char *name);
-void tf_set_name(snow_tf *tf, const char *name);
+void tf_set_name(snow_look_file *tf, const char *name);
 
 /* --- text: transfer/formats/number.c
  * ------------------------------------------
@@ -86,26 +87,26 @@ void tf_mix(tf_space space, const double a[3], const double b[3], double part,
 /* Appends a colour point, and before it the points that straight lines need to
  * follow a colour space from the point before, whose colour is `last` (NULL:
  * none). */
-snow_status tf_join_color(const tf_input *in, snow_tf *tf, tf_space space,
-                          double last_value, const double *last, double value,
-                          const double rgb[3]);
+snow_status tf_join_color(const tf_input *in, snow_look_file *tf,
+                          tf_space space, double last_value, const double *last,
+                          double value, const double rgb[3]);
 
 /* The same for opacities with VTK's midpoint and sharpness:
  * transfer/formats/curve.c. */
-snow_status tf_join_opacity(const tf_input *in, snow_tf *tf, const double a[4],
-                            const double b[4]);
+snow_status tf_join_opacity(const tf_input *in, snow_look_file *tf,
+                            const double a[4], const double b[4]);
 
 /* --- readers -------------------------------------------------------------- */
 
-snow_status tf_read_vp(const tf_input *in, snow_tf *tf);
-snow_status tf_read_xml(const tf_input *in, snow_tf *tf);
-snow_status tf_read_json(const tf_input *in, snow_tf *tf);
-snow_status tf_read_pal(const tf_input *in, snow_tf *tf);
-snow_status tf_read_csv(const tf_input *in, snow_tf *tf);
+snow_status tf_read_vp(const tf_input *in, snow_look_file *tf);
+snow_status tf_read_xml(const tf_input *in, snow_look_file *tf);
+snow_status tf_read_json(const tf_input *in, snow_look_file *tf);
+snow_status tf_read_pal(const tf_input *in, snow_look_file *tf);
+snow_status tf_read_csv(const tf_input *in, snow_look_file *tf);
 
 /* Reads three lists of Slicer, "count v v v ..." each: opacities, gradient
  * opacities and colours: transfer/formats/vp.c. */
-snow_status tf_read_slicer_lists(const tf_input *in, snow_tf *tf,
+snow_status tf_read_slicer_lists(const tf_input *in, snow_look_file *tf,
                                  const char *opacities, const char *gradients,
                                  const char *colors);
 

@@ -40,8 +40,8 @@ static snow_status take_numbers(const tf_input *in, const char *what, int each,
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_pairs(const tf_input *in, snow_tf *tf, tf_list *list,
-                              const char *what, const char **at,
+static snow_status take_pairs(const tf_input *in, snow_look_file *tf,
+                              tf_list *list, const char *what, const char **at,
                               const char *end) {
     long count = 0;
     double pair[4];
@@ -53,8 +53,8 @@ static snow_status take_pairs(const tf_input *in, snow_tf *tf, tf_list *list,
     return SNOW_STATUS_OK;
 }
 
-static snow_status take_colors(const tf_input *in, snow_tf *tf, const char **at,
-                               const char *end) {
+static snow_status take_colors(const tf_input *in, snow_look_file *tf,
+                               const char **at, const char *end) {
     long count = 0;
     double point[4];
     TF_TRY(take_count(in, "colours", 4, at, end, &count));
@@ -66,7 +66,7 @@ static snow_status take_colors(const tf_input *in, snow_tf *tf, const char **at,
 }
 
 /* Texts that are NULL count as empty lists. */
-snow_status tf_read_slicer_lists(const tf_input *in, snow_tf *tf,
+snow_status tf_read_slicer_lists(const tf_input *in, snow_look_file *tf,
                                  const char *opacities, const char *gradients,
                                  const char *colors) {
     if (opacities)
@@ -80,7 +80,7 @@ snow_status tf_read_slicer_lists(const tf_input *in, snow_tf *tf,
     return SNOW_STATUS_OK;
 }
 
-snow_status tf_read_vp(const tf_input *in, snow_tf *tf) {
+snow_status tf_read_vp(const tf_input *in, snow_look_file *tf) {
     const char *at = in->bytes, *end = in->bytes + in->size;
     double light[6];
     for (int i = 0; i < 6; i++)

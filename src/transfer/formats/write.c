@@ -2,6 +2,8 @@
  * digits, which restore the same double. */
 #include "transfer/formats/tf.h"
 
+#include <snowglass/extend.h>
+
 #include <jansson.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -14,7 +16,7 @@ static json_t *numbers(const double *from, size_t count) {
     return array;
 }
 
-static json_t *color_list(const snow_points *points) {
+static json_t *color_list(const snow_look *points) {
     json_t *list = json_array();
     for (size_t i = 0; i < points->color_count; i++) {
         const snow_color_point *p = points->colors + i;
@@ -33,13 +35,13 @@ static json_t *pair_list(const snow_opacity_point *points, size_t count) {
     return list;
 }
 
-static json_t *tree_of(const snow_points *points) {
+static json_t *tree_of(const snow_look *points) {
     static const char *const values[] = {"data", "range", "object"};
     json_t *tree = json_object();
     json_object_set_new(tree, "snowglass-tf", json_integer(1));
     json_object_set_new(tree, "name",
                         json_string(points->name ? points->name : ""));
-    json_object_set_new(tree, "values", json_string(values[points->values]));
+    json_object_set_new(tree, "values", json_string(values[points->domain]));
     json_object_set_new(tree, "interpolation",
                         json_string(points->log ? "log" : "linear"));
     json_object_set_new(tree, "color-space", json_string("rgb"));
@@ -51,17 +53,20 @@ static json_t *tree_of(const snow_points *points) {
         json_object_set_new(
             tree, "opacities",
             pair_list(points->opacities, points->opacity_count));
-    if (points->gradient_count)
-        json_object_set_new(
-            tree, "gradient-opacities",
-            pair_list(points->gradients, points->gradient_count));
+    if (points->gradient_opacity_count)
+        json_object_set_new(tree, "gradient-opacities",
+                            pair_list(points->gradient_opacities,
+                                      points->gradient_opacity_count));
     return tree;
 }
 
-snow_status snow_look_write_json(snow_context *context,
-                                 const snow_points *points, char *text,
-                                 size_t room, size_t *length) {
-    json_t *tree = tree_of(points);
+snow_status snow_look_write_json(snow_context *context, const snow_look *given,
+                                 char *text, size_t room, size_t *length) {
+    snow_look look;
+    snow_status status = SNOW_RECORD_READ(context, snow_look, given, &look);
+    if (status != SNOW_STATUS_OK)
+        return status;
+    json_t *tree = tree_of(&look);
     size_t flags = JSON_INDENT(1) | JSON_REAL_PRECISION(17);
     size_t bytes = tree ? json_dumpb(tree, text, room, flags) : 0;
     json_decref(tree);
@@ -101,7 +106,7 @@ static double mix(double a, double b, double from, double to, double at) {
 }
 
 /* The colour at a value; `next` is the index of the first point beyond it. */
-static snow_color_point color_at(const snow_points *points, size_t next,
+static snow_color_point color_at(const snow_look *points, size_t next,
                                  double at) {
     const snow_color_point *p = points->colors;
     size_t count = points->color_count;
@@ -116,7 +121,7 @@ static snow_color_point color_at(const snow_points *points, size_t next,
     return out;
 }
 
-static double opacity_at(const snow_points *points, size_t next, double at) {
+static double opacity_at(const snow_look *points, size_t next, double at) {
     const snow_opacity_point *p = points->opacities;
     if (!next || next == points->opacity_count)
         return p[next ? next - 1 : 0].opacity;
@@ -124,7 +129,7 @@ static double opacity_at(const snow_points *points, size_t next, double at) {
                p[next].value, at);
 }
 
-static void put_row(sheet *out, const snow_points *points, size_t color,
+static void put_row(sheet *out, const snow_look *points, size_t color,
                     size_t opacity, double at) {
     snow_color_point c = color_at(points, color, at);
     put_text(out, "%.17g,%.17g,%.17g,%.17g,%.17g\n", at, c.red, c.green, c.blue,
@@ -133,7 +138,7 @@ static void put_row(sheet *out, const snow_points *points, size_t color,
 
 /* Walks along both kinds of points: one row per point; a value that repeats
  * gets as many rows as the kind that has more of it. */
-static void put_rows(sheet *out, const snow_points *points) {
+static void put_rows(sheet *out, const snow_look *points) {
     size_t color = 0, opacity = 0;
     while (color < points->color_count || opacity < points->opacity_count) {
         bool more_colors = color < points->color_count;
@@ -147,17 +152,20 @@ static void put_rows(sheet *out, const snow_points *points) {
     }
 }
 
-snow_status snow_look_write_csv(snow_context *context,
-                                const snow_points *points, char *text,
-                                size_t room, size_t *length) {
+snow_status snow_look_write_csv(snow_context *context, const snow_look *given,
+                                char *text, size_t room, size_t *length) {
+    snow_look look;
+    snow_status status = SNOW_RECORD_READ(context, snow_look, given, &look);
+    if (status != SNOW_STATUS_OK)
+        return status;
     sheet out = {text, room, 0};
-    if (!points->color_count || !points->opacity_count)
+    if (!look.color_count || !look.opacity_count)
         return snow_context_fail(
             context, SNOW_STATUS_BAD_USAGE,
             "a table needs colours and opacities, but this has %s; write .json",
-            points->color_count ? "no opacities" : "no colours");
+            look.color_count ? "no opacities" : "no colours");
     put_text(&out, "value,red,green,blue,opacity\n");
-    put_rows(&out, points);
+    put_rows(&out, &look);
     if (room)
         text[out.used < room ? out.used : 0] = 0;
     *length = out.used;

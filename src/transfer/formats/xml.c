@@ -11,7 +11,7 @@
 
 typedef struct reading {
     const tf_input *in;
-    snow_tf *tf;
+    snow_look_file *tf;
     XML_Parser parser;
     snow_status status;
     int found;  /* number of VolumeProperty elements so far */
@@ -80,7 +80,7 @@ static snow_status report_end(const reading *r, enum XML_Status answer) {
     return SNOW_STATUS_OK;
 }
 
-snow_status tf_read_xml(const tf_input *in, snow_tf *tf) {
+snow_status tf_read_xml(const tf_input *in, snow_look_file *tf) {
     reading r = {.in = in, .tf = tf, .status = SNOW_STATUS_OK};
     r.parser = XML_ParserCreate(NULL);
     if (!r.parser)
@@ -100,7 +100,7 @@ snow_status tf_read_xml(const tf_input *in, snow_tf *tf) {
 
 #else
 
-snow_status tf_read_xml(const tf_input *in, snow_tf *tf) {
+snow_status tf_read_xml(const tf_input *in, snow_look_file *tf) {
     (void)tf;
     return tf_fail(
         in,

@@ -1,6 +1,6 @@
-/* snowglass/tf.h - transfer functions from files, and into them.
+/* snowglass/look_file.h - transfer functions from files, and into them.
  *
- *   snowglass   our own JSON: everything that snow_points has
+ *   snowglass   our own JSON: everything that snow_look has
  *   slicer-vp   3D Slicer's volume property (.vp)
  *   slicer-xml  presets of 3D Slicer: VolumeProperty elements of MRML
  *   paraview    ParaView's JSON: RGBPoints, Points, ColorSpace
@@ -24,7 +24,7 @@
 extern "C" {
 #endif
 
-typedef struct snow_tf snow_tf;
+typedef struct snow_look_file snow_look_file;
 
 /* The most points of a kind, and bytes of a file. */
 #define SNOW_LOOK_POINTS_MAX 65536
@@ -34,22 +34,22 @@ typedef struct snow_tf snow_tf;
  * (letters of either case, dashes left out), and the first is taken where none
  * is named.  Errors: SNOW_STATUS_BAD_INPUT (no file, no transfer function, a
  * bad one: the message says where), SNOW_STATUS_NO_MEMORY.  Free with
- * snow_tf_free. */
+ * snow_look_file_free. */
 SNOW_API snow_status snow_look_load(snow_context *context, const char *path,
-                                    snow_tf **out);
+                                    snow_look_file **out);
 
 /* The same of `size` bytes, which messages call `name`; `wanted` is the name of
  * one of several, or NULL. */
 SNOW_API snow_status snow_look_parse(snow_context *context, const char *name,
                                      const void *bytes, size_t size,
-                                     const char *wanted, snow_tf **out);
-SNOW_API void snow_tf_free(snow_tf *tf);
+                                     const char *wanted, snow_look_file **out);
+SNOW_API void snow_look_file_free(snow_look_file *tf);
 
 /* What it says; lives as long as it. */
-SNOW_API const snow_points *snow_tf_points(const snow_tf *tf);
+SNOW_API const snow_look *snow_look_file_look(const snow_look_file *tf);
 
 /* The name of its format, as above. */
-SNOW_API const char *snow_tf_format(const snow_tf *tf);
+SNOW_API const char *snow_look_file_format(const snow_look_file *tf);
 
 /* Writes points as our JSON, which reads as the same points to the last bit, or
  * as CSV: one row for each value of either kind of points, which is as exact,
@@ -59,10 +59,10 @@ SNOW_API const char *snow_tf_format(const snow_tf *tf);
  * and the call may be made again.  Errors: SNOW_STATUS_NO_MEMORY;
  * SNOW_STATUS_BAD_USAGE (CSV of points without colours or opacities). */
 SNOW_API snow_status snow_look_write_json(snow_context *context,
-                                          const snow_points *points, char *text,
+                                          const snow_look *points, char *text,
                                           size_t room, size_t *length);
 SNOW_API snow_status snow_look_write_csv(snow_context *context,
-                                         const snow_points *points, char *text,
+                                         const snow_look *points, char *text,
                                          size_t room, size_t *length);
 
 #ifdef __cplusplus
