@@ -6,6 +6,15 @@
 /* Bytes of a cache line. */
 #define LINE 64
 
+void snow_mask_rows_lay_out(snow_mask_rows *rows, int64_t columns, char *base,
+                            size_t *at) {
+    size_t words = snow_decode_words(columns), all = words * SNOW_DECODE_ROWS;
+    rows->words = words;
+    rows->bits = snow_lay_out(base, at, all * sizeof *rows->bits);
+    rows->rank = snow_lay_out(base, at, all * sizeof *rows->rank);
+    rows->any = snow_lay_out(base, at, words * sizeof *rows->any);
+}
+
 /* Sets bits [from, to) of a row. */
 static void set_bits(uint64_t *bits, size_t from, size_t to) {
     for (size_t word = from / 64; word * 64 < to; word++) {

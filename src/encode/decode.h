@@ -38,6 +38,10 @@ static inline size_t snow_decode_words(int64_t columns) {
     return (size_t)columns / 64 + 3;
 }
 
+/* Lays the words of rows out in a block (snow_lay_out). */
+void snow_mask_rows_lay_out(snow_mask_rows *rows, int64_t columns, char *base,
+                            size_t *at);
+
 /* Whether any row has a voxel in `count` columns from `column` on. `count` is
  * at most SNOW_WINDOW_MOST; the window overlaps the rows. */
 static inline bool snow_decode_any(const snow_mask_rows *rows, int64_t column,

@@ -32,8 +32,9 @@ typedef struct snow_slice_pointer {
 typedef struct snow_scheme snow_scheme;
 typedef struct snow_reader snow_reader;
 
-/* A volume's interesting voxels, or those of a band of rows (encode/bands/bands.h).
- * Slices are appended in order; beginning again reuses the buffers.
+/* A volume's interesting voxels, or those of a band of rows
+ * (encode/bands/bands.h). Slices are appended in order; beginning again reuses
+ * the buffers.
  *
  * Slices of a whole volume are written as in the paper's figures 4 to 6. Those
  * of a band have forms that cost next to nothing where there are no voxels;

@@ -53,14 +53,6 @@ typedef struct projection_pass {
     float *plane;
 } projection_pass;
 
-/* The next part of a worker's memory, aligned to 64 bytes; without a base
- * nothing but its end counts. */
-static inline void *snow_modes_part(char *base, size_t *at, size_t bytes) {
-    void *part = base ? base + *at : NULL;
-    *at += (bytes + 63) / 64 * 64;
-    return part;
-}
-
 /* The part's own pixels of a phase along u that find enough for a value on a
  * line that finds `found` of its weights along v; place->range is that of 1. */
 void snow_modes_range(const snow_slice_place *place, int phase, float found,

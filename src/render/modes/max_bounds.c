@@ -58,22 +58,17 @@ int64_t snow_block_rows(const snow_bands *bands) {
 }
 
 static size_t lay_out(const snow_bands *bands, char *base, blocks_scratch *s) {
-    size_t words = snow_decode_words(bands->columns), at = 0;
-    size_t all = words * SNOW_DECODE_ROWS;
-    size_t floats = 64 * words + 2 * PAD;
+    size_t at = 0, floats = 64 * snow_decode_words(bands->columns) + 2 * PAD;
     size_t blocks = (size_t)snow_block_columns(bands);
-    s->rows.words = words;
-    s->rows.bits = snow_modes_part(base, &at, all * sizeof *s->rows.bits);
-    s->rows.rank = snow_modes_part(base, &at, all * sizeof *s->rows.rank);
-    s->rows.any = snow_modes_part(base, &at, words * sizeof *s->rows.any);
+    snow_mask_rows_lay_out(&s->rows, bands->columns, base, &at);
     s->rows.fetch = false;
-    s->spans = snow_modes_part(
+    s->spans = snow_lay_out(
         base, &at, ((size_t)bands->columns / 2 + 1) * sizeof *s->spans);
-    s->row = snow_modes_part(base, &at, floats * sizeof *s->row);
-    s->places = snow_modes_part(base, &at, floats * sizeof *s->places);
-    s->ring = snow_modes_part(base, &at, 4 * blocks * sizeof *s->ring);
-    s->zero = snow_modes_part(base, &at, blocks * sizeof *s->zero);
-    s->both = snow_modes_part(base, &at, blocks * sizeof *s->both);
+    s->row = snow_lay_out(base, &at, floats * sizeof *s->row);
+    s->places = snow_lay_out(base, &at, floats * sizeof *s->places);
+    s->ring = snow_lay_out(base, &at, 4 * blocks * sizeof *s->ring);
+    s->zero = snow_lay_out(base, &at, blocks * sizeof *s->zero);
+    s->both = snow_lay_out(base, &at, blocks * sizeof *s->both);
     return at;
 }
 

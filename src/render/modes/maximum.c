@@ -32,9 +32,6 @@ typedef struct maximum_slice {
 /* A worker's own memory, laid out in snow_shear_warp.scratch. */
 typedef struct maximum_scratch {
     maximum_slice *slice;
-    uint64_t *bits; /* of its rows */
-    uint32_t *rank;
-    uint64_t *any;
     snow_span *spans;
     float *samples, *ring, *zero;
     float *lines;                  /* [tile][line][phase][pixel] */
@@ -505,56 +502,47 @@ static void finish_line(const maximum_band_task *stroke, int n) {
     }
 }
 
-static void lay_out(const projection_pass *pass, char *base, size_t *bytes,
-                    maximum_scratch *s) {
+static size_t lay_out(const projection_pass *pass, char *base,
+                      maximum_scratch *s) {
     int64_t columns = pass->shear_warp->bands.columns;
-    size_t words = snow_decode_words(columns), at = 0;
-    size_t all = words * SNOW_DECODE_ROWS;
+    size_t at = 0;
+    snow_mask_rows unused;
     size_t phases = (size_t)pass->shear.u.phases, tiles = (size_t)pass->tiles;
     size_t line = SNOW_MAXIMUM_LINE * sizeof(float);
-    s->slice = snow_modes_part(base, &at, sizeof *s->slice);
-    s->bits = snow_modes_part(base, &at, all * sizeof *s->bits);
-    s->rank = snow_modes_part(base, &at, all * sizeof *s->rank);
-    s->any = snow_modes_part(base, &at, words * sizeof *s->any);
-    s->spans = snow_modes_part(base, &at,
-                               ((size_t)columns / 2 + 1) * sizeof *s->spans);
-    s->samples = snow_modes_part(
+    s->slice = snow_lay_out(base, &at, sizeof *s->slice);
+    snow_mask_rows_lay_out(base ? &s->slice->rows : &unused, columns, base,
+                           &at);
+    s->spans =
+        snow_lay_out(base, &at, ((size_t)columns / 2 + 1) * sizeof *s->spans);
+    s->samples = snow_lay_out(
         base, &at, SNOW_MAXIMUM_ROWS * SNOW_MAXIMUM_WINDOW * sizeof(float));
-    s->ring = snow_modes_part(base, &at, SNOW_MAXIMUM_ROWS * line);
-    s->zero = snow_modes_part(base, &at, line);
-    s->lines = snow_modes_part(base, &at, tiles * LINES_MOST * line);
-    s->least = snow_modes_part(
+    s->ring = snow_lay_out(base, &at, SNOW_MAXIMUM_ROWS * line);
+    s->zero = snow_lay_out(base, &at, line);
+    s->lines = snow_lay_out(base, &at, tiles * LINES_MOST * line);
+    s->least = snow_lay_out(
         base, &at, SNOW_MAXIMUM_CELLS * row_patches(pass) * sizeof *s->least);
-    s->found = snow_modes_part(base, &at, (tiles + 8) * sizeof *s->found);
-    s->reaches = snow_modes_part(base, &at,
-                                 (size_t)(pass->slices * pass->shear.v.phases) *
-                                     sizeof *s->reaches);
-    s->pixels = snow_modes_part(base, &at, phases * pass->row * sizeof(float));
-    s->usual = snow_modes_part(base, &at, phases * pass->row * sizeof(float));
-    *bytes = at;
+    s->found = snow_lay_out(base, &at, (tiles + 8) * sizeof *s->found);
+    s->reaches = snow_lay_out(base, &at,
+                              (size_t)(pass->slices * pass->shear.v.phases) *
+                                  sizeof *s->reaches);
+    s->pixels = snow_lay_out(base, &at, phases * pass->row * sizeof(float));
+    s->usual = snow_lay_out(base, &at, phases * pass->row * sizeof(float));
+    return at;
 }
 
 size_t snow_maximum_scratch(const projection_pass *pass) {
     maximum_scratch unused;
-    size_t bytes;
-    lay_out(pass, NULL, &bytes, &unused);
-    return bytes;
+    return lay_out(pass, NULL, &unused);
 }
 
 void snow_maximum_band(void *of, int64_t band, int worker) {
     const projection_pass *pass = of;
     maximum_band_task stroke = {.pass = pass, .worker = worker};
     maximum_scratch *s = &stroke.scratch;
-    size_t bytes, words = snow_decode_words(pass->shear_warp->bands.columns);
     lay_out(pass,
             pass->shear_warp->scratch + (size_t)worker * pass->scratch_bytes,
-            &bytes, s);
-    snow_mask_rows *rows = &s->slice->rows;
-    rows->bits = s->bits;
-    rows->rank = s->rank;
-    rows->any = s->any;
-    rows->words = words;
-    rows->fetch = true;
+            s);
+    s->slice->rows.fetch = true;
     s->slice->found = s->found;
     stroke.first_cell = (int)band * pass->cells;
     int left = pass->pixels[1] - stroke.first_cell;

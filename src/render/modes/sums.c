@@ -30,9 +30,7 @@ typedef struct ring_row {
 
 /* A worker's own memory, laid out in snow_shear_warp.scratch. */
 typedef struct modes_scratch {
-    uint64_t *bits; /* of the rows of a slice */
-    uint32_t *rank;
-    uint64_t *any;
+    snow_mask_rows rows; /* of a slice */
     snow_span *spans;
     float *dense; /* a row of voxels */
     float *split; /* the same, where strides are 2: every second one, and the
@@ -48,7 +46,6 @@ typedef struct modes_scratch {
 typedef struct sum_band_task {
     const projection_pass *pass;
     modes_scratch scratch;
-    snow_mask_rows rows;
     ring_row extents[RING];
     int first_cell, cells;
     bool weighed;        /* usual weights are there */
@@ -63,8 +60,8 @@ typedef struct sum_band_task {
 
 /* Columns extent[0] .. extent[1] - 1 of row j hold all its voxels. */
 static void find_extent(const sum_band_task *stroke, int j, size_t extent[2]) {
-    const uint64_t *bits = stroke->rows.bits + j;
-    size_t first = SNOW_DECODE_PAD / 64, last = stroke->rows.words - 1;
+    const uint64_t *bits = stroke->scratch.rows.bits + j;
+    size_t first = SNOW_DECODE_PAD / 64, last = stroke->scratch.rows.words - 1;
     while (!bits[first * SNOW_DECODE_ROWS])
         first++;
     while (!bits[last * SNOW_DECODE_ROWS])
@@ -79,7 +76,7 @@ static void spread_row(sum_band_task *stroke, int j, const size_t extent[2]) {
     float *row = stroke->scratch.dense + PAD;
     size_t *old = stroke->spread;
     const uint64_t *bits =
-        stroke->rows.bits + j +
+        stroke->scratch.rows.bits + j +
         (extent[0] + SNOW_DECODE_PAD) / 64 * SNOW_DECODE_ROWS;
     if (old[0] < extent[0] || old[1] > extent[1])
         memset(row + old[0], 0, (old[1] - old[0]) * sizeof *row);
@@ -87,7 +84,8 @@ static void spread_row(sum_band_task *stroke, int j, const size_t extent[2]) {
     old[1] = extent[1];
     (pass->code_bytes == 1 ? pass->fns->spread8 : pass->fns->spread16)(
         bits, SNOW_DECODE_ROWS, (extent[1] - extent[0]) / 64,
-        stroke->rows.codes[j], pass->scale, pass->start, row + extent[0]);
+        stroke->scratch.rows.codes[j], pass->scale, pass->start,
+        row + extent[0]);
     if (pass->shear.u.stride == 1)
         return;
     size_t half = pass->dense / 2;
@@ -158,7 +156,7 @@ static void filter_row(sum_band_task *stroke, int j) {
     ring_row *given = &stroke->extents[slot];
     float *row = stroke->scratch.ring + slot * (size_t)phases * pass->row;
     *given = (ring_row){0, 0};
-    if (!(stroke->rows.held >> j & 1))
+    if (!(stroke->scratch.rows.held >> j & 1))
         return;
     find_extent(stroke, j, extent);
     ring_row to = reached(stroke, extent);
@@ -283,8 +281,8 @@ static void project_slice(sum_band_task *stroke, int64_t slice) {
     pass->windows->read(&pass->shear_warp->bands, slice, first,
                         ~UINT64_C(0) >>
                             (64 - ((stroke->cells - 1) * v->stride + reach)),
-                        stroke->scratch.spans, &stroke->rows);
-    if (!stroke->rows.held)
+                        stroke->scratch.spans, &stroke->scratch.rows);
+    if (!stroke->scratch.rows.held)
         return;
     stroke->filtered = 0;
     for (int cell = 0; cell < stroke->cells; cell++) {
@@ -404,16 +402,9 @@ static size_t lay_out(const projection_pass *pass, char *base,
                       modes_scratch *out) {
     size_t at = 0, phases = (size_t)pass->shear.u.phases;
     int64_t columns = pass->shear_warp->bands.columns;
-    size_t words = snow_decode_words(columns) * SNOW_DECODE_ROWS;
     size_t row = pass->row * sizeof(float);
-#define PART(field, bytes)                              \
-    do {                                                \
-        out->field = base ? (void *)(base + at) : NULL; \
-        at += ((bytes) + 63) / 64 * 64;                 \
-    } while (0)
-    PART(bits, words * sizeof *out->bits);
-    PART(rank, words * sizeof *out->rank);
-    PART(any, words / SNOW_DECODE_ROWS * sizeof *out->any);
+#define PART(field, bytes) (out->field = snow_lay_out(base, &at, bytes))
+    snow_mask_rows_lay_out(&out->rows, columns, base, &at);
     PART(spans, ((size_t)columns / 2 + 1) * sizeof *out->spans);
     PART(dense, pass->dense * sizeof(float));
     PART(split, pass->dense * sizeof(float));
@@ -430,14 +421,9 @@ static size_t lay_out(const projection_pass *pass, char *base,
 static void project_band(void *of, int64_t item, int worker) {
     const projection_pass *pass = of;
     sum_band_task stroke = {.pass = pass};
-    size_t words = snow_decode_words(pass->shear_warp->bands.columns);
     lay_out(pass,
             pass->shear_warp->scratch + (size_t)worker * pass->scratch_bytes,
             &stroke.scratch);
-    stroke.rows.bits = stroke.scratch.bits;
-    stroke.rows.rank = stroke.scratch.rank;
-    stroke.rows.any = stroke.scratch.any;
-    stroke.rows.words = words;
     stroke.first_cell = (int)item * pass->cells;
     int left = pass->pixels[1] - stroke.first_cell;
     stroke.cells = left < pass->cells ? left : pass->cells;

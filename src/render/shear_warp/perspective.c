@@ -70,11 +70,9 @@ typedef struct perspective_pass {
 
 /* A worker's own memory, laid out in snow_shear_warp.scratch. */
 typedef struct perspective_scratch {
-    uint64_t *bits; /* of the rows of a slice */
-    uint32_t *rank;
-    uint64_t *any;
-    float *samples; /* windows of a tile */
-    float *ring;    /* filtered rows of a tile */
+    snow_mask_rows rows; /* of a slice */
+    float *samples;      /* windows of a tile */
+    float *ring;         /* filtered rows of a tile */
     float *zero;
     uint64_t *unsaturated; /* per tile: lines that something shines through */
     snow_span *spans;
@@ -92,7 +90,6 @@ typedef struct perspective_band_task {
     const perspective_pass *pass;
     int worker;
     perspective_scratch scratch;
-    snow_mask_rows rows;
     int first_line, lines;
     bool finished; /* a line is not alive any more */
     snow_band_shape shape;
@@ -336,17 +333,18 @@ static void sample_rows(const perspective_band_task *stroke, uint64_t held,
     const perspective_pass *pass = stroke->pass;
     for (; held; held &= held - 1) {
         int row = __builtin_ctzll(held);
-        const uint16_t *normals = stroke->rows.normals[row];
-        const uint16_t *gradient_factors = stroke->rows.gradient_factors[row];
+        const uint16_t *normals = stroke->scratch.rows.normals[row];
+        const uint16_t *gradient_factors =
+            stroke->scratch.rows.gradient_factors[row];
         float square[3];
         exponents_of_row(pass, stroke->slice->height, column, stroke->row + row,
                          square);
-        pass->sample(stroke->rows.codes[row] + before[row] * pass->code_bytes,
-                     normals ? normals + before[row] : NULL,
-                     gradient_factors ? gradient_factors + before[row] : NULL,
-                     bits[row], count, pass->palette, pass->gloss, square,
-                     stroke->scratch.samples +
-                         (size_t)row * pass->window_floats);
+        pass->sample(
+            stroke->scratch.rows.codes[row] + before[row] * pass->code_bytes,
+            normals ? normals + before[row] : NULL,
+            gradient_factors ? gradient_factors + before[row] : NULL, bits[row],
+            count, pass->palette, pass->gloss, square,
+            stroke->scratch.samples + (size_t)row * pass->window_floats);
     }
 }
 
@@ -400,13 +398,14 @@ static bool find_tile(const perspective_band_task *stroke, int64_t index,
     int64_t here = column - pass->stored[0];
     if (here <= -count || here >= pass->voxel_columns)
         return false;
-    if (!snow_decode_any(&stroke->rows, here, count))
+    if (!snow_decode_any(&stroke->scratch.rows, here, count))
         return false;
     uint64_t bits[SNOW_DECODE_ROWS];
     uint32_t before[SNOW_DECODE_ROWS];
     uint64_t held = pass->windows->windows(
-        &stroke->rows, rows_of_lines(stroke, stroke->rows.held, unsaturated),
-        here, count, bits, before);
+        &stroke->scratch.rows,
+        rows_of_lines(stroke, stroke->scratch.rows.held, unsaturated), here,
+        count, bits, before);
     uint64_t lines = lines_of_rows(stroke, held) & unsaturated;
     if (!lines)
         return false;
@@ -585,8 +584,8 @@ static void draw_slice(perspective_band_task *stroke, int64_t index) {
         return;
     pass->windows->read(&pass->shear_warp->bands, index, here,
                         ~UINT64_C(0) >> (64 - (end - stroke->row)),
-                        stroke->scratch.spans, &stroke->rows);
-    if (!stroke->rows.held && !pass->params->composite)
+                        stroke->scratch.spans, &stroke->scratch.rows);
+    if (!stroke->scratch.rows.held && !pass->params->composite)
         return;
     fill_lines(stroke);
     int64_t tiles[2];
@@ -608,16 +607,9 @@ static size_t spare_floats(const perspective_pass *pass) {
 static size_t lay_out(const perspective_pass *pass, char *base,
                       perspective_scratch *out) {
     size_t at = 0, pixel = (size_t)pass->channels * sizeof(float);
-    size_t words = snow_decode_words(pass->voxel_columns) * SNOW_DECODE_ROWS;
     size_t filtered = SNOW_PERSPECTIVE_TILE_COLUMNS * pixel;
-#define PART(field, bytes)                              \
-    do {                                                \
-        out->field = base ? (void *)(base + at) : NULL; \
-        at += ((bytes) + 63) / 64 * 64;                 \
-    } while (0)
-    PART(bits, words * sizeof *out->bits);
-    PART(rank, words * sizeof *out->rank);
-    PART(any, words / SNOW_DECODE_ROWS * sizeof *out->any);
+#define PART(field, bytes) (out->field = snow_lay_out(base, &at, bytes))
+    snow_mask_rows_lay_out(&out->rows, pass->voxel_columns, base, &at);
     PART(samples, SNOW_DECODE_ROWS * pass->window_floats * sizeof(float));
     PART(ring, SNOW_DECODE_ROWS * filtered);
     PART(zero, filtered);
@@ -714,10 +706,6 @@ static void splat_band(void *job, int64_t item, int worker) {
     lay_out(pass,
             pass->shear_warp->scratch + (size_t)worker * pass->scratch_bytes,
             &stroke.scratch);
-    stroke.rows.bits = stroke.scratch.bits;
-    stroke.rows.rank = stroke.scratch.rank;
-    stroke.rows.any = stroke.scratch.any;
-    stroke.rows.words = snow_decode_words(pass->voxel_columns);
     stroke.first_line = (int)item * pass->lines;
     stroke.lines = pass->scaled.v.count - stroke.first_line;
     if (stroke.lines > pass->lines)

@@ -69,9 +69,6 @@ typedef struct slice_rows {
 /* A worker's own memory, laid out in snow_shear_warp.scratch. */
 typedef struct snow_scratch {
     slice_rows *slices;
-    uint64_t *bits; /* of the rows of the slices */
-    uint32_t *rank;
-    uint64_t *any;
     float *samples; /* windows of a tile */
     snow_sample_room *room;
     float *ring; /* filtered rows of a tile */
@@ -559,17 +556,13 @@ static size_t spare_floats(const shear_warp_pass *pass) {
 static size_t lay_out(const shear_warp_pass *pass, char *base,
                       snow_scratch *out) {
     size_t at = 0, pixel = (size_t)pass->channels * sizeof(float);
-    size_t words = snow_decode_words(pass->columns) * SNOW_DECODE_ROWS;
+    snow_mask_rows unused;
     size_t filtered = 2 * SNOW_TILE_COLUMNS * pixel;
-#define PART(field, bytes)                              \
-    do {                                                \
-        out->field = base ? (void *)(base + at) : NULL; \
-        at += ((bytes) + 63) / 64 * 64;                 \
-    } while (0)
+#define PART(field, bytes) (out->field = snow_lay_out(base, &at, bytes))
     PART(slices, SLICES_AT_ONCE * sizeof *out->slices);
-    PART(bits, SLICES_AT_ONCE * words * sizeof *out->bits);
-    PART(rank, SLICES_AT_ONCE * words * sizeof *out->rank);
-    PART(any, SLICES_AT_ONCE * (words / SNOW_DECODE_ROWS) * sizeof *out->any);
+    for (int n = 0; n < SLICES_AT_ONCE; n++)
+        snow_mask_rows_lay_out(base ? &out->slices[n].rows : &unused,
+                               pass->columns, base, &at);
     PART(samples,
          (SNOW_DECODE_ROWS * pass->window_floats + 64) * sizeof(float));
     PART(room, sizeof *out->room);
@@ -673,14 +666,6 @@ static void splat_band(void *job, int64_t item, int worker) {
             &stroke.scratch);
     memset(stroke.scratch.zero, 0,
            2 * SNOW_TILE_COLUMNS * (size_t)pass->channels * sizeof(float));
-    size_t words = snow_decode_words(pass->columns);
-    for (size_t n = 0; n < SLICES_AT_ONCE; n++) {
-        snow_mask_rows *rows = &stroke.scratch.slices[n].rows;
-        rows->bits = stroke.scratch.bits + n * words * SNOW_DECODE_ROWS;
-        rows->rank = stroke.scratch.rank + n * words * SNOW_DECODE_ROWS;
-        rows->any = stroke.scratch.any + n * words;
-        rows->words = words;
-    }
     stroke.first_cell = item * pass->cells;
     int64_t cells = (v->count + v->phases - 1) / v->phases - stroke.first_cell;
     stroke.cells = cells < pass->cells ? (int)cells : pass->cells;

@@ -53,16 +53,24 @@ static void add_row(const occupancy_job *job, int64_t slice, int64_t row,
             to[word] |= spread[word];
 }
 
+/* A worker's memory; returns how much that is. */
+static size_t lay_out(const occupancy_job *job, char *base,
+                      snow_mask_rows *rows, snow_span **spans,
+                      uint64_t **spread) {
+    size_t at = 0, columns = (size_t)job->bands->columns;
+    snow_mask_rows_lay_out(rows, job->bands->columns, base, &at);
+    *spans = snow_lay_out(base, &at, (columns / 2 + 1) * sizeof **spans);
+    *spread = snow_lay_out(base, &at, job->reached->words * sizeof **spread);
+    return at;
+}
+
 static void make_slice(void *of, int64_t slice, int worker) {
     const occupancy_job *job = of;
-    size_t words = snow_decode_words(job->bands->columns) * SNOW_DECODE_ROWS;
-    snow_mask_rows rows = {.words = words / SNOW_DECODE_ROWS};
-    char *at = job->scratch + (size_t)worker * job->scratch_bytes;
-    rows.bits = (uint64_t *)(void *)at;
-    uint64_t *spread = rows.bits + words;
-    rows.any = spread + job->reached->words;
-    rows.rank = (uint32_t *)(void *)(rows.any + rows.words);
-    snow_span *spans = (snow_span *)(void *)(rows.rank + words);
+    snow_mask_rows rows = {.fetch = false};
+    snow_span *spans;
+    uint64_t *spread;
+    lay_out(job, job->scratch + (size_t)worker * job->scratch_bytes, &rows,
+            &spans, &spread);
     for (int64_t row = 0; row < job->bands->rows; row += SNOW_DECODE_ROWS) {
         job->windows->read(job->bands, slice, row, ~UINT64_C(0), spans, &rows);
         for (uint64_t held = rows.held; held; held &= held - 1) {
@@ -78,7 +86,6 @@ snow_status snow_occupancy_make(const snow_bands *bands, const int taps[2],
                                 snow_occupancy *r) {
     snow_context *context = bands->context;
     uint64_t rows, bytes;
-    size_t words = snow_decode_words(bands->columns) * SNOW_DECODE_ROWS;
     r->taps[0] = taps[0];
     r->taps[1] = taps[1];
     r->places[0] = bands->columns + taps[0] + 1;
@@ -95,11 +102,10 @@ snow_status snow_occupancy_make(const snow_bands *bands, const int taps[2],
     if (bytes) /* a part may have no slices */
         memset(r->bits, 0, (size_t)bytes);
     occupancy_job job = {bands, windows, r, NULL, 0};
-    job.scratch_bytes =
-        words * (sizeof(uint64_t) + sizeof(uint32_t)) +
-        (r->words + words / SNOW_DECODE_ROWS) * sizeof(uint64_t) +
-        ((size_t)bands->columns / 2 + 1) * sizeof(snow_span);
-    job.scratch_bytes = (job.scratch_bytes + 63) / 64 * 64;
+    snow_mask_rows unused;
+    snow_span *spans;
+    uint64_t *spread;
+    job.scratch_bytes = lay_out(&job, NULL, &unused, &spans, &spread);
     job.scratch =
         snow_allocate_array(context, (uint64_t)threads, job.scratch_bytes);
     if (!job.scratch)
