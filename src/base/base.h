@@ -110,6 +110,13 @@ double snow_seconds(void);
 double snow_cpu_seconds(void);
 double snow_thread_seconds(void); /* of the calling thread */
 
+/* Adds the seconds since *mark to a total, and moves the mark. */
+static inline void snow_lap(double *mark, double *total) {
+    double now = snow_seconds();
+    *total += now - *mark;
+    *mark = now;
+}
+
 /* --- text ------------------------------------------------------------------
  */
 

@@ -25,13 +25,6 @@ snow_encoding snow_exact_measure(const snow_classifier *classifier,
                                  const snow_placement *placement,
                                  snow_row_block *row_block, snow_span *spans);
 
-/* Adds the seconds since *mark to a total, and moves the mark. */
-static inline void snow_lap(double *mark, double *total) {
-    double now = snow_seconds();
-    *total += now - *mark;
-    *mark = now;
-}
-
 /* Counts of voxels and bytes, once the picture is made.  Errors:
  * SNOW_STATUS_NO_MEMORY. */
 snow_status snow_exact_count(snow_exact *exact, const snow_job *job);

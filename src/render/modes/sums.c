@@ -597,47 +597,26 @@ static void scale_codes(projection_pass *pass, const snow_value_scale *scale) {
     pass->code_bytes = quantizer->bytes;
 }
 
-static void keep_warping(projection_pass *pass) {
-    const snow_settings *settings = pass->params->settings;
-    snow_intermediate *intermediate = pass->shear_warp->intermediate;
-    snow_shear_warp_warping *w = &intermediate->warping;
-    w->perspective = false;
-    w->shear = pass->shear;
-    w->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
-                                                        : SNOW_CATMULL_ROM;
-    w->warp = snow_warp_of(settings->isa, w->filter, 2);
-    w->width = pass->params->view->width;
-    w->height = pass->params->view->height;
-    intermediate->drawn[0] = 1;
-    w->plane = (snow_intermediate_view){pass->plane,
-                                        pass->stride,
-                                        pass->shear.u.count,
-                                        pass->shear.v.count,
-                                        2,
-                                        intermediate->drawn,
-                                        pass->shear.u.count,
-                                        pass->shear.v.count,
-                                        1};
-}
-
 /* One tile, all of which is drawn. */
-static void describe(const projection_pass *pass, snow_shear_warp_image *out) {
+static snow_shear_warp_image image_of(const projection_pass *pass) {
     const snow_intermediate *intermediate = pass->shear_warp->intermediate;
     int width = pass->shear.u.count, height = pass->shear.v.count;
-    *out =
-        (snow_shear_warp_image){.width = width,
-                                .height = height,
-                                .channels = 2,
-                                .pixels = pass->plane,
-                                .stride = pass->stride,
-                                .drawn = intermediate->drawn,
-                                .tile_width = width,
-                                .tile_height = height,
-                                .tiles = 1,
-                                .layers = 1,
-                                .layer_floats = (size_t)height * pass->stride,
-                                .layer_tiles = 1,
-                                .warping = &intermediate->warping};
+    if (width == 0 || height == 0)
+        return (snow_shear_warp_image){.channels = 2};
+    intermediate->drawn[0] = 1;
+    return (snow_shear_warp_image){.width = width,
+                                   .height = height,
+                                   .channels = 2,
+                                   .pixels = pass->plane,
+                                   .stride = pass->stride,
+                                   .drawn = intermediate->drawn,
+                                   .tile_width = width,
+                                   .tile_height = height,
+                                   .tiles = 1,
+                                   .layers = 1,
+                                   .layer_floats =
+                                       (size_t)height * pass->stride,
+                                   .layer_tiles = 1};
 }
 
 snow_status snow_shear_warp_project(snow_shear_warp *s,
@@ -659,12 +638,11 @@ snow_status snow_shear_warp_project(snow_shear_warp *s,
     scale_codes(&pass, scale);
     SNOW_TRY(place_lattice(&pass));
     SNOW_TRY(reserve_buffers(&pass));
-    keep_warping(&pass);
-    if (pass.shear.u.count == 0 || pass.shear.v.count == 0) {
-        *out = (snow_shear_warp_image){.warping = &s->intermediate->warping};
+    snow_shear_warp_warping_of(s, params, 2)->shear = pass.shear;
+    *out = image_of(&pass);
+    snow_shear_warp_attach(s, out);
+    if (out->width == 0)
         return SNOW_STATUS_OK;
-    }
-    describe(&pass, out);
     for (int phase = 0; phase < 2; phase++)
         pass.within[phase][1] = pass.pixels[1];
     for (int64_t k = 0; k < pass.slices; k++)

@@ -1,8 +1,10 @@
 /* render/shear_warp/bands.c - see bands.h. */
 #include "render/shear_warp/bands.h"
 
+#include "base/base.h"
 #include "composite/over.h"
 #include "composite/tile.h"
+#include "render/shear_warp/shear_warp.h"
 
 #include <string.h>
 
@@ -113,30 +115,7 @@ static void combine_tile(const snow_band_shape *shape, const snow_band *front,
     front->drawn[tile] = 1;
 }
 
-void snow_grouping_draw(const snow_grouping *g, snow_group_node node,
-                        const snow_band_shape *shape, snow_draw_fn *draw,
-                        void *stroke, const snow_band *band,
-                        const snow_band *spare) {
-    snow_slab slices = slices_of(g, node);
-    memset(band->drawn, 0, (size_t)shape->tiles);
-    if (slices.count == 0)
-        return;
-    if (node.rank == 0) {
-        draw(stroke, slices.first, slices.count, band);
-        snow_band_finish(shape, band);
-        return;
-    }
-    snow_group_node near = {node.rank - 1, 2 * node.index + !g->rising};
-    snow_group_node far = {node.rank - 1, 2 * node.index + g->rising};
-    const snow_band *back = &spare[node.rank - 1];
-    snow_grouping_draw(g, near, shape, draw, stroke, band, spare);
-    snow_grouping_draw(g, far, shape, draw, stroke, back, spare);
-    for (int64_t tile = 0; tile < shape->tiles; tile++)
-        if (back->drawn[tile])
-            combine_tile(shape, band, back, tile);
-}
-
-/* Something done to each line of a tile. */
+/* A line of a tile. */
 static float *line_of(const snow_band_shape *shape, const snow_band *band,
                       int64_t tile, int line) {
     return band->pixels + (size_t)line * shape->stride +
@@ -150,18 +129,69 @@ void snow_band_clear_tile(const snow_band_shape *shape, const snow_band *band,
                         shape->channels);
 }
 
-void snow_band_finish(const snow_band_shape *shape, const snow_band *band) {
+/* Makes finished pictures of the drawn tiles. */
+static void finish_band(const snow_band_shape *shape, const snow_band *band) {
     for (int64_t tile = 0; tile < shape->tiles; tile++)
         for (int line = 0; band->drawn[tile] && line < shape->lines; line++)
             snow_tile_finish(line_of(shape, band, tile, line),
                              (size_t)shape->width, shape->channels);
 }
 
-void snow_band_clear_undrawn(const snow_band_shape *shape,
-                             const snow_band *band) {
+/* Draws a node into a band. */
+static void draw_node(const snow_grouping *g, snow_group_node node,
+                      const snow_band_shape *shape, snow_draw_fn *draw,
+                      void *stroke, const snow_band *band,
+                      const snow_band *spare) {
+    snow_slab slices = slices_of(g, node);
+    memset(band->drawn, 0, (size_t)shape->tiles);
+    if (slices.count == 0)
+        return;
+    if (node.rank == 0) {
+        draw(stroke, slices.first, slices.count, band);
+        finish_band(shape, band);
+        return;
+    }
+    snow_group_node near = {node.rank - 1, 2 * node.index + !g->rising};
+    snow_group_node far = {node.rank - 1, 2 * node.index + g->rising};
+    const snow_band *back = &spare[node.rank - 1];
+    draw_node(g, near, shape, draw, stroke, band, spare);
+    draw_node(g, far, shape, draw, stroke, back, spare);
     for (int64_t tile = 0; tile < shape->tiles; tile++)
-        for (int line = 0; !band->drawn[tile] && line < shape->lines; line++)
-            memset(line_of(shape, band, tile, line), 0,
-                   (size_t)shape->width * (size_t)shape->channels *
-                       sizeof(float));
+        if (back->drawn[tile])
+            combine_tile(shape, band, back, tile);
+}
+
+void snow_grouping_lay_out(const snow_grouping *grouping, size_t floats,
+                           int64_t tiles, char *base, size_t *at,
+                           snow_band spare[SNOW_GROUP_RANKS]) {
+    for (int n = 0; grouping->on && n < SNOW_GROUP_RANKS; n++) {
+        spare[n].pixels = snow_lay_out(base, at, floats * sizeof(float));
+        spare[n].drawn = snow_lay_out(base, at, (size_t)tiles);
+    }
+}
+
+void snow_band_draw(const snow_grouping *grouping,
+                    const snow_shear_warp_image *image, bool lazy,
+                    const snow_band_shape *shape, snow_draw_fn *draw,
+                    void *stroke, const snow_band *spare,
+                    const snow_band *band) {
+    size_t pixels =
+        (size_t)shape->lines * shape->stride / (size_t)shape->channels;
+    snow_band layer = *band;
+    for (int n = 0; grouping->on && n < image->layers; n++) {
+        draw_node(grouping, grouping->nodes[n], shape, draw, stroke, &layer,
+                  spare);
+        layer.pixels += image->layer_floats;
+        layer.drawn += image->layer_tiles;
+    }
+    if (grouping->on)
+        return;
+    memset(band->drawn, 0, (size_t)shape->tiles);
+    if (!lazy)
+        snow_tile_clear(band->pixels, pixels, shape->channels);
+    draw(stroke, 0, grouping->drawn, band);
+    if (lazy)
+        finish_band(shape, band);
+    else
+        snow_tile_finish(band->pixels, pixels, shape->channels);
 }

@@ -68,18 +68,24 @@ snow_status snow_grouping_make(snow_context *context, int64_t slices,
 typedef void snow_draw_fn(void *stroke, int64_t first, int64_t count,
                           const snow_band *band);
 
-/* Draws a node into a band; `spare` are SNOW_GROUP_RANKS more. */
-void snow_grouping_draw(const snow_grouping *grouping, snow_group_node node,
-                        const snow_band_shape *shape, snow_draw_fn *draw,
-                        void *stroke, const snow_band *band,
-                        const snow_band *spare);
+/* Lays the bands that groups are combined in, of so many floats and tiles, out
+ * in a block (snow_lay_out), where the grouping is on. */
+void snow_grouping_lay_out(const snow_grouping *grouping, size_t floats,
+                           int64_t tiles, char *base, size_t *at,
+                           snow_band spare[SNOW_GROUP_RANKS]);
 
-/* A tile that nothing was laid on yet; the drawn ones made finished pictures of
- * (composite/tile.h), the others cleared. */
+/* Draws all slices into a band of an image, or where the grouping is on each
+ * node into its layer.  `lazy`: the drawing clears each tile before it lays
+ * anything on it. */
+struct snow_shear_warp_image;
+void snow_band_draw(const snow_grouping *grouping,
+                    const struct snow_shear_warp_image *image, bool lazy,
+                    const snow_band_shape *shape, snow_draw_fn *draw,
+                    void *stroke, const snow_band *spare,
+                    const snow_band *band);
+
+/* Clears a tile that nothing was laid on yet (composite/tile.h). */
 void snow_band_clear_tile(const snow_band_shape *shape, const snow_band *band,
                           int64_t tile);
-void snow_band_finish(const snow_band_shape *shape, const snow_band *band);
-void snow_band_clear_undrawn(const snow_band_shape *shape,
-                             const snow_band *band);
 
 #endif

@@ -154,24 +154,35 @@ snow_status snow_shear_warp_encode_stream(snow_shear_warp *shear_warp,
                                           const snow_shear_warp_params *params,
                                           const snow_encoded_key *key);
 
-/* The palette of a picture whose rays all run `exponent` reference lengths; in
- * perspective, where they differ, -1.  Errors: SNOW_STATUS_NO_MEMORY. */
-snow_status snow_shear_warp_classify(snow_shear_warp *shear_warp,
-                                     const snow_shear_warp_params *params,
-                                     double exponent);
-
-/* The table of shading for a view and light.  Errors: SNOW_STATUS_NO_MEMORY. */
-snow_status snow_shear_warp_shade(snow_shear_warp *shear_warp,
-                                  const snow_shear_warp_params *params);
+/* Lines 02 and 03: the table of shading for a view and light, and the palette
+ * of a picture whose rays all run `exponent` reference lengths; in perspective,
+ * where they differ, -1.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status
+snow_shear_warp_classify_and_shade(snow_shear_warp *shear_warp,
+                                   const snow_shear_warp_params *params,
+                                   double exponent, snow_stats *stats);
 
 /* Counts of the encoding. */
 void snow_shear_warp_fill_figures(const snow_shear_warp *shear_warp,
                                   snow_stats *stats);
 
-/* Makes room for layers of so many bands of `tiles` tiles, and tells of it. */
-snow_status snow_shear_warp_make_layers(snow_shear_warp *shear_warp, int layers,
-                                        int64_t bands, size_t lines,
-                                        snow_shear_warp_image *image);
+/* Makes room for what the workers need in all, and for an image's layers, of so
+ * many bands; its shape is given. */
+snow_status snow_shear_warp_make_room(snow_shear_warp *shear_warp,
+                                      size_t scratch_bytes,
+                                      const snow_grouping *grouping,
+                                      int64_t bands,
+                                      snow_shear_warp_image *image);
+
+/* How a picture's image of so many channels will be warped, but for its plane
+ * (snow_shear_warp_attach) and its shear. */
+snow_shear_warp_warping *
+snow_shear_warp_warping_of(snow_shear_warp *shear_warp,
+                           const snow_shear_warp_params *params, int channels);
+
+/* Lets the image be warped. */
+void snow_shear_warp_attach(snow_shear_warp *shear_warp,
+                            snow_shear_warp_image *image);
 
 /* Begins to draw bands 0 .. bands - 1, more than none, of `sheared->pass` with
  * `draw`.  Errors: SNOW_STATUS_NO_MEMORY. */

@@ -78,11 +78,10 @@ typedef struct perspective_scratch {
     snow_span *spans;
     int32_t *first; /* along v, of the band's lines */
     float *weights;
-    float *kept;         /* a cut tile's pixels */
-    float *sheet;        /* a tile of one slice */
-    float *whole;        /* along v, of the band's lines: as of a slice */
-    float *spare_pixels; /* of bands to be combined */
-    unsigned char *spare_drawn;
+    float *kept;  /* a cut tile's pixels */
+    float *sheet; /* a tile of one slice */
+    float *whole; /* along v, of the band's lines: as of a slice */
+    snow_band spare[SNOW_GROUP_RANKS]; /* to be combined */
 } perspective_scratch;
 
 /* A band on its way through the slices. */
@@ -597,11 +596,6 @@ static void draw_slice(perspective_band_task *stroke, int64_t index) {
             draw_tile(stroke, tile);
 }
 
-/* Floats of a band that groups are combined in. */
-static size_t spare_floats(const perspective_pass *pass) {
-    return (size_t)pass->lines * pass->stride;
-}
-
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
 static size_t lay_out(const perspective_pass *pass, char *base,
@@ -624,11 +618,8 @@ static size_t lay_out(const perspective_pass *pass, char *base,
         PART(sheet, SNOW_PERSPECTIVE_TILE_LINES * filtered);
         PART(whole, SNOW_PERSPECTIVE_TILE_LINES * sizeof *out->whole);
     }
-    if (pass->grouping.on) {
-        PART(spare_pixels,
-             SNOW_GROUP_RANKS * spare_floats(pass) * sizeof(float));
-        PART(spare_drawn, SNOW_GROUP_RANKS * (size_t)pass->tiles);
-    }
+    snow_grouping_lay_out(&pass->grouping, (size_t)pass->lines * pass->stride,
+                          pass->tiles, base, &at, out->spare);
 #undef PART
     return at;
 }
@@ -654,50 +645,16 @@ static void draw_slab(void *of, int64_t first, int64_t count,
         draw_slice(stroke, first + (rising ? n : count - 1 - n));
 }
 
-/* Groups of slices, each by itself and then together. */
-static void draw_groups(perspective_band_task *stroke, const snow_band *band) {
+/* Sheets by themselves into one band of lines. */
+static void composite_band(perspective_band_task *stroke,
+                           const snow_band *band) {
     const perspective_pass *pass = stroke->pass;
-    const snow_shear_warp_image *image = &pass->image;
-    snow_band spare[SNOW_GROUP_RANKS], layer = *band;
-    for (int n = 0; n < SNOW_GROUP_RANKS; n++) {
-        spare[n].pixels =
-            stroke->scratch.spare_pixels + (size_t)n * spare_floats(pass);
-        spare[n].drawn =
-            stroke->scratch.spare_drawn + (size_t)n * (size_t)pass->tiles;
-    }
-    for (int n = 0; n < image->layers; n++) {
-        snow_grouping_draw(&pass->grouping, pass->grouping.nodes[n],
-                           &stroke->shape, draw_slab, stroke, &layer, spare);
-        layer.pixels += image->layer_floats;
-        layer.drawn += image->layer_tiles;
-    }
-}
-
-/* One band of lines of the intermediate image. */
-static void draw_band(perspective_band_task *stroke, const snow_band *band) {
-    const perspective_pass *pass = stroke->pass;
-    size_t pixels =
-        (size_t)stroke->lines * pass->stride / (size_t)pass->channels;
-    if (pass->grouping.on) {
-        draw_groups(stroke, band);
-        return;
-    }
+    size_t floats = (size_t)stroke->lines * pass->stride;
     memset(band->drawn, 0, (size_t)pass->tiles);
-    if (pass->params->composite) {
-        memset(band->pixels, 0,
-               pixels * (size_t)pass->channels * sizeof *band->pixels);
-        draw_slab(stroke, 0, pass->slice_count, band);
-        for (size_t n = 0; n < pixels * (size_t)pass->channels; n++)
-            band->pixels[n] *= pass->params->share;
-        return;
-    }
-    if (!pass->lazy)
-        snow_tile_clear(band->pixels, pixels, pass->channels);
+    memset(band->pixels, 0, floats * sizeof *band->pixels);
     draw_slab(stroke, 0, pass->slice_count, band);
-    if (pass->lazy)
-        snow_band_finish(&stroke->shape, band);
-    else
-        snow_tile_finish(band->pixels, pixels, pass->channels);
+    for (size_t n = 0; n < floats; n++)
+        band->pixels[n] *= pass->params->share;
 }
 
 static void splat_band(void *job, int64_t item, int worker) {
@@ -718,7 +675,11 @@ static void splat_band(void *job, int64_t item, int worker) {
     const snow_band band = {pass->image.pixels +
                                 (size_t)stroke.first_line * pass->stride,
                             pass->image.drawn + item * pass->tiles};
-    draw_band(&stroke, &band);
+    if (pass->params->composite)
+        composite_band(&stroke, &band);
+    else
+        snow_band_draw(&pass->grouping, &pass->image, pass->lazy, &stroke.shape,
+                       draw_slab, &stroke, stroke.scratch.spare, &band);
 }
 
 /* --- a picture -------------------------------------------------------------
@@ -730,12 +691,7 @@ static snow_status classify_and_shade(perspective_pass *pass,
     snow_shear_warp *s = pass->shear_warp;
     const snow_settings *settings = pass->params->settings;
     bool shaded = settings->shade == SNOW_SHADE_PHONG;
-    double mark = snow_seconds();
-    SNOW_TRY(snow_shear_warp_classify(s, pass->params, -1));
-    double classified = snow_seconds();
-    SNOW_TRY(snow_shear_warp_shade(s, pass->params));
-    stats->seconds_classify += classified - mark;
-    stats->seconds_shade += snow_seconds() - classified;
+    SNOW_TRY(snow_shear_warp_classify_and_shade(s, pass->params, -1, stats));
     pass->share = (s->key.between ? 0.5 : 1) / settings->opacity_length;
     pass->palette = s->palette.samples;
     pass->gloss = shaded ? s->gloss + 1 : NULL;
@@ -750,11 +706,8 @@ static snow_status classify_and_shade(perspective_pass *pass,
 }
 
 static snow_status reserve_buffers(perspective_pass *pass) {
-    snow_shear_warp *s = pass->shear_warp;
     perspective_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
-                          pass->scratch_bytes * (size_t)pass->threads));
     pass->image = (snow_shear_warp_image){.width = pass->scaled.u.count,
                                           .height = pass->scaled.v.count,
                                           .channels = pass->channels,
@@ -762,10 +715,9 @@ static snow_status reserve_buffers(perspective_pass *pass) {
                                           .tile_width = pass->columns,
                                           .tile_height = pass->lines,
                                           .tiles = (int)pass->tiles};
-    memcpy(pass->image.nodes, pass->grouping.nodes, sizeof pass->image.nodes);
-    return snow_shear_warp_make_layers(
-        s, pass->grouping.node_count, pass->bands,
-        (size_t)pass->scaled.v.count + 1, &pass->image);
+    return snow_shear_warp_make_room(
+        pass->shear_warp, pass->scratch_bytes * (size_t)pass->threads,
+        &pass->grouping, pass->bands, &pass->image);
 }
 
 /* Which slices are drawn, and where they lie. */
@@ -786,17 +738,6 @@ static snow_status choose_slices(perspective_pass *pass) {
     return SNOW_STATUS_OK;
 }
 
-/* What the warp has to know of a picture. */
-static void keep_warping(snow_shear_warp *s, const perspective_pass *pass) {
-    const snow_settings *settings = pass->params->settings;
-    snow_shear_warp_warping *w = &s->intermediate->warping;
-    w->perspective = true;
-    w->scaled = pass->scaled;
-    w->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
-                                                        : SNOW_CATMULL_ROM;
-    w->places = snow_warp_places_of(settings->isa, w->filter, pass->channels);
-}
-
 snow_status snow_shear_warp_perspective_begin(
     snow_shear_warp *s, const snow_shear_warp_params *params, snow_stats *stats,
     snow_shear_warp_image *out) {
@@ -807,7 +748,10 @@ snow_status snow_shear_warp_perspective_begin(
     SNOW_TRY(classify_and_shade(pass, stats));
     SNOW_TRY(place_lattice(pass));
     SNOW_TRY(choose_slices(pass));
-    keep_warping(s, pass);
+    snow_shear_warp_warping *warping =
+        snow_shear_warp_warping_of(s, params, pass->channels);
+    warping->perspective = true;
+    warping->scaled = pass->scaled;
     if (pass->scaled.u.count == 0 || pass->scaled.v.count == 0) {
         *out = (snow_shear_warp_image){.channels = params->channels};
         return SNOW_STATUS_OK;

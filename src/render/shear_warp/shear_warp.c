@@ -75,9 +75,8 @@ typedef struct snow_scratch {
     float *zero;
     uint64_t *unsaturated; /* per tile: cells that something shines through */
     snow_span *spans;
-    float *kept;         /* a cut tile's pixels */
-    float *spare_pixels; /* of bands to be combined */
-    unsigned char *spare_drawn;
+    float *kept;                       /* a cut tile's pixels */
+    snow_band spare[SNOW_GROUP_RANKS]; /* to be combined */
 } snow_scratch;
 
 /* A band on its way through the slices. */
@@ -546,11 +545,6 @@ static void draw_slices(shear_warp_band_task *stroke, int64_t first,
                 draw_tile(stroke, &slices[n], tile);
 }
 
-/* Floats of a band that groups are combined in. */
-static size_t spare_floats(const shear_warp_pass *pass) {
-    return (size_t)(pass->cells * pass->shear.v.phases) * pass->stride;
-}
-
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
 static size_t lay_out(const shear_warp_pass *pass, char *base,
@@ -572,11 +566,10 @@ static size_t lay_out(const shear_warp_pass *pass, char *base,
     PART(spans, ((size_t)pass->columns / 2 + 1) * sizeof *out->spans);
     if (pass->params->clip.cuts)
         PART(kept, (size_t)pass->cells * 2 * filtered);
-    if (pass->grouping.on) {
-        PART(spare_pixels,
-             SNOW_GROUP_RANKS * spare_floats(pass) * sizeof(float));
-        PART(spare_drawn, SNOW_GROUP_RANKS * (size_t)pass->tiles);
-    }
+    snow_grouping_lay_out(&pass->grouping,
+                          (size_t)(pass->cells * pass->shear.v.phases) *
+                              pass->stride,
+                          pass->tiles, base, &at, out->spare);
 #undef PART
     return at;
 }
@@ -619,44 +612,6 @@ static void draw_slab(void *of, int64_t first, int64_t count,
     }
 }
 
-/* Groups of slices, each by itself and then together. */
-static void draw_groups(shear_warp_band_task *stroke, const snow_band *band) {
-    const shear_warp_pass *pass = stroke->pass;
-    const snow_shear_warp_image *image = &pass->image;
-    snow_band spare[SNOW_GROUP_RANKS], layer = *band;
-    for (int n = 0; n < SNOW_GROUP_RANKS; n++) {
-        spare[n].pixels =
-            stroke->scratch.spare_pixels + (size_t)n * spare_floats(pass);
-        spare[n].drawn =
-            stroke->scratch.spare_drawn + (size_t)n * (size_t)pass->tiles;
-    }
-    for (int n = 0; n < image->layers; n++) {
-        snow_grouping_draw(&pass->grouping, pass->grouping.nodes[n],
-                           &stroke->shape, draw_slab, stroke, &layer, spare);
-        layer.pixels += image->layer_floats;
-        layer.drawn += image->layer_tiles;
-    }
-}
-
-/* One band of lines of the intermediate image. */
-static void draw_band(shear_warp_band_task *stroke, const snow_band *band) {
-    const shear_warp_pass *pass = stroke->pass;
-    size_t pixels =
-        (size_t)stroke->shape.lines * pass->stride / (size_t)pass->channels;
-    if (pass->grouping.on) {
-        draw_groups(stroke, band);
-        return;
-    }
-    memset(band->drawn, 0, (size_t)pass->tiles);
-    if (!pass->lazy)
-        snow_tile_clear(band->pixels, pixels, pass->channels);
-    draw_slab(stroke, 0, pass->slices, band);
-    if (pass->lazy)
-        snow_band_finish(&stroke->shape, band);
-    else
-        snow_tile_finish(band->pixels, pixels, pass->channels);
-}
-
 static void splat_band(void *job, int64_t item, int worker) {
     const shear_warp_pass *pass = job;
     const snow_lattice *v = &pass->shear.v;
@@ -676,7 +631,8 @@ static void splat_band(void *job, int64_t item, int worker) {
                                 (size_t)(stroke.first_cell * v->phases) *
                                     pass->stride,
                             pass->image.drawn + item * pass->tiles};
-    draw_band(&stroke, &band);
+    snow_band_draw(&pass->grouping, &pass->image, pass->lazy, &stroke.shape,
+                   draw_slab, &stroke, stroke.scratch.spare, &band);
 }
 
 /* --- setting up ------------------------------------------------------------
@@ -745,8 +701,8 @@ static snow_status place_slices(shear_warp_pass *pass) {
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_shear_warp_shade(snow_shear_warp *s,
-                                  const snow_shear_warp_params *params) {
+static snow_status shade(snow_shear_warp *s,
+                         const snow_shear_warp_params *params) {
     const snow_settings *settings = params->settings;
     if (settings->shade != SNOW_SHADE_PHONG)
         return SNOW_STATUS_OK;
@@ -757,9 +713,9 @@ snow_status snow_shear_warp_shade(snow_shear_warp *s,
                             settings->threads, s->gloss + 1);
 }
 
-snow_status snow_shear_warp_classify(snow_shear_warp *s,
-                                     const snow_shear_warp_params *params,
-                                     double exponent) {
+static snow_status classify(snow_shear_warp *s,
+                            const snow_shear_warp_params *params,
+                            double exponent) {
     const snow_settings *settings = params->settings;
     bool shaded = settings->shade == SNOW_SHADE_PHONG;
     if (s->key.with_gradient_opacity) /* opacities wait for the factors */
@@ -773,6 +729,18 @@ snow_status snow_shear_warp_classify(snow_shear_warp *s,
                              exponent, !shaded, settings->threads, &s->palette);
 }
 
+snow_status
+snow_shear_warp_classify_and_shade(snow_shear_warp *s,
+                                   const snow_shear_warp_params *params,
+                                   double exponent, snow_stats *stats) {
+    double mark = snow_seconds();
+    SNOW_TRY(classify(s, params, exponent));
+    snow_lap(&mark, &stats->seconds_classify);
+    SNOW_TRY(shade(s, params));
+    snow_lap(&mark, &stats->seconds_shade);
+    return SNOW_STATUS_OK;
+}
+
 /* Lines 02 and 03: tables for this look, light and view. */
 static snow_status classify_and_shade(shear_warp_pass *pass,
                                       snow_stats *stats) {
@@ -781,13 +749,9 @@ static snow_status classify_and_shade(shear_warp_pass *pass,
     bool shaded = settings->shade == SNOW_SHADE_PHONG;
     double path = pass->params->placement->path / (s->key.between ? 2 : 1);
     double exponent = path / settings->opacity_length;
-    double mark = snow_seconds();
-    SNOW_TRY(snow_shear_warp_classify(s, pass->params, exponent));
+    SNOW_TRY(
+        snow_shear_warp_classify_and_shade(s, pass->params, exponent, stats));
     pass->exponent = (float)fmin(exponent, 1e30);
-    double classified = snow_seconds();
-    SNOW_TRY(snow_shear_warp_shade(s, pass->params));
-    stats->seconds_classify += classified - mark;
-    stats->seconds_shade += snow_seconds() - classified;
     pass->palette = s->palette.samples;
     pass->gloss = shaded ? s->gloss + 1 : NULL;
     pass->channels = pass->params->channels;
@@ -800,40 +764,41 @@ static snow_status classify_and_shade(shear_warp_pass *pass,
     return SNOW_STATUS_OK;
 }
 
-snow_status snow_shear_warp_make_layers(snow_shear_warp *s, int layers,
-                                        int64_t bands, size_t lines,
-                                        snow_shear_warp_image *image) {
+snow_status snow_shear_warp_make_room(snow_shear_warp *s, size_t scratch_bytes,
+                                      const snow_grouping *grouping,
+                                      int64_t bands,
+                                      snow_shear_warp_image *image) {
     uint64_t floats, bytes;
     snow_intermediate *intermediate = s->intermediate;
-    image->layers = layers;
-    if (layers < 1) /* room for lines that others made */
-        layers = 1;
+    /* One without a node has room for lines that others made. */
+    size_t layers = grouping->node_count > 1 ? (size_t)grouping->node_count : 1;
+    image->layers = grouping->node_count;
+    memcpy(image->nodes, grouping->nodes, sizeof image->nodes);
     image->layer_tiles = (size_t)(bands * image->tiles);
-    SNOW_TRY(snow_reserve(s->context, &intermediate->drawn,
-                          &intermediate->drawn_capacity, 0,
-                          image->layer_tiles * (size_t)layers));
-    image->layer_floats = lines * image->stride;
-    if (!snow_mul_u64(image->layer_floats, (uint64_t)layers, &floats) ||
+    image->layer_floats = ((size_t)image->height + 1) * image->stride;
+    if (!snow_mul_u64(image->layer_floats, layers, &floats) ||
         !snow_mul_u64(floats, sizeof *intermediate->plane, &bytes) ||
         bytes > SIZE_MAX)
         return snow_fail(s->context, SNOW_STATUS_NO_MEMORY,
-                         "no memory for %d intermediate images", layers);
+                         "no memory for %zu intermediate images", layers);
+    SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
+                          scratch_bytes));
+    SNOW_TRY(snow_reserve(s->context, &intermediate->drawn,
+                          &intermediate->drawn_capacity, 0,
+                          image->layer_tiles * layers));
     SNOW_TRY(snow_reserve(s->context, &intermediate->plane,
                           &intermediate->plane_capacity, 0, (size_t)bytes));
     if (s->context->monitor) /* bands may never be drawn */
-        memset(intermediate->drawn, 0, image->layer_tiles * (size_t)layers);
+        memset(intermediate->drawn, 0, image->layer_tiles * layers);
     image->pixels = intermediate->plane;
     image->drawn = intermediate->drawn;
     return SNOW_STATUS_OK;
 }
 
 static snow_status reserve_buffers(shear_warp_pass *pass) {
-    snow_shear_warp *s = pass->shear_warp;
     const snow_lattice *u = &pass->shear.u, *v = &pass->shear.v;
     snow_scratch unused;
     pass->scratch_bytes = lay_out(pass, NULL, &unused);
-    SNOW_TRY(snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
-                          pass->scratch_bytes * (size_t)pass->threads));
     pass->image =
         (snow_shear_warp_image){.width = u->count,
                                 .height = v->count,
@@ -842,10 +807,9 @@ static snow_status reserve_buffers(shear_warp_pass *pass) {
                                 .tile_width = SNOW_TILE_COLUMNS * u->phases,
                                 .tile_height = pass->cells * v->phases,
                                 .tiles = (int)pass->tiles};
-    memcpy(pass->image.nodes, pass->grouping.nodes, sizeof pass->image.nodes);
-    return snow_shear_warp_make_layers(s, pass->grouping.node_count,
-                                       pass->bands, (size_t)v->count + 1,
-                                       &pass->image);
+    return snow_shear_warp_make_room(
+        pass->shear_warp, pass->scratch_bytes * (size_t)pass->threads,
+        &pass->grouping, pass->bands, &pass->image);
 }
 
 /* The bytes of several axes, where a picture is blended, add up. */
@@ -860,15 +824,29 @@ void snow_shear_warp_fill_figures(const snow_shear_warp *s, snow_stats *stats) {
 /* --- the warp --------------------------------------------------------------
  */
 
-/* What the warp has to know of a picture. */
-static void keep_warping(snow_shear_warp *s, const shear_warp_pass *pass) {
-    const snow_settings *settings = pass->params->settings;
+snow_shear_warp_warping *
+snow_shear_warp_warping_of(snow_shear_warp *s,
+                           const snow_shear_warp_params *params, int channels) {
+    const snow_settings *settings = params->settings;
     snow_shear_warp_warping *w = &s->intermediate->warping;
-    w->perspective = false;
-    w->shear = pass->shear;
-    w->filter = settings->quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR
-                                                        : SNOW_CATMULL_ROM;
-    w->warp = snow_warp_of(settings->isa, w->filter, pass->channels);
+    snow_filter filter = settings->quality == SNOW_QUALITY_DRAFT
+                             ? SNOW_BILINEAR
+                             : SNOW_CATMULL_ROM;
+    *w = (snow_shear_warp_warping){
+        .filter = filter,
+        .warp = snow_warp_of(settings->isa, filter, channels),
+        .places = snow_warp_places_of(settings->isa, filter, channels),
+        .width = params->view->width,
+        .height = params->view->height};
+    return w;
+}
+
+void snow_shear_warp_attach(snow_shear_warp *s, snow_shear_warp_image *image) {
+    s->intermediate->warping.plane = (snow_intermediate_view){
+        image->pixels,     image->stride,      image->width,
+        image->height,     image->channels,    image->drawn,
+        image->tile_width, image->tile_height, image->tiles};
+    image->warping = &s->intermediate->warping;
 }
 
 /* --- a picture -------------------------------------------------------------
@@ -906,7 +884,7 @@ static snow_status begin_shear_warp(snow_shear_warp *s,
     *pass = (shear_warp_pass){.params = params, .shear_warp = s};
     SNOW_TRY(classify_and_shade(pass, stats));
     SNOW_TRY(place(pass));
-    keep_warping(s, pass);
+    snow_shear_warp_warping_of(s, params, pass->channels)->shear = pass->shear;
     if (nothing_in_view(pass)) {
         *out = (snow_shear_warp_image){.channels = params->channels};
         return SNOW_STATUS_OK;
@@ -932,14 +910,7 @@ snow_status snow_shear_warp_begin(snow_shear_warp *s,
                  ? snow_shear_warp_perspective_begin(s, params, stats, &image)
                  : begin_shear_warp(s, params, stats, &image));
     snow_shear_warp_fill_figures(s, stats);
-    snow_shear_warp_warping *warping = &s->intermediate->warping;
-    warping->width = params->view->width;
-    warping->height = params->view->height;
-    warping->plane = (snow_intermediate_view){
-        image.pixels,     image.stride,      image.width,
-        image.height,     image.channels,    image.drawn,
-        image.tile_width, image.tile_height, image.tiles};
-    image.warping = warping;
+    snow_shear_warp_attach(s, &image);
     *out = image;
     return SNOW_STATUS_OK;
 }
