@@ -12,42 +12,8 @@
 
 #include <string.h>
 
-#define ROW_TYPE int8_t
-#define ROW_NAME classify_row_int8
-#define ROW_LOWEST INT8_MIN
-#define ROW_BYTES
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE uint8_t
-#define ROW_NAME classify_row_uint8
-#define ROW_LOWEST 0
-#define ROW_BYTES
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE int16_t
-#define ROW_NAME classify_row_int16
-#define ROW_LOWEST INT16_MIN
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE uint16_t
-#define ROW_NAME classify_row_uint16
-#define ROW_LOWEST 0
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE int32_t
-#define ROW_NAME classify_row_int32
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE uint32_t
-#define ROW_NAME classify_row_uint32
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE int64_t
-#define ROW_NAME classify_row_int64
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE uint64_t
-#define ROW_NAME classify_row_uint64
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE float
-#define ROW_NAME classify_row_float32
-#include "classify/classify_row.tmpl.h"
-#define ROW_TYPE double
-#define ROW_NAME classify_row_float64
-#include "classify/classify_row.tmpl.h"
+#define TEMPLATE "classify/classify_row.tmpl.h"
+#include "volume/each_type.h"
 
 /* Per scalar type: its row loop, and the native values that a table spans (0
  * values for types too wide for a table). */
@@ -55,16 +21,16 @@ static const struct type_row {
     snow_classify_row_fn *classify_row;
     int32_t lowest, values;
 } type_rows[] = {
-    [SNOW_TYPE_INT8] = {classify_row_int8, INT8_MIN, 256},
-    [SNOW_TYPE_UINT8] = {classify_row_uint8, 0, 256},
-    [SNOW_TYPE_INT16] = {classify_row_int16, INT16_MIN, 65536},
-    [SNOW_TYPE_UINT16] = {classify_row_uint16, 0, 65536},
-    [SNOW_TYPE_INT32] = {classify_row_int32, 0, 0},
-    [SNOW_TYPE_UINT32] = {classify_row_uint32, 0, 0},
-    [SNOW_TYPE_INT64] = {classify_row_int64, 0, 0},
-    [SNOW_TYPE_UINT64] = {classify_row_uint64, 0, 0},
-    [SNOW_TYPE_FLOAT32] = {classify_row_float32, 0, 0},
-    [SNOW_TYPE_FLOAT64] = {classify_row_float64, 0, 0},
+    [SNOW_TYPE_INT8] = {classify_row_INT8, INT8_MIN, 256},
+    [SNOW_TYPE_UINT8] = {classify_row_UINT8, 0, 256},
+    [SNOW_TYPE_INT16] = {classify_row_INT16, INT16_MIN, 65536},
+    [SNOW_TYPE_UINT16] = {classify_row_UINT16, 0, 65536},
+    [SNOW_TYPE_INT32] = {classify_row_INT32, 0, 0},
+    [SNOW_TYPE_UINT32] = {classify_row_UINT32, 0, 0},
+    [SNOW_TYPE_INT64] = {classify_row_INT64, 0, 0},
+    [SNOW_TYPE_UINT64] = {classify_row_UINT64, 0, 0},
+    [SNOW_TYPE_FLOAT32] = {classify_row_FLOAT32, 0, 0},
+    [SNOW_TYPE_FLOAT64] = {classify_row_FLOAT64, 0, 0},
 };
 
 bool snow_classify_value(const snow_classifier *c, double native,

@@ -16,46 +16,8 @@ static double difference(double here, double below, double above) {
     return 0;
 }
 
-#define GRADIENT_TYPE int8_t
-#define GRADIENT_NAME gradient_int8
-#define GRADIENT_ROW row_int8
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE uint8_t
-#define GRADIENT_NAME gradient_uint8
-#define GRADIENT_ROW row_uint8
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE int16_t
-#define GRADIENT_NAME gradient_int16
-#define GRADIENT_ROW row_int16
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE uint16_t
-#define GRADIENT_NAME gradient_uint16
-#define GRADIENT_ROW row_uint16
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE int32_t
-#define GRADIENT_NAME gradient_int32
-#define GRADIENT_ROW row_int32
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE uint32_t
-#define GRADIENT_NAME gradient_uint32
-#define GRADIENT_ROW row_uint32
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE int64_t
-#define GRADIENT_NAME gradient_int64
-#define GRADIENT_ROW row_int64
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE uint64_t
-#define GRADIENT_NAME gradient_uint64
-#define GRADIENT_ROW row_uint64
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE float
-#define GRADIENT_NAME gradient_float32
-#define GRADIENT_ROW row_float32
-#include "classify/shading/gradient.tmpl.h"
-#define GRADIENT_TYPE double
-#define GRADIENT_NAME gradient_float64
-#define GRADIENT_ROW row_float64
-#include "classify/shading/gradient.tmpl.h"
+#define TEMPLATE "classify/shading/gradient.tmpl.h"
+#include "volume/each_type.h"
 
 typedef void gradient_row_fn(const snow_gradient_row *row,
                              const uint32_t *columns, size_t count,
@@ -65,17 +27,9 @@ static const struct type_gradients {
     snow_gradient_fn *one;
     gradient_row_fn *row;
 } types[] = {
-    [SNOW_TYPE_INT8] = {gradient_int8, row_int8},
-    [SNOW_TYPE_UINT8] = {gradient_uint8, row_uint8},
-    [SNOW_TYPE_INT16] = {gradient_int16, row_int16},
-    [SNOW_TYPE_UINT16] = {gradient_uint16, row_uint16},
-    [SNOW_TYPE_INT32] = {gradient_int32, row_int32},
-    [SNOW_TYPE_UINT32] = {gradient_uint32, row_uint32},
-    [SNOW_TYPE_INT64] = {gradient_int64, row_int64},
-    [SNOW_TYPE_UINT64] = {gradient_uint64, row_uint64},
-    [SNOW_TYPE_FLOAT32] = {gradient_float32, row_float32},
-    [SNOW_TYPE_FLOAT64] = {gradient_float64, row_float64},
-};
+#define ENTRY(name, type, text) \
+    [SNOW_TYPE_##name] = {gradient_##name, row_##name},
+    SNOW_TYPE_MAP(ENTRY)};
 
 snow_gradient_fn *snow_gradient_of(snow_type type) {
     return types[type].one;

@@ -1,18 +1,14 @@
 /* classify/shading/gradient.tmpl.h - central differences of native values in
- * index space, for one scalar type.  Define before including:
- *
- *   GRADIENT_TYPE  C type of a voxel
- *   GRADIENT_NAME  name of the function for one voxel
- *   GRADIENT_ROW   name of the function for voxels inside of a row
- *
- * All are undefined at the end.  At the border, and beside a value that is not
- * finite, the difference is one-sided; without any neighbour it is 0. */
+ * index space, for one scalar type (volume/each_type.h): TYPED(gradient) of one
+ * voxel, TYPED(row) of voxels inside of a row.  At the border, and beside a
+ * value that is not finite, the difference is one-sided; without any neighbour
+ * it is 0. */
 
-static void GRADIENT_NAME(const void *voxels, const int64_t dims[3],
-                          const int64_t at[3], double gradient[3]) {
+static void TYPED(gradient)(const void *voxels, const int64_t dims[3],
+                            const int64_t at[3], double gradient[3]) {
     const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
-    const GRADIENT_TYPE *here = (const GRADIENT_TYPE *)voxels + at[0] +
-                                at[1] * strides[1] + at[2] * strides[2];
+    const TYPE *here =
+        (const TYPE *)voxels + at[0] + at[1] * strides[1] + at[2] * strides[2];
     for (int axis = 0; axis < 3; axis++) {
         double below = at[axis] > 0 ? (double)here[-strides[axis]] : NAN;
         double above =
@@ -22,18 +18,17 @@ static void GRADIENT_NAME(const void *voxels, const int64_t dims[3],
 }
 
 /* For voxels that have neighbours on all sides. */
-static void GRADIENT_ROW(const snow_gradient_row *row, const uint32_t *columns,
-                         size_t count, size_t capacity, double *gradients) {
+static void TYPED(row)(const snow_gradient_row *row, const uint32_t *columns,
+                       size_t count, size_t capacity, double *gradients) {
     const int64_t *dims = row->volume->info.dims;
     const int64_t strides[3] = {1, dims[0], dims[0] * dims[1]};
     int64_t at[3] = {row->at[0], row->at[1], row->at[2]};
     at[row->axis] = 0;
-    const GRADIENT_TYPE *first = (const GRADIENT_TYPE *)row->volume->voxels +
-                                 at[0] + at[1] * strides[1] +
-                                 at[2] * strides[2];
+    const TYPE *first = (const TYPE *)row->volume->voxels + at[0] +
+                        at[1] * strides[1] + at[2] * strides[2];
     const int64_t step = strides[row->axis];
     for (size_t n = 0; n < count; n++) {
-        const GRADIENT_TYPE *here = first + columns[n] * step;
+        const TYPE *here = first + columns[n] * step;
         double x = ((double)here[1] - (double)here[-1]) / 2;
         double y = ((double)here[strides[1]] - (double)here[-strides[1]]) / 2;
         double z = ((double)here[strides[2]] - (double)here[-strides[2]]) / 2;
@@ -44,12 +39,12 @@ static void GRADIENT_ROW(const snow_gradient_row *row, const uint32_t *columns,
             continue;
         double careful[3];
         at[row->axis] = columns[n];
-        GRADIENT_NAME(row->volume->voxels, dims, at, careful);
+        TYPED(gradient)(row->volume->voxels, dims, at, careful);
         for (size_t i = 0; i < 3; i++)
             gradients[i * capacity + n] = careful[i];
     }
 }
 
-#undef GRADIENT_ROW
-#undef GRADIENT_TYPE
-#undef GRADIENT_NAME
+#undef TYPE
+#undef TYPED
+#undef LOWEST

@@ -76,6 +76,20 @@ static inline float twice(double high, double low) {
     return (float)copysign(bounded < least ? least : bounded, d);
 }
 
+/* X(NAME, C type, type that is subtracted, subtraction) for each scalar type.
+ */
+#define SUBTRACTIONS(X)               \
+    X(INT8, int8_t, int, whole)       \
+    X(UINT8, uint8_t, int, whole)     \
+    X(INT16, int16_t, int, whole)     \
+    X(UINT16, uint16_t, int, whole)   \
+    X(INT32, int32_t, double, wide)   \
+    X(UINT32, uint32_t, double, wide) \
+    X(INT64, int64_t, double, wide)   \
+    X(UINT64, uint64_t, double, wide) \
+    X(FLOAT32, float, float, single)  \
+    X(FLOAT64, double, double, twice)
+
 #define TEMPLATE "classify/shading/normals.tmpl.h"
 #include "simd/each_isa.h"
 
@@ -286,28 +300,12 @@ typedef void collect_fn(const char *first, int64_t step,
         }                                                                    \
     }
 
-COLLECT(int8, int8_t, int, whole)
-COLLECT(uint8, uint8_t, int, whole)
-COLLECT(int16, int16_t, int, whole)
-COLLECT(uint16, uint16_t, int, whole)
-COLLECT(int32, int32_t, double, wide)
-COLLECT(uint32, uint32_t, double, wide)
-COLLECT(int64, int64_t, double, wide)
-COLLECT(uint64, uint64_t, double, wide)
-COLLECT(float32, float, float, single)
-COLLECT(float64, double, double, twice)
+SUBTRACTIONS(COLLECT)
 
 static collect_fn *const collectors[] = {
-    [SNOW_TYPE_INT8] = collect_int8,
-    [SNOW_TYPE_UINT8] = collect_uint8,
-    [SNOW_TYPE_INT16] = collect_int16,
-    [SNOW_TYPE_UINT16] = collect_uint16,
-    [SNOW_TYPE_INT32] = collect_int32,
-    [SNOW_TYPE_UINT32] = collect_uint32,
-    [SNOW_TYPE_INT64] = collect_int64,
-    [SNOW_TYPE_UINT64] = collect_uint64,
-    [SNOW_TYPE_FLOAT32] = collect_float32,
-    [SNOW_TYPE_FLOAT64] = collect_float64,
+#define ENTRY(name, type, text) [SNOW_TYPE_##name] = collect_##name,
+    SNOW_TYPE_MAP(ENTRY)
+#undef ENTRY
 };
 
 static size_t whole_groups(size_t count) {

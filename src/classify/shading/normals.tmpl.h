@@ -1,8 +1,7 @@
 /* classify/shading/normals.tmpl.h - normals of a block of voxels, in loops that
  * the compiler vectorizes, for one instruction set. Include simd/select.h
- * first. The including file has the subtractions (whole, wide, single, twice),
- * `normal_kernels` and UNSURE. No sum is fused or reordered, so all instruction
- * sets give the same bits.
+ * first. The including file has SUBTRACTIONS, `normal_kernels` and UNSURE. No
+ * sum is fused or reordered, so all instruction sets give the same bits.
  *
  * NAME(differences_TYPE) subtracts `count` neighbours of that scalar type:
  *
@@ -26,17 +25,7 @@
                 out[n + i] = subtract((as)b[n + i], (as)a[n + i]) * weight; \
     }
 
-DIFFERENCES(int8, int8_t, int, whole)
-DIFFERENCES(uint8, uint8_t, int, whole)
-DIFFERENCES(int16, int16_t, int, whole)
-DIFFERENCES(uint16, uint16_t, int, whole)
-DIFFERENCES(int32, int32_t, double, wide)
-DIFFERENCES(uint32, uint32_t, double, wide)
-DIFFERENCES(int64, int64_t, double, wide)
-DIFFERENCES(uint64, uint64_t, double, wide)
-DIFFERENCES(float32, float, float, single)
-DIFFERENCES(float64, double, double, twice)
-
+SUBTRACTIONS(DIFFERENCES)
 #undef DIFFERENCES
 
 /* A sum that cancels becomes LEAST, because differences that were raised to
@@ -80,16 +69,9 @@ TARGET static bool NAME(encode)(const float carry[9], float gradients[3][BLOCK],
 static const normal_kernels NAME(kernels) = {
     .differences =
         {
-            [SNOW_TYPE_INT8] = NAME(differences_int8),
-            [SNOW_TYPE_UINT8] = NAME(differences_uint8),
-            [SNOW_TYPE_INT16] = NAME(differences_int16),
-            [SNOW_TYPE_UINT16] = NAME(differences_uint16),
-            [SNOW_TYPE_INT32] = NAME(differences_int32),
-            [SNOW_TYPE_UINT32] = NAME(differences_uint32),
-            [SNOW_TYPE_INT64] = NAME(differences_int64),
-            [SNOW_TYPE_UINT64] = NAME(differences_uint64),
-            [SNOW_TYPE_FLOAT32] = NAME(differences_float32),
-            [SNOW_TYPE_FLOAT64] = NAME(differences_float64),
+#define ENTRY(name, type, text) [SNOW_TYPE_##name] = NAME(differences_##name),
+            SNOW_TYPE_MAP(ENTRY)
+#undef ENTRY
         },
     .add = NAME(add),
     .encode = NAME(encode),

@@ -13,46 +13,8 @@ static void cubic_differences(const float weights[4], float out[8]) {
         out[n] = (padded[n] - (n + 2 < 6 ? padded[n + 2] : 0)) / 2;
 }
 
-#define CUBIC_TYPE int8_t
-#define CUBIC_WIDE float
-#define CUBIC_NAME(part) near_##part##_INT8
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE uint8_t
-#define CUBIC_WIDE float
-#define CUBIC_NAME(part) near_##part##_UINT8
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE int16_t
-#define CUBIC_WIDE float
-#define CUBIC_NAME(part) near_##part##_INT16
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE uint16_t
-#define CUBIC_WIDE float
-#define CUBIC_NAME(part) near_##part##_UINT16
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE int32_t
-#define CUBIC_WIDE double
-#define CUBIC_NAME(part) near_##part##_INT32
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE uint32_t
-#define CUBIC_WIDE double
-#define CUBIC_NAME(part) near_##part##_UINT32
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE int64_t
-#define CUBIC_WIDE double
-#define CUBIC_NAME(part) near_##part##_INT64
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE uint64_t
-#define CUBIC_WIDE double
-#define CUBIC_NAME(part) near_##part##_UINT64
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE float
-#define CUBIC_WIDE double
-#define CUBIC_NAME(part) near_##part##_FLOAT32
-#include "render/modes/interpolate_cubic.tmpl.h"
-#define CUBIC_TYPE double
-#define CUBIC_WIDE double
-#define CUBIC_NAME(part) near_##part##_FLOAT64
-#include "render/modes/interpolate_cubic.tmpl.h"
+#define TEMPLATE "render/modes/interpolate_cubic.tmpl.h"
+#include "volume/each_type.h"
 
 snow_cubic_grid snow_cubic_grid_of(const snow_volume *volume, const int axes[3],
                                    double base) {
@@ -73,7 +35,7 @@ float snow_interpolate_cubic(const snow_cubic_grid *grid,
     switch (grid->type) {
 #define CASE(name, type, text) \
     case SNOW_TYPE_##name:     \
-        return near_value_##name(grid, near, slices);
+        return value_##name(grid, near, slices);
         SNOW_TYPE_MAP(CASE)
 #undef CASE
     case SNOW_TYPE_NONE:
@@ -87,9 +49,9 @@ void snow_interpolate_cubic_gradient(const snow_cubic_grid *grid,
                                      double gradient[3]) {
     float slopes[2] = {0, 0};
     switch (grid->type) {
-#define CASE(name, type, text)                  \
-    case SNOW_TYPE_##name:                      \
-        near_slopes_##name(grid, near, slopes); \
+#define CASE(name, type, text)             \
+    case SNOW_TYPE_##name:                 \
+        slopes_##name(grid, near, slopes); \
         break;
         SNOW_TYPE_MAP(CASE)
 #undef CASE
