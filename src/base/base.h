@@ -45,11 +45,13 @@ struct snow_context {
     char message[SNOW_MESSAGE_BYTES];
 };
 
-/* Sets the context's message and returns `status`, so that a failing function
- * ends with `return snow_fail(...)`. The text is one line without a newline:
+/* What extensions call, by the library's own names (snowglass/context.h).  A
+ * failing function ends with `return snow_fail(...)`, whose text is one line:
  * what is wrong: the limit; what to do. */
-snow_status snow_fail(snow_context *context, snow_status status,
-                      const char *format, ...) SNOW_PRINTF(3, 4);
+#define snow_fail snow_context_fail
+#define snow_notify snow_context_warn
+#define snow_allocate snow_context_allocate
+#define snow_release snow_context_release
 
 /* Puts "prefix: " before the message of a failure in a called function and
  * returns its status: each level adds what it knows (the name of the file,
@@ -62,16 +64,9 @@ snow_status snow_fail_within(snow_context *context, snow_status status,
 snow_status snow_fail_in_file(snow_context *context, snow_status status,
                               const char *path);
 
-/* Calls the warning function, if there is one. */
-void snow_notify(snow_context *context, const char *format, ...)
-    SNOW_PRINTF(2, 3);
-
 /* --- memory -------------------------------------------------------------- */
 
-/* A block of `bytes` bytes (0 counts as 1) aligned to 64, or NULL with a
- * message that gives the size. Contents are undefined, except those of
- * snow_allocate_clear. */
-void *snow_allocate(snow_context *context, size_t bytes);
+/* As snow_allocate, but of zeros. */
 void *snow_allocate_clear(snow_context *context, size_t bytes);
 
 /* The same for an array; its size is checked for overflow. */
@@ -91,9 +86,6 @@ static inline void *snow_lay_out(char *base, size_t *at, size_t bytes) {
     *at += (bytes + 63) / 64 * 64;
     return part;
 }
-
-/* Frees a block from any of these; NULL is accepted. */
-void snow_release(snow_context *context, void *block);
 
 /* --- checked sizes -------------------------------------------------------- */
 

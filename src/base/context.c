@@ -110,15 +110,6 @@ static void set_message(snow_context *context, const char *format,
     pthread_mutex_unlock(&context->lock);
 }
 
-snow_status snow_fail(snow_context *context, snow_status status,
-                      const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    set_message(context, format, arguments);
-    va_end(arguments);
-    return status;
-}
-
 snow_status snow_context_fail(snow_context *context, snow_status status,
                               const char *format, ...) {
     va_list arguments;
@@ -160,14 +151,6 @@ static void notify(snow_context *context, const char *format,
     vsnprintf(text, sizeof text, format, arguments);
     keep_to_one_line(text);
     context->notice(context->notice_user, text);
-}
-
-void snow_notify(snow_context *context, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    if (context->notice)
-        notify(context, format, arguments);
-    va_end(arguments);
 }
 
 void snow_context_warn(snow_context *context, const char *format, ...) {

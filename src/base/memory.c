@@ -115,11 +115,3 @@ void snow_release(snow_context *context, void *block) {
     context->allocator.release(context->allocator.user, header.raw);
     pthread_mutex_unlock(&context->lock);
 }
-
-void *snow_context_allocate(snow_context *context, size_t bytes) {
-    return snow_allocate(context, bytes);
-}
-
-void snow_context_release(snow_context *context, void *block) {
-    snow_release(context, block);
-}

@@ -112,13 +112,6 @@ static size_t summary_bytes(const snow_sparse *s) {
     return (cells_of(s) * (size_t)s->rows + 7) / 8;
 }
 
-static bool any_set(const uint64_t *masks, size_t words) {
-    uint64_t set = 0;
-    for (size_t w = 0; w < words; w++)
-        set |= masks[w];
-    return set != 0;
-}
-
 /* Writes a row of cells; the first is bit `cell` of the summary. */
 static unsigned char *write_row(const snow_sparse *s, const uint64_t *masks,
                                 unsigned char *summary, size_t cell,
@@ -126,7 +119,7 @@ static unsigned char *write_row(const snow_sparse *s, const uint64_t *masks,
     size_t words = snow_mask_words(s);
     for (size_t w = 0; w < words; w += CELL_WORDS, cell++) {
         size_t some = words - w < CELL_WORDS ? words - w : CELL_WORDS;
-        if (!any_set(masks + w, some))
+        if (!snow_any_set(masks + w, some))
             continue;
         unsigned char *end = s->loops->places(masks + w, some, 0, at + 1);
         *at = (unsigned char)(end - at - 2);

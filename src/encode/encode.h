@@ -159,6 +159,14 @@ static inline size_t snow_mask_words(const snow_sparse *sparse) {
     return ((size_t)sparse->columns + 63) / 64;
 }
 
+/* Whether any of some words is not 0. */
+static inline bool snow_any_set(const uint64_t *masks, size_t words) {
+    uint64_t set = 0;
+    for (size_t w = 0; w < words; w++)
+        set |= masks[w];
+    return set != 0;
+}
+
 /* Appends a slice of a band; `voxels` of it are interesting, and already
  * counted in ia_voxels. Errors: SNOW_STATUS_NO_MEMORY. */
 snow_status snow_sparse_add_masks(snow_sparse *sparse, const uint64_t *masks,

@@ -63,17 +63,22 @@ static snow_status rle_end_slice(snow_sparse *s) {
     return write_run(s);
 }
 
+/* Goes to the run that holds the next voxel; a slice's first is uninteresting.
+ */
+static void find_run(snow_walk *walk) {
+    while (!walk->run) {
+        walk->run_interesting = walk->started && !walk->run_interesting;
+        walk->started = true;
+        walk->run = *walk->ea++;
+    }
+}
+
 static size_t rle_next_row(snow_walk *walk, snow_span *spans) {
     uint32_t columns = (uint32_t)walk->sparse->columns;
     size_t count = 0;
     /* walk->run is the rest of the last run of the row before. */
     for (uint32_t column = 0; column < columns;) {
-        while (!walk->run) {
-            /* The first run of a slice is uninteresting. */
-            walk->run_interesting = walk->started && !walk->run_interesting;
-            walk->started = true;
-            walk->run = *walk->ea++;
-        }
+        find_run(walk);
         uint32_t left = columns - column;
         uint32_t take = walk->run < left ? walk->run : left;
         if (walk->run_interesting)
@@ -88,11 +93,7 @@ static size_t rle_skip(snow_walk *walk, int64_t rows) {
     uint64_t left = (uint64_t)rows * (uint64_t)walk->sparse->columns;
     size_t voxels = 0;
     while (left) {
-        while (!walk->run) {
-            walk->run_interesting = walk->started && !walk->run_interesting;
-            walk->started = true;
-            walk->run = *walk->ea++;
-        }
+        find_run(walk);
         uint32_t take = walk->run < left ? walk->run : (uint32_t)left;
         voxels += walk->run_interesting ? take : 0;
         walk->run -= take;
@@ -177,13 +178,6 @@ static void subtract(const unsigned char *restrict from, size_t count,
         out[n] = (unsigned char)(from[n + 1] - from[n]);
 }
 
-static bool any_set(const uint64_t *masks, size_t words) {
-    uint64_t set = 0;
-    for (size_t w = 0; w < words; w++)
-        set |= masks[w];
-    return set != 0;
-}
-
 static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
                                  size_t voxels) {
     size_t words = snow_mask_words(s), most = most_bytes(s, voxels);
@@ -195,7 +189,7 @@ static snow_status rle_add_masks(snow_sparse *s, const uint64_t *masks,
     *from = 0;
     memset(at, 0, summary_bytes(s));
     for (int64_t row = 0; row < s->rows; row++, masks += words)
-        if (any_set(masks, words)) {
+        if (snow_any_set(masks, words)) {
             at[row / 8] |= (unsigned char)(1u << row % 8);
             put_row(s, masks, &p);
         }

@@ -14,34 +14,8 @@
 
 #include <math.h>
 
-#define SELECT_SCALAR
-#include "simd/select.h"
-#define ROW_CODE uint8_t
-#define ROW(word) NAME(word##_8)
-#include "encode/rows.tmpl.h"
-#define ROW_CODE uint16_t
-#define ROW(word) NAME(word##_16)
-#include "encode/rows.tmpl.h"
-
-#if SNOW_HAS_AVX
-#define SELECT_AVX2
-#include "simd/select.h"
-#define ROW_CODE uint8_t
-#define ROW(word) NAME(word##_8)
-#include "encode/rows.tmpl.h"
-#define ROW_CODE uint16_t
-#define ROW(word) NAME(word##_16)
-#include "encode/rows.tmpl.h"
-
-#define SELECT_AVX512
-#include "simd/select.h"
-#define ROW_CODE uint8_t
-#define ROW(word) NAME(word##_8)
-#include "encode/rows.tmpl.h"
-#define ROW_CODE uint16_t
-#define ROW(word) NAME(word##_16)
-#include "encode/rows.tmpl.h"
-#endif
+#define TEMPLATE "encode/rows_isa.h"
+#include "simd/each_isa.h"
 
 /* By instruction set, and bytes of a code less one: see rows.tmpl.h. */
 static snow_encode_rows_fn *const *loops_of(snow_isa isa, int bytes) {

@@ -142,13 +142,6 @@ static snow_status ask_view(const question *q, int64_t layers[3]) {
  * the one of the largest |d . n|, which is at least the least of max |d . n|
  * over all d; for axes at right angles 1 / sqrt 3. */
 
-/* World gradients of the three indices; their directions are the slices'
- * normals. */
-static bool index_gradients(const snow_volume_info *info,
-                            double gradients[3][3]) {
-    return snow_matrix_invert3(info->matrix, gradients);
-}
-
 /* A lower bound of max |d . n| over the axes, for every unit vector d: that is
  * at least |N d| / sqrt 3, with the normals as N's rows, and |d| = |N^-1 N d|
  * is at most |N^-1| |N d|.  The norm is Frobenius' but for right angles, where
@@ -210,12 +203,13 @@ static double steepest_slope(double gradients[3][3], int axis, double slant) {
 }
 
 static snow_status ask_all(const question *q, int64_t layers[3]) {
-    double gradients[3][3];
+    double gradients[3][3]; /* of the indices: their directions are the slices'
+                               normals */
     snow_placement checked;
     snow_camera camera;
     SNOW_TRY(snow_placement_make(q->context, q->whole, q->view, &checked));
     SNOW_TRY(snow_camera_make(q->context, q->whole, q->view, &camera));
-    if (!index_gradients(q->whole, gradients))
+    if (!snow_matrix_invert3(q->whole->matrix, gradients))
         return snow_fail(q->context, SNOW_STATUS_BAD_INPUT,
                          "the volume's matrix cannot be inverted");
     /* The volume stays within a sphere about the target. */
@@ -308,7 +302,7 @@ static snow_status check_layers(snow_context *context,
 }
 
 /* A part without voxels of its own makes no samples. */
-static snow_status check_part(snow_context *context, const snow_volume *volume,
+snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings,
                               bool gradient_factors, const int halvings[3]) {
@@ -322,19 +316,4 @@ static snow_status check_part(snow_context *context, const snow_volume *volume,
     SNOW_TRY(halvings ? ask_level(&q, false, halvings, layers)
                       : ask_view(&q, layers));
     return check_layers(context, volume, layers);
-}
-
-snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
-                              const snow_view *view,
-                              const snow_settings *settings,
-                              bool gradient_factors) {
-    return check_part(context, volume, view, settings, gradient_factors, NULL);
-}
-
-snow_status
-snow_ghosts_check_level(snow_context *context, const snow_volume *volume,
-                        const snow_view *view, const snow_settings *settings,
-                        bool gradient_factors, const int halvings[3]) {
-    return check_part(context, volume, view, settings, gradient_factors,
-                      halvings);
 }

@@ -22,17 +22,12 @@ snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
                    const snow_view *view, const snow_settings *settings,
                    bool gradient_factors, bool any_turn, int64_t layers[3]);
 
-/* Whether a part has as many as a view needs, settings being resolved.  Errors:
+/* Whether a part has as many as a view needs, settings being resolved; where
+ * `halvings` is not NULL, as its level of so many halvings needs.  Errors:
  * SNOW_STATUS_BAD_USAGE (it has not). */
 snow_status snow_ghosts_check(snow_context *context, const snow_volume *volume,
                               const snow_view *view,
                               const snow_settings *settings,
-                              bool gradient_factors);
-
-/* The same of a part whose level of so many halvings is to be drawn. */
-snow_status
-snow_ghosts_check_level(snow_context *context, const snow_volume *volume,
-                        const snow_view *view, const snow_settings *settings,
-                        bool gradient_factors, const int halvings[3]);
+                              bool gradient_factors, const int halvings[3]);
 
 #endif

@@ -29,9 +29,9 @@ static snow_status check_part(const snow_job *job) {
                          "deterministic pictures are made of slabs along %c; "
                          "this part of the volume is none",
                          "xyz"[job->placement.slice_axis]);
-    return snow_ghosts_check(job->context, job->volume, job->view,
-                             &job->settings,
-                             snow_transfer_has_gradient_opacity(job->transfer));
+    return snow_ghosts_check(
+        job->context, job->volume, job->view, &job->settings,
+        snow_transfer_has_gradient_opacity(job->transfer), NULL);
 }
 
 /* Voxels that stay in their file are read by the encoding (shear_warp/stream.c)

@@ -228,9 +228,9 @@ snow_status snow_mipmap_select(snow_mipmap **levels, const snow_volume *volume,
         !snow_transfer_has_categories(transfer))
         SNOW_TRY(snow_mipmap_wanted(context, &whole, view, wanted));
     if (largest_lod(wanted)) {
-        SNOW_TRY(snow_ghosts_check_level(
-            context, volume, view, settings,
-            snow_transfer_has_gradient_opacity(transfer), wanted));
+        SNOW_TRY(snow_ghosts_check(context, volume, view, settings,
+                                   snow_transfer_has_gradient_opacity(transfer),
+                                   wanted));
         if (!*levels) {
             *levels = snow_allocate_clear(context, sizeof **levels);
             if (!*levels)

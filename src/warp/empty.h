@@ -5,6 +5,25 @@
 
 #include "warp/warp.h"
 
+#include <math.h>
+#include <string.h>
+
+/* Clears pixels `from` to `to` - 1 of a line but for those of low to high,
+ * which are first .. last: false where there are none. */
+static inline bool snow_clear_outside(int from, int to, double low, double high,
+                                      int channels, float *pixels, int *first,
+                                      int *last) {
+    size_t bytes = (size_t)channels * sizeof *pixels;
+    *first = (int)ceil(fmin(low, to));
+    *last = low <= high ? (int)floor(high) : *first - 1;
+    if (*last < *first)
+        *first = to, *last = to - 1;
+    memset(pixels + from * channels, 0, (size_t)(*first - from) * bytes);
+    memset(pixels + (*last + 1) * channels, 0,
+           (size_t)(to - 1 - *last) * bytes);
+    return *first <= *last;
+}
+
 /* The largest side of a block, in pixels, for which the inverse is exact. */
 #define SNOW_BLOCK_SIDE_MOST 2048
 

@@ -76,21 +76,14 @@ void snow_warp_row_perspective(const snow_intermediate_view *plane,
                                snow_filter filter, snow_warp_places_fn *warp,
                                int y, int from, int to, float *pixels) {
     double line[3][2], low = from, high = to - 1;
-    size_t pixel = (size_t)plane->channels;
     for (int i = 0; i < 3; i++) {
         line[i][1] = scaled->warp[i][1];
         line[i][0] = scaled->warp[i][0] + 0.5 * line[i][1] +
                      (y + 0.5) * scaled->warp[i][2];
     }
     cut_line(plane, line, filter == SNOW_CATMULL_ROM ? 1 : 0, &low, &high);
-    int first = (int)ceil(fmin(low, to));
-    int last = low <= high ? (int)floor(high) : first - 1;
-    if (last < first)
-        first = to, last = to - 1;
-    memset(pixels + (size_t)from * pixel, 0,
-           (size_t)(first - from) * pixel * sizeof *pixels);
-    if (first <= last)
+    int first, last;
+    if (snow_clear_outside(from, to, low, high, plane->channels, pixels, &first,
+                           &last))
         warp_runs(plane, line, warp, first, last, pixels);
-    memset(pixels + (size_t)(last + 1) * pixel, 0,
-           (size_t)(to - 1 - last) * pixel * sizeof *pixels);
 }

@@ -143,15 +143,8 @@ void snow_warp_row(const snow_intermediate_view *plane, const snow_shear *shear,
         line.step[axis] = fixed(shear->along_x[axis]);
         line.start[axis] = low <= high ? fixed(start) : 0;
     }
-    size_t pixel = (size_t)plane->channels;
-    int first = (int)ceil(fmin(low, to));
-    int last = low <= high ? (int)floor(high) : first - 1;
-    if (last < first)
-        first = to, last = to - 1;
-    memset(pixels + (size_t)from * pixel, 0,
-           (size_t)(first - from) * pixel * sizeof *pixels);
-    if (first <= last)
+    int first, last;
+    if (snow_clear_outside(from, to, low, high, plane->channels, pixels, &first,
+                           &last))
         warp_runs(plane, &line, warp, first, last, pixels);
-    memset(pixels + (size_t)(last + 1) * pixel, 0,
-           (size_t)(to - 1 - last) * pixel * sizeof *pixels);
 }

@@ -1,8 +1,7 @@
 /* render/modes/interpolate_cubic.tmpl.h - sums over a window of 4 x 4 voxels
- * (render/modes/interpolate.h). for
- * one scalar type (volume/each_type.h): TYPED(value), TYPED(slopes).  Rows lie
- * `down` voxels apart, and a row's voxels `across`, which is 1 where it
- * matters, so that rows are vectors. */
+ * (render/modes/interpolate.h) for one scalar type (volume/each_type.h):
+ * TYPED(value), TYPED(slopes).  Rows lie `down` voxels apart, and a row's voxels
+ * `across`, which is 1 where it matters, so that rows are vectors. */
 
 /* The type in which the base is taken off: it holds every voxel. */
 #ifdef LOWEST

@@ -13,15 +13,6 @@
 #include "render/shear_warp/shear_warp.h"
 #include "warp/warp.h"
 
-/* Whether something shines through any of a band's tiles. */
-static inline bool snow_any_unsaturated(const uint64_t *unsaturated,
-                                        int64_t tiles) {
-    for (int64_t tile = 0; tile < tiles; tile++)
-        if (unsaturated[tile])
-            return true;
-    return false;
-}
-
 /* Rows that cells need: cell i needs rows i * stride to i * stride + reach - 1.
  */
 static inline uint64_t snow_rows_of_cells(uint64_t cells, int stride,

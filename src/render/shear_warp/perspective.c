@@ -639,7 +639,7 @@ static void draw_slab(void *of, int64_t first, int64_t count,
     for (int64_t n = 0;
          n < count &&
          (!stroke->finished ||
-          snow_any_unsaturated(unsaturated, pass->tiles)) &&
+          snow_any_set(unsaturated, (size_t)pass->tiles)) &&
          !snow_monitor_look(pass->shear_warp->monitor, stroke->worker);
          n++)
         draw_slice(stroke, first + (rising ? n : count - 1 - n));
