@@ -19,12 +19,8 @@
 
 #if PIXELS_CHANNELS == 2
 #define PIXELS_SOME V(some2)
-#define PIXELS_GATHER V(gather2)
-#define PIXELS_SCATTER V(scatter2)
 #else
 #define PIXELS_SOME V(nonzero4)
-#define PIXELS_GATHER V(gather4)
-#define PIXELS_SCATTER V(scatter4)
 #endif
 #define PIXELS_LISTED (LANES / PIXELS_CHANNELS < 8)
 #define PIXELS_EACH (LANES / PIXELS_CHANNELS) /* pixels of a vector */
@@ -76,7 +72,9 @@ TARGET static inline float *PIXELS_NAME(pack)(float *out, const float *pixels,
     int count =
         PIXELS_NAME(list)(bits, (uint32_t)__builtin_ctzll(bits), places);
     for (int i = 0; i < count; i += PIXELS_EACH)
-        V(store)(out + i * PIXELS_CHANNELS, PIXELS_GATHER(pixels, places + i));
+        V(store)
+        (out + i * PIXELS_CHANNELS,
+         VC(gather, PIXELS_CHANNELS)(pixels, places + i));
     return out + count * PIXELS_CHANNELS;
 #else
     for (; bits; bits >>= PIXELS_EACH, pixels += LANES)
@@ -119,10 +117,10 @@ PIXELS_NAME(composite)(float *tile, const float *packed, uint64_t bits) {
     int count = PIXELS_NAME(list)(bits, 64, places);
     for (int i = 0; i < count; i += PIXELS_EACH) {
         const float *from = packed + i * PIXELS_CHANNELS;
-        V(vec) front = PIXELS_GATHER(tile, places + i);
+        V(vec) front = VC(gather, PIXELS_CHANNELS)(tile, places + i);
         __builtin_prefetch(from + PIXELS_AHEAD);
         front = PIXELS_COMPOSITE_OP(front, V(load)(from));
-        PIXELS_SCATTER(tile, places + i, front);
+        VC(scatter, PIXELS_CHANNELS)(tile, places + i, front);
     }
     return packed + count * PIXELS_CHANNELS;
 #else
@@ -187,6 +185,4 @@ static const snow_pixel_loops PIXELS_NAME(loops) = {
 #undef PIXELS_CHANNELS
 #undef PIXELS_SOME
 #undef PIXELS_COMPOSITE_OP
-#undef PIXELS_GATHER
-#undef PIXELS_SCATTER
 #undef PIXELS_NAME

@@ -46,61 +46,27 @@ static int find_runs(const uint16_t *reached, int begin, int end, int width,
  * spreads weights at no cost. */
 #define THROUGH_MEMORY __asm__("" ::: "memory")
 
-#define SELECT_AVX2
-#include "simd/select.h"
-
-#define GATHER_CHANNELS 2
-#define LOCAL(word) grey_avx2_##word
-#define B(word) snow_b8_##word
-#define BLOCK_VOXELS 4
-#include "splat/gather.tmpl.h"
-
-#define GATHER_CHANNELS 4
-#define LOCAL(word) small_avx2_##word
-#define B(word) snow_b8_##word
-#define BLOCK_VOXELS 2
-#include "splat/gather.tmpl.h"
-
-#define GATHER_CHANNELS 4
-#define LOCAL(word) rgba_avx2_##word
-#define B(word) snow_p16_##word
-#define BLOCK_VOXELS 4
-#include "splat/gather.tmpl.h"
-
-#define SELECT_AVX512
-#include "simd/select.h"
-
-#define GATHER_CHANNELS 2
-#define LOCAL(word) grey_avx512_##word
-#define B(word) snow_b8_##word
-#define BLOCK_VOXELS 4
-#include "splat/gather.tmpl.h"
-
-#define GATHER_CHANNELS 4
-#define LOCAL(word) small_avx512_##word
-#define B(word) snow_b8_##word
-#define BLOCK_VOXELS 2
-#include "splat/gather.tmpl.h"
-
-#define GATHER_CHANNELS 4
-#define LOCAL(word) rgba_avx512_##word
-#define B(word) snow_b16_##word
-#define BLOCK_VOXELS 4
-#include "splat/gather.tmpl.h"
-
-static const struct gather_level {
+typedef struct gather_level {
     snow_gather_fn *grey;
     snow_gather_fn *rgba_small; /* two voxels in reach */
     snow_gather_fn *rgba;
-} levels[] = {
-    [SNOW_ISA_AVX2] = {grey_avx2_row, small_avx2_row, rgba_avx2_row},
-    [SNOW_ISA_AVX512] = {grey_avx512_row, small_avx512_row, rgba_avx512_row},
-};
+} gather_level;
+
+#define SELECT_AVX2
+#include "simd/select.h"
+#define WHOLE(word) snow_p16_##word
+#include "splat/gather_isa.h"
+
+#define SELECT_AVX512
+#include "simd/select.h"
+#define WHOLE(word) snow_b16_##word
+#include "splat/gather_isa.h"
 
 static snow_gather_fn *pick(snow_isa isa, int channels, int taps_u) {
     if (isa != SNOW_ISA_AVX2 && isa != SNOW_ISA_AVX512)
         return NULL;
-    const struct gather_level *level = &levels[isa];
+    const gather_level *level =
+        isa == SNOW_ISA_AVX2 ? &level_avx2 : &level_avx512;
     if (channels == 2)
         return level->grey;
     return taps_u <= 2 ? level->rgba_small : level->rgba;

@@ -167,10 +167,11 @@ static void check_between(const snow_normal_maker *known,
     uint16_t codes[256], others[256];
     snow_normal_maker maker = *known;
     maker.isa = SNOW_ISA_SCALAR;
-    snow_normals_between(&maker, p, slice, row, columns, count, codes);
+    snow_normals_of_row(&maker, p, slice, row, true, columns, count, codes);
     for (int isa = SNOW_ISA_AVX2; isa <= SNOW_ISA_AVX512; isa++)
         if (snow_isa_runs(maker.isa = (snow_isa)isa)) {
-            snow_normals_between(&maker, p, slice, row, columns, count, others);
+            snow_normals_of_row(&maker, p, slice, row, true, columns, count,
+                                others);
             assert_memory_equal(codes, others, count * sizeof *codes);
         }
     for (size_t n = 0; n < count; n++) {
@@ -200,10 +201,11 @@ static void check_row(const snow_normal_maker *known, const snow_placement *p,
         if (support_uniform(seed) < density)
             columns[count++] = (uint32_t)u;
     maker.isa = SNOW_ISA_SCALAR;
-    snow_normals_of_row(&maker, p, slice, row, columns, count, codes);
+    snow_normals_of_row(&maker, p, slice, row, false, columns, count, codes);
     for (int isa = SNOW_ISA_AVX2; isa <= SNOW_ISA_AVX512; isa++)
         if (snow_isa_runs(maker.isa = (snow_isa)isa)) {
-            snow_normals_of_row(&maker, p, slice, row, columns, count, others);
+            snow_normals_of_row(&maker, p, slice, row, false, columns, count,
+                                others);
             assert_memory_equal(codes, others, count * sizeof *codes);
         }
     for (size_t n = 0; n < count; n++) {

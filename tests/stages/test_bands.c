@@ -229,12 +229,8 @@ static void plain_normals(const snow_bands_params *order, int64_t slice,
                           uint16_t *normals) {
     bool doubled = order->between;
     int64_t here = order->first_slice + (doubled ? slice / 2 : slice);
-    if (doubled && slice % 2)
-        snow_normals_between(order->maker, order->placement, here, row, columns,
-                             count, normals);
-    else
-        snow_normals_of_row(order->maker, order->placement, here, row, columns,
-                            count, normals);
+    snow_normals_of_row(order->maker, order->placement, here, row,
+                        doubled && slice % 2, columns, count, normals);
 }
 
 static uint16_t code_at(const snow_sparse *band, size_t voxel) {

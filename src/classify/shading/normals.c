@@ -411,16 +411,8 @@ static void encode_row(const row_job *job, const uint32_t *columns,
 
 void snow_normals_of_row(const snow_normal_maker *maker,
                          const snow_placement *placement, int64_t slice,
-                         int64_t row, const uint32_t *columns, size_t count,
-                         uint16_t *normals) {
-    row_job job = make_job(maker, placement, slice, row, 1);
-    encode_row(&job, columns, count, normals);
-}
-
-void snow_normals_between(const snow_normal_maker *maker,
-                          const snow_placement *placement, int64_t slice,
-                          int64_t row, const uint32_t *columns, size_t count,
-                          uint16_t *normals) {
-    row_job job = make_job(maker, placement, slice, row, 2);
+                         int64_t row, bool between, const uint32_t *columns,
+                         size_t count, uint16_t *normals) {
+    row_job job = make_job(maker, placement, slice, row, between ? 2 : 1);
     encode_row(&job, columns, count, normals);
 }

@@ -51,18 +51,12 @@ snow_status snow_normal_maker_init(snow_context *context,
 
 /* Normals of the voxels of one row (model, point 4: central differences of
  * native values, one-sided at borders and beside values that are not finite).
- * The row is that of `placement`'s slice; `columns` are rising. */
+ * The row is that of `placement`'s slice, or lies half-way `between` it and the
+ * next, for the mean of their gradients; `columns` are rising. */
 void snow_normals_of_row(const snow_normal_maker *maker,
                          const snow_placement *placement, int64_t slice,
-                         int64_t row, const uint32_t *columns, size_t count,
-                         uint16_t *normals);
-
-/* The same half-way between slices `slice` and `slice` + 1, for the mean of
- * their gradients. */
-void snow_normals_between(const snow_normal_maker *maker,
-                          const snow_placement *placement, int64_t slice,
-                          int64_t row, const uint32_t *columns, size_t count,
-                          uint16_t *normals);
+                         int64_t row, bool between, const uint32_t *columns,
+                         size_t count, uint16_t *normals);
 
 /* The shading table of a view and light (model, point 4): SNOW_NORMALS entries
  * into `table`.  `threads` as in base/thread_pool.h. */

@@ -27,14 +27,10 @@ static void make_normals(const snow_encode_job *job,
         size_t count = snow_columns_of_masks(
             buffers->masks + (size_t)row * words, words, buffers->columns);
         uint16_t *normals = band->normals + voxel;
-        if (count && is_between)
-            snow_normals_between(params->maker, params->placement, here,
-                                 first_row + row, buffers->columns, count,
-                                 normals);
-        else if (count)
+        if (count)
             snow_normals_of_row(params->maker, params->placement, here,
-                                first_row + row, buffers->columns, count,
-                                normals);
+                                first_row + row, is_between, buffers->columns,
+                                count, normals);
         voxel += count;
     }
 }

@@ -41,23 +41,24 @@ static snow_status measure(snow_context *context, const snow_volume *volume,
 static snow_status make_transfer(snow_context *context,
                                  snow_identity_transfer *identity) {
     double low = identity->low, high = identity->high,
-           inverted = identity->inverted;
+           inverted = identity->kind.inverted;
     const snow_color_point colors[] = {
         {low, inverted, inverted, inverted},
         {high, 1 - inverted, 1 - inverted, 1 - inverted}};
     /* A step belongs to its own value: what ends at the highest ends just
      * beyond it.  Infinities are outside. */
     double beyond = nextafter(high, INFINITY);
-    double from =
-        identity->steps ? fmin(fmax(identity->level, low), beyond) : low;
-    if (identity->sparse && inverted > 0)
+    double from = identity->kind.steps
+                      ? fmin(fmax(identity->kind.level, low), beyond)
+                      : low;
+    if (identity->kind.sparse && inverted > 0)
         beyond = high;
-    else if (identity->sparse)
+    else if (identity->kind.sparse)
         from = nextafter(low, INFINITY);
     const snow_opacity_point finite[] = {
         {from, 0}, {from, 1}, {beyond, 1}, {beyond, 0}};
     const snow_opacity_point above[] = {{low, inverted}, {high, 1 - inverted}};
-    bool grows = identity->sparse && !identity->solid;
+    bool grows = identity->kind.sparse && !identity->kind.solid;
     return snow_transfer_new(context, colors, 2, grows ? above : finite,
                              grows ? 2 : 4, &identity->transfer);
 }
@@ -89,20 +90,16 @@ void snow_identity_transfer_widen(snow_identity_transfer *identity, double low,
  * already. */
 static snow_status
 prepare_identity_transfer(const snow_job *job,
-                          const snow_identity_transfer *wanted,
+                          const struct snow_identity_kind *wanted,
                           snow_identity_transfer *identity) {
+    const struct snow_identity_kind *kind = &identity->kind;
     snow_identity_transfer made = *identity;
     if (identity->transfer && identity->generation &&
-        identity->inverted == wanted->inverted &&
-        identity->sparse == wanted->sparse &&
-        identity->solid == wanted->solid && identity->steps == wanted->steps &&
-        identity->level == wanted->level)
+        kind->inverted == wanted->inverted && kind->sparse == wanted->sparse &&
+        kind->solid == wanted->solid && kind->steps == wanted->steps &&
+        kind->level == wanted->level)
         return SNOW_STATUS_OK;
-    made.inverted = wanted->inverted;
-    made.sparse = wanted->sparse;
-    made.solid = wanted->solid;
-    made.steps = wanted->steps;
-    made.level = wanted->level;
+    made.kind = *wanted;
     SNOW_TRY(make_transfer(job->context, &made));
     snow_transfer_free(identity->transfer);
     *identity = made;
@@ -114,8 +111,8 @@ snow_status snow_identity_transfer_above(snow_job *job,
                                          snow_identity_transfer *identity) {
     double margin = 2e-6 * (identity->high - identity->low) +
                     2e-9 * fabs(job->settings.iso);
-    const snow_identity_transfer wanted = {.steps = true,
-                                           .level = job->settings.iso - margin};
+    const struct snow_identity_kind wanted = {
+        .steps = true, .level = job->settings.iso - margin};
     return prepare_identity_transfer(job, &wanted, identity);
 }
 
@@ -127,7 +124,7 @@ static snow_status choose_identity_transfer(snow_job *job,
         job->settings.method == SNOW_METHOD_SHEAR_WARP && !identity->whole;
     if (holes)
         job->settings.method = SNOW_METHOD_FOOTPRINT;
-    const snow_identity_transfer wanted = {
+    const struct snow_identity_kind wanted = {
         .inverted = job->settings.mode == SNOW_MODE_MINIP,
         .sparse = job->settings.method == SNOW_METHOD_SHEAR_WARP,
         .solid = job->placement.perspective};
@@ -157,8 +154,8 @@ static void fill_colors(const snow_job *job,
                         snow_mode_colors *colors) {
     const snow_transfer *transfer = job->transfer;
     double range = identity->high - identity->low;
-    colors->from = identity->inverted ? identity->high : identity->low;
-    colors->range = identity->inverted ? -range : range;
+    colors->from = identity->kind.inverted ? identity->high : identity->low;
+    colors->range = identity->kind.inverted ? -range : range;
     memset(colors->nonlinear, 0, sizeof colors->nonlinear);
     for (int n = 0; n <= SNOW_MODE_COLORS; n++) {
         double part = (double)n / SNOW_MODE_COLORS, rgb[3];

@@ -26,11 +26,13 @@
 /* Kept for as long as volume and mode stay. */
 typedef struct snow_identity_transfer {
     uint64_t generation; /* of the volume; 0: of none */
-    bool inverted;       /* 1 is the smallest value: of minip */
-    bool sparse;         /* voxels of 0 are left out */
-    bool solid;          /* and those that are not are opaque all the same */
-    bool steps;          /* and those below `level`: of iso */
-    double level;
+    struct snow_identity_kind {
+        bool inverted; /* 1 is the smallest value: of minip */
+        bool sparse;   /* voxels of 0 are left out */
+        bool solid;    /* and those that are not are opaque all the same */
+        bool steps;    /* and those below `level`: of iso */
+        double level;
+    } kind;
     bool whole; /* every voxel is finite */
     bool empty; /* none is */
     double low, high;

@@ -26,9 +26,9 @@ static snow_status reduce(snow_picture *p, snow_job *job) {
     const snow_identity_transfer *identity = &p->frame->identity;
     double range =
         identity->high > identity->low ? identity->high - identity->low : 1;
-    const snow_value_scale scale = {identity->inverted ? identity->high
-                                                       : identity->low,
-                                    identity->inverted ? -range : range};
+    const snow_value_scale scale = {identity->kind.inverted ? identity->high
+                                                            : identity->low,
+                                    identity->kind.inverted ? -range : range};
     if (!local->placement.perspective)
         return snow_shear_warp_project(local->shear_warp, &local->params,
                                        is_largest(job), &scale, job->stats,

@@ -179,8 +179,8 @@ static void choose_cast(const snow_picture *p, snow_raycast_pass *pass) {
                          ? snow_raycast_largest
                          : snow_raycast_sum;
         range = range > 0 ? range : 1;
-        pass->from = identity->inverted ? identity->high : identity->low;
-        pass->range = identity->inverted ? -range : range;
+        pass->from = identity->kind.inverted ? identity->high : identity->low;
+        pass->range = identity->kind.inverted ? -range : range;
     }
 }
 
