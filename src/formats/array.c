@@ -83,7 +83,7 @@ static snow_status go_to(array_reader *reader, uint64_t byte) {
     return SNOW_STATUS_OK;
 }
 
-static snow_status take(array_reader *reader, void *to, uint64_t bytes) {
+static snow_status read_bytes(array_reader *reader, void *to, uint64_t bytes) {
     snow_source_plan(reader->source, bytes);
     SNOW_TRY(
         snow_source_read_all(reader->source, to, (size_t)bytes, "the voxels"));
@@ -212,7 +212,8 @@ static snow_status read_through_buffer(array_reader *reader) {
                     to += i[a] * axis[a].to;
                 }
                 SNOW_TRY(go_to(reader, from));
-                SNOW_TRY(take(reader, reader->buffer, span_of(reader, some)));
+                SNOW_TRY(
+                    read_bytes(reader, reader->buffer, span_of(reader, some)));
                 put_block(reader, some, reader->voxels + to);
             }
     return SNOW_STATUS_OK;
@@ -225,9 +226,9 @@ static snow_status read_rows(array_reader *reader) {
         for (uint64_t j = 0; j < axis[1].count; j++) {
             SNOW_TRY(go_to(reader, reader->first + k * axis[2].from +
                                        j * axis[1].from));
-            SNOW_TRY(take(reader,
-                          reader->voxels + k * axis[2].to + j * axis[1].to,
-                          axis[0].count * reader->size));
+            SNOW_TRY(read_bytes(
+                reader, reader->voxels + k * axis[2].to + j * axis[1].to,
+                axis[0].count * reader->size));
         }
     return SNOW_STATUS_OK;
 }
@@ -296,8 +297,8 @@ static bool is_natural(const snow_array *array, const snow_region *region) {
 }
 
 /* Half floats get their byte order while they are converted. */
-static snow_status fill(snow_source *source, const snow_array *array,
-                        uint64_t first, snow_volume *volume) {
+static snow_status read_values(snow_source *source, const snow_array *array,
+                               uint64_t first, snow_volume *volume) {
     array_reader reader = {
         .source = source,
         .array = array,
@@ -334,7 +335,7 @@ snow_status snow_array_read(snow_source *source,
         const snow_file_part part = {&region, 0, array->all};
         status = snow_file_part_read(source, &part, volume->owned);
     } else {
-        status = fill(source, array, first, volume);
+        status = read_values(source, array, first, volume);
     }
     if (status == SNOW_STATUS_OK && !array->more)
         status = snow_source_finish(source);

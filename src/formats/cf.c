@@ -95,7 +95,7 @@ static bool is_fill(const cf_values *values, double value) {
 }
 
 /* Stores one voxel of a type that has NaN. */
-static void put(snow_type type, void *voxels, int64_t i, double value) {
+static void put_value(snow_type type, void *voxels, int64_t i, double value) {
     if (type == SNOW_TYPE_FLOAT32)
         ((float *)voxels)[i] = (float)value;
     else
@@ -114,9 +114,9 @@ static void blank(const cf_values *values, const snow_volume *from,
     for (int64_t i = 0; i < dims[0] * dims[1] * dims[2]; i++) {
         double value = snow_volume_native(from, i);
         if (is_fill(&narrow, value))
-            put(to->info.type, to->owned, i, NAN);
+            put_value(to->info.type, to->owned, i, NAN);
         else if (to != from)
-            put(to->info.type, to->owned, i, value);
+            put_value(to->info.type, to->owned, i, value);
     }
 }
 

@@ -28,7 +28,8 @@ static bool is_cropped(const snow_volume_options *options) {
 }
 
 /* What the options say by themselves. */
-static snow_status begin(opening *o, const snow_volume_options *options) {
+static snow_status check_options(opening *o,
+                                 const snow_volume_options *options) {
     o->options = *options;
     o->options.mask = o->options.labels = NULL;
     memset(o->options.clip, 0, sizeof o->options.clip);
@@ -174,7 +175,7 @@ snow_status snow_masked_open(snow_context *context, const char *path,
     o->context = context;
     o->open = open;
     o->path = path;
-    snow_status status = begin(o, options);
+    snow_status status = check_options(o, options);
     if (status == SNOW_STATUS_OK)
         status = open_both(o, info, out);
     snow_release(context, o);

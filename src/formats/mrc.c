@@ -191,8 +191,8 @@ static void place_origin(const mrc_header *header, snow_volume_info *info) {
 }
 
 /* An invalid cell is common in such files; the voxels are usable even so. */
-static void place(snow_context *context, const mrc_header *header,
-                  const int order[3], snow_volume_info *info) {
+static void set_matrix(snow_context *context, const mrc_header *header,
+                       const int order[3], snow_volume_info *info) {
     double axes[3][3];
     if (cell_axes(header, axes)) {
         memcpy(info->unit, "angstrom", sizeof "angstrom");
@@ -244,7 +244,7 @@ static snow_status parse_header(snow_context *context, const mrc_header *header,
     for (int i = 0; i < 3; i++)
         info->dims[i] = whole(header, 1 + i);
     count_volumes(header, info);
-    place(context, header, order, info);
+    set_matrix(context, header, order, info);
     return SNOW_STATUS_OK;
 }
 

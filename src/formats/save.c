@@ -23,9 +23,9 @@ static const struct {
 #define ENDING_COUNT (sizeof endings / sizeof *endings)
 
 /* Fills an open writer. */
-static snow_status fill(const snow_volume *volume, const char *path,
-                        const snow_format *format, bool packed,
-                        snow_writer *writer) {
+static snow_status write_volume(const snow_volume *volume, const char *path,
+                                const snow_format *format, bool packed,
+                                snow_writer *writer) {
     if (packed)
         SNOW_TRY(snow_writer_pack(writer));
     return format->write(volume, path, writer);
@@ -58,8 +58,8 @@ snow_status snow_volume_save(const snow_volume *volume, const char *path,
         return refuse_name(volume->context, path);
     snow_writer *writer;
     SNOW_TRY(snow_writer_open(volume->context, path, overwrite, &writer));
-    snow_status status =
-        fill(volume, path, endings[i].format, endings[i].packed, writer);
+    snow_status status = write_volume(volume, path, endings[i].format,
+                                      endings[i].packed, writer);
     if (status != SNOW_STATUS_OK) {
         snow_writer_abandon(writer);
         return status;

@@ -89,9 +89,10 @@ static void trim(const int64_t dims[3], snow_insitu_brick *brick) {
 }
 
 /* What the bricks are in the grid. */
-static snow_status place(snow_insitu *insitu, const snow_world_brick *bricks,
-                         int count, const double bounds[BOUNDS],
-                         snow_insitu_brick *out) {
+static snow_status find_boxes(snow_insitu *insitu,
+                              const snow_world_brick *bricks, int count,
+                              const double bounds[BOUNDS],
+                              snow_insitu_brick *out) {
     for (int n = 0; n < count; n++) {
         out[n] = (snow_insitu_brick){.halo = bricks[n].halo};
         if (is_empty(&bricks[n]))
@@ -164,7 +165,7 @@ static snow_status place_all(snow_insitu *insitu,
         dims[i] = (int64_t)floor(
             (-bounds[HIGH + i] - bounds[LOW + i]) / bounds[SPACING + i] + 1.5);
     INSITU_TRY(snow_comm_agree_status(
-        insitu->comm, place(insitu, bricks, count, bounds, placed)));
+        insitu->comm, find_boxes(insitu, bricks, count, bounds, placed)));
     INSITU_TRY(share_borders(insitu, dims, placed, count));
     return snow_comm_agree_status(insitu->comm,
                                   tell(insitu, dims, bounds, placed, count));

@@ -129,9 +129,9 @@ static int start(mpi_side *side, mpi_slot *slot, void *bytes, int count,
 }
 
 /* Starts a send or a receive. */
-static snow_status begin(mpi_side *side, bool receives, void *bytes,
-                         size_t count, int peer, int tag,
-                         snow_message *message) {
+static snow_status begin_message(mpi_side *side, bool receives, void *bytes,
+                                 size_t count, int peer, int tag,
+                                 snow_message *message) {
     int place, error;
     snow_status status = spare_slot(side, &place);
     if (status != SNOW_STATUS_OK)
@@ -164,12 +164,12 @@ static snow_status send_bytes(void *self, const void *bytes, size_t count,
                               int to, int tag, snow_message *message) {
     void *unchanged; /* old MPI headers have no const here */
     memcpy(&unchanged, &bytes, sizeof unchanged);
-    return begin(self, false, unchanged, count, to, tag, message);
+    return begin_message(self, false, unchanged, count, to, tag, message);
 }
 
 static snow_status receive_bytes(void *self, void *bytes, size_t capacity,
                                  int from, int tag, snow_message *message) {
-    return begin(self, true, bytes, capacity, from, tag, message);
+    return begin_message(self, true, bytes, capacity, from, tag, message);
 }
 
 static mpi_slot *slot_of(const mpi_side *side, const snow_message *message) {

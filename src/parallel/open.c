@@ -127,7 +127,8 @@ static snow_status read_stream(opening *o, snow_volume **share) {
 
 /* Collective.  Looks at the file, and reads it where that is the only way.
  * Remarks are left to the reading, which makes them too. */
-static snow_status begin(opening *o, int64_t *stream, snow_volume **share) {
+static snow_status inspect_file(opening *o, int64_t *stream,
+                                snow_volume **share) {
     *stream = snow_source_is_stream(o->path);
     SNOW_TRY(snow_comm_broadcast(o->comm, stream, sizeof *stream, 0));
     if (*stream)
@@ -237,7 +238,7 @@ static snow_status open_file(opening *o, const snow_view *view,
                              snow_volume **volume, snow_transfer **transfer) {
     snow_partition_params order;
     int64_t stream;
-    SNOW_TRY(begin(o, &stream, share));
+    SNOW_TRY(inspect_file(o, &stream, share));
     snow_status status = snow_partition_params_make(
         o->context, &o->whole, view, settings, how,
         o->transfer ? snow_transfer_has_gradient_opacity(o->transfer)

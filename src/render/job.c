@@ -70,7 +70,7 @@ static void set_level(const snow_volume *volume, snow_placement *p) {
     p->fine[1] = volume->fine[p->v_axis];
 }
 
-static snow_status place(snow_job *job, int parts, int part) {
+static snow_status place_slab(snow_job *job, int parts, int part) {
     snow_volume_info whole;
     snow_volume_whole(job->volume, &whole);
     SNOW_TRY(snow_settings_resolve(job->context, &job->volume->info,
@@ -99,7 +99,7 @@ snow_status snow_job_begin(snow_context *context, const snow_request *request,
         .channels = request->transfer->grey ? 2 : 4,
         .stats = stats,
     };
-    return place(job, request->parts, request->part);
+    return place_slab(job, request->parts, request->part);
 }
 
 bool snow_job_whole(const snow_job *job) {

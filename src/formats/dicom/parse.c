@@ -179,7 +179,7 @@ static snow_status check_length(walk *w, const head *h) {
 }
 
 /* Adds an element to the list; its value comes next. */
-static snow_status add(walk *w, const head *h, size_t *index) {
+static snow_status add_element(walk *w, const head *h, size_t *index) {
     dicom_reader *r = w->reader;
     SNOW_TRY(snow_reserve(r->context, &r->elements, &r->room,
                           r->count * sizeof *r->elements,
@@ -217,7 +217,7 @@ static snow_status walk_fragments(walk *w, coding how) {
                              "element (%04x,%04x); get the file again",
                              h.tag >> 16, h.tag & 0xffff);
         SNOW_TRY(check_length(w, &h));
-        SNOW_TRY(add(w, &h, &index));
+        SNOW_TRY(add_element(w, &h, &index));
         w->at += h.length;
     }
 }
@@ -246,7 +246,7 @@ static snow_status walk_items(walk *w, coding how, uint64_t end, int depth) {
         if (!open)
             SNOW_TRY(check_length(w, &h));
         uint64_t item_end = open ? UINT64_MAX : w->at + h.length;
-        SNOW_TRY(add(w, &h, &index));
+        SNOW_TRY(add_element(w, &h, &index));
         SNOW_TRY(walk_set(w, how, item_end, depth + 1));
         close_element(w, index);
         if (!open)
@@ -272,7 +272,7 @@ static snow_status walk_element(walk *w, coding how, const head *h, int depth) {
     bool open = h->length == UNDEFINED;
     if (!open)
         SNOW_TRY(check_length(w, h));
-    SNOW_TRY(add(w, h, &index));
+    SNOW_TRY(add_element(w, h, &index));
     uint64_t end = open ? UINT64_MAX : w->at + h->length;
     if (open && h->tag == DICOM_TAG_PIXELS && depth == 0) {
         w->reader->packed = true;

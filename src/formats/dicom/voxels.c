@@ -210,7 +210,8 @@ static snow_status fetch(decoder *d, const dicom_frame *frame,
     }                                                       \
     return true
 
-static bool put(snow_type type, const double *values, size_t count, void *to) {
+static bool store_values(snow_type type, const double *values, size_t count,
+                         void *to) {
     switch (type) {
     case SNOW_TYPE_INT8:
         PUT_WHOLE(int8_t, INT8_MIN, INT8_MAX);
@@ -261,7 +262,7 @@ static snow_status fill_slice(decoder *d, const dicom_stack *stack, int64_t z,
         blend(low, high, slice.weight, count, mixed);
         values = mixed;
     }
-    if (!put(volume->info.type, values, count, to))
+    if (!store_values(volume->info.type, values, count, to))
         return snow_fail(volume->context, SNOW_STATUS_BAD_INPUT,
                          "its compressed pixels have values that its header's "
                          "type cannot hold; it is damaged");
@@ -387,9 +388,10 @@ static snow_status check_colors(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-static snow_status describe(const dicom_input *input, const dicom_stack *stack,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, decoder *d) {
+static snow_status describe_stack(const dicom_input *input,
+                                  const dicom_stack *stack,
+                                  const snow_volume_options *options,
+                                  snow_volume_info *info, decoder *d) {
     snow_context *context = input->context;
     const dicom_frame *first = stack->frames;
     const dicom_image *image = first->image;
@@ -426,7 +428,7 @@ snow_status snow_dicom_read_stack(const dicom_input *input,
     snow_region window;
     snow_volume *volume;
     decoder d = {.input = input, .window = &window};
-    SNOW_TRY(describe(input, stack, options, info, &d));
+    SNOW_TRY(describe_stack(input, stack, options, info, &d));
     SNOW_TRY(snow_region_lay_out(input->context, options, info, &window));
     if (!out)
         return SNOW_STATUS_OK;

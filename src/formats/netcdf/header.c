@@ -40,7 +40,7 @@ static void refuse(cursor *c, const char *reason) {
         c->status = snow_fail(c->context, SNOW_STATUS_BAD_INPUT, "%s", reason);
 }
 
-static void take(cursor *c, void *out, size_t size) {
+static void copy_bytes(cursor *c, void *out, size_t size) {
     memset(out, 0, size);
     if (c->status != SNOW_STATUS_OK)
         return;
@@ -52,7 +52,7 @@ static void take(cursor *c, void *out, size_t size) {
 static uint64_t take_number(cursor *c, int size) {
     unsigned char bytes[8];
     uint64_t value = 0;
-    take(c, bytes, (size_t)size);
+    copy_bytes(c, bytes, (size_t)size);
     for (int i = 0; i < size; i++)
         value = value << 8 | bytes[i];
     return value;
@@ -85,7 +85,7 @@ static void take_name(cursor *c, char name[NETCDF_NAME_BYTES]) {
         return;
     }
     uint64_t begin = c->at;
-    take(c, name, (size_t)length);
+    copy_bytes(c, name, (size_t)length);
     name[length] = 0;
     c->at = begin;
     skip(c, (uint64_t)length);
@@ -157,7 +157,7 @@ static void keep_attribute(cursor *c, const char *name, uint64_t type,
     char text[64] = "";
     if (type == CHAR && count < (int64_t)sizeof text) {
         uint64_t begin = c->at;
-        take(c, text, (size_t)count);
+        copy_bytes(c, text, (size_t)count);
         text[count] = 0;
         c->at = begin;
         if (!strcmp(name, "units"))
@@ -320,7 +320,7 @@ snow_status snow_netcdf_read_header(snow_context *context, snow_seekable *bytes,
     cursor c = {.context = context, .bytes = bytes, .wide = 4};
     unsigned char magic[4];
     *out = (netcdf_header){.context = context};
-    take(&c, magic, sizeof magic);
+    copy_bytes(&c, magic, sizeof magic);
     out->version = magic[3];
     if (memcmp(magic, "CDF", 3) != 0 ||
         (out->version != 1 && out->version != 2 && out->version != 5))

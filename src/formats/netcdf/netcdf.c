@@ -68,8 +68,8 @@ static snow_status find_only(const netcdf_header *header, char *list,
                      list);
 }
 
-static snow_status find(const netcdf_header *header, const char *asked,
-                        const netcdf_variable **out) {
+static snow_status find_variable(const netcdf_header *header, const char *asked,
+                                 const netcdf_variable **out) {
     char list[800] = "";
     snow_status status = find_only(header, list, sizeof list, out);
     if (!asked)
@@ -173,10 +173,10 @@ static snow_status read_axis(const netcdf_header *header, snow_seekable *bytes,
 }
 
 /* Fills info, and finds where the voxels are. */
-static snow_status describe(const netcdf_header *header,
-                            const netcdf_variable *v, snow_seekable *bytes,
-                            const snow_volume_options *options,
-                            snow_volume_info *info, snow_array *array) {
+static snow_status
+describe_variable(const netcdf_header *header, const netcdf_variable *v,
+                  snow_seekable *bytes, const snow_volume_options *options,
+                  snow_volume_info *info, snow_array *array) {
     uint64_t steps[NETCDF_MOST_AXES];
     cf_axis axes[3] = {{0}};
     int64_t channel;
@@ -239,8 +239,8 @@ static snow_status read_file(snow_source *source, snow_seekable *bytes,
         return snow_fail(header->context, SNOW_STATUS_BAD_INPUT,
                          "is a MINC file, whose values are scaled slice by "
                          "slice; convert it with mnc2nii");
-    SNOW_TRY(find(header, options->dataset, &v));
-    SNOW_TRY(describe(header, v, bytes, options, info, &array));
+    SNOW_TRY(find_variable(header, options->dataset, &v));
+    SNOW_TRY(describe_variable(header, v, bytes, options, info, &array));
     snow_volume *volume = NULL;
     SNOW_TRY(
         read_array(source, bytes, options, &array, info, out ? &volume : NULL));

@@ -19,9 +19,10 @@ static bool probe_nifti(const unsigned char *bytes, size_t size) {
 }
 
 /* Fills info from the header. */
-static snow_status describe(snow_context *context, const nifti_header *header,
-                            const snow_volume_options *options,
-                            snow_volume_info *info) {
+static snow_status describe_volume(snow_context *context,
+                                   const nifti_header *header,
+                                   const snow_volume_options *options,
+                                   snow_volume_info *info) {
     int64_t voxels;
     uint64_t step;
     *info = snow_volume_info_default("nifti");
@@ -53,7 +54,8 @@ static snow_status read_voxels(snow_source *source, const nifti_header *header,
                                const snow_volume_options *options,
                                uint64_t taken, snow_volume_info *info,
                                snow_volume **out) {
-    SNOW_TRY(describe(snow_source_context(source), header, options, info));
+    SNOW_TRY(
+        describe_volume(snow_source_context(source), header, options, info));
     return snow_volume_read(source, options, header->big_endian,
                             header->vox_offset - taken, info, out);
 }

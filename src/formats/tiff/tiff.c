@@ -138,7 +138,8 @@ static void share_images(snow_context *context, tiff_plan *plan) {
 
 /* ImageJ stores pixels per unit of length where others store those per inch on
  * paper, which have no meaning here. */
-static void place(snow_tiff *file, tiff_plan *plan, snow_volume_info *info) {
+static void set_spacing(snow_tiff *file, tiff_plan *plan,
+                        snow_volume_info *info) {
     tiff_shape *shape = &plan->shape;
     float x = 0, y = 0;
     if (shape->imagej && TIFFGetField(file->tiff, TIFFTAG_XRESOLUTION, &x) &&
@@ -158,7 +159,7 @@ static snow_status make_plan(snow_tiff *file, tiff_plan *plan,
     SNOW_TRY(snow_tiff_describe(file, &plan->page));
     TIFFGetField(file->tiff, TIFFTAG_IMAGEDESCRIPTION, &text);
     snow_tiff_read_text(text, &plan->shape);
-    place(file, plan, info);
+    set_spacing(file, plan, info);
     SNOW_TRY(count_pages(file, plan));
     find_raw(plan);
     share_images(file->context, plan);

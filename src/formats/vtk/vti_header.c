@@ -197,8 +197,8 @@ static snow_type type_named(const char *name) {
 
 /* Copies the array's attributes to the header; returns false if they are
  * invalid. */
-static bool describe(vti_header *header, const char **attributes,
-                     const char *name, bool cells) {
+static bool keep_array(vti_header *header, const char **attributes,
+                       const char *name, bool cells) {
     const char *form = value_of(attributes, "format");
     const char *channels = value_of(attributes, "NumberOfComponents");
     const char *offset = value_of(attributes, "offset");
@@ -239,7 +239,7 @@ static void begin_array(vti_text *text, const char **attributes) {
     remember(text, name);
     if (choice <= text->choice)
         return;
-    if (!describe(text->header, attributes, name, text->cells)) {
+    if (!keep_array(text->header, attributes, name, text->cells)) {
         if (choice == WANTED)
             refuse(text, "its array has an unknown type, format, offset or "
                          "number of components; choose another with --dataset");

@@ -56,7 +56,7 @@ static snow_status prepare(pass *s) {
     return s->spans ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY;
 }
 
-static void finish(pass *s) {
+static void free_pass(pass *s) {
     if (!s->context) /* nothing is there */
         return;
     snow_release(s->context, s->spans);
@@ -220,7 +220,7 @@ static snow_status begin(snow_picture *p, snow_job *job) {
         s = p->frame->exact_eye = snow_allocate_clear(job->context, sizeof *s);
     if (!s)
         return SNOW_STATUS_NO_MEMORY;
-    finish(s);
+    free_pass(s);
     *s = (pass){.job = job,
                 .context = job->context,
                 .stats = job->stats,
@@ -240,7 +240,7 @@ static snow_status splat(snow_picture *p, snow_job *job) {
     (void)job;
     SNOW_TRY(splat_and_composite(s));
     SNOW_TRY(count(s));
-    finish(s);
+    free_pass(s);
     return SNOW_STATUS_OK;
 }
 
@@ -253,6 +253,6 @@ const snow_render_method snow_method_exact_perspective = {
 
 void snow_exact_eye_free(snow_context *context, snow_exact_eye *eye) {
     if (eye)
-        finish(eye);
+        free_pass(eye);
     snow_release(context, eye);
 }

@@ -282,9 +282,9 @@ static void finish_line(void *of, int64_t y, int worker) {
 /* A ray misses where the weights of all its sheets add up to less than half of
  * one.  In perspective a sum's pairs hold lengths already, and half a sheet is
  * that of the ray to the target. */
-static snow_status finish(snow_frame *frame, const snow_job *job,
-                          const snow_shear_warp_image *drawn, float *pairs,
-                          snow_image *image) {
+static snow_status paint_lines(snow_frame *frame, const snow_job *job,
+                               const snow_shear_warp_image *drawn, float *pairs,
+                               snow_image *image) {
     double path = job->placement.path / job->settings.opacity_length;
     bool shear_warp = job->settings.method == SNOW_METHOD_SHEAR_WARP;
     /* Pairs of raycast hold lengths of rays, however short these are. */
@@ -317,7 +317,7 @@ snow_status snow_modes_paint(snow_frame *frame, const snow_job *job,
     snow_image *image = NULL;
     SNOW_TRY(snow_image_new(job->context, job->view->width, job->view->height,
                             values ? 1 : job->channels, &image));
-    snow_status status = finish(frame, job, drawn, pairs, image);
+    snow_status status = paint_lines(frame, job, drawn, pairs, image);
     if (status == SNOW_STATUS_OK)
         *out = image;
     else

@@ -65,7 +65,7 @@ static snow_status read_bytes(const tf_input *in, snow_look_file *tf) {
 }
 
 /* Fills the public record with the lists. */
-static snow_status finish(const tf_input *in, snow_look_file *tf) {
+static snow_status fill_look(const tf_input *in, snow_look_file *tf) {
     snow_look *p = &tf->look;
     p->name = tf->name;
     p->colors = tf->colors.points;
@@ -118,7 +118,7 @@ snow_status snow_look_parse(snow_context *context, const char *name,
     name_by_file(tf, name);
     snow_status status = read_bytes(&in, tf);
     if (status == SNOW_STATUS_OK)
-        status = finish(&in, tf);
+        status = fill_look(&in, tf);
     snow_context_release(context, copy);
     if (status != SNOW_STATUS_OK) {
         snow_look_file_free(tf);
