@@ -24,10 +24,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 # What the program is made of: nothing that renders.  Pictures in files are PNG
 # and what else needs no further library.
 SOURCES = ["bench/combine/*.c", "bench/hosts.c", "bench/line.c", "bench/words.c",
-           "src/combine/active.c", "src/combine/borders.c",
-           "src/combine/exchange.c", "src/combine/gather.c",
-           "src/combine/pixels.c", "src/combine/rounds.c", "src/simd/isa.c",
-           "src/comm/*.c", "src/base/*.c", "src/io/*.c", "src/image/*.c",
+           "src/combine/*.c", "src/simd/isa.c", "src/comm/*.c", "src/base/*.c",
+           "src/io/*.c", "src/io/filters/*.c", "src/image/*.c",
            "src/mpi/comm_mpi.c", "src/mpi/messages.c"]
 ABSENT = [f"-DSNOW_HAVE_{name}=0" for name in ("EXR", "TIFF", "WEBP")]
 

@@ -33,8 +33,11 @@ static int before_along(const snow_box *a, const snow_box *b,
     return 2;
 }
 
-int snow_box_before(const snow_box *a, const snow_box *b,
-                    const snow_viewer *sight) {
+/* 1 if every ray that meets both boxes meets `a` first, -1 if `b` first, 0 if
+ * no ray meets both. The boxes are disjoint; they extend half a voxel to all
+ * sides. */
+static int box_before(const snow_box *a, const snow_box *b,
+                      const snow_viewer *sight) {
     int found = 2;
     for (int axis = 0; axis < 3; axis++) {
         int here = before_along(a, b, sight, axis);
@@ -61,7 +64,7 @@ static bool count_before(const snow_box *boxes, int count,
             snow_box shared;
             if (snow_box_intersect(&boxes[a], &boxes[b], &shared))
                 return false;
-            int order = snow_box_before(&boxes[a], &boxes[b], sight);
+            int order = box_before(&boxes[a], &boxes[b], sight);
             before[b] += order > 0;
             before[a] += order < 0;
         }
@@ -80,7 +83,7 @@ static int take_boxes(const snow_box *boxes, int count,
         const snow_box *box = &boxes[order[taken]];
         for (int n = 0; n < count; n++)
             if (n != order[taken] && !is_empty(&boxes[n]) &&
-                snow_box_before(box, &boxes[n], sight) > 0 && --before[n] == 0)
+                box_before(box, &boxes[n], sight) > 0 && --before[n] == 0)
                 order[ready++] = n;
     }
     for (int n = 0; n < count; n++)

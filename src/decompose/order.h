@@ -14,12 +14,6 @@ typedef struct snow_viewer {
     double along[3]; /* away from the viewer; for parallel projection */
 } snow_viewer;
 
-/* 1 if every ray that meets both boxes meets `a` first, -1 if `b` first, 0 if
- * no ray meets both. The boxes are disjoint; they extend half a voxel to all
- * sides. */
-int snow_box_before(const snow_box *a, const snow_box *b,
-                    const snow_viewer *sight);
-
 /* The indices of `count` disjoint boxes from front to back, empty ones last.
  * The order depends on boxes and viewer only. Errors: SNOW_STATUS_BAD_USAGE
  * (boxes that overlap, or occlude each other in a cycle),

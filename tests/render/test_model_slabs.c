@@ -5,10 +5,25 @@
  * whole to a few units in the last place, which is the stated bound. */
 #include "reference/model.h"
 
-#include "combine/combine.h"
+#include "composite/over.h"
 #include "frame.h"
 
 #include <math.h>
+
+/* Combines the local images of `parts` processors, given from front to back,
+ * into the first, by the paper's hierarchical scheme (lines 14 to 20 of figure
+ * 8): in round i processor p with p mod 2^(i+1) = 0 receives the image of p +
+ * 2^i and composites it behind its own; log2(parts) rounds, rounded up.
+ * `pixels` is the number of pixels of each image; the other images are
+ * destroyed. */
+static void combine_tree(float *const *images, int parts, size_t pixels,
+                         int channels) {
+    for (int distance = 1; distance < parts; distance *= 2)
+        for (int receiver = 0; receiver + distance < parts;
+             receiver += 2 * distance)
+            snow_over_row(images[receiver], images[receiver + distance], pixels,
+                          channels);
+}
 
 /* Slabs and whole differ by no more than this, for any number of parts. */
 #define BOUND 1e-6
@@ -51,7 +66,7 @@ static double difference(const model_stage *stage, const reference_scene *scene,
     render_slabs(stage, scene, parts, front_is_first(scene), images);
     for (int n = 0; n < parts; n++)
         pixels[n] = snow_image_pixels(images[n]);
-    snow_combine_tree(pixels, parts, count, channels);
+    combine_tree(pixels, parts, count, channels);
     for (size_t n = 0; n < count * (size_t)channels; n++)
         largest = fmax(largest, fabs((double)pixels[0][n] -
                                      (double)snow_image_pixels(whole)[n]));
@@ -100,7 +115,7 @@ static void slabs_in_the_wrong_order_do_not(void **state) {
     render_slabs(&stage, &scene, 2, !front_is_first(&scene), images);
     float *pixels[2] = {snow_image_pixels(images[0]),
                         snow_image_pixels(images[1])};
-    snow_combine_tree(pixels, 2, count, 4);
+    combine_tree(pixels, 2, count, 4);
     double largest = 0;
     for (size_t n = 0; n < 4 * count; n++)
         largest = fmax(largest, fabs((double)pixels[0][n] -

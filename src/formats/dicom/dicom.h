@@ -152,10 +152,6 @@ void snow_dicom_close(dicom_reader *reader);
  * within others; an item of a sequence counts from 0; NULL if there is none. */
 const dicom_element *snow_dicom_find(const dicom_reader *reader, size_t begin,
                                      size_t end, uint32_t tag);
-const dicom_element *snow_dicom_item(const dicom_reader *reader,
-                                     const dicom_element *sequence,
-                                     int64_t number);
-
 /* The place of a value: an element of the file itself, or of the first item of
  * a sequence.  A sequence is searched among the functional groups of a frame
  * (from 0), then among those that all frames share, then in the file itself. */

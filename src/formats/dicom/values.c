@@ -10,9 +10,8 @@ const dicom_element *snow_dicom_find(const dicom_reader *r, size_t begin,
     return NULL;
 }
 
-const dicom_element *snow_dicom_item(const dicom_reader *r,
-                                     const dicom_element *sequence,
-                                     int64_t number) {
+static const dicom_element *
+item_of(const dicom_reader *r, const dicom_element *sequence, int64_t number) {
     if (!sequence)
         return NULL;
     size_t at = (size_t)(sequence - r->elements) + 1, end = sequence->next;
@@ -40,7 +39,7 @@ static const dicom_element *groups_of(dicom_reader *r, int64_t frame) {
                           : 0;
         const dicom_element *item = next && next < r->frames->next
                                         ? &r->elements[next]
-                                        : snow_dicom_item(r, r->frames, frame);
+                                        : item_of(r, r->frames, frame);
         if (!item)
             return NULL;
         r->last_item = (size_t)(item - r->elements);
@@ -55,10 +54,10 @@ static const dicom_element *locate(dicom_reader *r, dicom_place place) {
     const dicom_element *sequence =
         find_in(r, groups_of(r, place.frame), place.sequence);
     if (!sequence)
-        sequence = find_in(r, snow_dicom_item(r, r->shared, 0), place.sequence);
+        sequence = find_in(r, item_of(r, r->shared, 0), place.sequence);
     if (!sequence)
         sequence = snow_dicom_find(r, 0, r->count, place.sequence);
-    return find_in(r, snow_dicom_item(r, sequence, 0), place.tag);
+    return find_in(r, item_of(r, sequence, 0), place.tag);
 }
 
 size_t snow_dicom_value(dicom_reader *reader, dicom_place place, void *out,
