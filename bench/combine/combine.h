@@ -131,4 +131,21 @@ int combine_rates(const combine_options *options);
 /* Prints the line; the exit code. */
 int combine_print(const combine_session *session);
 
+/* The active pixels of a region, in memory that is used again. */
+typedef struct combine_gather {
+    snow_pixel_run *runs;
+    unsigned char *packed;
+    int64_t packed_capacity;
+    size_t packed_bytes; /* of a pixel */
+} combine_gather;
+
+/* Collective. Gathers the regions of the last exchange: with `bits` 8 channels
+ * are rounded to steps of 1/255, one byte each; with 0 they are floats. Errors:
+ * as for snow_gather. */
+snow_status combine_gather_region(snow_combiner *combiner,
+                                  combine_gather *state,
+                                  const snow_image_region *region, int bits,
+                                  void *picture);
+void combine_gather_free(snow_context *context, combine_gather *state);
+
 #endif

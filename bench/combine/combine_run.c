@@ -21,6 +21,7 @@ typedef struct rank_state {
     float *pixels; /* the local image; NULL when only sizes are asked for */
     void *picture; /* rank 0's */
     snow_image_region region;
+    combine_gather gather;
 } rank_state;
 
 static double cpu_seconds(void) {
@@ -112,6 +113,7 @@ static snow_status prepare(rank_state *state) {
 
 static void finish(rank_state *state) {
     snow_context *context = state->comm->context;
+    combine_gather_free(state->comm->context, &state->gather);
     snow_combiner_free(state->combiner);
     combine_file_close(context, &state->pattern);
     snow_release(context, state->spans);
@@ -171,8 +173,9 @@ static snow_status run_once(rank_state *state, bool drawn,
     const double between = snow_comm_seconds(comm), cpu_between = cpu_seconds();
     out->exchange_bytes = (int64_t)(comm->bytes_sent - bytes);
     out->exchange_messages = (int64_t)(comm->messages_sent - messages);
-    SNOW_TRY(snow_gather_region(state->combiner, &state->region, options->bits,
-                                state->picture));
+    SNOW_TRY(combine_gather_region(state->combiner, &state->gather,
+                                   &state->region, options->bits,
+                                   state->picture));
     const double end = snow_comm_seconds(comm);
     const snow_exchange_figures *given =
         snow_exchange_get_figures(state->combiner);

@@ -55,7 +55,6 @@ void snow_combiner_free(snow_combiner *combiner) {
         return;
     drop_buffers(combiner);
     snow_gather_free(combiner);
-    snow_gather_free_region(combiner);
     snow_release(combiner->comm->context, combiner);
 }
 

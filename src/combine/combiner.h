@@ -85,11 +85,6 @@ typedef struct snow_gather_state {
     snow_message *messages; /* of each child: its beginning, its rest */
     size_t *places;         /* offset of each child's blocks in bytes */
     int *queue;             /* children with long messages, in order */
-    /* Of snow_gather_region: the region's active pixels, and their capacity. */
-    snow_pixel_run *runs;
-    unsigned char *packed;
-    int64_t packed_capacity;
-    size_t packed_bytes; /* bytes of a pixel */
 } snow_gather_state;
 
 struct snow_combiner {
@@ -139,9 +134,8 @@ snow_status snow_counts_divide(snow_combiner *combiner);
  * next picture. */
 void snow_counts_add(snow_combiner *combiner, snow_stretch part);
 
-/* --- gather.c, gather_region.c --- */
+/* --- gather.c --- */
 
 void snow_gather_free(snow_combiner *combiner);
-void snow_gather_free_region(snow_combiner *combiner);
 
 #endif

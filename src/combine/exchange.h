@@ -196,13 +196,6 @@ snow_status snow_gather_reserve(snow_combiner *combiner, int width, int height,
                                 size_t run_count, int64_t pixels,
                                 size_t pixel_bytes);
 
-/* Collective. Gathers the regions of the last exchange: with `bits` 8 channels
- * are rounded to steps of 1/255, one byte each; with 0 they are floats. Errors:
- * as for snow_gather. */
-snow_status snow_gather_region(snow_combiner *combiner,
-                               const snow_image_region *region, int bits,
-                               void *picture);
-
 /* The number of messages that a rank of the gather's tree waits for at a time:
  * from 2 to the number of ranks, which means no tree; 0: chosen. */
 void snow_gather_radix(snow_combiner *combiner, int radix);

@@ -73,8 +73,8 @@ TARGET static inline float *PIXELS_NAME(pack)(float *out, const float *pixels,
         PIXELS_NAME(list)(bits, (uint32_t)__builtin_ctzll(bits), places);
     for (int i = 0; i < count; i += PIXELS_EACH)
         V(store)
-        (out + i * PIXELS_CHANNELS,
-         VC(gather, PIXELS_CHANNELS)(pixels, places + i));
+    (out + i * PIXELS_CHANNELS,
+     VC(gather, PIXELS_CHANNELS)(pixels, places + i));
     return out + count * PIXELS_CHANNELS;
 #else
     for (; bits; bits >>= PIXELS_EACH, pixels += LANES)

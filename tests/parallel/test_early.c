@@ -147,6 +147,27 @@ static snow_status exchange_early(snow_combiner *combiner, sketch *s,
     return snow_exchange_end(combiner, frame_of(s, 0, s->height), region);
 }
 
+/* A region to rank 0, a run for each of its lines. */
+static snow_status gather_lines(snow_combiner *combiner, const sketch *s,
+                                const snow_image_region *region,
+                                float *picture) {
+    snow_pixel_run runs[HEIGHT_MOST + 1];
+    size_t count = 0;
+    int64_t left = region->count;
+    for (int64_t at = region->first; left > 0; count++) {
+        int64_t x = at % s->width, some = s->width - x;
+        some = some < left ? some : left;
+        runs[count] = (snow_pixel_run){
+            (int32_t)x, snow_exchange_line(combiner, (int)(at / s->width)),
+            (int32_t)some};
+        at += some;
+        left -= some;
+    }
+    return snow_gather(combiner, s->width, s->height, runs, count,
+                       region->pixels, (size_t)s->channels * sizeof(float),
+                       picture);
+}
+
 /* A picture to rank 0's `picture`; how many bytes were sent early. */
 static snow_status paint(painter *p, int seed, bool early, float *picture,
                          int64_t *early_bytes) {
@@ -184,7 +205,7 @@ static snow_status paint(painter *p, int seed, bool early, float *picture,
     p->begin_at = snow_exchange_get_figures(p->combiner)->begin_at;
     CHECK(p->begin_at >= 0 && p->begin_at < 1);
     *early_bytes = snow_exchange_get_figures(p->combiner)->early;
-    return snow_gather_region(p->combiner, &region, 0, picture);
+    return gather_lines(p->combiner, s, &region, picture);
 }
 
 #define PICTURES 4

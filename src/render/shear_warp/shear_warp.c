@@ -857,7 +857,7 @@ static bool nothing_in_view(const shear_warp_pass *pass) {
     return pass->shear.u.count == 0 || pass->shear.v.count == 0;
 }
 
-static snow_status place(shear_warp_pass *pass) {
+static snow_status place_pass(shear_warp_pass *pass) {
     const snow_shear_warp_params *params = pass->params;
     bool between = params->settings->quality == SNOW_QUALITY_HIGH;
     pass->slices = snow_shear_warp_slices(params);
@@ -883,7 +883,7 @@ static snow_status begin_shear_warp(snow_shear_warp *s,
     shear_warp_pass *pass = s->pass;
     *pass = (shear_warp_pass){.params = params, .shear_warp = s};
     SNOW_TRY(classify_and_shade(pass, stats));
-    SNOW_TRY(place(pass));
+    SNOW_TRY(place_pass(pass));
     snow_shear_warp_warping_of(s, params, pass->channels)->shear = pass->shear;
     if (nothing_in_view(pass)) {
         *out = (snow_shear_warp_image){.channels = params->channels};

@@ -1,30 +1,28 @@
-/* combine/gather_region.c - a rank's region as runs of active pixels for the
- * gather, rounded to bytes where the picture travels so. */
+/* bench/combine/combine_gather.c - gathers a rank's region at rank 0: its
+ * active pixels as runs, rounded to bytes where the picture travels so. */
+#include "combine.h"
+
 #include "combine/combiner.h"
 
 #include <string.h>
 
-void snow_gather_free_region(snow_combiner *combiner) {
-    snow_gather_state *state = &combiner->gather;
-    snow_release(combiner->comm->context, state->runs);
-    snow_release(combiner->comm->context, state->packed);
-    state->runs = NULL;
-    state->packed = NULL;
-    state->packed_capacity = 0;
+void combine_gather_free(snow_context *context, combine_gather *state) {
+    snow_context_release(context, state->runs);
+    snow_context_release(context, state->packed);
+    *state = (combine_gather){0};
 }
 
 /* Allocates buffers for the region of any position, of the same size on all
  * ranks except those without a region in a tree; all ranks call it together. */
-static snow_status allocate_packed(snow_combiner *combiner,
-                                   size_t pixel_bytes) {
-    snow_gather_state *state = &combiner->gather;
+static snow_status allocate_packed(const snow_combiner *combiner,
+                                   combine_gather *state, size_t pixel_bytes) {
     snow_context *context = combiner->comm->context;
     const int regions = combiner->rounds.tree ? 1 : combiner->comm->ranks;
     const int64_t capacity = snow_border_room(&combiner->borders, regions);
     if (state->packed_capacity == capacity &&
         state->packed_bytes == pixel_bytes)
         return SNOW_STATUS_OK;
-    snow_gather_free_region(combiner);
+    combine_gather_free(context, state);
     state->packed_capacity = capacity;
     state->packed_bytes = pixel_bytes;
     /* Every second pixel may be a run, and every line's first. */
@@ -39,7 +37,7 @@ static snow_status allocate_packed(snow_combiner *combiner,
     snow_status status = snow_comm_agree_status(
         combiner->comm, fine ? SNOW_STATUS_OK : SNOW_STATUS_NO_MEMORY);
     if (status != SNOW_STATUS_OK)
-        snow_gather_free_region(combiner);
+        combine_gather_free(context, state);
     return status;
 }
 
@@ -53,10 +51,9 @@ static void round_pixels(const float *pixels, int64_t floats,
 }
 
 /* Appends pixels first .. last - 1, of one line, to the packed ones. */
-static void pack_run(snow_combiner *combiner, const snow_image_region *region,
-                     int64_t first, int64_t last, size_t *run_count,
-                     int64_t *packed) {
-    snow_gather_state *state = &combiner->gather;
+static void pack_run(const snow_combiner *combiner, combine_gather *state,
+                     const snow_image_region *region, int64_t first,
+                     int64_t last, size_t *run_count, int64_t *packed) {
     const int channels = combiner->shape.channels;
     const int width = combiner->shape.width;
     const int64_t count = last - first;
@@ -91,10 +88,10 @@ static int64_t next_pixel(const snow_image_region *region, int64_t at,
 
 /* Packs the active pixels of a region, line by line; gaps shorter than the cost
  * of a run are filled. */
-static size_t pack_region(snow_combiner *combiner,
+static size_t pack_region(const snow_combiner *combiner, combine_gather *state,
                           const snow_image_region *region, int64_t *packed) {
     const int64_t width = combiner->shape.width;
-    const int64_t gap = SNOW_RUN_BYTES / (int64_t)combiner->gather.packed_bytes;
+    const int64_t gap = SNOW_RUN_BYTES / (int64_t)state->packed_bytes;
     const int64_t last = region->first + region->count;
     size_t runs = 0;
     for (int64_t line = region->first; line < last;) {
@@ -108,7 +105,7 @@ static size_t pack_region(snow_combiner *combiner,
                 stop = next_pixel(region, next, end, false);
                 next = next_pixel(region, stop, end, true);
             }
-            pack_run(combiner, region, at, stop, &runs, packed);
+            pack_run(combiner, state, region, at, stop, &runs, packed);
             at = next;
         }
         line = end;
@@ -116,18 +113,19 @@ static size_t pack_region(snow_combiner *combiner,
     return runs;
 }
 
-snow_status snow_gather_region(snow_combiner *combiner,
-                               const snow_image_region *region, int bits,
-                               void *picture) {
+snow_status combine_gather_region(snow_combiner *combiner,
+                                  combine_gather *state,
+                                  const snow_image_region *region, int bits,
+                                  void *picture) {
     const snow_exchange_shape *shape = &combiner->shape;
     const size_t pixel_bytes =
         (size_t)shape->channels * (bits == 8 ? 1 : sizeof(float));
     int64_t packed = 0;
-    SNOW_TRY(allocate_packed(combiner, pixel_bytes));
-    size_t runs = pack_region(combiner, region, &packed);
+    SNOW_TRY(allocate_packed(combiner, state, pixel_bytes));
+    size_t runs = pack_region(combiner, state, region, &packed);
     snow_comm_work(combiner->comm,
                    (double)packed * combiner->exchange.order.blend_seconds);
-    return snow_gather(
-        combiner, shape->width, shape->height, combiner->gather.runs, runs,
-        region->pixels ? combiner->gather.packed : NULL, pixel_bytes, picture);
+    return snow_gather(combiner, shape->width, shape->height, state->runs, runs,
+                       region->pixels ? state->packed : NULL, pixel_bytes,
+                       picture);
 }
