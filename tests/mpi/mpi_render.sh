@@ -16,7 +16,9 @@ render() {
         many.npy --tolerance "${TOLERANCE:-1/255}"
 }
 
-for view in "--view +x" "--view -y" "--view +z" \
+others=("--view -y" "--view +z")
+long_tier || others=()
+for view in "--view +x" "${others[@]}" \
     "--azimuth 33 --elevation 21 --roll 10 --zoom 1.3" "--view iso --perspective"; do
     # shellcheck disable=SC2086
     run 0 "$view alone" "$TOOL" $head $view -y -o one.npy
@@ -36,8 +38,10 @@ for method in footprint original; do
 done
 
 # The last view is oblique enough for bricks.
-for way in "--cut equal" "--cut bricks" "--combine tree" "--combine swap" \
-    "--combine direct" "--combine radix --radix 3"; do
+ways=("--cut equal" "--combine tree" "--combine swap")
+long_tier || ways=()
+for way in "${ways[@]}" "--cut bricks" "--combine direct" \
+    "--combine radix --radix 3"; do
     # shellcheck disable=SC2086
     run 0 "a picture alone" "$TOOL" $head --azimuth 70 -y -o one.npy
     # shellcheck disable=SC2086
@@ -59,8 +63,10 @@ check "bytes of EA are those of one process" [ "$(number ea)" = \
     "$(sed -n 's/.*"ea": \([0-9]*\).*/\1/p' one.json)" ]
 
 # Drafts of few pixels, of a level of half as many voxels or a quarter.
-for draft in "64x64 --view +x --cut counted" "40x50 --azimuth 33 --cut bricks" \
-    "64x64 --azimuth 70 --roll 20 --perspective --cut equal"; do
+drafts=("64x64 --view +x --cut counted"
+    "64x64 --azimuth 70 --roll 20 --perspective --cut equal")
+long_tier || drafts=()
+for draft in "40x50 --azimuth 33 --cut bricks" "${drafts[@]}"; do
     # shellcheck disable=SC2086
     set -- phantom:engine --dims 131x144x127 --quality draft -q -s $draft
     run 0 "a draft alone, $draft" "$TOOL" "${@:1:$(($# - 2))}" -y -o one.npy

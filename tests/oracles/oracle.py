@@ -14,6 +14,13 @@ import numpy as np
 
 TOOL, DATA = os.path.abspath(sys.argv[1]), sys.argv[2]
 checked = wrong = 0
+SHORT = os.environ.get("SNOW_TIER", "short") == "short" # docs/testing.md
+
+
+def few(things, stride, start=0):
+    """All of them; in the short tier one of `stride`, from number `start` on."""
+    things = list(things)
+    return things[start % stride::stride] if SHORT else things
 
 
 def skip(why):
@@ -63,7 +70,8 @@ def near(a, b, scale):
 def expect(path, voxels, matrix=None, options=(), dtype=None, unit=None,
            name=None):
     """The file is these voxels (z, y, x), of this type, in this place; and so
-    is a box of it, when nothing else was wrong."""
+    is a box of it, when nothing else was wrong (in the short tier: of each third
+    file)."""
     global checked
     checked += 1
     before = wrong
@@ -71,7 +79,7 @@ def expect(path, voxels, matrix=None, options=(), dtype=None, unit=None,
     if "--crop" not in options:
         expect(path, voxels, matrix, [*options, "--crop", ":,:,:"], dtype,
                unit, name)
-        if wrong == before:
+        if wrong == before and (checked % 3 == 0 or not SHORT):
             expect_box(path, voxels, matrix, options, dtype, unit, name)
         return
     name = name or " ".join([os.path.basename(path), *map(str, options)])

@@ -91,6 +91,8 @@ for mode in ("ascii", "binary", "appended raw", "appended base64"):
                 write_vti(grid, "a.vti", mode, packed, header, big)
                 said = f"{mode} packed {packed} header {header} big {big}"
                 oracle.expect("a.vti", b, matrix_of(grid), name=said)
+                if oracle.SHORT and packed != big: # each other one
+                    continue
                 oracle.expect("a.vti", oracle.sample("i2", b.shape),
                               matrix_of(grid), ["--dataset", "behind"],
                               name=said + " behind")
@@ -99,9 +101,10 @@ for mode in ("ascii", "binary", "appended raw", "appended base64"):
         oracle.expect("b.vti.gz", b, matrix_of(grid), name=said + " gzip")
 oracle.refuse("a.vti", "before, wanted, behind", ["--dataset", "none"], 2)
 
-for kind in TYPES:
+MODES = ("ascii", "binary", "appended raw")
+for n, kind in enumerate(TYPES):
     a = oracle.sample(kind)
-    for mode in ("ascii", "binary", "appended raw"):
+    for mode in oracle.few(MODES, 3, n):
         grid = image()
         add(grid, "a", a, scalars=True)
         write_vti(grid, "a.vti", mode, True, 32, False)
@@ -127,7 +130,7 @@ for mode in ("ascii", "binary", "appended raw"):
 # Legacy files.
 for version in (42, 51):
     for binary in (False, True):
-        for kind in TYPES:
+        for kind in oracle.few(TYPES, 4, version // 51 + 2 * binary):
             a = oracle.sample(kind)
             grid = image(turned=False)
             add(grid, "the_array", a, scalars=True)

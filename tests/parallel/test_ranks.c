@@ -320,9 +320,9 @@ static const int rank_counts[] = {1, 2, 3, 5, 7, 8, 16, 33};
 #define COUNTS (int)(sizeof rank_counts / sizeof *rank_counts)
 
 /* In the short tier each scene meets some of them, the next scene others. */
-#define COUNT_STRIDE (int)support_stride(4)
+#define COUNT_STRIDE (int)support_stride(7)
 static int first_count(int scene) {
-    return (int)support_start((size_t)scene, 4);
+    return (int)support_start((size_t)scene, 7);
 }
 
 static const double turns[][3] = {
@@ -518,7 +518,8 @@ static void surfaces_of_many_ranks_have_the_serial_bits(void **state) {
 
 /* Views along all axes from both sides, and oblique; every number of ranks; all
  * cuts in turn. */
-static void look_around(const char *name, const snow_volume *volume) {
+static void look_around(const char *name, const snow_volume *volume,
+                        int stride) {
     static const char *const names[] = {"+x", "-x", "+y",  "-y",
                                         "+z", "-z", "iso", "iso"};
     snow_context *context = support_context();
@@ -526,7 +527,7 @@ static void look_around(const char *name, const snow_volume *volume) {
     sweep_tally tally = {0};
     assert_int_equal(snow_transfer_new_for_volume(volume, NULL, &transfer),
                      SNOW_STATUS_OK);
-    for (int n = 0; n < 8; n++) {
+    for (int n = 0; n < 8; n += stride) {
         double strongest;
         play p = {.info = *snow_volume_get_info(volume),
                   .voxels = snow_volume_voxels(volume),
@@ -569,7 +570,7 @@ static void phantoms_are_seen_alike_by_many_ranks(void **state) {
                                                   (const int64_t[]){70, 64, 60},
                                                   1, &volume),
                          SNOW_STATUS_OK);
-        look_around(names[n], volume);
+        look_around(names[n], volume, 1);
         snow_volume_close(volume);
         snow_context_free(context);
     }
@@ -629,11 +630,12 @@ static void drafts_of_few_pixels_are_of_the_same_level(void **state) {
         int64_t dims[3];
         int side, halved;
     } cases[] = {
-        {"engine", {201, 186, 173}, 128, 1}, {"head", {128, 144, 150}, 64, 1},
-        {"shells", {161, 159, 163}, 64, 1},  {"engine", {290, 281, 263}, 64, 2},
-        {"head", {100, 90, 99}, 20, 1},
+        {"head", {100, 90, 99}, 20, 1},     {"engine", {201, 186, 173}, 128, 1},
+        {"head", {128, 144, 150}, 64, 1},   {"shells", {161, 159, 163}, 64, 1},
+        {"engine", {290, 281, 263}, 64, 2},
     };
-    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+    for (size_t n = 0; n < sizeof cases / sizeof *cases;
+         n += support_stride(3)) {
         snow_context *context = support_context();
         snow_volume *volume = NULL;
         assert_int_equal(snow_volume_open_phantom(context, cases[n].name,
@@ -673,8 +675,10 @@ static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
         if (snow_volume_open(context, support_data(files[n].path),
                              &files[n].options, &volume) != SNOW_STATUS_OK)
             fail_msg("%s", snow_context_message(context));
-        look_around(n ? "CThead" : "Engine", volume);
-        drafts_of(n ? "CThead, 128x128" : "Engine, 128x128", volume, 128, 1);
+        look_around(n ? "CThead" : "Engine", volume, (int)support_stride(7));
+        if (n % (int)support_stride(2) == 0)
+            drafts_of(n ? "CThead, 128x128" : "Engine, 128x128", volume, 128,
+                      1);
         snow_volume_close(volume);
         snow_context_free(context);
     }
@@ -919,7 +923,7 @@ static void ranks_without_memory_fail_together(void **state) {
         long last = 1;
         /* Each of the first ones, then some. */
         for (long failing = -1; failing < last;
-             failing += failing < 30 ? 1 : 5) {
+             failing += failing < 30 ? 1 : support_sweep(5, 13)) {
             miser m = {.failing = failing, .for_good = failing % 2};
             const snow_allocator allocator = {give_or_not, take_back, &m};
             snow_context *context = NULL;

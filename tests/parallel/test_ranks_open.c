@@ -231,7 +231,8 @@ static void every_rank_gets_its_part(void **state) {
         assert_int_equal(snow_transfer_new_for_volume(whole, NULL, &expected),
                          SNOW_STATUS_OK);
         for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
-            for (int i = 0; i < 5; i++) {
+            for (int i = (int)support_start((size_t)cut, 2); i < 5;
+                 i += (int)support_stride(2)) {
                 order o;
                 begin_order(&o, whole);
                 o.path = path;
@@ -325,8 +326,8 @@ static void a_crop_is_dealt_out_like_a_volume(void **state) {
  * or the equal slabs with their ghosts; nobody reads more than its share. */
 static void the_file_is_read_once(void **state) {
     support_place *place = *state;
-    const int64_t dims[3] = {256, 240, 200};
-    const uint64_t slice = 256 * 240;
+    const int64_t dims[3] = {192, 160, 200};
+    const uint64_t slice = 192 * 160;
     snow_volume *whole;
     assert_int_equal(
         snow_volume_open_phantom(place->context, "engine", dims, 0, &whole),
@@ -750,7 +751,8 @@ static void pictures_from_all_sides_are_those_of_one_processor(void **state) {
         t.o.settings.threads = 1;
         draw_serial(place, &t, whole);
         for (int cut = SNOW_PARTITION_AUTO; cut <= SNOW_PARTITION_BRICKS; cut++)
-            for (int i = 0; i < 4; i++) {
+            for (int i = (int)support_start((size_t)(n + cut), 3); i < 4;
+                 i += (int)support_stride(3)) {
                 t.o.how.cut = (snow_partition)cut;
                 t.o.how.turns = n == 3;
                 t.most = 0;

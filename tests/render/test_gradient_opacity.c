@@ -54,7 +54,7 @@ static void the_exact_methods_make_the_references_picture(void **state) {
     (void)state;
     model_stage stage = model_open();
     model_tally tally = {0};
-    for (size_t n = 0; n < 240; n++) {
+    for (size_t n = 0; n < 240; n += support_stride(7)) {
         reference_scene scene = numbered_scene(n, dims);
         scene.settings.method = methods[n % 3];
         if (scene.settings.method != SNOW_METHOD_ORIGINAL)
@@ -71,7 +71,7 @@ static void the_sheared_method_makes_its_models_picture(void **state) {
     (void)state;
     model_stage stage = model_open();
     sheared_tally tally = {0};
-    for (size_t n = 0; n < 360; n++) {
+    for (size_t n = 0; n < 360; n += support_stride(7)) {
         reference_scene scene = numbered_scene(n, dims);
         scene.settings.method = SNOW_METHOD_SHEAR_WARP;
         scene.settings.quality = (snow_quality)(n / 5 % 3);
@@ -82,7 +82,7 @@ static void the_sheared_method_makes_its_models_picture(void **state) {
         model_free(&scene);
     }
     sheared_report("gradient opacity", &tally);
-    assert_true(tally.clear > 100);
+    assert_true(tally.clear * support_sweep(1, 7) > 100);
     model_close(&stage);
 }
 

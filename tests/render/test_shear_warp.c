@@ -413,7 +413,7 @@ static void blends_that_do_not_fit_along_one_axis(void **state) {
     model_stage stage = model_open();
     uint64_t random = 18;
     sheared_tally tally = {0};
-    for (int n = 0; n < 90; n += (int)support_stride(2)) {
+    for (int n = 0; n < 90; n += (int)support_stride(3)) {
         reference_scene scene =
             model_scene((int64_t[]){40, 12, 11}, SNOW_TYPE_UINT8, n % 2,
                         MODEL_PLAIN, (uint64_t)n);
@@ -429,7 +429,7 @@ static void blends_that_do_not_fit_along_one_axis(void **state) {
         free_voxels(&scene);
     }
     sheared_report("blends of thin voxels", &tally);
-    assert_true(tally.footprints > support_sweep(10, 2) &&
+    assert_true(tally.footprints > support_sweep(10, 1) &&
                 tally.clear > support_sweep(10, 5));
     model_close(&stage);
 }
@@ -459,7 +459,7 @@ static void opaque_voxels_hide_what_lies_behind(void **state) {
     model_stage stage = model_open();
     uint64_t random = 11;
     sheared_tally tally = {0};
-    for (size_t n = 0; n < 12 * COUNT(stands); n += support_stride(7)) {
+    for (size_t n = 0; n < 12 * COUNT(stands); n += support_stride(13)) {
         reference_scene scene = drawn_scene((int64_t[]){40, 37, 45}, &random);
         scene.opacities = n % 2 ? step : steep;
         scene.opacity_count = 2;

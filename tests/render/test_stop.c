@@ -224,7 +224,8 @@ static void stop_ways(const char *path, int threads, bool streamed) {
         int count = all.asked + 1000000;
         assert_true(count >= 2);
         const int at[] = {1, 2, count / 3, 2 * count / 3, count - 1, count};
-        for (size_t k = 0; k < sizeof at / sizeof *at; k++)
+        for (size_t k = support_start(n, 3); k < sizeof at / sizeof *at;
+             k += support_stride(3))
             if (at[k] > 0)
                 stop_at(&s, at[k], whole, k % 2);
         snow_image_free(whole);
@@ -572,8 +573,10 @@ static void stops_are_quick(void **state) {
     (void)state;
     support_folder_make(folder);
     const char *path = support_folder_path(folder, "v.nrrd");
-    write_volume(path, (const int64_t[3]){64, 64, 64});
-    measure(path, 2, 96, NULL, 1);
+    const int64_t side = support_sweep(64, 32);
+    write_volume(path, (const int64_t[3]){side, side, side});
+    measure(path, (int)support_sweep(2, 1), (int)support_sweep(96, 48), NULL,
+            1);
     support_folder_remove(folder);
 }
 

@@ -527,7 +527,7 @@ static void samples_of_every_window(void **state) {
         s.kind = (fill)(kind / 8);
         make_tables(&s, &random);
         for (int count = 1; count <= SNOW_WINDOW_MOST; count++)
-            for (int n = 0; n < 3; n++, done++) {
+            for (int n = 0; n < support_sweep(3, 1); n++, done++) {
                 draw_sample(&s, count, &random);
                 check_sample(&s, &most);
             }

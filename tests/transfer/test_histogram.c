@@ -192,7 +192,8 @@ static void every_type_gives_the_same_function_for_any_cut(void **state) {
                    .voxels = (unsigned char *)memory};
         fill((snow_type)type, (unsigned char *)memory, VOXELS, &random);
         check(context, &w, 1 + type % 5, &random);
-        check(context, &w, 3 * type + 3, &random);
+        if (type % (int)support_stride(3) == 0)
+            check(context, &w, 3 * type + 3, &random);
     }
     snow_context_free(context);
 }
@@ -241,6 +242,9 @@ static void padding_is_counted_where_it_is(void **state) {
 
 /* 2^25 voxels and some: every second block of 1024 voxels is looked at, the
  * same ones by whomever. */
+/* A prime: rows of the volume differ. */
+#define PERIOD 1048573
+
 static void a_sample_of_a_large_volume_is_the_same_one(void **state) {
     (void)state;
     snow_context *context = support_context();
@@ -254,7 +258,8 @@ static void a_sample_of_a_large_volume_is_the_same_one(void **state) {
     float *values = malloc(voxels * sizeof *values);
     assert_non_null(values);
     for (size_t i = 0; i < voxels; i++)
-        values[i] = (float)value_at(&random, (int64_t)(i / 700));
+        values[i] = i < PERIOD ? (float)value_at(&random, (int64_t)(i / 20))
+                               : values[i - PERIOD];
     w.voxels = (unsigned char *)values;
     snow_volume *volume;
     snow_transfer *expected;

@@ -14,6 +14,36 @@ static snow_volume *make(snow_context *context, const char *name,
     return volume;
 }
 
+/* Those of their own sizes take long to make: they are kept for all tests. */
+static snow_context *shared;
+static snow_volume *kept[6];
+
+static const snow_volume *standard(const char *name) {
+    for (size_t n = 0; n < sizeof kept / sizeof *kept; n++)
+        if (strcmp(snow_phantom_name(n), name) == 0) {
+            if (!kept[n])
+                kept[n] = make(shared, name, NULL, 0);
+            return kept[n];
+        }
+    fail_msg("there is no %s", name);
+    return NULL;
+}
+
+static int open_shared(void **state) {
+    (void)state;
+    shared = support_context();
+    return 0;
+}
+
+static int close_shared(void **state) {
+    (void)state;
+    for (size_t n = 0; n < sizeof kept / sizeof *kept; n++)
+        snow_volume_close(kept[n]);
+    bool clean = snow_context_bytes(shared) == 0;
+    snow_context_free(shared);
+    return clean ? 0 : 1;
+}
+
 static uint64_t byte_count(const snow_volume *volume) {
     const snow_volume_info *info = snow_volume_get_info(volume);
     return (uint64_t)(info->dims[0] * info->dims[1] * info->dims[2]) *
@@ -45,16 +75,13 @@ static double share(const snow_volume *volume, int most) {
 
 static void check_shares(const char *name, const double paper[3]) {
     static const int thresholds[3] = {0, 10, 30};
-    snow_context *context = support_context();
-    snow_volume *volume = make(context, name, NULL, 0);
+    const snow_volume *volume = standard(name);
     for (int i = 0; i < 3; i++) {
         double got = share(volume, thresholds[i]);
         if (fabs(got - paper[i]) > 1)
             fail_msg("%s: %.2f %% at %d, not %g", name, got, thresholds[i],
                      paper[i]);
     }
-    snow_volume_close(volume);
-    snow_context_free(context);
 }
 
 static void the_cube_is_as_empty_as_the_papers(void **state) {
@@ -75,15 +102,11 @@ static void the_engines_shares_are_the_real_ones(void **state) {
 static void the_papers_phantoms_use_all_of_8_bits(void **state) {
     (void)state;
     static const char *const names[] = {"cube", "head", "engine", "shells"};
-    snow_context *context = support_context();
     for (size_t i = 0; i < 4; i++) {
-        snow_volume *volume = make(context, names[i], NULL, 0);
         snow_volume_statistics measures = {.size = sizeof measures};
-        snow_volume_get_statistics(volume, &measures);
+        snow_volume_get_statistics(standard(names[i]), &measures);
         assert_true(measures.min == 0 && measures.max == 255);
-        snow_volume_close(volume);
     }
-    snow_context_free(context);
 }
 
 static void default_sizes_types_and_places_are_told(void **state) {
@@ -101,9 +124,8 @@ static void default_sizes_types_and_places_are_told(void **state) {
         {"marschner-lobb", {40, 40, 40}, SNOW_TYPE_FLOAT32, false},
         {"turbulence", {128, 128, 128}, SNOW_TYPE_FLOAT32, false},
     };
-    snow_context *context = support_context();
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
-        snow_volume *volume = make(context, expected[i].name, NULL, 0);
+        const snow_volume *volume = standard(expected[i].name);
         const snow_volume_info *info = snow_volume_get_info(volume);
         assert_string_equal(snow_phantom_name(i), expected[i].name);
         assert_non_null(snow_phantom_description(i));
@@ -118,11 +140,9 @@ static void default_sizes_types_and_places_are_told(void **state) {
                 info->spacing[a] * 0.5 * (double)(info->dims[a] - 1);
             assert_true(fabs(middle) < 1e-9);
         }
-        snow_volume_close(volume);
     }
     assert_null(snow_phantom_name(6));
     assert_null(snow_phantom_description(6));
-    snow_context_free(context);
 }
 
 static void bytes_are_the_same_on_every_machine(void **state) {
@@ -138,16 +158,12 @@ static void bytes_are_the_same_on_every_machine(void **state) {
         {"marschner-lobb", UINT64_C(0x9fb15d84083c946d)},
         {"turbulence", UINT64_C(0x758403cf827ecb71)},
     };
-    snow_context *context = support_context();
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
-        snow_volume *volume = make(context, expected[i].name, NULL, 0);
-        uint64_t sum = checksum(volume);
+        uint64_t sum = checksum(standard(expected[i].name));
         if (sum != expected[i].sum)
             fail_msg("%s: 0x%016llx", expected[i].name,
                      (unsigned long long)sum);
-        snow_volume_close(volume);
     }
-    snow_context_free(context);
 }
 
 static void a_seed_moves_the_noise_and_nothing_else(void **state) {
@@ -179,8 +195,8 @@ static void any_size_shows_the_same_shape(void **state) {
         {1, 1, 1}, {1, 37, 5}, {300, 2, 1}, {64, 64, 64}};
     snow_context *context = support_context();
     for (size_t n = 0; snow_phantom_name(n); n++) {
-        snow_volume *whole = make(context, snow_phantom_name(n), NULL, 0);
-        const snow_volume_info *a = snow_volume_get_info(whole);
+        const snow_volume_info *a =
+            snow_volume_get_info(standard(snow_phantom_name(n)));
         for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
             snow_volume *volume =
                 make(context, snow_phantom_name(n), sizes[i], 0);
@@ -191,7 +207,6 @@ static void any_size_shows_the_same_shape(void **state) {
                                  b->spacing[k] * (double)b->dims[k]) < 1e-9);
             snow_volume_close(volume);
         }
-        snow_volume_close(whole);
     }
     snow_context_free(context);
 }
@@ -228,22 +243,16 @@ static bool differs_mirrored(const snow_volume *volume, int axis, int most) {
 
 static void shells_and_head_can_be_told_from_their_mirrors(void **state) {
     (void)state;
-    snow_context *context = support_context();
-    snow_volume *shells = make(context, "shells", NULL, 0);
-    snow_volume *head = make(context, "head", NULL, 0);
+    const snow_volume *shells = standard("shells"), *head = standard("head");
     for (int axis = 0; axis < 3; axis++) {
         assert_true(differs_mirrored(shells, axis, 100));
         assert_true(differs_mirrored(head, axis, 100));
     }
-    snow_volume_close(shells);
-    snow_volume_close(head);
-    snow_context_free(context);
 }
 
 static void the_nose_is_in_front_and_the_capsule_on_the_right(void **state) {
     (void)state;
-    snow_context *context = support_context();
-    snow_volume *head = make(context, "head", NULL, 0);
+    const snow_volume *head = standard("head");
     const snow_volume_info *info = snow_volume_get_info(head);
     const uint8_t *bytes = snow_volume_voxels(head);
     /* Along the two rays from the middle of the face, front and back. */
@@ -262,8 +271,6 @@ static void the_nose_is_in_front_and_the_capsule_on_the_right(void **state) {
     int64_t right = (int64_t)(79 - info->matrix[0][3]);
     assert_true(bytes[(k * 256 + j) * 256 + right] > 200);
     assert_true(bytes[(k * 256 + j) * 256 + 255 - right] < 100);
-    snow_volume_close(head);
-    snow_context_free(context);
 }
 
 /* The formula by the C library's functions, which may round otherwise. */
@@ -332,5 +339,5 @@ int main(void) {
         cmocka_unit_test(marschner_and_lobbs_signal_is_theirs),
         cmocka_unit_test(unknown_names_and_sizes_are_refused),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, open_shared, close_shared);
 }

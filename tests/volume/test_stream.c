@@ -224,8 +224,8 @@ static void pictures_are_those_of_the_volume_in_memory(void **state) {
         for (size_t s = 0; s < COUNT(slices); s++) {
             pair p = open_pair(place, path, NULL,
                                slices_of(types[t], slices[s]), NULL);
-            for (size_t n = support_start(s + t, 3); n < COUNT(stands);
-                 n += support_stride(3)) {
+            for (size_t n = support_start(s + t, 7); n < COUNT(stands);
+                 n += support_stride(7)) {
                 snow_view view = stand_at(place, n);
                 snow_settings settings;
                 snow_settings_init(&settings);
@@ -244,7 +244,7 @@ static void pictures_are_those_of_the_volume_in_memory(void **state) {
             close_pair(&p);
         }
     }
-    assert_true(pictures * (int)support_stride(4) >=
+    assert_true(pictures * (int)support_stride(8) >=
                 (int)(COUNT(types) * COUNT(slices) * COUNT(stands)));
 }
 
@@ -313,8 +313,8 @@ static void modes_of_a_volume_with_holes_are_near(void **state) {
     for (size_t s = 0; s < COUNT(slices); s++) {
         pair p = open_pair(place, path, NULL,
                            slices_of(SNOW_TYPE_FLOAT32, slices[s]), NULL);
-        for (size_t n = support_start(s, 3); n < COUNT(stands);
-             n += support_stride(3)) {
+        for (size_t n = support_start(s, 7); n < COUNT(stands);
+             n += support_stride(7)) {
             snow_view view = stand_at(place, n);
             snow_settings settings;
             snow_settings_init(&settings);
@@ -401,8 +401,8 @@ static void opacity_by_gradients_sees_beyond_a_slabs_border(void **state) {
         const char *path = write_head(place, types[t], "head.nrrd");
         pair p = open_pair(place, path, NULL,
                            slices_of(types[t], 3 + 40 * (int)t), &look);
-        for (size_t n = support_start(t, 3); n < COUNT(stands);
-             n += support_stride(3)) {
+        for (size_t n = support_start(t, 7); n < COUNT(stands);
+             n += support_stride(7)) {
             snow_view view = stand_at(place, n);
             snow_settings settings;
             snow_settings_init(&settings);
@@ -427,7 +427,7 @@ static void a_box_a_spacing_a_mask_and_a_plane_are_heeded(void **state) {
         .labels = "3000-65535",
         .clip = {{0.2, 1, 0.1, 60}},
     };
-    for (size_t n = 0; n < COUNT(stands); n++) {
+    for (size_t n = 0; n < COUNT(stands); n += support_stride(3)) {
         if (n % 2)
             options.mask = options.labels = NULL;
         else {
@@ -495,7 +495,8 @@ static void looks_are_those_of_the_volume_in_memory(void **state) {
     support_place *place = *state;
     for (size_t t = 0; t < COUNT(types); t++) {
         const char *path = write_head(place, types[t], "head.nrrd");
-        for (size_t n = 0; n < COUNT(looks); n++) {
+        for (size_t n = support_start(t, 2); n < COUNT(looks);
+             n += support_stride(2)) {
             if (looks[n].preset && snow_preset_from_name(looks[n].preset) < 0)
                 continue;
             pair p = open_pair(place, path, NULL,
@@ -510,7 +511,7 @@ static void looks_are_those_of_the_volume_in_memory(void **state) {
                 snow_transfer_evaluate(other, value * 200.0, b);
                 assert_memory_equal(a, b, sizeof a);
                 snow_transfer_free(other);
-                value += 40;
+                value += (int)support_sweep(40, 90);
             }
             close_pair(&p);
         }
@@ -689,10 +690,13 @@ static void any_allocation_may_fail(void **state) {
     support_place *place = *state;
     char path[128];
     strcpy(path, write_head(place, SNOW_TYPE_UINT8, "head.nrrd"));
-    fail_everywhere(place, path, SNOW_MODE_OVER, false, (int)support_stride(7));
+    fail_everywhere(place, path, SNOW_MODE_OVER, false,
+                    (int)support_stride(13));
     fail_everywhere(place, path, SNOW_MODE_OVER, true, 37);
-    fail_everywhere(place, path, SNOW_MODE_SUM, false, 3);
-    fail_everywhere(place, path, SNOW_MODE_ISO, true, 3);
+    fail_everywhere(place, path, SNOW_MODE_SUM, false,
+                    (int)support_sweep(3, 11));
+    fail_everywhere(place, path, SNOW_MODE_ISO, true,
+                    (int)support_sweep(3, 11));
 }
 
 /* --- what is refused ------------------------------------------------------

@@ -8,7 +8,7 @@ command -v python3 >/dev/null || {
     exit 77
 }
 
-for figure in 11 12; do
+for figure in 12 $(long_tier && echo 11); do
     run 0 "figure $figure" "$TOOL" bench "figure$figure" --quick --json \
         --chart "chart$figure.svg"
     cp "$OUT" "$figure.json"
@@ -38,7 +38,7 @@ assert len(lines) == (3 + 1) * 8, len(lines)  # with the legend
 END
 done
 
-run 0 "as a table" "$TOOL" bench figure12 --quick
+run 0 "as a table" "$TOOL" bench figure11 --quick
 prints "nodes: 32 take, efficiency"
 run 2 "options of others" "$TOOL" bench figure11 --threads 2
 finish
