@@ -276,7 +276,7 @@ static void choose_table(value_plan *plan) {
     bool high = plan->scene->base.settings.quality == SNOW_QUALITY_HIGH;
     plan->nodes = high ? 256 : 129;
     plan->steps = high ? 64 : 16;
-    plan->exact_loads = high;
+    plan->exact_loads = true;
     find_range(plan);
     if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
         return;

@@ -121,13 +121,59 @@ static int load(const value_field *field, const value_ray *ray, int sheet,
     return load_at(field, ray, other, nearest, at, off);
 }
 
+/* The difference of two sheets at a place in the plane, as a sheet is
+ * interpolated: of voxels that are all there; false where one is not. */
+static bool difference_at(const value_field *field, int before, int after,
+                          const double at[3], int times, int *out) {
+    int64_t i = (int64_t)floor(at[0]), j = (int64_t)floor(at[1]);
+    int wu = value_weight(at[0] - (double)i);
+    int wv = value_weight(at[1] - (double)j), row[2];
+    for (int y = 0; y < 2; y++) {
+        int ends[2];
+        for (int x = 0; x < 2; x++) {
+            value_part a = value_voxel(field, before, i + x, j + y);
+            value_part b = value_voxel(field, after, i + x, j + y);
+            if (a.weight < VALUE_FULL || b.weight < VALUE_FULL)
+                return false;
+            ends[x] = value_saturate(
+                times * (int64_t)value_saturate(b.value - a.value));
+        }
+        row[y] = value_between(ends[0], ends[1], wu);
+    }
+    *out = value_between(row[0], row[1], wv);
+    return true;
+}
+
+/* Along P, at the very place in the plane, where no voxel is missing. */
+static bool slope_in_place(const value_field *field, const value_ray *ray,
+                           int sheet, value_slopes *out) {
+    const value_plan *plan = field->plan;
+    int step = plan->direction * plan->halves, times = 1;
+    int before = sheet - step, after = sheet + step;
+    double at[3];
+    bool lacks[2] = {before < 0 || before >= plan->sheets,
+                     after < 0 || after >= plan->sheets};
+    value_ray_at(plan, ray, sheet, at);
+    if (lacks[0] && lacks[1] && plan->halves == 2) {
+        before = sheet - step / 2;
+        after = sheet + step / 2;
+        times = 2;
+    } else if (lacks[0] || lacks[1]) {
+        before = lacks[0] ? sheet : before;
+        after = lacks[1] ? sheet : after;
+        times = 2;
+    }
+    return difference_at(field, before, after, at, times, &out->along[2]);
+}
+
 /* Along P, at a fixed place in the plane. */
 static void slope_across(const value_field *field, const value_ray *ray,
                          int sheet, value_slopes *out) {
     const value_plan *plan = field->plan;
     int step = plan->direction * plan->halves, value[3];
     double off[2][2], at[3], share[2] = {0};
-    if (plan->dims[2] == 1)
+    if (plan->dims[2] == 1 || (plan->exact_loads && !plan->scene->cubic &&
+                               slope_in_place(field, ray, sheet, out)))
         return;
     value_ray_at(plan, ray, sheet, at);
     value[1] = value_sheet(field, sheet, at[0], at[1]);

@@ -14,6 +14,7 @@
 /* A value of a sheet that is none: a hole. */
 #define VALUE_HOLE INT32_MIN
 #define VALUE_MOST 16383
+#define VALUE_FULL 16384 /* the weight of a voxel that is there */
 
 /* What decides a picture, beside a scene.  Arrays are the caller's. */
 typedef struct value_scene {
