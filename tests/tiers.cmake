@@ -20,7 +20,7 @@ set(SNOW_LABEL_surface test_base test_compare test_convert test_corpus test_den
     test_zarr)
 set(SNOW_LABEL_threads test_affinity test_bands test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_marks test_modes
-    test_raycast test_simulated test_stop test_progress test_ranks test_ranks_open test_shear_warp_bits test_redistribute
+    test_raycast test_value test_simulated test_stop test_progress test_ranks test_ranks_open test_shear_warp_bits test_redistribute
     test_load_balance)
 set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     test_model_raycast test_model_reference test_model_rules test_model_slabs
@@ -47,7 +47,7 @@ set(SNOW_COSTS
     catalyst 42 cli_convert 41 oracle_dicom 40 oracle_pictures 39
     test_deterministic 38 test_comm 37 test_load_balance 36 test_splat_isa 35
     test_perspective 34 cli_real 33 cli_mask 32
-    test_raycast 105)
+    test_raycast 105 test_value 68)
 
 file(GLOB_RECURSE sources *.c *.sh *.py)
 get_property(tests DIRECTORY PROPERTY TESTS)

@@ -27,9 +27,12 @@ typedef enum snow_method {
     SNOW_METHOD_SHEAR_WARP, /* interesting voxels only; slices are splatted and
                            composited on their own grid, sheared, and the
                            result is warped to the image once: the fast one */
-    SNOW_METHOD_RAYCAST /* values are interpolated along each ray and coloured
+    SNOW_METHOD_RAYCAST, /* values are interpolated along each ray and coloured
                            after: the truth that the others are held against,
                            and slow.  One process, all voxels in memory */
+    SNOW_METHOD_VALUE /* interpolates values on sheared slices and colours them
+                         after: what is to become shear-warp; parallel views of
+                         mode over so far */
 } snow_method;
 
 /* How the places of interesting voxels are written: section 3.2. */

@@ -80,13 +80,15 @@ const option_row option_table[] = {
     {"encoding", 0, "auto|crs|bitmap|rle", TOPIC_SPARSE, RENDER, read_choice,
      FIELD(encoding), 0, 0, "",
      "how the positions of interesting voxels are stored (default auto)"},
-    {"method", 0, "auto|original|footprint|shear-warp|raycast", TOPIC_SPARSE, RENDER,
+    {"method", 0, "auto|original|footprint|shear-warp|raycast|value", TOPIC_SPARSE, RENDER,
      read_method, FIELD(method), 0, 0, "",
      "rendering method. shear-warp: the fastest; sheared is its old name; "
      "footprint: splats interesting voxels straight onto the picture; "
      "original: the same with every voxel; raycast: interpolates values along "
      "each ray and colours them after, slow, the truth that the others are "
-     "held against (default auto: shear-warp)"},
+     "held against; value: what is to become shear-warp, values first and "
+     "colours after, for parallel views of mode over so far (default auto: "
+     "shear-warp)"},
 
     {"kernel", 0, "tent|gauss|bspline|box", TOPIC_KERNEL, RENDER, read_choice,
      FIELD(kernel), 0, 0, "", "reconstruction kernel; method raycast takes tent and bspline (default "

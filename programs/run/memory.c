@@ -22,6 +22,7 @@
 #define PIXEL_BYTES 16  /* four floats */
 #define PLACE_SHARE 7   /* EA: one byte for this many voxels */
 #define BOUND_BYTES 0.5 /* 16 bits for four voxels */
+#define VALUE_BYTES 12  /* of method value: IA, rows, voxels around */
 
 static double shear_warp_bytes(const options *asked, double value_bytes) {
     double code = value_bytes > 1 ? 2 : 1;
@@ -42,6 +43,8 @@ static double encoded_bytes(const options *asked,
         return 0;
     if (strcmp(asked->method, "footprint") == 0)
         return PIXEL_BYTES + 1.0 / PLACE_SHARE;
+    if (strcmp(asked->method, "value") == 0)
+        return VALUE_BYTES;
     double value = (double)snow_type_size(info->type);
     double bytes = shear_warp_bytes(asked, value);
     /* A draft with few pixels encodes a level of half the voxels or fewer in

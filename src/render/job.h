@@ -12,6 +12,7 @@
 #include "render/modes/modes.h"
 #include "render/settings_resolve.h"
 #include "render/shear_warp/shear_warp.h"
+#include "render/value/value.h"
 #include "splat/splat.h"
 #include "transform/clip.h"
 
@@ -43,6 +44,7 @@ struct snow_frame {
     snow_mode_colors mode_colors;
     snow_iso *iso;           /* of mode iso; NULL until needed */
     snow_image *depth;       /* of the last picture; NULL: not asked for */
+    snow_value_path *value_path; /* of method value; NULL until needed */
     snow_mipmap *levels;     /* of the volume; NULL until needed */
     snow_ranks *ranks;       /* of pictures by many ranks; NULL until needed */
     snow_load_balance *work; /* of the same */

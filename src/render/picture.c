@@ -79,6 +79,8 @@ const snow_render_method *snow_method_of(const snow_job *job) {
     const snow_settings *s = &job->settings;
     if (s->method == SNOW_METHOD_RAYCAST)
         return &snow_method_raycast;
+    if (s->method == SNOW_METHOD_VALUE)
+        return &snow_method_value;
     if (s->mode == SNOW_MODE_ISO)
         return &snow_method_iso;
     if (s->method == SNOW_METHOD_SHEAR_WARP)

@@ -131,7 +131,8 @@ const snow_render_method *snow_method_of(const snow_job *job);
 
 extern const snow_render_method snow_method_exact,
     snow_method_exact_perspective, snow_method_groups, snow_method_shear_warp,
-    snow_method_projection, snow_method_iso, snow_method_raycast;
+    snow_method_projection, snow_method_iso, snow_method_raycast,
+    snow_method_value;
 
 /* Of one process. */
 extern const snow_combine_ops snow_combine_alone;

@@ -65,10 +65,10 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
     return SNOW_STATUS_OK;
 }
 
-/* A draft's default kernel is the cheapest that is continuous, and raycast's
- * the one that goes through the voxels' values. */
+/* A draft's default kernel is the cheapest that is continuous, and that of
+ * raycast and value the one that goes through the voxels' values. */
 static bool takes_tent(const snow_settings *s) {
-    return s->method == SNOW_METHOD_RAYCAST ||
+    return s->method == SNOW_METHOD_RAYCAST || s->method == SNOW_METHOD_VALUE ||
            (s->method == SNOW_METHOD_SHEAR_WARP &&
             s->quality == SNOW_QUALITY_DRAFT);
 }
@@ -89,8 +89,8 @@ static snow_status check_raycast(snow_context *context,
 snow_status snow_settings_resolve(snow_context *context,
                                   const snow_volume_info *info,
                                   snow_settings *s) {
-    SNOW_TRY(check_choice(context, "method", (int)s->method,
-                          SNOW_METHOD_RAYCAST + 1));
+    SNOW_TRY(
+        check_choice(context, "method", (int)s->method, SNOW_METHOD_VALUE + 1));
     SNOW_TRY(check_choice(context, "encoding", (int)s->encoding,
                           SNOW_ENCODING_RLE + 1));
     SNOW_TRY(

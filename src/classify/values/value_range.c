@@ -1,0 +1,225 @@
+/* classify/values/value_range.c - see value_range.h. */
+#include "classify/values/value_range.h"
+
+#include "base/thread_pool.h"
+
+#include <math.h>
+
+/* --- the range of the data -------------------------------------------------
+ */
+
+/* Voxels of a work item, and of a block within it. */
+#define ITEM ((int64_t)1 << 18)
+#define BLOCK 1024
+
+/* What the items of one worker have found, in native values. */
+typedef struct found_range {
+    double low, high;
+    bool holes;
+    char apart[40]; /* workers write to different cache lines */
+} found_range;
+
+typedef struct range_job {
+    const snow_volume *volume;
+    int64_t voxels;
+    found_range *found; /* of each worker */
+} range_job;
+
+static void look_at(found_range *found, const double *natives, size_t count) {
+    double low = found->low, high = found->high;
+    bool holes = false;
+    for (size_t n = 0; n < count; n++) {
+        double value = natives[n];
+        bool finite = value - value == 0;
+        low = finite && value < low ? value : low;
+        high = finite && value > high ? value : high;
+        holes |= value != value;
+    }
+    found->low = low;
+    found->high = high;
+    found->holes |= holes;
+}
+
+static void look_at_item(void *of, int64_t item, int worker) {
+    const range_job *job = of;
+    int64_t first = item * ITEM, end = first + ITEM;
+    end = end < job->voxels ? end : job->voxels;
+    for (; first < end; first += BLOCK) {
+        double natives[BLOCK];
+        size_t count = end - first < BLOCK ? (size_t)(end - first) : BLOCK;
+        snow_volume_natives(job->volume, first, count, natives);
+        look_at(&job->found[worker], natives, count);
+    }
+}
+
+/* What all workers have found, as data values. */
+static void put_together(const range_job *job, int threads,
+                         snow_data_range *out) {
+    const snow_volume_info *info = &job->volume->info;
+    found_range all = {.low = INFINITY, .high = -INFINITY};
+    for (int n = 0; n < threads; n++) {
+        all.low = fmin(all.low, job->found[n].low);
+        all.high = fmax(all.high, job->found[n].high);
+        all.holes |= job->found[n].holes;
+    }
+    double a = info->slope * all.low + info->intercept;
+    double b = info->slope * all.high + info->intercept;
+    bool any = all.low <= all.high;
+    *out = (snow_data_range){any ? fmin(a, b) : INFINITY,
+                             any ? fmax(a, b) : -INFINITY, all.holes};
+}
+
+snow_status snow_data_range_measure(const snow_volume *volume, int threads,
+                                    snow_data_range *out) {
+    const int64_t *dims = volume->info.dims;
+    range_job job = {.volume = volume, .voxels = dims[0] * dims[1] * dims[2]};
+    int64_t items = (job.voxels + ITEM - 1) / ITEM;
+    threads = threads < items ? threads : (int)items;
+    job.found = snow_allocate_array(volume->context, (uint64_t)threads,
+                                    sizeof *job.found);
+    if (!job.found)
+        return SNOW_STATUS_NO_MEMORY;
+    for (int n = 0; n < threads; n++)
+        job.found[n] = (found_range){.low = INFINITY, .high = -INFINITY};
+    snow_status status =
+        snow_parallel(volume->context, threads, items, look_at_item, &job);
+    if (status == SNOW_STATUS_OK)
+        put_together(&job, threads, out);
+    snow_release(volume->context, job.found);
+    return status;
+}
+
+/* --- the scale of a look ---------------------------------------------------
+ */
+
+/* The hull of the data's values that have an opacity. */
+static void find_visible(const snow_data_range *data,
+                         const snow_transfer *transfer, double visible[2]) {
+    const snow_opacity_point *p = transfer->opacities;
+    size_t count = transfer->opacity_count;
+    visible[0] = INFINITY;
+    visible[1] = -INFINITY;
+    for (size_t n = 0; n <= count; n++) {
+        double a = n > 0 ? p[n - 1].value : -INFINITY;
+        double b = n < count ? p[n].value : INFINITY;
+        bool seen =
+            (n > 0 && p[n - 1].opacity > 0) || (n < count && p[n].opacity > 0);
+        if (!seen || a > data->high || b < data->low)
+            continue;
+        visible[0] = fmin(visible[0], fmax(a, data->low));
+        visible[1] = fmax(visible[1], fmin(b, data->high));
+    }
+}
+
+snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
+                                       const snow_transfer *transfer) {
+    snow_value_scale14 scale = {data->low, data->high};
+    double visible[2];
+    find_visible(data, transfer, visible);
+    double length = visible[1] - visible[0];
+    if (!(length > 0) || length * 64 >= data->high - data->low)
+        return scale;
+    scale.low = fmax(data->low, visible[0] - 4 * length);
+    scale.high = fmin(data->high, visible[1] + 4 * length);
+    return scale;
+}
+
+/* --- numbers ----------------------------------------------------------------
+ */
+
+/* To the nearest integer, halves to the even one: adding this leaves no bit for
+ * fractions. */
+static inline double nearest(double x) {
+    const double big = 0x1.8p52;
+    return x + big - big;
+}
+
+static inline int16_t number_of(double low, double high, double value) {
+    value = value < low ? low : value;
+    value = value > high ? high : value;
+    return (int16_t)(int)nearest((value - low) * SNOW_VALUE_MOST /
+                                 (high - low));
+}
+
+int16_t snow_value_number(const snow_value_scale14 *scale, double value) {
+    return scale->high > scale->low ? number_of(scale->low, scale->high, value)
+                                    : 0;
+}
+
+static bool is_wide(snow_type type) {
+    return snow_type_size(type) > 2;
+}
+
+snow_status snow_value_coder_make(const snow_volume *volume,
+                                  const snow_value_scale14 *scale,
+                                  snow_value_coder *coder) {
+    const snow_volume_info *info = &volume->info;
+    size_t count = (size_t)1 << 8 * (snow_type_size(info->type) & 3);
+    coder->scale = *scale;
+    coder->type = info->type;
+    coder->slope = info->slope;
+    coder->intercept = info->intercept;
+    if (is_wide(info->type))
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_reserve(volume->context, &coder->numbers, &coder->capacity, 0,
+                          count * sizeof *coder->numbers));
+    coder->lowest = info->type == SNOW_TYPE_INT8    ? INT8_MIN
+                    : info->type == SNOW_TYPE_INT16 ? INT16_MIN
+                                                    : 0;
+    for (size_t n = 0; n < count; n++)
+        coder->numbers[n] = snow_value_number(
+            scale, info->slope * (double)((int32_t)n + coder->lowest) +
+                       info->intercept);
+    return SNOW_STATUS_OK;
+}
+
+void snow_value_coder_fini(snow_context *context, snow_value_coder *coder) {
+    snow_release(context, coder->numbers);
+    *coder = (snow_value_coder){0};
+}
+
+#define CODE_NARROW(name, type)                                                \
+    static void code_##name(const snow_value_coder *coder,                     \
+                            const type *natives, size_t count, int16_t *out) { \
+        const int16_t *numbers = coder->numbers - coder->lowest;               \
+        for (size_t n = 0; n < count; n++)                                     \
+            out[n] = numbers[natives[n]];                                      \
+    }
+
+CODE_NARROW(INT8, int8_t)
+CODE_NARROW(UINT8, uint8_t)
+CODE_NARROW(INT16, int16_t)
+CODE_NARROW(UINT16, uint16_t)
+
+#define CODE_WIDE(name, type)                                                  \
+    static void code_##name(const snow_value_coder *coder,                     \
+                            const type *natives, size_t count, int16_t *out) { \
+        const double low = coder->scale.low, high = coder->scale.high;         \
+        const double slope = coder->slope, intercept = coder->intercept;       \
+        const bool flat = !(high > low);                                       \
+        for (size_t n = 0; n < count; n++) {                                   \
+            double value = slope * (double)natives[n] + intercept;             \
+            out[n] = flat ? 0 : number_of(low, high, value);                   \
+        }                                                                      \
+    }
+
+CODE_WIDE(INT32, int32_t)
+CODE_WIDE(UINT32, uint32_t)
+CODE_WIDE(INT64, int64_t)
+CODE_WIDE(UINT64, uint64_t)
+CODE_WIDE(FLOAT32, float)
+CODE_WIDE(FLOAT64, double)
+
+void snow_value_code_row(const snow_value_coder *coder, const void *natives,
+                         size_t count, int16_t *out) {
+    switch (coder->type) {
+#define CODE_CASE(name, type, text)              \
+    case SNOW_TYPE_##name:                       \
+        code_##name(coder, natives, count, out); \
+        break;
+        SNOW_TYPE_MAP(CODE_CASE)
+#undef CODE_CASE
+    case SNOW_TYPE_NONE:
+        break;
+    }
+}

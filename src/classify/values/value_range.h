@@ -1,0 +1,58 @@
+/* classify/values/value_range.h - data values as numbers of 14 bits, which the
+ * value path interpolates before it colours them. */
+#ifndef SNOW_CLASSIFY_VALUE_RANGE_H
+#define SNOW_CLASSIFY_VALUE_RANGE_H
+
+#include "transfer/transfer.h"
+#include "volume/volume.h"
+
+/* The largest number. */
+#define SNOW_VALUE_MOST 16383
+
+/* The finite data values of a volume. */
+typedef struct snow_data_range {
+    double low, high; /* low > high: there is none */
+    bool holes;       /* some voxels are NaN */
+} snow_data_range;
+
+/* Reads all voxels.  `threads` as in base/thread_pool.h.  Errors:
+ * SNOW_STATUS_STOPPED. */
+snow_status snow_data_range_measure(const snow_volume *volume, int threads,
+                                    snow_data_range *out);
+
+/* Number V stands for the data value low + V (high - low) / SNOW_VALUE_MOST;
+ * values beyond the ends are clamped. */
+typedef struct snow_value_scale14 {
+    double low, high;
+} snow_value_scale14;
+
+/* The scale of a look: all of the data, or, where the look shows less than 1/64
+ * of that, what it shows, widened by four times its length on each side. */
+snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
+                                       const snow_transfer *transfer);
+
+/* The number of a data value that is not NaN. */
+int16_t snow_value_number(const snow_value_scale14 *scale, double value);
+
+/* A converter of native values of one type. */
+typedef struct snow_value_coder {
+    snow_value_scale14 scale;
+    snow_type type;
+    double slope, intercept;
+    int32_t lowest;   /* native value of the table's first number */
+    int16_t *numbers; /* of types of 8 and 16 bits: by native value */
+    size_t capacity;  /* bytes */
+} snow_value_coder;
+
+/* `coder` begins as zeros or was made before.  Errors: SNOW_STATUS_NO_MEMORY.
+ * Free with snow_value_coder_fini. */
+snow_status snow_value_coder_make(const snow_volume *volume,
+                                  const snow_value_scale14 *scale,
+                                  snow_value_coder *coder);
+void snow_value_coder_fini(snow_context *context, snow_value_coder *coder);
+
+/* The numbers of `count` native values in a row, none of which is NaN. */
+void snow_value_code_row(const snow_value_coder *coder, const void *natives,
+                         size_t count, int16_t *out);
+
+#endif

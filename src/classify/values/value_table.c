@@ -1,0 +1,353 @@
+/* classify/values/value_table.c - see value_table.h.
+ *
+ * An entry's steps are at values (i + 1/2) / N of the way.  Where nodes are
+ * evenly placed all of these lie on one fine raster, 2 N points from node to
+ * node, so that the look is evaluated there once and entries only composite. */
+#include "classify/values/value_table.h"
+
+#include "base/thread_pool.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Numbers between two looks where nodes are placed by measure. */
+#define MEASURED_STEP 0.25
+
+/* A look whose steepest ramp spans fewer nodes has them placed by measure. */
+#define STEEP_NODES 4
+
+/* --- looks ------------------------------------------------------------------
+ */
+
+/* Colour and opacity of the reference length at number V. */
+static void look_at(const snow_value_look *look, double v,
+                    snow_transfer_hint *hint, double rgba[4]) {
+    const snow_value_scale14 *scale = &look->scale;
+    double value =
+        scale->low + v * (scale->high - scale->low) / SNOW_VALUE_MOST;
+    snow_transfer_near(look->transfer, value, hint, rgba);
+    if (!snow_is_interesting(rgba[3], look->threshold))
+        rgba[3] = 0;
+}
+
+static double alpha_of(double opacity, double exponent) {
+    return opacity >= 1 ? 1 : 1 - pow(1 - opacity, exponent);
+}
+
+/* Looks of a step, `step` numbers apart. */
+static snow_status fill_looks(snow_context *context,
+                              const snow_value_look *look,
+                              snow_value_table *table) {
+    snow_transfer_hint hint = {0};
+    double exponent = look->exponent / look->steps;
+    SNOW_TRY(snow_reserve(context, &table->looks, &table->looks_capacity, 0,
+                          4 * table->look_count * sizeof *table->looks));
+    double last = -1, alpha = 0;
+    for (size_t n = 0; n < table->look_count; n++) {
+        double rgba[4];
+        float *out = table->looks + 4 * n;
+        look_at(look, (double)n * table->step, &hint, rgba);
+        if (rgba[3] != last)
+            alpha = alpha_of(last = rgba[3], exponent);
+        for (int c = 0; c < 3; c++)
+            out[c] = (float)(alpha * rgba[c]);
+        out[3] = (float)alpha;
+    }
+    return SNOW_STATUS_OK;
+}
+
+/* --- nodes ------------------------------------------------------------------
+ */
+
+/* The shortest way between two points of different opacity, steps left out, in
+ * nodes that are evenly placed. */
+static bool is_steep(const snow_value_look *look) {
+    const snow_transfer *t = look->transfer;
+    double shortest = INFINITY;
+    for (size_t n = 0; n + 1 < t->opacity_count; n++) {
+        const snow_opacity_point *p = &t->opacities[n];
+        double length = p[1].value - p[0].value;
+        if (p[1].opacity != p[0].opacity && length > 0)
+            shortest = fmin(shortest, length);
+    }
+    return shortest * (look->nodes - 1) <
+           STEEP_NODES * (look->scale.high - look->scale.low);
+}
+
+/* How much the look of a slab of one value changes from one to the other. */
+static double change(const double a[4], const double b[4]) {
+    double sum = 0;
+    for (int c = 0; c < 4; c++)
+        sum += (c == 3 ? 3 : 1) * fabs(b[c] - a[c]);
+    return sum;
+}
+
+/* Half of the nodes evenly, half where the look changes; no number has more of
+ * this than one node. */
+static void measure_nodes(const snow_value_look *look, double *until,
+                          double *at) {
+    snow_transfer_hint hint = {0};
+    double before[4], total = 0;
+    for (int v = 0; v <= SNOW_VALUE_MOST; v++) {
+        double here[4];
+        look_at(look, v, &hint, here);
+        here[3] = alpha_of(here[3], look->exponent);
+        for (int c = 0; c < 3; c++)
+            here[c] *= here[3];
+        total += until[v] = v ? change(before, here) : 0;
+        memcpy(before, here, sizeof before);
+    }
+    for (int v = 1; v <= SNOW_VALUE_MOST; v++) {
+        double part = total > 0 ? until[v] / total : 1.0 / SNOW_VALUE_MOST;
+        part =
+            fmin(0.5 / SNOW_VALUE_MOST + 0.5 * part, 1.0 / (look->nodes - 1));
+        until[v] = until[v - 1] + part;
+    }
+    for (int node = 0, v = 0; node < look->nodes; node++) {
+        while (v < SNOW_VALUE_MOST &&
+               until[v] < until[SNOW_VALUE_MOST] * node / (look->nodes - 1))
+            v++;
+        at[node] = v;
+    }
+}
+
+static void find_nodes(const snow_value_look *look, snow_value_table *table) {
+    for (int v = 0, node = 0; v <= SNOW_VALUE_MOST; v++) {
+        while (node + 1 < look->nodes &&
+               table->at[node + 1] - v <= v - table->at[node])
+            node++;
+        table->node_of[v] = table->nodes
+                                ? (uint8_t)node
+                                : (uint8_t)((v * table->scale + 0x4000) >> 15);
+    }
+}
+
+static snow_status place_nodes(snow_context *context,
+                               const snow_value_look *look,
+                               snow_value_table *table) {
+    bool measured = is_steep(look);
+    size_t values = SNOW_VALUE_MOST + 1;
+    SNOW_TRY(snow_reserve(context, &table->at, &table->at_capacity, 0,
+                          (SNOW_VALUE_PITCH + values) * sizeof *table->at));
+    SNOW_TRY(snow_reserve(context, &table->node_of, &table->node_of_capacity, 0,
+                          values));
+    double apart =
+        look->nodes == 129 ? 128 : (double)SNOW_VALUE_MOST / (look->nodes - 1);
+    for (int node = 0; node < look->nodes; node++)
+        table->at[node] = look->nodes == 129 ? 128 * node
+                                             : (double)SNOW_VALUE_MOST * node /
+                                                   (look->nodes - 1);
+    table->scale = look->nodes == 129 ? 256 : 510;
+    table->nodes = measured ? table->node_of : NULL;
+    table->step = measured ? MEASURED_STEP : apart / (2 * look->steps);
+    table->look_count = measured
+                            ? (size_t)(SNOW_VALUE_MOST / MEASURED_STEP) + 2
+                            : (size_t)(2 * look->steps * (look->nodes - 1)) + 1;
+    if (measured)
+        measure_nodes(look, table->at + SNOW_VALUE_PITCH, table->at);
+    find_nodes(look, table);
+    return SNOW_STATUS_OK;
+}
+
+/* The place of a node among the looks. */
+static int64_t look_of(const snow_value_table *table,
+                       const snow_value_look *look, int node) {
+    return table->nodes ? (int64_t)(table->at[node] / MEASURED_STEP + 0.5)
+                        : (int64_t)(2 * look->steps) * node;
+}
+
+/* --- entries ----------------------------------------------------------------
+ */
+
+typedef float four_floats __attribute__((vector_size(16)));
+
+/* Colours, alpha and place of an entry, whose steps' looks begin at `first` and
+ * are `way` / (2 steps) apart; *place: 0 to 1. */
+static four_floats collect(const snow_value_table *table, int64_t first,
+                           int64_t way, int steps, float *place) {
+    float through = 1, places = 0;
+    four_floats sum = {0, 0, 0, 0};
+    int64_t apart = way * 65536 / steps, at = first * 65536 + apart / 2;
+    for (int n = 0; n < steps; n++, at += apart) {
+        four_floats here;
+        memcpy(&here, table->looks + 4 * (at >> 16), sizeof here);
+        here *= (four_floats){through, through, through, through};
+        sum += here;
+        places += here[3] * ((float)n + 0.5F);
+        through -= here[3];
+    }
+    *place = sum[3] > 0 ? places / ((float)steps * sum[3]) : 0.5F;
+    return sum;
+}
+
+static uint64_t pack(four_floats rgba, float place, bool shaded) {
+    uint64_t entry = 0;
+    int sixteenths = place * 16 < 15 ? (int)(place * 16) : 15;
+    for (int c = 0; c < 4; c++) {
+        int word = (int)(rgba[c] * 32767 + 0.5F);
+        word = word > 32767 ? 32767 : word;
+        if (shaded)
+            word |= (sixteenths >> c & 1) << 15;
+        entry |= (uint64_t)(unsigned)word << 16 * c;
+    }
+    return entry;
+}
+
+typedef struct table_job {
+    const snow_value_look *look;
+    snow_value_table *table;
+} table_job;
+
+static void fill_row(void *of, int64_t front, int worker) {
+    const table_job *job = of;
+    const snow_value_look *look = job->look;
+    const snow_value_table *table = job->table;
+    uint64_t *row = table->entries + front * SNOW_VALUE_PITCH;
+    int64_t first = look_of(table, look, (int)front);
+    (void)worker;
+    for (int back = 0; back < look->nodes; back++) {
+        float place;
+        four_floats rgba =
+            collect(table, first, look_of(table, look, back) - first,
+                    look->steps, &place);
+        row[back] = rgba[3] > 0 ? pack(rgba, place, look->shaded) : 0;
+        if ((row[back] >> 48 & 0x7fff) == 0)
+            row[back] = 0;
+    }
+}
+
+/* --- invisible runs --------------------------------------------------------
+ */
+
+/* Keeps the longest runs; they stay rising. */
+static void add_run(snow_value_table *table, snow_value_run run) {
+    int shortest = 0, count = table->run_count;
+    if (count < SNOW_VALUE_RUNS) {
+        table->runs[table->run_count++] = run;
+        return;
+    }
+    for (int n = 1; n < count; n++)
+        if (table->runs[n].last - table->runs[n].first <
+            table->runs[shortest].last - table->runs[shortest].first)
+            shortest = n;
+    if (run.last - run.first <=
+        table->runs[shortest].last - table->runs[shortest].first)
+        return;
+    for (int n = shortest; n + 1 < count; n++)
+        table->runs[n] = table->runs[n + 1];
+    table->runs[count - 1] = run;
+}
+
+/* The last node up to which all looks from `node` on are invisible; below it
+ * where not even its own is. */
+static int blind_until(const snow_value_table *table,
+                       const snow_value_look *look, int node) {
+    int64_t n = look_of(table, look, node);
+    int64_t end = (int64_t)table->look_count;
+    while (n < end && !(table->looks[4 * n + 3] > 0))
+        n++;
+    int last = node - 1;
+    while (last + 1 < look->nodes && look_of(table, look, last + 1) < n)
+        last++;
+    return last;
+}
+
+static void find_runs(const snow_value_look *look, snow_value_table *table) {
+    const uint8_t *node_of = table->node_of;
+    table->run_count = 0;
+    for (int v = 0; v <= SNOW_VALUE_MOST;) {
+        int last = blind_until(table, look, node_of[v]), end = v;
+        while (end <= SNOW_VALUE_MOST && node_of[end] <= last)
+            end++;
+        if (end > v)
+            add_run(table, (snow_value_run){(int16_t)v, (int16_t)(end - 1)});
+        for (last = node_of[v]; end <= SNOW_VALUE_MOST && node_of[end] <= last;)
+            end++;
+        v = end;
+    }
+}
+
+static void find_most(const snow_value_look *look, snow_value_table *table) {
+    uint64_t most = 0;
+    for (int f = 0; f < look->nodes; f++)
+        for (int b = 0; b < look->nodes; b++) {
+            uint64_t alpha =
+                table->entries[f * SNOW_VALUE_PITCH + b] >> 48 & 0x7fff;
+            most = alpha > most ? alpha : most;
+        }
+    table->most = (float)most / 32767;
+}
+
+/* --- the table --------------------------------------------------------------
+ */
+
+/* The points of a look, to know it again. */
+static snow_status take_key(snow_context *context, const snow_transfer *t,
+                            snow_value_table *table, bool *same) {
+    size_t count = 4 * t->color_count + 2 * t->opacity_count, n = 0;
+    SNOW_TRY(snow_reserve(context, &table->next_key, &table->next_key_capacity,
+                          0, (count + 1) * sizeof(double)));
+    double *key = table->next_key;
+    for (size_t i = 0; i < t->color_count; i++) {
+        key[n++] = t->colors[i].value;
+        key[n++] = t->colors[i].red;
+        key[n++] = t->colors[i].green;
+        key[n++] = t->colors[i].blue;
+    }
+    for (size_t i = 0; i < t->opacity_count; i++) {
+        key[n++] = t->opacities[i].value;
+        key[n++] = t->opacities[i].opacity;
+    }
+    *same = table->key_count == count &&
+            memcmp(key, table->key, count * sizeof *key) == 0;
+    size_t capacity = table->key_capacity;
+    table->next_key = table->key;
+    table->key = key;
+    table->key_capacity = table->next_key_capacity;
+    table->next_key_capacity = capacity;
+    table->key_count = count;
+    return SNOW_STATUS_OK;
+}
+
+static bool same_look(const snow_value_look *a, const snow_value_look *b) {
+    return a->nodes == b->nodes && a->steps == b->steps &&
+           a->shaded == b->shaded && a->threshold == b->threshold &&
+           a->exponent == b->exponent && a->scale.low == b->scale.low &&
+           a->scale.high == b->scale.high;
+}
+
+snow_status snow_value_table_make(snow_context *context,
+                                  const snow_value_look *look,
+                                  snow_value_table *table) {
+    const size_t bytes =
+        SNOW_VALUE_PITCH * SNOW_VALUE_PITCH * sizeof *table->entries;
+    bool same;
+    SNOW_TRY(take_key(context, look->transfer, table, &same));
+    if (same && same_look(look, &table->made))
+        return SNOW_STATUS_OK;
+    bool anew = !table->entries;
+    table->made.nodes = 0; /* until it is whole */
+    SNOW_TRY(snow_reserve(context, &table->entries, &table->entries_capacity, 0,
+                          bytes));
+    if (anew)
+        memset(table->entries, 0, bytes);
+    SNOW_TRY(place_nodes(context, look, table));
+    SNOW_TRY(fill_looks(context, look, table));
+    table_job job = {look, table};
+    SNOW_TRY(
+        snow_parallel(context, look->threads, look->nodes, fill_row, &job));
+    find_runs(look, table);
+    find_most(look, table);
+    table->made = *look;
+    return SNOW_STATUS_OK;
+}
+
+void snow_value_table_fini(snow_context *context, snow_value_table *table) {
+    snow_release(context, table->entries);
+    snow_release(context, table->node_of);
+    snow_release(context, table->at);
+    snow_release(context, table->looks);
+    snow_release(context, table->key);
+    snow_release(context, table->next_key);
+    *table = (snow_value_table){0};
+}

@@ -1,0 +1,61 @@
+/* classify/values/value_table.h - the colours of a slab between two sheets of
+ * values: pre-integrated (Engel, Kraus, Ertl 2001), with attenuation inside
+ * of the slab.
+ *
+ * Entry [f][b] is what a ray collects on its way through one slab while its
+ * value goes from node f straight to node b: N equal steps, composited. */
+#ifndef SNOW_CLASSIFY_VALUE_TABLE_H
+#define SNOW_CLASSIFY_VALUE_TABLE_H
+
+#include "classify/values/value_range.h"
+
+/* Entries of one row of the table, of which `nodes` are used. */
+#define SNOW_VALUE_PITCH 256
+
+/* Numbers of values whose slabs are all invisible. */
+typedef struct snow_value_run {
+    int16_t first, last;
+} snow_value_run;
+#define SNOW_VALUE_RUNS 4
+
+/* What a table is made for. */
+typedef struct snow_value_look {
+    const snow_transfer *transfer;
+    snow_value_scale14 scale;
+    double threshold; /* opacity 0 to 255; what is not above it is invisible */
+    double exponent;  /* length of a ray in a slab, in reference lengths */
+    int nodes, steps; /* 129 or 256; of an entry */
+    bool shaded;
+    int threads;
+} snow_value_look;
+
+typedef struct snow_value_table {
+    /* Premultiplied colour and alpha, lowest first, words of 15 bits.  In a
+     * shaded one the top bits are the place of the opacity in sixteenths of the
+     * slab, lowest bit first. */
+    uint64_t *entries; /* [front * SNOW_VALUE_PITCH + back] */
+    int16_t scale;     /* the node of V is (V scale + 2^14) / 2^15, or: */
+    uint8_t *nodes;    /* by V; NULL: evenly placed */
+    uint8_t *node_of;  /* by V, always */
+    double *at;        /* V of each node */
+    float *looks;      /* premultiplied RGBA of a step, by V */
+    double step;       /* numbers between two of these looks */
+    size_t look_count;
+    size_t entries_capacity, node_of_capacity, at_capacity, looks_capacity;
+    snow_value_run runs[SNOW_VALUE_RUNS]; /* the longest ones, rising */
+    int run_count;
+    float most; /* the largest alpha */
+    /* What was made last. */
+    snow_value_look made;
+    double *key, *next_key;
+    size_t key_count, key_capacity, next_key_capacity;
+} snow_value_table;
+
+/* Makes the table, unless it is there already.  `table` begins as zeros or was
+ * made before.  Errors: SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
+snow_status snow_value_table_make(snow_context *context,
+                                  const snow_value_look *look,
+                                  snow_value_table *table);
+void snow_value_table_fini(snow_context *context, snow_value_table *table);
+
+#endif

@@ -1,0 +1,57 @@
+/* encode/values/value_encode.h - the steps of encoding that value_store.c
+ * calls; each is an item of work for one thread. */
+#ifndef SNOW_ENCODE_VALUE_ENCODE_H
+#define SNOW_ENCODE_VALUE_ENCODE_H
+
+#include "encode/values/value_lines.h"
+
+/* Voxel rows of a band. */
+#define SNOW_VALUE_BAND 32
+
+/* Loops of an instruction set (value_rows.tmpl.h). */
+typedef struct snow_value_loops {
+    void (*outside)(const int16_t *line, size_t words, snow_value_run run,
+                    uint32_t *out);
+    int16_t *(*pack)(const int16_t *line, const uint32_t *bits, size_t words,
+                     int16_t *out);
+} snow_value_loops;
+
+const snow_value_loops *snow_value_loops_of(snow_isa isa);
+
+/* Words of 32 columns of a line, margins included. */
+static inline size_t snow_value_words(const snow_value_store *s) {
+    return snow_value_line(s->columns, s->margin) / 32;
+}
+
+size_t snow_value_cells_bytes(const snow_value_store *store,
+                              const snow_value_store_params *params);
+
+/* The masks of the rows of cells of a band; the last band's go on to the
+ * volume's end. */
+snow_status snow_value_cells_band(snow_value_store *store,
+                                  const snow_value_store_params *params,
+                                  int64_t band, int worker, void *scratch);
+
+/* The coarse mask of a slice, once all its bands are there. */
+void snow_value_cells_coarse(snow_value_store *store, int64_t slice);
+
+size_t snow_value_shell_bytes(const snow_value_store *store,
+                              const snow_value_store_params *params);
+
+/* EA, IA and PA of a band.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_shell_band(snow_value_store *store,
+                                  const snow_value_store_params *params,
+                                  int64_t band, int worker, void *scratch);
+
+/* The ends of the rows of a band; then, when they have places, their values. */
+void snow_value_rows_measure(snow_value_store *store, int64_t band,
+                             snow_span *spans);
+void snow_value_rows_fill(snow_value_store *store, int64_t band,
+                          snow_span *spans);
+
+/* Places for all rows; then the rows beyond the sides of a slice.  Errors:
+ * SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_rows_place(snow_value_store *store);
+void snow_value_rows_border(snow_value_store *store, int64_t slice);
+
+#endif

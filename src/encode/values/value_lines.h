@@ -1,0 +1,43 @@
+/* encode/values/value_lines.h - lines of numbers from native voxels, whatever
+ * the slice axis. */
+#ifndef SNOW_ENCODE_VALUE_LINES_H
+#define SNOW_ENCODE_VALUE_LINES_H
+
+#include "encode/fetch.h"
+#include "encode/values/value_store.h"
+
+/* Some rows of all slices, for one thread. */
+typedef struct snow_value_lines {
+    snow_fetch fetch;
+    snow_rows slice; /* that is read */
+    const snow_value_coder *coder;
+    int64_t first, rows, all_rows, columns;
+    int margin;
+    int16_t *spare; /* room for a line */
+} snow_value_lines;
+
+/* Numbers of a line, with its margins, in whole rows of 32. */
+static inline size_t snow_value_line(int64_t columns, int margin) {
+    return ((size_t)columns + 2 * (size_t)margin + 31) / 32 * 32;
+}
+
+size_t snow_value_lines_bytes(const snow_value_store_params *params,
+                              int64_t rows);
+
+/* Rows first .. first + rows - 1; scratch of that many bytes, aligned to 64. */
+void snow_value_lines_begin(snow_value_lines *lines,
+                            const snow_value_store_params *params,
+                            int64_t first, int64_t rows, void *scratch);
+
+/* Slices come in order. */
+void snow_value_lines_slice(snow_value_lines *lines, int64_t slice);
+
+/* Line `row` of the slice, which may be one beyond the volume's first and last
+ * one, if the two beside it are among the rows: out[margin + c] is column c. */
+void snow_value_lines_read(snow_value_lines *lines, int64_t row, int16_t *out);
+
+/* Columns 0 and columns - 1 are there, and those beside them if there are any:
+ * writes the margin of a line. */
+void snow_value_line_continue(int16_t *line, int64_t columns, int margin);
+
+#endif

@@ -1,0 +1,202 @@
+/* encode/values/value_store.c - see value_store.h. */
+#include "encode/values/value_store.h"
+
+#include "base/thread_pool.h"
+#include "encode/values/value_encode.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+typedef struct store_job {
+    snow_value_store *store;
+    const snow_value_store_params *params;
+    size_t scratch_bytes; /* of a thread */
+    atomic_int failed;    /* the last failure's snow_status */
+} store_job;
+
+static void *scratch_of(const store_job *job, int worker) {
+    return job->store->scratch + (size_t)worker * job->scratch_bytes;
+}
+
+static void keep_status(store_job *job, snow_status status) {
+    if (status != SNOW_STATUS_OK)
+        atomic_store(&job->failed, (int)status);
+}
+
+static void cells_item(void *of, int64_t band, int worker) {
+    store_job *job = of;
+    keep_status(job, snow_value_cells_band(job->store, job->params, band,
+                                           worker, scratch_of(job, worker)));
+}
+
+static void coarse_item(void *of, int64_t slice, int worker) {
+    const store_job *job = of;
+    (void)worker;
+    snow_value_cells_coarse(job->store, slice);
+}
+
+static void shell_item(void *of, int64_t band, int worker) {
+    store_job *job = of;
+    keep_status(job, snow_value_shell_band(job->store, job->params, band,
+                                           worker, scratch_of(job, worker)));
+}
+
+static void measure_item(void *of, int64_t band, int worker) {
+    const store_job *job = of;
+    snow_value_rows_measure(job->store, band, scratch_of(job, worker));
+}
+
+static void fill_item(void *of, int64_t band, int worker) {
+    const store_job *job = of;
+    snow_value_rows_fill(job->store, band, scratch_of(job, worker));
+}
+
+static void border_item(void *of, int64_t slice, int worker) {
+    const store_job *job = of;
+    (void)worker;
+    snow_value_rows_border(job->store, slice);
+}
+
+/* --- sizes ------------------------------------------------------------------
+ */
+
+static snow_status reserve_masks(snow_value_store *s) {
+    s->mask_words = snow_value_words(s) + 2;
+    s->mask_rows =
+        (size_t)s->rows + 2 * (size_t)s->margin + 2 * SNOW_VALUE_ROWS;
+    s->coarse_words = s->mask_rows / ((size_t)SNOW_VALUE_COARSE * 64) + 2;
+    size_t slices = (size_t)s->run_count * (size_t)s->slices;
+    size_t masks = slices * s->mask_words * s->mask_rows;
+    SNOW_TRY(snow_reserve(s->context, &s->masks, &s->masks_capacity, 0,
+                          (masks + SNOW_VALUE_ROWS) * sizeof *s->masks));
+    memset(s->masks, 0, (masks + SNOW_VALUE_ROWS) * sizeof *s->masks);
+    return snow_reserve(s->context, &s->coarse, &s->coarse_capacity, 0,
+                        slices * s->mask_words * s->coarse_words *
+                            sizeof *s->coarse);
+}
+
+static snow_status reserve_bands(snow_value_store *s) {
+    size_t before = s->bands_capacity;
+    s->band_count = (s->rows + SNOW_VALUE_BAND - 1) / SNOW_VALUE_BAND;
+    SNOW_TRY(snow_reserve(s->context, &s->bands, &s->bands_capacity, before,
+                          (size_t)s->band_count * sizeof *s->bands));
+    for (size_t n = before / sizeof *s->bands;
+         n < s->bands_capacity / sizeof *s->bands; n++)
+        s->bands[n] = (snow_sparse){.context = s->context};
+    return SNOW_STATUS_OK;
+}
+
+static snow_status reserve_rows(snow_value_store *s) {
+    size_t rows = (size_t)s->slices * (size_t)(s->rows + 2 * s->margin);
+    SNOW_TRY(snow_reserve(s->context, &s->at, &s->at_capacity, 0,
+                          rows * sizeof *s->at));
+    return snow_reserve(s->context, &s->ends, &s->ends_capacity, 0,
+                        rows * sizeof *s->ends);
+}
+
+/* Scratch for whichever step takes most. */
+static snow_status reserve_scratch(store_job *job) {
+    snow_value_store *s = job->store;
+    size_t most = ((size_t)s->columns / 2 + 2) * sizeof(snow_span);
+    size_t cells = snow_value_cells_bytes(s, job->params);
+    size_t shell = snow_value_shell_bytes(s, job->params);
+    most = cells > most ? cells : most;
+    most = shell > most ? shell : most;
+    job->scratch_bytes = (most + 63) / 64 * 64;
+    return snow_reserve(s->context, &s->scratch, &s->scratch_capacity, 0,
+                        job->scratch_bytes * (size_t)job->params->threads);
+}
+
+static snow_status begin(store_job *job) {
+    snow_value_store *s = job->store;
+    const snow_value_store_params *params = job->params;
+    const snow_placement *p = params->placement;
+    if (p->columns * p->rows > (int64_t)UINT32_MAX)
+        return snow_fail(
+            s->context, SNOW_STATUS_BAD_USAGE,
+            "slices of %lldx%lld voxels are too large to encode: the limit is "
+            "4294967295 voxels; render a part of the volume",
+            (long long)p->columns, (long long)p->rows);
+    s->columns = p->columns;
+    s->rows = p->rows;
+    s->slices = p->slices;
+    s->reach = params->reach;
+    s->margin = params->reach + 1;
+    s->run_count = params->run_count;
+    memcpy(s->runs, params->runs,
+           (size_t)params->run_count * sizeof *params->runs);
+    SNOW_TRY(reserve_masks(s));
+    SNOW_TRY(reserve_bands(s));
+    SNOW_TRY(reserve_rows(s));
+    return reserve_scratch(job);
+}
+
+/* --- the encoding -----------------------------------------------------------
+ */
+
+/* Cells that no run hides, and how many runs of them there are. */
+static snow_encoding choose(const snow_value_store *s) {
+    uint64_t cells = 0, runs = 0;
+    size_t slices = s->mask_words * s->mask_rows * (size_t)s->slices;
+    for (size_t n = 0; n < slices; n++) {
+        uint32_t mask = ~UINT32_C(0);
+        for (int run = 0; run < s->run_count; run++)
+            mask &= s->masks[(size_t)run * slices + n];
+        cells += (uint64_t)__builtin_popcount(mask);
+        runs += (uint64_t)__builtin_popcount(mask & ~(mask << 1));
+    }
+    return snow_encoding_choose((uint64_t)(s->columns * s->rows * s->slices),
+                                cells, runs);
+}
+
+static void add_up(snow_value_store *s) {
+    s->voxels = s->ea_bytes = 0;
+    for (int64_t n = 0; n < s->band_count; n++) {
+        s->voxels += s->bands[n].ia_voxels;
+        s->ea_bytes += s->bands[n].ea_bytes;
+    }
+    s->ia_bytes = s->voxels * sizeof(int16_t);
+    s->pa_bytes = (uint64_t)s->band_count * (uint64_t)(s->slices + 1) *
+                  sizeof(snow_slice_pointer);
+}
+
+static snow_status each(store_job *job, int64_t items, snow_work_fn *work) {
+    int threads = job->params->threads;
+    SNOW_TRY(snow_parallel(job->store->context,
+                           threads < items ? threads : (int)items, items, work,
+                           job));
+    return (snow_status)atomic_load(&job->failed);
+}
+
+snow_status snow_value_store_encode(snow_value_store *s,
+                                    const snow_value_store_params *params) {
+    store_job job = {.store = s, .params = params};
+    atomic_init(&job.failed, SNOW_STATUS_OK);
+    SNOW_TRY(begin(&job));
+    snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0, 0.5);
+    SNOW_TRY(each(&job, s->band_count, cells_item));
+    SNOW_TRY(each(&job, s->slices, coarse_item));
+    s->encoding =
+        params->encoding == SNOW_ENCODING_AUTO ? choose(s) : params->encoding;
+    snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0.5, 1);
+    SNOW_TRY(each(&job, s->band_count, shell_item));
+    SNOW_TRY(each(&job, s->band_count, measure_item));
+    SNOW_TRY(snow_value_rows_place(s));
+    SNOW_TRY(each(&job, s->band_count, fill_item));
+    SNOW_TRY(each(&job, s->slices, border_item));
+    add_up(s);
+    return SNOW_STATUS_OK;
+}
+
+void snow_value_store_fini(snow_value_store *s) {
+    for (size_t n = 0; n < s->bands_capacity / sizeof *s->bands; n++)
+        snow_sparse_fini(&s->bands[n]);
+    snow_release(s->context, s->bands);
+    snow_release(s->context, s->masks);
+    snow_release(s->context, s->coarse);
+    snow_release(s->context, s->values);
+    snow_release(s->context, s->at);
+    snow_release(s->context, s->ends);
+    snow_release(s->context, s->scratch);
+    *s = (snow_value_store){.context = s->context};
+}

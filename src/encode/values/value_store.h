@@ -1,0 +1,93 @@
+/* encode/values/value_store.h - the encoding of the value path: the shell of
+ * what a look shows, for one slice axis, whatever the view.
+ *
+ *   volume --> cells   of 2x2 voxels of a slice, a bit each: not wholly within
+ *                      an invisible run of numbers (one plane for each run)
+ *          --> shell   the voxels that the samples and gradients of a slab with
+ *                      such a cell need: EA, IA, PA (encode.h) by bands of rows
+ *          --> rows    IA once more, row by row from the first to the last
+ *                      voxel of the shell, so that 32 samples are two loads
+ *
+ * Beyond each side of the volume there are `margin` more columns and rows,
+ * which continue it oddly: v[-1] = 2 v[0] - v[1], and the same farther out.
+ * Cell (c, r) has voxels c, c + 1 of rows r, r + 1. */
+#ifndef SNOW_ENCODE_VALUE_STORE_H
+#define SNOW_ENCODE_VALUE_STORE_H
+
+#include "classify/values/value_range.h"
+#include "classify/values/value_table.h"
+#include "encode/encode.h"
+#include "transform/transform.h"
+
+/* Rows of a tile, and of zeros beside the masks. */
+#define SNOW_VALUE_ROWS 32
+/* Rows of cells that share a bit of the coarse mask. */
+#define SNOW_VALUE_COARSE 8
+/* The most voxels that a ray may move aside from one slice to the next. */
+#define SNOW_VALUE_REACH_MOST 24
+
+typedef struct snow_value_store {
+    snow_context *context;
+    int64_t columns, rows, slices;
+    int reach, margin; /* voxels that a ray moves aside; reach + 1 */
+    snow_value_run runs[SNOW_VALUE_RUNS];
+    int run_count;
+    /* A word of 32 columns from column -32 - margin on; rows from that on. */
+    uint32_t *masks; /* [run][slice][word][row] */
+    size_t mask_words, mask_rows;
+    /* A bit for each SNOW_VALUE_COARSE rows of these. */
+    uint64_t *coarse; /* [run][slice][word][row / SNOW_VALUE_COARSE / 64] */
+    size_t coarse_words;
+    /* EA, IA and PA. */
+    snow_sparse *bands;
+    int64_t band_count;
+    snow_encoding encoding;
+    uint64_t voxels, ea_bytes, ia_bytes, pa_bytes;
+    /* Voxel (c, r) of slice k is values[at[k][r] + c]; elsewhere anything may
+     * be read. */
+    int16_t *values;
+    int64_t *at;            /* [slice][row + margin] */
+    int32_t (*ends)[2];     /* of the rows: first column, and behind the last */
+    unsigned char *scratch; /* of the threads, while encoding */
+    size_t masks_capacity, coarse_capacity, bands_capacity, values_capacity,
+        at_capacity, ends_capacity, scratch_capacity;
+} snow_value_store;
+
+/* What is encoded. */
+typedef struct snow_value_store_params {
+    const snow_volume *volume;
+    const snow_placement *placement;
+    const snow_value_coder *coder;
+    const snow_value_run *runs; /* invisible numbers */
+    int run_count;
+    int reach;
+    snow_encoding encoding; /* AUTO: chosen by the cells */
+    snow_isa isa;           /* resolved */
+    int threads;
+} snow_value_store_params;
+
+/* Encodes; buffers are reused.  `store` begins as zeros but for its context.
+ * Errors: SNOW_STATUS_BAD_USAGE (a slice of 2^32 voxels or more),
+ * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
+snow_status snow_value_store_encode(snow_value_store *store,
+                                    const snow_value_store_params *params);
+void snow_value_store_fini(snow_value_store *store);
+
+static inline size_t snow_value_mask_at(const snow_value_store *s, int run,
+                                        int64_t slice) {
+    return ((size_t)run * (size_t)s->slices + (size_t)slice) * s->mask_words *
+           s->mask_rows;
+}
+
+static inline size_t snow_value_coarse_at(const snow_value_store *s, int run,
+                                          int64_t slice) {
+    return ((size_t)run * (size_t)s->slices + (size_t)slice) * s->mask_words *
+           s->coarse_words;
+}
+
+static inline const int64_t *snow_value_at(const snow_value_store *s,
+                                           int64_t slice) {
+    return s->at + slice * (s->rows + 2 * s->margin) + s->margin;
+}
+
+#endif

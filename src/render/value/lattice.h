@@ -1,0 +1,59 @@
+/* render/value/lattice.h - where the value path takes its samples: sheets,
+ * lattice, and how the lattice is warped. */
+#ifndef SNOW_RENDER_VALUE_LATTICE_H
+#define SNOW_RENDER_VALUE_LATTICE_H
+
+#include "splat/values/value_splat.h"
+#include "warp/warp.h"
+
+#include <snowglass/render.h>
+
+/* Samples are cells[0] x cells[1] a voxel; in a quincunx there is one more in
+ * the middle of each cell, and the plane of the image is turned by 45 degrees:
+ * cell (i, j) is pixel (i + j, i - j). */
+typedef struct snow_value_lattice {
+    int cells[2];
+    bool quincunx;
+    int phases;        /* of a voxel */
+    int64_t first[2];  /* voxel of the image's first sample */
+    int64_t voxels[2]; /* of the image */
+    double slope[2];   /* voxels a slice */
+    double front;      /* slice of the front sheet, whose voxels have samples */
+    int halves;        /* sheets a slice: 1 or 2 */
+    int sheet_count;
+    double path; /* world length of a ray between two sheets */
+    /* The image. */
+    int width, height;
+    int top;          /* of a quincunx: pixel of cell (0, 0) down */
+    snow_shear shear; /* picture to image, as snow_warp_row takes it */
+    snow_filter filter;
+    int means;    /* bi-linear samples a side of a pixel; 1: `filter` */
+    int halvings; /* of the image, before */
+} snow_value_lattice;
+
+/* Errors: SNOW_STATUS_BAD_USAGE (spacings or a view that it cannot draw). */
+snow_status
+snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
+                        const snow_view *view, const snow_placement *placement,
+                        snow_quality quality, snow_value_lattice *out);
+
+/* How many voxels a ray moves aside from one sheet to the next, whatever the
+ * view; more than SNOW_VALUE_REACH_MOST where spacings differ too much. */
+double snow_value_lattice_reach(const snow_volume_info *info,
+                                const snow_placement *placement, int halves);
+
+/* The sheets, front to back, and the places of all phases on them. */
+void snow_value_lattice_sheets(const snow_value_lattice *lattice,
+                               const snow_placement *placement,
+                               snow_value_sheet *sheets,
+                               snow_value_place *places);
+
+/* The pixel of a phase of cell (0, 0) of the image, and the steps to the next
+ * cells along u and v. */
+typedef struct snow_value_pixels {
+    int at[2], along_u[2], along_v[2];
+} snow_value_pixels;
+snow_value_pixels snow_value_lattice_pixels(const snow_value_lattice *lattice,
+                                            int phase);
+
+#endif

@@ -1,0 +1,221 @@
+/* render/value/value.c - lines 02 to 06 of the value path: the table of
+ * colours and the encoding, and when they serve another picture. */
+#include "render/value/value.h"
+
+#include "classify/count_interesting.h"
+#include "classify/gradient_opacity.h"
+#include "render/value/internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Slabs whose largest alpha is less need more than 15 bits. */
+#define FAINTEST 0.004F
+
+snow_status snow_value_path_new(snow_context *context, snow_value_path **out) {
+    if (*out)
+        return SNOW_STATUS_OK;
+    snow_value_path *path = snow_allocate_clear(context, sizeof *path);
+    if (!path)
+        return SNOW_STATUS_NO_MEMORY;
+    path->context = path->store.context = context;
+    *out = path;
+    return SNOW_STATUS_OK;
+}
+
+void snow_value_path_free(snow_value_path *path) {
+    if (!path)
+        return;
+    snow_context *context = path->context;
+    snow_value_coder_fini(context, &path->coder);
+    snow_value_table_fini(context, &path->table);
+    snow_value_store_fini(&path->store);
+    snow_release(context, path->sheets);
+    snow_release(context, path->places);
+    snow_release(context, path->plane);
+    snow_release(context, path->drawn);
+    snow_release(context, path->blocks);
+    snow_release(context, path->halved);
+    snow_release(context, path->lines);
+    snow_release(context, path->scratch);
+    snow_release(context, path);
+}
+
+/* --- what it does not draw --------------------------------------------------
+ */
+
+snow_status snow_value_check(snow_context *context,
+                             const snow_value_params *params) {
+    const snow_settings *s = params->settings;
+    const struct {
+        bool refused;
+        const char *what;
+    } rows[] = {
+        {params->placement->perspective, "perspective"},
+        {s->mode != SNOW_MODE_OVER, "modes other than over"},
+        {params->volume->stream != NULL, "a volume that stays in its file"},
+        {!params->whole, "a part of a volume"},
+        {s->deterministic, "deterministic pictures"},
+        {s->kernel != SNOW_KERNEL_TENT || s->footprint != 2,
+         "kernels other than the tent of 2 voxels"},
+        {snow_transfer_has_gradient_opacity(params->transfer),
+         "gradient opacity"},
+        {params->transfer->log, "logarithmic looks"},
+        {snow_transfer_has_labels(params->transfer, params->volume->info.type),
+         "labels"},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+        if (rows[n].refused)
+            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
+                             "method value cannot draw %s yet; take method "
+                             "shear-warp",
+                             rows[n].what);
+    return SNOW_STATUS_OK;
+}
+
+/* --- values -----------------------------------------------------------------
+ */
+
+static snow_status measure_range(snow_value_path *path,
+                                 const snow_value_params *params) {
+    const snow_volume *volume = params->volume;
+    if (path->range_of && path->range_of == volume->generation)
+        return SNOW_STATUS_OK;
+    path->range_of = 0;
+    SNOW_TRY(snow_data_range_measure(volume, params->settings->threads,
+                                     &path->range));
+    path->range_of = volume->generation;
+    return SNOW_STATUS_OK;
+}
+
+static snow_status check_holes(const snow_value_path *path) {
+    return !path->range.holes
+               ? SNOW_STATUS_OK
+               : snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
+                           "method value cannot draw masks, clip planes and "
+                           "voxels that are NaN yet; take method shear-warp");
+}
+
+static snow_status make_table(snow_value_path *path,
+                              const snow_value_params *params) {
+    const snow_settings *s = params->settings;
+    bool high = s->quality == SNOW_QUALITY_HIGH;
+    const snow_value_look look = {
+        .transfer = params->transfer,
+        .scale = snow_value_scale_of(&path->range, params->transfer),
+        .threshold = s->threshold,
+        .exponent = path->lattice.path / s->opacity_length,
+        .nodes = high ? 256 : 129,
+        .steps = high ? 64 : 16,
+        .shaded = s->shade == SNOW_SHADE_PHONG,
+        .threads = s->threads};
+    SNOW_TRY(snow_value_table_make(path->context, &look, &path->table));
+    if (path->table.most > 0 && path->table.most < FAINTEST)
+        return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
+                         "method value cannot draw opacities below %g between "
+                         "two slices yet; take method shear-warp",
+                         (double)FAINTEST);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_value_classify(snow_value_path *path,
+                                const snow_value_params *params,
+                                snow_stats *stats) {
+    double mark = snow_seconds();
+    SNOW_TRY(snow_value_lattice_make(
+        path->context, &params->volume->info, params->view, params->placement,
+        params->settings->quality, &path->lattice));
+    SNOW_TRY(measure_range(path, params));
+    SNOW_TRY(check_holes(path));
+    if (path->range.low <= path->range.high)
+        SNOW_TRY(make_table(path, params));
+    stats->seconds_classify += snow_seconds() - mark;
+    return SNOW_STATUS_OK;
+}
+
+/* --- the encoding -----------------------------------------------------------
+ */
+
+/* Whether the runs that were left out are invisible still. */
+static bool shows_no_more(const snow_value_path *path) {
+    for (int n = 0; n < path->store.run_count; n++) {
+        bool hidden = false;
+        for (int m = 0; m < path->table.run_count; m++)
+            hidden |= path->table.runs[m].first <= path->store.runs[n].first &&
+                      path->table.runs[m].last >= path->store.runs[n].last;
+        if (!hidden)
+            return false;
+    }
+    return true;
+}
+
+static bool serves(const snow_value_path *path, const snow_value_key *key,
+                   int reach) {
+    const snow_value_key *has = &path->key;
+    return has->generation && has->generation == key->generation &&
+           has->slice_axis == key->slice_axis &&
+           has->scale.low == key->scale.low &&
+           has->scale.high == key->scale.high &&
+           has->encoding == key->encoding && path->store.reach >= reach &&
+           shows_no_more(path);
+}
+
+static snow_status find_reach(snow_value_path *path,
+                              const snow_value_params *params, int *reach) {
+    double most = snow_value_lattice_reach(
+        &params->volume->info, params->placement, path->lattice.halves);
+    *reach = (int)ceil(fmin(most, 1e6) * (1 - 1e-5));
+    if (*reach <= SNOW_VALUE_REACH_MOST)
+        return SNOW_STATUS_OK;
+    return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
+                     "method value cannot draw slices %d times as far apart "
+                     "as their voxels yet: the limit is %d; take method "
+                     "shear-warp",
+                     *reach, SNOW_VALUE_REACH_MOST);
+}
+
+static snow_status encode_anew(snow_value_path *path,
+                               const snow_value_params *params, int reach) {
+    const snow_settings *s = params->settings;
+    const snow_value_store_params order = {.volume = params->volume,
+                                           .placement = params->placement,
+                                           .coder = &path->coder,
+                                           .runs = path->table.runs,
+                                           .run_count = path->table.run_count,
+                                           .reach = reach,
+                                           .encoding = s->encoding,
+                                           .isa = s->isa,
+                                           .threads = s->threads};
+    SNOW_TRY(snow_value_coder_make(params->volume, &path->table.made.scale,
+                                   &path->coder));
+    SNOW_TRY(snow_value_store_encode(&path->store, &order));
+    return snow_count_interesting(params->volume, params->transfer,
+                                  s->threshold, s->isa, &path->interesting);
+}
+
+snow_status snow_value_encode(snow_value_path *path,
+                              const snow_value_params *params,
+                              snow_stats *stats) {
+    const snow_value_key key = {.generation = params->volume->generation,
+                                .slice_axis = params->placement->slice_axis,
+                                .scale = path->table.made.scale,
+                                .encoding = params->settings->encoding};
+    double mark = snow_seconds();
+    int reach;
+    if (path->range.low > path->range.high)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(find_reach(path, params, &reach));
+    if (!serves(path, &key, reach)) {
+        path->key.generation = 0;
+        SNOW_TRY(encode_anew(path, params, reach));
+        path->key = key;
+        stats->encoded = 1;
+        stats->seconds_encode += snow_seconds() - mark;
+    }
+    stats->encoding = path->store.encoding;
+    stats->interesting = path->interesting;
+    stats->ea_bytes += path->store.ea_bytes;
+    stats->ia_bytes += path->store.ia_bytes;
+    stats->pa_bytes += path->store.pa_bytes;
+    return SNOW_STATUS_OK;
+}

@@ -1,0 +1,140 @@
+/* splat/values/color.tmpl.h - packed samples to colours.  Include simd/select.h
+ * first. */
+
+/* --- light ------------------------------------------------------------------
+ */
+
+TARGET static inline __attribute__((always_inline)) V(vec)
+    NAME(dot)(const float by[3], V(vec) u, V(vec) v, V(vec) p) {
+    V(vec) sum = V(mul)(V(set1)(by[0]), u);
+    sum = V(add)(sum, V(mul)(V(set1)(by[1]), v));
+    return V(add)(sum, V(mul)(V(set1)(by[2]), p));
+}
+
+/* base^(power / 2^SNOW_VALUE_ROOTS) for a base above 0. */
+TARGET static inline __attribute__((always_inline)) V(vec)
+    NAME(power_of)(V(vec) base, uint32_t power) {
+    V(vec) result = V(set1)(1), square = base, root = base;
+    for (uint32_t whole = power >> SNOW_VALUE_ROOTS; whole; whole >>= 1) {
+        if (whole & 1)
+            result = V(mul)(result, square);
+        square = V(mul)(square, square);
+    }
+    uint32_t part = power & ((1U << SNOW_VALUE_ROOTS) - 1);
+    for (int n = SNOW_VALUE_ROOTS - 1; part && n >= 0; n--) {
+        root = V(sqrt)(root);
+        if (part >> n & 1)
+            result = V(mul)(result, root);
+    }
+    return result;
+}
+
+/* LANES gradients to factors of the colour and of white, of 15 bits. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(light)(const snow_value_light *l, const int16_t *gu, const int16_t *gv,
+            const int16_t *gp, int16_t *color, int16_t *white) {
+    const V(vec) zero = V(set1)(0), one = V(set1)(1);
+    V(vec) u = V(row_floats)(gu), v = V(row_floats)(gv), p = V(row_floats)(gp);
+    V(vec)
+    length = V(add)(
+        V(add)(
+            NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p)),
+            NAME(dot)(l->metric + 3, V(mul)(u, v), V(mul)(u, p), V(mul)(v, p))),
+        V(set1)(1e-9F));
+    V(vec) inverse = V(row_rsqrt)(length);
+    V(vec) eye = NAME(dot)(l->eye, u, v, p);
+    V(vec)
+    light = V(mul)(V(row_turn)(NAME(dot)(l->light, u, v, p), eye), inverse);
+    V(vec)
+    half = V(mul)(V(row_turn)(NAME(dot)(l->half, u, v, p), eye), inverse);
+    light = V(min)(V(max)(light, zero), one);
+    half = V(min)(V(max)(half, V(set1)(l->least)), one);
+    V(vec)
+    shine = V(mul)(NAME(power_of)(half, l->power), V(row_positive)(light));
+    float unit = l->bright ? 16383.5F : 32767.0F;
+    V(row_round)
+    (color, V(add)(V(mul)(light, V(set1)(l->diffuse * unit)),
+                   V(set1)(l->ambient * unit)));
+    V(row_round)(white, V(mul)(shine, V(set1)(l->specular * 32767)));
+}
+
+/* --- colours ----------------------------------------------------------------
+ */
+
+/* The place of the opacity, of 32768, from the top bits of the four words. */
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(split)(V(row) color[4]) {
+    V(row) place = V(row_set1)(0x400);
+    for (int c = 0; c < 4; c++) {
+        place =
+            V(row_or)(place, V(row_and)(V(row_srl)(color[c], 4 - c),
+                                        V(row_set1)((int16_t)(0x800 << c))));
+        color[c] = V(row_and)(color[c], V(row_set1)(INT16_MAX));
+    }
+    return place;
+}
+
+/* The places of 32 samples in the table. */
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(entries)(const snow_value_table *table, const int16_t *front,
+                  const int16_t *back) {
+    if (table->nodes) {
+        int16_t index[32];
+        for (int n = 0; n < 32; n++)
+            index[n] = (int16_t)(table->nodes[front[n] & SNOW_VALUE_MOST] << 8 |
+                                 table->nodes[back[n] & SNOW_VALUE_MOST]);
+        return V(row_load)(index);
+    }
+    V(row) scale = V(row_set1)(table->scale);
+    V(row) row = V(row_mulhrs)(V(row_load)(front), scale);
+    return V(row_or)(V(row_sll)(row, 8),
+                     V(row_mulhrs)(V(row_load)(back), scale));
+}
+
+/* Lights 32 samples from `n` on. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(shade)(const snow_value_splat *p, const value_queue *q, int n,
+            V(row) place, const int channels, V(row) color[4]) {
+    int16_t slopes[3][32], diffuse[32], white[32];
+    for (int axis = 0; axis < 3; axis++)
+        V(row_store)
+    (slopes[axis], NAME(mix)(V(row_load)(q->slopes[axis] + n),
+                             V(row_load)(q->slopes[axis + 3] + n), place));
+    for (int at = 0; at < 32; at += LANES)
+        NAME(light)
+    (p->light, slopes[0] + at, slopes[1] + at, slopes[2] + at, diffuse + at,
+     white + at);
+    V(row) light = V(row_load)(diffuse), alpha = color[3];
+    V(row) shine = V(row_mulhrs)(V(row_load)(white), alpha);
+    for (int c = 0; c < channels - 1; c++) {
+        V(row) lit = V(row_mulhrs)(color[c], light);
+        if (p->light->bright)
+            lit = V(row_adds)(lit, lit);
+        color[c] = V(row_min)(V(row_adds)(lit, shine), alpha);
+    }
+}
+
+/* All samples of a queue, whose last 32 numbers and more are 0. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(color)(const snow_value_splat *p, value_queue *q, int count,
+            const int channels, const bool shaded, bool cuts) {
+    for (int n = 0; n < count; n += 32) {
+        V(row) color[4];
+        V(row_gather)
+        (p->table->entries, NAME(entries)(p->table, q->front + n, q->back + n),
+         color);
+        if (shaded) {
+            V(row) place = NAME(split)(color);
+            if (cuts)
+                place =
+                    V(row_add)(V(row_load)(q->from + n),
+                               V(row_mulhrs)(place, V(row_load)(q->part + n)));
+            NAME(shade)(p, q, n, place, channels, color);
+        }
+        for (int c = 0; c < channels - 1; c++)
+            V(row_store)(q->color[c] + n, color[c]);
+        V(row_store)(q->color[3] + n, color[3]);
+    }
+    if (cuts)
+        snow_value_shorten(q, count, channels);
+}

@@ -1,0 +1,165 @@
+/* splat/values/sample.tmpl.h - which samples of a slab can be seen, and the
+ * values of its sheets there.  Include simd/select.h first. */
+
+/* --- masks ------------------------------------------------------------------
+ */
+
+/* Ors the cells of a sheet under a tile that are not wholly within a run. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(add_cells)(const snow_value_store *s, int run,
+                const snow_value_sheet *sheet, value_window w, uint32_t *out) {
+    const uint32_t *masks = s->masks +
+                            snow_value_mask_at(s, run, sheet->slice) +
+                            w.word * s->mask_rows + w.row;
+    V(rows_window)(masks, masks + s->mask_rows, w.shift, out);
+    if (sheet->half) {
+        masks += s->mask_words * s->mask_rows;
+        V(rows_window)(masks, masks + s->mask_rows, w.shift, out);
+    }
+}
+
+static inline bool NAME(has_cells)(const snow_value_store *s, int run,
+                                   const snow_value_sheet *sheet,
+                                   value_window w) {
+    return value_any(s, run, sheet->slice, w) ||
+           (sheet->half && value_any(s, run, sheet->slice + 1, w));
+}
+
+/* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
+ * seen; returns whether there are any. */
+TARGET static bool NAME(activate)(const snow_value_splat *p, int n, int phase,
+                                  int64_t column, int64_t row, value_cut cut[2],
+                                  value_phase *state) {
+    const snow_value_store *s = p->store;
+    const snow_value_sheet *sheet = p->sheets + n;
+    const snow_value_place *place = p->places + n * p->phases + phase;
+    const snow_value_place *next = place + p->phases;
+    value_window front, back;
+    state->rows = 0;
+    if (!value_meets(s, column + place->whole[0], row + place->whole[1]) ||
+        !value_meets(s, column + next->whole[0], row + next->whole[1]))
+        return false;
+    front = value_window_of(s, column + place->whole[0], row + place->whole[1]);
+    back = value_window_of(s, column + next->whole[0], row + next->whole[1]);
+    for (int run = 0; run < s->run_count; run++)
+        if (!NAME(has_cells)(s, run, sheet, front) &&
+            !NAME(has_cells)(s, run, sheet + 1, back))
+            return false;
+    for (int axis = 0; axis < 2; axis++) {
+        double first = (double)(axis ? row : column);
+        snow_value_cut(first + place->at[axis], first + next->at[axis],
+                       p->low[axis], p->high[axis], &cut[axis]);
+    }
+    uint32_t rows = cut[1].some;
+    memcpy(state->active, state->open, sizeof state->active);
+    for (int run = 0; run < s->run_count; run++) {
+        uint32_t cells[SNOW_VALUE_ROWS] = {0};
+        NAME(add_cells)(s, run, sheet, front, cells);
+        NAME(add_cells)(s, run, sheet + 1, back, cells);
+        rows &= V(rows_and)(state->active, cells, cut[0].some);
+    }
+    if (!s->run_count)
+        rows &= V(rows_and)(state->active, state->open, cut[0].some);
+    state->rows = rows;
+    return rows != 0;
+}
+
+/* --- sheets -----------------------------------------------------------------
+ */
+
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(mix)(V(row) a, V(row) b, V(row) weight) {
+    return V(row_add)(a, V(row_mulhrs)(V(row_subs)(b, a), weight));
+}
+
+/* The rows that a sheet is made of. */
+typedef struct NAME(source) {
+    const int16_t *values;
+    const int64_t *slice, *after; /* places of rows; of the difference's end */
+    int64_t next;                 /* places to the next slice */
+    int64_t column;
+    bool twice; /* of a difference */
+} NAME(source);
+
+/* 32 voxels of row `row` from `column` + `by` on: of a slice or half way to the
+ * next one; or the difference of two of them. */
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(voxels)(const NAME(source) * s, int64_t row, int by, const bool half,
+                 const bool difference) {
+    const int16_t *values = s->values + s->column + by;
+    V(row) here = V(row_load)(values + s->slice[row]);
+    if (half)
+        here = V(row_avg)(here, V(row_load)(values + s->slice[row + s->next]));
+    if (!difference)
+        return here;
+    V(row) there = V(row_load)(values + s->after[row]);
+    if (half)
+        there =
+            V(row_avg)(there, V(row_load)(values + s->after[row + s->next]));
+    there = V(row_subs)(there, here);
+    return s->twice ? V(row_adds)(there, there) : there;
+}
+
+/* One row of voxels, mixed along u. */
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(along)(const NAME(source) * s, int64_t row, V(row) weight,
+                const bool half, const bool difference) {
+    return NAME(mix)(NAME(voxels)(s, row, 0, half, difference),
+                     NAME(voxels)(s, row, 1, half, difference), weight);
+}
+
+/* Rows of a sheet, a bit each from row `first` on, into `out`. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(fill)(const NAME(source) * s, int64_t first, uint64_t rows,
+           const snow_value_place *place, int16_t (*out)[32], const bool half,
+           const bool difference) {
+    const V(row) u = V(row_set1)(place->weight[0]);
+    const V(row) v = V(row_set1)(place->weight[1]);
+    while (rows) {
+        int row = __builtin_ctzll(rows);
+        V(row) above = NAME(along)(s, first + row, u, half, difference);
+        for (; rows >> row & 1; row++) {
+            V(row) below = NAME(along)(s, first + row + 1, u, half, difference);
+            V(row_store)(out[row], NAME(mix)(above, below, v));
+            above = below;
+            rows &= rows - 1;
+        }
+    }
+}
+
+/* The values of a sheet in some rows of a tile, and the differences across it
+ * in others, unless they are there. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(sample)(const snow_value_splat *p, int n, int phase, int64_t column,
+             int64_t row, uint64_t rows, uint32_t across, value_rows *out) {
+    const snow_value_store *s = p->store;
+    const snow_value_sheet *sheet = p->sheets + n;
+    const snow_value_place *place = p->places + n * p->phases + phase;
+    if (out->sheet != n) {
+        out->sheet = n;
+        out->has = out->has_across = 0;
+    }
+    rows &= ~out->has;
+    across &= ~out->has_across;
+    NAME(source)
+    from = {.values = s->values,
+            .slice = snow_value_at(s, sheet->slice),
+            .next = s->rows + 2 * s->margin,
+            .column = column + place->whole[0]};
+    int64_t first = row + place->whole[1];
+    out->has |= rows;
+    if (sheet->half)
+        NAME(fill)(&from, first - 1, rows, place, out->values, true, false);
+    else
+        NAME(fill)(&from, first - 1, rows, place, out->values, false, false);
+    if (!across)
+        return;
+    out->has_across |= across;
+    from.slice = snow_value_at(s, sheet->before);
+    from.after = snow_value_at(s, sheet->after);
+    from.twice = sheet->one_sided;
+    if (sheet->half_across)
+        NAME(fill)(&from, first, across, place, out->across, true, true);
+    else
+        NAME(fill)(&from, first, across, place, out->across, false, true);
+}

@@ -1,0 +1,209 @@
+/* splat/values/tile.tmpl.h - a tile, slab by slab.  Include simd/select.h
+ * first. */
+#include "splat/values/sample.tmpl.h"
+
+#include "splat/values/color.tmpl.h"
+
+/* Leaves out the samples whose front and back are in one invisible run. */
+TARGET static inline __attribute__((always_inline)) uint32_t
+NAME(see)(const snow_value_table *table, V(row) front, V(row) back) {
+    V(row) low = V(row_min)(front, back), high = V(row_max)(front, back);
+    uint32_t seen = ~UINT32_C(0);
+    for (int run = 0; run < table->run_count; run++)
+        seen &= V(row_gt)(V(row_set1)(table->runs[run].first), low) |
+                V(row_gt)(high, V(row_set1)(table->runs[run].last));
+    return seen;
+}
+
+/* Ends of the part of a slab that is inside; the lanes that have any. */
+TARGET static inline __attribute__((always_inline)) uint32_t
+NAME(clip)(const value_cut cut[2], int row, V(row) * from, V(row) * part) {
+    V(row) to = V(row_set1)(INT16_MAX);
+    *from = V(row_set1)(0);
+    if (cut[0].cuts) {
+        *from = V(row_load)(cut[0].from);
+        to = V(row_load)(cut[0].to);
+    }
+    if (cut[1].cuts) {
+        *from = V(row_max)(*from, V(row_set1)(cut[1].from[row]));
+        to = V(row_min)(to, V(row_set1)(cut[1].to[row]));
+    }
+    *part = V(row_subs)(to, *from);
+    return V(row_gt)(to, *from);
+}
+
+/* Packs the visible samples of a phase, from number `count` on. */
+TARGET static inline __attribute__((always_inline)) int
+NAME(collect)(const snow_value_splat *p, const value_rows *f,
+              const value_rows *b, const value_cut cut[2], value_phase *state,
+              value_queue *q, int count, const bool shaded, bool cuts) {
+    const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
+    for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
+        int row = __builtin_ctz(rows);
+        const int16_t *front = f->values[row + 1], *back = b->values[row + 1];
+        V(row) x = V(row_load)(front), y = V(row_load)(back), from, part;
+        uint32_t mask = state->active[row];
+        if (cuts) {
+            mask &= NAME(clip)(cut, row, &from, &part);
+            V(row) first = x;
+            x = NAME(mix)(first, y, from);
+            y = NAME(mix)(first, y, V(row_add)(from, part));
+            x = V(row_min)(V(row_max)(x, zero), most);
+            y = V(row_min)(V(row_max)(y, zero), most);
+        }
+        mask &= NAME(see)(p->table, x, y);
+        state->active[row] = mask;
+        if (!mask)
+            continue;
+        V(row_compress)(q->front + count, x, mask);
+        V(row_compress)(q->back + count, y, mask);
+        if (cuts) {
+            V(row_compress)(q->from + count, from, mask);
+            V(row_compress)(q->part + count, part, mask);
+        }
+        for (int side = 0; shaded && side < 2; side++) {
+            const int16_t *at = side ? back : front;
+            int16_t(*slopes)[QUEUE] = q->slopes + 3 * side;
+            V(row_compress)
+            (slopes[0] + count,
+             V(row_subs)(V(row_load)(at + 1), V(row_load)(at - 1)), mask);
+            V(row_compress)
+            (slopes[1] + count,
+             V(row_subs)(V(row_load)(at + 32), V(row_load)(at - 32)), mask);
+            V(row_compress)
+            (slopes[2] + count, V(row_load)((side ? b : f)->across[row]), mask);
+        }
+        count += __builtin_popcount(mask);
+    }
+    return count;
+}
+
+/* Behind what is in the planes; closes the pixels that nothing shines through.
+ */
+TARGET static inline __attribute__((always_inline)) int
+NAME(blend)(snow_value_plane *plane, value_phase *state, const value_queue *q,
+            int count, int16_t end, const int channels) {
+    const V(row) one = V(row_set1)(INT16_MAX);
+    const V(row) closed = V(row_set1)(end);
+    for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
+        int row = __builtin_ctz(rows);
+        uint32_t mask = state->active[row];
+        if (!mask)
+            continue;
+        V(row) alpha = V(row_load)((*plane)[3][row]);
+        V(row) through = V(row_subs)(one, alpha);
+        for (int c = 0; c < channels - 1; c++) {
+            int16_t *at = (*plane)[c][row];
+            V(row) color = V(row_expand)(q->color[c] + count, mask);
+            V(row_store)
+            (at, V(row_add)(V(row_load)(at), V(row_mulhrs)(through, color)));
+        }
+        alpha = V(row_add)(
+            alpha,
+            V(row_mulhrs)(through, V(row_expand)(q->color[3] + count, mask)));
+        V(row_store)((*plane)[3][row], alpha);
+        count += __builtin_popcount(mask);
+        state->open[row] &= V(row_gt)(closed, alpha);
+        if (!state->open[row])
+            state->alive &= ~(UINT32_C(1) << row);
+    }
+    return count;
+}
+
+/* Some phases of a slab. */
+TARGET static inline __attribute__((always_inline)) bool
+NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
+           int64_t row, snow_value_plane *planes, value_room *room,
+           const int channels, const bool shaded) {
+    value_queue *q = &room->queue;
+    int count = 0;
+    bool cuts = false;
+    for (int phase = first; phase < end; phase++) {
+        value_phase *state = &room->phase[phase];
+        state->rows = 0;
+        if (state->alive && NAME(activate)(p, n, phase, column, row,
+                                           room->cut[phase - first], state))
+            cuts |= room->cut[phase - first][0].cuts ||
+                    room->cut[phase - first][1].cuts;
+    }
+    for (int phase = first; phase < end; phase++) {
+        value_phase *state = &room->phase[phase];
+        value_rows *f = &room->rows[phase][n & 1];
+        value_rows *b = &room->rows[phase][~n & 1];
+        uint64_t here = (uint64_t)state->rows << 1;
+        if (!here)
+            continue;
+        if (shaded)
+            here |= here << 1 | here >> 1;
+        NAME(sample)
+        (p, n, phase, column, row, here, shaded ? state->rows : 0, f);
+        NAME(sample)
+        (p, n + 1, phase, column, row, here, shaded ? state->rows : 0, b);
+        count = NAME(collect)(p, f, b, room->cut[phase - first], state, q,
+                              count, shaded, cuts);
+    }
+    if (!count)
+        return false;
+    V(row_store)(q->front + count, V(row_set1)(0));
+    V(row_store)(q->back + count, V(row_set1)(0));
+    NAME(color)(p, q, count, channels, shaded, cuts);
+    count = 0;
+    for (int phase = first; phase < end; phase++)
+        count = NAME(blend)(&planes[phase], &room->phase[phase], q, count,
+                            p->closed, channels);
+    return true;
+}
+
+/* All pixels that are the lattice's are open. */
+static void NAME(open)(const snow_value_splat *p, int x, int y,
+                       value_room *room) {
+    int64_t columns = p->cells[0] - (int64_t)x * SNOW_VALUE_COLUMNS;
+    int64_t rows = p->cells[1] - (int64_t)y * SNOW_VALUE_ROWS;
+    columns = columns < SNOW_VALUE_COLUMNS ? columns : SNOW_VALUE_COLUMNS;
+    rows = rows < SNOW_VALUE_ROWS ? rows : SNOW_VALUE_ROWS;
+    uint32_t lanes = ((UINT32_C(1) << columns) - 1) << 1;
+    for (int phase = 0; phase < p->phases; phase++) {
+        value_phase *state = &room->phase[phase];
+        for (int row = 0; row < SNOW_VALUE_ROWS; row++)
+            state->open[row] = row < rows ? lanes : 0;
+        state->alive = rows == 32 ? ~UINT32_C(0) : (UINT32_C(1) << rows) - 1;
+        room->rows[phase][0].sheet = room->rows[phase][1].sheet = -1;
+    }
+}
+
+TARGET static inline __attribute__((always_inline)) bool
+NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
+           const int channels, const bool shaded) {
+    snow_value_plane *planes = memory;
+    value_room *room =
+        (value_room *)(void *)((char *)memory + value_planes_bytes(p));
+    int64_t column = value_tile_column(p, x), row = value_tile_row(p, y);
+    bool drawn = false;
+    NAME(open)(p, x, y, room);
+    memset(planes, 0, value_planes_bytes(p));
+    for (int n = 0; n + 1 < p->sheet_count; n++) {
+        uint32_t alive = 0;
+        for (int first = 0; first < p->phases; first += TOGETHER) {
+            int end =
+                first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
+            drawn |= NAME(slab)(p, n, first, end, column, row, planes, room,
+                                channels, shaded);
+            for (int phase = first; phase < end; phase++)
+                alive |= room->phase[phase].alive;
+        }
+        if (!alive)
+            break;
+    }
+    return drawn;
+}
+
+#define VALUE_TILE(kind, channels, shaded)                                 \
+    TARGET static bool NAME(tile_##kind)(const snow_value_splat *p, int x, \
+                                         int y, void *room) {              \
+        return NAME(tile)(p, x, y, room, channels, shaded);                \
+    }
+VALUE_TILE(grey, 2, false)
+VALUE_TILE(color, 4, false)
+VALUE_TILE(grey_lit, 2, true)
+VALUE_TILE(color_lit, 4, true)
+#undef VALUE_TILE

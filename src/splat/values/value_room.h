@@ -1,0 +1,116 @@
+/* splat/values/value_room.h - what a worker works on, for the templates of this
+ * folder. */
+#ifndef SNOW_SPLAT_VALUE_ROOM_H
+#define SNOW_SPLAT_VALUE_ROOM_H
+
+#include "splat/values/value_splat.h"
+
+/* Rows of a sheet's tile: one more on each side, for gradients. */
+#define SHEET_ROWS (SNOW_VALUE_ROWS + 2)
+
+/* Phases that are coloured together. */
+#define TOGETHER 4
+
+/* A phase of a sheet.  Row r of the tile is values[r + 1]. */
+typedef struct value_rows {
+    int16_t before[32]; /* lanes -1 are read */
+    int16_t values[SHEET_ROWS][32];
+    int16_t behind[32];
+    int16_t across[SNOW_VALUE_ROWS][32]; /* differences along P */
+    uint64_t has;                        /* rows of values, from row -1 on */
+    uint32_t has_across;
+    int sheet; /* that the rows are of */
+} value_rows;
+
+/* The samples of a slab, packed. */
+#define QUEUE (TOGETHER * SNOW_VALUE_ROWS * SNOW_VALUE_COLUMNS + 64)
+typedef struct value_queue {
+    int16_t front[QUEUE], back[QUEUE];
+    int16_t slopes[6][QUEUE];         /* u, v, p: of the front, of the back */
+    int16_t from[QUEUE], part[QUEUE]; /* of a slab that is cut, of 32768 */
+    int16_t color[4][QUEUE];
+} value_queue;
+
+/* The part of a slab that is inside, for each lane or row, of 32767. */
+typedef struct value_cut {
+    int16_t from[32], to[32];
+    uint32_t some; /* lanes or rows that have any */
+    bool cuts;
+} value_cut;
+
+typedef struct value_phase {
+    uint32_t active[SNOW_VALUE_ROWS], open[SNOW_VALUE_ROWS];
+    uint32_t rows;  /* with active samples */
+    uint32_t alive; /* rows with open pixels */
+} value_phase;
+
+/* Laid out in a worker's memory behind the planes. */
+typedef struct value_room {
+    value_queue queue;
+    value_cut cut[TOGETHER][2]; /* along u and v */
+    value_phase phase[SNOW_VALUE_PHASES];
+    value_rows rows[][2]; /* [phase][sheet & 1] */
+} value_room;
+
+static inline size_t value_planes_bytes(const snow_value_splat *splat) {
+    return (size_t)splat->phases * sizeof(snow_value_plane);
+}
+
+/* --- places -----------------------------------------------------------------
+ */
+
+/* Lane 0 of a tile along u; row 0 along v: cells. */
+static inline int64_t value_tile_column(const snow_value_splat *splat, int x) {
+    return splat->first[0] + (int64_t)x * SNOW_VALUE_COLUMNS - 1;
+}
+
+static inline int64_t value_tile_row(const snow_value_splat *splat, int y) {
+    return splat->first[1] + (int64_t)y * SNOW_VALUE_ROWS;
+}
+
+/* Whether a tile's window of a sheet meets the voxels and their margins. */
+static inline bool value_meets(const snow_value_store *s, int64_t column,
+                               int64_t row) {
+    return column > -32 - s->margin && column < s->columns + s->margin &&
+           row > -32 - s->margin && row < s->rows + s->margin;
+}
+
+/* Words and shift of a window of 32 columns from `column` on. */
+typedef struct value_window {
+    size_t word, row; /* of the masks */
+    int shift;
+} value_window;
+
+static inline value_window value_window_of(const snow_value_store *s,
+                                           int64_t column, int64_t row) {
+    size_t bit = (size_t)(column + s->margin + 32);
+    return (value_window){bit / 32, (size_t)(row + s->margin + 32),
+                          (int)(bit % 32)};
+}
+
+/* Whether the coarse mask of a run has anything in a window. */
+static inline bool value_any(const snow_value_store *s, int run, int64_t slice,
+                             value_window w) {
+    const uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, slice) +
+                             w.word * s->coarse_words;
+    size_t first = w.row / SNOW_VALUE_COARSE;
+    size_t last = (w.row + SNOW_VALUE_ROWS - 1) / SNOW_VALUE_COARSE;
+    const uint64_t *next = coarse + s->coarse_words;
+    uint64_t low = coarse[first / 64] | next[first / 64];
+    uint64_t high = coarse[first / 64 + 1] | next[first / 64 + 1];
+    uint64_t bits = low >> first % 64 | high << 1 << (63 - first % 64);
+    return (bits & ((UINT64_C(2) << (last - first)) - 1)) != 0;
+}
+
+/* --- cuts -------------------------------------------------------------------
+ */
+
+/* The parts of a slab within low .. high, for 32 lanes one apart whose ends on
+ * both sheets are at front + n and back + n. */
+void snow_value_cut(double front, double back, double low, double high,
+                    value_cut *out);
+
+/* Alpha and colours of the samples of slabs that are cut. */
+void snow_value_shorten(value_queue *queue, int count, int channels);
+
+#endif

@@ -1,0 +1,38 @@
+/* splat/values/value_splat.c - tiles for each instruction set; see
+ * value_splat.h. */
+#include "splat/values/value_splat.h"
+
+#include "simd/rows.h"
+#include "splat/values/value_room.h"
+
+#include <string.h>
+
+#define TEMPLATE "splat/values/tile.tmpl.h"
+#include "simd/each_isa.h"
+
+size_t snow_value_splat_bytes(const snow_value_splat *splat) {
+    size_t bytes = value_planes_bytes(splat) + sizeof(value_room) +
+                   (size_t)splat->phases * 2 * sizeof(value_rows);
+    return (bytes + 63) / 64 * 64;
+}
+
+#define FOUR(level)                                       \
+    {                                                     \
+        {tile_grey_##level, tile_grey_lit_##level},       \
+            {tile_color_##level, tile_color_lit_##level}, \
+    }
+
+snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels,
+                                       bool shaded) {
+    static snow_value_tile_fn *const scalar[2][2] = FOUR(scalar);
+#if SNOW_HAS_AVX
+    static snow_value_tile_fn *const avx2[2][2] = FOUR(avx2);
+    static snow_value_tile_fn *const avx512[2][2] = FOUR(avx512);
+    if (isa == SNOW_ISA_AVX512)
+        return avx512[channels == 4][shaded];
+    if (isa == SNOW_ISA_AVX2)
+        return avx2[channels == 4][shaded];
+#endif
+    (void)isa;
+    return scalar[channels == 4][shaded];
+}

@@ -1,0 +1,77 @@
+/* splat/values/value_splat.h - the value path's inner loops: sheets of values
+ * are splatted tile by tile, coloured slab by slab, and composited.
+ *
+ * A tile is 30 x 32 cells of the lattice, one voxel wide each, over the whole
+ * depth; a cell has one or more samples, the phases.  For each slab between two
+ * sheets, front to back, and each phase:
+ *
+ *   masks   which samples of the slab can be seen, and something shines through
+ *   sample  values of both sheets there and beside, differences between slices
+ *   queue   the samples that are visible, packed
+ *   colour  by the table of the slab, and light
+ *   blend   behind what is in the tile
+ *
+ * All instruction sets give the same bits. */
+#ifndef SNOW_SPLAT_VALUE_SPLAT_H
+#define SNOW_SPLAT_VALUE_SPLAT_H
+
+#include "encode/values/value_store.h"
+
+#define SNOW_VALUE_COLUMNS 30 /* of a tile; 32 lanes with those beside */
+#define SNOW_VALUE_PHASES 128 /* the most in a cell */
+
+/* Where a sheet is: a slice, or half way between it and the next one. */
+typedef struct snow_value_sheet {
+    double at;                    /* slices */
+    int64_t slice, before, after; /* the latter for differences */
+    bool half, half_across;       /* of the slice; of those two */
+    bool one_sided;               /* the difference is of one step, not two */
+} snow_value_sheet;
+
+/* A phase of the cells on a sheet: cell i has its sample at i + at, that is
+ * between voxels i + whole and i + whole + 1. */
+typedef struct snow_value_place {
+    double at[2]; /* along u and v */
+    int32_t whole[2];
+    int16_t weight[2]; /* of 32768 */
+} snow_value_place;
+
+/* Light from gradients (gu, gv, gp) in index space, of any length. */
+typedef struct snow_value_light {
+    float light[3], eye[3], half[3]; /* n . l times |g| */
+    float metric[6];                 /* |g|^2: uu vv pp uv up vp */
+    float ambient, diffuse, specular;
+    bool bright;    /* ambient + diffuse are more than 1 */
+    uint32_t power; /* shininess * 2^SNOW_VALUE_ROOTS */
+    float least;    /* n . h below it does not shine */
+} snow_value_light;
+#define SNOW_VALUE_ROOTS 8
+
+/* A picture. */
+typedef struct snow_value_splat {
+    const snow_value_store *store;
+    const snow_value_table *table;
+    const snow_value_light *light; /* NULL: unshaded */
+    const snow_value_sheet *sheets;
+    const snow_value_place *places; /* [sheet * phases + phase] */
+    int sheet_count, phases;
+    int channels;           /* 2 or 4 */
+    int16_t closed;         /* alpha that ends a pixel, of 32767 */
+    int64_t first[2];       /* cell of the lattice: lane 1 of tile 0; row 0 */
+    int64_t cells[2];       /* of the lattice */
+    double low[2], high[2]; /* the field's ends along u and v */
+} snow_value_splat;
+
+/* Pixels of a tile: planes of 15 bits, of which channels are used. */
+typedef int16_t snow_value_plane[4][SNOW_VALUE_ROWS][32];
+
+/* Bytes of a worker's memory. */
+size_t snow_value_splat_bytes(const snow_value_splat *splat);
+
+/* Draws tile (x, y); false: nothing is there.  `room` is aligned to 64; the
+ * planes of each phase are in it from its beginning on. */
+typedef bool snow_value_tile_fn(const snow_value_splat *splat, int x, int y,
+                                void *room);
+snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool shaded);
+
+#endif

@@ -1,0 +1,74 @@
+#!/bin/bash
+# --method value: pictures, figures and what is refused.  What the pictures must
+# be is known by tests/render/test_value.c.
+. "$(dirname "$0")/../../support/shell.sh"
+
+scene="phantom:engine --dims 60x60x40 -s 110x90 --azimuth 30 --elevation 20 -y"
+# shellcheck disable=SC2086
+render() { "$TOOL" render $scene --method value "$@"; }
+
+# nearer A B: A is nearer to truth.npy than B is.
+nearer() {
+    local file
+    for file in "$1" "$2"; do
+        "$TOOL" compare "$file.npy" truth.npy 2>/dev/null |
+            awk '$1 == "psnr" { print $2 }'
+    done | paste -s | awk '{ exit !($1 > $2) }'
+}
+
+# --- pictures ----------------------------------------------------------------
+# shellcheck disable=SC2086
+run 0 "the truth" "$TOOL" render -q $scene --method raycast --quality high \
+    -o truth.npy
+for quality in draft normal high; do
+    run 0 "quality $quality" render -q --quality $quality -o $quality.npy \
+        --stats made.json
+    check "is by value" grep -q '"method": "value"' made.json
+    check "with the tent" grep -q '"kernel": "tent", "footprint": 2' made.json
+    # shellcheck disable=SC2086
+    run 0 "by shear-warp" "$TOOL" render -q $scene --quality $quality -o old.npy
+    check "is farther from the truth" nearer $quality old
+done
+check "high is nearer to it than draft" nearer high draft
+run 0 "one thread" render -q -j 1 -o one.npy
+check "gives the same bits" cmp -s normal.npy one.npy
+for encoding in crs bitmap rle; do
+    run 0 "encoding $encoding" render -q --encoding $encoding -o one.npy \
+        --stats made.json
+    check "gives the same bits" cmp -s normal.npy one.npy
+    check "is used" grep -q "\"encoding\": \"$encoding\"" made.json
+done
+run 0 "a crop" render -q --crop 0:20,:,: -o cropped.npy
+run 0 "depths" render -q -o one.npy --depth depth.npy
+check "do not change the picture" cmp -s normal.npy one.npy
+
+# --- refusals ----------------------------------------------------------------
+# refuse WHAT WORDS OPTIONS: ends with the message, and leaves no picture.
+refuse() {
+    local what=$1 words=$2
+    shift 2
+    run 2 "$what" render "$@" -o no.png
+    says "^snowglass: .*$words.* yet"
+    says '; take method shear-warp$'
+    check "no picture is left" test ! -e no.png
+}
+refuse "perspective" "perspective" --perspective
+for mode in mip minip mean sum; do
+    refuse "mode $mode" "modes other than over" -m $mode
+done
+refuse "mode iso" "modes other than over" -m iso --iso 90
+refuse "kernel bspline" "kernels other than the tent" --kernel bspline
+refuse "kernel gauss" "kernels other than the tent" --kernel gauss
+refuse "a clip plane" "masks, clip planes and voxels that are NaN" \
+    --clip 0.3,0.5,-0.8,4
+refuse "a gradient opacity" "gradient opacity" --gradient-opacity 0:0,20:1
+refuse "a logarithmic look" "logarithmic looks" --log
+refuse "deterministic" "deterministic pictures" --deterministic
+"$TOOL" phantom engine --dims 160x160x160 -o large.npy -q
+run 2 "a volume that stays in its file" "$TOOL" render large.npy -y -s 40x40 \
+    --memory 2M --method value -o no.png
+says 'a volume that stays in its file yet; take method shear-warp$'
+
+run 0 "help" "$TOOL" help sparse
+prints 'raycast\|value'
+finish
