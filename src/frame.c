@@ -57,8 +57,7 @@ static snow_status complete(snow_picture *p, snow_status status) {
     return p->ahead ? status : p->combiner->agree(p, status);
 }
 
-/* --- frames ---------------------------------------------------------------
- */
+/* --- frames --------------------------------------------------------------- */
 
 snow_status snow_frame_new(snow_context *context, snow_frame **out) {
     snow_frame *frame = NULL;
@@ -79,8 +78,7 @@ void snow_frame_free(snow_frame *frame) {
     snow_buffers_free(frame);
 }
 
-/* --- a picture of one process ---------------------------------------------
- */
+/* --- a picture of one process --------------------------------------------- */
 
 snow_status snow_frame_render_slab(snow_frame *frame, const snow_volume *volume,
                                    const snow_transfer *transfer,
@@ -102,14 +100,13 @@ snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
                               snow_image **image) {
     if (frame->ranks && snow_ranks_busy(frame->ranks))
         return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
-                         "a picture of many ranks is under way in this frame; "
-                         "finish it first");
+                         "this frame has a picture of several ranks in flight: "
+                         "call snow_ranks_finish first");
     return snow_frame_render_slab(frame, volume, transfer, view, settings, 1, 0,
                                   image);
 }
 
-/* --- pictures of many ranks, two of which may be under way ----------------
- */
+/* --- pictures of many ranks, two of which may be under way ---------------- */
 
 static void complete_waiting(snow_picture *p) {
     snow_pipeline_done(p, complete(p, snow_pipeline_resume(p)));
@@ -141,8 +138,9 @@ snow_ranks_render(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
                   const snow_settings *settings, const snow_ranks_options *how,
                   snow_image **image) {
     if (frame->ranks && frame->ranks->in_flight)
-        return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
-                         "a picture is under way; finish it first");
+        return snow_fail(
+            frame->context, SNOW_STATUS_BAD_USAGE,
+            "this frame has a picture in flight: call snow_ranks_finish first");
     SNOW_TRY(
         snow_ranks_begin(frame, comm, volume, transfer, view, settings, how));
     return snow_ranks_finish(frame, image);

@@ -16,8 +16,7 @@ static double cpu_seconds(const frame_rank *s) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* --- before ----------------------------------------------------------------
- */
+/* --- before --------------------------------------------------------------- */
 
 static snow_status fill_view(frame_rank *s) {
     const frame_options *options = s->options;
@@ -77,8 +76,7 @@ static void finish(frame_rank *s) {
     free(s->splats);
 }
 
-/* --- a picture -------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
 /* What the library says of the last picture. */
 static void take_stats(frame_rank *s, bool first) {
@@ -140,8 +138,7 @@ static snow_status draw(frame_rank *s, bool first) {
     return status;
 }
 
-/* --- all ranks -------------------------------------------------------------
- */
+/* --- all ranks ------------------------------------------------------------ */
 
 static void add_rank(const frame_figures *f, int ranks, frame_result *out) {
     for (int i = 0; i < FRAME_STAGES; i++) {
@@ -265,8 +262,7 @@ static snow_status measure(frame_rank *s, frame_result *out) {
     return status;
 }
 
-/* --- the picture of one rank -----------------------------------------------
- */
+/* --- the picture of one rank ---------------------------------------------- */
 
 /* To whole steps of 1/255, as pixels travelled. */
 static void round_pixels(snow_image *image) {

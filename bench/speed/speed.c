@@ -21,8 +21,7 @@ typedef struct speed_run {
     chart_plot *chart; /* NULL but in sweeps */
 } speed_run;
 
-/* --- one case --------------------------------------------------------------
- */
+/* --- one case ------------------------------------------------------------- */
 
 /* One row for each way and number of threads; baselines have one thread. */
 static void lay_out(const speed_filter *filter, const speed_case *job,
@@ -81,8 +80,7 @@ static snow_status do_case(speed_run *run, const speed_case *job,
     return status;
 }
 
-/* --- the table: volumes, looks, colours, shading, sizes ---------------------
- */
+/* --- the table: volumes, looks, colours, shading, sizes ------------------- */
 
 /* All pictures of one volume that the filter takes. */
 static snow_status do_volume(speed_run *run, bench_volume *volume) {
@@ -127,8 +125,7 @@ static snow_status do_table(speed_run *run) {
     return status;
 }
 
-/* --- sweeps ----------------------------------------------------------------
- */
+/* --- sweeps --------------------------------------------------------------- */
 
 /* A point for each charted way, of the first number of threads. */
 static void add_points(speed_run *run, int panel, double x,
@@ -328,8 +325,7 @@ static snow_status do_sweep(speed_run *run, chart_plot *chart) {
     return status;
 }
 
-/* --- the verb --------------------------------------------------------------
- */
+/* --- the verb ------------------------------------------------------------- */
 
 /* Asked before anything is measured, which takes minutes. */
 static snow_status check(const bench_options *options) {

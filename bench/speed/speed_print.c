@@ -127,8 +127,7 @@ static figures figures_of(const speed_machine *machine, const speed_case *job,
     return out;
 }
 
-/* --- text ------------------------------------------------------------------
- */
+/* --- text ----------------------------------------------------------------- */
 
 /* A number, or a dash in its width. */
 static void print_cell(int width, int digits, double value) {
@@ -205,8 +204,7 @@ static void print_text(const speed_machine *machine, const speed_case *job,
     fflush(stdout);
 }
 
-/* --- JSON ------------------------------------------------------------------
- */
+/* --- JSON ----------------------------------------------------------------- */
 
 /* null where there is no figure: JSON has no NaN. */
 static json_t *number(double value) {

@@ -62,8 +62,7 @@ bool speed_is_baseline(const speed_way *way) {
            way->method == SNOW_METHOD_TESTED;
 }
 
-/* --- the words of --only ---------------------------------------------------
- */
+/* --- the words of --only -------------------------------------------------- */
 
 static const struct {
     const char *word;

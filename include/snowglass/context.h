@@ -71,8 +71,7 @@ SNOW_API const char *snow_context_message(const snow_context *context);
 SNOW_API void snow_context_set_warning(snow_context *context,
                                        snow_warning_fn *notice, void *user);
 
-/* --- stop and progress -----------------------------------------------------
- */
+/* --- stop and progress ---------------------------------------------------- */
 
 /* Whether a picture is to end now (snow_settings.stop): true ends it with
  * SNOW_STATUS_STOPPED.  Called by the thread that called the library and by no
@@ -114,8 +113,7 @@ SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
 SNOW_API void *snow_context_allocate(snow_context *context, size_t bytes);
 SNOW_API void snow_context_release(snow_context *context, void *block);
 
-/* --- figures ---------------------------------------------------------------
- */
+/* --- figures -------------------------------------------------------------- */
 
 /* The most bytes that objects of this context may hold together from now on; 0:
  * as many as there are.  What would exceed it fails with SNOW_STATUS_NO_MEMORY.

@@ -61,8 +61,7 @@ SNOW_API snow_comm *snow_insitu_comm(const snow_insitu *insitu);
 SNOW_API void snow_insitu_set_warning(snow_insitu *insitu,
                                       snow_warning_fn *notice, void *user);
 
-/* --- the data --------------------------------------------------------------
- */
+/* --- the data ------------------------------------------------------------- */
 
 /* The global grid: voxels along x, y, z, the world place of voxel (0, 0, 0) and
  * the world distance of neighbours.  NULL origin: 0, 0, 0; NULL spacing: 1, 1,
@@ -140,8 +139,7 @@ SNOW_API snow_status snow_insitu_set_distribution(snow_insitu *insitu,
                                                   snow_ghosts ghosts,
                                                   snow_balance balance);
 
-/* --- the picture, the same on all ranks ------------------------------------
- */
+/* --- the picture, the same on all ranks ----------------------------------- */
 
 /* The look (copied): transfer function and colours; zeros choose it from the
  * values.  What it takes from the values it takes from those of the next
@@ -190,8 +188,7 @@ SNOW_API snow_status snow_insitu_set_annotations(snow_insitu *insitu,
 SNOW_API snow_status snow_insitu_set_limits(snow_insitu *insitu, double seconds,
                                             uint64_t bytes);
 
-/* --- collective ------------------------------------------------------------
- */
+/* --- collective ----------------------------------------------------------- */
 
 /* Takes the voxels as they are now.  They may change again when it returns,
  * unless this rank's lie in memory as the picture wants them and were not

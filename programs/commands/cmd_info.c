@@ -45,8 +45,7 @@ static snow_status gather_facts(const options *asked, facts *f) {
     return status;
 }
 
-/* --- orientation -----------------------------------------------------------
- */
+/* --- orientation ---------------------------------------------------------- */
 
 /* The cosine between index axis `axis` and world axis `row`.  The matrix maps
  * indices to the world, so its column is the direction of an index axis, and as
@@ -80,8 +79,7 @@ static void axis_letters(const snow_volume_info *info, char letters[4]) {
     letters[3] = '\0';
 }
 
-/* --- text ------------------------------------------------------------------
- */
+/* --- text ----------------------------------------------------------------- */
 
 /* The geometry of the file; scale and time steps only if they matter. */
 static void print_geometry(const facts *f) {
@@ -161,8 +159,7 @@ static void print_histogram(const facts *f) {
     }
 }
 
-/* --- JSON ------------------------------------------------------------------
- */
+/* --- JSON ----------------------------------------------------------------- */
 
 /* Scripts rely on the keys: dims has x first, matrix maps index to world, row
  * by row. */

@@ -35,8 +35,7 @@ static int list(const options *asked) {
     return finish_stdout();
 }
 
-/* --- finding one by name
- * ----------------------------------------------------- */
+/* --- finding one by name -------------------------------------------------- */
 
 /* A transfer function that was found by name: a file, a preset or a colour
  * map. */

@@ -82,8 +82,7 @@ int movie_check(const options *asked) {
     return done == CONTINUE ? check_settings(asked) : done;
 }
 
-/* --- one frame, by the workers ---------------------------------------------
- */
+/* --- one frame, by the workers -------------------------------------------- */
 
 static bool needs_encoder(const sequence *s) {
     return s->place.format && s->place.format->arguments;
@@ -203,8 +202,7 @@ static void release(void *user, frame_slot *slot) {
     slot->work = NULL;
 }
 
-/* --- the beginning ---------------------------------------------------------
- */
+/* --- the beginning -------------------------------------------------------- */
 
 /* A movie by ffmpeg has no transparency: its background is black unless another
  * is requested.  Its frames are kept as the encoder gets them. */
@@ -339,8 +337,7 @@ static int begin_parts(sequence *s) {
     return SNOW_STATUS_NO_MEMORY;
 }
 
-/* --- the loop ---------------------------------------------------------------
- */
+/* --- the loop ------------------------------------------------------------- */
 
 /* The state of the loop. */
 typedef struct run {
@@ -447,8 +444,7 @@ static int render_frames(run *r) {
     return word == CONTINUE ? last : word;
 }
 
-/* --- the end ----------------------------------------------------------------
- */
+/* --- the end -------------------------------------------------------------- */
 
 static int report_encoder(sequence *s, const char *text) {
     return fail_output("%s: ffmpeg failed: %s; the frames are in %s: correct "

@@ -237,8 +237,7 @@ int steps_list(const step_files *files, shot_renderer *shots, shot_list *out) {
     return CONTINUE;
 }
 
-/* --- one transfer function for all steps ------------------------------------
- * */
+/* --- one transfer function for all steps ---------------------------------- */
 
 /* The number of values taken from all steps together, and the minimum from
  * each: enough that the histogram looks the same. */

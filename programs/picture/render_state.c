@@ -57,8 +57,7 @@ void scene_free(scene *s) {
         close_render_context(s->context);
 }
 
-/* --- a volume --------------------------------------------------------------
- */
+/* --- a volume ------------------------------------------------------------- */
 
 static int place_camera(scene *s) {
     int done = make_view(s->context, s->asked, &s->whole, &s->view);
@@ -231,8 +230,7 @@ int scene_open(scene *s, const char *path, int64_t time) {
     return launch_ranks() > 1 ? open_part(s, &step) : open_alone(s, &step);
 }
 
-/* --- a picture -------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
 /* Sums over ranks for counts; for times the slowest rank of each stage. */
 static void add_figures(snow_stats *sum, const snow_stats *stats) {
@@ -378,8 +376,7 @@ int scene_draw(scene *s, double azimuth, snow_image **image) {
     return done == CONTINUE ? scene_finish(s, image) : done;
 }
 
-/* --- reports
- * ----------------------------------------------------------------- */
+/* --- reports -------------------------------------------------------------- */
 
 render_report scene_report(const scene *s) {
     return (render_report){.volume = &s->drawn.whole,

@@ -177,8 +177,7 @@ void progress(const options *asked, const char *stage) {
         say("%s", stage);
 }
 
-/* --- a long stage
- * ------------------------------------------------------------ */
+/* --- a long stage --------------------------------------------------------- */
 
 /* Seconds between two reports of a long stage: on a terminal, elsewhere. */
 #define LIVE_SECONDS 1

@@ -79,8 +79,7 @@ static double round_above(double length) {
                                             : round_below(2 * below);
 }
 
-/* --- the scale bar ---------------------------------------------------------
- */
+/* --- the scale bar -------------------------------------------------------- */
 
 /* Uses the unit of a family of units that makes the number 1 to below 1000. */
 static void write_length(double length, const char *unit, char *out,
@@ -127,8 +126,7 @@ snow_status snow_overlay_scale_bar(snow_overlay *overlay,
                              y - 0.8 * height, 0.5, 1, height, text);
 }
 
-/* --- the colour bar --------------------------------------------------------
- */
+/* --- the colour bar ------------------------------------------------------- */
 
 /* The position of the bar, in whole pixels, and what it shows. */
 typedef struct color_bar {

@@ -42,6 +42,7 @@ struct snow_context {
     void *spare;         /* a block that the next volume may use for its voxels
                             (volume/stream.c); NULL: none */
     size_t spare_bytes;
+    bool opens_slab; /* a slab of a volume that stays in its file is opened */
     char message[SNOW_MESSAGE_BYTES];
 };
 
@@ -93,8 +94,7 @@ static inline void *snow_lay_out(char *base, size_t *at, size_t bytes) {
 bool snow_mul_u64(uint64_t a, uint64_t b, uint64_t *out);
 bool snow_add_u64(uint64_t a, uint64_t b, uint64_t *out);
 
-/* --- time ------------------------------------------------------------------
- */
+/* --- time ----------------------------------------------------------------- */
 
 /* Seconds of a monotonic clock, and of this process' processor time; only
  * differences are meaningful. */
@@ -109,8 +109,7 @@ static inline void snow_lap(double *mark, double *total) {
     *mark = now;
 }
 
-/* --- text ------------------------------------------------------------------
- */
+/* --- text ----------------------------------------------------------------- */
 
 /* Parses numbers in untrusted text: the whole of `text` must be one number in
  * range (blanks around it are accepted). Returns false otherwise, with *out

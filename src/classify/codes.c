@@ -193,8 +193,7 @@ static snow_status make_table(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* --- wider types ----------------------------------------------------------
- */
+/* --- wider types ---------------------------------------------------------- */
 
 /* Merges the values of both kinds of points into `stops`, without duplicates.
  */
@@ -294,8 +293,7 @@ static double wide_value(const snow_quantizer *quantizer, size_t code) {
     return value < b ? value : nextafter(b, -INFINITY);
 }
 
-/* --- quantizers -
- * -------------------------------------------------------------- */
+/* --- quantizers - --------------------------------------------------------- */
 
 snow_status snow_quantizer_make(snow_context *context,
                                 const snow_volume *volume,

@@ -99,8 +99,7 @@ void snow_gradient_opacity_correct(
             ->correct(snow_exponent_within(exponent), count, opacities);
 }
 
-/* --- codes ----------------------------------------------------------------
- */
+/* --- codes ---------------------------------------------------------------- */
 
 /* Value n of an array of native values. */
 static double native_of(snow_type type, const void *natives, size_t n) {

@@ -46,8 +46,7 @@ static size_t block_end(const palette_job *job, size_t first) {
     return end < job->quantizer->codes ? end : job->quantizer->codes;
 }
 
-/* --- looks ----------------------------------------------------------------
- */
+/* --- looks ---------------------------------------------------------------- */
 
 static void make_looks(void *user, int64_t item, int worker) {
     (void)worker;
@@ -112,8 +111,7 @@ static snow_status take_key(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* --- samples --------------------------------------------------------------
- */
+/* --- samples -------------------------------------------------------------- */
 
 /* The opacities of a block for the exponent; with exponent 1 those of the looks
  * are used unchanged. */

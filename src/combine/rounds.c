@@ -14,8 +14,7 @@ static int least(int a, int b) {
     return a < b ? a : b;
 }
 
-/* --- splits ---------------------------------------------------------------
- */
+/* --- splits --------------------------------------------------------------- */
 
 /* Subset i of a group split into at most `radix` near-equal ones; the first
  * ones are one larger if it does not divide evenly. */
@@ -109,8 +108,7 @@ static void list_owners(const snow_rounds *rounds, int level, group g,
         owners[region_in(rounds, level, g, s)] = s;
 }
 
-/* --- lists ----------------------------------------------------------------
- */
+/* --- lists ---------------------------------------------------------------- */
 
 size_t snow_rounds_room(const snow_rounds *rounds) {
     size_t capacity = 0;
@@ -178,8 +176,7 @@ int snow_rounds_last(const snow_rounds *rounds, int rank_position) {
                      rank_position);
 }
 
-/* --- the choice -----------------------------------------------------------
- */
+/* --- the choice ----------------------------------------------------------- */
 
 /* The assumed network: seconds for a message to arrive, for a processor to
  * start or end one, and for a byte. If all are larger in proportion, the choice

@@ -64,7 +64,7 @@ snow_status snow_volume_read(snow_source *source,
 void snow_volume_order_bytes(snow_volume *volume, bool big_endian);
 
 /* For a reader that has set info->times: takes the time step of the options
- * into info->time and tells the listener when there are several.  `what` the
+ * into info->time, and warns when there are several.  `what` the
  * format calls one: "time step", or "volume" where it need not be time.
  * Errors: SNOW_STATUS_BAD_USAGE when there is no such step. */
 snow_status snow_volume_pick_time(snow_context *context, const char *what,

@@ -126,8 +126,14 @@ static void note_empty(const opening *o, const snow_volume *mask,
 
 static snow_status leave_out_of(const opening *o, const snow_volume *volume,
                                 const snow_volume *mask, snow_volume **out) {
-    const snow_cuts by = {mask, o->labels, o->count, o->clip[0],
-                          SNOW_CLIPS_MAX};
+    const snow_cuts by = {
+        .mask = mask,
+        .labels = o->labels,
+        .label_count = o->count,
+        .planes = o->clip[0],
+        .plane_count = SNOW_CLIPS_MAX,
+        .keeps_clipped = !volume->is_part && !o->context->opens_slab,
+    };
     bool any;
     SNOW_TRY(snow_mask_apply(volume, &by, &any, out));
     if (!any)

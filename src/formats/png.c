@@ -33,8 +33,7 @@ static bool probe_png(const unsigned char *bytes, size_t size) {
     return size >= 8 && png_sig_cmp(bytes, 0, 8) == 0;
 }
 
-/* --- between libpng and the library ----------------------------------------
- */
+/* --- between libpng and the library --------------------------------------- */
 
 static void *allocate_block(png_structp png, png_alloc_size_t bytes) {
     png_reader *reader = png_get_mem_ptr(png);
@@ -76,8 +75,7 @@ static void read_bytes(png_structp png, png_bytep bytes, size_t size) {
         leave(reader, status);
 }
 
-/* --- header
- * ------------------------------------------------------------------ */
+/* --- header --------------------------------------------------------------- */
 
 static int64_t big_endian_32(const unsigned char *bytes) {
     return (int64_t)bytes[0] << 24 | (int64_t)bytes[1] << 16 |
@@ -116,8 +114,7 @@ static snow_status read_shape(snow_source *source, png_shape *out) {
                               "the pixels");
 }
 
-/* --- pixels ------------------------------------------------------------------
- */
+/* --- pixels --------------------------------------------------------------- */
 
 /* Checks every checksum, and reads rows as stored, in the machine's byte
  * order. */

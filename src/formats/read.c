@@ -42,8 +42,8 @@ void snow_volume_order_bytes(snow_volume *volume, bool big_endian) {
                         snow_type_size(volume->info.type));
 }
 
-/* Told even for step 0: a picture of one of many steps must not pass for all
- * there is, unless the others come too. */
+/* Warns even for step 0: the user must know that this is one step of many,
+ * unless all steps are opened in turn. */
 snow_status snow_volume_pick_time(snow_context *context, const char *what,
                                   const snow_volume_options *options,
                                   snow_volume_info *info) {

@@ -37,7 +37,7 @@ int snow_print_numbers(char *text, size_t room, const double *values, int count,
         if (i)
             used += snprintf(text + used, room - (size_t)used, "%s", between);
         char *number = text + used;
-        /* Adding 0 makes -0, of which files need not tell, 0. */
+        /* Adding 0 turns -0 into 0. */
         used += snprintf(number, room - (size_t)used, "%.17g", values[i] + 0.0);
         char *comma = strchr(number, ',');
         if (comma)

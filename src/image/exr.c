@@ -84,8 +84,7 @@ static exr_context_initializer_t hooks_of(exr_file *file) {
     return hooks;
 }
 
-/* --- writing ---------------------------------------------------------------
- */
+/* --- writing -------------------------------------------------------------- */
 
 /* Samples of a pixel for writing: red, green, blue (or the value), alpha,
  * depth. */
@@ -226,8 +225,7 @@ static snow_status write_exr(const snow_image *image,
     return status;
 }
 
-/* --- reading ---------------------------------------------------------------
- */
+/* --- reading -------------------------------------------------------------- */
 
 /* A lower bound for the compressed bytes: the strongest, a lossy compression,
  * turns a block of 64 values into its share of a Deflate stream. */

@@ -104,8 +104,7 @@ snow_status snow_overlay_rows(snow_overlay *overlay, int x0, int y0, int x1,
     return add_shape(overlay, &shape);
 }
 
-/* --- drawing ---------------------------------------------------------------
- */
+/* --- drawing -------------------------------------------------------------- */
 
 /* Composites a colour over a pixel. */
 static void composite_pixel(float *pixel, int channels, const float *rgb,

@@ -13,8 +13,7 @@
 /* Approximate bytes of a strip before compression. */
 #define STRIP_BYTES 65536
 
-/* --- writing ---------------------------------------------------------------
- */
+/* --- writing -------------------------------------------------------------- */
 
 static bool set_tags(TIFF *tiff, const snow_image *image, int strip) {
     uint16_t extra = EXTRASAMPLE_ASSOCALPHA;
@@ -88,8 +87,7 @@ static snow_status write_tiff(const snow_image *image,
     return status;
 }
 
-/* --- reading ---------------------------------------------------------------
- */
+/* --- reading -------------------------------------------------------------- */
 
 typedef struct tiff_plan {
     uint32_t width, height;

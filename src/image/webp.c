@@ -96,8 +96,7 @@ static snow_status write_webp(const snow_image *image,
     return status;
 }
 
-/* --- reading ---------------------------------------------------------------
- */
+/* --- reading -------------------------------------------------------------- */
 
 static snow_status refuse(const snow_source *source, const char *reason) {
     return snow_fail(snow_source_context(source), SNOW_STATUS_BAD_INPUT,

@@ -60,8 +60,8 @@ static snow_status check_prints(snow_insitu *insitu, int64_t least,
         return SNOW_STATUS_OK;
     return snow_context_fail(
         insitu->context, SNOW_STATUS_BAD_USAGE,
-        "ranks were told different grids, views, settings or "
-        "limits; call the setters alike on all of them");
+        "grids, views, settings or limits differ between ranks: call the "
+        "setters with the same values on all ranks");
 }
 
 snow_status snow_insitu_check(snow_insitu *insitu) {
@@ -94,12 +94,12 @@ static snow_status check_facts(snow_insitu *insitu, const int64_t *facts) {
     if (facts[SNOW_FACT_TYPE] == INT64_MAX)
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "no rank has a brick; call snow_insitu_set_brick");
+            "no rank has a brick: call snow_insitu_set_brick");
     if (facts[SNOW_FACT_TYPE] != -facts[SNOW_FACT_TYPE_MOST])
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "voxels are %s on one rank and %s on another; give "
-            "all the same type",
+            "voxels are %s on one rank and %s on another: all must have the "
+            "same type",
             snow_type_name((snow_type)facts[SNOW_FACT_TYPE]),
             snow_type_name((snow_type)-facts[SNOW_FACT_TYPE_MOST]));
     return SNOW_STATUS_OK;

@@ -43,8 +43,7 @@ snow_status snow_insitu_set_grid(snow_insitu *insitu, const int64_t dims[3],
     for (int i = 0; i < 3; i++)
         if (!(info.spacing[i] > 0))
             return snow_insitu_refuse(insitu,
-                                      "a spacing of %g is none; give a length "
-                                      "above 0",
+                                      "invalid spacing %g: must be positive",
                                       info.spacing[i]);
     INSITU_TRY(
         snow_insitu_set_error(insitu, check_grid(insitu->context, &info)));
@@ -147,9 +146,10 @@ snow_status snow_insitu_set_distribution(snow_insitu *insitu,
                                          snow_balance balance) {
     if ((int)ghosts < 0 || ghosts > SNOW_GHOSTS_NONE || (int)balance < 0 ||
         balance > SNOW_BALANCE_REPARTITION)
-        return snow_insitu_refuse(
-            insitu, "ghosts %d or balance %d is none of its values",
-            (int)ghosts, (int)balance);
+        return snow_insitu_refuse(insitu,
+                                  "invalid ghosts %d or balance %d: use values "
+                                  "of snow_ghosts and snow_balance",
+                                  (int)ghosts, (int)balance);
     insitu->ghosts = ghosts;
     insitu->balance = balance;
     insitu->changed = true;

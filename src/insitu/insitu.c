@@ -1,5 +1,4 @@
-/* insitu/insitu.c - what a simulation tells of its data and of the pictures it
- * wants.
+/* insitu/insitu.c - the setters: data and pictures of a simulation.
  *
  * Nothing here speaks to other ranks but snow_insitu_begin, which makes a
  * setter's failure on one rank the failure of all: a program may then check its
@@ -168,8 +167,7 @@ snow_status snow_insitu_set_view(snow_insitu *insitu, const snow_view *given) {
     if (view.width < 1 || view.height < 1)
         return snow_insitu_refuse(
             insitu,
-            "a picture of %dx%d pixels is none; set width "
-            "and height of the view",
+            "invalid picture of %dx%d pixels: set width and height of the view",
             view.width, view.height);
     insitu->view = view;
     insitu->has_view = true;

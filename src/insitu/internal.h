@@ -24,7 +24,8 @@
             return insitu_try_status;            \
     } while (0)
 
-/* A brick of this rank as it was told; without a type until its voxels are. */
+/* A brick of this rank as it was given; it has no type until its voxels are
+ * given. */
 typedef struct snow_insitu_brick {
     snow_box box; /* empty: there is none of this number */
     snow_halo halo;
@@ -66,7 +67,7 @@ struct snow_insitu {
     snow_status given; /* of the first setter that failed since the last
                          collective call; message is its */
 
-    /* As told. */
+    /* As given by the setters. */
     snow_volume_info whole; /* dims 0 until there is a grid */
     snow_insitu_brick *bricks;
     size_t brick_bytes;
@@ -145,7 +146,7 @@ snow_status snow_insitu_end(snow_insitu *insitu, snow_status status);
 /* Frees what pictures need, to be made again when there is more memory. */
 void snow_insitu_forget(snow_insitu *insitu);
 
-/* The view of the picture: as told, or the default one. */
+/* The view of the picture: as given, or the default one. */
 snow_view snow_insitu_view(const snow_insitu *insitu);
 
 /* View and settings of pictures of the voxels last taken, lowered for limits
@@ -163,7 +164,7 @@ snow_status snow_insitu_check(snow_insitu *insitu);
 
 /* --- agree.c, layout.c, data.c ---
 
- * What ranks tell each other before voxels are taken; reduced to the least. */
+ * What ranks agree on before voxels are taken, by a minimum over all ranks. */
 enum {
     SNOW_FACT_TYPE,       /* of the voxels; the greatest number where none */
     SNOW_FACT_TYPE_MOST,  /* minus the type; 0 where none */

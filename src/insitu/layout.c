@@ -10,12 +10,11 @@ static snow_status add_brick(snow_insitu *insitu, int id) {
     if (!brick->voxels)
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "brick %d has no voxels; call snow_insitu_set_voxels", id);
+            "brick %d has no voxels: call snow_insitu_set_voxels", id);
     if (insitu->type != SNOW_TYPE_NONE && insitu->type != brick->type)
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "brick %d is %s and another one %s; give all the same "
-            "type",
+            "brick %d is %s and another one is %s: all must have the same type",
             id, snow_type_name(brick->type), snow_type_name(insitu->type));
     insitu->type = brick->type;
     int n = insitu->held_count++;
@@ -32,7 +31,7 @@ static snow_status list_bricks(snow_insitu *insitu) {
     insitu->type = SNOW_TYPE_NONE;
     if (!insitu->whole.dims[0])
         return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
-                                 "there is no grid; call snow_insitu_set_grid");
+                                 "there is no grid: call snow_insitu_set_grid");
     INSITU_TRY(snow_insitu_reserve(insitu, &insitu->held, &insitu->held_bytes,
                                    0, count * sizeof *insitu->held));
     INSITU_TRY(snow_insitu_reserve(insitu, &insitu->moved, &insitu->moved_bytes,
@@ -124,8 +123,8 @@ static void place_boxes(const snow_insitu *insitu, snow_insitu_layout *l,
     }
 }
 
-/* Collective.  Bricks do not overlap, as is known by then: counting tells
- * whether they are the whole grid. */
+/* Collective.  Bricks are known not to overlap, so their number of voxels
+ * shows whether they fill the grid. */
 static snow_status check_whole(const snow_insitu *insitu) {
     const int64_t *dims = insitu->whole.dims;
     int64_t held = 0, all = dims[0] * dims[1] * dims[2];
@@ -135,9 +134,8 @@ static snow_status check_whole(const snow_insitu *insitu) {
     if (held == all)
         return SNOW_STATUS_OK;
     return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
-                             "no rank snow_insitu_box_holds %lld of the %lld "
-                             "voxels of the grid; give "
-                             "each to a brick",
+                             "no rank holds %lld of the %lld voxels of the "
+                             "grid: every voxel must belong to a brick",
                              (long long)(all - held), (long long)all);
 }
 

@@ -45,19 +45,18 @@ static snow_status check_bounds(snow_insitu *insitu,
         double dims = (-bounds[HIGH + i] - bounds[LOW + i]) / least;
         if (isinf(bounds[LOW + i]))
             return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
-                                     "no rank has a brick; give at least one");
+                                     "no rank has a brick: give at least one");
         if (!(least > 0) || !(most - least <= 1e-6 * most))
             return snow_context_fail(
                 insitu->context, SNOW_STATUS_BAD_USAGE,
-                "spacings along axis %d are from %g to %g; one "
-                "grid has one, above 0",
+                "spacings along axis %d are between %g and %g: all bricks must "
+                "have the same positive spacing",
                 i, least, most);
         if (!(dims < DIMS_MOST))
-            return snow_context_fail(
-                insitu->context, SNOW_STATUS_BAD_USAGE,
-                "a grid of %g voxels along axis %d is none; "
-                "correct the places of the bricks",
-                dims, i);
+            return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
+                                     "invalid grid of %g voxels along axis %d: "
+                                     "correct the positions of the bricks",
+                                     dims, i);
     }
     return SNOW_STATUS_OK;
 }
@@ -72,8 +71,8 @@ static snow_status locate(snow_insitu *insitu, int id,
         if (!(fabs(at - floor(at + 0.5)) <= MISS))
             return snow_context_fail(
                 insitu->context, SNOW_STATUS_BAD_USAGE,
-                "brick %d lies at voxel %g along axis %d of the "
-                "grid; move it to a whole one",
+                "brick %d begins at voxel %g along axis %d of the grid: it "
+                "must begin at a whole voxel",
                 id, at, i);
     }
     return SNOW_STATUS_OK;
@@ -137,9 +136,11 @@ static bool is_same(const snow_insitu *insitu, const int64_t dims[3],
     return true;
 }
 
-static snow_status tell(snow_insitu *insitu, const int64_t dims[3],
-                        const double bounds[BOUNDS],
-                        const snow_insitu_brick *bricks, int count) {
+static snow_status set_grid_and_bricks(snow_insitu *insitu,
+                                       const int64_t dims[3],
+                                       const double bounds[BOUNDS],
+                                       const snow_insitu_brick *bricks,
+                                       int count) {
     if (is_same(insitu, dims, bounds, bricks, count))
         return SNOW_STATUS_OK;
     INSITU_TRY(
@@ -167,8 +168,8 @@ static snow_status place_all(snow_insitu *insitu,
     INSITU_TRY(snow_comm_agree_status(
         insitu->comm, find_boxes(insitu, bricks, count, bounds, placed)));
     INSITU_TRY(share_borders(insitu, dims, placed, count));
-    return snow_comm_agree_status(insitu->comm,
-                                  tell(insitu, dims, bounds, placed, count));
+    return snow_comm_agree_status(
+        insitu->comm, set_grid_and_bricks(insitu, dims, bounds, placed, count));
 }
 
 snow_status snow_insitu_place_bricks(snow_insitu *insitu,

@@ -46,8 +46,7 @@ static snow_status fail_side(mpi_side *side, int error, const char *what,
     return snow_mpi_fail(side->context, error, what, peer);
 }
 
-/* --- memory ----------------------------------------------------------------
- */
+/* --- memory --------------------------------------------------------------- */
 
 /* Replaces a block by a larger one; the first `keep` bytes are copied. */
 static snow_status grow_block(mpi_side *side, void *block_pointer, size_t keep,
@@ -99,8 +98,7 @@ static snow_status make_room(mpi_side *side, int count) {
     return status;
 }
 
-/* --- messages --------------------------------------------------------------
- */
+/* --- messages ------------------------------------------------------------- */
 
 /* A type of `bytes` bytes, more than a chunk; the caller frees it. */
 static int large_type(size_t bytes, MPI_Datatype *out) {

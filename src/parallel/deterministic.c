@@ -17,8 +17,7 @@
 /* The head of a node's block: what of it is not transparent. */
 #define HEAD sizeof(snow_rectangle)
 
-/* --- who has what ---------------------------------------------------------
- */
+/* --- who has what --------------------------------------------------------- */
 
 /* The nodes of a rank. */
 static int nodes_of(const snow_ranks *r, const snow_placement *p, int rank,
@@ -54,8 +53,7 @@ static size_t pixel_bytes(const snow_local *local) {
     return (size_t)local->channels * sizeof(float);
 }
 
-/* --- memory ---------------------------------------------------------------
- */
+/* --- memory --------------------------------------------------------------- */
 
 /* Bytes of the message to a rank. */
 static size_t message_bytes(const snow_ranks *r, const snow_local *local,
@@ -95,8 +93,7 @@ snow_status snow_layers_prepare(snow_ranks *r, const snow_local *local,
                         (SNOW_GROUP_RANKS + 1) * region + 1);
 }
 
-/* --- messages -------------------------------------------------------------
- */
+/* --- messages ------------------------------------------------------------- */
 
 /* Writes what is `rank`'s of this rank's layers; the message's end. */
 static char *write_message(const snow_ranks *r, const snow_local *local,
@@ -141,8 +138,7 @@ static snow_status exchange_messages(snow_ranks *r, const snow_local *local,
     return snow_comm_wait_all(r->comm, messages, count);
 }
 
-/* --- the tree -------------------------------------------------------------
- */
+/* --- the tree ------------------------------------------------------------- */
 
 /* A piece in the making. */
 typedef struct tree_reduction {

@@ -7,8 +7,7 @@
 
 #include <string.h>
 
-/* --- the local image ------------------------------------------------------
- */
+/* --- the local image ------------------------------------------------------ */
 
 /* Tiles of tile lines y0 .. y1 - 1 of a layer that were drawn on, as pixels;
  * what else lies among them is cleared. */
@@ -86,8 +85,7 @@ static snow_local picture_local(const snow_flight *p, const snow_job *job) {
     return local;
 }
 
-/* --- the exchange ---------------------------------------------------------
- */
+/* --- the exchange --------------------------------------------------------- */
 
 /* How local images of a mode are laid over one another. */
 static snow_composite_op composite_op_of(snow_mode mode) {

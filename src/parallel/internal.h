@@ -35,7 +35,7 @@ typedef struct snow_flight {
     snow_picture picture;
     snow_ranks *ranks;
     snow_ranks_options how;
-    /* Of the volume, which may be gone when the others are told. */
+    /* Copied from the volume, which may be freed before they are sent. */
     snow_extent part;
     uint64_t generation;
     snow_local local;         /* what is exchanged of picture.local */
@@ -147,9 +147,8 @@ void snow_pipeline_done(snow_picture *picture, snow_status status);
 /* The oldest picture is the caller's. */
 snow_status snow_pipeline_take(snow_frame *frame, snow_image **image);
 
-/* Draws a band of the picture that is drawn, while the clock stands; false:
- * none is left to begin.  Lets the clock go on, and tells for how long it
- * stood. */
+/* Draws a band of the picture in flight; false when no band is left to begin.
+ * The clock of the exchange is stopped meanwhile, and the time is recorded. */
 bool snow_ranks_draw(snow_ranks *ranks);
 double snow_ranks_pause(snow_ranks *ranks);
 

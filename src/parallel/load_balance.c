@@ -12,7 +12,7 @@
 /* Less is noise. */
 #define LEAST_IMBALANCE 1.04
 
-/* What a slab costs at least: clocks may tell of nothing. */
+/* The least cost of a slab: a coarse clock may measure 0. */
 #define LEAST_SECONDS 1e-6
 
 /* Of the time that a cut should save, so much is hoped for; and no cut is made
@@ -23,8 +23,7 @@
 /* What a cut takes over the encoding of its voxels: that they are moved. */
 #define MOVING 1.0
 
-/* --- one rank's record ----------------------------------------------------
- */
+/* --- one rank's record ---------------------------------------------------- */
 
 snow_status snow_load_balance_new(snow_context *context,
                                   snow_load_balance **out) {
@@ -81,8 +80,7 @@ double snow_load_balance_seconds(const snow_load_balance *w) {
     return least;
 }
 
-/* --- what all said --------------------------------------------------------
- */
+/* --- what all said -------------------------------------------------------- */
 
 static double sum_of(const snow_load_balance_message *words, int ranks) {
     double sum = 0;
@@ -135,8 +133,7 @@ void snow_load_balance_learn(const snow_load_balance_message *words, int ranks,
     }
 }
 
-/* --- the cut --------------------------------------------------------------
- */
+/* --- the cut -------------------------------------------------------------- */
 
 /* One call of snow_ranks_rebalance. */
 typedef struct balancing {

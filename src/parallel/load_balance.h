@@ -8,8 +8,8 @@
  * the costs.  What was learned of thinner or other slabs stays in them, so that
  * a few cuts find costs that change within a slab (the multiplicative algebraic
  * reconstruction of R. Gordon, R. Bender and G. T. Herman, 1970, along one
- * axis).  Bricks are left as they were cut: voxels of their borders are drawn
- * by several ranks, and no cost of voxels told what they took. */
+ * axis).  Bricks keep their partition: voxels of their borders are drawn by
+ * several ranks, so no cost per voxel fits their times. */
 #ifndef SNOW_PARALLEL_LOAD_BALANCE_H
 #define SNOW_PARALLEL_LOAD_BALANCE_H
 
@@ -45,7 +45,7 @@ void snow_load_balance_free(snow_context *context, snow_load_balance *work);
 /* Makes one zeros again. */
 void snow_load_balance_fini(snow_context *context, snow_load_balance *work);
 
-/* What a rank tells the others. */
+/* What each rank sends to the others. */
 typedef struct snow_load_balance_message {
     int64_t fault;        /* 0, its part serves; 1, it does not; 2, it failed */
     int64_t known;        /* whether it has the costs of the axis */

@@ -27,10 +27,11 @@ snow_status snow_flight_check_mode(const snow_flight *f) {
     const snow_settings *s = &f->picture.job.settings;
     if (s->deterministic &&
         (s->mode == SNOW_MODE_MEAN || s->mode == SNOW_MODE_SUM))
-        return snow_fail(f->picture.job.context, SNOW_STATUS_BAD_USAGE,
-                         "mode %s of many ranks is rounded as its parts are, "
-                         "so that it cannot be deterministic; render on one",
-                         snow_mode_name(s->mode));
+        return snow_fail(
+            f->picture.job.context, SNOW_STATUS_BAD_USAGE,
+            "mode %s cannot be deterministic on several ranks, since sums are "
+            "rounded part by part: render on one rank",
+            snow_mode_name(s->mode));
     return SNOW_STATUS_OK;
 }
 
@@ -53,14 +54,13 @@ snow_status snow_flight_agree_range(snow_flight *f) {
                                  words[HOLES] == 0);
     if (isfinite(identity->high - identity->low))
         return SNOW_STATUS_OK;
-    return snow_fail(f->picture.job.context, SNOW_STATUS_BAD_INPUT,
-                     "values from %g to %g span more than a number holds; only "
-                     "mode over shows them",
-                     identity->low, identity->high);
+    return snow_fail(
+        f->picture.job.context, SNOW_STATUS_BAD_INPUT,
+        "values from %g to %g exceed the range of float: use mode over",
+        identity->low, identity->high);
 }
 
-/* --- pairs ----------------------------------------------------------------
- */
+/* --- pairs ---------------------------------------------------------------- */
 
 snow_status snow_flight_paint(snow_flight *f) {
     snow_picture *p = &f->picture;
@@ -73,8 +73,7 @@ snow_status snow_flight_paint(snow_flight *f) {
     return SNOW_STATUS_OK;
 }
 
-/* --- depths ---------------------------------------------------------------
- */
+/* --- depths --------------------------------------------------------------- */
 
 /* (depth, 1) where there is a depth. */
 static void take_depths(const snow_image *depth, float *pairs) {

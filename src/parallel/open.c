@@ -91,8 +91,8 @@ static snow_status compare_files(const opening *o) {
     for (int i = 0; i < 5; i++)
         if (ends[i] != -ends[5 + i])
             return snow_fail(o->context, SNOW_STATUS_BAD_INPUT,
-                             "%s: is not the same file on all ranks; put it "
-                             "where all see it",
+                             "%s: is not the same file on all ranks: put it on "
+                             "a file system that all ranks share",
                              o->path);
     return SNOW_STATUS_OK;
 }
@@ -158,9 +158,9 @@ static snow_status read_share(const opening *o, bool stream,
     return snow_comm_agree_status(o->comm, status);
 }
 
-/* Collective.  An empty picture must not pass for one of an empty volume: rank
- * 0 tells that a mask or planes have left nothing of all that was read.  As of
- * a volume in memory, nothing is said of one that is cropped. */
+/* Collective.  Rank 0 warns when a mask or clip planes leave no voxel, so that
+ * the user knows why the picture is empty.  As for a volume in memory, there is
+ * no warning for a crop. */
 static snow_status warn_empty(const opening *o, const snow_volume *read) {
     static const int64_t none[3][2];
     enum { LEFT, MINUS_LEAST, MOST, COUNT };
@@ -219,7 +219,7 @@ static snow_status open_shares(const opening *o,
                                snow_volume **share, snow_volume **volume,
                                snow_transfer **transfer) {
     SNOW_TRY(read_share(o, stream, share));
-    if (!stream) /* of which rank 0 has read, and told, all */
+    if (!stream) /* rank 0 has read all of it, and has warned */
         SNOW_TRY(warn_empty(o, *share));
     SNOW_TRY(make_transfer(o, *share, transfer));
     if (order->ranks == 1) { /* the share is the whole */

@@ -23,8 +23,8 @@ typedef struct snow_partition_params {
     snow_isa isa;
 } snow_partition_params;
 
-/* The options that are told, NULL for none; zeros for what a caller's record,
- * of an older version, lacks. */
+/* The caller's options, or the defaults for NULL and for fields that the
+ * caller's version of the record lacks. */
 snow_ranks_options snow_ranks_options_known(const snow_ranks_options *how);
 
 /* What picture and ranks ask for; `fades` as in render/ghosts.h.  Not to be

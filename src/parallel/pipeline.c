@@ -29,8 +29,7 @@ static bool draw_meanwhile(void *of) {
     return any;
 }
 
-/* --- pictures -------------------------------------------------------------
- */
+/* --- pictures ------------------------------------------------------------- */
 
 static void keep_status(snow_flight *f, snow_status status) {
     f->status = status;
@@ -61,12 +60,12 @@ snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
     snow_ranks *r = frame->ranks;
     if (r && r->in_flight && r->comm != comm)
         return fail_in_flight(frame->context,
-                              "pictures by another communicator are under way; "
+                              "pictures of another communicator are in flight: "
                               "finish them first");
     if (r && r->in_flight == SNOW_PICTURES_MOST)
-        return fail_in_flight(frame->context,
-                              "two pictures are under way; finish the first of "
-                              "them");
+        return fail_in_flight(
+            frame->context,
+            "two pictures are in flight: call snow_ranks_finish first");
     SNOW_TRY(snow_ranks_of(frame, comm));
     r = frame->ranks;
     snow_flight *f = snow_flight_at(r, r->in_flight);
@@ -184,8 +183,9 @@ void snow_pipeline_done(snow_picture *p, snow_status status) {
 snow_status snow_pipeline_take(snow_frame *frame, snow_image **image) {
     snow_ranks *r = frame->ranks;
     if (!r || !r->in_flight)
-        return fail_in_flight(frame->context,
-                              "no picture is under way; begin one");
+        return fail_in_flight(
+            frame->context,
+            "no picture is in flight: call snow_ranks_begin first");
     snow_flight *f = snow_flight_at(r, 0);
     r->first = (r->first + 1) % SNOW_PICTURES_MOST;
     r->in_flight--;

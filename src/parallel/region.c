@@ -23,8 +23,7 @@
 /* Lines of the picture that are warped as one item of work. */
 #define WARP_LINES 16
 
-/* --- lines around a piece -------------------------------------------------
- */
+/* --- lines around a piece ------------------------------------------------- */
 
 /* The lines of a rank's piece. */
 static snow_slab region_lines(const snow_ranks *r, int rank, int width) {
@@ -124,8 +123,7 @@ snow_status snow_lines_exchange(snow_ranks *r,
     return SNOW_STATUS_OK;
 }
 
-/* --- runs of pixels -------------------------------------------------------
- */
+/* --- runs of pixels ------------------------------------------------------- */
 
 static bool is_clear(const float *pixel, int channels) {
     for (int c = 0; c < channels; c++)
@@ -185,8 +183,7 @@ static snow_status reserve_way(snow_ranks *r, const snow_job *job,
         (size_t)job->channels * (pixel_bits == 8 ? 1 : sizeof(float)));
 }
 
-/* --- pixels of the picture ------------------------------------------------
- */
+/* --- pixels of the picture ------------------------------------------------ */
 
 /* A rank's pixels of each line of the picture. */
 typedef struct warp_job {

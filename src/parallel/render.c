@@ -29,8 +29,7 @@
 
 #include <string.h>
 
-/* --- the beginning --------------------------------------------------------
- */
+/* --- the beginning -------------------------------------------------------- */
 
 /* Whether a picture is of the shear-warp method, along one axis, and not
  * blended of several: the same on all ranks, whatever failed on this one. */
@@ -52,8 +51,7 @@ static snow_status make_images(snow_flight *f) {
     snow_context *context = p->frame->context;
     if (f->how.pixel_bits != 0 && f->how.pixel_bits != 8)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "pixels of %d bits cannot travel; take 8, or 0 for "
-                         "floats",
+                         "invalid pixel_bits %d: must be 8, or 0 for floats",
                          f->how.pixel_bits);
     SNOW_TRY(snow_flight_check_mode(f));
     if (is_sum(p->job.settings.mode) || !snow_flight_keeps(f))
@@ -82,8 +80,7 @@ static snow_status begin(snow_picture *p, snow_status status) {
     return status;
 }
 
-/* --- meeting --------------------------------------------------------------
- */
+/* --- meeting -------------------------------------------------------------- */
 
 /* Mixes bytes into a number of 62 bits (Fowler, Noll and Vo's hash). */
 static void mix(uint64_t *hash, const void *bytes, size_t count) {
@@ -127,14 +124,15 @@ static snow_status check_parts(const snow_ranks *r) {
     }
     if (!same)
         return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
-                         "ranks have parts of different volumes");
+                         "ranks hold parts of different volumes: open the same "
+                         "volume on all ranks");
     for (int axis = 0; axis < 3; axis++)
         all *= (uint64_t)r->parts[0].dims[axis];
     if (voxels == all)
         return SNOW_STATUS_OK;
     return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
-                     "%d parts of %llu voxels do not make up a volume of "
-                     "%llu; let each voxel be one rank's own",
+                     "%d parts hold %llu voxels, but the volume has %llu: "
+                     "every voxel must belong to exactly one rank",
                      r->ranks, (unsigned long long)voxels,
                      (unsigned long long)all);
 }
@@ -184,9 +182,9 @@ static snow_status synchronize_all(snow_flight *p, snow_status status,
     if (words[FAILED])
         return snow_comm_agree_status(comm, status);
     if (words[TERMS] != -words[MINUS_TERMS])
-        return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
-                         "ranks were asked for different pictures; give all "
-                         "the same view and settings");
+        return snow_fail(
+            r->context, SNOW_STATUS_BAD_USAGE,
+            "views or settings differ between ranks: give all ranks the same");
     *new_parts = words[NEW] != 0;
     return *new_parts ? share_parts(r, p) : SNOW_STATUS_OK;
 }
@@ -199,8 +197,7 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
                                                   : snow_flight_agree_range(f);
 }
 
-/* --- places ---------------------------------------------------------------
- */
+/* --- places --------------------------------------------------------------- */
 
 /* Where pixels come together that are not the picture yet. */
 static snow_status place_gathered(snow_flight *f) {
@@ -227,8 +224,8 @@ static snow_status place_layers(snow_flight *f) {
             snow_group_nodes(job->placement.slices, job->slab, local->nodes);
     if (local->layers < 0)
         return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                         "parts of a deterministic picture are cut at borders "
-                         "of %d groups of slices",
+                         "parts of a deterministic picture must begin and end "
+                         "at multiples of %d groups of slices",
                          SNOW_GROUPS);
     return snow_flight_room(f, job, local->layers);
 }
@@ -252,8 +249,7 @@ static snow_status place(snow_picture *p, snow_status status) {
     return SNOW_STATUS_OK;
 }
 
-/* --- combination ----------------------------------------------------------
- */
+/* --- combination ---------------------------------------------------------- */
 
 /* Collective.  Of a picture whose local image was begun: what it needs is
  * prepared before the ranks meet, where this one knows all parts. */
@@ -299,8 +295,7 @@ static snow_status combine(snow_picture *p, const snow_job *job,
     return snow_flight_exchange(f, job);
 }
 
-/* --- the picture ----------------------------------------------------------
- */
+/* --- the picture ---------------------------------------------------------- */
 
 /* Axes' shares travel as floats, and are added up on rank 0 in the order of
  * render/alone.c. */

@@ -162,8 +162,7 @@ snow_status snow_recipe_write(snow_context *context, const snow_recipe *given,
     return SNOW_STATUS_OK;
 }
 
-/* --- applying
- * ---------------------------------------------------------------- */
+/* --- applying ------------------------------------------------------------- */
 
 snow_status snow_recipe_get_look(snow_context *context,
                                  const snow_recipe *recipe, snow_look *out) {

@@ -9,8 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- before the local image -----------------------------------------------
- */
+/* --- before the local image ----------------------------------------------- */
 
 /* What one process finds is what all find. */
 static snow_status nobody(snow_picture *p, snow_status status) {
@@ -21,8 +20,8 @@ static snow_status nobody(snow_picture *p, snow_status status) {
 static snow_status fail_part(const snow_picture *p, const char *what,
                              const char *name) {
     return snow_fail(p->job.context, SNOW_STATUS_BAD_USAGE,
-                     "%s%s of one part of many is no picture; render all parts "
-                     "with snow_ranks_render",
+                     "%s%s needs all parts of the volume, and this is one of "
+                     "several: call snow_ranks_render",
                      what, name);
 }
 
@@ -39,8 +38,7 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     return snow_identity_transfer_measure(&p->job, &p->frame->identity);
 }
 
-/* --- places ---------------------------------------------------------------
- */
+/* --- places --------------------------------------------------------------- */
 
 static snow_status new_depths(const snow_picture *p, snow_image **out) {
     SNOW_TRY(
@@ -127,8 +125,7 @@ static snow_status place(snow_picture *p, snow_status status) {
                                                 : place_pairs(p);
 }
 
-/* --- combination ----------------------------------------------------------
- */
+/* --- combination ---------------------------------------------------------- */
 
 /* What of a slab's surfaces is in front of those found so far. */
 static void take_nearer(snow_picture *p, const snow_job *part) {
@@ -160,8 +157,7 @@ static snow_status combine(snow_picture *p, const snow_job *part,
     return SNOW_STATUS_OK;
 }
 
-/* --- the picture ----------------------------------------------------------
- */
+/* --- the picture ---------------------------------------------------------- */
 
 /* Adds share * layer to the picture. */
 static void blend(float *pixels, const float *layer, float share,
@@ -199,7 +195,7 @@ static snow_status show(snow_picture *p) {
     return p->pass->method->warps ? warp(p) : SNOW_STATUS_OK;
 }
 
-/* Depths that only told which surface is nearest are not the frame's. */
+/* Depths that only served to find the nearest surface are not the frame's. */
 static snow_status display(snow_picture *p, snow_status status) {
     SNOW_TRY(status);
     if (p->pass->depth)

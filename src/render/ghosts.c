@@ -229,8 +229,7 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
     return SNOW_STATUS_OK;
 }
 
-/* --- levels ---------------------------------------------------------------
- */
+/* --- levels --------------------------------------------------------------- */
 
 /* What a level of so many halvings needs, in voxels of the whole. */
 static snow_status ask_level(const question *q, bool any_turn,
@@ -267,8 +266,7 @@ snow_ghosts_needed(snow_context *context, const snow_volume_info *whole,
     return SNOW_STATUS_OK;
 }
 
-/* --- parts ----------------------------------------------------------------
- */
+/* --- parts ---------------------------------------------------------------- */
 
 static bool is_empty(const snow_volume *volume) {
     snow_extent part;
@@ -291,12 +289,12 @@ static snow_status check_layers(snow_context *context,
         bool enough_above =
             above >= layers[axis] || end + above == part.dims[axis];
         if (!enough_below || !enough_above)
-            return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                             "this view needs %lld layers of ghost voxels "
-                             "along %c, and a part of the volume has %lld; "
-                             "open it for this view, or with more",
-                             (long long)layers[axis], names[axis],
-                             (long long)few);
+            return snow_fail(
+                context, SNOW_STATUS_BAD_USAGE,
+                "this view needs %lld layers of ghost voxels along %c, but a "
+                "part of the volume has %lld: open the volume for this view, "
+                "or with more layers",
+                (long long)layers[axis], names[axis], (long long)few);
     }
     return SNOW_STATUS_OK;
 }

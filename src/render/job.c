@@ -25,10 +25,11 @@ static snow_status check_part(const snow_job *job) {
     if (!job->volume->is_part)
         return SNOW_STATUS_OK;
     if (job->settings.deterministic && job->clip.cuts)
-        return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                         "deterministic pictures are made of slabs along %c; "
-                         "this part of the volume is none",
-                         "xyz"[job->placement.slice_axis]);
+        return snow_fail(
+            job->context, SNOW_STATUS_BAD_USAGE,
+            "deterministic pictures need slabs along %c, and this part of the "
+            "volume is not one: partition the volume into slabs",
+            "xyz"[job->placement.slice_axis]);
     return snow_ghosts_check(
         job->context, job->volume, job->view, &job->settings,
         snow_transfer_has_gradient_opacity(job->transfer), NULL);
@@ -40,8 +41,8 @@ static snow_status check_stream(const snow_job *job, int parts) {
     if (!job->volume->stream || parts == 1)
         return SNOW_STATUS_OK;
     return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                     "slabs: a volume whose voxels stay in their file is "
-                     "rendered as a whole; open it with snow_volume_open");
+                     "cannot render one slab of a streamed volume: open it "
+                     "with snow_volume_open");
 }
 
 /* Rays are walked from end to end by one process. */
@@ -49,16 +50,15 @@ static snow_status check_raycast(const snow_job *job) {
     if (job->settings.method != SNOW_METHOD_RAYCAST)
         return SNOW_STATUS_OK;
     if (job->volume->stream)
-        return snow_fail(job->context, SNOW_STATUS_NO_MEMORY,
-                         "%s: method raycast needs all voxels in memory, and "
-                         "they stay in the file; allow more memory, give "
-                         "--crop, or take another method",
-                         job->volume->path);
+        return snow_fail(
+            job->context, SNOW_STATUS_NO_MEMORY,
+            "%s: method raycast needs all voxels in memory, but they stay in "
+            "the file: allow more memory, give --crop, or use another method",
+            job->volume->path);
     if (!snow_job_whole(job))
         return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                         "method raycast needs all voxels in one process, and "
-                         "this is a part of a volume; render on one rank, or "
-                         "take another method");
+                         "method raycast needs the whole volume in one "
+                         "process: render on one rank, or use another method");
     return SNOW_STATUS_OK;
 }
 
@@ -183,8 +183,7 @@ snow_status snow_job_shares(const snow_job *job, double shares[3]) {
     return SNOW_STATUS_OK;
 }
 
-/* --- figures --------------------------------------------------------------
- */
+/* --- figures -------------------------------------------------------------- */
 
 static bool has_ghosts(const snow_clip *clip) {
     return memcmp(clip->size, clip->count, sizeof clip->size) != 0;

@@ -35,8 +35,7 @@ void snow_mipmap_free(snow_mipmap *levels) {
     snow_release(levels->context, levels);
 }
 
-/* --- the rule ---------------------------------------------------------------
- */
+/* --- the rule ------------------------------------------------------------- */
 
 /* The smallest world length of a pixel's side on the volume, however it is
  * turned about the target. */
@@ -91,8 +90,7 @@ static int lean_of(const snow_transfer *transfer,
     return info->slope < 0 ? -lean : lean;
 }
 
-/* --- making -----------------------------------------------------------------
- */
+/* --- making --------------------------------------------------------------- */
 
 static int largest_lod(const int halvings[3]) {
     int most = halvings[0] > halvings[1] ? halvings[0] : halvings[1];
@@ -147,7 +145,7 @@ static bool plan_level(const snow_volume *from, bool axes[3],
     return any;
 }
 
-/* Tells a level's volume what it is; its voxels are to be made. */
+/* Describes a level's volume, whose voxels are still to be made. */
 static snow_status set_level(snow_volume *level, const snow_volume *from,
                              const snow_volume_info *whole,
                              const snow_extent *part,

@@ -16,7 +16,7 @@
  * Of a part of a volume the part of the whole's level is made, of the ghost
  * voxels too that lie across its borders: the rule is one of the whole, so that
  * all ranks take the same level, and its voxels are those of one process to the
- * bit.  ghosts.h tells how many ghosts that takes. */
+ * bit.  ghosts.h has the number of ghosts that it needs. */
 #ifndef SNOW_RENDER_MIPMAP_H
 #define SNOW_RENDER_MIPMAP_H
 
@@ -48,8 +48,8 @@ snow_volume_info snow_mipmap_info(const snow_volume_info *info,
 void snow_mipmap_layers(const snow_volume_info *info, const int halvings[3],
                         int64_t layers[3]);
 
-/* The level for a picture: *level is the volume itself where there is none to
- * be taken, and `halvings` are told; then it belongs to *levels, which is made
+/* The level for a picture: *level is the volume itself where full resolution
+ * is needed; else it belongs to *levels, which is made
  * when it is NULL, until the next call.  `settings` are resolved.  Errors:
  * those of snow_camera_make, SNOW_STATUS_NO_MEMORY, SNOW_STATUS_BAD_USAGE (a
  * part has too few ghosts). */

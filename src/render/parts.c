@@ -37,12 +37,11 @@ static snow_status open_slabs(snow_parts *parts) {
     const snow_job *job = parts->whole;
     int64_t layers[3];
     if (job->settings.deterministic)
-        return snow_fail(job->context, SNOW_STATUS_NO_MEMORY,
-                         "%s: a deterministic picture by the method %s needs "
-                         "all voxels in memory at once; allow more of it, or "
-                         "let it not be deterministic",
-                         job->volume->path,
-                         snow_method_name(job->settings.method));
+        return snow_fail(
+            job->context, SNOW_STATUS_NO_MEMORY,
+            "%s: a deterministic picture by method %s needs all voxels in "
+            "memory: allow more memory, or render without deterministic",
+            job->volume->path, snow_method_name(job->settings.method));
     SNOW_TRY(snow_ghosts_needed(
         job->context, &job->volume->info, job->view, &job->settings,
         snow_transfer_has_gradient_opacity(job->transfer), false, layers));
@@ -136,10 +135,9 @@ static snow_status fail_room(const snow_parts *parts) {
     snow_print_limit(job->context, limit);
     return snow_fail(
         job->context, SNOW_STATUS_NO_MEMORY,
-        "%s: slabs of %.1f MiB, %lld slices of which belong to their "
-        "neighbours, and what is made of them have no place%s; allow more "
-        "memory, give --crop or, where a pixel is several voxels wide, a "
-        "larger --size",
+        "%s: slabs of %.1f MiB, with %lld slices of their neighbours, and "
+        "their encoding do not fit%s: allow more memory, give --crop or, where "
+        "a pixel is several voxels wide, a larger --size",
         job->volume->path,
         (double)snow_slab_bytes(job->volume, &parts->cut) / 0x1p20,
         (long long)(2 * parts->cut.ghosts), limit);

@@ -8,8 +8,7 @@
 
 #include <string.h>
 
-/* --- passes ---------------------------------------------------------------
- */
+/* --- passes --------------------------------------------------------------- */
 
 static snow_render_pass *add_pass(snow_picture *p, const snow_job *job,
                                   int axis, double share) {
@@ -92,8 +91,7 @@ const snow_render_method *snow_method_of(const snow_job *job) {
                                       : &snow_method_exact;
 }
 
-/* --- the plan -------------------------------------------------------------
- */
+/* --- the plan ------------------------------------------------------------- */
 
 /* The volume's level where the picture is of one (mipmap.h).  Its settings are
  * the volume's. */
@@ -113,7 +111,7 @@ static snow_status check_depth(const snow_job *job) {
     if (!job->settings.depth || mode == SNOW_MODE_OVER || mode == SNOW_MODE_ISO)
         return SNOW_STATUS_OK;
     return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                     "mode %s has no depth; take over or iso",
+                     "mode %s has no depth: use mode over or iso",
                      snow_mode_name(mode));
 }
 
@@ -170,8 +168,7 @@ snow_status snow_picture_plan(snow_picture *p, const snow_request *asked) {
                                    : snow_fail(context, found, "%s", message);
 }
 
-/* --- the end --------------------------------------------------------------
- */
+/* --- the end -------------------------------------------------------------- */
 
 snow_status snow_picture_end(snow_picture *p, snow_status status,
                              snow_image **image) {

@@ -15,8 +15,7 @@ static snow_status check_range(snow_context *context, const char *name,
     if (value >= low && value <= high)
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "%s is %g; take a number from %g to %g", name, value, low,
-                     high);
+                     "invalid %s %g: must be %g to %g", name, value, low, high);
 }
 
 static snow_status check_choice(snow_context *context, const char *name,
@@ -24,7 +23,7 @@ static snow_status check_choice(snow_context *context, const char *name,
     if (value >= 0 && value < count)
         return SNOW_STATUS_OK;
     return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "%s is %d, which is none of its values", name, value);
+                     "invalid %s %d: not one of its values", name, value);
 }
 
 /* A footprint of 0 stands for the kernel's own, which is in range. */
@@ -59,7 +58,7 @@ static snow_status resolve_machine(snow_context *context, snow_settings *s) {
         s->isa = SNOW_ISA_SCALAR;
     if (!snow_isa_runs(s->isa))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "this machine does not run %s; it has %s",
+                         "this machine cannot run %s: it supports %s",
                          snow_isa_name(s->isa), snow_isa_found());
     s->isa = snow_isa_resolve(s->isa);
     return SNOW_STATUS_OK;
@@ -79,11 +78,11 @@ static snow_status check_raycast(snow_context *context,
         (s->kernel == SNOW_KERNEL_TENT && s->footprint == 2) ||
         (s->kernel == SNOW_KERNEL_BSPLINE && s->footprint == 4))
         return SNOW_STATUS_OK;
-    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "method raycast interpolates with the tent of 2 voxels or "
-                     "the B-spline of 4: %s of %d is for footprints; take "
-                     "another kernel, or method footprint",
-                     snow_kernel_name(s->kernel), s->footprint);
+    return snow_fail(
+        context, SNOW_STATUS_BAD_USAGE,
+        "invalid kernel %s of footprint %d for method raycast: it must be tent "
+        "of 2 or bspline of 4; use another kernel, or method footprint",
+        snow_kernel_name(s->kernel), s->footprint);
 }
 
 snow_status snow_settings_resolve(snow_context *context,
@@ -103,7 +102,7 @@ snow_status snow_settings_resolve(snow_context *context,
     SNOW_TRY(check_choice(context, "mode", (int)s->mode, SNOW_MODE_ISO + 1));
     if (!isfinite(s->iso))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "iso is %g; take a finite data value", s->iso);
+                         "invalid iso %g: must be a finite data value", s->iso);
     SNOW_TRY(check_numbers(context, s));
     SNOW_TRY(resolve_machine(context, s));
     if (s->method == SNOW_METHOD_AUTO)

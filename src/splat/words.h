@@ -109,8 +109,7 @@ SNOW_AVX512_INLINE unsigned snow_avx512_bits(const uint32_t *map, int words,
                                   _mm512_sllv_epi32(_mm512_set1_epi32(1), bit));
 }
 
-/* --- blocks of 8 floats ----------------------------------------------------
- */
+/* --- blocks of 8 floats --------------------------------------------------- */
 
 SNOW_AVX2_INLINE __m256 snow_b8_pairs(const float *p) {
     return _mm256_permutevar_ps(
@@ -138,8 +137,7 @@ SNOW_AVX2_INLINE void snow_b8_fold_four(const __m256 b[4], float *p) {
     _mm256_storeu_ps(p + 8, snow_b8_fold_two(b[2], b[3]));
 }
 
-/* --- blocks of 16 floats, as pairs -----------------------------------------
- */
+/* --- blocks of 16 floats, as pairs ---------------------------------------- */
 
 typedef struct snow_p16_block {
     __m256 low, high;
@@ -187,8 +185,7 @@ SNOW_AVX2_INLINE void snow_p16_fold_four(const snow_p16_block b[4], float *p) {
     snow_b8_fold_four(halves, p);
 }
 
-/* --- blocks of 16 floats, whole --------------------------------------------
- */
+/* --- blocks of 16 floats, whole ------------------------------------------- */
 
 SNOW_AVX512_INLINE __m512 snow_b16_fours(const float *p) {
     return _mm512_permutevar_ps(

@@ -53,8 +53,7 @@ void snow_full_range(const snow_histogram *histogram, double *low,
         *high = *low < 0 ? 0 : 1;
 }
 
-/* --- points ---------------------------------------------------------------
- */
+/* --- points --------------------------------------------------------------- */
 
 /* The range from the end of the background to the brightest value of the
  * object. */

@@ -186,8 +186,8 @@ static const opacity lung_opacities[] = {
 static const color ct_mip_colors[] = {{-200, 0, 0, 0}, {900, 1, 1, 1}};
 static const opacity ct_mip_opacities[] = {{-200, 0}, {100, 0.05}, {900, 0.9}};
 
-/* --- MR: over 0..1, from the end of the background to the brightest value ----
- * */
+/* --- MR: over 0..1, from the end of the background to the brightest value ---
+ */
 
 static const color mr_colors[] = {
     {0, 0.45, 0.32, 0.28},

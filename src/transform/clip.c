@@ -49,8 +49,7 @@ void snow_clip_placement(const snow_clip *clip, const snow_placement *whole,
     *out = p;
 }
 
-/* --- the intermediate image -----------------------------------------------
- */
+/* --- the intermediate image ----------------------------------------------- */
 
 static int within(double pixel, int count) {
     if (!(pixel > 0))
@@ -90,8 +89,7 @@ void snow_clip_perspective_shear(const snow_clip *clip, int axis,
     range[1] = first_on_scaled(of, clip->high[axis], step);
 }
 
-/* --- the picture ----------------------------------------------------------
- */
+/* --- the picture ---------------------------------------------------------- */
 
 /* The shift of a ray along u or v from slice to slice, negated. */
 static double slope_of(const snow_placement *p, int axis) {

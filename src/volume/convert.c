@@ -130,13 +130,13 @@ static snow_status set_range(const snow_volume *volume, const double range[2],
                              conversion *c) {
     if (!c->integer || snow_type_size(c->type) > 4)
         return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
-                         "values are spread over the integers of 8, 16 and 32 "
-                         "bits only; leave out the range to keep them in %s",
+                         "cannot spread values over %s: only integers of 8, 16 "
+                         "and 32 bits; leave out the range to keep the values",
                          snow_type_name(c->type));
     if (!(range[0] < range[1]) || !isfinite(range[1] - range[0]))
         return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
-                         "%g to %g is no range to be spread; give a lower and "
-                         "a higher value",
+                         "invalid range %g to %g: the first value must be less "
+                         "than the second",
                          range[0], range[1]);
     c->slope = (c->most - c->least) / (range[1] - range[0]);
     c->shift = c->least - c->slope * range[0];
@@ -153,7 +153,7 @@ static snow_status refuse(const snow_volume *volume, const conversion *c) {
                          : "convert to float32, or give a range to be spread");
 }
 
-/* Told, since the file does not show it. */
+/* Reported, since the file does not show it. */
 static void report(const snow_volume *volume, const conversion *c,
                    const double range[2]) {
     const char *name = snow_type_name(c->type);

@@ -109,8 +109,7 @@ static const void *row_of(const downsampling *h, const row_taps *rows, int n) {
     return (const char *)h->volume->voxels + (size_t)rows->first[n] * h->size;
 }
 
-/* --- types ------------------------------------------------------------------
- */
+/* --- types ---------------------------------------------------------------- */
 
 /* Shifts round down, and so sums of a half more to the nearest. */
 #define WHOLE(s, shift) \
@@ -190,8 +189,7 @@ static const void *row_of(const downsampling *h, const row_taps *rows, int n) {
 #define NAME(word) word##_i64
 #include "volume/downsample.tmpl.h"
 
-/* --- values that are none ---------------------------------------------------
- */
+/* --- values that are none ------------------------------------------------- */
 
 /* Of what is there. */
 static double value_of(const downsampling *h, const row_taps *rows, int64_t i) {
@@ -233,8 +231,7 @@ static void mend_row(const downsampling *h, const row_taps *rows, void *out) {
     }
 }
 
-/* --- a volume ---------------------------------------------------------------
- */
+/* --- a volume ------------------------------------------------------------- */
 
 /* How even and other rows of a type are made. */
 static row_fn *row_fn_of(snow_type type, bool even) {

@@ -52,8 +52,7 @@ int64_t snow_downsampled_layers(int64_t dims, int64_t layers);
 
 /* Fills the voxels of `out`, which snow_volume_new has made of
  * snow_downsampled_info with the same axes, and gives it a new serial number.
- * Where the volume is a part, `out` is its part of the whole's, as told above,
- * of which it has some.
+ * Where the volume is a part, `out` is its part of the whole's, see above.
  *
  * A voxel is the weighted mean of native values, which leans to the largest
  * where `lean` is above 0, to the smallest where it is below; in the volume's

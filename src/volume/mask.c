@@ -75,8 +75,8 @@ bool snow_labels_parse(const char *text, snow_label_range *ranges, size_t room,
 
 /* --- the grid ------------------------------------------------------------- */
 
-/* Whether more than sizes of voxels is told.  A file that says nothing of its
- * place is at 0 along the world's axes. */
+/* Whether the file gives a position or directions.  A file without them is at 0
+ * along the world's axes. */
 static bool has_place(const snow_volume_info *info) {
     bool given = info->medical;
     for (int row = 0; row < 3; row++) {
@@ -134,8 +134,8 @@ static snow_status check_place(snow_context *context,
     place_of(volume, at, p);
     place_of(mask, at, q);
     return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                     "the mask lies elsewhere: its voxel %lld,%lld,%lld is at "
-                     "%g,%g,%g of the world, the volume's at %g,%g,%g; "
+                     "the mask has another position: its voxel %lld,%lld,%lld "
+                     "is at %g,%g,%g in the world, the volume's at %g,%g,%g; "
                      "resample it onto the volume's grid",
                      (long long)at[0], (long long)at[1], (long long)at[2], q[0],
                      q[1], q[2], p[0], p[1], p[2]);
@@ -146,11 +146,12 @@ snow_status snow_mask_check_grid(snow_context *context,
                                  const snow_volume_info *mask) {
     const int64_t *v = volume->dims, *m = mask->dims;
     if (memcmp(v, m, sizeof volume->dims) != 0)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "the mask has %lldx%lldx%lld voxels and the volume "
-                         "%lldx%lldx%lld; resample it onto the volume's grid",
-                         (long long)m[0], (long long)m[1], (long long)m[2],
-                         (long long)v[0], (long long)v[1], (long long)v[2]);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "the mask has %lldx%lldx%lld voxels, the volume %lldx%lldx%lld: "
+            "resample the mask onto the volume's grid",
+            (long long)m[0], (long long)m[1], (long long)m[2], (long long)v[0],
+            (long long)v[1], (long long)v[2]);
     return check_place(context, volume, mask);
 }
 
@@ -220,8 +221,9 @@ static void restore(const snow_clip_planes *before, int64_t first, size_t count,
             values[i] = snow_clip_planes_value(before, first + (int64_t)i);
 }
 
-/* *any: whether any voxel is left.  `mask` NULL: none. */
-static snow_status leave_out(const snow_volume *volume, const snow_volume *mask,
+/* *any: whether any voxel is left.  The mask may be
+ * NULL. */
+static snow_status leave_out(const snow_volume *volume, const snow_cuts *by,
                              inside *in, snow_volume *made, bool *any) {
     const int64_t *dims = volume->info.dims;
     int64_t all = dims[0] * dims[1] * dims[2];
@@ -231,11 +233,11 @@ static snow_status leave_out(const snow_volume *volume, const snow_volume *mask,
         size_t count = all - first < BLOCK ? (size_t)(all - first) : BLOCK;
         snow_volume_natives(volume, first, count, values);
         restore(volume->clip, first, count, values);
-        if (mask)
-            mask_values(mask, in, first, count, values);
+        if (by->mask)
+            mask_values(by->mask, in, first, count, values);
         if (made->clip)
             SNOW_TRY(snow_clip_planes_apply(made->clip, dims, first, count,
-                                            !volume->is_part, values));
+                                            by->keeps_clipped, values));
         for (size_t i = 0; i < count && !*any; i++)
             *any = !isnan(values[i]);
         store(made, first, count, values);
@@ -259,7 +261,7 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
         snow_clip_planes_new(volume->context, &info, volume->clip, by->planes,
                              by->plane_count, &made->clip);
     if (status == SNOW_STATUS_OK)
-        status = leave_out(volume, by->mask, &in, made, any);
+        status = leave_out(volume, by, &in, made, any);
     if (status == SNOW_STATUS_OK)
         *out = made;
     else
@@ -270,7 +272,12 @@ snow_status snow_mask_apply(const snow_volume *volume, const snow_cuts *by,
 snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
                              const snow_label_range *labels, size_t count,
                              snow_volume **out) {
-    const snow_cuts by = {.mask = mask, .labels = labels, .label_count = count};
+    const snow_cuts by = {
+        .mask = mask,
+        .labels = labels,
+        .label_count = count,
+        .keeps_clipped = !volume->is_part,
+    };
     bool any;
     SNOW_TRY(snow_volume_need_voxels(volume));
     SNOW_TRY(snow_volume_need_voxels(mask));
@@ -280,13 +287,17 @@ snow_status snow_volume_mask(const snow_volume *volume, const snow_volume *mask,
 
 snow_status snow_volume_clip(const snow_volume *volume, const double *planes,
                              size_t count, snow_volume **out) {
-    const snow_cuts by = {.planes = planes, .plane_count = count};
+    const snow_cuts by = {
+        .planes = planes,
+        .plane_count = count,
+        .keeps_clipped = !volume->is_part,
+    };
     bool any;
     SNOW_TRY(snow_volume_need_voxels(volume));
     if (count > SNOW_CLIPS_MAX)
         return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
-                         "%zu planes are too many to clip by; give up to %d",
-                         count, SNOW_CLIPS_MAX);
+                         "too many clip planes: %zu, at most %d", count,
+                         SNOW_CLIPS_MAX);
     return snow_mask_apply(volume, &by, &any, out);
 }
 

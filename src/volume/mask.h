@@ -13,6 +13,8 @@ typedef struct snow_cuts {
     size_t label_count;
     const double *planes; /* four numbers each */
     size_t plane_count;
+    bool keeps_clipped; /* voxels next to the planes, for methods that end
+                           exactly there (clip_planes.h); they take memory */
 } snow_cuts;
 
 /* The type that holds all values of another, and NaN. */

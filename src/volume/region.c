@@ -24,12 +24,11 @@ static snow_status refuse_crop(snow_context *context,
                                  i ? "," : "", (long long)options->crop[i][0],
                                  (long long)end);
     }
-    return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                     "--crop %s is no box in the volume, which has "
-                     "%lldx%lldx%lld voxels; give the first voxel and one past "
-                     "the last along x, y and z, within these sizes",
-                     text, (long long)dims[0], (long long)dims[1],
-                     (long long)dims[2]);
+    return snow_fail(
+        context, SNOW_STATUS_BAD_USAGE,
+        "--crop %s is not inside the volume of %lldx%lldx%lld voxels: give the "
+        "first voxel and one past the last along x, y and z",
+        text, (long long)dims[0], (long long)dims[1], (long long)dims[2]);
 }
 
 snow_status snow_region_lay_out(snow_context *context,
@@ -42,10 +41,10 @@ snow_status snow_region_lay_out(snow_context *context,
     snow_volume_count(info->dims, info->type, &voxels, &step);
     if (!snow_mul_u64(step, (uint64_t)info->times, &region.all) ||
         region.all > (uint64_t)INT64_MAX)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "%lld time steps are larger than any file; check the "
-                         "sizes",
-                         (long long)info->times);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "%lld time steps are larger than any file: check the sizes",
+            (long long)info->times);
     region.before = step * (uint64_t)info->time;
     for (int i = 0; i < 3; i++) {
         int64_t size = info->dims[i], first = options->crop[i][0];

@@ -103,8 +103,8 @@ snow_status snow_volume_histogram(const snow_volume *volume, double lo,
     SNOW_TRY(snow_volume_need_voxels(volume));
     if (!isfinite(lo) || !isfinite(hi) || !(lo < hi) || !bins)
         return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
-                         "a histogram from %g to %g in %zu bins is empty; give "
-                         "two finite ends in order and at least one bin",
+                         "invalid histogram from %g to %g in %zu bins: ends "
+                         "must be finite and rising, with at least one bin",
                          lo, hi, bins);
     memset(counts, 0, bins * sizeof *counts);
     /* Halves, where the whole range is more than a double can hold. */

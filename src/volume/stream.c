@@ -31,7 +31,7 @@ struct snow_stream {
     bool measured;               /* `range` is known */
     snow_volume_statistics range;
     char *path;
-    /* Remarks of reading, each of which is told once: a sum for each. */
+    /* Warnings of reading, each of which is given once: a hash of each. */
     snow_warning_fn *notice;
     void *notice_user;
     uint64_t given[REMARKS_MOST];
@@ -41,8 +41,7 @@ struct snow_stream {
 /* Without a wish: small beside any memory, and long enough to be read fast. */
 #define SLAB_BYTES ((uint64_t)64 << 20)
 
-/* --- opening --------------------------------------------------------------
- */
+/* --- opening -------------------------------------------------------------- */
 
 static void warn_once(void *user, const char *text) {
     snow_stream *stream = user;
@@ -117,9 +116,8 @@ snow_status snow_stream_open(snow_context *context, const char *path,
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_options, options, &known));
     if (snow_source_is_stream(path))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "%s: can be read once only, and a volume that stays "
-                         "in its file is read several times; write it to a "
-                         "file",
+                         "%s: can be read only once, but streaming reads it "
+                         "several times: copy it to a file",
                          strcmp(path, "-") ? path : "standard input");
     SNOW_TRY(new_stream(context, path, &known, slab_bytes, &stream));
     listen_once(context, stream);
@@ -148,8 +146,7 @@ double snow_volume_read_seconds(const snow_volume *volume) {
     return volume->stream ? volume->stream->seconds : 0;
 }
 
-/* --- slabs ----------------------------------------------------------------
- */
+/* --- slabs ---------------------------------------------------------------- */
 
 void snow_print_limit(const snow_context *context, char text[64]) {
     *text = 0;
@@ -208,9 +205,8 @@ static snow_status compare(const snow_volume *volume, const snow_volume *slab,
         a->dims[1] == b->dims[1] && b->dims[2] == slices)
         return SNOW_STATUS_OK;
     return snow_fail(volume->context, SNOW_STATUS_BAD_INPUT,
-                     "%s: slices from %lld on have another type, scale or size "
-                     "than the volume; was the file replaced while it was "
-                     "read?",
+                     "%s: slices from %lld on differ from the volume in type, "
+                     "scale or size: was the file replaced while it was read?",
                      volume->stream->path, (long long)part->stored[2]);
 }
 
@@ -223,8 +219,10 @@ static snow_status open_slab(snow_context *context, snow_stream *stream,
     /* A remark on what a mask or plane leaves does not hold for the volume. */
     if (snow_mask_asked(options))
         snow_context_set_warning(context, NULL, NULL);
+    context->opens_slab = true;
     snow_status status =
         stream->open(context, stream->path, options, &info, out);
+    context->opens_slab = false;
     listen_again(context, stream);
     stream->seconds += snow_seconds() - begin;
     return status;
@@ -369,8 +367,7 @@ snow_status snow_slabs_visit(const snow_volume *volume,
     return status;
 }
 
-/* --- the range ------------------------------------------------------------
- */
+/* --- the range ------------------------------------------------------------ */
 
 /* `user` is what is known so far; NaN where nothing is. */
 static snow_status measure_slab(const snow_volume *slab, void *user) {

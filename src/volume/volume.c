@@ -61,32 +61,30 @@ snow_status snow_volume_info_check(snow_context *context,
     const int64_t *dims = info->dims;
     if (!snow_type_size(info->type))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "the scalar type is not known; give one of int8 to "
-                         "float64");
+                         "unknown scalar type: must be one of int8 to float64");
     if (dims[0] < 1 || dims[1] < 1 || dims[2] < 1)
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "a volume of %lldx%lldx%lld voxels is empty; every "
+                         "a volume of %lldx%lldx%lld voxels is empty: every "
                          "size must be at least 1",
                          (long long)dims[0], (long long)dims[1],
                          (long long)dims[2]);
     if (!snow_volume_count(dims, info->type, &voxels, &bytes))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "a volume of %lldx%lldx%lld voxels is larger than any "
-                         "file; check the sizes",
+                         "file: check the sizes",
                          (long long)dims[0], (long long)dims[1],
                          (long long)dims[2]);
     if (!matrix_is_finite(info->matrix) ||
         !snow_matrix_invert3(info->matrix, inverse))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "the spacing or the directions of the axes are zero, "
-                         "not finite or in one plane; correct them in the "
-                         "header");
+                         "invalid spacing or directions of the axes: zero, not "
+                         "finite, or in one plane; correct them in the header");
     if (!isfinite(info->slope) || !isfinite(info->intercept) ||
         info->slope == 0)
-        return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                         "slope %g and intercept %g make no values; correct "
-                         "them in the header",
-                         info->slope, info->intercept);
+        return snow_fail(
+            context, SNOW_STATUS_BAD_INPUT,
+            "invalid slope %g and intercept %g: correct them in the header",
+            info->slope, info->intercept);
     return SNOW_STATUS_OK;
 }
 
@@ -164,7 +162,7 @@ static snow_status check_part(const snow_volume *volume,
             return snow_fail(
                 volume->context, SNOW_STATUS_BAD_USAGE,
                 "along axis %d a part of %lld voxels from %lld, stored as %lld "
-                "from %lld, does not lie in %lld voxels; correct its boxes",
+                "from %lld, is not inside %lld voxels: correct its boxes",
                 axis, (long long)part->count[axis],
                 (long long)part->first[axis], (long long)stored,
                 (long long)part->stored[axis], (long long)part->dims[axis]);
@@ -176,8 +174,8 @@ snow_status snow_volume_need_voxels(const snow_volume *volume) {
     if (!volume->stream)
         return SNOW_STATUS_OK;
     return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
-                     "%s: its voxels stay in the file, and this needs them all "
-                     "at once; open it with snow_volume_open",
+                     "%s: the voxels stay in the file, but this call needs all "
+                     "of them: open the volume with snow_volume_open",
                      volume->path);
 }
 
@@ -256,7 +254,7 @@ snow_status snow_volume_wrap(snow_context *context,
     SNOW_TRY(SNOW_RECORD_READ(context, snow_volume_info, given, &info));
     if (!voxels)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "there are no voxels to share; give their address");
+                         "the address of the voxels is NULL");
     static const double zero[4][4];
     snow_volume_info own = snow_volume_info_default("memory");
     memcpy(own.dims, info.dims, sizeof own.dims);

@@ -28,7 +28,7 @@ struct snow_volume {
     snow_extent part; /* where is_part */
     bool knows_origin;
     double origin[3];  /* the last column of the whole's matrix, where known */
-    char patient[256]; /* "" when not told */
+    char patient[256]; /* "" when unknown */
     /* Of a level (levels.h): a step of the volume's that it was made of, in its
      * own; else 0. */
     double fine[3];
@@ -38,7 +38,7 @@ struct snow_volume {
 
 /* What is known of the whole that a volume is a part of: its dims and its
  * matrix, whose last column is computed back from that of the part, and so
- * differs by rounding from rank to rank, unless it was told. */
+ * differs by rounding from rank to rank, unless it was given. */
 void snow_volume_whole(const snow_volume *volume, snow_volume_info *out);
 
 /* What a box of a whole is as a volume of its own. */

@@ -11,8 +11,7 @@
 /* The most memory that a refusal may ask for at once. */
 #define MOST ((size_t)200 * 1024)
 
-/* --- frames ----------------------------------------------------------------
- */
+/* --- frames --------------------------------------------------------------- */
 
 static dicom_image plain_image = {.path = "a/slice",
                                   .series = "1.2",
@@ -180,8 +179,7 @@ static void frames_that_are_not_alike_are_groups(void **state) {
     assert_true(frames[groups[2].first].column[2] == 1);
 }
 
-/* --- files -----------------------------------------------------------------
- */
+/* --- files ---------------------------------------------------------------- */
 
 typedef struct file {
     unsigned char bytes[4096];

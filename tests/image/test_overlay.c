@@ -26,8 +26,7 @@ static snow_view view_of(snow_context *context, const char *name) {
     return view;
 }
 
-/* --- letters ----------------------------------------------------------------
- */
+/* --- letters -------------------------------------------------------------- */
 
 static void letters_of_named_views_are_those_of_radiology(void **state) {
     static const char *const table[][5] = {
@@ -133,8 +132,7 @@ static void what_is_no_patient_has_no_letters(void **state) {
                      SNOW_STATUS_BAD_USAGE);
 }
 
-/* --- shapes ------------------------------------------------------------------
- */
+/* --- shapes --------------------------------------------------------------- */
 
 static snow_overlay *overlay_of(snow_context *context, int width, int height) {
     snow_overlay *overlay = NULL;
@@ -257,8 +255,7 @@ static void letters_stand_out_on_any_background(void **state) {
         }
 }
 
-/* --- bars --------------------------------------------------------------------
- */
+/* --- bars ----------------------------------------------------------------- */
 
 static void the_scale_bar_is_as_long_as_it_says(void **state) {
     image_fixture *f = *state;
@@ -357,8 +354,7 @@ static void any_range_has_ticks(void **state) {
         }
 }
 
-/* --- in files ----------------------------------------------------------------
- */
+/* --- in files ------------------------------------------------------------- */
 
 static void files_show_it_and_the_picture_stays(void **state) {
     image_fixture *f = *state;

@@ -746,10 +746,10 @@ static void bricks_that_fit_no_grid_are_refused(void **state) {
     (void)state;
     world w = place_world(false, 0.2, 0);
     assert_int_equal(w.status, SNOW_STATUS_BAD_USAGE);
-    assert_non_null(strstr(w.message, "lies at voxel 0.4 along axis 0"));
+    assert_non_null(strstr(w.message, "begins at voxel 0.4 along axis 0"));
     w = place_world(false, 0, 0.5);
     assert_int_equal(w.status, SNOW_STATUS_BAD_USAGE);
-    assert_non_null(strstr(w.message, "spacings along axis 2 are from 2"));
+    assert_non_null(strstr(w.message, "spacings along axis 2 are between 2"));
 }
 
 /* --- movies --------------------------------------------------------------- */
@@ -977,7 +977,7 @@ static void sums_without_a_range_are_for_files_of_numbers(void **state) {
     m.scene.settings.mode = SNOW_MODE_SUM;
     run_movie(&m, folder);
     assert_int_equal(m.status, SNOW_STATUS_BAD_USAGE);
-    assert_non_null(strstr(m.message, "share one range of sums; give"));
+    assert_non_null(strstr(m.message, "one range of sums for all pictures"));
     assert_int_equal(count_frames(folder, 1), 0);
     m.suffix = "npy";
     run_movie(&m, folder);
@@ -1221,7 +1221,7 @@ static const char *const fault_words[FAULTS] = {
     "rank 1: brick 0 has voxels 20 to 48 along axis 0",
     "rank 1: brick 0 has no voxels",
     "voxels are float32 on one rank and float64 on another",
-    "ranks were told different",
+    "differ between ranks",
     "belongs to two ranks",
     "no rank holds",
     "there is no grid",

@@ -116,8 +116,7 @@ static snow_status compare_ways(snow_comm *comm, void *user) {
     return status;
 }
 
-/* --- what is flown --------------------------------------------------------
- */
+/* --- what is flown -------------------------------------------------------- */
 
 static void flight_free(flight *f) {
     for (int n = 0; n < PICTURES; n++)
@@ -276,8 +275,7 @@ static void pictures_are_drawn_while_messages_travel(void **state) {
     support_folder_remove(folder);
 }
 
-/* --- what goes wrong ------------------------------------------------------
- */
+/* --- what goes wrong ------------------------------------------------------ */
 
 static bool says(const seat *s, const char *text) {
     return strstr(snow_context_message(snow_comm_context(s->comm)), text) !=
@@ -289,20 +287,20 @@ static snow_status misuse_seat(seat *s) {
     flight *f = s->f;
     REQUIRE(s->comm,
             snow_ranks_finish(s->frame, &image) == SNOW_STATUS_BAD_USAGE);
-    REQUIRE(s->comm, says(s, "no picture is under way"));
+    REQUIRE(s->comm, says(s, "no picture is in flight"));
     SNOW_TRY(begin(s, 0));
     REQUIRE(s->comm,
             snow_ranks_render(s->frame, s->comm, s->volume, s->transfer,
                               &f->view, &f->settings, &f->how,
                               &image) == SNOW_STATUS_BAD_USAGE);
-    REQUIRE(s->comm, says(s, "a picture is under way"));
+    REQUIRE(s->comm, says(s, "a picture in flight"));
     if (snow_comm_size(s->comm) > 1)
         REQUIRE(s->comm, snow_frame_render(s->frame, s->volume, s->transfer,
                                            &f->view, &f->settings,
                                            &image) == SNOW_STATUS_BAD_USAGE);
     SNOW_TRY(begin(s, 1));
     REQUIRE(s->comm, begin(s, 2) == SNOW_STATUS_BAD_USAGE);
-    REQUIRE(s->comm, says(s, "two pictures are under way"));
+    REQUIRE(s->comm, says(s, "two pictures are in flight"));
     SNOW_TRY(finish(s, 0, true));
     SNOW_TRY(finish(s, 1, true));
     SNOW_TRY(begin(s, 2)); /* left to the frame */
@@ -347,7 +345,7 @@ static snow_status spoil_seat(seat *s, bool all) {
     SNOW_TRY(finish(s, 0, false));
     REQUIRE(s->comm,
             snow_ranks_finish(s->frame, &image) == SNOW_STATUS_BAD_USAGE);
-    REQUIRE(s->comm, says(s, all ? "77" : "different pictures"));
+    REQUIRE(s->comm, says(s, all ? "77" : "differ between ranks"));
     REQUIRE(s->comm, !image);
     SNOW_TRY(begin(s, 1));
     return finish(s, 1, false);

@@ -24,8 +24,7 @@
 
 #define MOST_RANKS 33
 
-/* --- a scene that ranks share ---------------------------------------------
- */
+/* --- a scene that ranks share --------------------------------------------- */
 
 /* How it is cut. */
 typedef enum cutting {
@@ -198,8 +197,7 @@ static snow_status perform(snow_comm *comm, void *user) {
     return status;
 }
 
-/* --- comparison -----------------------------------------------------------
- */
+/* --- comparison ----------------------------------------------------------- */
 
 /* The serial picture; its strongest opacity. */
 static float *serial_picture(snow_context *context, play *p,
@@ -313,8 +311,7 @@ static void report(const char *title, const sweep_tally *tally) {
     assert_true(tally->strongest / all > 0.2);
 }
 
-/* --- small volumes of all kinds -------------------------------------------
- */
+/* --- small volumes of all kinds ------------------------------------------- */
 
 static const int rank_counts[] = {1, 2, 3, 5, 7, 8, 16, 33};
 #define COUNTS (int)(sizeof rank_counts / sizeof *rank_counts)
@@ -403,8 +400,7 @@ static void so_it_does_by_the_exact_methods(void **state) {
     sweep("exact, perspective", 6, 50, exact, 3);
 }
 
-/* --- other modes ----------------------------------------------------------
- */
+/* --- other modes ---------------------------------------------------------- */
 
 /* Rounding of sums, and where it decides whether a ray misses. */
 #define BOUND_SUMS 2e-6
@@ -513,8 +509,7 @@ static void surfaces_of_many_ranks_have_the_serial_bits(void **state) {
     mode_pictures(SNOW_MODE_ISO, 0);
 }
 
-/* --- phantoms -------------------------------------------------------------
- */
+/* --- phantoms ------------------------------------------------------------- */
 
 /* Views along all axes from both sides, and oblique; every number of ranks; all
  * cuts in turn. */
@@ -576,8 +571,7 @@ static void phantoms_are_seen_alike_by_many_ranks(void **state) {
     }
 }
 
-/* --- drafts of few pixels -------------------------------------------------
- */
+/* --- drafts of few pixels ------------------------------------------------- */
 
 /* A volume's draft from one side, by every number of ranks: as one process
  * makes it, of a level that is halved so often at most. */
@@ -647,8 +641,7 @@ static void drafts_of_few_pixels_are_of_the_same_level(void **state) {
     }
 }
 
-/* --- real volumes ---------------------------------------------------------
- */
+/* --- real volumes --------------------------------------------------------- */
 
 static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
     (void)state;
@@ -684,8 +677,7 @@ static void real_volumes_are_seen_alike_by_many_ranks(void **state) {
     }
 }
 
-/* --- deterministic pictures -----------------------------------------------
- */
+/* --- deterministic pictures ----------------------------------------------- */
 
 /* Bits, over methods and views. */
 static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
@@ -733,8 +725,7 @@ static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
     snow_context_free(context);
 }
 
-/* --- what goes wrong ------------------------------------------------------
- */
+/* --- what goes wrong ------------------------------------------------------ */
 
 /* A mistake that one rank makes, or all. */
 typedef struct mishap {
@@ -824,16 +815,16 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
         cutting cut;
         bool draft; /* of few pixels */
     } cases[] = {
-        {other_view, "different pictures", false, true, 0, BRICKS, false},
-        {bad_threshold, "rank 2: threshold is 300", false, true, 0, ACROSS,
+        {other_view, "differ between ranks", false, true, 0, BRICKS, false},
+        {bad_threshold, "rank 2: invalid threshold 300", false, true, 0, ACROSS,
          false},
-        {modest, "voxels do not make up", false, false, 0, BESIDE, false},
+        {modest, "every voxel must belong to", false, false, 0, BESIDE, false},
         {ghostless, "rank 2: this view needs", false, false, 0, BESIDE, false},
         {ghostless, "rank 2: this view needs", false, false, 0, ACROSS, true},
-        {NULL, "deterministic pictures are made of slabs", true, false, 0,
-         BESIDE, false},
+        {NULL, "deterministic pictures need slabs", true, false, 0, BESIDE,
+         false},
         {NULL, "whole groups", true, false, 0, ACROSS, false},
-        {NULL, "pixels of 7 bits", false, false, 7, ACROSS, false},
+        {NULL, "invalid pixel_bits 7", false, false, 7, ACROSS, false},
     };
     snow_context *context = support_context();
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
@@ -862,8 +853,7 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
     snow_context_free(context);
 }
 
-/* --- memory ---------------------------------------------------------------
- */
+/* --- memory --------------------------------------------------------------- */
 
 /* Fails one allocation, or all from it on. */
 typedef struct miser {

@@ -647,8 +647,7 @@ static void options_that_are_none_are_refused_by_all(void **state) {
     snow_volume_close(whole);
 }
 
-/* --- pictures -------------------------------------------------------------
- */
+/* --- pictures ------------------------------------------------------------- */
 
 #define SIDE 48
 #define PICTURES 5

@@ -88,8 +88,7 @@ static void pixel_of(const reference_gather *g, const reference_camera *camera,
     }
 }
 
-/* --- iso --------------------------------------------------------------------
- */
+/* --- iso ------------------------------------------------------------------ */
 
 /* The mean gradient where a ray meets a slice. */
 static void gradient_of(const reference_gather *g, const reference_ray *ray,

@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- the field --------------------------------------------------------------
- */
+/* --- the field ------------------------------------------------------------ */
 
 /* A voxel's data value, or its logarithm; NaN is a hole.  In mode over an
  * infinite one is the largest, or smallest, of the others. */
@@ -123,8 +122,7 @@ double reference_field(const reference_cast *cast, const double at[3]) {
     return enough ? sums.values / sums.weights : (double)NAN;
 }
 
-/* --- labels -----------------------------------------------------------------
- */
+/* --- labels --------------------------------------------------------------- */
 
 static void add_label(void *user, double weight, double value) {
     field_sums *sums = user;
@@ -173,8 +171,7 @@ static double label_at(const reference_cast *cast, const double at[3]) {
     return best;
 }
 
-/* --- gradients --------------------------------------------------------------
- */
+/* --- gradients ------------------------------------------------------------ */
 
 static void gradient_at(const reference_cast *cast, const double at[3],
                         double label, double gradient[3]) {
@@ -198,8 +195,7 @@ static void gradient_at(const reference_cast *cast, const double at[3],
     }
 }
 
-/* --- rays -------------------------------------------------------------------
- */
+/* --- rays ----------------------------------------------------------------- */
 
 typedef struct walk {
     const reference_cast *cast;
@@ -342,8 +338,7 @@ static void shade(const walk *w, const double gradient[3], double rgb[3]) {
                          : rgb[c] * s->ambient;
 }
 
-/* --- mode over --------------------------------------------------------------
- */
+/* --- mode over ------------------------------------------------------------ */
 
 /* The opacity of a reference length, and a shaded colour. */
 static void sample_at(const walk *w, const double at[3], double rgba[4]) {
@@ -389,8 +384,7 @@ static void cast_over(const walk *w, double pixel[4], double *depth) {
     }
 }
 
-/* --- other modes ------------------------------------------------------------
- */
+/* --- other modes ---------------------------------------------------------- */
 
 static double value_at(const walk *w, double i) {
     double at[3];

@@ -51,8 +51,7 @@ static void choose_kernel(const snow_settings *settings, snow_kernel *kernel,
     *support = reference_support(&known);
 }
 
-/* --- geometry --------------------------------------------------------------
- */
+/* --- geometry ------------------------------------------------------------- */
 
 /* Where the ray through an image point meets the plane of slice 0. */
 static double meet(const sheared_job *job, int axis, double x, double y) {
@@ -164,8 +163,7 @@ static void bound_axis(const sheared_job *job, lattice_axis *a) {
     a->count = low <= high ? (int64_t)ceil(high / a->pitch) - a->first + 1 : 0;
 }
 
-/* --- samples ---------------------------------------------------------------
- */
+/* --- samples -------------------------------------------------------------- */
 
 /* Voxel (u, v) of a slice of the volume. */
 static void index_of(const sheared_job *job, int64_t slice, int64_t u,
@@ -331,8 +329,7 @@ static void make_samples(sheared_job *job) {
                 make_sample(job, exponent, sheet, u, v, sample);
 }
 
-/* --- the lattice -----------------------------------------------------------
- */
+/* --- the lattice ---------------------------------------------------------- */
 
 /* Weights of the voxels along an axis for a lattice pixel and a slice, which
  * may lie between two. */
@@ -390,8 +387,7 @@ static void fill_plane(sheared_job *job) {
     free(filtered);
 }
 
-/* --- the picture -----------------------------------------------------------
- */
+/* --- the picture ---------------------------------------------------------- */
 
 /* Weights of the pixels -1, 0, 1 and 2 from the one below. */
 static void resample_weights(bool bilinear, double f, double weights[4]) {

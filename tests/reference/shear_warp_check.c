@@ -43,8 +43,7 @@ float *sheared_picture(const model_stage *stage, const reference_scene *scene,
     return picture;
 }
 
-/* --- levels -----------------------------------------------------------------
- */
+/* --- levels --------------------------------------------------------------- */
 
 int sheared_lean(const reference_scene *scene) {
     double up = 0, down = 0;
@@ -93,8 +92,7 @@ reference_scene sheared_level(snow_context *context,
     return level;
 }
 
-/* --- the check --------------------------------------------------------------
- */
+/* --- the check ------------------------------------------------------------ */
 
 static double worst_pixel(const reference_scene *scene, const float *picture,
                           const double *reference, int at[2]) {

@@ -47,8 +47,7 @@ static reference_scene numbered_scene(size_t n, const int64_t size[3]) {
     return scene;
 }
 
-/* --- pictures -------------------------------------------------------------
- */
+/* --- pictures ------------------------------------------------------------- */
 
 static void the_exact_methods_make_the_references_picture(void **state) {
     (void)state;
@@ -156,8 +155,7 @@ static void voxels_that_are_no_numbers_or_infinite(void **state) {
     model_close(&stage);
 }
 
-/* --- what is even ---------------------------------------------------------
- */
+/* --- what is even --------------------------------------------------------- */
 
 /* Two halves, of value 1 and 2, of one opacity, seen along their border's
  * normal: two slices have a gradient, of 1/2, and the others none. */
@@ -238,8 +236,7 @@ static void a_curve_of_ones_changes_nothing(void **state) {
     model_close(&stage);
 }
 
-/* --- interesting voxels ---------------------------------------------------
- */
+/* --- interesting voxels --------------------------------------------------- */
 
 /* What the reference finds: voxels with a sample. */
 static int64_t count_samples(const reference_scene *scene) {
@@ -285,8 +282,7 @@ static void all_methods_find_the_same_voxels_interesting(void **state) {
     model_close(&stage);
 }
 
-/* --- stored factors -------------------------------------------------------
- */
+/* --- stored factors ------------------------------------------------------- */
 
 /* A stack of voxels of one opacity and one small factor is where a stored
  * factor's error adds up most. */

@@ -388,8 +388,7 @@ static void turning_the_matrix_equals_turning_the_camera(void **state) {
     model_close(&stage);
 }
 
-/* --- over ------------------------------------------------------------------
- */
+/* --- over ----------------------------------------------------------------- */
 
 static void front_to_back_equals_back_to_front(void **state) {
     (void)state;

@@ -152,8 +152,7 @@ static void every_type_and_matrix_in_perspective(void **state) {
     exact_pictures(1);
 }
 
-/* --- iso and depth -----------------------------------------------------------
- */
+/* --- iso and depth -------------------------------------------------------- */
 
 static void compare_depth(const model_stage *stage,
                           const reference_scene *scene, tally *t) {
@@ -398,8 +397,7 @@ static void sheared_pictures_of_smooth_data_are_very_near(void **state) {
     model_close(&stage);
 }
 
-/* --- what must not change a bit ----------------------------------------------
- */
+/* --- what must not change a bit ------------------------------------------- */
 
 static uint64_t sum_of(const model_stage *stage, const snow_volume *volume,
                        const snow_settings *settings, double fov) {
@@ -471,8 +469,7 @@ static void levels_make_the_same_picture(void **state) {
     model_close(&stage);
 }
 
-/* --- values and refusals -----------------------------------------------------
- */
+/* --- values and refusals -------------------------------------------------- */
 
 static void means_become_colours_over_a_range(void **state) {
     (void)state;
@@ -568,9 +565,9 @@ static void refusals(void **state) {
         double iso;
         int depth;
         const char *words;
-    } wrong[] = {{-1, 0, 0, "mode is -1"},
-                 {6, 0, 0, "mode is 6"},
-                 {SNOW_MODE_ISO, NAN, 0, "iso is nan"},
+    } wrong[] = {{-1, 0, 0, "invalid mode -1"},
+                 {6, 0, 0, "invalid mode 6"},
+                 {SNOW_MODE_ISO, NAN, 0, "invalid iso nan"},
                  {SNOW_MODE_MIP, 0, 1, "mode mip has no depth"}};
     for (size_t n = 0; n < COUNT(wrong); n++) {
         snow_settings settings;

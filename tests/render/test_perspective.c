@@ -30,8 +30,7 @@ static void stand_at(reference_scene *scene, size_t n, double zoom) {
     model_stand_at(scene, &stands[n % COUNT(stands)], zoom);
 }
 
-/* --- the reference's own rules ---------------------------------------------
- */
+/* --- the reference's own rules -------------------------------------------- */
 
 static double distance_of(const reference_scene *scene, const double *a,
                           const double *b) {
@@ -158,8 +157,7 @@ static void front_to_back_equals_back_to_front(void **state) {
     model_free(&scene);
 }
 
-/* --- the library ------------------------------------------------------------
- */
+/* --- the library ---------------------------------------------------------- */
 
 static size_t draw(uint64_t *state, size_t count) {
     return (size_t)(support_random(state) >> 33) % count;

@@ -85,8 +85,7 @@ static int check_stage(const listener *l, snow_stage stage) {
     return calls;
 }
 
-/* --- volumes --------------------------------------------------------------
- */
+/* --- volumes -------------------------------------------------------------- */
 
 #define SIDE 96
 
@@ -164,8 +163,7 @@ static void reading_is_reported_and_can_be_stopped(void **state) {
     support_folder_remove(folder);
 }
 
-/* --- pictures -------------------------------------------------------------
- */
+/* --- pictures ------------------------------------------------------------- */
 
 static void a_picture_is_reported(void **state) {
     (void)state;

@@ -14,8 +14,7 @@
  * than a millionth is left to be seen. */
 #define BOUND 4e-6
 
-/* --- pictures by the library ------------------------------------------------
- */
+/* --- pictures by the library ---------------------------------------------- */
 
 static const double none[1][4];
 
@@ -135,8 +134,7 @@ static reference_scene scene_of(snow_type type, bool grey,
     return scene;
 }
 
-/* --- against the reference --------------------------------------------------
- */
+/* --- against the reference ------------------------------------------------ */
 
 static void every_type_of_voxel(void **state) {
     (void)state;
@@ -241,8 +239,7 @@ static void every_mode(void **state) {
     model_close(&stage);
 }
 
-/* --- holes, infinities, thin volumes ----------------------------------------
- */
+/* --- holes, infinities, thin volumes -------------------------------------- */
 
 static void holes_have_no_value(void **state) {
     (void)state;
@@ -302,8 +299,7 @@ static void axes_of_one_and_two_voxels(void **state) {
     model_close(&stage);
 }
 
-/* --- planes and labels ------------------------------------------------------
- */
+/* --- planes and labels ---------------------------------------------------- */
 
 static void planes_cut_between_voxels(void **state) {
     static const double planes[][4] = {
@@ -449,8 +445,7 @@ static void empty_space_is_skipped_and_nothing_else(void **state) {
     model_close(&stage);
 }
 
-/* --- what can be computed by hand -------------------------------------------
- */
+/* --- what can be computed by hand ----------------------------------------- */
 
 /* The opacity in the middle of a block of one opacity. */
 static double block_alpha(const model_stage *stage, reference_scene *scene,
@@ -625,8 +620,7 @@ static void finer_steps_converge(void **state) {
     model_close(&stage);
 }
 
-/* --- the same bits ----------------------------------------------------------
- */
+/* --- the same bits -------------------------------------------------------- */
 
 static void threads_and_instruction_sets_change_nothing(void **state) {
     static const int threads[] = {1, 2, 3, 7};
@@ -675,8 +669,7 @@ static void the_volume_is_never_halved(void **state) {
     model_close(&stage);
 }
 
-/* --- refusals ---------------------------------------------------------------
- */
+/* --- refusals ------------------------------------------------------------- */
 
 /* The message of a picture that is refused. */
 static const char *refusal(const model_stage *stage, const snow_volume *volume,

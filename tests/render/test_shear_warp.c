@@ -476,8 +476,7 @@ static void opaque_voxels_hide_what_lies_behind(void **state) {
     model_close(&stage);
 }
 
-/* --- shaded ----------------------------------------------------------------
- */
+/* --- shaded --------------------------------------------------------------- */
 
 static void shaded_pictures_by_stored_normals(void **state) {
     (void)state;

@@ -441,8 +441,7 @@ static void slabs_are_encoded_each_for_itself(void **state) {
     close_studio(&s);
 }
 
-/* --- memory ----------------------------------------------------------------
- */
+/* --- memory --------------------------------------------------------------- */
 
 typedef struct counting_allocator {
     long allocations;

@@ -22,8 +22,7 @@ static void stand_at(reference_scene *scene, size_t n, double zoom) {
     model_stand_at(scene, &stands[n % COUNT(stands)], zoom);
 }
 
-/* --- opacities and weights -------------------------------------------------
- */
+/* --- opacities and weights ------------------------------------------------ */
 
 /* Against pow(), for every exponent that a view can have, and then some. */
 static void opacities_of_rays_are_within_a_quarter_step(void **state) {
@@ -114,8 +113,7 @@ static void a_rake_has_the_weights_of_its_kernel(void **state) {
     assert_true(largest < 2e-6);
 }
 
-/* --- the transcription ------------------------------------------------------
- */
+/* --- the transcription ---------------------------------------------------- */
 
 /* What render/shear_warp/perspective.c does, in double: samples of all slices
  * on one lattice, laid over each other there, and one warp.  Only where the
@@ -333,8 +331,7 @@ static void pictures_are_those_of_the_method_in_double(void **state) {
     model_close(&stage);
 }
 
-/* --- against the exact picture ---------------------------------------------
- */
+/* --- against the exact picture -------------------------------------------- */
 
 /* A few soft balls, opaque in their middle. */
 static reference_scene soft_scene(const int64_t dims[3], int n) {
@@ -406,8 +403,7 @@ static void smooth_scenes_are_near_the_exact_picture(void **state) {
     model_close(&stage);
 }
 
-/* --- promises ---------------------------------------------------------------
- */
+/* --- promises ------------------------------------------------------------- */
 
 static void compare_with(const model_stage *stage, reference_scene *scene,
                          const float *first, double bound) {

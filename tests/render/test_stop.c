@@ -59,8 +59,7 @@ static const way ways[] = {
 };
 #define WAYS (sizeof ways / sizeof *ways)
 
-/* --- who asks for a stop --------------------------------------------------
- */
+/* --- who asks for a stop -------------------------------------------------- */
 
 typedef struct question {
     int asked, at;    /* so far; that is answered with a stop, 0: none */
@@ -74,8 +73,7 @@ static bool answer(void *user) {
     return ++q->asked == q->at;
 }
 
-/* --- what is drawn --------------------------------------------------------
- */
+/* --- what is drawn -------------------------------------------------------- */
 
 typedef struct scene {
     snow_context *context;
@@ -173,8 +171,7 @@ static snow_image *draw_whole(const scene *s, snow_frame *frame) {
     return image;
 }
 
-/* --- one process ----------------------------------------------------------
- */
+/* --- one process ---------------------------------------------------------- */
 
 /* Stops at the k-th question; the same frame then draws the picture. */
 static void stop_at(const scene *s, int k, const snow_image *whole,
@@ -275,8 +272,7 @@ static void pictures_of_a_file_stop(void **state) {
     support_folder_remove(folder);
 }
 
-/* --- ranks ----------------------------------------------------------------
- */
+/* --- ranks ---------------------------------------------------------------- */
 
 #define REQUIRE(comm, condition)                                             \
     do {                                                                     \
@@ -450,8 +446,7 @@ static void pictures_under_way_stop_one_by_one(void **state) {
     stop_crews(3, 1, true);
 }
 
-/* --- how long it takes ----------------------------------------------------
- */
+/* --- how long it takes ---------------------------------------------------- */
 
 /* With one thread its own processor time counts, which other programs on the
  * machine do not add to. */

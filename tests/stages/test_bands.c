@@ -8,8 +8,7 @@
 
 #include <math.h>
 
-/* --- a volume and what a plain loop finds in it ----------------------------
- */
+/* --- a volume and what a plain loop finds in it --------------------------- */
 
 typedef struct scene {
     snow_context *context;
@@ -205,8 +204,7 @@ static snow_bands_params order_of(const scene *s, snow_encoding encoding) {
                                .threads = 1};
 }
 
-/* --- bands against the plain loop ------------------------------------------
- */
+/* --- bands against the plain loop ----------------------------------------- */
 
 /* A row by a plain loop: its columns and codes. */
 static size_t plain_row(const scene *s, const snow_bands_params *order,
@@ -359,8 +357,7 @@ static void assert_same(const snow_bands *a, const snow_bands *b) {
 static const snow_encoding schemes[] = {SNOW_ENCODING_CRS, SNOW_ENCODING_BITMAP,
                                         SNOW_ENCODING_RLE};
 
-/* --- tests -----------------------------------------------------------------
- */
+/* --- tests ---------------------------------------------------------------- */
 
 static void all_types_axes_schemes_and_patterns_hold_the_volume(void **state) {
     (void)state;
@@ -672,8 +669,7 @@ static void slices_too_large_for_32_bits_are_refused(void **state) {
     snow_context_free(context);
 }
 
-/* --- memory ----------------------------------------------------------------
- */
+/* --- memory --------------------------------------------------------------- */
 
 /* malloc that counts, and fails from one call on. */
 typedef struct supply {

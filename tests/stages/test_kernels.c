@@ -25,8 +25,7 @@ static int draw(uint64_t *random, int count) {
     return (int)((support_random(random) >> 33) % (uint64_t)count);
 }
 
-/* --- inputs ----------------------------------------------------------------
- */
+/* --- inputs --------------------------------------------------------------- */
 
 typedef enum fill { NOISE, ZEROS, ONES, SUBNORMAL, MIXED, FILLS } fill;
 
@@ -89,8 +88,7 @@ static bool guarded_end(guarded *block) {
     return sound;
 }
 
-/* --- tiles -----------------------------------------------------------------
- */
+/* --- tiles ---------------------------------------------------------------- */
 
 typedef struct tile_case {
     int channels, taps_u, taps_v, cells;
@@ -363,8 +361,7 @@ static void pixels_are_cleared_and_finished(void **state) {
         }
 }
 
-/* --- samples ---------------------------------------------------------------
- */
+/* --- samples -------------------------------------------------------------- */
 
 #define VOXELS_BEFORE 5 /* at most: of a row, before its window */
 #define ROW_VOXELS (VOXELS_BEFORE + SNOW_WINDOW_MOST + SNOW_SAMPLE_MARGIN)
@@ -538,8 +535,7 @@ static void samples_of_every_window(void **state) {
         most);
 }
 
-/* --- windows ---------------------------------------------------------------
- */
+/* --- windows -------------------------------------------------------------- */
 
 typedef struct window_case {
     int columns, count;
@@ -646,8 +642,7 @@ static void windows_at_every_column(void **state) {
         }
 }
 
-/* --- rows of bands ---------------------------------------------------------
- */
+/* --- rows of bands -------------------------------------------------------- */
 
 #define SLICES 3
 
@@ -831,8 +826,7 @@ static void rows_of_bands_are_read_as_bits(void **state) {
         }
 }
 
-/* --- the warp --------------------------------------------------------------
- */
+/* --- the warp ------------------------------------------------------------- */
 
 typedef struct warp_case {
     snow_intermediate_view plane;
@@ -982,8 +976,7 @@ static void lines_through_every_plane(void **state) {
                   most);
 }
 
-/* --- words -----------------------------------------------------------------
- */
+/* --- words ---------------------------------------------------------------- */
 
 enum word {
     ADD,
@@ -1276,8 +1269,7 @@ static void words_mean_what_they_say(void **state) {
     }
 }
 
-/* --- combs -----------------------------------------------------------------
- */
+/* --- combs ---------------------------------------------------------------- */
 
 /* A comb's weights are the kernel's, wherever a slice lies. */
 static void combs_hold_the_kernel(void **state) {
@@ -1362,8 +1354,7 @@ static void sheets_stay_below_their_bounds(void **state) {
     assert_true(nearest < 1e-6); /* no more than is needed */
 }
 
-/* --- times -----------------------------------------------------------------
- */
+/* --- times ---------------------------------------------------------------- */
 
 typedef void timed_fn(void *user, snow_isa isa);
 

@@ -30,8 +30,7 @@ int value_weight(double part) {
     return w > 32767 ? 32767 : w;
 }
 
-/* --- voxels ----------------------------------------------------------------
- */
+/* --- voxels --------------------------------------------------------------- */
 
 static int code_of(const value_plan *plan, double value) {
     if (isnan(value))
@@ -174,8 +173,7 @@ value_part value_voxel(const value_field *field, int sheet, int64_t i,
     return border;
 }
 
-/* --- sheets ----------------------------------------------------------------
- */
+/* --- sheets --------------------------------------------------------------- */
 
 /* A mean that has its weights: no value where less than half is there. */
 static int weighed(int64_t value, int64_t weight) {

@@ -6,8 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- labels -----------------------------------------------------------------
- */
+/* --- labels --------------------------------------------------------------- */
 
 /* What each label has at both ends of a slab: its membership, or in draft 1
  * where it is the nearest.  False beside a hole. */
@@ -73,8 +72,7 @@ bool value_label_slab(value_field *field, const value_ray *ray, int slab,
     return true;
 }
 
-/* --- projections and the isosurface -----------------------------------------
- */
+/* --- projections and the isosurface --------------------------------------- */
 
 typedef struct tally {
     double most, least, sum, length;

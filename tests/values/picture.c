@@ -7,8 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* --- lattice samples --------------------------------------------------------
- */
+/* --- lattice samples ------------------------------------------------------ */
 
 /* The ends of the kept part of a slab as integers. */
 static bool slab_values(const value_model *model, const value_ray *ray,
@@ -123,8 +122,7 @@ void value_model_sample(value_model *model, int64_t a, int64_t b,
     memcpy(out, model->samples[at], 4 * sizeof *out);
 }
 
-/* --- the lattice's extent ---------------------------------------------------
- */
+/* --- the lattice's extent ------------------------------------------------- */
 
 /* The lattice position of the ray through an index position. */
 static void shadow(const value_plan *plan, const double at[3], double ab[2]) {
@@ -210,8 +208,7 @@ void value_model_free(value_model *model) {
     free(model);
 }
 
-/* --- the warp ---------------------------------------------------------------
- */
+/* --- the warp ------------------------------------------------------------- */
 
 static void catmull_rom(double t, double w[4]) {
     w[0] = (-t + 2 * t * t - t * t * t) / 2;

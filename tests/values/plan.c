@@ -10,8 +10,7 @@ double value_sheet_at(const value_plan *plan, int sheet) {
     return plan->first + plan->direction * (double)sheet / plan->halves;
 }
 
-/* --- the lattice ------------------------------------------------------------
- */
+/* --- the lattice ---------------------------------------------------------- */
 
 void value_lattice_front(const value_plan *plan, double a, double b,
                          double front[2]) {
@@ -155,8 +154,7 @@ static void choose_warp(value_plan *plan) {
     plan->mean = (int)ceil(pixels - 1e-6);
 }
 
-/* --- sheets -----------------------------------------------------------------
- */
+/* --- sheets --------------------------------------------------------------- */
 
 double value_plan_path(const value_plan *plan) {
     if (!plan->perspective)
@@ -204,8 +202,7 @@ static bool choose_sheets(value_plan *plan) {
     return true;
 }
 
-/* --- values -----------------------------------------------------------------
- */
+/* --- values --------------------------------------------------------------- */
 
 static void find_range(value_plan *plan) {
     const int64_t *n = plan->scene->base.info.dims;

@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-/* --- gradients --------------------------------------------------------------
- */
+/* --- gradients ------------------------------------------------------------ */
 
 /* Twice a difference quotient over a way of one to either side: of both
  * neighbours, of the one that is there, or none. */
@@ -217,8 +216,7 @@ void value_gradient(const value_field *field, const value_ray *ray, int slab,
                        (f.mend[n] + place / 32768.0 * (b.mend[n] - f.mend[n]));
 }
 
-/* --- cuts -------------------------------------------------------------------
- */
+/* --- cuts ----------------------------------------------------------------- */
 
 /* Keeps the part of [t[0], t[1]] where from + t (to - from) <= most. */
 static void keep_below(double from, double to, double most, double t[2]) {
@@ -268,8 +266,7 @@ bool value_cut(const value_plan *plan, const value_ray *ray, int slab,
     return part[1] > part[0];
 }
 
-/* --- light ------------------------------------------------------------------
- */
+/* --- light ---------------------------------------------------------------- */
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -146,8 +146,7 @@ static void a_single_slice_is_one_spacing_thick(void **state) {
         }
 }
 
-/* --- labels -----------------------------------------------------------------
- */
+/* --- labels --------------------------------------------------------------- */
 
 static double halves(const double at[3]) {
     return at[0] < 4 ? 1 : 3;
@@ -198,8 +197,7 @@ static void labels_are_lit_by_their_membership(void **state) {
     value_scene_free(&scene);
 }
 
-/* --- looks ------------------------------------------------------------------
- */
+/* --- looks ---------------------------------------------------------------- */
 
 static void gradient_opacity_does_not_depend_on_slabs(void **state) {
     (void)state;
@@ -268,8 +266,7 @@ static void infinities_are_the_ends_and_the_range_narrows(void **state) {
     free((void *)(uintptr_t)scene.base.voxels);
 }
 
-/* --- ends of rays -----------------------------------------------------------
- */
+/* --- ends of rays --------------------------------------------------------- */
 
 static void rays_that_close_early_change_next_to_nothing(void **state) {
     (void)state;

@@ -60,8 +60,7 @@ static size_t walk(value_model *model, size_t stride,
     return seen;
 }
 
-/* --- integers ---------------------------------------------------------------
- */
+/* --- integers ------------------------------------------------------------- */
 
 static void integers_round_halves_up_and_saturate(void **state) {
     (void)state;
@@ -74,8 +73,7 @@ static void integers_round_halves_up_and_saturate(void **state) {
     assert_int_equal(value_weight(0.5), 16384);
 }
 
-/* --- opacity ----------------------------------------------------------------
- */
+/* --- opacity -------------------------------------------------------------- */
 
 #define BLOCK_OPACITY 0.07
 
@@ -150,8 +148,7 @@ static void an_entry_of_one_value_is_a_slab_of_it(void **state) {
     free((void *)(uintptr_t)scene.base.voxels);
 }
 
-/* --- linear fields ----------------------------------------------------------
- */
+/* --- linear fields -------------------------------------------------------- */
 
 /* Inside the box, or beyond one of its sides by up to a voxel: there the field
  * is continued linearly. */
@@ -300,8 +297,7 @@ static void a_plane_is_lit_as_phong_says(void **state) {
     }
 }
 
-/* --- the same volume in another order ---------------------------------------
- */
+/* --- the same volume in another order ------------------------------------- */
 
 static const snow_opacity_point hill[] = {{20, 0}, {60, 0.3}, {90, 0.8}};
 static const snow_color_point tints[] = {
@@ -376,8 +372,7 @@ static void data_turned_and_reordered_give_the_same_picture(void **state) {
     }
 }
 
-/* --- a sphere ---------------------------------------------------------------
- */
+/* --- a sphere ------------------------------------------------------------- */
 
 static void a_hard_sphere_has_its_radius(void **state) {
     (void)state;

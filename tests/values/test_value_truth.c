@@ -118,8 +118,7 @@ static void each_quality_is_nearer_than_the_one_below(void **state) {
     snow_context_free(context);
 }
 
-/* --- rings ------------------------------------------------------------------
- */
+/* --- rings ---------------------------------------------------------------- */
 
 /* A row or column of `count` values that are `step` apart, blurred by a
  * Gaussian of deviation `sigma`. */

@@ -102,8 +102,7 @@ static void slope_at(const value_truth *truth, const double at[3],
                 : (beside(truth, at, n, 1) - beside(truth, at, n, -1)) / 2;
 }
 
-/* --- light ------------------------------------------------------------------
- */
+/* --- light ---------------------------------------------------------------- */
 
 static double dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -154,8 +153,7 @@ static void shade(const value_truth *truth, const double eye[3],
         rgb[k] = fmin(1, rgb[k] * (s->ambient + light) + gloss);
 }
 
-/* --- rays -------------------------------------------------------------------
- */
+/* --- rays ----------------------------------------------------------------- */
 
 /* Keeps the t of a ray at which height + t rise <= most. */
 static void keep_below(double height, double rise, double most, double t[2]) {

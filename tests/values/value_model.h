@@ -130,8 +130,7 @@ int value_scale(int64_t x, int w);
 int value_between(int a, int b, int w);
 int value_weight(double part);
 
-/* --- a lattice sample -------------------------------------------------------
- */
+/* --- a lattice sample ----------------------------------------------------- */
 
 /* The ray of a lattice sample: where it meets the front sheet, by how much it
  * moves per p, the world length of a slab and the direction to the eye. */
@@ -197,8 +196,7 @@ bool value_label_slab(value_field *field, const value_ray *ray, int slab,
 void value_mode_sample(const value_field *field, const value_ray *ray,
                        double out[4]);
 
-/* --- pictures ---------------------------------------------------------------
- */
+/* --- pictures ------------------------------------------------------------- */
 
 typedef struct value_model {
     value_plan plan;
@@ -228,8 +226,7 @@ void value_model_pixel(value_model *model, int x, int y, double out[4]);
  * mean and sum width * height.  NULL where the model has none. */
 double *value_model_render(const value_scene *scene);
 
-/* --- a fine ray caster ------------------------------------------------------
- */
+/* --- a fine ray caster ---------------------------------------------------- */
 
 /* The truth that the model is held against: tri-linear values along a ray every
  * `fine`-th of the smallest spacing, classified, shaded by central differences

@@ -398,8 +398,7 @@ static void a_box_outside_the_volume_is_refused_with_its_sizes(void **state) {
     support_files_end(&files);
 }
 
-/* --- how much is read ------------------------------------------------------
- */
+/* --- how much is read ----------------------------------------------------- */
 
 /* A file of `size` bytes, all holes but what is written at `at`; false where
  * the disk makes none. */

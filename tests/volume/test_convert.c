@@ -133,9 +133,9 @@ static void a_range_is_spread_over_the_type(void **state) {
                     SNOW_TYPE_INT8, range),
           SNOW_TYPE_INT8, low, sizeof low);
     refused(place, shared(place, SNOW_TYPE_INT16, 5, from, 1, 0),
-            SNOW_TYPE_UINT8, none, "5 to 5 is no range");
+            SNOW_TYPE_UINT8, none, "invalid range 5 to 5");
     refused(place, shared(place, SNOW_TYPE_INT16, 5, from, 1, 0),
-            SNOW_TYPE_FLOAT32, range, "integers of 8, 16 and 32 bits only");
+            SNOW_TYPE_FLOAT32, range, "only integers of 8, 16 and 32 bits");
     static const float holes[] = {NAN, 1};
     refused(place, shared(place, SNOW_TYPE_FLOAT32, 2, holes, 1, 0),
             SNOW_TYPE_UINT8, range, "nan do not fit uint8");

@@ -281,18 +281,18 @@ static void another_grid_is_refused_with_both(void **state) {
     support_place *place = *state;
     snow_volume_info a = info_of(SNOW_TYPE_UINT8, 4, 3, 2), b = a;
     b.dims[1] = 2;
-    refused(place, &a, &b, "the mask has 4x2x2 voxels and the volume 4x3x2");
+    refused(place, &a, &b, "the mask has 4x2x2 voxels, the volume 4x3x2");
     a = placed(2, 10);
     b = placed(2, 10.1);
     refused(place, &a, &b, NULL);
     b = placed(2, 10.3);
     refused(place, &a, &b,
-            "voxel 0,0,0 is at 10.3,0,0 of the world, the volume's at 10,0,0");
+            "voxel 0,0,0 is at 10.3,0,0 in the world, the volume's at 10,0,0");
     b = placed(2.5, 10);
     refused(place, &a, &b, "voxel 3,2,1 is at 17.5,5,2.5");
     b = placed(2, 16); /* the same place, flipped */
     b.matrix[0][0] = -2;
-    refused(place, &a, &b, "the mask lies elsewhere");
+    refused(place, &a, &b, "the mask has another position");
 }
 
 static void what_tells_no_place_is_believed(void **state) {
@@ -369,7 +369,7 @@ static void a_box_of_another_grid_is_refused(void **state) {
                      SNOW_STATUS_BAD_INPUT);
     assert_non_null(
         strstr(snow_context_message(place->context),
-               "b.nrrd: the mask has 2x4x4 voxels and the volume 4x4x4"));
+               "b.nrrd: the mask has 2x4x4 voxels, the volume 4x4x4"));
     options.mask = NULL;
     options.labels = "1";
     assert_int_equal(snow_volume_open(place->context, a, &options, &box),

@@ -10,8 +10,7 @@
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-/* --- voxels ----------------------------------------------------------------
- */
+/* --- voxels --------------------------------------------------------------- */
 
 /* What of voxel `at` of `from` the voxel `to` of `count` covers, 0 to 1. */
 static double overlap(int64_t at, int64_t from, int64_t to, int64_t count) {
@@ -368,8 +367,7 @@ static void a_level_fills_the_box_of_its_volume(void **state) {
         }
 }
 
-/* --- pictures --------------------------------------------------------------
- */
+/* --- pictures ------------------------------------------------------------- */
 
 static const snow_color_point smooth[] = {
     {0, 0.9, 0.3, 0.1}, {50, 0.2, 0.8, 0.5}, {100, 1, 0.9, 0.4}};
@@ -562,8 +560,7 @@ static void large_volumes_are_halved_again(void **state) {
     model_close(&stage);
 }
 
-/* --- when one is taken ------------------------------------------------------
- */
+/* --- when one is taken ---------------------------------------------------- */
 
 /* A phantom as a scene that levels are made for. */
 static reference_scene phantom_scene(snow_context *context, const char *name,
@@ -659,8 +656,7 @@ static void others_are_made_of_the_volume_itself(void **state) {
     model_close(&stage);
 }
 
-/* --- kept ------------------------------------------------------------------
- */
+/* --- kept ----------------------------------------------------------------- */
 
 /* A picture of the volume itself, which a frame may know from before. */
 static snow_image *image_of(const model_stage *stage, snow_frame *frame,
@@ -826,8 +822,7 @@ static void pictures_survive_a_lack_of_memory(void **state) {
     assert_true(failures > 5);
 }
 
-/* --- how near --------------------------------------------------------------
- */
+/* --- how near ------------------------------------------------------------- */
 
 /* Drafts against normal pictures of the same size. */
 static void drafts_are_near_to_normal_pictures(void **state) {

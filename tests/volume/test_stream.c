@@ -212,8 +212,7 @@ static uint64_t slices_of(snow_type type, int slices) {
            (uint64_t)slices;
 }
 
-/* --- pictures -------------------------------------------------------------
- */
+/* --- pictures ------------------------------------------------------------- */
 
 static void pictures_are_those_of_the_volume_in_memory(void **state) {
     static const int slices[] = {1, 5, 35, 50, 70, 1000};
@@ -471,8 +470,7 @@ static void packed_files_are_served_as_well(void **state) {
     close_pair(&p);
 }
 
-/* --- looks ----------------------------------------------------------------
- */
+/* --- looks ---------------------------------------------------------------- */
 
 static void looks_are_those_of_the_volume_in_memory(void **state) {
     static const snow_look looks[] = {
@@ -548,8 +546,7 @@ static void a_sample_that_has_room_spares_readings(void **state) {
     assert_string_equal(one, many);
 }
 
-/* --- memory and reading ---------------------------------------------------
- */
+/* --- memory and reading --------------------------------------------------- */
 
 static void no_more_than_a_slab_is_held(void **state) {
     support_place *place = *state;
@@ -699,8 +696,7 @@ static void any_allocation_may_fail(void **state) {
                     (int)support_sweep(3, 11));
 }
 
-/* --- what is refused ------------------------------------------------------
- */
+/* --- what is refused ------------------------------------------------------ */
 
 static void refuse(pair *p, const char *part, const snow_view *view,
                    const snow_settings *settings, snow_status status) {
@@ -727,12 +723,12 @@ static void pictures_that_look_at_voxels_are_refused(void **state) {
     settings.depth = 0;
     settings.deterministic = 1;
     settings.method = SNOW_METHOD_FOOTPRINT;
-    refuse(&p, "a deterministic picture by the method footprint", &view,
-           &settings, SNOW_STATUS_NO_MEMORY);
+    refuse(&p, "a deterministic picture by method footprint", &view, &settings,
+           SNOW_STATUS_NO_MEMORY);
     settings.deterministic = 0;
     snow_context_set_memory_limit(
         place->context, snow_context_bytes(place->context) + (1 << 18));
-    refuse(&p, "slices of which belong to their neighbours", &view, &settings,
+    refuse(&p, "slices of their neighbours", &view, &settings,
            SNOW_STATUS_NO_MEMORY);
     snow_context_set_memory_limit(place->context, 0);
     close_pair(&p);
@@ -770,7 +766,7 @@ static void all_else_that_looks_at_voxels_is_refused(void **state) {
     assert_int_equal(snow_transfer_sparse_ratio(transfer, stream, 0, &ratio),
                      SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(place->context),
-                           "its voxels stay in the file"));
+                           "the voxels stay in the file"));
     snow_volume_get_statistics(stream, &measures);
     assert_int_equal(measures.voxels, dims[0] * dims[1] * dims[2]);
     assert_int_equal(measures.finite, 0);
@@ -820,7 +816,7 @@ static void streams_that_cannot_be_read_twice_are_refused(void **state) {
         snow_volume_open_streamed(place->context, "-", NULL, 0, &volume),
         SNOW_STATUS_BAD_USAGE);
     assert_non_null(strstr(snow_context_message(place->context),
-                           "standard input: can be read once only"));
+                           "standard input: can be read only once"));
     assert_int_equal(snow_volume_open_streamed(
                          place->context, support_place_path(place, "none.nrrd"),
                          NULL, 0, &volume),

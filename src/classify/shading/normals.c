@@ -97,8 +97,7 @@ static const normal_kernels *kernels_of(snow_isa isa) {
     return SNOW_OF_ISA(isa, &kernels);
 }
 
-/* --- one normal -----------------------------------------------------------
- */
+/* --- one normal ----------------------------------------------------------- */
 
 uint16_t snow_normal_code(const double direction[3]) {
     double x = direction[0], y = direction[1], z = direction[2];
@@ -118,8 +117,7 @@ void snow_normal_of(uint16_t code, double normal[3]) {
     snow_normalize(normal);
 }
 
-/* --- makers ---------------------------------------------------------------
- */
+/* --- makers --------------------------------------------------------------- */
 
 static double frobenius(double m[3][3]) {
     double square = 0;
@@ -157,8 +155,7 @@ snow_status snow_normal_maker_init(snow_context *context,
     return SNOW_STATUS_OK;
 }
 
-/* --- rows -----------------------------------------------------------------
- */
+/* --- rows ----------------------------------------------------------------- */
 
 /* A row of one slice: for each axis (u along the row, v across it, w across the
  * slices) the two voxels that are subtracted for a voxel, as byte offsets from
@@ -225,8 +222,7 @@ static row_job make_job(const snow_normal_maker *maker, const snow_placement *p,
     return job;
 }
 
-/* --- exact, voxel by voxel ------------------------------------------------
- */
+/* --- exact, voxel by voxel ------------------------------------------------ */
 
 /* The code of an index gradient in doubles, of any size. */
 static uint16_t code_of_gradient(const snow_normal_maker *maker,
@@ -277,8 +273,7 @@ static uint16_t exact_code(const row_job *job, int64_t column) {
     return code_of_gradient(job->maker, sum);
 }
 
-/* --- blocks ---------------------------------------------------------------
- */
+/* --- blocks --------------------------------------------------------------- */
 
 /* Differences for the voxels of some columns, wherever they are; like the
  * kernels' differences, but `low` and `high` are byte offsets from the voxel.

@@ -230,8 +230,7 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
                                   const snow_volume_options *options,
                                   snow_volume_info *info, snow_volume **out);
 
-/* --- header.c -------------------------------------------------------
- */
+/* --- header.c ------------------------------------------------------------- */
 
 /* Reads the header; rows is 0 if there is no image.  Errors:
  * SNOW_STATUS_BAD_INPUT (invalid sizes). */
@@ -242,8 +241,7 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
 void snow_dicom_read_frame(dicom_reader *reader, const dicom_image *image,
                            int64_t number, dicom_frame *out);
 
-/* --- pixels.c -------------------------------------------------------
- */
+/* --- pixels.c ------------------------------------------------------------- */
 
 /* The layout of a frame's words; a codec may differ from the header. */
 typedef struct dicom_words {
@@ -263,8 +261,7 @@ snow_status snow_dicom_read_words(dicom_reader *reader,
                                   const dicom_image *image, int64_t number,
                                   void *out, dicom_words *words);
 
-/* --- palette.c ------------------------------------------------------
- */
+/* --- palette.c ------------------------------------------------------------ */
 
 /* Brightness, 0 to 255 in whole steps, of `count` stored values from `first`
  * on; values outside have that of the nearest. */
@@ -280,8 +277,7 @@ snow_status snow_dicom_palette_read(dicom_reader *reader,
                                     const dicom_image *image,
                                     dicom_palette *out);
 
-/* --- codec.c --------------------------------------------------------
- */
+/* --- codec.c -------------------------------------------------------------- */
 
 /* Checks that the compressed bytes of a frame match the image, by their own
  * header, and begin in a way that codecs accept; narrows them to the code

@@ -173,8 +173,7 @@ static void warn_scraps(const collection *c) {
             c->scraps > 1 ? ", ..." : "", c->scraps > 1 ? "are" : "is");
 }
 
-/* --- choice ----------------------------------------------------------------
- */
+/* --- choice --------------------------------------------------------------- */
 
 /* The frames of the collection in groups. */
 typedef struct choice {
@@ -302,8 +301,7 @@ snow_status snow_dicom_read_files(snow_context *context, snow_folder *files,
     return status;
 }
 
-/* --- one file --------------------------------------------------------------
- */
+/* --- one file ------------------------------------------------------------- */
 
 /* Lists the files of the folder that a path is in, including itself; an empty
  * list if it cannot be read. */

@@ -47,8 +47,7 @@ static const number_field key_fields[DICOM_KEYS] = {
     [DICOM_KEY_INSTANCE] = {0, 0, TEXT, 0x00200013, TEXT},
 };
 
-/* --- values ----------------------------------------------------------------
- */
+/* --- values --------------------------------------------------------------- */
 
 /* Parses "1.5\-2 " as numbers; stops at anything else. */
 static int parse_numbers(char *text, double *out, int most) {
@@ -159,8 +158,7 @@ static void patient(dicom_reader *reader, char *out, size_t room) {
     out[used] = 0;
 }
 
-/* --- the file --------------------------------------------------------------
- */
+/* --- the file ------------------------------------------------------------- */
 
 /* Padding is a word like pixels, with the same sign. */
 static double padding(dicom_reader *reader, uint32_t tag,
@@ -284,8 +282,7 @@ snow_status snow_dicom_read_image(snow_context *context, dicom_reader *reader,
     return SNOW_STATUS_OK;
 }
 
-/* --- a frame ---------------------------------------------------------------
- */
+/* --- a frame -------------------------------------------------------------- */
 
 /* Normalizes the directions to length 1 and a right angle; with few printed
  * digits they are only approximately so. */

@@ -133,8 +133,7 @@ bool snow_dicom_probe(const unsigned char *bytes, size_t size) {
     return looks_like_elements(bytes, size);
 }
 
-/* --- the walk through a file ------------------------------------------------
- */
+/* --- the walk through a file ---------------------------------------------- */
 
 typedef struct walk {
     dicom_reader *reader;
@@ -334,8 +333,7 @@ static snow_status walk_meta(walk *w) {
     }
 }
 
-/* --- deflated files ---------------------------------------------------------
- */
+/* --- deflated files ------------------------------------------------------- */
 
 /* Decompresses what follows the meta information into a store of its own. */
 static snow_status inflate_rest(walk *w, z_stream *stream) {
@@ -381,8 +379,7 @@ static snow_status inflate_set(walk *w) {
     return status;
 }
 
-/* --- opening ----------------------------------------------------------------
- */
+/* --- opening -------------------------------------------------------------- */
 
 static snow_status walk_file(walk *w) {
     size_t have;

@@ -18,8 +18,7 @@ uint64_t snow_dicom_frame_bytes(const dicom_image *image) {
            ((uint64_t)image->samples * (uint64_t)image->allocated / 8);
 }
 
-/* --- plain ------------------------------------------------------------------
- */
+/* --- plain ---------------------------------------------------------------- */
 
 static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
                               const dicom_element *pixels, int64_t number,
@@ -45,8 +44,7 @@ static snow_status read_plain(dicom_reader *reader, const dicom_image *image,
     return SNOW_STATUS_OK;
 }
 
-/* --- compressed
- * ------------------------------------------------------------- */
+/* --- compressed ----------------------------------------------------------- */
 
 /* Fragments first .. first + count - 1 of the pixels; the table is 0. */
 typedef struct span {

@@ -26,8 +26,7 @@ static void cross(const double a[3], const double b[3], double out[3]) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* --- positions
- * --------------------------------------------------------------- */
+/* --- positions ------------------------------------------------------------ */
 
 /* What sorting needs besides the frame: its position along the normal. */
 typedef struct ranked {
@@ -89,8 +88,7 @@ static snow_status share_places(dicom_stack *s, ranked *all, size_t count) {
     return SNOW_STATUS_OK;
 }
 
-/* --- the matrix ------------------------------------------------------------
- */
+/* --- the matrix ----------------------------------------------------------- */
 
 /* Columns along a row, down a column, from slice to slice; LPS becomes RAS. */
 static void fill_matrix(dicom_stack *s, const double step[3]) {

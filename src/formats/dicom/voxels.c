@@ -37,8 +37,7 @@ typedef struct decoder {
     plane planes[2];
 } decoder;
 
-/* --- a file ----------------------------------------------------------------
- */
+/* --- a file --------------------------------------------------------------- */
 
 static void close_image(decoder *d) {
     if (d->image)
@@ -76,8 +75,7 @@ static snow_status open_image(decoder *d, const dicom_image *image) {
                : SNOW_STATUS_OK;
 }
 
-/* --- a frame ---------------------------------------------------------------
- */
+/* --- a frame -------------------------------------------------------------- */
 
 /* How the bits of a word form a value. */
 typedef struct bits {
@@ -198,8 +196,7 @@ static snow_status fetch(decoder *d, const dicom_frame *frame,
     return SNOW_STATUS_OK;
 }
 
-/* --- the volume ------------------------------------------------------------
- */
+/* --- the volume ----------------------------------------------------------- */
 
 /* Stores integers in their type; returns false if one does not fit. */
 #define PUT_WHOLE(type, least, most)                        \

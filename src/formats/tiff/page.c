@@ -9,8 +9,7 @@
 
 #include <string.h>
 
-/* --- the layout of a page ----------------------------------------------------
- * */
+/* --- the layout of a page ------------------------------------------------- */
 
 static snow_type integer_type(uint16_t bits, bool is_signed) {
     switch (bits) {
@@ -115,8 +114,7 @@ uint64_t snow_tiff_least(const tiff_page *page, uint64_t bytes) {
     }
 }
 
-/* --- voxels ----------------------------------------------------------------
- */
+/* --- voxels --------------------------------------------------------------- */
 
 /* A rectangle of decoded pixels with `samples` values each, whose first is the
  * page's pixel (x, y). */

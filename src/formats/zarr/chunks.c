@@ -98,8 +98,7 @@ static snow_status name_file(const zarr_box *box, const int64_t *at,
                           ZARR_PATH_BYTES);
 }
 
-/* --- before anything is read ------------------------------------------------
- */
+/* --- before anything is read ---------------------------------------------- */
 
 /* Missing chunks are valid, but not so many that a few bytes fill the
  * memory. */
@@ -135,8 +134,7 @@ snow_status snow_zarr_check_box(const zarr_box *box, uint64_t bytes) {
         (unsigned long long)bytes, (unsigned long long)held);
 }
 
-/* --- voxels -----------------------------------------------------------------
- */
+/* --- voxels --------------------------------------------------------------- */
 
 /* Entries low .. high - 1 of an axis that are in both the chunk and the box. */
 static void overlap(const filler *f, const int64_t *chunk, int axis,
@@ -235,8 +233,7 @@ static void fill_chunk(const filler *f, const int64_t *chunk) {
         }
 }
 
-/* --- chunks -----------------------------------------------------------------
- */
+/* --- chunks --------------------------------------------------------------- */
 
 /* Reads a chunk, bytes first .. first + size - 1 of a file. */
 static snow_status read_chunk(filler *f, const zarr_file *file, uint64_t first,

@@ -9,8 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* --- codecs
- * ------------------------------------------------------------------ */
+/* --- codecs --------------------------------------------------------------- */
 
 static const struct {
     const char *name;
@@ -97,8 +96,7 @@ snow_status snow_zarr_add_coder(const zarr_store *store, const char *path,
         name);
 }
 
-/* --- fill -------------------------------------------------------------------
- */
+/* --- fill ----------------------------------------------------------------- */
 
 /* Numbers, and the special values that JSON lacks. */
 static bool fill_number(const json_t *given, double *out) {

@@ -17,8 +17,7 @@
 /* Size of the lists of names in messages. */
 #define LIST_BYTES 700
 
-/* --- images -----------------------------------------------------------------
- */
+/* --- images --------------------------------------------------------------- */
 
 /* Since version 0.5 all of OME's metadata are one attribute. */
 const json_t *snow_zarr_image(const json_t *attributes, size_t index) {
@@ -112,8 +111,7 @@ static snow_status list_levels(const zarr_store *store, const char *group,
     return SNOW_STATUS_OK;
 }
 
-/* --- selecting the array
- * ----------------------------------------------------- */
+/* --- selecting the array -------------------------------------------------- */
 
 static snow_status take_array(const zarr_store *store, const char *path,
                               zarr_found *found) {
@@ -171,8 +169,7 @@ static snow_status take_finest(const zarr_store *store, const char *group,
     return take_level(store, group, node, image, first, found);
 }
 
-/* --- images above -----------------------------------------------------------
- */
+/* --- images above --------------------------------------------------------- */
 
 /* The level of an image with this path or, if `by_number`, with this number;
  * NULL if there is none. */
@@ -248,8 +245,7 @@ static snow_status take_from_above(const zarr_store *store, const char *path,
     return SNOW_STATUS_OK;
 }
 
-/* --- groups -----------------------------------------------------------------
- */
+/* --- groups --------------------------------------------------------------- */
 
 /* A search below a group. */
 typedef struct survey {
@@ -355,8 +351,7 @@ static snow_status take_from_group(const zarr_store *store, const char *group,
     return status;
 }
 
-/* --- a path -----------------------------------------------------------------
- */
+/* --- a path --------------------------------------------------------------- */
 
 /* The store itself may be a group without metadata. */
 static snow_status find_at(const zarr_store *store, const char *path,

@@ -10,8 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* --- sizes and types --------------------------------------------------------
- */
+/* --- sizes and types ------------------------------------------------------ */
 
 /* Sizes of at least 1 for each axis. */
 static bool take_sizes(const json_t *list, int axes, int64_t *out) {
@@ -95,8 +94,7 @@ static snow_status take_type(const zarr_store *store, const char *path,
         given ? given : "(several in one)");
 }
 
-/* --- version 2 --------------------------------------------------------------
- */
+/* --- version 2 ------------------------------------------------------------ */
 
 /* "<f8": the byte order, the kind, the number of bytes. */
 static snow_status take_dtype(const zarr_store *store, const char *path,
@@ -171,8 +169,7 @@ static snow_status describe_2(const zarr_store *store, const char *path,
     return take_coders_2(store, path, meta, array);
 }
 
-/* --- version 3 --------------------------------------------------------------
- */
+/* --- version 3 ------------------------------------------------------------ */
 
 /* An extension is a name, or an object with one. */
 static const char *name_of(const json_t *extension) {
@@ -331,8 +328,7 @@ static snow_status describe_3(const zarr_store *store, const char *path,
                        array);
 }
 
-/* --- both -------------------------------------------------------------------
- */
+/* --- both ----------------------------------------------------------------- */
 
 /* Reads the names of axes, as xarray and version 3 store them. */
 static void take_names(const zarr_node *node, zarr_array *array) {

@@ -10,8 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* --- roles ------------------------------------------------------------------
- */
+/* --- roles ---------------------------------------------------------------- */
 
 static int role_of_name(const char *name) {
     static const struct {
@@ -142,8 +141,7 @@ snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
     return SNOW_STATUS_OK;
 }
 
-/* --- transformations --------------------------------------------------------
- */
+/* --- transformations ------------------------------------------------------ */
 
 typedef struct placement {
     double scale[ZARR_MOST_AXES], shift[ZARR_MOST_AXES];

@@ -25,8 +25,7 @@ bool snow_zarr_join(const char *path, const char *name, char *out) {
     return size >= 0 && size < ZARR_PATH_BYTES;
 }
 
-/* --- records in memory ------------------------------------------------------
- */
+/* --- records in memory ---------------------------------------------------- */
 
 typedef struct record {
     const char *name;
@@ -64,8 +63,7 @@ static void open_record(const zarr_store *store, const char *name,
         }
 }
 
-/* --- files ------------------------------------------------------------------
- */
+/* --- files ---------------------------------------------------------------- */
 
 static snow_status fail_by_errno(const zarr_file *file) {
     char why[128] = "";
@@ -141,8 +139,7 @@ snow_status snow_zarr_read(const zarr_file *file, uint64_t first,
     return SNOW_STATUS_OK;
 }
 
-/* --- names in a folder ------------------------------------------------------
- */
+/* --- names in a folder ---------------------------------------------------- */
 
 typedef struct name_list {
     char (*names)[256];

@@ -59,8 +59,7 @@ uint64_t snow_zarr_room(const zarr_coding *coding, uint64_t bytes) {
     return bytes + (uint64_t)coding->inner_sums * SUM_BYTES;
 }
 
-/* --- zlib -------------------------------------------------------------------
- */
+/* --- zlib ----------------------------------------------------------------- */
 
 /* A source decompresses both formats, and verifies their checksums. */
 static snow_status inflate_chunk(snow_context *context, const char *name,
@@ -83,8 +82,7 @@ static snow_status inflate_chunk(snow_context *context, const char *name,
                : status;
 }
 
-/* --- Zstandard --------------------------------------------------------------
- */
+/* --- Zstandard ------------------------------------------------------------ */
 
 static snow_status expect_zstd(snow_context *context, const char *name,
                                const unsigned char *packed, size_t size,
@@ -117,8 +115,7 @@ static snow_status unpack_zstd(snow_context *context, const char *name,
                                   "cannot be decompressed by zstd");
 }
 
-/* --- LZ4 --------------------------------------------------------------------
- */
+/* --- LZ4 ------------------------------------------------------------------ */
 
 /* numcodecs writes the size before the block, the low byte first. */
 static snow_status expect_lz4(snow_context *context, const char *name,
@@ -154,8 +151,7 @@ static snow_status unpack_lz4(snow_context *context, const char *name,
                                   "cannot be decompressed by lz4");
 }
 
-/* --- any --------------------------------------------------------------------
- */
+/* --- any ------------------------------------------------------------------ */
 
 /* The size without the checksums after the compressed bytes; they are verified
  * at decompression. */
@@ -210,8 +206,7 @@ static snow_status unpack(snow_context *context, const char *name,
     return SNOW_STATUS_OK;
 }
 
-/* --- filters ----------------------------------------------------------------
- */
+/* --- filters -------------------------------------------------------------- */
 
 /* The first bytes of all values, then the second ones; an incomplete value at
  * the end stays. */

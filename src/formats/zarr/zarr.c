@@ -19,8 +19,7 @@ static const char *const marks[] = {".zarray", ".zgroup", ".zattrs",
 /* The most groups above a path that are searched. */
 #define MOST_ABOVE 8
 
-/* --- which folder ------------------------------------------------------------
- */
+/* --- which folder --------------------------------------------------------- */
 
 /* The length of a path without slashes at its end. */
 static size_t path_letters(const char *path) {
@@ -107,8 +106,7 @@ static snow_status open_store(snow_context *context, const char *path,
     return SNOW_STATUS_OK;
 }
 
-/* --- a volume ----------------------------------------------------------------
- */
+/* --- a volume ------------------------------------------------------------- */
 
 /* Sizes by meaning, and the requested channel and time. */
 static snow_status pick(snow_context *context,
@@ -234,8 +232,7 @@ snow_status snow_zarr_read_folder(snow_context *context, const char *path,
     return snow_zarr_read_store(&store, inside, options, info, out);
 }
 
-/* --- a file that describes a folder ------------------------------------------
- */
+/* --- a file that describes a folder --------------------------------------- */
 
 static snow_status read_zarr(snow_source *source,
                              const snow_volume_options *options,

@@ -30,8 +30,7 @@
 #define ZARR_PATH_BYTES 1024
 #define ZARR_NAME_BYTES 32
 
-/* --- store.c ----------------------------------------------------------
- */
+/* --- store.c -------------------------------------------------------------- */
 
 /* A map from names to bytes: a folder, or records in memory.  A record is a
  * byte with the length of the name, the name, four bytes with the size of the
@@ -76,8 +75,7 @@ snow_status snow_zarr_visit(const zarr_store *store, const char *path,
  * empty; returns false if it does not fit. */
 bool snow_zarr_join(const char *path, const char *name, char *out);
 
-/* --- node.c, meta.c, codec.c ----------------------------------------------
- */
+/* --- node.c, meta.c, codec.c ---------------------------------------------- */
 
 typedef enum zarr_packer {
     ZARR_PLAIN,
@@ -160,8 +158,7 @@ snow_status snow_zarr_add_coder(const zarr_store *store, const char *path,
 snow_status snow_zarr_take_fill(const zarr_store *store, const json_t *given,
                                 zarr_array *array);
 
-/* --- find.c, place.c ----------------------------------------------
- */
+/* --- find.c, place.c ------------------------------------------------------ */
 
 /* What an image says about one of its arrays; owned by `node`. */
 typedef struct zarr_found {
@@ -200,8 +197,7 @@ snow_status snow_zarr_assign(const zarr_store *store, zarr_found *found,
 snow_status snow_zarr_place(const zarr_store *store, const zarr_found *found,
                             const zarr_roles *roles, snow_volume_info *info);
 
-/* --- unpack.c ----------------------------------------------------------
- */
+/* --- unpack.c ------------------------------------------------------------- */
 
 /* Bytes of memory that decompression needs for a chunk of this size. */
 uint64_t snow_zarr_room(const zarr_coding *coding, uint64_t bytes);
@@ -249,8 +245,7 @@ static inline snow_status snow_zarr_fail_size(snow_context *context,
 /* CRC-32C (RFC 3720, section 12.1). */
 uint32_t snow_zarr_sum(const unsigned char *bytes, size_t count);
 
-/* --- chunks.c ----------------------------------------------------------
- */
+/* --- chunks.c ------------------------------------------------------------- */
 
 /* The requested part of the array. */
 typedef struct zarr_box {
@@ -267,8 +262,7 @@ snow_status snow_zarr_check_box(const zarr_box *box, uint64_t bytes);
 /* Reads it into the voxels of its volume. */
 snow_status snow_zarr_fill(const zarr_box *box, unsigned char *voxels);
 
-/* --- zarr.c -----------------------------------------------------------------
- */
+/* --- zarr.c --------------------------------------------------------------- */
 
 /* True for a folder with a Zarr array or group, and for a path that looks like
  * one by its name. */

@@ -108,8 +108,7 @@ void snow_exact_free(snow_exact *exact) {
     snow_release(context, exact);
 }
 
-/* --- preparation -----------------------------------------------------------
- */
+/* --- preparation ---------------------------------------------------------- */
 
 /* Makes an array hold `wanted` records, new ones as zeros. */
 static snow_status more_records(snow_context *context, void *array_pointer,
@@ -258,8 +257,7 @@ static snow_status prepare(snow_exact *exact, const snow_job *job) {
     return exact->gathers ? find_not_opaque(exact, job) : SNOW_STATUS_OK;
 }
 
-/* --- work and time ---------------------------------------------------------
- */
+/* --- work and time -------------------------------------------------------- */
 
 /* Deals a pass' wall time out to the stages as its threads spent theirs. */
 static void deal_out(snow_exact *exact, double wall, snow_stats *stats) {
@@ -323,8 +321,7 @@ static void classify_and_shade(const pass *work, worker *w, int64_t slice,
     snow_lap(&mark, &w->seconds[SHADE]);
 }
 
-/* --- encoding --------------------------------------------------------------
- */
+/* --- encoding ------------------------------------------------------------- */
 
 snow_encoding snow_exact_measure(const snow_classifier *classifier,
                                  const snow_placement *p,
@@ -405,8 +402,7 @@ static const float *walk_row(const pass *work, snow_walk *walk, worker *w,
     return walk->sparse->ia + voxel * (size_t)work->job->channels;
 }
 
-/* --- throwing footprints ---------------------------------------------------
- */
+/* --- throwing footprints -------------------------------------------------- */
 
 /* Lines 08 to 12: the interesting voxels of one slice, out of EA and IA. */
 static void scatter_encoded(const pass *work, worker *w, int64_t slice,
@@ -491,8 +487,7 @@ static void scatter_item(void *data, int64_t item, int number) {
         w->status = scatter_band(work, item, w);
 }
 
-/* --- gathering footprints --------------------------------------------------
- */
+/* --- gathering footprints ------------------------------------------------- */
 
 /* Lines 08 to 12, first half: the interesting voxels of one slice, out of EA
  * and IA, to where its pixels gather them. */
@@ -600,8 +595,7 @@ static snow_status gather_slab(pass *work) {
     return SNOW_STATUS_OK;
 }
 
-/* --- the whole -------------------------------------------------------------
- */
+/* --- the whole ------------------------------------------------------------ */
 
 static snow_status prepare_tables(snow_picture *p, snow_job *job) {
     return prepare(p->frame->exact, job);
@@ -631,8 +625,7 @@ static snow_status splat_and_composite(snow_picture *p, snow_job *job) {
                           : run(&work, exact->bands, scatter_item);
 }
 
-/* --- counts ----------------------------------------------------------------
- */
+/* --- counts --------------------------------------------------------------- */
 
 static void count_item(void *data, int64_t item, int number) {
     const pass *work = data;

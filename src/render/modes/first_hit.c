@@ -91,7 +91,7 @@ snow_status snow_first_hit_make(snow_context *context,
     if (!snow_mul_u64(job.words * 64, (uint64_t)first->cells[1], &bytes) ||
         !snow_mul_u64(bytes, sizeof *first->slices, &bytes) || bytes > SIZE_MAX)
         return snow_fail(context, SNOW_STATUS_NO_MEMORY,
-                         "no memory for a map of where rays begin");
+                         "out of memory for the map of first hits");
     SNOW_TRY(snow_reserve(context, &first->slices, &first->capacity, 0,
                           (size_t)bytes));
     SNOW_TRY(snow_reserve(context, &first->found, &first->found_capacity, 0,

@@ -90,8 +90,7 @@ void snow_iso_free(snow_iso *iso) {
     snow_release(iso->context, iso);
 }
 
-/* --- kernels ---------------------------------------------------------------
- */
+/* --- kernels -------------------------------------------------------------- */
 
 static const iso_kernel *kernel_of(const iso_pass *pass, int64_t slice,
                                    int axis) {
@@ -113,8 +112,8 @@ static snow_status make_kernel(snow_iso *iso, const snow_settings *settings,
         snow_scaled_kernel_make(settings->kernel, settings->footprint, width);
     if (snow_comb_taps(&kernel->scaled_kernel) > SNOW_INTERPOLATE_MOST)
         return snow_fail(iso->context, SNOW_STATUS_BAD_USAGE,
-                         "pixels are too many voxels wide for mode iso; take "
-                         "a larger picture or zoom");
+                         "pixels are too many voxels wide for mode iso: use a "
+                         "larger picture, or zoom");
     kernel->cubic = settings->kernel == SNOW_KERNEL_BSPLINE &&
                     settings->footprint == 4 && kernel->scaled_kernel.wide == 1;
     if (settings->kernel == SNOW_KERNEL_BOX)
@@ -153,8 +152,7 @@ static snow_status make_kernels(snow_iso *iso, const snow_job *job,
     return SNOW_STATUS_OK;
 }
 
-/* --- a point of a slice ----------------------------------------------------
- */
+/* --- a point of a slice --------------------------------------------------- */
 
 /* The window around (u, v) on a slice, as far as it is stored; false where it
  * is outside. */
@@ -292,8 +290,7 @@ static bool worth_a_look(const iso_pass *pass, const iso_ray *ray,
                              (int64_t)v);
 }
 
-/* --- rays ------------------------------------------------------------------
- */
+/* --- rays ----------------------------------------------------------------- */
 
 /* Cuts the slices to those where at + k slope lies within (low, high). */
 static void cut_slices(double at, double slope, double low, double high,
@@ -506,8 +503,7 @@ static void find_lines(void *of, int64_t item, int worker) {
     shade_batch(pass, &batch);
 }
 
-/* --- a picture -------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
 static snow_status make_tables(snow_picture *p, snow_job *job) {
     snow_frame *frame = p->frame;
@@ -606,7 +602,7 @@ static snow_status find_surfaces(snow_picture *p, snow_job *job) {
     return SNOW_STATUS_OK;
 }
 
-/* The bands that were encoded tell what the shear-warp method's would; slabs of
+/* The encoded bands have the counts of the shear-warp method; slabs of
  * a file have been counted one by one. */
 static snow_status find_figures(snow_picture *p, snow_job *job) {
     snow_job sparse = *job;

@@ -1,6 +1,6 @@
 /* render/modes/max_bounds.c - what largest values may reach: bounds for every
  * four places along a row of voxels (splat/separable/rows.h), from which
- * maximum.c tells the slices that cannot change a tile.
+ * maximum.c finds the slices that cannot change a tile.
  *
  *   row of voxels    v0   v1   v2   v3   v4 ...
  *   places          0   1    2    3    4    5 ...      place n lies between
@@ -19,9 +19,9 @@
 
 #include <string.h>
 
-/* Rows and blocks before the first and behind the last that a look may read.
- * Those beyond the ends are of other rows, and tell of too much at worst; of
- * blocks of 0 there are some behind each row. */
+/* Rows and blocks that may be read before the first and behind the last.
+ * Beyond the ends lie other rows, whose bounds are at worst too large; behind
+ * each row are some blocks of 0. */
 #define ROWS_BEYOND (SNOW_TAPS_MOST + 4)
 #define BLOCKS_BEYOND 128
 #define BLOCKS_BETWEEN 4

@@ -58,8 +58,7 @@ static size_t row_patches(const projection_pass *pass) {
     return (size_t)pass->tiles * (size_t)tile_patches(pass) + 32;
 }
 
-/* --- a tile of a slice -----------------------------------------------------
- */
+/* --- a tile of a slice ---------------------------------------------------- */
 
 /* The first column of a tile's window, as it is encoded. */
 static int64_t first_column(const projection_pass *pass,
@@ -208,8 +207,7 @@ static void draw_tile(const maximum_band_task *stroke,
     draw_cells(stroke, slice, tile, cells, &t);
 }
 
-/* --- a band ----------------------------------------------------------------
- */
+/* --- a band --------------------------------------------------------------- */
 
 /* Cells first .. end - 1, as far as the band has them. */
 static uint64_t cells_between(const maximum_band_task *stroke, int first,

@@ -13,8 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- the ramp --------------------------------------------------------------
- */
+/* --- the ramp ------------------------------------------------------------- */
 
 void snow_identity_transfer_fini(snow_identity_transfer *identity) {
     snow_transfer_free(identity->transfer);
@@ -32,10 +31,10 @@ static snow_status measure(snow_context *context, const snow_volume *volume,
     identity->high = figures.finite ? figures.max : 0;
     if (isfinite(identity->high - identity->low))
         return SNOW_STATUS_OK;
-    return snow_fail(context, SNOW_STATUS_BAD_INPUT,
-                     "values from %g to %g span more than a number holds; only "
-                     "mode over shows them",
-                     identity->low, identity->high);
+    return snow_fail(
+        context, SNOW_STATUS_BAD_INPUT,
+        "values from %g to %g exceed the range of float: use mode over",
+        identity->low, identity->high);
 }
 
 static snow_status make_transfer(snow_context *context,
@@ -131,8 +130,7 @@ static snow_status choose_identity_transfer(snow_job *job,
     return prepare_identity_transfer(job, &wanted, identity);
 }
 
-/* --- from pairs to a picture -----------------------------------------------
- */
+/* --- from pairs to a picture ---------------------------------------------- */
 
 typedef struct finish_job {
     const snow_job *job;
@@ -325,8 +323,7 @@ snow_status snow_modes_paint(snow_frame *frame, const snow_job *job,
     return status;
 }
 
-/* --- a picture -------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
 snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
                                     snow_job *pairs) {
@@ -343,8 +340,7 @@ snow_status snow_modes_value_weight(snow_frame *frame, snow_job *job,
     return SNOW_STATUS_OK;
 }
 
-/* --- values as colours -----------------------------------------------------
- */
+/* --- values as colours ---------------------------------------------------- */
 
 void snow_image_value_range(const snow_image *values, double *low,
                             double *high) {
@@ -370,10 +366,11 @@ snow_status snow_image_apply_colormap(const snow_image *values,
     snow_transfer_domain(transfer, &first, &last);
     size_t channels = transfer->grey ? 2 : 4;
     if (values->channels != 1 || !(low <= high))
-        return snow_fail(values->context, SNOW_STATUS_BAD_USAGE,
-                         "%d channels cannot be painted from %g to %g; take a "
-                         "picture of mode mean or sum and a range that rises",
-                         values->channels, low, high);
+        return snow_fail(
+            values->context, SNOW_STATUS_BAD_USAGE,
+            "cannot apply colours to %d channels from %g to %g: the picture "
+            "must be of mode mean or sum, and the range must rise",
+            values->channels, low, high);
     SNOW_TRY(snow_image_new(values->context, values->width, values->height,
                             (int)channels, &image));
     size_t count = (size_t)values->width * (size_t)values->height;

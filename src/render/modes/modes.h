@@ -13,7 +13,7 @@
  *
  * so that classification, the three encodings and splatting serve as they are,
  * and a sheet's pixel is (weighted values, weights).  composite/projection.h
- * tells how sheets become a local image of such pairs; here they become
+ * has how sheets become a local image of such pairs; here they become
  * colours, or values in data units. */
 #ifndef SNOW_RENDER_MODES_MODES_H
 #define SNOW_RENDER_MODES_MODES_H

@@ -55,8 +55,7 @@ typedef struct sum_band_task {
     const snow_slice_place *place;
 } sum_band_task;
 
-/* --- rows ------------------------------------------------------------------
- */
+/* --- rows ----------------------------------------------------------------- */
 
 /* Columns extent[0] .. extent[1] - 1 of row j hold all its voxels. */
 static void find_extent(const sum_band_task *stroke, int j, size_t extent[2]) {
@@ -184,8 +183,7 @@ static void filter_row(sum_band_task *stroke, int j) {
     *given = to;
 }
 
-/* --- lines -----------------------------------------------------------------
- */
+/* --- lines ---------------------------------------------------------------- */
 
 /* The rows of one or two lines, out of the ring: phase 0 along u.  False where
  * all of them are empty. */
@@ -293,8 +291,7 @@ static void project_slice(sum_band_task *stroke, int64_t slice) {
     }
 }
 
-/* --- weights ---------------------------------------------------------------
- */
+/* --- weights -------------------------------------------------------------- */
 
 void snow_modes_range(const snow_slice_place *place, int phase, float found,
                       int range[2]) {
@@ -393,8 +390,7 @@ static void finish_band(sum_band_task *stroke) {
     }
 }
 
-/* --- a band ----------------------------------------------------------------
- */
+/* --- a band --------------------------------------------------------------- */
 
 /* The parts of a worker's memory, each aligned to 64 bytes; returns the bytes
  * that they take.  With a NULL base nothing but the sum counts. */
@@ -440,8 +436,7 @@ static void project_band(void *of, int64_t item, int worker) {
     finish_band(&stroke);
 }
 
-/* --- setting up ------------------------------------------------------------
- */
+/* --- setting up ----------------------------------------------------------- */
 
 /* Pixels a voxel, or voxels a pixel.  Largest values have edges where one slice
  * gives way to another, so that they are taken as finely as over's
@@ -586,7 +581,7 @@ static snow_status reserve_buffers(projection_pass *pass) {
                         &intermediate->drawn_capacity, 0, 1);
 }
 
-/* Numbers of codes are on a straight line: any two tell of all. */
+/* Values are linear in their codes: two codes give the scale. */
 static void scale_codes(projection_pass *pass, const snow_value_scale *scale) {
     const snow_quantizer *quantizer = &pass->shear_warp->quantizer;
     double one = snow_quantizer_value(quantizer, 1),

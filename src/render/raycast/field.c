@@ -74,8 +74,7 @@ snow_status snow_field_make(const snow_volume *volume,
     return SNOW_STATUS_OK;
 }
 
-/* --- windows ----------------------------------------------------------------
- */
+/* --- windows -------------------------------------------------------------- */
 
 /* A native value as the field knows it: NaN where it is a hole. */
 static double field_value_of(const snow_field *field, double native) {
@@ -222,8 +221,7 @@ double snow_field_value(const snow_field_window *w) {
     return add_values(w, sums) && sums[1] >= ENOUGH ? sums[0] / sums[1] : NAN;
 }
 
-/* --- gradients --------------------------------------------------------------
- */
+/* --- gradients ------------------------------------------------------------ */
 
 static double difference(double before, double here, double after) {
     if (!isnan(before) && !isnan(after))
@@ -279,8 +277,7 @@ void snow_field_gradient(const snow_field *field, const double at[3],
     gradient_of(field, at, here, 0, side_value, sides, gradient);
 }
 
-/* --- labels -----------------------------------------------------------------
- */
+/* --- labels --------------------------------------------------------------- */
 
 double snow_field_label(const snow_field *field, const double at[3],
                         const snow_field_window *w, bool nearest) {

@@ -17,8 +17,7 @@ static double value_at(const snow_raycast_pass *pass, const snow_ray *ray,
     return snow_field_value(&eye->near);
 }
 
-/* --- largest values ---------------------------------------------------------
- */
+/* --- largest values ------------------------------------------------------- */
 
 /* A value as a number from 0 to 1. */
 static double number_of(const snow_raycast_pass *pass, double value) {
@@ -49,8 +48,7 @@ void snow_raycast_largest(const snow_raycast_pass *pass, const snow_ray *ray,
     pixel[1] = 1;
 }
 
-/* --- means and sums ---------------------------------------------------------
- */
+/* --- means and sums ------------------------------------------------------- */
 
 /* By the trapezoid rule, over steps with a value at both ends.  Weights are
  * reference lengths. */
@@ -73,8 +71,7 @@ void snow_raycast_sum(const snow_raycast_pass *pass, const snow_ray *ray,
     pixel[1] = (float)weights;
 }
 
-/* --- surfaces ---------------------------------------------------------------
- */
+/* --- surfaces ------------------------------------------------------------- */
 
 /* Halvings of a step: to a billionth of it. */
 #define HALVINGS 30

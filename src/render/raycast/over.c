@@ -48,8 +48,7 @@ void snow_raycast_see_look(snow_raycast_pass *pass) {
             pass->visible[n] = snow_log2_rising(pass->visible[n]);
 }
 
-/* --- compositing ------------------------------------------------------------
- */
+/* --- compositing ---------------------------------------------------------- */
 
 /* Opacity grows within a step as that of even matter does. */
 static void note_depth(const snow_raycast_pass *pass, const snow_ray *ray,
@@ -95,8 +94,7 @@ static void flush(const snow_raycast_pass *pass, const snow_ray *ray,
     batch->count = 0;
 }
 
-/* --- samples ----------------------------------------------------------------
- */
+/* --- samples -------------------------------------------------------------- */
 
 /* The factor of a gradient opacity: of the gradient of data values, where the
  * field is of their logarithms too. */

@@ -11,8 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* --- rays -------------------------------------------------------------------
- */
+/* --- rays ----------------------------------------------------------------- */
 
 /* Cuts a ray to where `at` + t `slope` is at most `most`. */
 static void cut_ray(snow_ray *ray, double at, double slope, double most) {
@@ -122,8 +121,7 @@ float snow_raycast_depth(const snow_raycast_pass *pass, const snow_ray *ray,
     return (float)(snow_dot(pass->depth, at) + pass->depth[3]);
 }
 
-/* --- lines ------------------------------------------------------------------
- */
+/* --- lines ---------------------------------------------------------------- */
 
 static void cast_line(void *of, int64_t y, int worker) {
     const snow_raycast_pass *pass = of;
@@ -151,8 +149,7 @@ static void cast_line(void *of, int64_t y, int worker) {
     }
 }
 
-/* --- a picture --------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
 static double longest_step(const snow_volume_info *info, snow_quality quality) {
     const double *s = info->spacing;

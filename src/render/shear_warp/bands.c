@@ -8,8 +8,7 @@
 
 #include <string.h>
 
-/* --- cut tiles ------------------------------------------------------------
- */
+/* --- cut tiles ------------------------------------------------------------ */
 
 static size_t line_floats(const snow_cut_tile *tile) {
     return (size_t)tile->width * (size_t)tile->channels;
@@ -62,8 +61,7 @@ uint64_t snow_cut_restore(const snow_cut_tile *tile, uint64_t rows,
     return finished;
 }
 
-/* --- groups of slices -----------------------------------------------------
- */
+/* --- groups of slices ----------------------------------------------------- */
 
 snow_status snow_grouping_make(snow_context *context, int64_t slices,
                                snow_slab slab, int step, int64_t drawn,
@@ -79,9 +77,9 @@ snow_status snow_grouping_make(snow_context *context, int64_t slices,
         grouping.node_count = snow_group_nodes(slices, slab, grouping.nodes);
     if (grouping.node_count < 0)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "slices %lld to %lld are not whole groups, of which "
-                         "deterministic pictures are made; cut the volume "
-                         "across its slices at borders of %d groups",
+                         "deterministic pictures need whole groups of slices, "
+                         "and slices %lld to %lld are not: partition the "
+                         "volume at multiples of %d groups",
                          (long long)slab.first,
                          (long long)(slab.first + slab.count - 1), SNOW_GROUPS);
     *out = grouping;

@@ -71,7 +71,7 @@ typedef struct snow_encoded_key {
     bool numbers; /* of sums and largest values: no voxel more may be there */
     snow_encoding encoding; /* as asked for */
     double threshold;       /* where opacity depends on gradients, else 0: the
-                               coder tells */
+                               quantizer holds it */
     snow_slab slab;
 } snow_encoded_key;
 

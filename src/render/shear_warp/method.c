@@ -13,8 +13,8 @@ static snow_status encode(snow_picture *p, snow_job *job) {
     local->params.begin_at = p->begin_at;
     if (job->settings.deterministic && local->params.clip.cuts)
         return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                         "deterministic pictures are not blended of several "
-                         "axes by many ranks; take quality normal");
+                         "deterministic pictures of several ranks cannot blend "
+                         "several axes: use quality normal");
     SNOW_TRY(snow_shear_warp_new(job->context, shear_warp));
     local->shear_warp = *shear_warp;
     return snow_shear_warp_encode(*shear_warp, &local->params, job->stats);

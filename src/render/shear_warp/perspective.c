@@ -100,8 +100,7 @@ typedef struct perspective_band_task {
     uint64_t lines_of_row[SNOW_DECODE_ROWS]; /* that need a mask row */
 } perspective_band_task;
 
-/* --- geometry --------------------------------------------------------------
- */
+/* --- geometry ------------------------------------------------------------- */
 
 /* Voxels a pixel of the intermediate image may be wide on a slice whose kernel
  * is `wide`: a wider one leaves less to be lost.  At these pitches Engine and
@@ -271,7 +270,7 @@ static snow_status fill_slices(perspective_pass *pass) {
     if (!snow_mul_u64(entry, (uint64_t)pass->slice_count, &bytes) ||
         bytes > SIZE_MAX - 64)
         return snow_fail(s->context, SNOW_STATUS_NO_MEMORY,
-                         "no memory for the weights of %lld slices",
+                         "out of memory for the weights of %lld slices",
                          (long long)pass->slice_count);
     SNOW_TRY(snow_reserve(s->context, &s->teeth, &s->teeth_capacity, 0,
                           (size_t)bytes + 64));
@@ -286,8 +285,7 @@ static snow_status fill_slices(perspective_pass *pass) {
                          pass->slice_count, fill_slice, pass);
 }
 
-/* --- one band of lines -----------------------------------------------------
- */
+/* --- one band of lines ---------------------------------------------------- */
 
 /* The polynomial whose root is the exponent of the voxel at column + x of a row
  * (classify/sample/opacity_correction.h): the squared length of the ray's step
@@ -448,8 +446,7 @@ static void draw_tile(perspective_band_task *stroke, int64_t index) {
     stroke->drawn[index] = 1;
 }
 
-/* --- sheets by themselves --------------------------------------------------
- */
+/* --- sheets by themselves ------------------------------------------------- */
 
 /* Pairs of a tile's line: values as they were drawn, or none, and weights. */
 static void weigh_line(const float *across, float down, int count, bool drawn,
@@ -682,8 +679,7 @@ static void splat_band(void *job, int64_t item, int worker) {
                        draw_slab, &stroke, stroke.scratch.spare, &band);
 }
 
-/* --- a picture -------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
 /* Lines 02 and 03: tables for this look, light and view. */
 static snow_status classify_and_shade(perspective_pass *pass,

@@ -158,8 +158,7 @@ bool snow_shear_warp_fits(const snow_placement *p,
     return true;
 }
 
-/* --- encoding --------------------------------------------------------------
- */
+/* --- encoding ------------------------------------------------------------- */
 
 static bool same_key(const snow_encoded_key *a, const snow_encoded_key *b) {
     return a->generation && a->generation == b->generation &&
@@ -233,7 +232,7 @@ static snow_status encode_bands(snow_shear_warp *s,
 }
 
 /* Takes all that the bands depend on of a gradient opacity into the key; *same
- * tells whether it was the same.  Where a threshold has to be passed by the
+ * is whether it was the same.  Where a threshold has to be passed by the
  * product with the opacity, that is the opacity function too. */
 static snow_status
 take_gradient_opacity_key(snow_shear_warp *s,
@@ -346,8 +345,7 @@ snow_status snow_shear_warp_encode(snow_shear_warp *s,
     return SNOW_STATUS_OK;
 }
 
-/* --- one band of lines -----------------------------------------------------
- */
+/* --- one band of lines ---------------------------------------------------- */
 
 /* Cells of `wanted`, in terms of the rows that they need: cell i needs rows
  * i * stride to i * stride + reach - 1.  Where stride is 1 both are shifts. */
@@ -491,7 +489,7 @@ static void cut_tiles(const shear_warp_band_task *stroke, slice_rows *slice) {
     slice->high = slice->high < high ? slice->high : high;
 }
 
-/* Reads the band's rows of a slice as masks, and tells the tiles that they
+/* Reads the band's rows of a slice as masks, and marks the tiles that they
  * reach: those whose window overlaps the columns. */
 static void read_slice(shear_warp_band_task *stroke, int64_t number,
                        slice_rows *slice) {
@@ -574,8 +572,8 @@ static size_t lay_out(const shear_warp_pass *pass, char *base,
     return at;
 }
 
-/* Finds what may still be drawn on; whether that is most of what was drawn on
- * tells how much of the slices to come will be used. */
+/* Counts the pixels that are not opaque yet; their share of those drawn on
+ * predicts how much of the slices to come will be used. */
 static void look_through(shear_warp_band_task *stroke) {
     int64_t open = 0;
     stroke->unsaturated = 0;
@@ -635,8 +633,7 @@ static void splat_band(void *job, int64_t item, int worker) {
                    draw_slab, &stroke, stroke.scratch.spare, &band);
 }
 
-/* --- setting up ------------------------------------------------------------
- */
+/* --- setting up ----------------------------------------------------------- */
 
 /* Pixels a voxel, or voxels a pixel, along one axis.  A kernel that is widened
  * needs fewer of them: Engine and CThead, warped from a pixel a voxel, are 52
@@ -821,8 +818,7 @@ void snow_shear_warp_fill_figures(const snow_shear_warp *s, snow_stats *stats) {
     stats->pa_bytes += s->bands.pa_bytes;
 }
 
-/* --- the warp --------------------------------------------------------------
- */
+/* --- the warp ------------------------------------------------------------- */
 
 snow_shear_warp_warping *
 snow_shear_warp_warping_of(snow_shear_warp *s,
@@ -849,10 +845,9 @@ void snow_shear_warp_attach(snow_shear_warp *s, snow_shear_warp_image *image) {
     image->warping = &s->intermediate->warping;
 }
 
-/* --- a picture -------------------------------------------------------------
- */
+/* --- a picture ------------------------------------------------------------ */
 
-/* Tells of an empty image, the same for all parts. */
+/* Whether the image is empty; the same for all parts. */
 static bool nothing_in_view(const shear_warp_pass *pass) {
     return pass->shear.u.count == 0 || pass->shear.v.count == 0;
 }

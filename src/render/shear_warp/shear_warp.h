@@ -70,12 +70,12 @@ snow_status snow_shear_warp_encode(snow_shear_warp *shear_warp,
                                    const snow_shear_warp_params *params,
                                    snow_stats *stats);
 
-/* Lines 07 to 13, of what is encoded, in steps: begins, and tells of the image,
- * which threads of the context then draw; the caller draws a band of it with
- * each step, which tells when none is left; it is there after the end.  The
- * order stays until then; its volume and transfer function need not.  One image
- * of a context at a time is drawn; the one before it stays as it is where
- * `aside` asks for the other place of two.  All parts have images of one
+/* Lines 07 to 13, of what is encoded, in steps: begins, and describes the
+ * image, which threads of the context then draw; the caller draws a band of it
+ * with each step, which returns false when none is left; it is there after the
+ * end.  The order stays until then; its volume and transfer function need not.
+ * One image of a context at a time is drawn; the one before it stays as it is
+ * where `aside` asks for the other place of two.  All parts have images of one
  * size. */
 snow_status snow_shear_warp_begin(snow_shear_warp *shear_warp,
                                   const snow_shear_warp_params *params,

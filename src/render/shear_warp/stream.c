@@ -38,8 +38,7 @@ static snow_slab_cut cut_of(const reading *r) {
     return cut;
 }
 
-/* --- slabs to bands -------------------------------------------------------
- */
+/* --- slabs to bands ------------------------------------------------------- */
 
 /* Some slices of all bands: those that the slab answers for, each with the one
  * between it and the next. */

@@ -54,8 +54,7 @@ snow_status snow_shear_warp_warp_all(snow_context *context,
                          warp_lines, &job);
 }
 
-/* --- pieces ---------------------------------------------------------------
- */
+/* --- pieces --------------------------------------------------------------- */
 
 void snow_shear_warp_clear(const snow_shear_warp_image *image, int layer,
                            int x0, int y0, int x1, int y1) {

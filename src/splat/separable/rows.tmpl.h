@@ -2,8 +2,7 @@
  * instruction set. Include simd/select.h first; nothing else needs to be
  * defined. */
 
-/* --- decompressing ---------------------------------------------------------
- */
+/* --- decompressing -------------------------------------------------------- */
 
 #define SPREAD(bits_of_code, type)                                          \
     TARGET static void NAME(spread##bits_of_code)(                          \
@@ -91,8 +90,7 @@ ROWS(set)
 ROWS(add)
 #undef ROWS
 
-/* --- maximum values --------------------------------------------------------
- */
+/* --- maximum values ------------------------------------------------------- */
 
 /* The coefficients of a segment of the spline as a Bezier curve, which stays
  * within their hull (Farin, Curves and Surfaces for CAGD). */
@@ -450,8 +448,7 @@ TARGET static void NAME(most)(const snow_maximum_tile *t) {
     (t, taps, lead, phases, t->phases[0] * t->columns, t->columns);
 }
 
-/* --- interleaving ----------------------------------------------------------
- */
+/* --- interleaving --------------------------------------------------------- */
 
 TARGET static void NAME(weave)(const float *const *values,
                                const float *const *weights, int phases,

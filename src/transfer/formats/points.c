@@ -19,8 +19,7 @@ snow_status tf_fail(const tf_input *in, const char *format, ...) {
                              in->name, text);
 }
 
-/* --- points ---------------------------------------------------------------
- */
+/* --- points --------------------------------------------------------------- */
 
 static snow_status append_point(const tf_input *in, tf_list *list,
                                 const void *point) {

@@ -145,11 +145,11 @@ check "and are heeded" cmp -s l.npy b.npy
 
 # --- refused ------------------------------------------------------------------
 refused 3 "another size" \
-    'small.npy: the mask has 31x28x30 voxels and the volume 32x28x30' \
+    'small.npy: the mask has 31x28x30 voxels, the volume 32x28x30' \
     "$TOOL" render v.npy -o z.png --mask small.npy
 refused 3 "another size, where the boxes are alike" 'the mask has 31x28x30' \
     "$TOOL" render v.npy -o z.png --mask small.npy --crop 0:9,0:9,0:9
-refused 3 "a flipped mask" 'flip.nrrd: the mask lies elsewhere: its voxel' \
+refused 3 "a flipped mask" 'flip.nrrd: the mask has another position: its voxel' \
     "$TOOL" render place.nrrd -o z.png --mask flip.nrrd
 run 0 "a mask in its place" render place.nrrd -o y.png --mask place.nrrd
 run 0 "a mask without a place" render place.nrrd -o y2.png --mask m.npy

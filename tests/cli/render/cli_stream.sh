@@ -147,7 +147,7 @@ for mode in mip mean; do
         "$TOOL" render a.nrrd "${small[@]}" -m "$mode" --memory 11M -q
 done
 refused 5 "a deterministic picture by an exact method" \
-    'a deterministic picture by the method footprint needs all voxels' \
+    'a deterministic picture by method footprint needs all voxels' \
     "$TOOL" render a.nrrd "${small[@]}" --method footprint --deterministic \
     --memory 11M -q
 refused 5 "the range of all steps" 'and the range of all steps needs all' \
