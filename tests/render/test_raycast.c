@@ -706,7 +706,7 @@ static void other_kernels_are_refused(void **state) {
         scene.settings.kernel = wrong[n].kernel;
         scene.settings.footprint = wrong[n].footprint;
         assert_non_null(strstr(refusal(&stage, volume, &scene, 1),
-                               "method raycast interpolates with"));
+                               "for method raycast"));
     }
     snow_volume_close(volume);
     model_free(&scene);
@@ -722,12 +722,12 @@ static void parts_and_slabs_are_refused(void **state) {
     const reference_cast cast = {.scene = &scene, .planes = none};
     snow_volume *volume = open_cut(stage.context, &cast);
     assert_non_null(strstr(refusal(&stage, volume, &scene, 3),
-                           "needs all voxels in one process"));
+                           "needs the whole volume in one process"));
     assert_int_equal(snow_volume_set_extent(volume, &half), SNOW_STATUS_OK);
     for (int mode = SNOW_MODE_OVER; mode <= SNOW_MODE_ISO; mode++) {
         scene.settings.mode = (snow_mode)mode;
         assert_non_null(strstr(refusal(&stage, volume, &scene, 1),
-                               "method raycast needs all voxels in one"));
+                               "method raycast needs the whole volume in one"));
     }
     snow_volume_close(volume);
     model_free(&scene);
@@ -804,7 +804,7 @@ static void ranks_are_refused(void **state) {
             snow_comm_run_threads(stage.context, 2, render_half, &scene),
             SNOW_STATUS_BAD_USAGE);
         assert_non_null(strstr(snow_context_message(stage.context),
-                               "method raycast needs all voxels in one"));
+                               "method raycast needs the whole volume in one"));
     }
     model_free(&scene);
     model_close(&stage);
