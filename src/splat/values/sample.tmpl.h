@@ -45,21 +45,22 @@ TARGET static bool NAME(activate)(const snow_value_splat *p, int n, int phase,
         if (!NAME(has_cells)(s, run, sheet, front) &&
             !NAME(has_cells)(s, run, sheet + 1, back))
             return false;
-    for (int axis = 0; axis < 2; axis++) {
-        double first = (double)(axis ? row : column);
-        snow_value_cut(first + place->at[axis], first + next->at[axis],
-                       p->low[axis], p->high[axis], &cut[axis]);
-    }
-    uint32_t rows = cut[1].some;
+    uint32_t rows = ~UINT32_C(0);
     memcpy(state->active, state->open, sizeof state->active);
     for (int run = 0; run < s->run_count; run++) {
         uint32_t cells[SNOW_VALUE_ROWS] = {0};
         NAME(add_cells)(s, run, sheet, front, cells);
         NAME(add_cells)(s, run, sheet + 1, back, cells);
-        rows &= V(rows_and)(state->active, cells, cut[0].some);
+        rows &= V(rows_and)(state->active, cells, ~UINT32_C(0));
+        if (!rows)
+            return false;
     }
-    if (!s->run_count)
-        rows &= V(rows_and)(state->active, state->open, cut[0].some);
+    for (int axis = 0; axis < 2; axis++) {
+        double first = (double)(axis ? row : column);
+        snow_value_cut(first + place->at[axis], first + next->at[axis],
+                       p->low[axis], p->high[axis], &cut[axis]);
+    }
+    rows = cut[1].some & V(rows_and)(state->active, state->open, cut[0].some);
     state->rows = rows;
     return rows != 0;
 }

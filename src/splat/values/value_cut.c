@@ -22,8 +22,8 @@ static int16_t part_of(double t) {
 
 void snow_value_cut(double front, double back, double low, double high,
                     value_cut *out) {
-    double least = fmin(front, back), most = fmax(front, back) + 31;
-    out->cuts = !(least >= low && most <= high);
+    out->cuts = !(front >= low && back >= low && front + 31 <= high &&
+                  back + 31 <= high);
     out->some = ~UINT32_C(0);
     if (!out->cuts)
         return;
