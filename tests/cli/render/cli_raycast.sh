@@ -48,7 +48,7 @@ check "is used" grep -q '"kernel": "bspline", "footprint": 4' made.json
 check "and makes another picture" test "$(cmp -s cubic.npy normal.npy; echo $?)" = 1
 for kernel in gauss box; do
     run 2 "kernel $kernel" render --kernel $kernel -o no.png
-    says '^snowglass: method raycast interpolates with the tent of 2 voxels'
+    says "^snowglass: invalid kernel $kernel of footprint [24] for method raycast"
 done
 run 2 "a wider tent" render --kernel tent --footprint 4 -o no.png
 says 'method footprint$'
