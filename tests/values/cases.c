@@ -34,7 +34,7 @@ const value_case value_cases[] = {
      -30,
      20,
      1.0193,
-     {31.3, 36.6, 48}},
+     {31.3, 36.6, 48.6}},
     {"engine, zoom 4",
      VALUE_CASE_ENGINE,
      LOOK(white, engine_ramp),
@@ -43,7 +43,7 @@ const value_case value_cases[] = {
      -30,
      20,
      4 * 1.0193,
-     {31.4, 39.1, 49}},
+     {31.4, 39.1, 50.3}},
     {"engine, translucent",
      VALUE_CASE_ENGINE,
      LOOK(mist, mist_ramp),
@@ -52,7 +52,7 @@ const value_case value_cases[] = {
      -30,
      20,
      1.0193,
-     {53.2, 57.9, 66}},
+     {53.2, 57.9, 68.9}},
     {"CT head, bone",
      VALUE_CASE_HEAD,
      LOOK(bone, bone_ramp),
@@ -79,7 +79,7 @@ const value_case value_cases[] = {
      20,
      25,
      1.6,
-     {33.9, 37.3, 40}},
+     {33.9, 37.3, 40.6}},
     {"hard sphere, inside",
      VALUE_CASE_SPHERE,
      LOOK(white, step),
@@ -88,7 +88,7 @@ const value_case value_cases[] = {
      20,
      25,
      6.4,
-     {58.2, 64.4, 72}},
+     {58.2, 64.4, 73.3}},
     {"soft ball, along y",
      VALUE_CASE_BALL,
      LOOK(hot, hot_ramp),
@@ -97,7 +97,7 @@ const value_case value_cases[] = {
      20,
      35,
      1.6,
-     {57.4, 61, 68}},
+     {57.4, 61, 73.2}},
     {"soft ball, along z",
      VALUE_CASE_BALL,
      LOOK(hot, hot_ramp),
@@ -106,7 +106,16 @@ const value_case value_cases[] = {
      20,
      20,
      1.6,
-     {58.2, 63.3, 68}},
+     {58.2, 63.3, 69.6}},
+    {"soft ball, slices 8 apart",
+     VALUE_CASE_THICK,
+     LOOK(hot, hot_ramp),
+     true,
+     'z',
+     35,
+     20,
+     1.6,
+     {36.7, 47.7, 47.8}},
 };
 const size_t value_case_count = sizeof value_cases / sizeof *value_cases;
 
@@ -114,7 +123,8 @@ static snow_volume *open_raw(snow_context *context, const char *name,
                              int64_t slices, snow_type type, double spacing) {
     const char *path = support_data(name);
     snow_volume *volume = NULL;
-    snow_volume_options options = {.dims = {256, 256, slices},
+    snow_volume_options options = {.size = sizeof options,
+                                   .dims = {256, 256, slices},
                                    .type = type,
                                    .endian = SNOW_ENDIAN_BIG,
                                    .spacing = {1, 1, spacing}};
@@ -126,16 +136,18 @@ static snow_volume *open_raw(snow_context *context, const char *name,
 
 static snow_volume *open_phantom(snow_context *context) {
     snow_volume *volume = NULL;
-    snow_volume_options options = {.spacing = {1, 1, 2}};
+    snow_volume_options options = {.size = sizeof options,
+                                   .spacing = {1, 1, 2}};
     if (snow_volume_open(context, "phantom:head", &options, &volume) !=
         SNOW_STATUS_OK)
         fail_msg("%s", snow_context_message(context));
     return volume;
 }
 
-/* A sphere of 8 bits about the same middle, by its profile. */
-static uint8_t *fill_sphere(snow_volume_info *info, int64_t slices,
-                            double spacing, bool soft) {
+/* A sphere of 8 bits about the same middle: hard where slices are 1 apart. */
+static uint8_t *fill_sphere(snow_volume_info *info, int64_t apart) {
+    int64_t slices = 96 / apart;
+    double spacing = (double)apart;
     *info = (snow_volume_info){
         .dims = {96, 96, slices},
         .type = SNOW_TYPE_UINT8,
@@ -149,8 +161,10 @@ static uint8_t *fill_sphere(snow_volume_info *info, int64_t slices,
             for (int64_t i = 0; i < 96; i++) {
                 double x = (double)i - 47.5, y = (double)j - 47.8;
                 double r = hypot(hypot(x, y), (double)k * spacing - 47.3);
-                double value = soft ? 20 + 200 / (1 + exp(-(36 - r) / 2.5))
-                                    : 128 + 32 * (36 - r);
+                double radius = apart > 2 ? 28 : 36; /* away from the ends */
+                double value = apart > 1
+                                   ? 20 + 200 / (1 + exp(-(radius - r) / 2.5))
+                                   : 128 + 32 * (radius - r);
                 *to++ = (uint8_t)rint(fmin(fmax(value, 0), 255));
             }
     return voxels;
@@ -171,10 +185,11 @@ bool value_case_open(const value_case *what, snow_context *context,
                      value_case_scene *out) {
     *out = (value_case_scene){0};
     reference_scene *scene = &out->scene.base;
-    bool soft = what->volume == VALUE_CASE_BALL;
-    if (soft || what->volume == VALUE_CASE_SPHERE)
-        out->voxels =
-            fill_sphere(&scene->info, soft ? 48 : 96, soft ? 2 : 1, soft);
+    int64_t apart = what->volume == VALUE_CASE_THICK  ? 8
+                    : what->volume == VALUE_CASE_BALL ? 2
+                                                      : 1;
+    if (apart > 1 || what->volume == VALUE_CASE_SPHERE)
+        out->voxels = fill_sphere(&scene->info, apart);
     else if (what->volume == VALUE_CASE_PHANTOM)
         out->volume = open_phantom(context);
     else if (what->volume == VALUE_CASE_ENGINE)

@@ -11,7 +11,8 @@ typedef enum value_case_volume {
     VALUE_CASE_HEAD,   /* real: CT, 256x256x113, 16 bits, 1x1x2 */
     VALUE_CASE_PHANTOM,
     VALUE_CASE_SPHERE, /* hard, radius 36 and a bit, 96x96x96 */
-    VALUE_CASE_BALL    /* soft, 96x96x48, 1x1x2 */
+    VALUE_CASE_BALL,   /* soft, 96x96x48, 1x1x2 */
+    VALUE_CASE_THICK   /* smaller, slices 8 apart, 96x96x12 */
 } value_case_volume;
 
 typedef struct value_case {

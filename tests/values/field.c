@@ -1,13 +1,11 @@
 /* tests/values/field.c - the value model's voxels and sheets.
  *
- * docs/model.md, points 2 and 3 of the second part: voxels as integers, odd
+ * docs/model.md, the value model, points 2 and 3: voxels as integers, odd
  * beyond the box, holes by weights; sheets interpolated from them. */
 #include "values/value_model.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-#define FULL 16384 /* the weight of a voxel that is there */
 
 int value_saturate(int64_t x) {
     return x < INT16_MIN ? INT16_MIN : x > INT16_MAX ? INT16_MAX : (int)x;
@@ -114,7 +112,7 @@ static value_part slice_voxel(const value_field *field, int64_t i, int64_t j,
         return (value_part){0};
     if (field->member >= 0)
         code = code == field->member ? VALUE_MOST : 0;
-    return (value_part){code, FULL};
+    return (value_part){code, VALUE_FULL};
 }
 
 /* A voxel of a whole slice by the cubic kernel along P: 1, 4, 1 sixths. */
@@ -147,10 +145,13 @@ static value_part inner_voxel(const value_field *field, int sheet, int64_t i,
     for (int n = 0; n < 2; n++)
         part[n] = field->plan->scene->cubic ? smooth_voxel(field, i, j, k[n])
                                             : slice_voxel(field, i, j, k[n]);
-    return k[0] == k[1]
-               ? part[0]
-               : (value_part){divide_down(part[0].value + part[1].value + 1, 2),
-                              (part[0].weight + part[1].weight) / 2};
+    double p = value_sheet_at(field->plan, sheet), t = p - floor(p);
+    double way = (double)(part[1].value - part[0].value);
+    if (k[0] == k[1])
+        return part[0];
+    part[0].value += (int64_t)floor(t * way + 0.5);
+    part[0].weight = (part[0].weight + part[1].weight) / 2;
+    return part[0];
 }
 
 value_part value_voxel(const value_field *field, int sheet, int64_t i,
@@ -159,7 +160,7 @@ value_part value_voxel(const value_field *field, int sheet, int64_t i,
     int64_t u = i < 0 ? 0 : i >= n[0] ? n[0] - 1 : i;
     int64_t v = j < 0 ? 0 : j >= n[1] ? n[1] - 1 : j;
     value_part border = inner_voxel(field, sheet, u, v);
-    if ((u == i && v == j) || border.weight < FULL)
+    if ((u == i && v == j) || border.weight < VALUE_FULL)
         return border;
     /* Beyond two sides the odd reflection is along u alone. */
     int64_t next[2] = {u, v};
@@ -168,7 +169,7 @@ value_part value_voxel(const value_field *field, int sheet, int64_t i,
     else
         next[1] = n[1] == 1 ? v : j < 0 ? 1 : n[1] - 2;
     value_part inside = inner_voxel(field, sheet, next[0], next[1]);
-    if (inside.weight == FULL)
+    if (inside.weight == VALUE_FULL)
         border.value = 2 * border.value - inside.value;
     return border;
 }
@@ -177,11 +178,11 @@ value_part value_voxel(const value_field *field, int sheet, int64_t i,
 
 /* A mean that has its weights: no value where less than half is there. */
 static int weighed(int64_t value, int64_t weight) {
-    if (weight >= FULL)
+    if (weight >= VALUE_FULL)
         return (int)value;
-    if (weight < FULL / 2)
+    if (weight < VALUE_FULL / 2)
         return VALUE_HOLE;
-    return (int)floor((double)value * FULL / (double)weight + 0.5);
+    return (int)floor((double)value * VALUE_FULL / (double)weight + 0.5);
 }
 
 static void cubic_weights(double t, double w[4]) {

@@ -1,6 +1,6 @@
 /* tests/values/modes.c - the value model's other modes, and labels.
  *
- * docs/model.md, points 10 and 11 of the second part. */
+ * docs/model.md, the value model, points 10 and 11. */
 #include "values/value_model.h"
 
 #include <math.h>
@@ -27,14 +27,14 @@ static bool memberships(value_field *field, const value_ray *ray, int slab,
     return true;
 }
 
-/* The label whose membership is the largest at t, of equals the smaller one. */
+/* The label whose membership is the largest at t, of equals the larger one. */
 static int winner(const value_field *field, double (*ends)[2], double t) {
     int best = -1;
     double most = 0;
     for (int n = 0; n < field->name_count; n++) {
         double here = ends[n][0] + t * (ends[n][1] - ends[n][0]);
         bool wins = here > most || (here == most && here > 0 && best >= 0 &&
-                                    field->names[n] < field->names[best]);
+                                    field->names[n] > field->names[best]);
         if (wins) {
             best = n;
             most = here;

@@ -1,6 +1,6 @@
 /* tests/values/picture.c - the value model's lattice and its warp.
  *
- * docs/model.md, points 3 and 8 of the second part. */
+ * docs/model.md, the value model, points 5, 6 and 8. */
 #include "values/value_model.h"
 
 #include <math.h>
@@ -62,6 +62,14 @@ static bool look_up(value_model *model, const value_ray *ray, int slab,
     return entry->alpha > 0;
 }
 
+/* V at `place` of 32768 of a whole slab. */
+static double value_at_place(const value_model *model, const value_ray *ray,
+                             int slab, int place) {
+    int part[2] = {place, place}, ends[2] = {0, 0};
+    slab_values(model, ray, slab, part, ends);
+    return ends[0];
+}
+
 static bool draw_slab(value_model *model, const value_ray *ray, int slab,
                       double rgba[4]) {
     const value_plan *plan = &model->plan;
@@ -77,7 +85,7 @@ static bool draw_slab(value_model *model, const value_ray *ray, int slab,
         return false;
     if (shaded || scene->gradient_count)
         value_gradient(&model->field, ray, slab, place, gradient);
-    value_fade(plan, gradient, rgba);
+    value_fade(plan, gradient, value_at_place(model, ray, slab, place), rgba);
     if (!labels)
         value_lengthen(rgba,
                        (part[1] - part[0]) / 32768.0 * ray->path / plan->path);

@@ -1,6 +1,6 @@
 /* tests/values/plan.c - the value model's choices.
  *
- * docs/model.md, points 1 and 8 of the second part, and what the table is made
+ * docs/model.md, the value model, points 1 and 8, and what the table is made
  * for: sheets, lattice, range of values, warp. */
 #include "values/value_model.h"
 
@@ -273,7 +273,6 @@ static void choose_table(value_plan *plan) {
     bool high = plan->scene->base.settings.quality == SNOW_QUALITY_HIGH;
     plan->nodes = high ? 256 : 129;
     plan->steps = high ? 64 : 16;
-    plan->exact_loads = true;
     find_range(plan);
     if (plan->scene->base.settings.mode != SNOW_MODE_OVER)
         return;

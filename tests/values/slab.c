@@ -1,6 +1,6 @@
 /* tests/values/slab.c - the value model's gradients, cuts and light.
  *
- * docs/model.md, points 4, 6, 7 and 9 of the second part. */
+ * docs/model.md, the value model, points 4, 6, 7 and 9. */
 #include "values/value_model.h"
 
 #include <math.h>
@@ -46,80 +46,6 @@ static int slope_in_plane(const value_field *field, const value_ray *ray,
     return m == 1 ? twice : value_saturate((int64_t)floor(twice / far + 0.5));
 }
 
-/* The lattice sample of either phase that is nearest to a way, in cells. */
-static void nearest_sample(const value_plan *plan, const double way[2],
-                           double nearest[2]) {
-    for (int n = 0; n < 2; n++)
-        nearest[n] = rint(way[n]);
-    if (!plan->quincunx)
-        return;
-    double odd[2];
-    for (int n = 0; n < 2; n++)
-        odd[n] = way[n] < 0 ? ceil(way[n]) - 0.5 : floor(way[n]) + 0.5;
-    if (hypot(way[0] - odd[0], way[1] - odd[1]) <
-        hypot(way[0] - nearest[0], way[1] - nearest[1]))
-        for (int n = 0; n < 2; n++)
-            nearest[n] = odd[n];
-}
-
-/* The value of another sheet at a lattice sample that is `cells` away from the
- * ray, and by how much that is beside the position `at` of the ray's sheet. */
-static int load_at(const value_field *field, const value_ray *ray, int sheet,
-                   const double cells[2], const double at[3], double off[2]) {
-    const value_plan *plan = field->plan;
-    double there[3];
-    value_ray other =
-        value_ray_of(plan, ray->front[0] + cells[0] / plan->cells[0],
-                     ray->front[1] + cells[1] / plan->cells[1]);
-    value_ray_at(plan, &other, sheet, there);
-    for (int n = 0; n < 2; n++)
-        off[n] = there[n] - at[n];
-    return value_sheet(field, sheet, there[0], there[1]);
-}
-
-/* Bi-linear of the four lattice samples around. */
-static int load_between(const value_field *field, const value_ray *ray,
-                        int sheet, const double way[2], const double at[3]) {
-    int value[4], w[2];
-    for (int n = 0; n < 2; n++)
-        w[n] = value_weight(way[n] - floor(way[n]));
-    for (int corner = 0; corner < 4; corner++) {
-        double cells[2] = {floor(way[0]) + (corner & 1),
-                           floor(way[1]) + (corner >> 1)},
-               off[2];
-        value[corner] = load_at(field, ray, sheet, cells, at, off);
-        if (value[corner] == VALUE_HOLE)
-            return VALUE_HOLE;
-    }
-    return value_between(value_between(value[0], value[1], w[0]),
-                         value_between(value[2], value[3], w[0]), w[1]);
-}
-
-/* The value of sheet `other` at the place in the plane where the ray meets
- * `sheet`, or near it: `off` is by how much beside it. */
-static int load(const value_field *field, const value_ray *ray, int sheet,
-                int other, double off[2]) {
-    const value_plan *plan = field->plan;
-    double at[3], way[2], nearest[2];
-    off[0] = off[1] = 0;
-    if (other < 0 || other >= plan->sheets)
-        return VALUE_HOLE;
-    value_ray_at(plan, ray, sheet, at);
-    for (int n = 0; n < 2; n++) {
-        double front =
-            plan->perspective
-                ? (ray->front[n] - plan->eye[n]) *
-                      (widening(plan, sheet) / widening(plan, other) - 1)
-                : plan->direction * (sheet - other) * plan->slope[n] /
-                      plan->halves;
-        way[n] = front * plan->cells[n];
-    }
-    if (plan->exact_loads)
-        return load_between(field, ray, other, way, at);
-    nearest_sample(plan, way, nearest);
-    return load_at(field, ray, other, nearest, at, off);
-}
-
 /* The difference of two sheets at a place in the plane, as a sheet is
  * interpolated: of voxels that are all there; false where one is not. */
 static bool difference_at(const value_field *field, int before, int after,
@@ -145,7 +71,7 @@ static bool difference_at(const value_field *field, int before, int after,
 
 /* Along P, at the very place in the plane, where no voxel is missing. */
 static bool slope_in_place(const value_field *field, const value_ray *ray,
-                           int sheet, value_slopes *out) {
+                           int sheet, int *slope) {
     const value_plan *plan = field->plan;
     int step = plan->direction * plan->halves, times = 1;
     int before = sheet - step, after = sheet + step;
@@ -162,58 +88,49 @@ static bool slope_in_place(const value_field *field, const value_ray *ray,
         after = lacks[1] ? sheet : after;
         times = 2;
     }
-    return difference_at(field, before, after, at, times, &out->along[2]);
+    return difference_at(field, before, after, at, times, slope);
+}
+
+/* What a sheet has where the ray meets another; a hole where there is none. */
+static int beside(const value_field *field, int sheet, const double at[3]) {
+    if (sheet < 0 || sheet >= field->plan->sheets)
+        return VALUE_HOLE;
+    return value_sheet(field, sheet, at[0], at[1]);
 }
 
 /* Along P, at a fixed place in the plane. */
-static void slope_across(const value_field *field, const value_ray *ray,
-                         int sheet, value_slopes *out) {
+static int slope_across(const value_field *field, const value_ray *ray,
+                        int sheet) {
     const value_plan *plan = field->plan;
-    int step = plan->direction * plan->halves, value[3];
-    double off[2][2], at[3], share[2] = {0};
-    if (plan->dims[2] == 1 || (plan->exact_loads && !plan->scene->cubic &&
-                               slope_in_place(field, ray, sheet, out)))
-        return;
+    int step = plan->direction * plan->halves, slope;
+    double at[3];
+    if (plan->dims[2] == 1)
+        return 0;
+    if (!plan->scene->cubic && slope_in_place(field, ray, sheet, &slope))
+        return slope;
     value_ray_at(plan, ray, sheet, at);
-    value[1] = value_sheet(field, sheet, at[0], at[1]);
-    value[0] = load(field, ray, sheet, sheet - step, off[0]);
-    value[2] = load(field, ray, sheet, sheet + step, off[1]);
-    bool below = value[0] != VALUE_HOLE, above = value[2] != VALUE_HOLE;
-    out->along[2] = quotient(value[0], value[1], value[2]);
-    share[0] = below ? above ? 0.5 : 1 : 0;
-    share[1] = above ? below ? 0.5 : 1 : 0;
-    if (!below && !above && plan->halves == 2) {
+    int before = beside(field, sheet - step, at);
+    int after = beside(field, sheet + step, at);
+    if (before == VALUE_HOLE && after == VALUE_HOLE && plan->halves == 2) {
         /* Half way between two slices that have no others: these two. */
-        step /= 2;
-        value[0] = load(field, ray, sheet, sheet - step, off[0]);
-        value[2] = load(field, ray, sheet, sheet + step, off[1]);
-        if (value[0] != VALUE_HOLE && value[2] != VALUE_HOLE) {
-            out->along[2] = value_saturate(2 * ((int64_t)value[2] - value[0]));
-            share[0] = share[1] = 1;
-        }
+        before = beside(field, sheet - step / 2, at);
+        after = beside(field, sheet + step / 2, at);
+        if (before != VALUE_HOLE && after != VALUE_HOLE)
+            return value_saturate(2 * ((int64_t)after - before));
+        return 0;
     }
-    for (int n = 0; n < 2; n++)
-        out->mend[n] = share[0] * off[0][n] - share[1] * off[1][n];
-}
-
-value_slopes value_slopes_at(const value_field *field, const value_ray *ray,
-                             int sheet) {
-    value_slopes out = {{0}, {0}};
-    for (int n = 0; n < 2; n++)
-        out.along[n] = slope_in_plane(field, ray, sheet, n);
-    slope_across(field, ray, sheet, &out);
-    return out;
+    return quotient(before, beside(field, sheet, at), after);
 }
 
 void value_gradient(const value_field *field, const value_ray *ray, int slab,
                     int place, double gradient[3]) {
-    value_slopes f = value_slopes_at(field, ray, slab);
-    value_slopes b = value_slopes_at(field, ray, slab + 1);
-    for (int n = 0; n < 3; n++)
-        gradient[n] = value_between(f.along[n], b.along[n], place);
-    for (int n = 0; n < 2; n++)
-        gradient[2] += gradient[n] *
-                       (f.mend[n] + place / 32768.0 * (b.mend[n] - f.mend[n]));
+    for (int n = 0; n < 3; n++) {
+        int ends[2];
+        for (int end = 0; end < 2; end++)
+            ends[end] = n == 2 ? slope_across(field, ray, slab + end)
+                               : slope_in_plane(field, ray, slab + end, n);
+        gradient[n] = value_between(ends[0], ends[1], place);
+    }
 }
 
 /* --- cuts ----------------------------------------------------------------- */
@@ -356,15 +273,17 @@ void value_lengthen(double rgba[4], double share) {
     rgba[3] = alpha;
 }
 
-void value_fade(const value_plan *plan, const double gradient[3],
+void value_fade(const value_plan *plan, const double gradient[3], double v,
                 double rgba[4]) {
     const reference_scene *scene = &plan->scene->base;
-    double native[3], factor;
+    double unit = (plan->high - plan->low) / VALUE_MOST, native[3], factor;
     if (!scene->gradient_count)
         return;
     for (int n = 0; n < 3; n++)
-        native[plan->axis[n]] = gradient[n] / 2 * (plan->high - plan->low) /
-                                VALUE_MOST / scene->info.slope;
+        native[plan->axis[n]] = gradient[n] / 2 * unit / scene->info.slope;
+    if (scene->log) /* of the data, not of their logarithms */
+        for (int n = 0; n < 3; n++)
+            native[n] *= log(10) * pow(10, plan->low + v * unit);
     factor = reference_fade(scene, native);
     double share = plan->path / reference_opacity_length(scene);
     if (!plan->plain_fade)

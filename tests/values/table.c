@@ -1,6 +1,6 @@
 /* tests/values/table.c - the value model's table of colours.
  *
- * docs/model.md, point 5 of the second part. */
+ * docs/model.md, the value model, point 5. */
 #include "values/value_model.h"
 
 #include <math.h>

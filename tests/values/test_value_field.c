@@ -172,7 +172,7 @@ static void labels_do_not_mix(void **state) {
             value_model_sample(model, (int64_t)ab[0], (int64_t)ab[1], sample);
             slabs(0.2, 8, sample[3]);
             assert_true(sample[1] == 0); /* no label between the two */
-            assert_true(sample[u <= 3.5 ? 0 : 2] == sample[3]);
+            assert_true(sample[u < 3.5 ? 0 : 2] == sample[3]);
         }
         value_model_free(model);
     }
@@ -209,6 +209,22 @@ static void gradient_opacity_does_not_depend_on_slabs(void **state) {
         scene.base.settings.quality = value_qualities[n];
         slabs(0.4 * 2 / 4, 8, middle_alpha(&scene));
     }
+    value_scene_free(&scene);
+}
+
+static double growth(const double at[3]) {
+    return pow(10, 0.2 * at[2]);
+}
+
+static void gradient_opacity_is_of_the_data_under_logarithms(void **state) {
+    (void)state;
+    /* All of the slopes are above the factor's end, unless logarithms' are. */
+    static const snow_opacity_point factor[] = {{0.3, 0}, {0.4, 1}};
+    value_scene scene = value_scene_of((int64_t[]){8, 8, 9}, growth, 0.4);
+    scene.base.log = true;
+    scene.base.gradients = factor;
+    scene.base.gradient_count = 2;
+    slabs(0.4, 8, middle_alpha(&scene));
     value_scene_free(&scene);
 }
 
@@ -318,6 +334,7 @@ int main(void) {
         cmocka_unit_test(labels_do_not_mix),
         cmocka_unit_test(labels_are_lit_by_their_membership),
         cmocka_unit_test(gradient_opacity_does_not_depend_on_slabs),
+        cmocka_unit_test(gradient_opacity_is_of_the_data_under_logarithms),
         cmocka_unit_test(the_threshold_is_of_the_look),
         cmocka_unit_test(logarithms_are_linear_and_need_values_above_zero),
         cmocka_unit_test(infinities_are_the_ends_and_the_range_narrows),

@@ -2,9 +2,10 @@
  * caster, on the cases of values that pictures are judged by.
  *
  * The short tier looks at few pixels of small smooth volumes, the long one at
- * few pixels of all cases.  SNOW_STRIDE=1 looks at every pixel, for about 15
- * minutes.  With SNOW_PICTURES set to a folder the pictures are written there,
- * the truth first. */
+ * few pixels of all cases.  SNOW_STRIDE=1 looks at every pixel, for many
+ * minutes, SNOW_CASE=ball at the cases of that name, and SNOW_PLAN changes
+ * choices of the model, to see what they are worth.  With SNOW_PICTURES set to
+ * a folder the pictures are written there, the truth first. */
 #include "values/cases.h"
 
 #include <math.h>
@@ -15,7 +16,7 @@ static const snow_quality qualities[] = {
 /* Pixels are compared in every stride-th column and row. */
 static int stride_of_tier(void) {
     const char *stride = getenv("SNOW_STRIDE");
-    return stride ? atoi(stride) : (int)support_sweep(13, 41);
+    return stride ? atoi(stride) : (int)support_sweep(17, 41);
 }
 
 static bool is_small(const value_case *what) {
@@ -39,12 +40,46 @@ static double *truth_of(const value_case_scene *open, int fine, int stride) {
     return pixels;
 }
 
+static void choose(value_plan *plan, const char *name, int value) {
+    if (strcmp(name, "cells") == 0)
+        plan->cells[0] = plan->cells[1] = value;
+    else if (strcmp(name, "quincunx") == 0)
+        plan->quincunx = value != 0;
+    else if (strcmp(name, "sheets") == 0)
+        value_plan_sheets(plan, value); /* a slice */
+    else if (strcmp(name, "nodes") == 0)
+        plan->nodes = value;
+    else if (strcmp(name, "steps") == 0)
+        plan->steps = value;
+    else if (strcmp(name, "measured") == 0)
+        plan->measured = value != 0;
+    else if (strcmp(name, "warp") == 0)
+        plan->warp = (value_warp)value;
+    else if (strcmp(name, "mean") == 0)
+        plan->mean = value;
+    else
+        fail_msg("SNOW_PLAN: there is no choice '%s'", name);
+}
+
+/* Other choices than the model's: SNOW_PLAN="quincunx=0 cells=2". */
+static void choose_all(value_plan *plan) {
+    const char *words = getenv("SNOW_PLAN");
+    char name[16];
+    int value, length;
+    while (words &&
+           sscanf(words, " %15[a-z]=%d%n", name, &value, &length) == 2) {
+        choose(plan, name, value);
+        words += length;
+    }
+}
+
 static double *model_of(const value_case_scene *open, int stride) {
     int side = 512 / stride;
     value_plan plan;
     double *pixels = calloc((size_t)(side * side) * 4, sizeof *pixels);
     assert_non_null(pixels);
     assert_true(value_plan_of(&open->scene, &plan));
+    choose_all(&plan);
     value_model *model = value_model_new(&plan);
     for (int n = 0; n < side * side; n++)
         value_model_pixel(model, n % side * stride + stride / 2,
@@ -65,7 +100,8 @@ static void keep(snow_context *context, const value_case *what,
     for (int n = 0; n < side * side * 4; n++)
         snow_image_pixels(image)[n] = (float)pixels[n];
     snprintf(path, sizeof path, "%s/%s, %s.png", folder, what->name, suffix);
-    snow_image_options options = {.flatten = true, .overwrite = true};
+    snow_image_options options = {
+        .size = sizeof options, .flatten = true, .overwrite = true};
     assert_int_equal(snow_image_save(image, path, &options), SNOW_STATUS_OK);
     snow_image_free(image);
 }
@@ -77,7 +113,17 @@ static double decibels(const double *pixels, const double *truth, int side) {
     return value_distance_decibels(&distance);
 }
 
-/* Few pixels may be nearer to the truth than all, or less near: by `slack`. */
+/* Few pixels may be nearer to the truth than all, or less near. */
+static void check_reached(const value_case *what, const double reached[3],
+                          int stride) {
+    double slack = stride < 4 ? 0.2 : 3;
+    for (int n = 0; n < 3; n++)
+        assert_true(reached[n] >= what->reached[n] - slack);
+    slack = stride < 4 ? 0 : 0.5;
+    assert_true(reached[1] >= reached[0] - slack);
+    assert_true(reached[2] >= reached[1] - slack);
+}
+
 static void check_case(snow_context *context, const value_case *what) {
     int stride = stride_of_tier(), side = 512 / stride;
     static const char *names[] = {"draft", "normal", "high"};
@@ -98,12 +144,8 @@ static void check_case(snow_context *context, const value_case *what) {
     }
     print_message("| %s | %.1f | %.1f | %.1f |\n", what->name, reached[0],
                   reached[1], reached[2]);
-    double slack = stride == 1 ? 0.05 : 3;
-    for (int n = 0; n < 3; n++)
-        assert_true(reached[n] >= what->reached[n] - slack);
-    slack = stride == 1 ? 0 : 0.5;
-    assert_true(reached[1] >= reached[0] - slack);
-    assert_true(reached[2] >= reached[1] - slack);
+    if (!getenv("SNOW_PLAN"))
+        check_reached(what, reached, stride);
     free(truth);
     value_case_close(&open);
 }
@@ -111,9 +153,11 @@ static void check_case(snow_context *context, const value_case *what) {
 static void each_quality_is_nearer_than_the_one_below(void **state) {
     (void)state;
     snow_context *context = support_context();
+    const char *name = getenv("SNOW_CASE");
     bool all = support_sweep(1, 0);
     for (size_t n = 0; n < value_case_count; n++)
-        if (all || is_smooth(&value_cases[n]))
+        if (name ? strstr(value_cases[n].name, name) != NULL
+                 : all || is_smooth(&value_cases[n]))
             check_case(context, &value_cases[n]);
     snow_context_free(context);
 }
@@ -181,7 +225,7 @@ static double rings(const double *pixels, const double *truth, int side) {
 static void a_soft_ball_has_no_rings(void **state) {
     (void)state;
     snow_context *context = support_context();
-    if (!support_sweep(1, 0)) {
+    if (!support_sweep(1, 0) || getenv("SNOW_CASE")) {
         snow_context_free(context);
         skip();
     }

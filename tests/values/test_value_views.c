@@ -1,6 +1,7 @@
 /* tests/values/test_value_views.c - the value model beside a fine ray caster,
  * along every axis, in both projections and in the modes that project values:
  * how near it is grows with the quality. */
+#include "reference/raycast.h"
 #include "values/scenes.h"
 
 #include <math.h>
@@ -90,8 +91,41 @@ static void projections_are_near_the_truth(void **state) {
     }
 }
 
+static void two_ray_casters_agree(void **state) {
+    (void)state;
+    for (int n = 0; n < 6; n++) {
+        value_scene scene = value_scene_of((int64_t[]){12, 13, 11}, wave, 0);
+        free((void *)(uintptr_t)scene.base.opacities);
+        scene.base.opacities = soft;
+        scene.base.opacity_count = 2;
+        scene.base.colors = tints;
+        scene.base.color_count = 2;
+        scene.base.settings.shade = SNOW_SHADE_PHONG;
+        scene.base.settings.quality = SNOW_QUALITY_HIGH;
+        scene.base.settings.kernel = SNOW_KERNEL_TENT;
+        scene.base.settings.light_azimuth = n == 4 ? 40 : 0;
+        scene.base.view.width = scene.base.view.height = 16;
+        value_scene_look(&scene, n % 3, 20, 25, n < 3 ? 0 : 30);
+        double *other =
+            reference_cast_rays(&(reference_cast){.scene = &scene.base}, NULL);
+        value_truth *truth = value_truth_new(&scene, 16);
+        for (int p = 0; p < 16 * 16; p++) {
+            double pixel[4];
+            value_truth_pixel(truth, p % 16 + 0.5, p / 16 + 0.5, pixel);
+            for (int c = 0; c < 4; c++)
+                if (fabs(pixel[c] - other[4 * p + c]) > 1e-5)
+                    fail_msg("view %d: %g, not %g", n, pixel[c],
+                             other[4 * p + c]);
+        }
+        value_truth_free(truth);
+        free(other);
+        value_scene_free(&(value_scene){.base = {.voxels = scene.base.voxels}});
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(two_ray_casters_agree),
         cmocka_unit_test(every_axis_and_projection_is_near_the_truth),
         cmocka_unit_test(projections_are_near_the_truth),
     };

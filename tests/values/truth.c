@@ -2,7 +2,7 @@
  * against.
  *
  * Values first, colours after, by the shortest steps that are affordable: what
- * the value model approximates (Levoy 1988; docs/model.md, second part).  The
+ * the value model approximates (Levoy 1988; docs/model.md).  The
  * field lives between the outermost voxels; beyond, for gradients only, it is
  * continued oddly. */
 #include "values/value_model.h"
@@ -225,7 +225,8 @@ static void gather_step(const value_truth *truth, const double eye[3],
     if (scene->gradient_count) {
         double native[3];
         for (int n = 0; n < 3; n++)
-            native[n] = gradient[n] / scene->info.slope;
+            native[n] = gradient[n] / scene->info.slope *
+                        (scene->log ? log(10) * pow(10, value) : 1);
         rgba[3] *= reference_fade(scene, native);
     }
     if (scene->settings.shade == SNOW_SHADE_PHONG)

@@ -1,10 +1,10 @@
 /* tests/values/value_model.h - the value model, computed slowly.
  *
- * A float64 transcription of docs/model.md, second part: values are splatted,
- * colours come after.  Every sample of the lattice is computed from the voxels
- * alone, and every pixel from the samples around it; nothing is kept from sheet
- * to sheet.  Integers of the model are integers here too.  It shares no code
- * with the library; the camera, the look and the voxels are those of
+ * A float64 transcription of the value model in docs/model.md: values are
+ * splatted, colours come after.  Every sample of the lattice is computed from
+ * the voxels alone, and every pixel from the samples around it; nothing is kept
+ * from sheet to sheet.  Integers of the model are integers here too.  It shares
+ * no code with the library; the camera, the look and the voxels are those of
  * reference/reference.h. */
 #ifndef SNOW_TEST_VALUE_MODEL_H
 #define SNOW_TEST_VALUE_MODEL_H
@@ -45,13 +45,12 @@ typedef struct value_plan {
     int direction;    /* 1: p grows away from the eye; -1: it falls */
     double first;     /* p of the front sheet */
     int sheets;       /* from 0, the nearest to the eye */
-    int halves;       /* sheets a slice: 1, or 2 with half slices */
+    int halves; /* sheets a slice: 1, or 2 with half slices; tests try more */
     bool perspective;
-    double slope[2]; /* parallel: u, v per p along a ray */
-    double eye[3];   /* perspective: index position */
-    int cells[2];    /* of the lattice, a voxel, along u and v */
-    bool quincunx;   /* a second sample in the middle of each cell */
-    bool exact_loads;
+    double slope[2];  /* parallel: u, v per p along a ray */
+    double eye[3];    /* perspective: index position */
+    int cells[2];     /* of the lattice, a voxel, along u and v */
+    bool quincunx;    /* a second sample in the middle of each cell */
     int nodes, steps; /* of the table, along each side; in an entry */
     bool measured;    /* nodes are placed by the look */
     value_warp warp;
@@ -163,24 +162,14 @@ bool value_cut(const value_plan *plan, const value_ray *ray, int slab,
 void value_gradient(const value_field *field, const value_ray *ray, int slab,
                     int place, double gradient[3]);
 
-/* Twice the difference quotients at one sheet as integers, and what mends the
- * third: by how much of the others it is off. */
-typedef struct value_slopes {
-    int along[3];
-    double mend[2];
-} value_slopes;
-
-value_slopes value_slopes_at(const value_field *field, const value_ray *ray,
-                             int sheet);
-
 /* Premultiplied colours that are shaded: from colour and alpha of an entry and
  * a gradient as above. */
 void value_shade(const value_plan *plan, const value_ray *ray,
                  const double gradient[3], double rgba[4]);
 
-/* The gradient opacity of a slab: as if its opacity were that of a slab of one
- * opacity, times the factor of its gradient. */
-void value_fade(const value_plan *plan, const double gradient[3],
+/* The gradient opacity of a slab whose value at the gradient's place is `v`: as
+ * if its opacity were that of a slab of one opacity, times the factor. */
+void value_fade(const value_plan *plan, const double gradient[3], double v,
                 double rgba[4]);
 
 /* Alpha and colours of `share` times the length. */
