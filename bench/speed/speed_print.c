@@ -53,6 +53,8 @@ static double pixels_per_voxel(const speed_case *job, int axis) {
 static double flops_of(const speed_case *job, const speed_row *row,
                        const speed_result *result) {
     double k = row->way->footprint, taps;
+    if (row->way->method == SNOW_METHOD_RAYCAST)
+        return 0; /* not known: values are interpolated, not splatted */
     if (row->way->method == SNOW_METHOD_SHEAR_WARP) {
         double g = row->way->quality == SNOW_QUALITY_DRAFT ? 1 : 2;
         double slices = row->way->quality == SNOW_QUALITY_HIGH ? 2 : 1;
@@ -256,7 +258,8 @@ static void add_way(json_t *json, const speed_row *row) {
         json_object_set_new(
             json, "encoding",
             json_string(snow_encoding_name(row->stats.encoding)));
-    if (way->method == SNOW_METHOD_SHEAR_WARP)
+    if (way->method == SNOW_METHOD_SHEAR_WARP ||
+        way->method == SNOW_METHOD_RAYCAST)
         json_object_set_new(json, "quality",
                             json_string(snow_quality_name(way->quality)));
     json_object_set_new(json, "kernel",

@@ -1,7 +1,8 @@
 /* bench/speed/speed_verify.c - a time of a wrong picture is worth nothing, so
  * each way is held against the exact picture before it is timed: method
  * footprint with the scalar kernels and the way's own kernel, which the tests
- * hold against sums in double precision.
+ * hold against sums in double precision.  Raycast is held against its own high
+ * quality.
  *
  * Bit for bit alike must be: all encodings of a method; any number of threads;
  * the wide instruction sets; and, at threshold 0, original and tested. */
@@ -16,9 +17,10 @@
 /* A quarter of an 8-bit step: what scalar kernels may differ from wide ones. */
 #define SCALAR_LARGEST (0.25 / 255)
 
-/* Exact pictures: of each kernel, and of the volume with slices between. */
+/* Exact pictures: of each kernel, of the volume with slices between, and by
+ * raycast. */
 #define KERNELS 4
-#define EXACTS (KERNELS + 1)
+enum { BETWEEN = KERNELS, TRUTH, EXACTS };
 
 typedef struct verification {
     speed_session *session;
@@ -108,14 +110,18 @@ static snow_status render_between(speed_session *session, snow_frame *frame,
     return status;
 }
 
-/* Method footprint with the scalar kernels, on a frame that is thrown away with
- * its encoding, which may be large. */
+/* Method footprint, or for raycast itself, with the scalar kernels, on a frame
+ * that is thrown away with its encoding, which may be large. */
 static snow_status render_exact(speed_session *session, const speed_way *way,
                                 bool between, snow_image **out) {
     snow_settings settings;
     snow_frame *frame;
     snow_settings_init(&settings);
-    settings.method = SNOW_METHOD_FOOTPRINT;
+    settings.method = way->method == SNOW_METHOD_RAYCAST
+                          ? SNOW_METHOD_RAYCAST
+                          : SNOW_METHOD_FOOTPRINT;
+    if (way->method == SNOW_METHOD_RAYCAST)
+        settings.quality = SNOW_QUALITY_HIGH;
     settings.kernel = way->kernel;
     settings.footprint = way->footprint;
     settings.shade = session->job->shade;
@@ -138,8 +144,10 @@ static snow_status render_exact(speed_session *session, const speed_way *way,
 /* The exact picture for a way, made once for all ways that share it. */
 static snow_status exact_of(verification *verifier, int way, snow_image **out) {
     bool between = speed_ways[way].quality == SNOW_QUALITY_HIGH;
-    snow_image **kept =
-        &verifier->exact[between ? KERNELS : (int)speed_ways[way].kernel];
+    bool truth = speed_ways[way].method == SNOW_METHOD_RAYCAST;
+    snow_image **kept = &verifier->exact[between ? BETWEEN
+                                         : truth ? TRUTH
+                                                 : (int)speed_ways[way].kernel];
     snow_status status = SNOW_STATUS_OK;
     if (!*kept)
         status =

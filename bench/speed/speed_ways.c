@@ -22,6 +22,10 @@
 #define HIGH {{55, 45}, {40, 36}}, 1
 #define DRAFT {{36, 30}, {36, 30}}, 1
 
+/* Raycast is held against its own high quality, which splatting is far from. */
+#define COARSE {{45, 40}, {36, 34}}, 1
+#define FINE {{50, 45}, {40, 38}}, 1
+
 #define CUBIC SNOW_KERNEL_BSPLINE, 4
 #define TENT SNOW_KERNEL_TENT, 2
 #define WAY(method, encoding, quality) \
@@ -48,6 +52,8 @@ const speed_way speed_ways[] = {
     {"tested", WAY(TESTED, AUTO, NORMAL), TENT, EXACT, NULL},
     {"shear-warp draft", WAY(SHEAR_WARP, AUTO, DRAFT), TENT, DRAFT,
      "shear-warp, draft (tent)"},
+    {"raycast draft", WAY(RAYCAST, AUTO, DRAFT), TENT, COARSE, NULL},
+    {"raycast normal", WAY(RAYCAST, AUTO, NORMAL), TENT, FINE, NULL},
 };
 /* clang-format on */
 
@@ -79,6 +85,7 @@ static const struct {
     {"tested", SPEED_METHOD, SNOW_METHOD_TESTED},
     {"footprint", SPEED_METHOD, SNOW_METHOD_FOOTPRINT},
     {"shear-warp", SPEED_METHOD, SNOW_METHOD_SHEAR_WARP},
+    {"raycast", SPEED_METHOD, SNOW_METHOD_RAYCAST},
     {"auto", SPEED_ENCODING, SNOW_ENCODING_AUTO},
     {"crs", SPEED_ENCODING, SNOW_ENCODING_CRS},
     {"bitmap", SPEED_ENCODING, SNOW_ENCODING_BITMAP},
@@ -124,17 +131,27 @@ bool speed_filter_takes(const speed_filter *filter, speed_kind kind,
     return !taken || taken >> value & 1;
 }
 
-/* A kind that a way does not have (the quality of a footprint) restricts it
+/* Whether a method was asked for by name. */
+static bool is_named(const speed_filter *filter, snow_method method) {
+    return filter->taken[SPEED_METHOD] >> method & 1;
+}
+
+/* Raycast is slow, and measured where it is asked for.
+ * A kind that a way does not have (the quality of a footprint) restricts it
  * not. */
 static bool passes(const speed_filter *filter, bool sweep,
                    const speed_way *way) {
+    bool qualities = way->method == SNOW_METHOD_SHEAR_WARP ||
+                     way->method == SNOW_METHOD_RAYCAST;
     if (sweep && !way->charted)
+        return false;
+    if (way->method == SNOW_METHOD_RAYCAST && !is_named(filter, way->method))
         return false;
     return speed_filter_takes(filter, SPEED_METHOD, (int)way->method) &&
            speed_filter_takes(filter, SPEED_KERNEL, (int)way->kernel) &&
            (speed_is_baseline(way) ||
             speed_filter_takes(filter, SPEED_ENCODING, (int)way->encoding)) &&
-           (way->method != SNOW_METHOD_SHEAR_WARP ||
+           (!qualities ||
             speed_filter_takes(filter, SPEED_QUALITY, (int)way->quality));
 }
 

@@ -87,6 +87,11 @@ check "only what was asked for" \
     [ -z "$(grep -E 'original|tested|footprint|draft|opaque|phong' "$OUT" |
         grep -v '^times faster\|^rates;\|^way ')" ]
 
+run 0 "raycast where it is named" speed --only raycast,rgba,unshaded,translucent \
+    --threads 1
+prints '^raycast draft  *tent  *2   1 '
+prints '^raycast normal  *tent  *2   1 '
+
 run 0 "two sizes" speed --sizes 48,32 --only grey,unshaded,opaque,crs,footprint \
     --threads 1 --json
 check "two rows" [ "$(grep -c '"way"' "$OUT")" -eq 2 ]
