@@ -7,6 +7,7 @@
  * memory of one process that simulates. */
 #include "combine.h"
 
+#include <snowglass/extend.h>
 #include <snowglass/image.h>
 
 #include <string.h>

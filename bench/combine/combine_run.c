@@ -6,6 +6,8 @@
  * when the last pixel is in rank 0's picture. */
 #include "combine.h"
 
+#include <snowglass/extend.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -7,6 +7,8 @@
 #include "frame.h"
 #include "hosts.h"
 
+#include <snowglass/extend.h>
+
 #include <stdlib.h>
 #include <string.h>
 

@@ -21,6 +21,7 @@
 #include "mesh.h"
 
 #include <catalyst_impl_snowglass.h>
+#include <snowglass/extend.h>
 #include <snowglass/recipe.h>
 #include <snowglass/snowglass.h>
 #include <stdio.h>

@@ -1,129 +1,130 @@
-/* snowglass/extend.h - for libraries over this one, such as that of pictures of
- * running simulations: boxes of voxels, which go from rank to rank, and what a
- * picture by many ranks asks of them.  snowglass.h does not include it. */
+/* snowglass/extend.h - for those who extend the library: a transport of
+ * messages, or a library over this one, as that of pictures in situ. */
 #ifndef SNOWGLASS_EXTEND_H
 #define SNOWGLASS_EXTEND_H
 
 #include <snowglass/ranks.h>
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#ifdef __cplusplus
-extern "C" {
-#endif
+/* Leaves the message of a failure and returns `status`; gives a warning. Text
+ * as of printf, one line without its end. */
+SNOW_API snow_status snow_context_fail(snow_context *context,
+    snow_status status, const char *format, ...) SNOW_PRINTF(3, 4);
+SNOW_API void snow_context_warn(snow_context *context, const char *format, ...)
+    SNOW_PRINTF(2, 3);
 
-/* The limit of snow_context_set_memory_limit; 0: none. */
+/* A block of the context's memory, aligned to 64, or NULL and a message;
+ * `release` accepts NULL. The limit of bytes; 0: none. */
+SNOW_API void *snow_context_allocate(snow_context *context, size_t bytes);
+SNOW_API void snow_context_release(snow_context *context, void *block);
 SNOW_API uint64_t snow_context_limit(const snow_context *context);
 
-/* --- records (snowglass/context.h) ---------------------------------------- */
+/* snow_x_init_sized: zeros, then `defaults` (or NULL) as far as `size` reaches.
+ * A new field lies behind the old record, not in its padding. */
+SNOW_API void snow_record_init(
+    void *made, size_t size, const void *defaults, size_t known);
 
-/* What snow_x_init_sized does: zeros, `defaults` (NULL: none) as far as `size`
- * reaches, and the size. */
-SNOW_API void snow_record_init(void *made, size_t size, const void *defaults,
-                               size_t known);
-
-/* Reads a caller's record into `copy` of `known` bytes, which holds the
- * defaults; `given` NULL leaves them. Errors: SNOW_STATUS_BAD_USAGE, with a
- * message unless `context` is NULL; the copy then holds the defaults. A new
- * field lies behind the last byte of the old record, not in its padding. */
+/* Reads a caller's record (or NULL) into `copy`, which holds the defaults;
+ * fills the caller's. Errors: BAD_USAGE, silent with `context` NULL. */
 SNOW_API snow_status snow_record_read(snow_context *context, const char *name,
-                                      const void *given, void *copy,
-                                      size_t known);
-
-/* Copies a record of the library into the caller's, as far as that reaches.
- * Errors: as above. */
+    const void *given, void *copy, size_t known);
 SNOW_API snow_status snow_record_fill(snow_context *context, const char *name,
-                                      const void *made, size_t known,
-                                      void *out);
+    const void *made, size_t known, void *out);
 
 #define SNOW_RECORD_READ(context, record, given, copy) \
     (record##_init(copy),                              \
-     snow_record_read((context), #record, (given), (copy), sizeof *(copy)))
+        snow_record_read((context), #record, (given), (copy), sizeof *(copy)))
 #define SNOW_RECORD_FILL(context, record, made, out) \
     snow_record_fill((context), #record, (made), sizeof *(made), (out))
 
-/* --- numbers of all ranks ------------------------------------------------- */
+/* A message in flight. `handle` belongs to the transport: NULL once it is done;
+ * `bytes` of a received one is then its length. */
+typedef struct snow_message {
+    void *handle;
+    size_t bytes;
+} snow_message;
 
-/* Collective, as snow_comm_broadcast is: element by element
- * over all ranks; the result replaces `values` on every rank, and has the same
- * bits there. */
+typedef bool snow_idle_fn(void *user); /* a piece of work; false: none left */
+
+/* What a transport does, called by the communicator's thread. Those that return
+ * a status leave a message with snow_context_fail; after a failure only `end`
+ * is called. The first five and `end` are needed, others may be NULL. */
+typedef struct snow_comm_ops {
+    size_t size;
+    /* Start a message, whose bytes stay until it is done, and get ready for one
+     * of at most `room` bytes (a longer one is a failure). Those of one tag, 0
+     * to 32767, arrive in order; a rank may send to itself. */
+    snow_status (*send)(void *self, const void *bytes, size_t count, int to,
+        int tag, snow_message *message);
+    snow_status (*receive)(void *self, void *bytes, size_t room, int from,
+        int tag, snow_message *message);
+    /* Wait until one in flight is done, and say which, -1 for none; for all. */
+    snow_status (*wait_any)(
+        void *self, snow_message *messages, int count, int *which);
+    snow_status (*wait_all)(void *self, snow_message *messages, int count);
+    /* Seconds of the messages' clock; lets simulated time pass. */
+    double (*seconds)(void *self);
+    void (*work)(void *self, double seconds);
+    /* Waits do pieces of `work` (or NULL) while no message is done. */
+    void (*occupy)(void *self, snow_idle_fn *work, void *user);
+    void (*progress)(void *self); /* moves messages on, without waiting */
+    void (*timeout)(void *self, double seconds); /* snow_comm_set_timeout */
+    void (*end)(void *self);                     /* frees self */
+} snow_comm_ops;
+SNOW_RECORD(snow_comm_ops);
+
+/* A communicator over a transport; `ops` is copied, `self` ends with it.
+ * Errors, where self is not ended: BAD_USAGE (functions that lack, a rank out
+ * of 0 to ranks - 1). */
+SNOW_API snow_status snow_comm_new(snow_context *context,
+    const snow_comm_ops *ops, void *self, int rank, int ranks, snow_comm **out);
+
+/* Collective. Element by element over all ranks; the result replaces `values`,
+ * with the same bits on every rank. */
 typedef enum snow_reduction { SNOW_SUM, SNOW_MIN, SNOW_MAX } snow_reduction;
-SNOW_API snow_status snow_comm_reduce_ints(snow_comm *comm, int64_t *values,
-                                           size_t count, snow_reduction by);
-
-SNOW_API snow_status snow_comm_reduce_doubles(snow_comm *comm, double *values,
-                                              size_t count, snow_reduction by);
-
-/* --- boxes and voxels ----------------------------------------------------- */
+SNOW_API snow_status snow_comm_reduce_ints(
+    snow_comm *comm, int64_t *values, size_t count, snow_reduction by);
+SNOW_API snow_status snow_comm_reduce_doubles(
+    snow_comm *comm, double *values, size_t count, snow_reduction by);
 
 static inline int64_t snow_box_voxels(const snow_box *box) {
     return box->count[0] * box->count[1] * box->count[2];
 }
 
-/* What two boxes share; false where that is nothing, with *out untouched. */
-static inline bool snow_box_intersect(const snow_box *a, const snow_box *b,
-                                      snow_box *out) {
-    snow_box shared;
-    for (int i = 0; i < 3; i++) {
-        int64_t end_a = a->first[i] + a->count[i];
-        int64_t end_b = b->first[i] + b->count[i];
-        int64_t end = end_a < end_b ? end_a : end_b;
-        shared.first[i] = a->first[i] > b->first[i] ? a->first[i] : b->first[i];
-        shared.count[i] = end - shared.first[i];
-        if (shared.count[i] <= 0)
-            return false;
-    }
-    *out = shared;
-    return true;
-}
+/* What two boxes share; false, and *out untouched, where that is nothing. */
+SNOW_API bool snow_box_intersect(
+    const snow_box *a, const snow_box *b, snow_box *out);
 
-/* A box's voxels as they lie in memory: `voxels` is the first one, strides are
- * counted in values (not bytes) and may be negative. */
+/* A box's voxels in memory, from its first one; strides in values. */
 typedef struct snow_brick {
     snow_box box;
     const void *voxels;
     int64_t stride[3];
 } snow_brick;
 
-/* Copies the part of a brick that lies in `box`, which lies in `whole`, to its
- * place in the dense box `whole` (x fastest).  `value` is the bytes of one, 1,
- * 2, 4 or 8. */
+/* Copies the part of a brick in `box`, which lies in `whole`, to its place in
+ * the dense box `whole` (x fastest), values of 1, 2, 4 or 8 bytes. */
 SNOW_API void snow_brick_copy(const snow_brick *brick, size_t value,
-                              const snow_box *box, const snow_box *whole,
-                              void *dense);
+    const snow_box *box, const snow_box *whole, void *dense);
 
-/* A plan, with its buffers. */
+/* A plan, with its buffers; `clear` forgets both. */
 typedef struct snow_voxels snow_voxels;
-
 SNOW_API snow_status snow_voxels_new(snow_comm *comm, snow_voxels **out);
 SNOW_API void snow_voxels_free(snow_voxels *voxels);
-
-/* Forgets the plan and frees its buffers. */
 SNOW_API void snow_voxels_clear(snow_voxels *voxels);
 
-/* Collective.  Plans what goes where when this rank holds `count` boxes and
- * wants one; any of them may be empty.  Statuses are agreed on.  Errors:
- * SNOW_STATUS_BAD_USAGE (boxes that overlap, wanted voxels that nobody holds),
- * SNOW_STATUS_NO_MEMORY; the plan is then empty. */
+/* Collective. Plans what goes where when this rank holds `count` boxes and
+ * wants one; any may be empty. Moves voxels of `value` bytes from bricks[n] in
+ * held[n] to the wanted box; only the first move, or a larger value, takes
+ * memory. Errors, alike on all ranks: BAD_USAGE (boxes that overlap, wanted
+ * voxels that nobody holds), those of the transport. */
 SNOW_API snow_status snow_voxels_plan(snow_voxels *voxels, const snow_box *held,
-                                      int count, const snow_box *wanted);
+    int count, const snow_box *wanted);
+SNOW_API snow_status snow_voxels_move(
+    snow_voxels *voxels, const snow_brick *bricks, size_t value, void *dense);
 
-/* Collective.  Moves voxels of `value` bytes (the same on all ranks) as
- * planned: bricks[n] is what lies in held[n], `dense` the wanted box.  The
- * first call after a plan takes memory, and any with a larger value, upon which
- * statuses are agreed; later ones take none.  Errors: SNOW_STATUS_NO_MEMORY,
- * and those of the transport. */
-SNOW_API snow_status snow_voxels_move(snow_voxels *voxels,
-                                      const snow_brick *bricks, size_t value,
-                                      void *dense);
-
-/* Gives a part the matrix of its whole, exactly: computed from that of the part
- * it would differ by rounding from rank to rank. */
-SNOW_API snow_status snow_volume_set_whole(snow_volume *volume,
-                                           const snow_volume_info *whole);
-
-/* --- what a picture needs ------------------------------------------------- */
+/* Gives a part the matrix of its whole, exactly. */
+SNOW_API snow_status snow_volume_set_whole(
+    snow_volume *volume, const snow_volume_info *whole);
 
 /* Of the parts of a volume. */
 typedef struct snow_ranks_needs {
@@ -134,31 +135,20 @@ typedef struct snow_ranks_needs {
 } snow_ranks_needs;
 SNOW_RECORD(snow_ranks_needs);
 
-/* Errors: SNOW_STATUS_BAD_USAGE (view, settings), SNOW_STATUS_BAD_INPUT (a
- * geometry that no float can hold). */
+/* Errors: as snow_frame_render. */
 SNOW_API snow_status snow_ranks_find_needs(snow_context *context,
-                                           const snow_volume_info *whole,
-                                           const snow_view *view,
-                                           const snow_settings *settings,
-                                           const snow_look *look,
-                                           snow_ranks_needs *out);
+    const snow_volume_info *whole, const snow_view *view,
+    const snow_settings *settings, const snow_look *look,
+    snow_ranks_needs *out);
 
-/* Whether disjoint boxes have an order from front to back: bars that lie in a
- * ring have none.  Errors: as above, SNOW_STATUS_NO_MEMORY. */
+/* Whether disjoint boxes have an order from front to back (bars in a ring have
+ * none). Errors: as above. */
 SNOW_API snow_status snow_ranks_have_order(snow_context *context,
-                                           const snow_volume_info *whole,
-                                           const snow_view *view,
-                                           const snow_box *boxes, int count,
-                                           bool *out);
+    const snow_volume_info *whole, const snow_view *view, const snow_box *boxes,
+    int count, bool *out);
 
-/* A rank's slab of that many slices, for pictures that are the same for every
- * number of ranks (snow_settings.deterministic): `*count` from `*first` on,
- * both 0 where it gets none. */
-SNOW_API void snow_ranks_slab(int64_t slices, int ranks, int rank,
-                              int64_t *first, int64_t *count);
-
-#ifdef __cplusplus
-}
-#endif
+/* A rank's slab of deterministic pictures; both 0 where it gets none. */
+SNOW_API void snow_ranks_slab(
+    int64_t slices, int ranks, int rank, int64_t *first, int64_t *count);
 
 #endif

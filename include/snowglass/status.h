@@ -1,20 +1,24 @@
-/* snowglass/status.h - what a call answers.
+/* snowglass/status.h - what a call answers, and what holds for all calls.
  *
- * Every function that can fail returns a snow_status; results leave through
- * out-parameters, which are untouched on failure.  The values are pinned: they
- * are also the exit codes of the command line tool. */
+ * Every function that can fail returns a snow_status. Results leave through
+ * out-parameters, untouched on failure; new objects are the caller's. Functions
+ * that free or close accept NULL. Comments name errors without SNOW_STATUS_;
+ * besides those, any argument out of its range is BAD_USAGE, and any call that
+ * makes something may be NO_MEMORY. Returned pointers belong to the object; The
+ * values are also the exit codes of the tool. */
 #ifndef SNOWGLASS_STATUS_H
 #define SNOWGLASS_STATUS_H
 
 #ifdef __cplusplus
-extern "C" {
+#define SNOW_LINKAGE extern "C"
+#else
+#define SNOW_LINKAGE
 #endif
-
 #if defined(__GNUC__)
-#define SNOW_API __attribute__((visibility("default")))
+#define SNOW_API SNOW_LINKAGE __attribute__((visibility("default")))
 #define SNOW_PRINTF(text, first) __attribute__((format(printf, text, first)))
 #else
-#define SNOW_API
+#define SNOW_API SNOW_LINKAGE
 #define SNOW_PRINTF(text, first)
 #endif
 
@@ -35,10 +39,7 @@ typedef enum snow_status {
 #undef SNOW_STATUS_ENUM
 } snow_status;
 
-/* The text of a status: a constant string, never NULL. */
+/* Never NULL. */
 SNOW_API const char *snow_status_description(snow_status status);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

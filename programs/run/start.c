@@ -4,6 +4,7 @@
 #include "run/log.h"
 
 #include <limits.h>
+#include <snowglass/extend.h>
 #include <snowglass/snowglass.h>
 #include <stdlib.h>
 

@@ -4,7 +4,7 @@
 #define SNOW_BASE_H
 
 #include <pthread.h>
-#include <snowglass/context.h>
+#include <snowglass/extend.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

@@ -7,6 +7,8 @@
  */
 #include "base/base.h"
 
+#include <snowglass/extend.h>
+
 #include <assert.h>
 #include <string.h>
 

@@ -2,6 +2,7 @@
 #ifndef SNOW_MPI_MESSAGES_H
 #define SNOW_MPI_MESSAGES_H
 
+#include <snowglass/extend.h>
 #include <snowglass/mpi.h>
 
 #ifndef SMPI_H /* tests would take simulated time */

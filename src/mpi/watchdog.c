@@ -2,6 +2,8 @@
  * ranks. */
 #include "mpi/watchdog.h"
 
+#include <snowglass/extend.h>
+
 #include <sched.h>
 #include <stdio.h>
 #include <string.h>

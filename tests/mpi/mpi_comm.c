@@ -4,6 +4,7 @@
 #include "support/comm.h"
 
 #include <signal.h>
+#include <snowglass/extend.h>
 #include <snowglass/mpi.h>
 
 #define BODY(name) \

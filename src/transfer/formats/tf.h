@@ -4,6 +4,7 @@
 #define SNOW_TRANSFER_FORMATS_TF_H
 
 #include <snowglass/context.h>
+#include <snowglass/extend.h>
 #include <snowglass/look_file.h>
 #include <stdbool.h>
 
