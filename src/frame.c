@@ -100,7 +100,7 @@ snow_status snow_frame_render(snow_frame *frame, const snow_volume *volume,
                               snow_image **image) {
     if (frame->ranks && snow_ranks_busy(frame->ranks))
         return snow_fail(frame->context, SNOW_STATUS_BAD_USAGE,
-                         "this frame has a picture of several ranks in flight: "
+                         "this frame has a picture of several ranks in flight; "
                          "call snow_ranks_finish first");
     return snow_frame_render_slab(frame, volume, transfer, view, settings, 1, 0,
                                   image);
@@ -140,7 +140,7 @@ snow_ranks_render(snow_frame *frame, snow_comm *comm, const snow_volume *volume,
     if (frame->ranks && frame->ranks->in_flight)
         return snow_fail(
             frame->context, SNOW_STATUS_BAD_USAGE,
-            "this frame has a picture in flight: call snow_ranks_finish first");
+            "this frame has a picture in flight; call snow_ranks_finish first");
     SNOW_TRY(
         snow_ranks_begin(frame, comm, volume, transfer, view, settings, how));
     return snow_ranks_finish(frame, image);

@@ -60,7 +60,7 @@ static snow_status check_prints(snow_insitu *insitu, int64_t least,
         return SNOW_STATUS_OK;
     return snow_context_fail(
         insitu->context, SNOW_STATUS_BAD_USAGE,
-        "grids, views, settings or limits differ between ranks: call the "
+        "grids, views, settings or limits differ between ranks; call the "
         "setters with the same values on all ranks");
 }
 
@@ -94,7 +94,7 @@ static snow_status check_facts(snow_insitu *insitu, const int64_t *facts) {
     if (facts[SNOW_FACT_TYPE] == INT64_MAX)
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "no rank has a brick: call snow_insitu_set_brick");
+            "no rank has a brick; call snow_insitu_set_brick");
     if (facts[SNOW_FACT_TYPE] != -facts[SNOW_FACT_TYPE_MOST])
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,

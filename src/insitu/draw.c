@@ -89,7 +89,7 @@ static snow_status draw(snow_insitu *insitu, snow_image **out) {
     if (!insitu->taken) /* the same on all ranks */
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "there are no voxels to draw: call snow_insitu_update first");
+            "there are no voxels to draw; call snow_insitu_update first");
     INSITU_TRY(snow_insitu_check(insitu));
     insitu->last_lowering = insitu->layout.lowering;
     snow_insitu_begin_limit(insitu);
@@ -130,13 +130,13 @@ static snow_status check_output(const snow_insitu *insitu) {
     if (!insitu->pattern) /* on one rank only: found by its print below */
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "there is no path for pictures: call snow_insitu_set_output");
+            "there is no path for pictures; call snow_insitu_set_output");
     if (insitu->settings.mode == SNOW_MODE_SUM &&
         insitu->look.look.range == SNOW_RANGE_AUTO &&
         snow_image_format_bits(insitu->pattern) > 0)
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "mode sum needs one range of sums for all pictures: give the look "
+            "mode sum needs one range of sums for all pictures; give the look "
             "a range, or write .npy files");
     return SNOW_STATUS_OK;
 }
@@ -149,7 +149,7 @@ static snow_status make_step(snow_insitu *insitu, int64_t step) {
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
             "cannot write a scattered picture, whose parts are on several "
-            "ranks: call snow_insitu_render and write the parts");
+            "ranks; call snow_insitu_render and write the parts");
     INSITU_TRY(update(insitu));
     INSITU_TRY(draw(insitu, &image));
     snow_status status = SNOW_STATUS_OK;

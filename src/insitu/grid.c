@@ -147,7 +147,7 @@ snow_status snow_insitu_set_distribution(snow_insitu *insitu,
     if ((int)ghosts < 0 || ghosts > SNOW_GHOSTS_NONE || (int)balance < 0 ||
         balance > SNOW_BALANCE_REPARTITION)
         return snow_insitu_refuse(insitu,
-                                  "invalid ghosts %d or balance %d: use values "
+                                  "invalid ghosts %d or balance %d; use values "
                                   "of snow_ghosts and snow_balance",
                                   (int)ghosts, (int)balance);
     insitu->ghosts = ghosts;

@@ -167,7 +167,7 @@ snow_status snow_insitu_set_view(snow_insitu *insitu, const snow_view *given) {
     if (view.width < 1 || view.height < 1)
         return snow_insitu_refuse(
             insitu,
-            "invalid picture of %dx%d pixels: set width and height of the view",
+            "invalid picture of %dx%d pixels; set width and height of the view",
             view.width, view.height);
     insitu->view = view;
     insitu->has_view = true;

@@ -10,7 +10,7 @@ static snow_status add_brick(snow_insitu *insitu, int id) {
     if (!brick->voxels)
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "brick %d has no voxels: call snow_insitu_set_voxels", id);
+            "brick %d has no voxels; call snow_insitu_set_voxels", id);
     if (insitu->type != SNOW_TYPE_NONE && insitu->type != brick->type)
         return snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
@@ -31,7 +31,7 @@ static snow_status list_bricks(snow_insitu *insitu) {
     insitu->type = SNOW_TYPE_NONE;
     if (!insitu->whole.dims[0])
         return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
-                                 "there is no grid: call snow_insitu_set_grid");
+                                 "there is no grid; call snow_insitu_set_grid");
     INSITU_TRY(snow_insitu_reserve(insitu, &insitu->held, &insitu->held_bytes,
                                    0, count * sizeof *insitu->held));
     INSITU_TRY(snow_insitu_reserve(insitu, &insitu->moved, &insitu->moved_bytes,

@@ -129,7 +129,7 @@ snow_status snow_insitu_write(snow_insitu *insitu, int64_t step,
     if (image && !format_path(insitu, step, path, sizeof path))
         status = snow_context_fail(
             insitu->context, SNOW_STATUS_BAD_USAGE,
-            "%.100s...: the path is too long: shorten it", insitu->pattern);
+            "%.100s...: the path is too long; shorten it", insitu->pattern);
     if (image && status == SNOW_STATUS_OK)
         status = save_picture(insitu, step, path, image);
     insitu->seconds.write = snow_comm_seconds(insitu->comm) - start;

@@ -45,7 +45,7 @@ static snow_status check_bounds(snow_insitu *insitu,
         double dims = (-bounds[HIGH + i] - bounds[LOW + i]) / least;
         if (isinf(bounds[LOW + i]))
             return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
-                                     "no rank has a brick: give at least one");
+                                     "no rank has a brick; give at least one");
         if (!(least > 0) || !(most - least <= 1e-6 * most))
             return snow_context_fail(
                 insitu->context, SNOW_STATUS_BAD_USAGE,
@@ -54,7 +54,7 @@ static snow_status check_bounds(snow_insitu *insitu,
                 i, least, most);
         if (!(dims < DIMS_MOST))
             return snow_context_fail(insitu->context, SNOW_STATUS_BAD_USAGE,
-                                     "invalid grid of %g voxels along axis %d: "
+                                     "invalid grid of %g voxels along axis %d; "
                                      "correct the positions of the bricks",
                                      dims, i);
     }

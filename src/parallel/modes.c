@@ -30,7 +30,7 @@ snow_status snow_flight_check_mode(const snow_flight *f) {
         return snow_fail(
             f->picture.job.context, SNOW_STATUS_BAD_USAGE,
             "mode %s cannot be deterministic on several ranks, since sums are "
-            "rounded part by part: render on one rank",
+            "rounded part by part; render on one rank",
             snow_mode_name(s->mode));
     return SNOW_STATUS_OK;
 }
@@ -56,7 +56,7 @@ snow_status snow_flight_agree_range(snow_flight *f) {
         return SNOW_STATUS_OK;
     return snow_fail(
         f->picture.job.context, SNOW_STATUS_BAD_INPUT,
-        "values from %g to %g exceed the range of float: use mode over",
+        "values from %g to %g exceed the range of float; use mode over",
         identity->low, identity->high);
 }
 

@@ -91,7 +91,7 @@ static snow_status compare_files(const opening *o) {
     for (int i = 0; i < 5; i++)
         if (ends[i] != -ends[5 + i])
             return snow_fail(o->context, SNOW_STATUS_BAD_INPUT,
-                             "%s: is not the same file on all ranks: put it on "
+                             "%s: is not the same file on all ranks; put it on "
                              "a file system that all ranks share",
                              o->path);
     return SNOW_STATUS_OK;

@@ -56,7 +56,7 @@ snow_status snow_partition_params_make(
         how.cut == SNOW_PARTITION_AUTO || how.cut == SNOW_PARTITION_MEASURED;
     if (how.cut < SNOW_PARTITION_AUTO || how.cut > SNOW_PARTITION_MEASURED)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
-                         "invalid partition %d: use a value of snow_partition",
+                         "invalid partition %d; use a value of snow_partition",
                          how.cut);
     SNOW_TRY(snow_settings_resolve(context, whole, &resolved));
     SNOW_TRY(snow_placement_make(context, whole, &known, &placement));
@@ -187,7 +187,7 @@ snow_status snow_ranks_partition(const snow_volume *volume,
         cut < SNOW_PARTITION_AUTO || cut > SNOW_PARTITION_BRICKS)
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
-            "invalid partition %d for %d ranks along axis %d: use a value of "
+            "invalid partition %d for %d ranks along axis %d; use a value of "
             "snow_partition, at least one rank, and axis 0 to 2",
             cut, ranks, slice_axis);
     const int64_t *dims = volume->info.dims;

@@ -60,12 +60,12 @@ snow_status snow_pipeline_open(snow_frame *frame, snow_comm *comm,
     snow_ranks *r = frame->ranks;
     if (r && r->in_flight && r->comm != comm)
         return fail_in_flight(frame->context,
-                              "pictures of another communicator are in flight: "
+                              "pictures of another communicator are in flight; "
                               "finish them first");
     if (r && r->in_flight == SNOW_PICTURES_MOST)
         return fail_in_flight(
             frame->context,
-            "two pictures are in flight: call snow_ranks_finish first");
+            "two pictures are in flight; call snow_ranks_finish first");
     SNOW_TRY(snow_ranks_of(frame, comm));
     r = frame->ranks;
     snow_flight *f = snow_flight_at(r, r->in_flight);
@@ -185,7 +185,7 @@ snow_status snow_pipeline_take(snow_frame *frame, snow_image **image) {
     if (!r || !r->in_flight)
         return fail_in_flight(
             frame->context,
-            "no picture is in flight: call snow_ranks_begin first");
+            "no picture is in flight; call snow_ranks_begin first");
     snow_flight *f = snow_flight_at(r, 0);
     r->first = (r->first + 1) % SNOW_PICTURES_MOST;
     r->in_flight--;

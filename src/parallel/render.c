@@ -124,7 +124,7 @@ static snow_status check_parts(const snow_ranks *r) {
     }
     if (!same)
         return snow_fail(r->context, SNOW_STATUS_BAD_USAGE,
-                         "ranks hold parts of different volumes: open the same "
+                         "ranks hold parts of different volumes; open the same "
                          "volume on all ranks");
     for (int axis = 0; axis < 3; axis++)
         all *= (uint64_t)r->parts[0].dims[axis];
@@ -184,7 +184,7 @@ static snow_status synchronize_all(snow_flight *p, snow_status status,
     if (words[TERMS] != -words[MINUS_TERMS])
         return snow_fail(
             r->context, SNOW_STATUS_BAD_USAGE,
-            "views or settings differ between ranks: give all ranks the same");
+            "views or settings differ between ranks; give all ranks the same");
     *new_parts = words[NEW] != 0;
     return *new_parts ? share_parts(r, p) : SNOW_STATUS_OK;
 }

@@ -21,7 +21,7 @@ static snow_status fail_part(const snow_picture *p, const char *what,
                              const char *name) {
     return snow_fail(p->job.context, SNOW_STATUS_BAD_USAGE,
                      "%s%s needs all parts of the volume, and this is one of "
-                     "several: call snow_ranks_render",
+                     "several; call snow_ranks_render",
                      what, name);
 }
 

@@ -292,7 +292,7 @@ static snow_status check_layers(snow_context *context,
             return snow_fail(
                 context, SNOW_STATUS_BAD_USAGE,
                 "this view needs %lld layers of ghost voxels along %c, but a "
-                "part of the volume has %lld: open the volume for this view, "
+                "part of the volume has %lld; open the volume for this view, "
                 "or with more layers",
                 (long long)layers[axis], names[axis], (long long)few);
     }

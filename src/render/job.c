@@ -28,7 +28,7 @@ static snow_status check_part(const snow_job *job) {
         return snow_fail(
             job->context, SNOW_STATUS_BAD_USAGE,
             "deterministic pictures need slabs along %c, and this part of the "
-            "volume is not one: partition the volume into slabs",
+            "volume is not one; partition the volume into slabs",
             "xyz"[job->placement.slice_axis]);
     return snow_ghosts_check(
         job->context, job->volume, job->view, &job->settings,
@@ -41,7 +41,7 @@ static snow_status check_stream(const snow_job *job, int parts) {
     if (!job->volume->stream || parts == 1)
         return SNOW_STATUS_OK;
     return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                     "cannot render one slab of a streamed volume: open it "
+                     "cannot render one slab of a streamed volume; open it "
                      "with snow_volume_open");
 }
 
@@ -53,12 +53,12 @@ static snow_status check_raycast(const snow_job *job) {
         return snow_fail(
             job->context, SNOW_STATUS_NO_MEMORY,
             "%s: method raycast needs all voxels in memory, but they stay in "
-            "the file: allow more memory, give --crop, or use another method",
+            "the file; allow more memory, give --crop, or use another method",
             job->volume->path);
     if (!snow_job_whole(job))
         return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
                          "method raycast needs the whole volume in one "
-                         "process: render on one rank, or use another method");
+                         "process; render on one rank, or use another method");
     return SNOW_STATUS_OK;
 }
 

@@ -40,7 +40,7 @@ static snow_status open_slabs(snow_parts *parts) {
         return snow_fail(
             job->context, SNOW_STATUS_NO_MEMORY,
             "%s: a deterministic picture by method %s needs all voxels in "
-            "memory: allow more memory, or render without deterministic",
+            "memory; allow more memory, or render without deterministic",
             job->volume->path, snow_method_name(job->settings.method));
     SNOW_TRY(snow_ghosts_needed(
         job->context, &job->volume->info, job->view, &job->settings,
@@ -136,7 +136,7 @@ static snow_status fail_room(const snow_parts *parts) {
     return snow_fail(
         job->context, SNOW_STATUS_NO_MEMORY,
         "%s: slabs of %.1f MiB, with %lld slices of their neighbours, and "
-        "their encoding do not fit%s: allow more memory, give --crop or, where "
+        "their encoding do not fit%s; allow more memory, give --crop or, where "
         "a pixel is several voxels wide, a larger --size",
         job->volume->path,
         (double)snow_slab_bytes(job->volume, &parts->cut) / 0x1p20,

@@ -111,7 +111,7 @@ static snow_status check_depth(const snow_job *job) {
     if (!job->settings.depth || mode == SNOW_MODE_OVER || mode == SNOW_MODE_ISO)
         return SNOW_STATUS_OK;
     return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
-                     "mode %s has no depth: use mode over or iso",
+                     "mode %s has no depth; use mode over or iso",
                      snow_mode_name(mode));
 }
 

@@ -148,7 +148,7 @@ snow_status snow_mask_check_grid(snow_context *context,
     if (memcmp(v, m, sizeof volume->dims) != 0)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
-            "the mask has %lldx%lldx%lld voxels, the volume %lldx%lldx%lld: "
+            "the mask has %lldx%lldx%lld voxels, the volume %lldx%lldx%lld; "
             "resample the mask onto the volume's grid",
             (long long)m[0], (long long)m[1], (long long)m[2], (long long)v[0],
             (long long)v[1], (long long)v[2]);

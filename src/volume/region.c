@@ -26,7 +26,7 @@ static snow_status refuse_crop(snow_context *context,
     }
     return snow_fail(
         context, SNOW_STATUS_BAD_USAGE,
-        "--crop %s is not inside the volume of %lldx%lldx%lld voxels: give the "
+        "--crop %s is not inside the volume of %lldx%lldx%lld voxels; give the "
         "first voxel and one past the last along x, y and z",
         text, (long long)dims[0], (long long)dims[1], (long long)dims[2]);
 }
@@ -43,7 +43,7 @@ snow_status snow_region_lay_out(snow_context *context,
         region.all > (uint64_t)INT64_MAX)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
-            "%lld time steps are larger than any file: check the sizes",
+            "%lld time steps are larger than any file; check the sizes",
             (long long)info->times);
     region.before = step * (uint64_t)info->time;
     for (int i = 0; i < 3; i++) {

@@ -117,7 +117,7 @@ snow_status snow_stream_open(snow_context *context, const char *path,
     if (snow_source_is_stream(path))
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "%s: can be read only once, but streaming reads it "
-                         "several times: copy it to a file",
+                         "several times; copy it to a file",
                          strcmp(path, "-") ? path : "standard input");
     SNOW_TRY(new_stream(context, path, &known, slab_bytes, &stream));
     listen_once(context, stream);

@@ -71,7 +71,7 @@ snow_status snow_volume_info_check(snow_context *context,
     if (!snow_volume_count(dims, info->type, &voxels, &bytes))
         return snow_fail(context, SNOW_STATUS_BAD_INPUT,
                          "a volume of %lldx%lldx%lld voxels is larger than any "
-                         "file: check the sizes",
+                         "file; check the sizes",
                          (long long)dims[0], (long long)dims[1],
                          (long long)dims[2]);
     if (!matrix_is_finite(info->matrix) ||
@@ -83,7 +83,7 @@ snow_status snow_volume_info_check(snow_context *context,
         info->slope == 0)
         return snow_fail(
             context, SNOW_STATUS_BAD_INPUT,
-            "invalid slope %g and intercept %g: correct them in the header",
+            "invalid slope %g and intercept %g; correct them in the header",
             info->slope, info->intercept);
     return SNOW_STATUS_OK;
 }
@@ -162,7 +162,7 @@ static snow_status check_part(const snow_volume *volume,
             return snow_fail(
                 volume->context, SNOW_STATUS_BAD_USAGE,
                 "along axis %d a part of %lld voxels from %lld, stored as %lld "
-                "from %lld, is not inside %lld voxels: correct its boxes",
+                "from %lld, is not inside %lld voxels; correct its boxes",
                 axis, (long long)part->count[axis],
                 (long long)part->first[axis], (long long)stored,
                 (long long)part->stored[axis], (long long)part->dims[axis]);
@@ -175,7 +175,7 @@ snow_status snow_volume_need_voxels(const snow_volume *volume) {
         return SNOW_STATUS_OK;
     return snow_fail(volume->context, SNOW_STATUS_BAD_USAGE,
                      "%s: the voxels stay in the file, but this call needs all "
-                     "of them: open the volume with snow_volume_open",
+                     "of them; open the volume with snow_volume_open",
                      volume->path);
 }
 

@@ -656,7 +656,7 @@ static void spacings_that_are_none_are_refused(void **state) {
         char header[300];
         snprintf(header, sizeof header, SHORTS "encoding: raw\n%s\n\n",
                  fields[i]);
-        refused(&files, header, "zero, not finite or in one plane");
+        refused(&files, header, "zero, not finite, or in one plane");
     }
     support_files_end(&files);
 }

@@ -112,7 +112,7 @@ static snow_status make_kernel(snow_iso *iso, const snow_settings *settings,
         snow_scaled_kernel_make(settings->kernel, settings->footprint, width);
     if (snow_comb_taps(&kernel->scaled_kernel) > SNOW_INTERPOLATE_MOST)
         return snow_fail(iso->context, SNOW_STATUS_BAD_USAGE,
-                         "pixels are too many voxels wide for mode iso: use a "
+                         "pixels are too many voxels wide for mode iso; use a "
                          "larger picture, or zoom");
     kernel->cubic = settings->kernel == SNOW_KERNEL_BSPLINE &&
                     settings->footprint == 4 && kernel->scaled_kernel.wide == 1;

@@ -33,7 +33,7 @@ static snow_status measure(snow_context *context, const snow_volume *volume,
         return SNOW_STATUS_OK;
     return snow_fail(
         context, SNOW_STATUS_BAD_INPUT,
-        "values from %g to %g exceed the range of float: use mode over",
+        "values from %g to %g exceed the range of float; use mode over",
         identity->low, identity->high);
 }
 

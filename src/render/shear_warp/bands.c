@@ -78,7 +78,7 @@ snow_status snow_grouping_make(snow_context *context, int64_t slices,
     if (grouping.node_count < 0)
         return snow_fail(context, SNOW_STATUS_BAD_USAGE,
                          "deterministic pictures need whole groups of slices, "
-                         "and slices %lld to %lld are not: partition the "
+                         "and slices %lld to %lld are not; partition the "
                          "volume at multiples of %d groups",
                          (long long)slab.first,
                          (long long)(slab.first + slab.count - 1), SNOW_GROUPS);

@@ -14,7 +14,7 @@ static snow_status encode(snow_picture *p, snow_job *job) {
     if (job->settings.deterministic && local->params.clip.cuts)
         return snow_fail(job->context, SNOW_STATUS_BAD_USAGE,
                          "deterministic pictures of several ranks cannot blend "
-                         "several axes: use quality normal");
+                         "several axes; use quality normal");
     SNOW_TRY(snow_shear_warp_new(job->context, shear_warp));
     local->shear_warp = *shear_warp;
     return snow_shear_warp_encode(*shear_warp, &local->params, job->stats);
