@@ -70,5 +70,5 @@ says "mode mip has no depth; use mode over or iso"
 # shellcheck disable=SC2086
 run 2 "a deterministic mean" launch 3 "$MPI_TOOL" $head -m mean -o d.npy \
     --deterministic
-says "it cannot be deterministic; render on one"
+says "cannot be deterministic on several ranks"
 finish

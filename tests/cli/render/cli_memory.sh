@@ -18,7 +18,7 @@ check "is the same" cmp a30M.png b.png
 
 # What can be read in slabs is cli_stream.sh's.
 refused 5 "voxels over the limit" \
-    'a.nrrd: slabs of .* neighbours, .* no place under the limit of 3.8 MiB' \
+    'a.nrrd: slabs of .* neighbours, and their encoding do not fit under the limit of 3.8 MiB' \
     "$TOOL" render a.nrrd "${small[@]}" --method footprint -o c.png --memory 3900K
 refused 5 "a picture over the limit" 'need 17.1 MiB' \
     "$TOOL" render a.nrrd -s 1024x1024 -o c.png --memory 6M
@@ -26,7 +26,7 @@ refused 5 "encodings over the limit" 'voxels are interesting .100 %' \
     "$TOOL" render a.nrrd "${small[@]}" -q -o c.png --memory 4200K
 refused 5 "standard input" 'under a limit' bash -c \
     "'$TOOL' render - -o c.png --memory 3000K <a.nrrd"
-refused 5 "a turntable" 'have no place' "$TOOL" turntable a.nrrd \
+refused 5 "a turntable" 'do not fit' "$TOOL" turntable a.nrrd \
     "${small[@]}" --method footprint --frames 3 -o 'f_%d.png' --memory 3900K
 refused 5 "a movie" 'need 4.0 MiB' "$TOOL" movie a.nrrd a.nrrd \
     "${small[@]}" --range p1,p99 -o 'f_%d.png' --memory 3900K
