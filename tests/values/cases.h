@@ -25,8 +25,7 @@ typedef struct value_case {
     bool shaded;
     char side; /* the camera sits at +y or +z */
     double azimuth, elevation, zoom;
-    double reached[3]; /* dB from the truth in draft, normal and high, of every
-                          fourth column and row */
+    double reached[3]; /* dB from the truth in draft, normal and high */
 } value_case;
 
 extern const value_case value_cases[];
