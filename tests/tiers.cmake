@@ -31,23 +31,27 @@ set(SNOW_LABEL_plain test_model_camera test_model_encodings test_model_picture
     cli_matrix cli_balance cli_turntable cli_modules cli_memory cli_progress
     cli_large oracle_zarr oracle_tiff oracle_vtk oracle_pictures)
 
-# Seconds on one core in the short tier, of those that take more than one: ctest
-# begins with the longest, so that no core is idle at the end.
+# Tenths of a second on one core in the short tier, of those that take more than
+# one second (scripts/test_costs); before them what takes longest in the long
+# tier, and what waits.  ctest begins with the longest, so that no core is idle
+# at the end.
 set(SNOW_COSTS
     mpi_stall 300 mpi_insitu 280 simulate 270 mpi_render 260 mpi_modes 250
     mpi_fail 240 mpi_comm 230 mpi_bench 220 cli_progress 200 cli_large 190
-    test_ranks 150 cli_stream 140 test_stream 130 cli_documents 120
-    test_shear_warp 110 oracle_orientation 100 oracle_zarr 95 oracle_vtk 90
-    cli_bench 85 cli_figures 80 cli_turntable 75 cli_matrix 70 test_modes 65
-    test_shear_warp_bits 64 test_model_picture 63 test_combine 62 test_mipmap 61
-    test_ranks_open 60 test_pipeline 58 cli_render 57 test_bands 56
-    test_phantom 55 oracle_tiff 54 test_shear_warp_quality 53 test_shear_warp_perspective 52
-    test_histogram 51 test_early 50 test_insitu 49 test_model_encodings 48
-    test_gradient_opacity 47 cli_frame 46 cli_config 45 cli_formats 44 cli_balance 43
-    catalyst 42 cli_convert 41 oracle_dicom 40 oracle_pictures 39
-    test_deterministic 38 test_comm 37 test_load_balance 36 test_splat_isa 35
-    test_perspective 34 cli_real 33 cli_mask 32
-    test_raycast 105 test_value 68)
+    test_model_raycast 37 cli_stream 87 test_ranks 62 test_stream 57
+    cli_figures 52 test_shear_warp 46 oracle_zarr 46 test_modes 44
+    cli_turntable 41 oracle_vtk 40 cli_render 39 test_stop 37
+    example_installed 37 test_combine 35 cli_bench 34 cli_interrupt 34
+    test_mipmap 32 cli_documents 31 test_raycast 31 cli_matrix 31
+    oracle_dicom 31 cli_frame 30 test_pipeline 28 cli_measurements 28
+    test_ranks_open 28 test_value 27 test_shear_warp_bits 27 test_insitu 26
+    test_bands 25 test_model_picture 22 test_histogram 22 oracle_tiff 22
+    cli_real 22 cli_balance 21 test_model_encodings 20 test_value_model 20
+    oracle_orientation 20 oracle_hdf5 20 oracle_netcdf 18 test_comm 17
+    cli_formats 16 cli_config 16 test_gradient_opacity 16 test_value_truth 14
+    test_load_balance 13 test_api 13 test_kernels 13 cli_usage 12
+    test_shear_warp_quality 12 test_splat_isa 11 test_shear_warp_perspective 11
+    test_phantom 11 oracle_pictures 11 test_value_views 11 test_early 10)
 
 file(GLOB_RECURSE sources *.c *.sh *.py)
 get_property(tests DIRECTORY PROPERTY TESTS)
@@ -87,5 +91,8 @@ foreach(n RANGE ${last})
   list(GET SNOW_COSTS ${next} cost)
   if(test IN_LIST tests)
     set_tests_properties(${test} PROPERTIES COST ${cost})
+  elseif(NOT test MATCHES "^(simulate|example_installed)$" AND
+         NOT sources MATCHES "/${test}[.](c|sh|py)(;|$)")
+    message(FATAL_ERROR "tests/tiers.cmake: there is no test '${test}'")
   endif()
 endforeach()

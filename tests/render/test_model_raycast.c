@@ -128,8 +128,10 @@ static void check_subject(const subject *what) {
     model_close(&stage);
 }
 
-static void check_subjects(const subject *subjects, size_t count) {
-    for (size_t n = 0; n < count; n++)
+/* In the short tier each other one from number `first` on. */
+static void check_subjects(const subject *subjects, size_t count,
+                           size_t first) {
+    for (size_t n = support_start(first, 2); n < count; n += support_stride(2))
         check_subject(&subjects[n]);
 }
 
@@ -142,7 +144,7 @@ static void the_marschner_lobb_signal(void **state) {
          * to do badly. */
         {"marschner-lobb", {40, 40, 40}, 10, -15, &signal_lit, 0.68},
     };
-    check_subjects(subjects, 2);
+    check_subjects(subjects, 2, 1);
 }
 
 static void the_engine(void **state) {
@@ -151,7 +153,7 @@ static void the_engine(void **state) {
         {"engine", {96, 96, 42}, 30, 20, &haze, 0.98},
         {"engine", {96, 96, 42}, 30, 20, &surface, 0.9},
     };
-    check_subjects(subjects, 2);
+    check_subjects(subjects, 2, 0);
 }
 
 static void the_head(void **state) {
@@ -160,7 +162,7 @@ static void the_head(void **state) {
         {"head", {96, 96, 42}, -40, -60, &haze, 0.98},
         {"head", {96, 96, 42}, -40, -60, &surface, 0.945},
     };
-    check_subjects(subjects, 2);
+    check_subjects(subjects, 2, 1);
 }
 
 static void the_shells_and_the_cube(void **state) {
@@ -169,7 +171,7 @@ static void the_shells_and_the_cube(void **state) {
         {"shells", {96, 96, 96}, -30, 20, &haze, 0.98},
         {"cube", {96, 96, 42}, 25, 35, &surface, 0.95},
     };
-    check_subjects(subjects, 2);
+    check_subjects(subjects, 2, 0);
 }
 
 int main(void) {

@@ -9,6 +9,11 @@
 # exit code; each further check speaks of that run.  One line per check; the
 # script fails when any check did.
 set -u
+# In the background of a shell, or under nohup, some signals are ignored, which
+# no shell can undo for the commands that it starts.
+if [ -z "${SNOW_SIGNALS-}" ] && env --default-signal=INT true 2>/dev/null; then
+    SNOW_SIGNALS=default exec env --default-signal=INT,HUP,TERM bash "$0" "$@"
+fi
 TOOL=$(realpath "$1")
 DATA=${2:-}
 HERE=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd) # tests/

@@ -124,7 +124,8 @@ static void the_middle_of_a_block_has_it_too(void **state) {
 
 static void an_entry_of_one_value_is_a_slab_of_it(void **state) {
     (void)state;
-    value_scene scene = value_scene_of((int64_t[]){4, 4, 4}, linear, 0);
+    value_scene made = value_scene_of((int64_t[]){4, 4, 4}, linear, 0);
+    value_scene scene = made;
     const snow_opacity_point points[] = {{0, 0.3}, {6, 0.3}, {6, 1}};
     const snow_color_point colors[] = {{6, 1, 0, 0}, {6, 0, 1, 0}};
     scene.base.opacities = points;
@@ -146,7 +147,7 @@ static void an_entry_of_one_value_is_a_slab_of_it(void **state) {
     assert_true(fabs(across->color[0] / 32767.0 - front) < 1e-3);
     assert_int_equal(across->color[0] + across->color[1], 32767);
     value_table_free(&table);
-    free((void *)(uintptr_t)scene.base.voxels);
+    value_scene_free(&made);
 }
 
 /* --- linear fields -------------------------------------------------------- */

@@ -38,7 +38,11 @@ assert len(lines) == (3 + 1) * 8, len(lines)  # with the legend
 END
 done
 
-run 0 "as a table" "$TOOL" bench figure11 --quick
-prints "nodes: 32 take, efficiency"
+if long_tier; then
+    run 0 "as a table" "$TOOL" bench figure11 --quick
+    prints "nodes: 32 take, efficiency"
+else
+    skipped "figure 11" "left to the long tier"
+fi
 run 2 "options of others" "$TOOL" bench figure11 --threads 2
 finish

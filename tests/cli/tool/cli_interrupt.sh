@@ -66,7 +66,7 @@ check "nothing is left" [ "$(ls -A)" = "$before" ]
 
 # A movie keeps its whole frames.
 run 0 "a small volume" "$TOOL" phantom engine --dims 64x64x64 -o w.nrrd
-slow=("$TOOL" turntable w.nrrd -s 800x800 --frames 12 --method original -j 1)
+slow=("$TOOL" turntable w.nrrd -s 600x600 --frames 12 --method original -j 1)
 for _ in $(seq 20); do # as often as it comes too late
     interrupt SIGINT 0 part_01.png "${slow[@]}" -o part_%02d.png >"$OUT"
     code=$?
