@@ -1,5 +1,5 @@
 /* fuzz/fuzz_den.c - an input is a DEN volume. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

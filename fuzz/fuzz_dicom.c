@@ -3,7 +3,7 @@
  * GDCM, whose codecs unpack pixels, leaks memory and ends the process at some
  * damaged pixels, as docs/formats.md tells.  Our own parser alone is looked at
  * in a build with -DSNOW_GDCM=OFF; with it, -detect_leaks=0 leads further. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -1,5 +1,5 @@
 /* fuzz/fuzz_hdf5.c - an input is an HDF5 file. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

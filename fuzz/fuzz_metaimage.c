@@ -1,6 +1,6 @@
 /* fuzz/fuzz_metaimage.c - an input is a MetaImage with its voxels behind the
  * header; other files are refused where they would be opened. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

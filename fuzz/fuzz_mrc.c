@@ -1,5 +1,5 @@
 /* fuzz/fuzz_mrc.c - an input is an MRC map. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -1,5 +1,5 @@
 /* fuzz/fuzz_netcdf.c - an input is a classic NetCDF file. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -1,6 +1,6 @@
 /* fuzz/fuzz_nifti.c - an input is a NIfTI file of one piece; pairs end where
  * the other file would be opened. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

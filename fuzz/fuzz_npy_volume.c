@@ -1,5 +1,5 @@
 /* fuzz/fuzz_npy_volume.c - an input is a NumPy array as a volume. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

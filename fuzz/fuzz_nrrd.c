@@ -1,5 +1,5 @@
 /* fuzz/fuzz_nrrd.c - an input is an NRRD file with its data attached. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -1,8 +1,8 @@
 /* fuzz/fuzz_png.c - an input is a PNG file.  It is looked at as it is, and
  * again with the right CRC in every chunk: changed bytes would hardly ever get
  * past the check sums otherwise. */
-#include "chunks.h"
-#include "picture.h"
+#include "support/chunks.h"
+#include "support/picture.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -1,8 +1,8 @@
 /* fuzz/fuzz_png_slice.c - an input is a PNG file as a slice.  It is looked at
  * as it is, and again with the right CRC in every chunk: changed bytes would
  * hardly ever get past the check sums otherwise. */
-#include "capped.h"
-#include "chunks.h"
+#include "support/capped.h"
+#include "support/chunks.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

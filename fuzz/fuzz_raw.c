@@ -1,6 +1,6 @@
 /* fuzz/fuzz_raw.c - an input is a file name, which may tell sizes and type, a
  * line end, and the file's bytes. */
-#include "capped.h"
+#include "support/capped.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* fuzz/fuzz_tf.c - an input is a transfer function's file.  What is taken makes
  * a transfer function, and reads as the same points from our JSON. */
-#include "capped.h"
+#include "support/capped.h"
 
 #include <snowglass/look_file.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* fuzz/fuzz_tiff.c - an input is a TIFF file. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

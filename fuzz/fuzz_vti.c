@@ -1,5 +1,5 @@
 /* fuzz/fuzz_vti.c - an input is a VTI file. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -1,5 +1,5 @@
 /* fuzz/fuzz_vtk.c - an input is a legacy file of VTK. */
-#include "capped.h"
+#include "support/capped.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

@@ -1,8 +1,8 @@
 /* fuzz/fuzz_zarr.c - an input is a folder of files as records
  * (formats/zarr/zarr.h): the first array or image in it, a level by its number,
  * and a box. */
-#include "capped.h"
 #include "formats/zarr/zarr.h"
+#include "support/capped.h"
 
 #include <stdlib.h>
 #include <string.h>

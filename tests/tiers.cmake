@@ -3,21 +3,25 @@
 # Labels:
 #   long     not run by the short tier: it takes long, or repeats with large data
 #            what another test shows with small
+#   late     not run by the short tier either, but under sanitizers by the long
+#            one: the bench program and its tables, the in situ adaptor, numbers
+#            held against a truth, and what another test of the short tier calls
 #   surface  reads what comes from elsewhere: files, recipes, command lines;
 #            run under the address and undefined-behaviour sanitizers by each
-#            tier
+#            tier; all of formats/, and those named here
 #   threads  runs threads; run under the thread sanitizer by the long tier
 #   plain    not run under sanitizers: it compares numbers with a reference in
 #            double, or looks at timing and memory of processes
 # The sanitized builds of the long tier run all but `long` and `plain`.
 set(SNOW_LABEL_long cli_large simulate mpi_bench mpi_combine mpi_fail mpi_hosts
     mpi_insitu mpi_kill mpi_modes mpi_other mpi_stall)
-set(SNOW_LABEL_surface test_base test_compare test_convert test_corpus test_den
-    test_dicom test_hdf5 test_image test_mask test_metaimage test_mrc
-    test_netcdf test_nifti test_npy test_npy_pfm test_nrrd test_pictures
-    test_png test_png_slice test_raw test_recipe test_save test_source test_tf
-    test_tiff test_volume test_vti test_vtk test_writer test_writer_named
-    test_zarr)
+set(SNOW_LABEL_late catalyst cli_bench cli_figures cli_measurements mpi_comm
+    oracle_vtk test_model_raycast test_value_truth)
+file(GLOB formats CONFIGURE_DEPENDS formats/test_*.c)
+list(TRANSFORM formats REPLACE ".*/(.*)[.]c$" "\\1")
+set(SNOW_LABEL_surface ${formats} test_base test_compare test_convert test_image
+    test_mask test_npy_pfm test_pictures test_png test_recipe test_save
+    test_source test_tf test_volume test_writer test_writer_named)
 set(SNOW_LABEL_threads test_affinity test_bands test_combine test_comm test_early
     test_pipeline test_frames test_insitu test_insitu_marks test_modes
     test_raycast test_value test_simulated test_stop test_progress test_ranks test_ranks_open test_shear_warp_bits test_redistribute
@@ -55,7 +59,7 @@ set(SNOW_COSTS
 
 file(GLOB_RECURSE sources *.c *.sh *.py)
 get_property(tests DIRECTORY PROPERTY TESTS)
-foreach(label long surface threads plain)
+foreach(label long late surface threads plain)
   foreach(test ${SNOW_LABEL_${label}})
     if(test IN_LIST tests)
       set_property(TEST ${test} APPEND PROPERTY LABELS ${label})

@@ -1,6 +1,7 @@
 /* tests/formats/test_corpus.c - every file of the fuzzers' corpora of volumes
  * is opened with each allocation made to fail, once and from there on: an error
  * with a message, nothing held, no crash. */
+#include "formats/format.h"
 #include "support/failing.h"
 
 #include <dirent.h>
@@ -73,8 +74,14 @@ static void no_reader_is_lost_without_memory(void **state) {
         {"hdf5", "a.h5"},        {"netcdf", "a.nc"},     {"nrrd", "a.nrrd"},
         {"nifti", "a.nii"},      {"metaimage", "a.mha"}, {"den", "a.den"},
     };
-    for (size_t i = 0; i < sizeof subjects / sizeof *subjects; i++)
+    const size_t count = sizeof subjects / sizeof *subjects;
+    for (size_t i = 0; i < count; i++)
         check_corpus(subjects[i][0], subjects[i][1]);
+    /* Those, and three that no single file without options shows: DICOM (its
+     * library allocates for itself), Zarr (folders) and raw. */
+    if (snow_format_name(count + 3 - 1) == NULL ||
+        snow_format_name(count + 3) != NULL)
+        fail_msg("a format has no line above: it needs its corpus there");
 }
 
 int main(void) {

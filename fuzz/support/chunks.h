@@ -1,4 +1,5 @@
-/* fuzz/chunks.h - check sums of PNG that are right whatever was changed. */
+/* fuzz/support/chunks.h - check sums of PNG that are right whatever was
+ * changed. */
 #ifndef SNOW_FUZZ_CHUNKS_H
 #define SNOW_FUZZ_CHUNKS_H
 

@@ -1,4 +1,5 @@
-/* fuzz/replay.c - runs a fuzz target over stored inputs, without a fuzzer.
+/* fuzz/support/replay.c - runs a fuzz target over stored inputs, without a
+ * fuzzer.
  *
  * usage: fuzz_NAME FILE-OR-FOLDER ...   (folders are not descended into) */
 #include <dirent.h>

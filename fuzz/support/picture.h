@@ -1,9 +1,9 @@
-/* fuzz/picture.h - what the fuzz targets of the picture readers share: one
- * look at an input, with 64 MB of memory. */
+/* fuzz/support/picture.h - what the fuzz targets of the picture readers share:
+ * one look at an input, with 64 MB of memory. */
 #ifndef SNOW_FUZZ_PICTURE_H
 #define SNOW_FUZZ_PICTURE_H
 
-#include "capped.h"
+#include "support/capped.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* formats/mrc.c - density maps of electron microscopy and crystallography: MRC
- * and CCP4, .mrc .map .rec .ccp4.
+/* formats/mrc/mrc.c - density maps of electron microscopy and crystallography:
+ * MRC and CCP4, .mrc .map .rec .ccp4.
  *
  * After the MRC2014 format (Cheng et al., J. Struct. Biol. 192, 2015, 146-150;
  * ccpem.ac.uk/mrc_format/mrc2014.php) and IMOD's notes on bytes.  A header of

@@ -1,4 +1,4 @@
-/* formats/png.c - PNG images as slices: .png, usually in folders.
+/* formats/png/png.c - PNG images as slices: .png, usually in folders.
  *
  * Samples are read as stored, with 8 or 16 bits; fewer bits become 8 with the
  * same number, and palettes are not applied.  Colours and opacity are

@@ -1,4 +1,4 @@
-/* formats/den.c - DEN, the volumes of VolPack's examples and of UNC Chapel
+/* formats/den/den.c - DEN, the volumes of VolPack's examples and of UNC Chapel
  * Hill.
  *
  * 31 numbers of 16 bits in either byte order, then bytes, x fastest:

@@ -1,4 +1,4 @@
-/* formats/raw.c - raw voxels without a header, described by the user.
+/* formats/raw/raw.c - raw voxels without a header, described by the user.
  *
  * Missing options are taken from the file's name, where archives of volumes put
  * them: engine_256x256x110_uint8.raw, head_64x64x93_u16le.raw.gz. */

@@ -1,4 +1,4 @@
-/* fuzz/capped.h - what the fuzz targets of the volume readers share: an
+/* fuzz/support/capped.h - what the fuzz targets of the volume readers share: an
  * allocator that gives no more than CAP bytes, and one look at an input. */
 #ifndef SNOW_FUZZ_CAPPED_H
 #define SNOW_FUZZ_CAPPED_H
