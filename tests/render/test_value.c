@@ -5,135 +5,30 @@
 #include "frame.h"
 #include "reference/model.h"
 #include "simd/isa.h"
-#include "values/value_model.h"
+#include "values/pictures.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
-
-/* Within a quarter of a step of 8 bits, but for a few samples whose place in a
- * slab, or pixels whose end, rounds otherwise. */
-#define BOUND (0.25 / 255)
-#define FAR_BOUND (1.0 / 255)
-#define FAR_SHARE 0.012
 
 /* Less than a unit of the 15 bits of the image on the lattice, and more than
  * what its warp rounds. */
 #define WARP_BOUND 2e-6
 
-static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
-                                  SNOW_TYPE_FLOAT32, SNOW_TYPE_INT8,
-                                  SNOW_TYPE_UINT16};
-static const snow_quality qualities[] = {
-    SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
-static const model_matrix matrices[] = {MODEL_PLAIN, MODEL_ANISOTROPIC,
-                                        MODEL_OBLIQUE, MODEL_MIRRORED};
-
-/* Looks with none, one and several invisible ranges; a steep one. */
-static const snow_opacity_point all[] = {{0, 0.05}, {100, 0.5}};
 static const snow_opacity_point above[] = {
     {0, 0}, {35, 0}, {70, 0.6}, {100, 0.9}};
-static const snow_opacity_point bands[] = {{0, 0},    {20, 0}, {28, 0.4},
-                                           {36, 0},   {55, 0}, {64, 0.7},
-                                           {72, 0.1}, {80, 0}, {100, 0}};
-static const snow_opacity_point steep[] = {
-    {0, 0}, {50, 0}, {51.5, 0.9}, {100, 0.9}};
-static const struct {
-    const snow_opacity_point *points;
-    size_t count;
-} looks[] = {{all, COUNT(all)},
-             {above, COUNT(above)},
-             {bands, COUNT(bands)},
-             {steep, COUNT(steep)}};
-
-/* A scene for each number: all axes and types, spacings, qualities, densities,
- * shades, lights and looks. */
-static reference_scene numbered(int n) {
-    static const int64_t sizes[][3] = {{23, 19, 21}, {40, 9, 12}, {1, 14, 17},
-                                       {13, 1, 9},   {12, 15, 1}, {9, 12, 2}};
-    static const double backs[][3] = {{0, 0, 1},  {0, 1, 0},  {1, 0, 0},
-                                      {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
-    static const double ups[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
-    static const double zooms[] = {1.1, 2.6, 0.35, 5};
-    reference_scene s =
-        model_scene(sizes[n / 5 % 9 < 6 ? 0 : n % 6], types[n % 5], n / 2 % 2,
-                    matrices[n / 7 % 4], (uint64_t)n);
-    s.settings.method = SNOW_METHOD_VALUE;
-    s.settings.threads = 2;
-    s.settings.quality = qualities[n % 3];
-    s.settings.shade = n / 3 % 4 == 3 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
-    if (n / 4 % 3 == 1) {
-        s.settings.light_azimuth = 50;
-        s.settings.light_elevation = -25;
-        s.settings.shininess = 7.5;
-    }
-    if (n / 6 % 5 == 2)
-        s.settings.ambient = s.settings.diffuse = 0.9;
-    if (n / 11 % 4 == 3)
-        s.settings.threshold = 40;
-    s.opacities = looks[(size_t)n / 3 % COUNT(looks)].points;
-    s.opacity_count = looks[(size_t)n / 3 % COUNT(looks)].count;
-    model_look(&s, backs[n / 2 % 6], ups[n / 2 % 3]);
-    model_turn(&s, n % 2 ? 25 : -33, n * 37 % 70 - 35, n % 4 ? 0 : 15,
-               zooms[n / 9 % 4]);
-    s.view.width = 44;
-    s.view.height = 36;
-    return s;
-}
-
-static void free_numbered(reference_scene *s) {
-    free((void *)(uintptr_t)s->voxels);
-}
-
-#define SCENES 180
-
-/* The reference's picture, whose pixels end as those of the method. */
-static double *expected_of(const reference_scene *s) {
-    value_scene scene = {.base = *s};
-    value_plan plan;
-    size_t count = (size_t)s->view.width * (size_t)s->view.height;
-    double *picture = calloc(count, 4 * sizeof *picture);
-    assert_non_null(picture);
-    assert_true(value_plan_of(&scene, &plan));
-    value_model *model = value_model_new(&plan);
-    model->close_at =
-        s->settings.quality == SNOW_QUALITY_HIGH ? 1 - 1e-4 : 1 - 0.5 / 255;
-    for (size_t n = 0; n < count; n++)
-        value_model_pixel(model, (int)n % s->view.width, (int)n / s->view.width,
-                          picture + 4 * n);
-    value_model_free(model);
-    return picture;
-}
-
-static void compare(int n, const float *picture, const double *expected,
-                    size_t count) {
-    size_t far = 0, worst = 0;
-    double most = 0;
-    for (size_t i = 0; i < count; i++) {
-        double difference = fabs((double)picture[i] - expected[i]);
-        far += difference > BOUND;
-        if (!(difference <= most)) {
-            most = difference;
-            worst = i;
-        }
-    }
-    if (!(most <= FAR_BOUND) || (double)far > FAR_SHARE * (double)count)
-        fail_msg("scene %d: %g at %zu, %zu of %zu are beyond the bound", n,
-                 most * 255, worst / 4, far, count);
-}
 
 static void pictures_are_the_references(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < SCENES; n += (int)support_stride(7)) {
-        reference_scene s = numbered(n);
+    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(7)) {
+        reference_scene s = value_picture_scene(n);
         float *picture = model_picture(&stage, &s);
-        double *expected = expected_of(&s);
+        double *expected = value_picture_expected(&(value_scene){.base = s});
         assert_int_equal(snow_frame_stats(stage.frame)->method,
                          SNOW_METHOD_VALUE);
-        compare(n, picture, expected,
-                4 * (size_t)s.view.width * (size_t)s.view.height);
+        value_picture_compare(n, &s, picture, expected);
         free(picture);
         free(expected);
-        free_numbered(&s);
+        value_picture_free(&s);
     }
     model_close(&stage);
 }
@@ -150,9 +45,9 @@ static void same_bits(int n, const float *first, float *other, size_t count) {
 
 static void threads_and_encodings_give_the_same_bits(void **state) {
     (void)state;
-    for (int n = 0; n < SCENES; n += (int)support_stride(11)) {
+    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(11)) {
         model_stage stage = model_open();
-        reference_scene s = numbered(n);
+        reference_scene s = value_picture_scene(n);
         size_t count = 4 * (size_t)s.view.width * (size_t)s.view.height;
         s.settings.threads = 1;
         s.settings.encoding = SNOW_ENCODING_BITMAP;
@@ -168,7 +63,7 @@ static void threads_and_encodings_give_the_same_bits(void **state) {
         s.settings.encoding = SNOW_ENCODING_RLE;
         same_bits(n, first, model_picture(&stage, &s), count);
         free(first);
-        free_numbered(&s);
+        value_picture_free(&s);
         model_close(&stage);
     }
 }
@@ -178,8 +73,8 @@ static void threads_and_encodings_give_the_same_bits(void **state) {
 static void all_vector_levels_give_the_same_image(void **state) {
     (void)state;
     model_stage stage = model_open();
-    for (int n = 0; n < SCENES; n += (int)support_stride(7)) {
-        reference_scene s = numbered(n);
+    for (int n = 0; n < VALUE_PICTURES; n += (int)support_stride(7)) {
+        reference_scene s = value_picture_scene(n);
         size_t count = 4 * (size_t)s.view.width * (size_t)s.view.height;
         s.settings.isa = SNOW_ISA_SCALAR;
         float *plain = model_picture(&stage, &s), *first = NULL;
@@ -197,7 +92,7 @@ static void all_vector_levels_give_the_same_image(void **state) {
         }
         free(plain);
         free(first);
-        free_numbered(&s);
+        value_picture_free(&s);
     }
     model_close(&stage);
 }
@@ -253,7 +148,7 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
     static const snow_opacity_point more[] = {
         {0, 0}, {15, 0}, {70, 0.6}, {100, 0.9}};
     model_stage stage = model_open();
-    reference_scene s = numbered(0);
+    reference_scene s = value_picture_scene(0);
     snow_volume *volume = frozen(&stage, &s);
     s.opacities = above;
     s.opacity_count = COUNT(above);
@@ -273,7 +168,7 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
     model_turn(&s, 80, 0, 0, 1);
     assert_true(encodes(&stage, volume, &s));
     snow_volume_close(volume);
-    free_numbered(&s);
+    value_picture_free(&s);
     model_close(&stage);
 }
 
@@ -303,7 +198,7 @@ static void refused(const reference_scene *s, const char *what) {
 
 static void what_it_does_not_draw_is_refused(void **state) {
     (void)state;
-    const reference_scene plain = numbered(0);
+    const reference_scene plain = value_picture_scene(0);
     reference_scene s = plain;
     s.view.fov = 30;
     refused(&s, "perspective");
@@ -325,7 +220,7 @@ static void what_it_does_not_draw_is_refused(void **state) {
     model_fade(&s);
     refused(&s, "gradient opacity");
     refused_slab(&plain, 3, "a part of a volume");
-    free_numbered(&s);
+    value_picture_free(&s);
 }
 
 static void looks_that_it_does_not_draw_are_refused(void **state) {
@@ -335,7 +230,7 @@ static void looks_that_it_does_not_draw_are_refused(void **state) {
     static const snow_color_point decades[] = {{1, 0, 0, 0}, {100, 1, 1, 1}};
     static const snow_color_point names[] = {
         {0, 1, 0, 0}, {30, 1, 0, 0}, {30, 0, 1, 0}, {100, 0, 1, 0}};
-    const reference_scene plain = numbered(0);
+    const reference_scene plain = value_picture_scene(0);
     reference_scene s = plain;
     s.opacities = faint;
     s.opacity_count = COUNT(faint);
@@ -351,19 +246,19 @@ static void looks_that_it_does_not_draw_are_refused(void **state) {
     s.opacities = positive;
     s.opacity_count = COUNT(positive);
     refused(&s, "logarithmic looks");
-    free_numbered(&s);
+    value_picture_free(&s);
 }
 
 static void volumes_that_it_does_not_draw_are_refused(void **state) {
     (void)state;
-    reference_scene s = numbered(10);
+    reference_scene s = value_picture_scene(10);
     for (int n = 0; n < 3; n++)
         s.info.matrix[n][2] *= 50;
     s.info.spacing[2] *= 50;
     model_look(&s, (double[]){0, 0, 1}, (double[]){0, 1, 0});
     model_turn(&s, 0, 0, 0, 1);
     refused(&s, "times as far apart as their voxels");
-    free_numbered(&s);
+    value_picture_free(&s);
     s = model_blank((int64_t[]){6, 7, 8}, 0.5);
     s.settings.method = SNOW_METHOD_VALUE;
     for (int n = 0; n < 6 * 7 * 8; n++)

@@ -1,0 +1,109 @@
+/* tests/values/pictures.c - see pictures.h. */
+#include "values/pictures.h"
+
+#include <math.h>
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* Within a quarter of a step of 8 bits, but for a few samples whose place in a
+ * slab, or pixels whose end, rounds otherwise. */
+#define BOUND (0.25 / 255)
+#define FAR_BOUND (1.0 / 255)
+#define FAR_SHARE 0.012
+
+static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
+                                  SNOW_TYPE_FLOAT32, SNOW_TYPE_INT8,
+                                  SNOW_TYPE_UINT16};
+static const snow_quality qualities[] = {
+    SNOW_QUALITY_DRAFT, SNOW_QUALITY_NORMAL, SNOW_QUALITY_HIGH};
+static const model_matrix matrices[] = {MODEL_PLAIN, MODEL_ANISOTROPIC,
+                                        MODEL_OBLIQUE, MODEL_MIRRORED};
+
+/* Looks with none, one and several invisible ranges; a steep one. */
+static const snow_opacity_point all[] = {{0, 0.05}, {100, 0.5}};
+static const snow_opacity_point above[] = {
+    {0, 0}, {35, 0}, {70, 0.6}, {100, 0.9}};
+static const snow_opacity_point bands[] = {{0, 0},    {20, 0}, {28, 0.4},
+                                           {36, 0},   {55, 0}, {64, 0.7},
+                                           {72, 0.1}, {80, 0}, {100, 0}};
+static const snow_opacity_point steep[] = {
+    {0, 0}, {50, 0}, {51.5, 0.9}, {100, 0.9}};
+static const struct {
+    const snow_opacity_point *points;
+    size_t count;
+} looks[] = {{all, COUNT(all)},
+             {above, COUNT(above)},
+             {bands, COUNT(bands)},
+             {steep, COUNT(steep)}};
+
+reference_scene value_picture_scene(int n) {
+    static const int64_t sizes[][3] = {{23, 19, 21}, {40, 9, 12}, {1, 14, 17},
+                                       {13, 1, 9},   {12, 15, 1}, {9, 12, 2}};
+    static const double backs[][3] = {{0, 0, 1},  {0, 1, 0},  {1, 0, 0},
+                                      {0, 0, -1}, {0, -1, 0}, {-1, 0, 0}};
+    static const double ups[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, 1}};
+    static const double zooms[] = {1.1, 2.6, 0.35, 5};
+    reference_scene s =
+        model_scene(sizes[n / 5 % 9 < 6 ? 0 : n % 6], types[n % 5], n / 2 % 2,
+                    matrices[n / 7 % 4], (uint64_t)n);
+    s.settings.method = SNOW_METHOD_VALUE;
+    s.settings.threads = 2;
+    s.settings.quality = qualities[n % 3];
+    s.settings.shade = n / 3 % 4 == 3 ? SNOW_SHADE_NONE : SNOW_SHADE_PHONG;
+    if (n / 4 % 3 == 1) {
+        s.settings.light_azimuth = 50;
+        s.settings.light_elevation = -25;
+        s.settings.shininess = 7.5;
+    }
+    if (n / 6 % 5 == 2)
+        s.settings.ambient = s.settings.diffuse = 0.9;
+    if (n / 11 % 4 == 3)
+        s.settings.threshold = 40;
+    s.opacities = looks[(size_t)n / 3 % COUNT(looks)].points;
+    s.opacity_count = looks[(size_t)n / 3 % COUNT(looks)].count;
+    model_look(&s, backs[n / 2 % 6], ups[n / 2 % 3]);
+    model_turn(&s, n % 2 ? 25 : -33, n * 37 % 70 - 35, n % 4 ? 0 : 15,
+               zooms[n / 9 % 4]);
+    s.view.width = 44;
+    s.view.height = 36;
+    return s;
+}
+
+void value_picture_free(reference_scene *s) {
+    free((void *)(uintptr_t)s->voxels);
+}
+
+double *value_picture_expected(const value_scene *scene) {
+    const reference_scene *s = &scene->base;
+    value_plan plan;
+    size_t count = (size_t)s->view.width * (size_t)s->view.height;
+    double *picture = calloc(count, 4 * sizeof *picture);
+    assert_non_null(picture);
+    assert_true(value_plan_of(scene, &plan));
+    value_model *model = value_model_new(&plan);
+    model->close_at =
+        s->settings.quality == SNOW_QUALITY_HIGH ? 1 - 1e-4 : 1 - 0.5 / 255;
+    for (size_t n = 0; n < count; n++)
+        value_model_pixel(model, (int)n % s->view.width, (int)n / s->view.width,
+                          picture + 4 * n);
+    value_model_free(model);
+    return picture;
+}
+
+void value_picture_compare(int n, const reference_scene *s,
+                           const float *picture, const double *expected) {
+    size_t count = 4 * (size_t)s->view.width * (size_t)s->view.height;
+    size_t far = 0, worst = 0;
+    double most = 0;
+    for (size_t i = 0; i < count; i++) {
+        double difference = fabs((double)picture[i] - expected[i]);
+        far += difference > BOUND;
+        if (!(difference <= most)) {
+            most = difference;
+            worst = i;
+        }
+    }
+    if (!(most <= FAR_BOUND) || (double)far > FAR_SHARE * (double)count)
+        fail_msg("scene %d: %g at %zu, %zu of %zu are beyond the bound", n,
+                 most * 255, worst / 4, far, count);
+}

@@ -1,0 +1,24 @@
+/* tests/values/pictures.h - pictures of method value beside the float64
+ * reference of the value model. */
+#ifndef SNOW_TEST_VALUE_PICTURES_H
+#define SNOW_TEST_VALUE_PICTURES_H
+
+#include "reference/model.h"
+#include "values/value_model.h"
+
+/* A scene for each number: all axes and types, spacings, qualities, densities,
+ * shades, lights and looks.  Free with value_picture_free. */
+#define VALUE_PICTURES 180
+reference_scene value_picture_scene(int n);
+void value_picture_free(reference_scene *scene);
+
+/* The reference's picture, whose pixels end as those of the method: width *
+ * height * 4 doubles. */
+double *value_picture_expected(const value_scene *scene);
+
+/* The test fails, with the scene's number, where a picture is too far from the
+ * reference's. */
+void value_picture_compare(int n, const reference_scene *scene,
+                           const float *picture, const double *expected);
+
+#endif
