@@ -27,6 +27,14 @@ static void to_index(const snow_volume_info *info, const double plane[4],
     }
 }
 
+/* A ray moves as far aside between two slices as they are apart; values there
+ * and gradients look two voxels on. */
+static void find_reach(const snow_volume_info *info, double reach[3]) {
+    const double *s = info->spacing;
+    for (int axis = 0; axis < 3; axis++)
+        reach[axis] = 2 + ceil(fmax(s[0], fmax(s[1], s[2])) / s[axis]);
+}
+
 snow_status snow_clip_planes_new(snow_context *context,
                                  const snow_volume_info *info,
                                  const snow_clip_planes *before,
@@ -42,6 +50,7 @@ snow_status snow_clip_planes_new(snow_context *context,
     if (!clip)
         return SNOW_STATUS_NO_MEMORY;
     clip->context = context;
+    find_reach(info, clip->reach);
     clip->planes = snow_allocate_array(context, most, sizeof *clip->planes);
     if (!clip->planes) {
         snow_clip_planes_free(clip);
@@ -78,8 +87,9 @@ static bool is_beyond(const snow_clip_planes *clip, const int64_t at[3],
         if (!(place > p[3]))
             continue;
         beyond = true;
-        *reached &= place - p[3] <=
-                    SNOW_CLIPPED_REACH * (fabs(p[0]) + fabs(p[1]) + fabs(p[2]));
+        *reached &= place - p[3] <= clip->reach[0] * fabs(p[0]) +
+                                        clip->reach[1] * fabs(p[1]) +
+                                        clip->reach[2] * fabs(p[2]);
     }
     return beyond;
 }
@@ -128,4 +138,13 @@ double snow_clip_planes_value(const snow_clip_planes *clip, int64_t index) {
     return low < clip->voxel_count && clip->voxels[low].at == index
                ? clip->voxels[low].native
                : NAN;
+}
+
+double snow_clip_planes_value_at(const snow_clip_planes *clip,
+                                 const int64_t dims[3], const int64_t at[3]) {
+    bool reached;
+    if (!is_beyond(clip, at, &reached) || !reached)
+        return NAN;
+    return snow_clip_planes_value(clip,
+                                  (at[2] * dims[1] + at[1]) * dims[0] + at[0]);
 }

@@ -17,9 +17,6 @@
 
 #include <snowglass/volume.h>
 
-/* How far values are kept, in steps along each of the three axes. */
-#define SNOW_CLIPPED_REACH 3
-
 typedef struct snow_clipped_voxel {
     int64_t at;    /* linear index */
     double native; /* value */
@@ -34,6 +31,7 @@ typedef struct snow_clip_planes {
     size_t plane_count;
     snow_clipped_voxel *voxels; /* in order of index */
     size_t voxel_count, capacity;
+    double reach[3]; /* how far values are kept, in steps along each axis */
 } snow_clip_planes;
 
 /* Whether four numbers are a plane: the first three are not all 0. */
@@ -57,5 +55,9 @@ snow_status snow_clip_planes_apply(snow_clip_planes *clip,
 
 /* The native value of a voxel that was kept; NaN where there is none. */
 double snow_clip_planes_value(const snow_clip_planes *clip, int64_t index);
+
+/* The same by its place, which is fast where the planes are far. */
+double snow_clip_planes_value_at(const snow_clip_planes *clip,
+                                 const int64_t dims[3], const int64_t at[3]);
 
 #endif

@@ -51,8 +51,7 @@ snow_image *model_image(const model_stage *stage,
     return image;
 }
 
-/* Four channels from two or four. */
-static float *spread(snow_image *image) {
+float *model_spread(snow_image *image) {
     size_t count =
         (size_t)snow_image_width(image) * (size_t)snow_image_height(image);
     int channels = snow_image_channels(image);
@@ -70,7 +69,7 @@ float *model_picture(const model_stage *stage, const reference_scene *scene) {
     snow_image *image = model_image(stage, scene);
     assert_int_equal(snow_image_width(image), scene->view.width);
     assert_int_equal(snow_image_height(image), scene->view.height);
-    float *picture = spread(image);
+    float *picture = model_spread(image);
     snow_image_free(image);
     return picture;
 }

@@ -91,6 +91,9 @@ snow_image *model_image(const model_stage *stage, const reference_scene *scene);
 /* The same as width * height * 4 floats RGBA; free with free(). */
 float *model_picture(const model_stage *stage, const reference_scene *scene);
 
+/* Four channels from an image's two or four; free with free(). */
+float *model_spread(snow_image *image);
+
 /* The largest absolute difference of a picture from the library and one of
  * the reference; NaN where either is not a number. */
 double model_distance(const reference_scene *scene, const float *picture,

@@ -226,8 +226,6 @@ static void what_it_does_not_draw_is_refused(void **state) {
 static void looks_that_it_does_not_draw_are_refused(void **state) {
     (void)state;
     static const snow_opacity_point faint[] = {{0, 0}, {100, 0.0005}};
-    static const snow_opacity_point positive[] = {{1, 0}, {100, 0.5}};
-    static const snow_color_point decades[] = {{1, 0, 0, 0}, {100, 1, 1, 1}};
     static const snow_color_point names[] = {
         {0, 1, 0, 0}, {30, 1, 0, 0}, {30, 0, 1, 0}, {100, 0, 1, 0}};
     const reference_scene plain = value_picture_scene(0);
@@ -239,13 +237,6 @@ static void looks_that_it_does_not_draw_are_refused(void **state) {
     s.colors = names;
     s.color_count = COUNT(names);
     refused(&s, "labels");
-    s = plain;
-    s.log = true;
-    s.colors = decades;
-    s.color_count = COUNT(decades);
-    s.opacities = positive;
-    s.opacity_count = COUNT(positive);
-    refused(&s, "logarithmic looks");
     value_picture_free(&s);
 }
 
@@ -259,12 +250,6 @@ static void volumes_that_it_does_not_draw_are_refused(void **state) {
     model_turn(&s, 0, 0, 0, 1);
     refused(&s, "times as far apart as their voxels");
     value_picture_free(&s);
-    s = model_blank((int64_t[]){6, 7, 8}, 0.5);
-    s.settings.method = SNOW_METHOD_VALUE;
-    for (int n = 0; n < 6 * 7 * 8; n++)
-        model_voxels(&s)[n] = n == 100 ? NAN : (float)(n % 5);
-    refused(&s, "voxels that are NaN");
-    model_free(&s);
 }
 
 /* Nothing but infinities and one value is a picture too. */

@@ -136,30 +136,15 @@ static value_part smooth_voxel(const value_field *field, int64_t i, int64_t j,
     return here;
 }
 
-/* A voxel inside the box, of a slice or half way between two. */
-static value_part inner_voxel(const value_field *field, int sheet, int64_t i,
-                              int64_t j) {
-    int64_t k[2];
-    value_part part[2];
-    slices_of(field->plan, sheet, k);
-    for (int n = 0; n < 2; n++)
-        part[n] = field->plan->scene->cubic ? smooth_voxel(field, i, j, k[n])
-                                            : slice_voxel(field, i, j, k[n]);
-    double p = value_sheet_at(field->plan, sheet), t = p - floor(p);
-    double way = (double)(part[1].value - part[0].value);
-    if (k[0] == k[1])
-        return part[0];
-    part[0].value += (int64_t)floor(t * way + 0.5);
-    part[0].weight = (part[0].weight + part[1].weight) / 2;
-    return part[0];
-}
-
-value_part value_voxel(const value_field *field, int sheet, int64_t i,
-                       int64_t j) {
+/* A voxel of a slice, whether in the box or beyond. */
+static value_part any_voxel(const value_field *field, int64_t i, int64_t j,
+                            int64_t k) {
     const int64_t *n = field->plan->dims;
+    value_part (*voxel)(const value_field *, int64_t, int64_t, int64_t) =
+        field->plan->scene->cubic ? smooth_voxel : slice_voxel;
     int64_t u = i < 0 ? 0 : i >= n[0] ? n[0] - 1 : i;
     int64_t v = j < 0 ? 0 : j >= n[1] ? n[1] - 1 : j;
-    value_part border = inner_voxel(field, sheet, u, v);
+    value_part border = voxel(field, u, v, k);
     if ((u == i && v == j) || border.weight < VALUE_FULL)
         return border;
     /* Beyond two sides the odd reflection is along u alone. */
@@ -168,10 +153,27 @@ value_part value_voxel(const value_field *field, int sheet, int64_t i,
         next[0] = n[0] == 1 ? u : i < 0 ? 1 : n[0] - 2;
     else
         next[1] = n[1] == 1 ? v : j < 0 ? 1 : n[1] - 2;
-    value_part inside = inner_voxel(field, sheet, next[0], next[1]);
+    value_part inside = voxel(field, next[0], next[1], k);
     if (inside.weight == VALUE_FULL)
         border.value = 2 * border.value - inside.value;
     return border;
+}
+
+/* Of a slice, or half way between two. */
+value_part value_voxel(const value_field *field, int sheet, int64_t i,
+                       int64_t j) {
+    int64_t k[2];
+    value_part part[2];
+    slices_of(field->plan, sheet, k);
+    for (int n = 0; n < 2; n++)
+        part[n] = any_voxel(field, i, j, k[n]);
+    double p = value_sheet_at(field->plan, sheet), t = p - floor(p);
+    double way = (double)(part[1].value - part[0].value);
+    if (k[0] == k[1])
+        return part[0];
+    part[0].value += (int64_t)floor(t * way + 0.5);
+    part[0].weight = (part[0].weight + part[1].weight) / 2;
+    return part[0];
 }
 
 /* --- sheets --------------------------------------------------------------- */

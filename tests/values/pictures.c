@@ -1,6 +1,8 @@
 /* tests/values/pictures.c - see pictures.h. */
 #include "values/pictures.h"
 
+#include "simd/isa.h"
+
 #include <math.h>
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -10,6 +12,10 @@
 #define BOUND (0.25 / 255)
 #define FAR_BOUND (1.0 / 255)
 #define FAR_SHARE 0.012
+
+/* Less than a unit of the 15 bits of the image on the lattice, and more than
+ * what its warp rounds. */
+#define WARP_BOUND 2e-6
 
 static const snow_type types[] = {SNOW_TYPE_UINT8, SNOW_TYPE_INT16,
                                   SNOW_TYPE_FLOAT32, SNOW_TYPE_INT8,
@@ -106,4 +112,100 @@ void value_picture_compare(int n, const reference_scene *s,
     if (!(most <= FAR_BOUND) || (double)far > FAR_SHARE * (double)count)
         fail_msg("scene %d: %g at %zu, %zu of %zu are beyond the bound", n,
                  most * 255, worst / 4, far, count);
+}
+
+/* --- by the method --------------------------------------------------------
+ */
+
+/* The scene's volume without what its planes leave out. */
+static snow_volume *open_volume(const model_stage *stage,
+                                const value_scene *scene) {
+    snow_volume *volume = NULL, *cut = NULL;
+    const reference_scene *s = &scene->base;
+    assert_int_equal(
+        snow_volume_wrap(stage->context, &s->info, s->voxels, &volume),
+        SNOW_STATUS_OK);
+    if (!scene->clip_count)
+        return volume;
+    assert_int_equal(
+        snow_volume_clip(volume, scene->clips[0], scene->clip_count, &cut),
+        SNOW_STATUS_OK);
+    snow_volume_close(volume);
+    return cut;
+}
+
+float *value_picture_render(const model_stage *stage,
+                            const value_scene *scene) {
+    const reference_scene *s = &scene->base;
+    snow_volume *volume = open_volume(stage, scene);
+    snow_transfer *transfer = model_transfer(stage->context, s);
+    snow_image *image = NULL;
+    if (snow_frame_render(stage->frame, volume, transfer, &s->view,
+                          &s->settings, &image) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(stage->context));
+    assert_int_equal(snow_frame_stats(stage->frame)->method, SNOW_METHOD_VALUE);
+    float *picture = model_spread(image);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_image_free(image);
+    return picture;
+}
+
+void value_picture_check(const model_stage *stage, int n,
+                         const value_scene *scene) {
+    float *picture = value_picture_render(stage, scene);
+    double *expected = value_picture_expected(scene);
+    value_picture_compare(n, &scene->base, picture, expected);
+    free(picture);
+    free(expected);
+}
+
+/* The second picture is freed. */
+static void same_bits(int n, const reference_scene *s, const float *first,
+                      float *other) {
+    if (memcmp(first, other,
+               4 * (size_t)(s->view.width * s->view.height) * sizeof *first) !=
+        0)
+        fail_msg("scene %d: other bits", n);
+    free(other);
+}
+
+/* The image on the lattice has the same bits; its warp in plain C rounds
+ * products and sums apart. */
+static void check_levels(const model_stage *stage, int n, value_scene scene) {
+    size_t count = 4 * (size_t)(scene.base.view.width * scene.base.view.height);
+    scene.base.settings.isa = SNOW_ISA_SCALAR;
+    float *plain = value_picture_render(stage, &scene), *first = NULL;
+    for (snow_isa isa = SNOW_ISA_AVX2; isa <= SNOW_ISA_AVX512; isa++) {
+        if (!snow_isa_runs(isa))
+            continue;
+        scene.base.settings.isa = isa;
+        float *other = value_picture_render(stage, &scene);
+        for (size_t i = 0; i < count; i++)
+            if (!(fabs((double)other[i] - (double)plain[i]) <= WARP_BOUND))
+                fail_msg("scene %d: other bits of an instruction set", n);
+        if (first)
+            same_bits(n, &scene.base, first, other);
+        else
+            first = other;
+    }
+    free(plain);
+    free(first);
+}
+
+void value_picture_check_bits(const model_stage *stage, int n,
+                              const value_scene *scene) {
+    value_scene other = *scene;
+    snow_settings *settings = &other.base.settings;
+    settings->threads = 1;
+    settings->encoding = SNOW_ENCODING_BITMAP;
+    float *first = value_picture_render(stage, &other);
+    settings->threads = 5;
+    same_bits(n, &other.base, first, value_picture_render(stage, &other));
+    settings->encoding = SNOW_ENCODING_CRS;
+    same_bits(n, &other.base, first, value_picture_render(stage, &other));
+    settings->encoding = SNOW_ENCODING_RLE;
+    same_bits(n, &other.base, first, value_picture_render(stage, &other));
+    free(first);
+    check_levels(stage, n, other);
 }

@@ -16,6 +16,17 @@ void value_picture_free(reference_scene *scene);
  * height * 4 doubles. */
 double *value_picture_expected(const value_scene *scene);
 
+/* The method's picture of a scene: width * height * 4 floats; free with
+ * free(). */
+float *value_picture_render(const model_stage *stage, const value_scene *scene);
+
+/* Both; and that the picture has the same bits with any number of threads,
+ * encoding and instruction set. */
+void value_picture_check(const model_stage *stage, int n,
+                         const value_scene *scene);
+void value_picture_check_bits(const model_stage *stage, int n,
+                              const value_scene *scene);
+
 /* The test fails, with the scene's number, where a picture is too far from the
  * reference's. */
 void value_picture_compare(int n, const reference_scene *scene,

@@ -2,6 +2,7 @@
 #include "classify/values/value_range.h"
 
 #include "base/thread_pool.h"
+#include "volume/clip_planes.h"
 
 #include <math.h>
 
@@ -12,7 +13,8 @@
 #define ITEM ((int64_t)1 << 18)
 #define BLOCK 1024
 
-/* What the items of one worker have found, in native values. */
+/* What the items of one worker have found, in native values, or in data values
+ * that have a logarithm. */
 typedef struct found_range {
     double low, high;
     bool holes;
@@ -21,6 +23,7 @@ typedef struct found_range {
 
 typedef struct range_job {
     const snow_volume *volume;
+    bool log;
     int64_t voxels;
     found_range *found; /* of each worker */
 } range_job;
@@ -40,6 +43,17 @@ static void look_at(found_range *found, const double *natives, size_t count) {
     found->holes |= holes;
 }
 
+/* Native values as what a range is measured of. */
+static void take_natives(const range_job *job, double *natives, size_t count) {
+    const snow_volume_info *info = &job->volume->info;
+    if (!job->log)
+        return;
+    for (size_t n = 0; n < count; n++) {
+        double value = info->slope * natives[n] + info->intercept;
+        natives[n] = value > 0 ? value : NAN;
+    }
+}
+
 static void look_at_item(void *of, int64_t item, int worker) {
     const range_job *job = of;
     int64_t first = item * ITEM, end = first + ITEM;
@@ -48,11 +62,22 @@ static void look_at_item(void *of, int64_t item, int worker) {
         double natives[BLOCK];
         size_t count = end - first < BLOCK ? (size_t)(end - first) : BLOCK;
         snow_volume_natives(job->volume, first, count, natives);
+        take_natives(job, natives, count);
         look_at(&job->found[worker], natives, count);
     }
 }
 
-/* What all workers have found, as data values. */
+/* Voxels beyond clip planes whose values are kept. */
+static void look_at_clipped(const range_job *job) {
+    const snow_clip_planes *clip = job->volume->clip;
+    for (size_t n = 0; clip && n < clip->voxel_count; n++) {
+        double native = clip->voxels[n].native;
+        take_natives(job, &native, 1);
+        look_at(job->found, &native, 1);
+    }
+}
+
+/* What all workers have found, as data values or logarithms. */
 static void put_together(const range_job *job, int threads,
                          snow_data_range *out) {
     const snow_volume_info *info = &job->volume->info;
@@ -62,17 +87,20 @@ static void put_together(const range_job *job, int threads,
         all.high = fmax(all.high, job->found[n].high);
         all.holes |= job->found[n].holes;
     }
-    double a = info->slope * all.low + info->intercept;
-    double b = info->slope * all.high + info->intercept;
+    double a = job->log ? log10(all.low) : info->slope * all.low;
+    double b = job->log ? log10(all.high) : info->slope * all.high;
+    double from = job->log ? 0 : info->intercept;
     bool any = all.low <= all.high;
-    *out = (snow_data_range){any ? fmin(a, b) : INFINITY,
-                             any ? fmax(a, b) : -INFINITY, all.holes};
+    *out = (snow_data_range){any ? fmin(a + from, b + from) : INFINITY,
+                             any ? fmax(a + from, b + from) : -INFINITY,
+                             job->log, all.holes};
 }
 
-snow_status snow_data_range_measure(const snow_volume *volume, int threads,
-                                    snow_data_range *out) {
+snow_status snow_data_range_measure(const snow_volume *volume, bool log,
+                                    int threads, snow_data_range *out) {
     const int64_t *dims = volume->info.dims;
-    range_job job = {.volume = volume, .voxels = dims[0] * dims[1] * dims[2]};
+    range_job job = {
+        .volume = volume, .log = log, .voxels = dims[0] * dims[1] * dims[2]};
     int64_t items = (job.voxels + ITEM - 1) / ITEM;
     threads = threads < items ? threads : (int)items;
     job.found = snow_allocate_array(volume->context, (uint64_t)threads,
@@ -83,6 +111,7 @@ snow_status snow_data_range_measure(const snow_volume *volume, int threads,
         job.found[n] = (found_range){.low = INFINITY, .high = -INFINITY};
     snow_status status =
         snow_parallel(volume->context, threads, items, look_at_item, &job);
+    look_at_clipped(&job);
     if (status == SNOW_STATUS_OK)
         put_together(&job, threads, out);
     snow_release(volume->context, job.found);
@@ -92,6 +121,11 @@ snow_status snow_data_range_measure(const snow_volume *volume, int threads,
 /* --- the scale of a look ---------------------------------------------------
  */
 
+/* A point of a look on the range's scale. */
+static double point_of(const snow_data_range *data, double value) {
+    return data->log ? log10(value) : value;
+}
+
 /* The hull of the data's values that have an opacity. */
 static void find_visible(const snow_data_range *data,
                          const snow_transfer *transfer, double visible[2]) {
@@ -100,8 +134,8 @@ static void find_visible(const snow_data_range *data,
     visible[0] = INFINITY;
     visible[1] = -INFINITY;
     for (size_t n = 0; n <= count; n++) {
-        double a = n > 0 ? p[n - 1].value : -INFINITY;
-        double b = n < count ? p[n].value : INFINITY;
+        double a = n > 0 ? point_of(data, p[n - 1].value) : -INFINITY;
+        double b = n < count ? point_of(data, p[n].value) : INFINITY;
         bool seen =
             (n > 0 && p[n - 1].opacity > 0) || (n < count && p[n].opacity > 0);
         if (!seen || a > data->high || b < data->low)
@@ -113,7 +147,7 @@ static void find_visible(const snow_data_range *data,
 
 snow_value_scale14 snow_value_scale_of(const snow_data_range *data,
                                        const snow_transfer *transfer) {
-    snow_value_scale14 scale = {data->low, data->high};
+    snow_value_scale14 scale = {data->low, data->high, data->log};
     double visible[2];
     find_visible(data, transfer, visible);
     double length = visible[1] - visible[0];
@@ -142,8 +176,17 @@ static inline int16_t number_of(double low, double high, double value) {
 }
 
 int16_t snow_value_number(const snow_value_scale14 *scale, double value) {
-    return scale->high > scale->low ? number_of(scale->low, scale->high, value)
-                                    : 0;
+    if (isnan(value) || (scale->log && !(value > 0)))
+        return SNOW_VALUE_HOLE;
+    if (!(scale->high > scale->low))
+        return 0;
+    return number_of(scale->low, scale->high,
+                     scale->log ? log10(value) : value);
+}
+
+double snow_value_of(const snow_value_scale14 *scale, double v) {
+    double x = scale->low + v * (scale->high - scale->low) / SNOW_VALUE_MOST;
+    return scale->log ? pow(10, x) : x;
 }
 
 static bool is_wide(snow_type type) {
@@ -194,12 +237,14 @@ CODE_NARROW(UINT16, uint16_t)
 #define CODE_WIDE(name, type)                                                  \
     static void code_##name(const snow_value_coder *coder,                     \
                             const type *natives, size_t count, int16_t *out) { \
-        const double low = coder->scale.low, high = coder->scale.high;         \
+        const snow_value_scale14 scale = coder->scale;                         \
         const double slope = coder->slope, intercept = coder->intercept;       \
-        const bool flat = !(high > low);                                       \
+        const bool plain = scale.high > scale.low && !scale.log;               \
         for (size_t n = 0; n < count; n++) {                                   \
             double value = slope * (double)natives[n] + intercept;             \
-            out[n] = flat ? 0 : number_of(low, high, value);                   \
+            out[n] = plain && value == value                                   \
+                         ? number_of(scale.low, scale.high, value)             \
+                         : snow_value_number(&scale, value);                   \
         }                                                                      \
     }
 
@@ -221,5 +266,19 @@ void snow_value_code_row(const snow_value_coder *coder, const void *natives,
 #undef CODE_CASE
     case SNOW_TYPE_NONE:
         break;
+    }
+}
+
+void snow_value_code_clipped(const snow_value_coder *coder,
+                             const snow_volume *volume, const int64_t at[3],
+                             int axis, size_t count, int16_t *out) {
+    int64_t here[3] = {at[0], at[1], at[2]};
+    for (size_t n = 0; n < count; n++, here[axis]++) {
+        if (out[n] != SNOW_VALUE_HOLE)
+            continue;
+        double native =
+            snow_clip_planes_value_at(volume->clip, volume->info.dims, here);
+        out[n] = snow_value_number(&coder->scale,
+                                   coder->slope * native + coder->intercept);
     }
 }

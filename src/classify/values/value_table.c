@@ -22,10 +22,8 @@
 /* Colour and opacity of the reference length at number V. */
 static void look_at(const snow_value_look *look, double v,
                     snow_transfer_hint *hint, double rgba[4]) {
-    const snow_value_scale14 *scale = &look->scale;
-    double value =
-        scale->low + v * (scale->high - scale->low) / SNOW_VALUE_MOST;
-    snow_transfer_near(look->transfer, value, hint, rgba);
+    snow_transfer_near(look->transfer, snow_value_of(&look->scale, v), hint,
+                       rgba);
     if (!snow_is_interesting(rgba[3], look->threshold))
         rgba[3] = 0;
 }
@@ -66,7 +64,8 @@ static bool is_steep(const snow_value_look *look) {
     double shortest = INFINITY;
     for (size_t n = 0; n + 1 < t->opacity_count; n++) {
         const snow_opacity_point *p = &t->opacities[n];
-        double length = p[1].value - p[0].value;
+        double length = look->scale.log ? log10(p[1].value) - log10(p[0].value)
+                                        : p[1].value - p[0].value;
         if (p[1].opacity != p[0].opacity && length > 0)
             shortest = fmin(shortest, length);
     }
@@ -312,8 +311,8 @@ static snow_status take_key(snow_context *context, const snow_transfer *t,
 static bool same_look(const snow_value_look *a, const snow_value_look *b) {
     return a->nodes == b->nodes && a->steps == b->steps &&
            a->shaded == b->shaded && a->threshold == b->threshold &&
-           a->exponent == b->exponent && a->scale.low == b->scale.low &&
-           a->scale.high == b->scale.high;
+           a->exponent == b->exponent &&
+           snow_value_same_scale(&a->scale, &b->scale);
 }
 
 snow_status snow_value_table_make(snow_context *context,

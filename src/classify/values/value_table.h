@@ -17,6 +17,7 @@ typedef struct snow_value_run {
     int16_t first, last;
 } snow_value_run;
 #define SNOW_VALUE_RUNS 4
+#define SNOW_VALUE_NO_RUN ((snow_value_run){1, 0})
 
 /* What a table is made for. */
 typedef struct snow_value_look {

@@ -22,9 +22,13 @@ const snow_value_loops *snow_value_loops_of(snow_isa isa) {
     return &scalar;
 }
 
-/* Bits of two lines, for each run. */
+/* By so much the mean of what is there may be beyond the voxels' values, for
+ * means and weights are rounded. */
+#define BEYOND 8
+
+/* Bits of two lines, for each plane. */
 static size_t bits_bytes(const snow_value_store *s) {
-    size_t words = snow_value_words(s) * 2 * SNOW_VALUE_RUNS;
+    size_t words = snow_value_words(s) * 2 * (SNOW_VALUE_RUNS + 1);
     return (words * sizeof(uint32_t) + 63) / 64 * 64;
 }
 
@@ -58,26 +62,50 @@ static void write_cells(snow_value_store *s, int run, int64_t slice,
     }
 }
 
+/* The numbers that a cell must be within to be invisible. */
+static snow_value_run sure_run(const snow_value_store *s, int run) {
+    snow_value_run sure = s->runs[run];
+    if (!s->holes)
+        return sure;
+    sure.first = (int16_t)(sure.first + (sure.first > 0 ? BEYOND : 0));
+    sure.last =
+        (int16_t)(sure.last - (sure.last < SNOW_VALUE_MOST ? BEYOND : 0));
+    return sure;
+}
+
+/* The numbers of a line that are outside of each run, and then its holes, which
+ * are outside of none. */
+static void mark_line(const snow_value_store *s, const snow_value_loops *loops,
+                      const int16_t *line, uint32_t *bits) {
+    const snow_value_run numbers = {SNOW_VALUE_HOLE + 1, INT16_MAX};
+    size_t words = snow_value_words(s);
+    uint32_t *holes = bits + (size_t)s->run_count * words;
+    if (s->holes)
+        loops->outside(line, words, numbers, holes);
+    for (int run = 0; run < s->run_count; run++, bits += words) {
+        loops->outside(line, words, sure_run(s, run), bits);
+        for (size_t w = 0; s->holes && w < words; w++)
+            bits[w] &= ~holes[w];
+    }
+}
+
 /* Rows of cells first .. end - 1 of a slice. */
 static void mark_slice(snow_value_store *s, snow_value_lines *lines,
                        const snow_value_loops *loops, int64_t slice,
                        int64_t first, int64_t end, int16_t *line,
                        uint32_t *bits) {
-    size_t words = snow_value_words(s), all = words * SNOW_VALUE_RUNS;
+    size_t words = snow_value_words(s), all = words * (SNOW_VALUE_RUNS + 1);
     int out = s->margin - 1;
     for (int64_t row = first; row <= end; row++) {
         uint32_t *below = bits + (row & 1 ? all : 0);
         const uint32_t *above = bits + (row & 1 ? 0 : all);
         snow_value_lines_read(lines, row, line);
-        for (int run = 0; run < s->run_count; run++) {
-            loops->outside(line, words, s->runs[run],
-                           below + (size_t)run * words);
-            if (row == first)
-                continue;
+        mark_line(s, loops, line, below);
+        for (int n = 0; row > first && n < snow_value_planes(s); n++) {
             bool top = row == 0, bottom = row == s->rows;
-            write_cells(s, run, slice, top ? -1 - out : row - 1,
-                        (top || bottom) ? out : 0, above + (size_t)run * words,
-                        below + (size_t)run * words);
+            write_cells(s, n, slice, top ? -1 - out : row - 1,
+                        (top || bottom) ? out : 0, above + (size_t)n * words,
+                        below + (size_t)n * words);
         }
     }
 }
@@ -109,9 +137,9 @@ snow_status snow_value_cells_band(snow_value_store *s,
 }
 
 void snow_value_cells_coarse(snow_value_store *s, int64_t slice) {
-    for (int run = 0; run < s->run_count; run++) {
-        const uint32_t *masks = s->masks + snow_value_mask_at(s, run, slice);
-        uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, slice);
+    for (int n = 0; n < snow_value_planes(s); n++) {
+        const uint32_t *masks = s->masks + snow_value_mask_at(s, n, slice);
+        uint64_t *coarse = s->coarse + snow_value_coarse_at(s, n, slice);
         memset(coarse, 0, s->mask_words * s->coarse_words * sizeof *coarse);
         for (size_t w = 0; w < s->mask_words;
              w++, masks += s->mask_rows, coarse += s->coarse_words)

@@ -18,6 +18,11 @@ typedef struct snow_value_loops {
 
 const snow_value_loops *snow_value_loops_of(snow_isa isa);
 
+/* Planes of the masks. */
+static inline int snow_value_planes(const snow_value_store *s) {
+    return s->run_count + s->holes;
+}
+
 /* Words of 32 columns of a line, margins included. */
 static inline size_t snow_value_words(const snow_value_store *s) {
     return snow_value_line(s->columns, s->margin) / 32;

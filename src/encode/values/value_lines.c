@@ -28,6 +28,8 @@ void snow_value_lines_begin(snow_value_lines *lines,
     const snow_fetch_params from = fetch_params(params, first, rows);
     unsigned char *at = scratch;
     *lines = (snow_value_lines){.coder = params->coder,
+                                .volume = params->volume,
+                                .placement = params->placement,
                                 .first = first,
                                 .rows = rows,
                                 .all_rows = params->placement->rows,
@@ -40,13 +42,14 @@ void snow_value_lines_begin(snow_value_lines *lines,
 
 void snow_value_lines_slice(snow_value_lines *lines, int64_t slice) {
     snow_fetch_slice(&lines->fetch, slice, &lines->slice);
+    lines->number = slice;
 }
 
 void snow_value_line_continue(int16_t *line, int64_t columns, int margin) {
     int16_t *first = line + margin, *last = first + columns - 1;
     int step = columns > 1;
-    int16_t before = (int16_t)(2 * first[0] - first[step]);
-    int16_t behind = (int16_t)(2 * last[0] - last[-step]);
+    int16_t before = snow_value_beyond(first[0], first[step]);
+    int16_t behind = snow_value_beyond(last[0], last[-step]);
     for (int n = 1; n <= margin; n++) {
         first[-n] = before;
         last[n] = behind;
@@ -54,11 +57,19 @@ void snow_value_line_continue(int16_t *line, int64_t columns, int margin) {
 }
 
 static void read_row(const snow_value_lines *lines, int64_t row, int16_t *out) {
+    const snow_placement *p = lines->placement;
     const unsigned char *natives =
         lines->slice.voxels +
         (size_t)(row - lines->first) * lines->slice.stride;
     snow_value_code_row(lines->coder, natives, (size_t)lines->columns,
                         out + lines->margin);
+    if (lines->volume->clip) {
+        int64_t at[3] = {0};
+        at[p->v_axis] = row;
+        at[p->slice_axis] = lines->number;
+        snow_value_code_clipped(lines->coder, lines->volume, at, p->u_axis,
+                                (size_t)lines->columns, out + lines->margin);
+    }
     snow_value_line_continue(out, lines->columns, lines->margin);
 }
 
@@ -71,5 +82,5 @@ void snow_value_lines_read(snow_value_lines *lines, int64_t row, int16_t *out) {
         return;
     read_row(lines, inner, lines->spare);
     for (int64_t c = lines->margin; c < lines->columns + lines->margin; c++)
-        out[c] = (int16_t)(2 * out[c] - lines->spare[c]);
+        out[c] = snow_value_beyond(out[c], lines->spare[c]);
 }

@@ -11,6 +11,9 @@ typedef struct snow_value_lines {
     snow_fetch fetch;
     snow_rows slice; /* that is read */
     const snow_value_coder *coder;
+    const snow_volume *volume;
+    const snow_placement *placement;
+    int64_t number; /* of the slice */
     int64_t first, rows, all_rows, columns;
     int margin;
     int16_t *spare; /* room for a line */

@@ -65,7 +65,7 @@ static snow_status reserve_masks(snow_value_store *s) {
     s->mask_rows =
         (size_t)s->rows + 2 * (size_t)s->margin + 2 * SNOW_VALUE_ROWS;
     s->coarse_words = s->mask_rows / ((size_t)SNOW_VALUE_COARSE * 64) + 2;
-    size_t slices = (size_t)s->run_count * (size_t)s->slices;
+    size_t slices = (size_t)snow_value_planes(s) * (size_t)s->slices;
     size_t masks = slices * s->mask_words * s->mask_rows;
     SNOW_TRY(snow_reserve(s->context, &s->masks, &s->masks_capacity, 0,
                           (masks + SNOW_VALUE_ROWS) * sizeof *s->masks));
@@ -125,6 +125,9 @@ static snow_status begin(store_job *job) {
     s->run_count = params->run_count;
     memcpy(s->runs, params->runs,
            (size_t)params->run_count * sizeof *params->runs);
+    s->holes = params->holes;
+    if (s->holes && !s->run_count) /* nothing is invisible but holes */
+        s->runs[s->run_count++] = SNOW_VALUE_NO_RUN;
     SNOW_TRY(reserve_masks(s));
     SNOW_TRY(reserve_bands(s));
     SNOW_TRY(reserve_rows(s));

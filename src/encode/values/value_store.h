@@ -10,7 +10,10 @@
  *
  * Beyond each side of the volume there are `margin` more columns and rows,
  * which continue it oddly: v[-1] = 2 v[0] - v[1], and the same farther out.
- * Cell (c, r) has voxels c, c + 1 of rows r, r + 1. */
+ * Cell (c, r) has voxels c, c + 1 of rows r, r + 1.
+ *
+ * Holes are SNOW_VALUE_HOLE in IA and in rows.  They show nothing; cells that
+ * have one are marked in one plane more, for samples there take weights. */
 #ifndef SNOW_ENCODE_VALUE_STORE_H
 #define SNOW_ENCODE_VALUE_STORE_H
 
@@ -32,6 +35,7 @@ typedef struct snow_value_store {
     int reach, margin; /* voxels that a ray moves aside; reach + 1 */
     snow_value_run runs[SNOW_VALUE_RUNS];
     int run_count;
+    bool holes; /* there are some: plane `run_count` of the masks is of them */
     /* A word of 32 columns from column -32 - margin on; rows from that on. */
     uint32_t *masks; /* [run][slice][word][row] */
     size_t mask_words, mask_rows;
@@ -60,6 +64,7 @@ typedef struct snow_value_store_params {
     const snow_value_coder *coder;
     const snow_value_run *runs; /* invisible numbers */
     int run_count;
+    bool holes;
     int reach;
     snow_encoding encoding; /* AUTO: chosen by the cells */
     snow_isa isa;           /* resolved */

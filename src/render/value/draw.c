@@ -3,6 +3,7 @@
 #include "base/thread_pool.h"
 #include "classify/classify.h"
 #include "render/value/internal.h"
+#include "volume/clip_planes.h"
 
 #include <math.h>
 #include <string.h>
@@ -90,6 +91,24 @@ static snow_status place_sheets(snow_value_path *path,
     return SNOW_STATUS_OK;
 }
 
+/* The planes that have cut the volume. */
+static snow_status place_clips(snow_value_path *path,
+                               const snow_value_params *params) {
+    const snow_clip_planes *clip = params->volume->clip;
+    const snow_placement *p = params->placement;
+    if (!clip)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(snow_reserve(path->context, &path->clips, &path->clips_capacity, 0,
+                          clip->plane_count * sizeof *path->clips));
+    for (size_t n = 0; n < clip->plane_count; n++) {
+        path->clips[n][0] = clip->planes[n][p->u_axis];
+        path->clips[n][1] = clip->planes[n][p->v_axis];
+        path->clips[n][2] = clip->planes[n][p->slice_axis];
+        path->clips[n][3] = clip->planes[n][3];
+    }
+    return SNOW_STATUS_OK;
+}
+
 static void describe(snow_value_path *path, const snow_value_params *params,
                      draw_job *job) {
     const snow_value_lattice *l = &path->lattice;
@@ -103,7 +122,10 @@ static void describe(snow_value_path *path, const snow_value_params *params,
                                     .places = path->places,
                                     .sheet_count = l->sheet_count,
                                     .phases = l->phases,
-                                    .channels = params->channels};
+                                    .channels = params->channels,
+                                    .clips = (const double(*)[4])path->clips};
+    if (params->volume->clip)
+        job->splat.clip_count = params->volume->clip->plane_count;
     bool high = params->settings->quality == SNOW_QUALITY_HIGH;
     job->splat.closed = (int16_t)(32767 * (1 - (high ? FAINTER : FAINT)));
     for (int axis = 0; axis < 2; axis++) {
@@ -316,6 +338,7 @@ snow_status snow_value_draw(snow_value_path *path,
         return SNOW_STATUS_OK;
     }
     SNOW_TRY(place_sheets(path, params));
+    SNOW_TRY(place_clips(path, params));
     if (params->settings->shade == SNOW_SHADE_PHONG)
         place_light(params, &path->light);
     describe(path, params, &job);

@@ -39,9 +39,10 @@ struct snow_value_path {
     unsigned char *drawn;  /* its tiles */
     unsigned char *blocks; /* its blocks, of a quincunx */
     float *halved, *lines; /* the image made smaller; lines of the warp */
+    double (*clips)[4];    /* clip planes by u, v and slice */
     char *scratch;
     size_t sheets_capacity, places_capacity, plane_capacity, drawn_capacity,
-        blocks_capacity, halved_capacity, lines_capacity,
+        blocks_capacity, halved_capacity, lines_capacity, clips_capacity,
         scratch_capacity; /* bytes */
 };
 

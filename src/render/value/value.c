@@ -37,6 +37,7 @@ void snow_value_path_free(snow_value_path *path) {
     snow_release(context, path->blocks);
     snow_release(context, path->halved);
     snow_release(context, path->lines);
+    snow_release(context, path->clips);
     snow_release(context, path->scratch);
     snow_release(context, path);
 }
@@ -60,7 +61,6 @@ snow_status snow_value_check(snow_context *context,
          "kernels other than the tent of 2 voxels"},
         {snow_transfer_has_gradient_opacity(params->transfer),
          "gradient opacity"},
-        {params->transfer->log, "logarithmic looks"},
         {snow_transfer_has_labels(params->transfer, params->volume->info.type),
          "labels"},
     };
@@ -79,21 +79,15 @@ snow_status snow_value_check(snow_context *context,
 static snow_status measure_range(snow_value_path *path,
                                  const snow_value_params *params) {
     const snow_volume *volume = params->volume;
-    if (path->range_of && path->range_of == volume->generation)
+    bool log = params->transfer->log;
+    if (path->range_of && path->range_of == volume->generation &&
+        path->range.log == log)
         return SNOW_STATUS_OK;
     path->range_of = 0;
-    SNOW_TRY(snow_data_range_measure(volume, params->settings->threads,
+    SNOW_TRY(snow_data_range_measure(volume, log, params->settings->threads,
                                      &path->range));
     path->range_of = volume->generation;
     return SNOW_STATUS_OK;
-}
-
-static snow_status check_holes(const snow_value_path *path) {
-    return !path->range.holes
-               ? SNOW_STATUS_OK
-               : snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
-                           "method value cannot draw masks, clip planes and "
-                           "voxels that are NaN yet; take method shear-warp");
 }
 
 static snow_status make_table(snow_value_path *path,
@@ -126,7 +120,6 @@ snow_status snow_value_classify(snow_value_path *path,
         path->context, &params->volume->info, params->view, params->placement,
         params->settings->quality, &path->lattice));
     SNOW_TRY(measure_range(path, params));
-    SNOW_TRY(check_holes(path));
     if (path->range.low <= path->range.high)
         SNOW_TRY(make_table(path, params));
     stats->seconds_classify += snow_seconds() - mark;
@@ -139,7 +132,7 @@ snow_status snow_value_classify(snow_value_path *path,
 /* Whether the runs that were left out are invisible still. */
 static bool shows_no_more(const snow_value_path *path) {
     for (int n = 0; n < path->store.run_count; n++) {
-        bool hidden = false;
+        bool hidden = path->store.runs[n].first > path->store.runs[n].last;
         for (int m = 0; m < path->table.run_count; m++)
             hidden |= path->table.runs[m].first <= path->store.runs[n].first &&
                       path->table.runs[m].last >= path->store.runs[n].last;
@@ -154,8 +147,7 @@ static bool serves(const snow_value_path *path, const snow_value_key *key,
     const snow_value_key *has = &path->key;
     return has->generation && has->generation == key->generation &&
            has->slice_axis == key->slice_axis &&
-           has->scale.low == key->scale.low &&
-           has->scale.high == key->scale.high &&
+           snow_value_same_scale(&has->scale, &key->scale) &&
            has->encoding == key->encoding && path->store.reach >= reach &&
            shows_no_more(path);
 }
@@ -182,6 +174,7 @@ static snow_status encode_anew(snow_value_path *path,
                                            .coder = &path->coder,
                                            .runs = path->table.runs,
                                            .run_count = path->table.run_count,
+                                           .holes = path->range.holes,
                                            .reach = reach,
                                            .encoding = s->encoding,
                                            .isa = s->isa,

@@ -29,7 +29,7 @@ static inline bool NAME(has_cells)(const snow_value_store *s, int run,
  * seen; returns whether there are any. */
 TARGET static bool NAME(activate)(const snow_value_splat *p, int n, int phase,
                                   int64_t column, int64_t row, value_cut cut[2],
-                                  value_phase *state) {
+                                  value_clip *clip, value_phase *state) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;
@@ -61,6 +61,15 @@ TARGET static bool NAME(activate)(const snow_value_splat *p, int n, int phase,
                        p->low[axis], p->high[axis], &cut[axis]);
     }
     rows = cut[1].some & V(rows_and)(state->active, state->open, cut[0].some);
+    clip->cuts = false;
+    if (p->clip_count) {
+        const double u = (double)column, v = (double)row;
+        snow_value_clip(
+            p, (double[]){u + place->at[0], v + place->at[1], sheet->at},
+            (double[]){u + next->at[0], v + next->at[1], sheet[1].at}, clip);
+        if (clip->cuts)
+            rows &= V(rows_and)(state->active, clip->some, ~UINT32_C(0));
+    }
     state->rows = rows;
     return rows != 0;
 }
@@ -128,6 +137,22 @@ NAME(fill)(const NAME(source) * s, int64_t first, uint64_t rows,
     }
 }
 
+#include "splat/values/holes.tmpl.h"
+
+/* Whether a sheet, or those beside it along P, have holes under a tile. */
+static inline bool NAME(near_holes)(const snow_value_store *s,
+                                    const snow_value_sheet *sheet,
+                                    int64_t column, int64_t row) {
+    if (!s->holes)
+        return false;
+    value_window w = value_window_of(s, column, row);
+    return value_has_holes(s, sheet->slice, w) ||
+           value_has_holes(s, sheet->slice + sheet->half, w) ||
+           value_has_holes(s, sheet->before, w) ||
+           value_has_holes(s, sheet->after, w) ||
+           value_has_holes(s, sheet->after + sheet->half_across, w);
+}
+
 /* The values of a sheet in some rows of a tile, and the differences across it
  * in others, unless they are there. */
 TARGET static inline __attribute__((always_inline)) void
@@ -139,6 +164,8 @@ NAME(sample)(const snow_value_splat *p, int n, int phase, int64_t column,
     if (out->sheet != n) {
         out->sheet = n;
         out->has = out->has_across = 0;
+        out->holes = NAME(near_holes)(s, sheet, column + place->whole[0],
+                                      row + place->whole[1]);
     }
     rows &= ~out->has;
     across &= ~out->has_across;
@@ -149,10 +176,13 @@ NAME(sample)(const snow_value_splat *p, int n, int phase, int64_t column,
             .column = column + place->whole[0]};
     int64_t first = row + place->whole[1];
     out->has |= rows;
-    if (sheet->half)
+    uint32_t partial[SHEET_ROWS];
+    if (out->holes)
+        NAME(fill_holes)
+    (&from, first - 1, rows, place, out->values, partial, sheet->half);
+    else if (sheet->half)
         NAME(fill)(&from, first - 1, rows, place, out->values, true, false);
-    else
-        NAME(fill)(&from, first - 1, rows, place, out->values, false, false);
+    else NAME(fill)(&from, first - 1, rows, place, out->values, false, false);
     if (!across)
         return;
     out->has_across |= across;
@@ -163,4 +193,6 @@ NAME(sample)(const snow_value_splat *p, int n, int phase, int64_t column,
         NAME(fill)(&from, first, across, place, out->across, true, true);
     else
         NAME(fill)(&from, first, across, place, out->across, false, true);
+    if (out->holes)
+        NAME(cross_holes)(p, n, from, first, across, place, out);
 }

@@ -17,7 +17,8 @@ NAME(see)(const snow_value_table *table, V(row) front, V(row) back) {
 
 /* Ends of the part of a slab that is inside; the lanes that have any. */
 TARGET static inline __attribute__((always_inline)) uint32_t
-NAME(clip)(const value_cut cut[2], int row, V(row) * from, V(row) * part) {
+NAME(clip)(const value_cut cut[2], const value_clip *clip, int row,
+           V(row) * from, V(row) * part) {
     V(row) to = V(row_set1)(INT16_MAX);
     *from = V(row_set1)(0);
     if (cut[0].cuts) {
@@ -28,26 +29,48 @@ NAME(clip)(const value_cut cut[2], int row, V(row) * from, V(row) * part) {
         *from = V(row_max)(*from, V(row_set1)(cut[1].from[row]));
         to = V(row_min)(to, V(row_set1)(cut[1].to[row]));
     }
+    if (clip->cuts) {
+        *from = V(row_max)(*from, V(row_load)(clip->from[row]));
+        to = V(row_min)(to, V(row_load)(clip->to[row]));
+    }
     *part = V(row_subs)(to, *from);
     return V(row_gt)(to, *from);
+}
+
+/* Differences of the neighbours `step` away on both sides. */
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(slope)(const int16_t *at, const int step, bool broken) {
+    int16_t slopes[32];
+    if (!broken)
+        return V(row_subs)(V(row_load)(at + step), V(row_load)(at - step));
+    snow_value_slopes(at, step, slopes);
+    return V(row_load)(slopes);
 }
 
 /* Packs the visible samples of a phase, from number `count` on. */
 TARGET static inline __attribute__((always_inline)) int
 NAME(collect)(const snow_value_splat *p, const value_rows *f,
-              const value_rows *b, const value_cut cut[2], value_phase *state,
-              value_queue *q, int count, const bool shaded, bool cuts) {
+              const value_rows *b, const value_cut cut[2],
+              const value_clip *planes, value_phase *state, value_queue *q,
+              int count, const bool shaded, bool cuts) {
     const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
+    const V(row) none = V(row_set1)(SNOW_VALUE_HOLE);
+    const bool holes = f->holes || b->holes;
     for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
         const int16_t *front = f->values[row + 1], *back = b->values[row + 1];
-        V(row) x = V(row_load)(front), y = V(row_load)(back), from, part;
+        V(row) x = V(row_load)(front), y = V(row_load)(back);
+        V(row) from = zero, part = zero;
         uint32_t mask = state->active[row];
+        if (holes)
+            mask &= V(row_gt)(x, none) & V(row_gt)(y, none);
         if (cuts) {
-            mask &= NAME(clip)(cut, row, &from, &part);
+            mask &= NAME(clip)(cut, planes, row, &from, &part);
             V(row) first = x;
             x = NAME(mix)(first, y, from);
             y = NAME(mix)(first, y, V(row_add)(from, part));
+        }
+        if (cuts || holes) {
             x = V(row_min)(V(row_max)(x, zero), most);
             y = V(row_min)(V(row_max)(y, zero), most);
         }
@@ -64,12 +87,11 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
         for (int side = 0; shaded && side < 2; side++) {
             const int16_t *at = side ? back : front;
             int16_t(*slopes)[QUEUE] = q->slopes + 3 * side;
+            bool broken = (side ? b : f)->holes;
             V(row_compress)
-            (slopes[0] + count,
-             V(row_subs)(V(row_load)(at + 1), V(row_load)(at - 1)), mask);
+            (slopes[0] + count, NAME(slope)(at, 1, broken), mask);
             V(row_compress)
-            (slopes[1] + count,
-             V(row_subs)(V(row_load)(at + 32), V(row_load)(at - 32)), mask);
+            (slopes[1] + count, NAME(slope)(at, 32, broken), mask);
             V(row_compress)
             (slopes[2] + count, V(row_load)((side ? b : f)->across[row]), mask);
         }
@@ -121,10 +143,12 @@ NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
     for (int phase = first; phase < end; phase++) {
         value_phase *state = &room->phase[phase];
         state->rows = 0;
-        if (state->alive && NAME(activate)(p, n, phase, column, row,
-                                           room->cut[phase - first], state))
+        if (state->alive &&
+            NAME(activate)(p, n, phase, column, row, room->cut[phase - first],
+                           &room->clip[phase - first], state))
             cuts |= room->cut[phase - first][0].cuts ||
-                    room->cut[phase - first][1].cuts;
+                    room->cut[phase - first][1].cuts ||
+                    room->clip[phase - first].cuts;
     }
     for (int phase = first; phase < end; phase++) {
         value_phase *state = &room->phase[phase];
@@ -139,8 +163,9 @@ NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
         (p, n, phase, column, row, here, shaded ? state->rows : 0, f);
         NAME(sample)
         (p, n + 1, phase, column, row, here, shaded ? state->rows : 0, b);
-        count = NAME(collect)(p, f, b, room->cut[phase - first], state, q,
-                              count, shaded, cuts);
+        count = NAME(collect)(p, f, b, room->cut[phase - first],
+                              &room->clip[phase - first], state, q, count,
+                              shaded, cuts);
     }
     if (!count)
         return false;

@@ -3,6 +3,7 @@
 #include "splat/values/value_room.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Narrows [t[0], t[1]] to where from + t (to - from) <= most. */
 static void keep_below(double from, double to, double most, double t[2]) {
@@ -36,6 +37,68 @@ void snow_value_cut(double front, double back, double low, double high,
         out->to[n] = t[1] > t[0] ? part_of(t[1]) : 0;
         out->some |= (uint32_t)(out->to[n] > out->from[n]) << n;
     }
+}
+
+/* Whether all lanes of all rows of a tile are within a plane (1), beyond it
+ * (-1) or neither. */
+static int side_of(const double plane[4], const double at[3]) {
+    double height = plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2];
+    double most = height + fmax(0, 31 * plane[0]) + fmax(0, 31 * plane[1]);
+    double least = height + fmin(0, 31 * plane[0]) + fmin(0, 31 * plane[1]);
+    return most <= plane[3] ? 1 : least > plane[3] ? -1 : 0;
+}
+
+/* Narrows the parts of all samples to those within a plane. */
+static void clip_by(const double plane[4], const double front[3],
+                    const double back[3], double (*parts)[32][2]) {
+    double from = 0, to = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        from += plane[axis] * front[axis];
+        to += plane[axis] * back[axis];
+    }
+    for (int row = 0; row < SNOW_VALUE_ROWS; row++)
+        for (int n = 0; n < 32; n++) {
+            double aside = plane[0] * n + plane[1] * row;
+            keep_below(from + aside, to + aside, plane[3], parts[row][n]);
+        }
+}
+
+static void store_parts(double (*parts)[32][2], value_clip *out) {
+    for (int row = 0; row < SNOW_VALUE_ROWS; row++) {
+        out->some[row] = 0;
+        for (int n = 0; n < 32; n++) {
+            const double *t = parts[row][n];
+            int16_t from = part_of(t[0]), to = t[1] > t[0] ? part_of(t[1]) : 0;
+            out->from[row][n] = from;
+            out->to[row][n] = to;
+            out->some[row] |= (uint32_t)(to > from) << n;
+        }
+    }
+}
+
+void snow_value_clip(const snow_value_splat *p, const double front[3],
+                     const double back[3], value_clip *out) {
+    double parts[SNOW_VALUE_ROWS][32][2];
+    out->cuts = false;
+    for (size_t plane = 0; plane < p->clip_count; plane++) {
+        const double *clip = p->clips[plane];
+        int sides[2] = {side_of(clip, front), side_of(clip, back)};
+        if (sides[0] > 0 && sides[1] > 0)
+            continue;
+        for (int row = 0; !out->cuts && row < SNOW_VALUE_ROWS; row++)
+            for (int n = 0; n < 32; n++) {
+                parts[row][n][0] = 0;
+                parts[row][n][1] = 1;
+            }
+        out->cuts = true;
+        if (sides[0] < 0 && sides[1] < 0) {
+            memset(out->some, 0, sizeof out->some);
+            return;
+        }
+        clip_by(clip, front, back, parts);
+    }
+    if (out->cuts)
+        store_parts(parts, out);
 }
 
 void snow_value_shorten(value_queue *q, int count, int channels) {

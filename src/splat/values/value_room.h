@@ -19,7 +19,8 @@ typedef struct value_rows {
     int16_t across[SNOW_VALUE_ROWS][32]; /* differences along P */
     uint64_t has;                        /* rows of values, from row -1 on */
     uint32_t has_across;
-    int sheet; /* that the rows are of */
+    int sheet;  /* that the rows are of */
+    bool holes; /* its voxels, or those beside it along P, have some */
 } value_rows;
 
 /* The samples of a slab, packed. */
@@ -38,6 +39,13 @@ typedef struct value_cut {
     bool cuts;
 } value_cut;
 
+/* The same for clip planes, for each sample. */
+typedef struct value_clip {
+    int16_t from[SNOW_VALUE_ROWS][32], to[SNOW_VALUE_ROWS][32];
+    uint32_t some[SNOW_VALUE_ROWS];
+    bool cuts;
+} value_clip;
+
 typedef struct value_phase {
     uint32_t active[SNOW_VALUE_ROWS], open[SNOW_VALUE_ROWS];
     uint32_t rows;  /* with active samples */
@@ -48,6 +56,7 @@ typedef struct value_phase {
 typedef struct value_room {
     value_queue queue;
     value_cut cut[TOGETHER][2]; /* along u and v */
+    value_clip clip[TOGETHER];
     value_phase phase[SNOW_VALUE_PHASES];
     value_rows rows[][2]; /* [phase][sheet & 1] */
 } value_room;
@@ -102,6 +111,47 @@ static inline bool value_any(const snow_value_store *s, int run, int64_t slice,
     return (bits & ((UINT64_C(2) << (last - first)) - 1)) != 0;
 }
 
+/* The same for the cells that have a hole, of all rows that gradients reach. */
+static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
+                                   value_window w) {
+    const uint64_t *coarse = s->coarse +
+                             snow_value_coarse_at(s, s->run_count, slice) +
+                             w.word * s->coarse_words;
+    size_t first = (w.row - 1) / SNOW_VALUE_COARSE;
+    size_t last = (w.row + SNOW_VALUE_ROWS) / SNOW_VALUE_COARSE;
+    uint64_t any = 0;
+    for (size_t n = first; n <= last; n++)
+        any |= (coarse[n / 64] | coarse[n / 64 + s->coarse_words]) >> n % 64;
+    return any & 1;
+}
+
+/* --- holes ------------------------------------------------------------------
+ */
+
+/* The weight of a voxel that is there. */
+#define SNOW_VALUE_FULL 16384
+
+/* Sums of values by weights to values, where less than all are there. */
+void snow_value_weigh(int16_t values[32], const int16_t weights[32],
+                      uint32_t lanes);
+
+/* Differences of 32 numbers' neighbours `step` away on both sides. */
+void snow_value_slopes(const int16_t *at, int step, int16_t out[32]);
+
+/* A row of sheet `sheet`, from voxel (column, row) on, and of those beside it
+ * along P. */
+typedef struct value_sides {
+    const snow_value_splat *splat;
+    int sheet;
+    int64_t column, row;
+    const snow_value_place *place;
+    const int16_t *here, *before, *after;
+} value_sides;
+
+/* Differences along P of the lanes that have a hole near. */
+void snow_value_bridge(const value_sides *sides, uint32_t lanes,
+                       int16_t *across);
+
 /* --- cuts -------------------------------------------------------------------
  */
 
@@ -109,6 +159,11 @@ static inline bool value_any(const snow_value_store *s, int run, int64_t slice,
  * both sheets are at front + n and back + n. */
 void snow_value_cut(double front, double back, double low, double high,
                     value_cut *out);
+
+/* The parts of a slab within all clip planes, for a tile whose first sample is
+ * at these places, u, v and slice, of both sheets. */
+void snow_value_clip(const snow_value_splat *splat, const double front[3],
+                     const double back[3], value_clip *out);
 
 /* Alpha and colours of the samples of slabs that are cut. */
 void snow_value_shorten(value_queue *queue, int count, int channels);

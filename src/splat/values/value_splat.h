@@ -55,11 +55,13 @@ typedef struct snow_value_splat {
     const snow_value_sheet *sheets;
     const snow_value_place *places; /* [sheet * phases + phase] */
     int sheet_count, phases;
-    int channels;           /* 2 or 4 */
-    int16_t closed;         /* alpha that ends a pixel, of 32767 */
-    int64_t first[2];       /* cell of the lattice: lane 1 of tile 0; row 0 */
-    int64_t cells[2];       /* of the lattice */
-    double low[2], high[2]; /* the field's ends along u and v */
+    int channels;             /* 2 or 4 */
+    int16_t closed;           /* alpha that ends a pixel, of 32767 */
+    int64_t first[2];         /* cell of the lattice: lane 1 of tile 0; row 0 */
+    int64_t cells[2];         /* of the lattice */
+    double low[2], high[2];   /* the field's ends along u and v */
+    const double (*clips)[4]; /* seen is where a u + b v + c slice <= d */
+    size_t clip_count;
 } snow_value_splat;
 
 /* Pixels of a tile: planes of 15 bits, of which channels are used. */

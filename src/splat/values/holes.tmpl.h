@@ -1,0 +1,100 @@
+/* splat/values/holes.tmpl.h - sheets where voxels have no value: the mean of
+ * what is there, where that is half of the weights and more.  Included by
+ * sample.tmpl.h. */
+
+/* 32 voxels, 0 in holes, and their weights. */
+typedef struct NAME(part) {
+    V(row) value, weight;
+} NAME(part);
+
+TARGET static inline __attribute__((always_inline)) NAME(part)
+    NAME(part_of)(V(row) voxels) {
+    const V(row) zero = V(row_set1)(0);
+    NAME(part) part;
+    part.weight = V(row_adds)(voxels, V(row_set1)(INT16_MAX));
+    part.weight =
+        V(row_min)(V(row_max)(part.weight, zero), V(row_set1)(SNOW_VALUE_FULL));
+    V(row) there = V(row_subs)(zero, V(row_srl)(part.weight, 14));
+    part.value = V(row_and)(voxels, there);
+    return part;
+}
+
+/* As NAME(voxels) of a slice or half way to the next one. */
+TARGET static inline __attribute__((always_inline)) NAME(part)
+    NAME(parts)(const NAME(source) * s, int64_t row, int by, bool half) {
+    const int16_t *values = s->values + s->column + by;
+    NAME(part) here = NAME(part_of)(V(row_load)(values + s->slice[row]));
+    if (half) {
+        NAME(part)
+        next = NAME(part_of)(V(row_load)(values + s->slice[row + s->next]));
+        here.value = V(row_avg)(here.value, next.value);
+        here.weight = V(row_avg)(here.weight, next.weight);
+    }
+    return here;
+}
+
+TARGET static inline __attribute__((always_inline)) NAME(part)
+    NAME(parts_along)(const NAME(source) * s, int64_t row, V(row) weight,
+                      bool half) {
+    NAME(part) a = NAME(parts)(s, row, 0, half);
+    NAME(part) b = NAME(parts)(s, row, 1, half);
+    return (NAME(part)){NAME(mix)(a.value, b.value, weight),
+                        NAME(mix)(a.weight, b.weight, weight)};
+}
+
+/* As NAME(fill); a bit in `partial` for each number whose weights are not
+ * full. */
+TARGET static void NAME(fill_holes)(const NAME(source) * s, int64_t first,
+                                    uint64_t rows,
+                                    const snow_value_place *place,
+                                    int16_t (*out)[32], uint32_t *partial,
+                                    bool half) {
+    const V(row) u = V(row_set1)(place->weight[0]);
+    const V(row) v = V(row_set1)(place->weight[1]);
+    for (; rows; rows &= rows - 1) {
+        int row = __builtin_ctzll(rows);
+        NAME(part) above = NAME(parts_along)(s, first + row, u, half);
+        NAME(part) below = NAME(parts_along)(s, first + row + 1, u, half);
+        V(row) weight = NAME(mix)(above.weight, below.weight, v);
+        V(row_store)(out[row], NAME(mix)(above.value, below.value, v));
+        partial[row] = V(row_gt)(V(row_set1)(SNOW_VALUE_FULL), weight);
+        if (partial[row]) {
+            int16_t weights[32];
+            V(row_store)(weights, weight);
+            snow_value_weigh(out[row], weights, partial[row]);
+        }
+    }
+}
+
+/* Differences along P in the rows `across`, whose values are there. */
+TARGET static void NAME(cross_holes)(const snow_value_splat *p, int n,
+                                     NAME(source) from, int64_t row,
+                                     uint32_t across,
+                                     const snow_value_place *place,
+                                     value_rows *out) {
+    const snow_value_store *s = p->store;
+    const snow_value_sheet *sheet = p->sheets + n;
+    const int64_t slices[2] = {sheet->before, sheet->after};
+    int16_t beside[2][SNOW_VALUE_ROWS][32];
+    uint32_t partial[2][SNOW_VALUE_ROWS];
+    for (int side = 0; side < 2; side++) {
+        from.slice = snow_value_at(s, slices[side]);
+        NAME(fill_holes)
+        (&from, row, across, place, beside[side], partial[side],
+         sheet->half_across);
+    }
+    for (; across; across &= across - 1) {
+        int r = __builtin_ctz(across);
+        uint32_t lanes = partial[0][r] | partial[1][r];
+        const value_sides sides = {.splat = p,
+                                   .sheet = n,
+                                   .column = from.column,
+                                   .row = row + r,
+                                   .place = place,
+                                   .here = out->values[r + 1],
+                                   .before = beside[0][r],
+                                   .after = beside[1][r]};
+        if (lanes)
+            snow_value_bridge(&sides, lanes, out->across[r]);
+    }
+}
