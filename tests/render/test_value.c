@@ -216,9 +216,6 @@ static void what_it_does_not_draw_is_refused(void **state) {
     s.settings.kernel = SNOW_KERNEL_TENT;
     s.settings.footprint = 3;
     refused(&s, "kernels other than the tent");
-    s = plain;
-    model_fade(&s);
-    refused(&s, "gradient opacity");
     refused_slab(&plain, 3, "a part of a volume");
     value_picture_free(&s);
 }

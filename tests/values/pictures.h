@@ -12,6 +12,10 @@
 reference_scene value_picture_scene(int n);
 void value_picture_free(reference_scene *scene);
 
+/* Cuts a scene by one or two planes through it, which are written to `planes`;
+ * voxels with the largest and the smallest value are left. */
+void value_picture_clip(value_scene *scene, size_t count, double planes[2][4]);
+
 /* The reference's picture, whose pixels end as those of the method: width *
  * height * 4 doubles. */
 double *value_picture_expected(const value_scene *scene);

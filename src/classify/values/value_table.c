@@ -179,13 +179,13 @@ static four_floats collect(const snow_value_table *table, int64_t first,
     return sum;
 }
 
-static uint64_t pack(four_floats rgba, float place, bool shaded) {
+static uint64_t pack(four_floats rgba, float place, bool placed) {
     uint64_t entry = 0;
     int sixteenths = place * 16 < 15 ? (int)(place * 16) : 15;
     for (int c = 0; c < 4; c++) {
         int word = (int)(rgba[c] * 32767 + 0.5F);
         word = word > 32767 ? 32767 : word;
-        if (shaded)
+        if (placed)
             word |= (sixteenths >> c & 1) << 15;
         entry |= (uint64_t)(unsigned)word << 16 * c;
     }
@@ -209,7 +209,7 @@ static void fill_row(void *of, int64_t front, int worker) {
         four_floats rgba =
             collect(table, first, look_of(table, look, back) - first,
                     look->steps, &place);
-        row[back] = rgba[3] > 0 ? pack(rgba, place, look->shaded) : 0;
+        row[back] = rgba[3] > 0 ? pack(rgba, place, look->placed) : 0;
         if ((row[back] >> 48 & 0x7fff) == 0)
             row[back] = 0;
     }
@@ -310,7 +310,7 @@ static snow_status take_key(snow_context *context, const snow_transfer *t,
 
 static bool same_look(const snow_value_look *a, const snow_value_look *b) {
     return a->nodes == b->nodes && a->steps == b->steps &&
-           a->shaded == b->shaded && a->threshold == b->threshold &&
+           a->placed == b->placed && a->threshold == b->threshold &&
            a->exponent == b->exponent &&
            snow_value_same_scale(&a->scale, &b->scale);
 }

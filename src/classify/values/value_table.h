@@ -26,14 +26,14 @@ typedef struct snow_value_look {
     double threshold; /* opacity 0 to 255; what is not above it is invisible */
     double exponent;  /* length of a ray in a slab, in reference lengths */
     int nodes, steps; /* 129 or 256; of an entry */
-    bool shaded;
+    bool placed;      /* with the place of the opacity, for gradients */
     int threads;
 } snow_value_look;
 
 typedef struct snow_value_table {
-    /* Premultiplied colour and alpha, lowest first, words of 15 bits.  In a
-     * shaded one the top bits are the place of the opacity in sixteenths of the
-     * slab, lowest bit first. */
+    /* Premultiplied colour and alpha, lowest first, words of 15 bits.  In one
+     * with places the top bits are the place of the opacity in sixteenths of
+     * the slab, lowest bit first. */
     uint64_t *entries; /* [front * SNOW_VALUE_PITCH + back] */
     int16_t scale;     /* the node of V is (V scale + 2^14) / 2^15, or: */
     uint8_t *nodes;    /* by V; NULL: evenly placed */

@@ -2,6 +2,7 @@
  */
 #include "base/thread_pool.h"
 #include "classify/classify.h"
+#include "classify/gradient_opacity.h"
 #include "render/value/internal.h"
 #include "volume/clip_planes.h"
 
@@ -75,6 +76,20 @@ static void place_light(const snow_value_params *params,
     light->least = fmaxf(light->least, 1e-6F);
 }
 
+static void place_fade(const snow_value_params *params, snow_value_path *path) {
+    const snow_value_scale14 *scale = &path->table.made.scale;
+    double inverse[3][3];
+    snow_matrix_invert3(params->volume->info.matrix, inverse);
+    path->fade =
+        (snow_value_fade){.transfer = params->transfer,
+                          .scale = scale,
+                          .share = (float)(path->lattice.path /
+                                           params->settings->opacity_length)};
+    measure(inverse, params->placement,
+            (scale->high - scale->low) / SNOW_VALUE_MOST / 2,
+            path->fade.metric);
+}
+
 /* --- sheets and memory ------------------------------------------------------
  */
 
@@ -115,9 +130,11 @@ static void describe(snow_value_path *path, const snow_value_params *params,
     const int64_t voxels[2] = {params->placement->columns,
                                params->placement->rows};
     bool shaded = params->settings->shade == SNOW_SHADE_PHONG;
+    bool fades = snow_transfer_has_gradient_opacity(params->transfer);
     job->splat = (snow_value_splat){.store = &path->store,
                                     .table = &path->table,
                                     .light = shaded ? &path->light : NULL,
+                                    .fade = fades ? &path->fade : NULL,
                                     .sheets = path->sheets,
                                     .places = path->places,
                                     .sheet_count = l->sheet_count,
@@ -135,8 +152,8 @@ static void describe(snow_value_path *path, const snow_value_params *params,
         job->splat.high[axis] =
             voxels[axis] == 1 ? 0.5 : (double)(voxels[axis] - 1);
     }
-    job->tile =
-        snow_value_tile_of(params->settings->isa, params->channels, shaded);
+    job->tile = snow_value_tile_of(params->settings->isa, params->channels,
+                                   shaded || fades);
 }
 
 static int wanted_tiles(int64_t cells, int side) {
@@ -341,6 +358,7 @@ snow_status snow_value_draw(snow_value_path *path,
     SNOW_TRY(place_clips(path, params));
     if (params->settings->shade == SNOW_SHADE_PHONG)
         place_light(params, &path->light);
+    place_fade(params, path);
     describe(path, params, &job);
     SNOW_TRY(reserve_plane(&job, params->settings->threads));
     SNOW_TRY(draw_image(&job, params->settings->threads, &image));

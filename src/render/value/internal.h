@@ -32,6 +32,7 @@ struct snow_value_path {
     snow_value_key key; /* of the store */
     int64_t interesting;
     snow_value_light light;
+    snow_value_fade fade;
     snow_value_sheet *sheets;
     snow_value_place *places;
     float *plane;          /* the image on the lattice */

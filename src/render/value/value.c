@@ -59,8 +59,6 @@ snow_status snow_value_check(snow_context *context,
         {s->deterministic, "deterministic pictures"},
         {s->kernel != SNOW_KERNEL_TENT || s->footprint != 2,
          "kernels other than the tent of 2 voxels"},
-        {snow_transfer_has_gradient_opacity(params->transfer),
-         "gradient opacity"},
         {snow_transfer_has_labels(params->transfer, params->volume->info.type),
          "labels"},
     };
@@ -101,7 +99,8 @@ static snow_status make_table(snow_value_path *path,
         .exponent = path->lattice.path / s->opacity_length,
         .nodes = high ? 256 : 129,
         .steps = high ? 64 : 16,
-        .shaded = s->shade == SNOW_SHADE_PHONG,
+        .placed = s->shade == SNOW_SHADE_PHONG ||
+                  snow_transfer_has_gradient_opacity(params->transfer),
         .threads = s->threads};
     SNOW_TRY(snow_value_table_make(path->context, &look, &path->table));
     if (path->table.most > 0 && path->table.most < FAINTEST)

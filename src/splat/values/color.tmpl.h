@@ -91,15 +91,35 @@ TARGET static inline __attribute__((always_inline)) V(row)
                      V(row_mulhrs)(V(row_load)(back), scale));
 }
 
-/* Lights 32 samples from `n` on. */
+/* Gradients of 32 samples from `n` on. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(shade)(const snow_value_splat *p, const value_queue *q, int n,
-            V(row) place, const int channels, V(row) color[4]) {
-    int16_t slopes[3][32], diffuse[32], white[32];
+NAME(slopes)(const value_queue *q, int n, V(row) place, int16_t slopes[3][32]) {
     for (int axis = 0; axis < 3; axis++)
         V(row_store)
     (slopes[axis], NAME(mix)(V(row_load)(q->slopes[axis] + n),
                              V(row_load)(q->slopes[axis + 3] + n), place));
+}
+
+/* Gradient opacity of 32 samples from `n` on; `within` is the place in what is
+ * left of a slab. */
+TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
+                              int n, V(row) within, int16_t slopes[3][32],
+                              V(row) color[4]) {
+    int16_t places[32], colors[4][32];
+    V(row_store)(places, within);
+    for (int c = 0; c < 4; c++)
+        V(row_store)(colors[c], color[c]);
+    snow_value_fade_colors(p->fade, slopes, q->front + n, q->back + n, places,
+                           colors);
+    for (int c = 0; c < 4; c++)
+        color[c] = V(row_load)(colors[c]);
+}
+
+/* Lights 32 samples. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(shade)(const snow_value_splat *p, int16_t slopes[3][32],
+            const int channels, V(row) color[4]) {
+    int16_t diffuse[32], white[32];
     for (int at = 0; at < 32; at += LANES)
         NAME(light)
     (p->light, slopes[0] + at, slopes[1] + at, slopes[2] + at, diffuse + at,
@@ -117,19 +137,24 @@ NAME(shade)(const snow_value_splat *p, const value_queue *q, int n,
 /* All samples of a queue, whose last 32 numbers and more are 0. */
 TARGET static inline __attribute__((always_inline)) void
 NAME(color)(const snow_value_splat *p, value_queue *q, int count,
-            const int channels, const bool shaded, bool cuts) {
+            const int channels, const bool sloped, bool cuts) {
     for (int n = 0; n < count; n += 32) {
         V(row) color[4];
         V(row_gather)
         (p->table->entries, NAME(entries)(p->table, q->front + n, q->back + n),
          color);
-        if (shaded) {
-            V(row) place = NAME(split)(color);
+        if (sloped) {
+            V(row) within = NAME(split)(color), place = within;
+            int16_t slopes[3][32];
             if (cuts)
                 place =
                     V(row_add)(V(row_load)(q->from + n),
                                V(row_mulhrs)(place, V(row_load)(q->part + n)));
-            NAME(shade)(p, q, n, place, channels, color);
+            NAME(slopes)(q, n, place, slopes);
+            if (p->fade)
+                NAME(fade)(p, q, n, within, slopes, color);
+            if (p->light)
+                NAME(shade)(p, slopes, channels, color);
         }
         for (int c = 0; c < channels - 1; c++)
             V(row_store)(q->color[c] + n, color[c]);

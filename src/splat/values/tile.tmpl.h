@@ -52,7 +52,7 @@ TARGET static inline __attribute__((always_inline)) int
 NAME(collect)(const snow_value_splat *p, const value_rows *f,
               const value_rows *b, const value_cut cut[2],
               const value_clip *planes, value_phase *state, value_queue *q,
-              int count, const bool shaded, bool cuts) {
+              int count, const bool sloped, bool cuts) {
     const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
     const V(row) none = V(row_set1)(SNOW_VALUE_HOLE);
     const bool holes = f->holes || b->holes;
@@ -84,7 +84,7 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
             V(row_compress)(q->from + count, from, mask);
             V(row_compress)(q->part + count, part, mask);
         }
-        for (int side = 0; shaded && side < 2; side++) {
+        for (int side = 0; sloped && side < 2; side++) {
             const int16_t *at = side ? back : front;
             int16_t(*slopes)[QUEUE] = q->slopes + 3 * side;
             bool broken = (side ? b : f)->holes;
@@ -136,7 +136,7 @@ NAME(blend)(snow_value_plane *plane, value_phase *state, const value_queue *q,
 TARGET static inline __attribute__((always_inline)) bool
 NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
            int64_t row, snow_value_plane *planes, value_room *room,
-           const int channels, const bool shaded) {
+           const int channels, const bool sloped) {
     value_queue *q = &room->queue;
     int count = 0;
     bool cuts = false;
@@ -157,21 +157,21 @@ NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
         uint64_t here = (uint64_t)state->rows << 1;
         if (!here)
             continue;
-        if (shaded)
+        if (sloped)
             here |= here << 1 | here >> 1;
         NAME(sample)
-        (p, n, phase, column, row, here, shaded ? state->rows : 0, f);
+        (p, n, phase, column, row, here, sloped ? state->rows : 0, f);
         NAME(sample)
-        (p, n + 1, phase, column, row, here, shaded ? state->rows : 0, b);
+        (p, n + 1, phase, column, row, here, sloped ? state->rows : 0, b);
         count = NAME(collect)(p, f, b, room->cut[phase - first],
                               &room->clip[phase - first], state, q, count,
-                              shaded, cuts);
+                              sloped, cuts);
     }
     if (!count)
         return false;
     V(row_store)(q->front + count, V(row_set1)(0));
     V(row_store)(q->back + count, V(row_set1)(0));
-    NAME(color)(p, q, count, channels, shaded, cuts);
+    NAME(color)(p, q, count, channels, sloped, cuts);
     count = 0;
     for (int phase = first; phase < end; phase++)
         count = NAME(blend)(&planes[phase], &room->phase[phase], q, count,
@@ -198,7 +198,7 @@ static void NAME(open)(const snow_value_splat *p, int x, int y,
 
 TARGET static inline __attribute__((always_inline)) bool
 NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
-           const int channels, const bool shaded) {
+           const int channels, const bool sloped) {
     snow_value_plane *planes = memory;
     value_room *room =
         (value_room *)(void *)((char *)memory + value_planes_bytes(p));
@@ -212,7 +212,7 @@ NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
             int end =
                 first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
             drawn |= NAME(slab)(p, n, first, end, column, row, planes, room,
-                                channels, shaded);
+                                channels, sloped);
             for (int phase = first; phase < end; phase++)
                 alive |= room->phase[phase].alive;
         }
@@ -222,10 +222,10 @@ NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
     return drawn;
 }
 
-#define VALUE_TILE(kind, channels, shaded)                                 \
+#define VALUE_TILE(kind, channels, sloped)                                 \
     TARGET static bool NAME(tile_##kind)(const snow_value_splat *p, int x, \
                                          int y, void *room) {              \
-        return NAME(tile)(p, x, y, room, channels, shaded);                \
+        return NAME(tile)(p, x, y, room, channels, sloped);                \
     }
 VALUE_TILE(grey, 2, false)
 VALUE_TILE(color, 4, false)

@@ -152,6 +152,15 @@ typedef struct value_sides {
 void snow_value_bridge(const value_sides *sides, uint32_t lanes,
                        int16_t *across);
 
+/* --- gradient opacity -------------------------------------------------------
+ */
+
+/* The colours and alpha of 32 samples, by their gradients and the places of
+ * their opacity between front and back, of 32768. */
+void snow_value_fade_colors(const snow_value_fade *fade, int16_t slopes[3][32],
+                            const int16_t *front, const int16_t *back,
+                            const int16_t places[32], int16_t color[4][32]);
+
 /* --- cuts -------------------------------------------------------------------
  */
 

@@ -47,11 +47,20 @@ typedef struct snow_value_light {
 } snow_value_light;
 #define SNOW_VALUE_ROOTS 8
 
+/* Gradient opacity: factors of the opacity of a reference length. */
+typedef struct snow_value_fade {
+    const snow_transfer *transfer;
+    const snow_value_scale14 *scale;
+    float metric[6]; /* |gradient|^2 in data units: uu vv pp uv up vp */
+    float share;     /* a slab's length, in reference lengths */
+} snow_value_fade;
+
 /* A picture. */
 typedef struct snow_value_splat {
     const snow_value_store *store;
     const snow_value_table *table;
     const snow_value_light *light; /* NULL: unshaded */
+    const snow_value_fade *fade;   /* NULL: none */
     const snow_value_sheet *sheets;
     const snow_value_place *places; /* [sheet * phases + phase] */
     int sheet_count, phases;
@@ -70,10 +79,11 @@ typedef int16_t snow_value_plane[4][SNOW_VALUE_ROWS][32];
 /* Bytes of a worker's memory. */
 size_t snow_value_splat_bytes(const snow_value_splat *splat);
 
-/* Draws tile (x, y); false: nothing is there.  `room` is aligned to 64; the
+/* Draws tile (x, y); false: nothing is there.  `sloped`: with gradients, for
+ * light or gradient opacity.  `room` is aligned to 64; the
  * planes of each phase are in it from its beginning on. */
 typedef bool snow_value_tile_fn(const snow_value_splat *splat, int x, int y,
                                 void *room);
-snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool shaded);
+snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool sloped);
 
 #endif
