@@ -16,6 +16,10 @@
  *                                 set, else 0; may read 32
  *   V(row_gather)(table, index, out)  the four words of 32 entries of 64 bits,
  *                                 lowest first; indices are unsigned
+ *   V(row_pairs)(p, at, span, out)  numbers p[at[n]] and p[at[n] + 1]; `at`
+ *                                 rises, and span is at[31] + 2; may read up to
+ *                                 63 numbers beyond that
+ *   V(pick_bits)(bits, select)    the bits that are set in `select`, packed
  *   V(rows_window)(low, high, shift, out)  ors the bits `shift` .. shift + 31
  *                                 of 32 pairs of words to 32 words; shift is
  *                                 below 32

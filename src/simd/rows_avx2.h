@@ -147,6 +147,38 @@ SNOW_AVX2_INLINE void snow_avx2_row_gather(const uint64_t *table,
         out[n] = (snow_avx2_row){low[n], high[n]};
 }
 
+/* 16 pairs: those of two gathers, whose halves are 8 numbers each. */
+SNOW_AVX2_INLINE void snow_avx2_half_pairs(const int16_t *p, const int16_t *at,
+                                           __m256i out[2]) {
+    const __m128i *index = (const __m128i *)(const void *)at;
+    const int *base = (const int *)(const void *)p;
+    __m256i a = _mm256_i32gather_epi32(
+        base, _mm256_cvtepi16_epi32(_mm_loadu_si128(index)), 2);
+    __m256i b = _mm256_i32gather_epi32(
+        base, _mm256_cvtepi16_epi32(_mm_loadu_si128(index + 1)), 2);
+    __m256i left =
+        _mm256_packs_epi32(_mm256_srai_epi32(_mm256_slli_epi32(a, 16), 16),
+                           _mm256_srai_epi32(_mm256_slli_epi32(b, 16), 16));
+    __m256i right =
+        _mm256_packs_epi32(_mm256_srai_epi32(a, 16), _mm256_srai_epi32(b, 16));
+    out[0] = _mm256_permute4x64_epi64(left, 0xD8);
+    out[1] = _mm256_permute4x64_epi64(right, 0xD8);
+}
+
+SNOW_AVX2_INLINE void snow_avx2_row_pairs(const int16_t *p, const int16_t *at,
+                                          int span, snow_avx2_row out[2]) {
+    __m256i low[2], high[2];
+    (void)span;
+    snow_avx2_half_pairs(p, at, low);
+    snow_avx2_half_pairs(p, at + 16, high);
+    out[0] = (snow_avx2_row){low[0], high[0]};
+    out[1] = (snow_avx2_row){low[1], high[1]};
+}
+
+SNOW_AVX2_INLINE uint32_t snow_avx2_pick_bits(uint32_t bits, uint32_t select) {
+    return _pext_u32(bits, select);
+}
+
 SNOW_AVX2_INLINE void snow_avx2_rows_window(const uint32_t *low,
                                             const uint32_t *high, int shift,
                                             uint32_t *out) {

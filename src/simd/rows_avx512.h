@@ -102,6 +102,33 @@ SNOW_AVX512_INLINE void snow_avx512_row_gather(const uint64_t *table,
     out[3] = _mm512_unpackhi_epi64(b, d);
 }
 
+/* Windows of 64 numbers, which two registers hold. */
+SNOW_AVX512_INLINE void snow_avx512_row_pairs(const int16_t *p,
+                                              const int16_t *at, int span,
+                                              snow_avx512_row out[2]) {
+    __m512i left = _mm512_loadu_si512(at);
+    __m512i right = _mm512_add_epi16(left, _mm512_set1_epi16(1));
+    __m512i low = _mm512_loadu_si512(p), high = _mm512_loadu_si512(p + 32);
+    out[0] = _mm512_permutex2var_epi16(low, left, high);
+    out[1] = _mm512_permutex2var_epi16(low, right, high);
+    for (int first = 64; first < span; first += 64) {
+        __m512i from = _mm512_set1_epi16((int16_t)(first - 1));
+        low = _mm512_loadu_si512(p + first);
+        high = _mm512_loadu_si512(p + first + 32);
+        out[0] =
+            _mm512_mask_mov_epi16(out[0], _mm512_cmpgt_epi16_mask(left, from),
+                                  _mm512_permutex2var_epi16(low, left, high));
+        out[1] =
+            _mm512_mask_mov_epi16(out[1], _mm512_cmpgt_epi16_mask(right, from),
+                                  _mm512_permutex2var_epi16(low, right, high));
+    }
+}
+
+SNOW_AVX512_INLINE uint32_t snow_avx512_pick_bits(uint32_t bits,
+                                                  uint32_t select) {
+    return _pext_u32(bits, select);
+}
+
 SNOW_AVX512_INLINE void snow_avx512_rows_window(const uint32_t *low,
                                                 const uint32_t *high, int shift,
                                                 uint32_t *out) {

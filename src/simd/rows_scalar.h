@@ -109,6 +109,25 @@ static inline void snow_scalar_row_gather(const uint64_t *table,
         out[c] = snow_scalar_row_load(words[c]);
 }
 
+static inline void snow_scalar_row_pairs(const int16_t *p, const int16_t *at,
+                                         int span, snow_scalar_row out[2]) {
+    int16_t numbers[2][32];
+    (void)span;
+    for (int n = 0; n < 32; n++) {
+        numbers[0][n] = p[at[n]];
+        numbers[1][n] = p[at[n] + 1];
+    }
+    out[0] = snow_scalar_row_load(numbers[0]);
+    out[1] = snow_scalar_row_load(numbers[1]);
+}
+
+static inline uint32_t snow_scalar_pick_bits(uint32_t bits, uint32_t select) {
+    uint32_t picked = 0;
+    for (int n = 0; select; select &= select - 1)
+        picked |= (bits >> __builtin_ctz(select) & 1) << n++;
+    return picked;
+}
+
 /* Masks of 32 rows of 32 bits. */
 static inline void snow_scalar_rows_window(const uint32_t *low,
                                            const uint32_t *high, int shift,

@@ -26,15 +26,14 @@ double snow_perspective_shear_ratio(const snow_placement *p) {
 }
 
 /* The volume's range along an axis, in voxels of slice k0. */
-static void covered_range(const snow_placement *p,
-                          const snow_perspective_shear *scaled, int axis,
+static void covered_range(const snow_placement *p, double height, int axis,
                           const double *reach, double range[2]) {
     double last = (double)((axis == 0 ? p->columns : p->rows) - 1);
     double eye = p->eye.at[axis];
     range[0] = INFINITY;
     range[1] = -INFINITY;
     for (int64_t k = 0; k < p->slices; k++) {
-        double step = snow_perspective_shear_step(scaled, (double)k);
+        double step = ((double)k - p->eye.at[2]) / height;
         range[0] = fmin(range[0], eye + (-reach[k] - eye) / step);
         range[1] = fmax(range[1], eye + (last + reach[k] - eye) / step);
     }
@@ -64,9 +63,9 @@ static void visible_range(const snow_placement *p, double height, int axis,
 
 static bool make_axis(const snow_placement *p,
                       const snow_perspective_shear *scaled, int axis,
-                      const double *reach, snow_perspective_shear_axis *out) {
-    double covered[2], seen[2];
-    covered_range(p, scaled, axis, reach, covered);
+                      const double covered[2],
+                      snow_perspective_shear_axis *out) {
+    double seen[2];
     visible_range(p, scaled->height, axis, seen);
     /* The warp reads two pixels beyond the pixel of its place. */
     double from = fmax(covered[0] / out->pitch, seen[0] / out->pitch - 3);
@@ -103,19 +102,17 @@ static void place_warp(const snow_placement *p,
     }
 }
 
-snow_status
-snow_perspective_shear_make(snow_context *context, const snow_placement *p,
-                            const snow_perspective_shear_options *options,
-                            snow_perspective_shear *out) {
-    double ends[2];
-    heights_of(p, ends);
-    snow_perspective_shear scaled = {
-        .u = {.pitch = options->pitch[0]},
-        .v = {.pitch = options->pitch[1]},
-        .height = fabs(ends[0]) < fabs(ends[1]) ? ends[0] : ends[1],
-        .level = p->eye.at[2]};
-    if (!make_axis(p, &scaled, 0, options->reach[0], &scaled.u) ||
-        !make_axis(p, &scaled, 1, options->reach[1], &scaled.v))
+snow_status snow_perspective_shear_cover(snow_context *context,
+                                         const snow_placement *p, double height,
+                                         const double pitch[2],
+                                         double covered[2][2],
+                                         snow_perspective_shear *out) {
+    snow_perspective_shear scaled = {.u = {.pitch = pitch[0]},
+                                     .v = {.pitch = pitch[1]},
+                                     .height = height,
+                                     .level = p->eye.at[2]};
+    if (!make_axis(p, &scaled, 0, covered[0], &scaled.u) ||
+        !make_axis(p, &scaled, 1, covered[1], &scaled.v))
         return snow_fail(
             context, SNOW_STATUS_BAD_USAGE,
             "the intermediate image is too large: the limit is 1048576 pixels "
@@ -123,4 +120,17 @@ snow_perspective_shear_make(snow_context *context, const snow_placement *p,
     place_warp(p, &scaled);
     *out = scaled;
     return SNOW_STATUS_OK;
+}
+
+snow_status
+snow_perspective_shear_make(snow_context *context, const snow_placement *p,
+                            const snow_perspective_shear_options *options,
+                            snow_perspective_shear *out) {
+    double ends[2], covered[2][2];
+    heights_of(p, ends);
+    double height = fabs(ends[0]) < fabs(ends[1]) ? ends[0] : ends[1];
+    for (int axis = 0; axis < 2; axis++)
+        covered_range(p, height, axis, options->reach[axis], covered[axis]);
+    return snow_perspective_shear_cover(context, p, height, options->pitch,
+                                        covered, out);
 }

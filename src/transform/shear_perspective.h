@@ -66,4 +66,12 @@ snow_status snow_perspective_shear_make(
     snow_context *context, const snow_placement *placement,
     const snow_perspective_shear_options *options, snow_perspective_shear *out);
 
+/* The same for a plane k0 = ek + `height` of the caller's choice, in which the
+ * volume covers covered[axis][0] .. covered[axis][1] voxels. */
+snow_status snow_perspective_shear_cover(snow_context *context,
+                                         const snow_placement *placement,
+                                         double height, const double pitch[2],
+                                         double covered[2][2],
+                                         snow_perspective_shear *out);
+
 #endif

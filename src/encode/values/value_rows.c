@@ -5,9 +5,9 @@
 #include <string.h>
 
 /* Numbers before the first row and behind the last, for what is read beyond a
- * row's ends. */
+ * row's ends: by lanes up to 8 voxels apart. */
 static int64_t beyond(const snow_value_store *s) {
-    return s->columns + 2 * s->margin + 128;
+    return s->columns + 2 * s->margin + 512;
 }
 
 static int64_t row_number(const snow_value_store *s, int64_t slice,

@@ -99,11 +99,17 @@ static snow_status place_sheets(snow_value_path *path,
     size_t sheets = (size_t)l->sheet_count;
     SNOW_TRY(snow_reserve(path->context, &path->sheets, &path->sheets_capacity,
                           0, sheets * sizeof *path->sheets));
-    SNOW_TRY(snow_reserve(path->context, &path->places, &path->places_capacity,
-                          0,
-                          sheets * (size_t)l->phases * sizeof *path->places));
-    snow_value_lattice_sheets(l, params->placement, path->sheets, path->places);
-    return SNOW_STATUS_OK;
+    snow_value_place *places = NULL;
+    if (!l->perspective) {
+        size_t count = sheets * (size_t)l->phases;
+        SNOW_TRY(snow_reserve(path->context, &path->places,
+                              &path->places_capacity, 0,
+                              count * sizeof *path->places));
+        places = path->places;
+    }
+    snow_value_lattice_sheets(l, params->placement, path->sheets, places);
+    return l->perspective ? snow_value_place_rays(path, params)
+                          : SNOW_STATUS_OK;
 }
 
 /* The planes that have cut the volume. */
@@ -137,6 +143,7 @@ static void describe(snow_value_path *path, const snow_value_params *params,
                                     .fade = fades ? &path->fade : NULL,
                                     .sheets = path->sheets,
                                     .places = path->places,
+                                    .rays = l->perspective ? &path->rays : NULL,
                                     .sheet_count = l->sheet_count,
                                     .phases = l->phases,
                                     .channels = params->channels,
@@ -153,7 +160,7 @@ static void describe(snow_value_path *path, const snow_value_params *params,
             voxels[axis] == 1 ? 0.5 : (double)(voxels[axis] - 1);
     }
     job->tile = snow_value_tile_of(params->settings->isa, params->channels,
-                                   shaded || fades);
+                                   shaded || fades, l->perspective);
 }
 
 static int wanted_tiles(int64_t cells, int side) {
@@ -192,7 +199,7 @@ static snow_status reserve_plane(draw_job *job, int threads) {
     size_t height =
         (size_t)grid.tiles[1] * SNOW_VALUE_ROWS * (size_t)l->cells[1];
     if (l->quincunx) { /* cell (0, 0) is at the left, half way down */
-        l->shear.start[1] += (double)height - l->top;
+        snow_value_lattice_move(l, 1, (double)height - l->top);
         l->top = (int)height;
         width = height = width + height + 1;
         l->width = l->height = (int)width;
@@ -347,8 +354,7 @@ snow_status snow_value_draw(snow_value_path *path,
     draw_job job = {.path = path};
     snow_intermediate_view image;
     double mark = snow_seconds();
-    if (path->lattice.shear.u.count == 0 || path->lattice.shear.v.count == 0 ||
-        path->range.low > path->range.high) {
+    if (path->lattice.empty || path->range.low > path->range.high) {
         memset(pixels, 0,
                (size_t)view->width * (size_t)view->height *
                    (size_t)params->channels * sizeof *pixels);

@@ -35,6 +35,9 @@ struct snow_value_path {
     snow_value_fade fade;
     snow_value_sheet *sheets;
     snow_value_place *places;
+    snow_value_rays rays; /* perspective: instead of places */
+    snow_value_spread *spreads;
+    snow_value_lanes *lanes[2];
     float *plane;          /* the image on the lattice */
     snow_value_grid grid;  /* of it; no tiles: anything is there */
     unsigned char *drawn;  /* its tiles */
@@ -42,10 +45,16 @@ struct snow_value_path {
     float *halved, *lines; /* the image made smaller; lines of the warp */
     double (*clips)[4];    /* clip planes by u, v and slice */
     char *scratch;
-    size_t sheets_capacity, places_capacity, plane_capacity, drawn_capacity,
-        blocks_capacity, halved_capacity, lines_capacity, clips_capacity,
+    size_t sheets_capacity, places_capacity, spreads_capacity,
+        lanes_capacity[2], plane_capacity, drawn_capacity, blocks_capacity,
+        halved_capacity, lines_capacity, clips_capacity,
         scratch_capacity; /* bytes */
 };
+
+/* In perspective: the rays of the sheets, which are there.  Errors:
+ * SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
+snow_status snow_value_place_rays(snow_value_path *path,
+                                  const snow_value_params *params);
 
 /* The image to all of the picture.  Errors: SNOW_STATUS_NO_MEMORY,
  * SNOW_STATUS_STOPPED. */

@@ -2,6 +2,7 @@
 #include "render/value/lattice.h"
 
 #include <math.h>
+#include <string.h>
 
 /* World length of a step along an axis. */
 static double length_of(const snow_volume_info *info, int axis) {
@@ -18,6 +19,8 @@ static snow_status measure_density(snow_context *context,
                                    const snow_placement *p, double *pixels) {
     snow_camera camera;
     SNOW_TRY(snow_camera_make(context, info, view, &camera));
+    if (p->perspective) /* at the volume's middle */
+        camera.pitch *= 1 - camera.middle[2] / camera.distance;
     *pixels = fmin(length_of(info, p->u_axis), length_of(info, p->v_axis)) /
               camera.pitch;
     return SNOW_STATUS_OK;
@@ -79,7 +82,7 @@ void snow_value_lattice_sheets(const snow_value_lattice *l,
                                snow_value_sheet *sheets,
                                snow_value_place *places) {
     for (int n = 0; n < l->sheet_count; n++) {
-        int at = p->nearest_first ? n : l->sheet_count - 1 - n;
+        int at = l->nearest_first ? n : l->sheet_count - 1 - n;
         snow_value_sheet *s = &sheets[n];
         *s = (snow_value_sheet){.at = (double)at / l->halves,
                                 .slice = at / l->halves,
@@ -97,7 +100,7 @@ void snow_value_lattice_sheets(const snow_value_lattice *l,
             s->half_across = s->half;
             s->one_sided = s->after - s->before == 1;
         }
-        for (int phase = 0; phase < l->phases; phase++) {
+        for (int phase = 0; places && phase < l->phases; phase++) {
             snow_value_place *place = &places[n * l->phases + phase];
             int middle = l->quincunx ? phase & 1 : 0,
                 cell = phase >> l->quincunx;
@@ -119,10 +122,17 @@ void snow_value_lattice_sheets(const snow_value_lattice *l,
  */
 
 /* The slice of the front sheet. */
-static double front_of(const snow_placement *p) {
+static void place_front(const snow_placement *p, snow_value_lattice *l) {
+    l->perspective = p->perspective;
+    l->nearest_first = p->nearest_first;
+    if (p->perspective) {
+        l->nearest_first = p->eye.at[2] < 0;
+        memcpy(l->eye, p->eye.at, sizeof l->eye);
+    }
     if (p->slices == 1)
-        return p->nearest_first ? -0.5 : 0.5;
-    return p->nearest_first ? 0 : (double)(p->slices - 1);
+        l->front = l->nearest_first ? -0.5 : 0.5;
+    else
+        l->front = l->nearest_first ? 0 : (double)(p->slices - 1);
 }
 
 /* The lattice has its samples on the voxels of the front sheet, not of slice 0:
@@ -135,29 +145,41 @@ static void anchor(snow_value_lattice *l, int axis, int phases) {
     l->voxels[axis]++;
 }
 
+void snow_value_lattice_move(snow_value_lattice *l, int axis, double by) {
+    l->shear.start[axis] += by;
+    for (int n = 0; n < 3; n++)
+        l->scaled.warp[axis][n] += by * l->scaled.warp[2][n];
+}
+
 /* The image turned by 45 degrees; its samples were twice as dense along both
  * axes, every second one of which is none. */
 static void turn(snow_value_lattice *l) {
     snow_shear *s = &l->shear;
     int width = (int)l->voxels[0] * l->cells[0];
     int height = (int)l->voxels[1] * l->cells[1];
-    double *const maps[3] = {s->start, s->along_x, s->along_y};
-    for (int n = 0; n < 3; n++) {
-        double u = maps[n][0], v = maps[n][1];
-        maps[n][0] = (u + v) / 2;
-        maps[n][1] = (u - v) / 2;
+    double *const maps[6][2] = {{s->start, s->start + 1},
+                                {s->along_x, s->along_x + 1},
+                                {s->along_y, s->along_y + 1},
+                                {&l->scaled.warp[0][0], &l->scaled.warp[1][0]},
+                                {&l->scaled.warp[0][1], &l->scaled.warp[1][1]},
+                                {&l->scaled.warp[0][2], &l->scaled.warp[1][2]}};
+    for (int n = 0; n < 6; n++) {
+        double u = *maps[n][0], v = *maps[n][1];
+        *maps[n][0] = (u + v) / 2;
+        *maps[n][1] = (u - v) / 2;
     }
     l->top = height;
-    s->start[1] += l->top;
+    snow_value_lattice_move(l, 1, l->top);
     l->width = l->height = width + height + 1;
 }
 
 /* How many lattice pixels a pixel is wide, and what that asks of the warp. */
-static void choose_warp(snow_quality quality, double pixels,
-                        snow_value_lattice *l) {
+static void choose_warp(const snow_placement *p, snow_quality quality,
+                        double pixels, snow_value_lattice *l) {
     const snow_shear *s = &l->shear;
-    double wide = fmax(hypot(s->along_x[0], s->along_y[0]),
-                       hypot(s->along_x[1], s->along_y[1]));
+    double wide = l->perspective ? snow_value_eye_density(l, p)
+                                 : fmax(hypot(s->along_x[0], s->along_y[0]),
+                                        hypot(s->along_x[1], s->along_y[1]));
     l->filter =
         quality == SNOW_QUALITY_DRAFT ? SNOW_BILINEAR : SNOW_CATMULL_ROM;
     l->means = 1;
@@ -169,6 +191,36 @@ static void choose_warp(snow_quality quality, double pixels,
     l->means = (int)ceil(wide - 1e-6);
 }
 
+static snow_status place_image(snow_context *context,
+                               const snow_volume_info *info,
+                               const snow_placement *p, snow_value_lattice *l) {
+    int dense = l->quincunx ? 2 : 1;
+    double aside = 1 + snow_value_lattice_reach(info, p, 1);
+    const snow_shear_options options = {
+        .phases = {dense * l->cells[0], dense * l->cells[1]},
+        .stride = {1, 1},
+        .reach = {aside, aside}};
+    SNOW_TRY(snow_shear_make(context, p, &options, &l->shear));
+    const snow_lattice *axes[2] = {&l->shear.u, &l->shear.v};
+    l->empty = axes[0]->count == 0 || axes[1]->count == 0;
+    for (int axis = 0; axis < 2; axis++) {
+        int phases = axes[axis]->phases;
+        l->slope[axis] = axes[axis]->slope;
+        l->first[axis] = axes[axis]->first / phases;
+        l->voxels[axis] = (axes[axis]->count + phases - 1) / phases;
+        anchor(l, axis, phases);
+    }
+    return SNOW_STATUS_OK;
+}
+
+static snow_status place_eye_image(snow_context *context,
+                                   const snow_placement *p,
+                                   snow_value_lattice *l) {
+    int dense = l->quincunx ? 2 : 1;
+    const int phases[2] = {dense * l->cells[0], dense * l->cells[1]};
+    return snow_value_eye_image(context, p, phases, l);
+}
+
 snow_status
 snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
                         const snow_view *view, const snow_placement *p,
@@ -178,27 +230,14 @@ snow_value_lattice_make(snow_context *context, const snow_volume_info *info,
     SNOW_TRY(measure_density(context, info, view, p, &pixels));
     choose_cells(info, p, quality, pixels, &l);
     choose_sheets(info, p, quality, &l);
-    int dense = l.quincunx ? 2 : 1;
-    double aside = 1 + snow_value_lattice_reach(info, p, 1);
-    const snow_shear_options options = {
-        .phases = {dense * l.cells[0], dense * l.cells[1]},
-        .stride = {1, 1},
-        .reach = {aside, aside}};
-    SNOW_TRY(snow_shear_make(context, p, &options, &l.shear));
-    l.front = front_of(p);
-    const snow_lattice *axes[2] = {&l.shear.u, &l.shear.v};
-    for (int axis = 0; axis < 2; axis++) {
-        int phases = axes[axis]->phases;
-        l.slope[axis] = axes[axis]->slope;
-        l.first[axis] = axes[axis]->first / phases;
-        l.voxels[axis] = (axes[axis]->count + phases - 1) / phases;
-        anchor(&l, axis, phases);
-    }
+    place_front(p, &l);
+    SNOW_TRY(p->perspective ? place_eye_image(context, p, &l)
+                            : place_image(context, info, p, &l));
     l.width = (int)l.voxels[0] * l.cells[0];
     l.height = (int)l.voxels[1] * l.cells[1];
     if (l.quincunx)
         turn(&l);
-    choose_warp(quality, pixels, &l);
+    choose_warp(p, quality, pixels, &l);
     *out = l;
     return SNOW_STATUS_OK;
 }

@@ -16,7 +16,9 @@ typedef struct show_job {
     const snow_value_lattice *lattice;
     snow_intermediate_view image;
     snow_shear shear;
+    snow_perspective_shear scaled; /* in perspective */
     snow_warp_fn *warp;
+    snow_warp_places_fn *places;
     int width, height; /* of the picture */
     float *pixels, *lines;
     size_t line_floats; /* of the lines of one worker */
@@ -44,6 +46,18 @@ static void add_line(const snow_intermediate_view *image, int y, int64_t first,
     }
 }
 
+/* The place of a pixel along an axis, after the image was made `side` times
+ * smaller from `low` pixels before its first on. */
+static void shrink(show_job *job, int axis, double low, double side) {
+    double *start = &job->shear.start[axis], *row = job->scaled.warp[axis];
+    *start = (*start + low + 0.5) / side - 0.5 + BORDER;
+    job->shear.along_x[axis] /= side;
+    job->shear.along_y[axis] /= side;
+    for (int n = 0; n < 3; n++)
+        row[n] = (row[n] + (low + 0.5) * job->scaled.warp[2][n]) / side +
+                 (BORDER - 0.5) * job->scaled.warp[2][n];
+}
+
 /* The image halved as often as the lattice says, in blocks that do not depend
  * on what of it is in view. */
 static snow_status halve(snow_value_path *path, show_job *job) {
@@ -58,13 +72,7 @@ static snow_status halve(snow_value_path *path, show_job *job) {
         int64_t low = first[axis] & -side;
         size[axis] =
             (int)((first[axis] + size[axis] - 1 - low) / side) + 1 + 2 * BORDER;
-        double *maps[3] = {job->shear.start + axis, job->shear.along_x + axis,
-                           job->shear.along_y + axis};
-        *maps[0] =
-            (*maps[0] + (double)(first[axis] - low) + 0.5) / (double)side -
-            0.5 + BORDER;
-        *maps[1] /= (double)side;
-        *maps[2] /= (double)side;
+        shrink(job, axis, (double)(first[axis] - low), (double)side);
     }
     size_t stride = (size_t)size[0] * (size_t)image->channels;
     size_t bytes = stride * (size_t)(size[1] + 1) * sizeof(float);
@@ -92,6 +100,33 @@ static snow_status halve(snow_value_path *path, show_job *job) {
 /* --- lines ------------------------------------------------------------------
  */
 
+/* Pixels of line y of the picture, or of places denser by `job`'s maps. */
+static void show_row(const show_job *job, int y, int width, float *out) {
+    const snow_value_lattice *l = job->lattice;
+    if (l->perspective)
+        snow_warp_row_perspective(&job->image, &job->scaled, l->filter,
+                                  job->places, y, 0, width, out);
+    else
+        snow_warp_row(&job->image, &job->shear, l->filter, job->warp, y, 0,
+                      width, out);
+}
+
+/* The map of places i / n - 1/2 + 1 / 2n across and `down` lower than a
+ * pixel's middle. */
+static show_job denser(const show_job *job, int n, double down) {
+    show_job fine = *job;
+    for (int axis = 0; axis < 2; axis++) {
+        fine.shear.start[axis] += fine.shear.along_x[axis] * (0.5 / n - 0.5) +
+                                  fine.shear.along_y[axis] * down;
+        fine.shear.along_x[axis] /= n;
+    }
+    for (int i = 0; i < 3; i++) {
+        fine.scaled.warp[i][0] += down * fine.scaled.warp[i][2];
+        fine.scaled.warp[i][1] /= n;
+    }
+    return fine;
+}
+
 /* A line of means of `means` x `means` places a pixel. */
 static void show_means(const show_job *job, int y, float *fine, float *out) {
     int n = job->lattice->means, channels = job->image.channels;
@@ -99,14 +134,8 @@ static void show_means(const show_job *job, int y, float *fine, float *out) {
     float share = 1.0F / (float)(n * n);
     memset(out, 0, floats * sizeof *out);
     for (int j = 0; j < n; j++) {
-        snow_shear shear = job->shear;
-        for (int axis = 0; axis < 2; axis++) {
-            shear.start[axis] += shear.along_x[axis] * (0.5 / n - 0.5) +
-                                 shear.along_y[axis] * ((j + 0.5) / n - 0.5);
-            shear.along_x[axis] /= n;
-        }
-        snow_warp_row(&job->image, &shear, SNOW_BILINEAR, job->warp, y, 0,
-                      n * job->width, fine);
+        const show_job places = denser(job, n, (j + 0.5) / n - 0.5);
+        show_row(&places, y, n * job->width, fine);
         for (int x = 0; x < n * job->width; x++)
             for (int c = 0; c < channels; c++)
                 out[x / n * channels + c] += share * fine[x * channels + c];
@@ -123,8 +152,7 @@ static void show_lines(void *of, int64_t item, int worker) {
         if (job->lattice->means > 1)
             show_means(job, y, fine, out);
         else
-            snow_warp_row(&job->image, &job->shear, job->lattice->filter,
-                          job->warp, y, 0, job->width, out);
+            show_row(job, y, job->width, out);
     }
 }
 
@@ -134,14 +162,17 @@ snow_status snow_value_show(snow_value_path *path,
                             float *pixels) {
     const snow_value_lattice *l = &path->lattice;
     const snow_settings *settings = params->settings;
-    show_job job = {.lattice = l,
-                    .image = *image,
-                    .shear = l->shear,
-                    .warp =
-                        snow_warp_of(settings->isa, l->filter, image->channels),
-                    .width = params->view->width,
-                    .height = params->view->height,
-                    .pixels = pixels};
+    show_job job = {
+        .lattice = l,
+        .image = *image,
+        .shear = l->shear,
+        .scaled = l->scaled,
+        .warp = snow_warp_of(settings->isa, l->filter, image->channels),
+        .places =
+            snow_warp_places_of(settings->isa, l->filter, image->channels),
+        .width = params->view->width,
+        .height = params->view->height,
+        .pixels = pixels};
     if (l->halvings)
         SNOW_TRY(halve(path, &job));
     if (l->means > 1) {

@@ -32,6 +32,9 @@ void snow_value_path_free(snow_value_path *path) {
     snow_value_store_fini(&path->store);
     snow_release(context, path->sheets);
     snow_release(context, path->places);
+    snow_release(context, path->spreads);
+    snow_release(context, path->lanes[0]);
+    snow_release(context, path->lanes[1]);
     snow_release(context, path->plane);
     snow_release(context, path->drawn);
     snow_release(context, path->blocks);
@@ -52,7 +55,9 @@ snow_status snow_value_check(snow_context *context,
         bool refused;
         const char *what;
     } rows[] = {
-        {params->placement->perspective, "perspective"},
+        {params->placement->perspective &&
+             !snow_value_eye_fits(params->placement),
+         "slices beside the eye, or 8 times as far from it as the nearest"},
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
         {params->volume->stream != NULL, "a volume that stays in its file"},
         {!params->whole, "a part of a volume"},
@@ -119,6 +124,11 @@ snow_status snow_value_classify(snow_value_path *path,
         path->context, &params->volume->info, params->view, params->placement,
         params->settings->quality, &path->lattice));
     SNOW_TRY(measure_range(path, params));
+    if (params->placement->perspective && path->range.holes)
+        return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
+                         "method value cannot draw masks, clip planes and "
+                         "voxels without a value in perspective yet; take "
+                         "method shear-warp");
     if (path->range.low <= path->range.high)
         SNOW_TRY(make_table(path, params));
     stats->seconds_classify += snow_seconds() - mark;
@@ -151,8 +161,29 @@ static bool serves(const snow_value_path *path, const snow_value_key *key,
            shows_no_more(path);
 }
 
+/* In perspective it changes from view to view: steps of it let an encoding
+ * serve many. */
+static snow_status find_eye_reach(snow_value_path *path,
+                                  const snow_value_params *params, int *reach) {
+    static const int steps[] = {
+        1, 2, 3, 4, 6, 8, 12, 16, SNOW_VALUE_REACH_MOST};
+    double most = snow_value_eye_reach(&path->lattice, params->placement);
+    for (size_t n = 0; n < sizeof steps / sizeof *steps; n++)
+        if (most <= steps[n]) {
+            *reach = steps[n];
+            return SNOW_STATUS_OK;
+        }
+    return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
+                     "method value cannot draw rays that pass %.0f voxels from "
+                     "one slice to the next yet: the limit is %d; take method "
+                     "shear-warp",
+                     fmin(most, 1e6), SNOW_VALUE_REACH_MOST);
+}
+
 static snow_status find_reach(snow_value_path *path,
                               const snow_value_params *params, int *reach) {
+    if (path->lattice.perspective)
+        return find_eye_reach(path, params, reach);
     double most = snow_value_lattice_reach(
         &params->volume->info, params->placement, path->lattice.halves);
     *reach = (int)ceil(fmin(most, 1e6) * (1 - 1e-5));
@@ -193,7 +224,7 @@ snow_status snow_value_encode(snow_value_path *path,
                                 .scale = path->table.made.scale,
                                 .encoding = params->settings->encoding};
     double mark = snow_seconds();
-    int reach;
+    int reach = 0;
     if (path->range.low > path->range.high)
         return SNOW_STATUS_OK;
     SNOW_TRY(find_reach(path, params, &reach));

@@ -11,6 +11,8 @@ TARGET static inline __attribute__((always_inline)) V(vec)
     return V(add)(sum, V(mul)(V(set1)(by[2]), p));
 }
 
+#include "splat/values/ray.tmpl.h"
+
 /* base^(power / 2^SNOW_VALUE_ROOTS) for a base above 0. */
 TARGET static inline __attribute__((always_inline)) V(vec)
     NAME(power_of)(V(vec) base, uint32_t power) {
@@ -29,10 +31,22 @@ TARGET static inline __attribute__((always_inline)) V(vec)
     return result;
 }
 
-/* LANES gradients to factors of the colour and of white, of 15 bits. */
+/* n . eye, light and half for LANES gradients, times their length. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(light)(const snow_value_light *l, const int16_t *gu, const int16_t *gv,
-            const int16_t *gp, int16_t *color, int16_t *white) {
+NAME(face)(const snow_value_light *l, V(vec) u, V(vec) v, V(vec) p,
+           V(vec) out[3]) {
+    out[0] = NAME(dot)(l->eye, u, v, p);
+    out[1] = NAME(dot)(l->light, u, v, p);
+    out[2] = NAME(dot)(l->half, u, v, p);
+}
+
+/* LANES gradients to factors of the colour and of white, of 15 bits; samples
+ * from `n` of the queue on. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(light)(const snow_value_splat *s, float slope[2][2], const value_queue *q,
+            int n, const int16_t *gu, const int16_t *gv, const int16_t *gp,
+            int16_t *color, int16_t *white, const bool eye) {
+    const snow_value_light *l = s->light;
     const V(vec) zero = V(set1)(0), one = V(set1)(1);
     V(vec) u = V(row_floats)(gu), v = V(row_floats)(gv), p = V(row_floats)(gp);
     V(vec)
@@ -42,11 +56,14 @@ NAME(light)(const snow_value_light *l, const int16_t *gu, const int16_t *gv,
             NAME(dot)(l->metric + 3, V(mul)(u, v), V(mul)(u, p), V(mul)(v, p))),
         V(set1)(1e-9F));
     V(vec) inverse = V(row_rsqrt)(length);
-    V(vec) eye = NAME(dot)(l->eye, u, v, p);
-    V(vec)
-    light = V(mul)(V(row_turn)(NAME(dot)(l->light, u, v, p), eye), inverse);
-    V(vec)
-    half = V(mul)(V(row_turn)(NAME(dot)(l->half, u, v, p), eye), inverse);
+    V(vec) to[3];
+    if (eye)
+        NAME(face_eye)
+    (l, s->rays, NAME(ways_of)(slope[0], q->ray[0] + n),
+     NAME(ways_of)(slope[1], q->ray[1] + n), u, v, p, to);
+    else NAME(face)(l, u, v, p, to);
+    V(vec) light = V(mul)(V(row_turn)(to[1], to[0]), inverse);
+    V(vec) half = V(mul)(V(row_turn)(to[2], to[0]), inverse);
     light = V(min)(V(max)(light, zero), one);
     half = V(min)(V(max)(half, V(set1)(l->least)), one);
     V(vec)
@@ -91,13 +108,25 @@ TARGET static inline __attribute__((always_inline)) V(row)
                      V(row_mulhrs)(V(row_load)(back), scale));
 }
 
+/* Twice the gradients of 32 samples along an axis of a slab's front or back. */
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(slope_of)(const value_queue *q, int n, int side, int axis,
+                   const bool eye) {
+    V(row) slope = V(row_load)(q->slopes[3 * side + axis] + n);
+    if (eye && axis < 2)
+        slope = V(row_adds)(
+            slope, V(row_mulhrs)(slope, V(row_set1)(q->stretch[side][axis])));
+    return slope;
+}
+
 /* Gradients of 32 samples from `n` on. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(slopes)(const value_queue *q, int n, V(row) place, int16_t slopes[3][32]) {
+NAME(slopes)(const value_queue *q, int n, V(row) place, int16_t slopes[3][32],
+             const bool eye) {
     for (int axis = 0; axis < 3; axis++)
         V(row_store)
-    (slopes[axis], NAME(mix)(V(row_load)(q->slopes[axis] + n),
-                             V(row_load)(q->slopes[axis + 3] + n), place));
+    (slopes[axis], NAME(mix)(NAME(slope_of)(q, n, 0, axis, eye),
+                             NAME(slope_of)(q, n, 1, axis, eye), place));
 }
 
 /* Gradient opacity of 32 samples from `n` on; `within` is the place in what is
@@ -115,15 +144,16 @@ TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
         color[c] = V(row_load)(colors[c]);
 }
 
-/* Lights 32 samples. */
+/* Lights 32 samples from `n` on. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(shade)(const snow_value_splat *p, int16_t slopes[3][32],
-            const int channels, V(row) color[4]) {
+NAME(shade)(const snow_value_splat *p, float slope[2][2], const value_queue *q,
+            int n, int16_t slopes[3][32], const int channels, V(row) color[4],
+            const bool eye) {
     int16_t diffuse[32], white[32];
     for (int at = 0; at < 32; at += LANES)
         NAME(light)
-    (p->light, slopes[0] + at, slopes[1] + at, slopes[2] + at, diffuse + at,
-     white + at);
+    (p, slope, q, n + at, slopes[0] + at, slopes[1] + at, slopes[2] + at,
+     diffuse + at, white + at, eye);
     V(row) light = V(row_load)(diffuse), alpha = color[3];
     V(row) shine = V(row_mulhrs)(V(row_load)(white), alpha);
     for (int c = 0; c < channels - 1; c++) {
@@ -136,8 +166,9 @@ NAME(shade)(const snow_value_splat *p, int16_t slopes[3][32],
 
 /* All samples of a queue, whose last 32 numbers and more are 0. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(color)(const snow_value_splat *p, value_queue *q, int count,
-            const int channels, const bool sloped, bool cuts) {
+NAME(color)(const snow_value_splat *p, float slope[2][2], value_queue *q,
+            int count, const int channels, const bool sloped, bool cuts,
+            const bool eye) {
     for (int n = 0; n < count; n += 32) {
         V(row) color[4];
         V(row_gather)
@@ -150,16 +181,21 @@ NAME(color)(const snow_value_splat *p, value_queue *q, int count,
                 place =
                     V(row_add)(V(row_load)(q->from + n),
                                V(row_mulhrs)(place, V(row_load)(q->part + n)));
-            NAME(slopes)(q, n, place, slopes);
+            NAME(slopes)(q, n, place, slopes, eye);
             if (p->fade)
                 NAME(fade)(p, q, n, within, slopes, color);
             if (p->light)
-                NAME(shade)(p, slopes, channels, color);
+                NAME(shade)(p, slope, q, n, slopes, channels, color, eye);
+        }
+        if (eye) {
+            float shares[32];
+            NAME(shares)(p->rays, slope, q, n, cuts, shares);
+            NAME(lengthen)(shares, channels, color);
         }
         for (int c = 0; c < channels - 1; c++)
             V(row_store)(q->color[c] + n, color[c]);
         V(row_store)(q->color[3] + n, color[3]);
     }
-    if (cuts)
+    if (cuts && !eye)
         snow_value_shorten(q, count, channels);
 }

@@ -26,25 +26,26 @@ static inline bool NAME(has_cells)(const snow_value_store *s, int run,
 }
 
 /* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
- * seen; returns whether there are any. */
-TARGET static bool NAME(activate)(const snow_value_splat *p, int n, int phase,
-                                  int64_t column, int64_t row, value_cut cut[2],
-                                  value_clip *clip, value_phase *state) {
+ * seen, but for cuts; returns their rows. */
+TARGET static uint32_t NAME(activate_all)(const snow_value_splat *p, int n,
+                                          int phase, const int tile[2],
+                                          value_phase *state) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;
     const snow_value_place *next = place + p->phases;
+    int64_t column = value_tile_column(p, tile[0]);
+    int64_t row = value_tile_row(p, tile[1]);
     value_window front, back;
-    state->rows = 0;
     if (!value_meets(s, column + place->whole[0], row + place->whole[1]) ||
         !value_meets(s, column + next->whole[0], row + next->whole[1]))
-        return false;
+        return 0;
     front = value_window_of(s, column + place->whole[0], row + place->whole[1]);
     back = value_window_of(s, column + next->whole[0], row + next->whole[1]);
     for (int run = 0; run < s->run_count; run++)
         if (!NAME(has_cells)(s, run, sheet, front) &&
             !NAME(has_cells)(s, run, sheet + 1, back))
-            return false;
+            return 0;
     uint32_t rows = ~UINT32_C(0);
     memcpy(state->active, state->open, sizeof state->active);
     for (int run = 0; run < s->run_count; run++) {
@@ -53,25 +54,37 @@ TARGET static bool NAME(activate)(const snow_value_splat *p, int n, int phase,
         NAME(add_cells)(s, run, sheet + 1, back, cells);
         rows &= V(rows_and)(state->active, cells, ~UINT32_C(0));
         if (!rows)
-            return false;
+            return 0;
     }
+    return rows;
+}
+
+/* The parts of the slab's rays that are inside. */
+static inline void NAME(cut_all)(const snow_value_splat *p, int n, int phase,
+                                 const int tile[2], value_cut cut[2]) {
+    const snow_value_place *place = p->places + n * p->phases + phase;
+    const snow_value_place *next = place + p->phases;
+    const double first[2] = {(double)value_tile_column(p, tile[0]),
+                             (double)value_tile_row(p, tile[1])};
     for (int axis = 0; axis < 2; axis++) {
-        double first = (double)(axis ? row : column);
-        snow_value_cut(first + place->at[axis], first + next->at[axis],
-                       p->low[axis], p->high[axis], &cut[axis]);
+        const double ends[2][2] = {{first[axis] + place->at[axis], 1},
+                                   {first[axis] + next->at[axis], 1}};
+        snow_value_cut(ends[0], ends[1], p->low[axis], p->high[axis],
+                       &cut[axis]);
     }
-    rows = cut[1].some & V(rows_and)(state->active, state->open, cut[0].some);
-    clip->cuts = false;
-    if (p->clip_count) {
-        const double u = (double)column, v = (double)row;
-        snow_value_clip(
-            p, (double[]){u + place->at[0], v + place->at[1], sheet->at},
-            (double[]){u + next->at[0], v + next->at[1], sheet[1].at}, clip);
-        if (clip->cuts)
-            rows &= V(rows_and)(state->active, clip->some, ~UINT32_C(0));
-    }
-    state->rows = rows;
-    return rows != 0;
+}
+
+/* The parts of the slab's rays that clip planes leave. */
+static inline void NAME(clip_all)(const snow_value_splat *p, int n, int phase,
+                                  const int tile[2], value_clip *clip) {
+    const snow_value_sheet *sheet = p->sheets + n;
+    const snow_value_place *place = p->places + n * p->phases + phase;
+    const snow_value_place *next = place + p->phases;
+    const double u = (double)value_tile_column(p, tile[0]);
+    const double v = (double)value_tile_row(p, tile[1]);
+    snow_value_clip(
+        p, (double[]){u + place->at[0], v + place->at[1], sheet->at},
+        (double[]){u + next->at[0], v + next->at[1], sheet[1].at}, clip);
 }
 
 /* --- sheets -----------------------------------------------------------------
@@ -153,29 +166,46 @@ static inline bool NAME(near_holes)(const snow_value_store *s,
            value_has_holes(s, sheet->after + sheet->half_across, w);
 }
 
+/* What of a sheet's rows is not there yet, and what it is made of. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(begin)(const snow_value_store *s, const snow_value_sheet *sheet,
+            uint64_t *rows, uint32_t *across, value_rows *out,
+            NAME(source) * from) {
+    *rows &= ~out->has;
+    *across &= ~out->has_across;
+    out->has |= *rows;
+    out->has_across |= *across;
+    *from = (NAME(source)){.values = s->values,
+                           .slice = snow_value_at(s, sheet->slice),
+                           .next = s->rows + 2 * s->margin};
+}
+
+TARGET static inline __attribute__((always_inline)) void
+NAME(begin_across)(const snow_value_store *s, const snow_value_sheet *sheet,
+                   NAME(source) * from) {
+    from->slice = snow_value_at(s, sheet->before);
+    from->after = snow_value_at(s, sheet->after);
+    from->twice = sheet->one_sided;
+}
+
 /* The values of a sheet in some rows of a tile, and the differences across it
  * in others, unless they are there. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(sample)(const snow_value_splat *p, int n, int phase, int64_t column,
-             int64_t row, uint64_t rows, uint32_t across, value_rows *out) {
+NAME(sample_all)(const snow_value_splat *p, int n, int phase, const int tile[2],
+                 uint64_t rows, uint32_t across, value_rows *out) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;
+    int64_t column = value_tile_column(p, tile[0]) + place->whole[0];
+    int64_t first = value_tile_row(p, tile[1]) + place->whole[1];
     if (out->sheet != n) {
         out->sheet = n;
         out->has = out->has_across = 0;
-        out->holes = NAME(near_holes)(s, sheet, column + place->whole[0],
-                                      row + place->whole[1]);
+        out->holes = NAME(near_holes)(s, sheet, column, first);
     }
-    rows &= ~out->has;
-    across &= ~out->has_across;
-    NAME(source)
-    from = {.values = s->values,
-            .slice = snow_value_at(s, sheet->slice),
-            .next = s->rows + 2 * s->margin,
-            .column = column + place->whole[0]};
-    int64_t first = row + place->whole[1];
-    out->has |= rows;
+    NAME(source) from;
+    NAME(begin)(s, sheet, &rows, &across, out, &from);
+    from.column = column;
     uint32_t partial[SHEET_ROWS];
     if (out->holes)
         NAME(fill_holes)
@@ -185,10 +215,7 @@ NAME(sample)(const snow_value_splat *p, int n, int phase, int64_t column,
     else NAME(fill)(&from, first - 1, rows, place, out->values, false, false);
     if (!across)
         return;
-    out->has_across |= across;
-    from.slice = snow_value_at(s, sheet->before);
-    from.after = snow_value_at(s, sheet->after);
-    from.twice = sheet->one_sided;
+    NAME(begin_across)(s, sheet, &from);
     if (sheet->half_across)
         NAME(fill)(&from, first, across, place, out->across, true, true);
     else

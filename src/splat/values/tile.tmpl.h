@@ -2,7 +2,44 @@
  * first. */
 #include "splat/values/sample.tmpl.h"
 
+#include "splat/values/eye.tmpl.h"
+
 #include "splat/values/color.tmpl.h"
+
+/* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
+ * seen; returns whether there are any. */
+TARGET static inline __attribute__((always_inline)) bool
+NAME(activate)(const snow_value_splat *p, int n, int phase, const int tile[2],
+               value_cut cut[2], value_clip *clip, value_phase *state,
+               const bool eye) {
+    uint32_t rows = eye ? NAME(activate_eye)(p, n, phase, tile, state)
+                        : NAME(activate_all)(p, n, phase, tile, state);
+    if (!rows)
+        return false;
+    if (eye)
+        NAME(cut_eye)(p, n, phase, tile, cut);
+    else
+        NAME(cut_all)(p, n, phase, tile, cut);
+    rows = cut[1].some & V(rows_and)(state->active, state->open, cut[0].some);
+    clip->cuts = false;
+    if (p->clip_count && !eye)
+        NAME(clip_all)(p, n, phase, tile, clip);
+    if (clip->cuts)
+        rows &= V(rows_and)(state->active, clip->some, ~UINT32_C(0));
+    state->rows = rows;
+    return rows != 0;
+}
+
+/* The values of a sheet in some rows of a tile, and the differences across it
+ * in others, unless they are there. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(sample)(const snow_value_splat *p, int n, int phase, const int tile[2],
+             uint64_t rows, uint32_t across, value_rows *out, const bool eye) {
+    if (eye)
+        NAME(sample_eye)(p, n, phase, tile, rows, across, out);
+    else
+        NAME(sample_all)(p, n, phase, tile, rows, across, out);
+}
 
 /* Leaves out the samples whose front and back are in one invisible run. */
 TARGET static inline __attribute__((always_inline)) uint32_t
@@ -47,12 +84,19 @@ TARGET static inline __attribute__((always_inline)) V(row)
     return V(row_load)(slopes);
 }
 
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(slope_eye)(const value_beside *beside, int way, int on) {
+    return V(row_subs)(V(row_load)(beside->at[way] + on),
+                       V(row_load)(beside->at[way + 1] + on));
+}
+
 /* Packs the visible samples of a phase, from number `count` on. */
 TARGET static inline __attribute__((always_inline)) int
 NAME(collect)(const snow_value_splat *p, const value_rows *f,
-              const value_rows *b, const value_cut cut[2],
-              const value_clip *planes, value_phase *state, value_queue *q,
-              int count, const bool sloped, bool cuts) {
+              const value_rows *b, const value_beside beside[2],
+              const value_cut cut[2], const value_clip *planes,
+              value_phase *state, value_queue *q, int count, const bool sloped,
+              bool cuts, const bool eye) {
     const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
     const V(row) none = V(row_set1)(SNOW_VALUE_HOLE);
     const bool holes = f->holes || b->holes;
@@ -84,14 +128,27 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
             V(row_compress)(q->from + count, from, mask);
             V(row_compress)(q->part + count, part, mask);
         }
+        if (eye) {
+            V(row_compress)
+            (q->ray[0] + count, V(row_load)(state->columns), mask);
+            V(row_store)
+            (q->ray[1] + count,
+             V(row_set1)((int16_t)(state->line + row * state->lines)));
+        }
         for (int side = 0; sloped && side < 2; side++) {
             const int16_t *at = side ? back : front;
             int16_t(*slopes)[QUEUE] = q->slopes + 3 * side;
             bool broken = (side ? b : f)->holes;
             V(row_compress)
-            (slopes[0] + count, NAME(slope)(at, 1, broken), mask);
+            (slopes[0] + count,
+             eye ? NAME(slope_eye)(&beside[side], 0, 32 * row)
+                 : NAME(slope)(at, 1, broken),
+             mask);
             V(row_compress)
-            (slopes[1] + count, NAME(slope)(at, 32, broken), mask);
+            (slopes[1] + count,
+             eye ? NAME(slope_eye)(&beside[side], 2, 32 * row)
+                 : NAME(slope)(at, 32, broken),
+             mask);
             V(row_compress)
             (slopes[2] + count, V(row_load)((side ? b : f)->across[row]), mask);
         }
@@ -132,11 +189,28 @@ NAME(blend)(snow_value_plane *plane, value_phase *state, const value_queue *q,
     return count;
 }
 
+/* Zeros behind a queue of slab `n`. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(end_queue)(const snow_value_splat *p, int n, value_queue *q, int count,
+                const bool eye) {
+    const V(row) zero = V(row_set1)(0);
+    V(row_store)(q->front + count, zero);
+    V(row_store)(q->back + count, zero);
+    if (!eye)
+        return;
+    V(row_store)(q->part + count, zero);
+    for (int side = 0; side < 2; side++) {
+        V(row_store)(q->ray[side] + count, zero);
+        memcpy(q->stretch[side], p->rays->sheets[n + side].stretch,
+               sizeof q->stretch[side]);
+    }
+}
+
 /* Some phases of a slab. */
 TARGET static inline __attribute__((always_inline)) bool
-NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
-           int64_t row, snow_value_plane *planes, value_room *room,
-           const int channels, const bool sloped) {
+NAME(slab)(const snow_value_splat *p, int n, int first, int end,
+           const int tile[2], snow_value_plane *planes, value_room *room,
+           const int channels, const bool sloped, const bool eye) {
     value_queue *q = &room->queue;
     int count = 0;
     bool cuts = false;
@@ -144,8 +218,8 @@ NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
         value_phase *state = &room->phase[phase];
         state->rows = 0;
         if (state->alive &&
-            NAME(activate)(p, n, phase, column, row, room->cut[phase - first],
-                           &room->clip[phase - first], state))
+            NAME(activate)(p, n, phase, tile, room->cut[phase - first],
+                           &room->clip[phase - first], state, eye))
             cuts |= room->cut[phase - first][0].cuts ||
                     room->cut[phase - first][1].cuts ||
                     room->clip[phase - first].cuts;
@@ -155,28 +229,54 @@ NAME(slab)(const snow_value_splat *p, int n, int first, int end, int64_t column,
         value_rows *f = &room->rows[phase][n & 1];
         value_rows *b = &room->rows[phase][~n & 1];
         uint64_t here = (uint64_t)state->rows << 1;
+        value_beside beside[2];
         if (!here)
             continue;
-        if (sloped)
+        if (sloped && !eye)
             here |= here << 1 | here >> 1;
         NAME(sample)
-        (p, n, phase, column, row, here, sloped ? state->rows : 0, f);
+        (p, n, phase, tile, here, sloped ? state->rows : 0, f, eye);
         NAME(sample)
-        (p, n + 1, phase, column, row, here, sloped ? state->rows : 0, b);
-        count = NAME(collect)(p, f, b, room->cut[phase - first],
+        (p, n + 1, phase, tile, here, sloped ? state->rows : 0, b, eye);
+        for (int side = 0; sloped && eye && side < 2; side++)
+            NAME(sample_beside)
+        (p, n + side, phase, tile, state->rows, room->rows, &beside[side]);
+        count = NAME(collect)(p, f, b, beside, room->cut[phase - first],
                               &room->clip[phase - first], state, q, count,
-                              sloped, cuts);
+                              sloped, cuts, eye);
     }
     if (!count)
         return false;
-    V(row_store)(q->front + count, V(row_set1)(0));
-    V(row_store)(q->back + count, V(row_set1)(0));
-    NAME(color)(p, q, count, channels, sloped, cuts);
+    NAME(end_queue)(p, n, q, count, eye);
+    NAME(color)(p, room->slope, q, count, channels, sloped, cuts, eye);
     count = 0;
     for (int phase = first; phase < end; phase++)
         count = NAME(blend)(&planes[phase], &room->phase[phase], q, count,
                             p->closed, channels);
     return true;
+}
+
+/* Where the rays of a tile and its phases are. */
+static void NAME(aim)(const snow_value_splat *p, const int tile[2],
+                      value_room *room) {
+    const snow_value_rays *rays = p->rays;
+    const int64_t first[2] = {value_tile_column(p, tile[0]) - p->first[0],
+                              value_tile_row(p, tile[1]) - p->first[1]};
+    for (int axis = 0; axis < 2; axis++) {
+        double on = (double)(first[axis] * rays->phases[axis]);
+        room->slope[axis][0] =
+            (float)(rays->slope[axis][0] + on * rays->slope[axis][1]);
+        room->slope[axis][1] = (float)rays->slope[axis][1];
+    }
+    for (int phase = 0; phase < p->phases; phase++) {
+        value_phase *state = &room->phase[phase];
+        int spot[2];
+        value_spot(rays, phase, spot);
+        for (int lane = 0; lane < 32; lane++)
+            state->columns[lane] = (int16_t)(lane * rays->phases[0] + spot[0]);
+        state->line = (int16_t)spot[1];
+        state->lines = (int16_t)rays->phases[1];
+    }
 }
 
 /* All pixels that are the lattice's are open. */
@@ -198,21 +298,23 @@ static void NAME(open)(const snow_value_splat *p, int x, int y,
 
 TARGET static inline __attribute__((always_inline)) bool
 NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
-           const int channels, const bool sloped) {
+           const int channels, const bool sloped, const bool eye) {
     snow_value_plane *planes = memory;
     value_room *room =
         (value_room *)(void *)((char *)memory + value_planes_bytes(p));
-    int64_t column = value_tile_column(p, x), row = value_tile_row(p, y);
+    const int tile[2] = {x, y};
     bool drawn = false;
     NAME(open)(p, x, y, room);
+    if (eye)
+        NAME(aim)(p, tile, room);
     memset(planes, 0, value_planes_bytes(p));
     for (int n = 0; n + 1 < p->sheet_count; n++) {
         uint32_t alive = 0;
         for (int first = 0; first < p->phases; first += TOGETHER) {
             int end =
                 first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
-            drawn |= NAME(slab)(p, n, first, end, column, row, planes, room,
-                                channels, sloped);
+            drawn |= NAME(slab)(p, n, first, end, tile, planes, room, channels,
+                                sloped, eye);
             for (int phase = first; phase < end; phase++)
                 alive |= room->phase[phase].alive;
         }
@@ -222,13 +324,17 @@ NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
     return drawn;
 }
 
-#define VALUE_TILE(kind, channels, sloped)                                 \
+#define VALUE_TILE(kind, channels, sloped, eye)                            \
     TARGET static bool NAME(tile_##kind)(const snow_value_splat *p, int x, \
                                          int y, void *room) {              \
-        return NAME(tile)(p, x, y, room, channels, sloped);                \
+        return NAME(tile)(p, x, y, room, channels, sloped, eye);           \
     }
-VALUE_TILE(grey, 2, false)
-VALUE_TILE(color, 4, false)
-VALUE_TILE(grey_lit, 2, true)
-VALUE_TILE(color_lit, 4, true)
+VALUE_TILE(grey, 2, false, false)
+VALUE_TILE(color, 4, false, false)
+VALUE_TILE(grey_lit, 2, true, false)
+VALUE_TILE(color_lit, 4, true, false)
+VALUE_TILE(grey_eye, 2, false, true)
+VALUE_TILE(color_eye, 4, false, true)
+VALUE_TILE(grey_lit_eye, 2, true, true)
+VALUE_TILE(color_lit_eye, 4, true, true)
 #undef VALUE_TILE

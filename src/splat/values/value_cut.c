@@ -21,18 +21,20 @@ static int16_t part_of(double t) {
     return (int16_t)(part < 32767 ? part : 32767);
 }
 
-void snow_value_cut(double front, double back, double low, double high,
-                    value_cut *out) {
-    out->cuts = !(front >= low && back >= low && front + 31 <= high &&
-                  back + 31 <= high);
+void snow_value_cut(const double front[2], const double back[2], double low,
+                    double high, value_cut *out) {
+    out->cuts =
+        !(front[0] >= low && back[0] >= low &&
+          front[0] + 31 * front[1] <= high && back[0] + 31 * back[1] <= high);
     out->some = ~UINT32_C(0);
     if (!out->cuts)
         return;
     out->some = 0;
     for (int n = 0; n < 32; n++) {
         double t[2] = {0, 1};
-        keep_below(front + n, back + n, high, t);
-        keep_below(-front - n, -back - n, -low, t);
+        double from = front[0] + n * front[1], to = back[0] + n * back[1];
+        keep_below(from, to, high, t);
+        keep_below(-from, -to, -low, t);
         out->from[n] = part_of(t[0]);
         out->to[n] = t[1] > t[0] ? part_of(t[1]) : 0;
         out->some |= (uint32_t)(out->to[n] > out->from[n]) << n;

@@ -23,6 +23,12 @@ typedef struct value_rows {
     bool holes; /* its voxels, or those beside it along P, have some */
 } value_rows;
 
+/* Where the neighbours of a phase's samples are, one voxel on along u, one
+ * back, and the same along v: row r of each is at at[n] + 32 r. */
+typedef struct value_beside {
+    const int16_t *at[4];
+} value_beside;
+
 /* The samples of a slab, packed. */
 #define QUEUE (TOGETHER * SNOW_VALUE_ROWS * SNOW_VALUE_COLUMNS + 64)
 typedef struct value_queue {
@@ -30,6 +36,9 @@ typedef struct value_queue {
     int16_t slopes[6][QUEUE];         /* u, v, p: of the front, of the back */
     int16_t from[QUEUE], part[QUEUE]; /* of a slab that is cut, of 32768 */
     int16_t color[4][QUEUE];
+    int16_t ray[2][QUEUE]; /* perspective: phases from the tile's first cell */
+    /* Perspective: what the differences of both sheets along u and v lack. */
+    int16_t stretch[2][2];
 } value_queue;
 
 /* The part of a slab that is inside, for each lane or row, of 32767. */
@@ -50,6 +59,8 @@ typedef struct value_phase {
     uint32_t active[SNOW_VALUE_ROWS], open[SNOW_VALUE_ROWS];
     uint32_t rows;  /* with active samples */
     uint32_t alive; /* rows with open pixels */
+    /* Perspective: of its rays, phases from the tile's first cell. */
+    int16_t columns[32], line, lines; /* along u; along v, and to the next */
 } value_phase;
 
 /* Laid out in a worker's memory behind the planes. */
@@ -58,6 +69,7 @@ typedef struct value_room {
     value_cut cut[TOGETHER][2]; /* along u and v */
     value_clip clip[TOGETHER];
     value_phase phase[SNOW_VALUE_PHASES];
+    float slope[2][2];    /* perspective: snow_value_rays' of the tile */
     value_rows rows[][2]; /* [phase][sheet & 1] */
 } value_room;
 
@@ -75,6 +87,36 @@ static inline int64_t value_tile_column(const snow_value_splat *splat, int x) {
 
 static inline int64_t value_tile_row(const snow_value_splat *splat, int y) {
     return splat->first[1] + (int64_t)y * SNOW_VALUE_ROWS;
+}
+
+/* The place of a phase in its cell, along u and v. */
+static inline void value_spot(const snow_value_rays *rays, int phase,
+                              int spot[2]) {
+    int middle = rays->middles == 2 ? phase & 1 : 0;
+    int cell = phase / rays->middles;
+    spot[0] = cell % rays->cells[0] * rays->middles + middle;
+    spot[1] = cell / rays->cells[0] * rays->middles + middle;
+}
+
+/* The phase `by` samples on along an axis, and how many cells on it is. */
+static inline int value_phase_beside(const snow_value_rays *rays, int phase,
+                                     int axis, int by, int *cells) {
+    int count = rays->cells[axis], cell = phase / rays->middles;
+    int at = axis == 0 ? cell % rays->cells[0] : cell / rays->cells[0];
+    int to = at + by + count;
+    *cells = to / count - 1;
+    return phase +
+           (to % count - at) * rays->middles * (axis == 0 ? 1 : rays->cells[0]);
+}
+
+/* The lanes of a phase of a tile along an axis of a sheet. */
+static inline const snow_value_lanes *
+value_lanes_of(const snow_value_rays *rays, int sheet, int axis, int spot,
+               int tile) {
+    return rays->lanes[axis] +
+           ((size_t)sheet * (size_t)rays->phases[axis] + (size_t)spot) *
+               (size_t)rays->tiles[axis] +
+           tile;
 }
 
 /* Whether a tile's window of a sheet meets the voxels and their margins. */
@@ -164,10 +206,10 @@ void snow_value_fade_colors(const snow_value_fade *fade, int16_t slopes[3][32],
 /* --- cuts -------------------------------------------------------------------
  */
 
-/* The parts of a slab within low .. high, for 32 lanes one apart whose ends on
- * both sheets are at front + n and back + n. */
-void snow_value_cut(double front, double back, double low, double high,
-                    value_cut *out);
+/* The parts of a slab within low .. high, for 32 lanes whose ends on both
+ * sheets are at front[0] + n front[1] and back[0] + n back[1]. */
+void snow_value_cut(const double front[2], const double back[2], double low,
+                    double high, value_cut *out);
 
 /* The parts of a slab within all clip planes, for a tile whose first sample is
  * at these places, u, v and slice, of both sheets. */

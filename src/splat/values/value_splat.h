@@ -36,6 +36,47 @@ typedef struct snow_value_place {
     int16_t weight[2]; /* of 32768 */
 } snow_value_place;
 
+/* Perspective: how the samples of a phase lie along an axis of a sheet.  Lane n
+ * is between voxels first + at[n] and first + at[n] + 1; lane 0 is the cell
+ * before the first one of a tile. */
+#define SNOW_VALUE_LANES (SNOW_VALUE_ROWS + 2)
+#define SNOW_VALUE_WORDS 10 /* of a mask that 32 of them may need */
+/* The most times that samples of the last sheet are farther apart than those of
+ * the first. */
+#define SNOW_VALUE_SPREAD_MOST 8
+typedef struct snow_value_lanes {
+    double start; /* of lane 0, voxels */
+    int32_t first, word;
+    int16_t at[SNOW_VALUE_LANES], weight[SNOW_VALUE_LANES]; /* of 32768 */
+    /* Their bits in words of a mask (value_store.h), from `word` on. */
+    uint32_t select[SNOW_VALUE_WORDS];
+} snow_value_lanes;
+
+/* Perspective: how far apart samples are on a sheet. */
+typedef struct snow_value_spread {
+    double step;  /* voxels a cell of the front sheet's voxels */
+    int apart[2]; /* samples from one to those of its gradient, along u and v */
+    int16_t stretch[2]; /* what these lack to two voxels: a difference's factor
+                           less 1, of 32768 */
+} snow_value_spread;
+
+/* Perspective: every sample has its own ray.  A ray moves (du, dv, 1) voxels
+ * from one slice to the next. */
+typedef struct snow_value_rays {
+    const snow_value_lanes *lanes[2]; /* [(sheet * phases + phase) * tiles +
+                                         tile], along u and v */
+    const snow_value_spread *sheets;
+    int phases[2], tiles[2]; /* of a cell, of the image */
+    int cells[2], middles;   /* samples a voxel; 2: of a quincunx */
+    double slope[2][2]; /* du and dv of phase 0 of cell 0, and from there to
+                           the next phase */
+    float metric[6];    /* squared length of a ray's way: as snow_value_light */
+    float usual;        /* 1 / the length that the table is for */
+    float toward;       /* 1 where slices fall away from the eye, else -1 */
+    float aside[3];     /* the way's part along the light */
+    bool head;          /* the light is at the eye */
+} snow_value_rays;
+
 /* Light from gradients (gu, gv, gp) in index space, of any length. */
 typedef struct snow_value_light {
     float light[3], eye[3], half[3]; /* n . l times |g| */
@@ -63,6 +104,7 @@ typedef struct snow_value_splat {
     const snow_value_fade *fade;   /* NULL: none */
     const snow_value_sheet *sheets;
     const snow_value_place *places; /* [sheet * phases + phase] */
+    const snow_value_rays *rays;    /* perspective; NULL: places are used */
     int sheet_count, phases;
     int channels;             /* 2 or 4 */
     int16_t closed;           /* alpha that ends a pixel, of 32767 */
@@ -84,6 +126,7 @@ size_t snow_value_splat_bytes(const snow_value_splat *splat);
  * planes of each phase are in it from its beginning on. */
 typedef bool snow_value_tile_fn(const snow_value_splat *splat, int x, int y,
                                 void *room);
-snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool sloped);
+snow_value_tile_fn *snow_value_tile_of(snow_isa isa, int channels, bool sloped,
+                                       bool perspective);
 
 #endif

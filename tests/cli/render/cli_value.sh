@@ -66,7 +66,8 @@ refuse() {
     says '; take method shear-warp$'
     check "no picture is left" test ! -e no.png
 }
-refuse "perspective" "perspective" --perspective
+refuse "holes in perspective" "masks, clip planes .* in perspective" \
+    --clip 0.3,0.5,-0.8,4 --perspective
 for mode in mip minip mean sum; do
     refuse "mode $mode" "modes other than over" -m $mode
 done
@@ -74,6 +75,10 @@ refuse "mode iso" "modes other than over" -m iso --iso 90
 refuse "kernel bspline" "kernels other than the tent" --kernel bspline
 refuse "kernel gauss" "kernels other than the tent" --kernel gauss
 refuse "deterministic" "deterministic pictures" --deterministic
+run 2 "an eye near the slices" "$TOOL" render phantom:engine --dims 60x60x40 \
+    --perspective 60 --position 0,0,-62 --target 0,0,0 -y --method value \
+    -o no.png
+says 'slices beside the eye.* yet; take method shear-warp$'
 "$TOOL" phantom engine --dims 160x160x160 -o large.npy -q
 run 2 "a volume that stays in its file" "$TOOL" render large.npy -y -s 40x40 \
     --memory 2M --method value -o no.png

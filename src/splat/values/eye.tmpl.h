@@ -1,0 +1,233 @@
+/* splat/values/eye.tmpl.h - the sheets' samples in perspective, which are a
+ * voxel and more apart.  Include simd/select.h first. */
+
+/* --- masks ------------------------------------------------------------------
+ */
+
+/* Ors the cells of a plane of masks under 32 rows of lanes. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(pick_cells)(const snow_value_store *s, const uint32_t *masks,
+                 const snow_value_lanes *u, const int32_t rows[32],
+                 uint32_t *out) {
+    int words = (u->at[31] + 31) / 32 + 2, taken = 0;
+    for (int n = 0; n < words && n < SNOW_VALUE_WORDS; n++) {
+        uint32_t select = u->select[n];
+        int64_t word = u->word + n;
+        if (select && word >= 0 && word < (int64_t)s->mask_words) {
+            const uint32_t *column = masks + (size_t)word * s->mask_rows;
+            for (int row = 0; row < 32; row++)
+                out[row] |= V(pick_bits)(column[rows[row]], select) << taken;
+        }
+        taken += __builtin_popcount(select);
+    }
+}
+
+/* Whether the coarse mask of a run has anything under a tile. */
+static inline bool NAME(any_cells)(const snow_value_store *s, int run,
+                                   int64_t slice, const snow_value_lanes *u,
+                                   const int32_t rows[32]) {
+    const uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, slice);
+    int words = (u->at[31] + 31) / 32 + 2;
+    int first = rows[0] / SNOW_VALUE_COARSE,
+        last = rows[31] / SNOW_VALUE_COARSE;
+    for (int n = 0; n < words; n++) {
+        int64_t word = u->word + n;
+        if (word < 0 || word >= (int64_t)s->mask_words)
+            continue;
+        const uint64_t *bits = coarse + (size_t)word * s->coarse_words;
+        for (int row = first; row <= last; row++)
+            if (bits[row / 64] >> row % 64 & 1)
+                return true;
+    }
+    return false;
+}
+
+/* The rows of masks under the rows of a tile. */
+static inline void NAME(rows_of)(const snow_value_store *s,
+                                 const snow_value_lanes *v, int32_t rows[32]) {
+    int32_t last = (int32_t)s->mask_rows - 1;
+    for (int n = 0; n < 32; n++) {
+        int32_t row = v->first + v->at[n + 1] + s->margin + SNOW_VALUE_ROWS;
+        rows[n] = row < 0 ? 0 : row > last ? last : row;
+    }
+}
+
+/* The cells of a sheet under a tile that are not wholly within a run. */
+TARGET static inline bool NAME(cells_under)(const snow_value_store *s, int run,
+                                            const snow_value_sheet *sheet,
+                                            const snow_value_lanes *u,
+                                            const int32_t rows[32],
+                                            uint32_t *out) {
+    bool any = false;
+    for (int n = 0; n <= sheet->half; n++)
+        if (NAME(any_cells)(s, run, sheet->slice + n, u, rows)) {
+            NAME(pick_cells)
+            (s, s->masks + snow_value_mask_at(s, run, sheet->slice + n), u,
+             rows, out);
+            any = true;
+        }
+    return any;
+}
+
+/* Of a phase: its lanes on both sheets of a slab, along u and v. */
+static inline void NAME(slab_lanes)(const snow_value_splat *p, int n, int phase,
+                                    const int tile[2],
+                                    const snow_value_lanes *out[2][2]) {
+    int spot[2];
+    value_spot(p->rays, phase, spot);
+    for (int side = 0; side < 2; side++)
+        for (int axis = 0; axis < 2; axis++)
+            out[side][axis] =
+                value_lanes_of(p->rays, n + side, axis, spot[axis], tile[axis]);
+}
+
+/* As NAME(activate): rows that may have samples, before cuts. */
+TARGET static uint32_t NAME(activate_eye)(const snow_value_splat *p, int n,
+                                          int phase, const int tile[2],
+                                          value_phase *state) {
+    const snow_value_store *s = p->store;
+    const snow_value_lanes *lanes[2][2];
+    int32_t rows[2][32];
+    uint32_t left = ~UINT32_C(0);
+    NAME(slab_lanes)(p, n, phase, tile, lanes);
+    for (int side = 0; side < 2; side++)
+        NAME(rows_of)(s, lanes[side][1], rows[side]);
+    memcpy(state->active, state->open, sizeof state->active);
+    for (int run = 0; run < s->run_count && left; run++) {
+        uint32_t cells[SNOW_VALUE_ROWS] = {0};
+        bool any = false;
+        for (int side = 0; side < 2; side++)
+            any |= NAME(cells_under)(s, run, p->sheets + n + side,
+                                     lanes[side][0], rows[side], cells);
+        left &= any ? V(rows_and)(state->active, cells, ~UINT32_C(0)) : 0;
+    }
+    return left;
+}
+
+/* The parts of the slab's rays that are inside. */
+static inline void NAME(cut_eye)(const snow_value_splat *p, int n, int phase,
+                                 const int tile[2], value_cut cut[2]) {
+    const snow_value_lanes *lanes[2][2];
+    NAME(slab_lanes)(p, n, phase, tile, lanes);
+    for (int axis = 0; axis < 2; axis++) {
+        double ends[2][2];
+        for (int side = 0; side < 2; side++) {
+            double step = p->rays->sheets[n + side].step;
+            ends[side][0] = lanes[side][axis]->start + (axis ? step : 0);
+            ends[side][1] = step;
+        }
+        snow_value_cut(ends[0], ends[1], p->low[axis], p->high[axis],
+                       &cut[axis]);
+    }
+}
+
+/* --- sheets -----------------------------------------------------------------
+ */
+
+/* Voxels of a row on both sides of the lanes: of a slice, half way to the next
+ * one, or the difference of two of them. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(voxels_under)(const NAME(source) * s, const snow_value_lanes *u,
+                   int64_t row, const bool half, const bool difference,
+                   V(row) out[2]) {
+    const int16_t *values = s->values + u->first;
+    int span = u->at[31] + 2;
+    for (int end = 0; end <= difference; end++) {
+        const int64_t *slice = end ? s->after : s->slice;
+        V(row) here[2], next[2];
+        V(row_pairs)(values + slice[row], u->at, span, here);
+        if (half) {
+            V(row_pairs)(values + slice[row + s->next], u->at, span, next);
+            here[0] = V(row_avg)(here[0], next[0]);
+            here[1] = V(row_avg)(here[1], next[1]);
+        }
+        for (int n = 0; n < 2; n++)
+            out[n] = end ? V(row_subs)(here[n], out[n]) : here[n];
+    }
+    if (difference && s->twice)
+        for (int n = 0; n < 2; n++)
+            out[n] = V(row_adds)(out[n], out[n]);
+}
+
+TARGET static inline __attribute__((always_inline)) V(row)
+    NAME(along_lanes)(const NAME(source) * s, const snow_value_lanes *u,
+                      int64_t row, const bool half, const bool difference) {
+    V(row) ends[2];
+    NAME(voxels_under)(s, u, row, half, difference, ends);
+    return NAME(mix)(ends[0], ends[1], V(row_load)(u->weight));
+}
+
+/* Rows of a sheet, a bit each, into `out`; bit 0 is lane `first` of v.  Rows of
+ * voxels stay within `most`, the rows of the store. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
+               const snow_value_lanes *u, const snow_value_lanes *v, int first,
+               uint64_t rows, int16_t (*out)[32], const bool half,
+               const bool difference) {
+    int64_t low = -store->margin, high = store->rows + store->margin - 2;
+    int64_t last = low - 2;
+    V(row) below = V(row_set1)(0);
+    for (; rows; rows &= rows - 1) {
+        int n = __builtin_ctzll(rows);
+        int64_t row = v->first + v->at[first + n];
+        row = row < low ? low : row > high ? high : row;
+        V(row)
+        above = row == last + 1
+                    ? below
+                    : NAME(along_lanes)(s, u, row, half, difference);
+        below = NAME(along_lanes)(s, u, row + 1, half, difference);
+        V(row_store)
+        (out[n], NAME(mix)(above, below, V(row_set1)(v->weight[first + n])));
+        last = row;
+    }
+}
+
+/* As NAME(sample). */
+TARGET static inline __attribute__((always_inline)) void
+NAME(sample_eye)(const snow_value_splat *p, int n, int phase, const int tile[2],
+                 uint64_t rows, uint32_t across, value_rows *out) {
+    const snow_value_store *s = p->store;
+    const snow_value_sheet *sheet = p->sheets + n;
+    int spot[2];
+    value_spot(p->rays, phase, spot);
+    const snow_value_lanes *u = value_lanes_of(p->rays, n, 0, spot[0], tile[0]);
+    const snow_value_lanes *v = value_lanes_of(p->rays, n, 1, spot[1], tile[1]);
+    NAME(source) from;
+    if (out->sheet != n) {
+        out->sheet = n;
+        out->has = out->has_across = 0;
+        out->holes = false;
+    }
+    NAME(begin)(s, sheet, &rows, &across, out, &from);
+    if (sheet->half)
+        NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, true, false);
+    else
+        NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
+    if (!across)
+        return;
+    NAME(begin_across)(s, sheet, &from);
+    if (sheet->half_across)
+        NAME(fill_eye)(&from, s, u, v, 1, across, out->across, true, true);
+    else
+        NAME(fill_eye)(&from, s, u, v, 1, across, out->across, false, true);
+}
+
+/* Samples the neighbours of a phase's samples on a sheet, and says where they
+ * are. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(sample_beside)(const snow_value_splat *p, int n, int phase,
+                    const int tile[2], uint32_t rows, value_rows (*room)[2],
+                    value_beside *out) {
+    for (int way = 0; way < 4; way++) {
+        int axis = way / 2, by = p->rays->sheets[n].apart[axis], cells;
+        int to = value_phase_beside(p->rays, phase, axis, way & 1 ? -by : by,
+                                    &cells);
+        uint64_t here = (uint64_t)rows << 1;
+        if (axis == 1)
+            here = cells > 0 ? here << 1 : here >> -cells;
+        value_rows *of = &room[to][n & 1];
+        NAME(sample_eye)(p, n, to, tile, here, 0, of);
+        out->at[way] =
+            of->values[axis == 1 ? 1 + cells : 1] + (axis == 1 ? 0 : cells);
+    }
+}

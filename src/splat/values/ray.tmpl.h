@@ -1,0 +1,85 @@
+/* splat/values/ray.tmpl.h - in perspective each sample has its own way to the
+ * eye.  Include simd/select.h first. */
+#include "classify/sample/gradient_opacity.tmpl.h"
+
+/* a . (uu vv 11 uv u1 v1) of LANES ways (u, v, 1). */
+TARGET static inline __attribute__((always_inline)) V(vec)
+    NAME(square_of)(const float a[6], V(vec) u, V(vec) v) {
+    V(vec) sum = V(add)(V(mul)(V(set1)(a[0]), V(mul)(u, u)), V(set1)(a[2]));
+    sum = V(add)(sum, V(mul)(V(set1)(a[1]), V(mul)(v, v)));
+    sum = V(add)(sum, V(mul)(V(set1)(a[3]), V(mul)(u, v)));
+    sum = V(add)(sum, V(mul)(V(set1)(a[4]), u));
+    return V(add)(sum, V(mul)(V(set1)(a[5]), v));
+}
+
+/* Ways of LANES samples along u (`axis` 0) or v. */
+TARGET static inline __attribute__((always_inline)) V(vec)
+    NAME(ways_of)(const float slope[2], const int16_t *phases) {
+    return V(add)(V(set1)(slope[0]),
+                  V(mul)(V(set1)(slope[1]), V(row_floats)(phases)));
+}
+
+/* n . eye, light and half for LANES gradients, times their length. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(face_eye)(const snow_value_light *l, const snow_value_rays *rays,
+               V(vec) across, V(vec) down, V(vec) u, V(vec) v, V(vec) p,
+               V(vec) out[3]) {
+    V(vec)
+    inverse = V(row_rsqrt)(NAME(square_of)(rays->metric, across, down));
+    V(vec) eye = V(add)(V(add)(V(mul)(across, u), V(mul)(down, v)), p);
+    eye = V(mul)(V(mul)(eye, V(set1)(rays->toward)), inverse);
+    out[0] = out[1] = out[2] = eye;
+    if (rays->head)
+        return;
+    V(vec)
+    aside = V(mul)(NAME(dot)(rays->aside, across, down, V(set1)(1)), inverse);
+    /* |l + e|^2 = 2 + 2 l . e */
+    V(vec)
+    way = V(max)(V(add)(V(add)(aside, aside), V(set1)(2)), V(set1)(1e-9F));
+    out[1] = NAME(dot)(l->light, u, v, p);
+    out[2] = V(mul)(V(add)(out[1], eye), V(row_rsqrt)(way));
+}
+
+/* How much longer than the table's the parts of slabs are that 32 samples are
+ * of. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(shares)(const snow_value_rays *rays, float slope[2][2],
+             const value_queue *q, int n, bool cuts, float out[32]) {
+    for (int at = 0; at < 32; at += LANES) {
+        V(vec)
+        way = V(sqrt)(NAME(square_of)(
+            rays->metric, NAME(ways_of)(slope[0], q->ray[0] + n + at),
+            NAME(ways_of)(slope[1], q->ray[1] + n + at)));
+        V(store)(out + at, V(mul)(way, V(set1)(rays->usual)));
+    }
+    for (int i = 0; cuts && i < 32; i++)
+        out[i] *= q->part[n + i] == INT16_MAX
+                      ? 1
+                      : (float)q->part[n + i] * (1.0F / 32768);
+}
+
+/* Alpha and colours of 32 samples, for so much longer a way. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(lengthen)(const float shares[32], const int channels, V(row) color[4]) {
+    uint32_t ones[16];
+    float alphas[32], factors[32];
+    int16_t words[32];
+    for (int i = 0; i < 16; i++)
+        ones[i] = SNOW_GRADIENT_OPACITY_ONE;
+    V(row_store)(words, color[3]);
+    for (int i = 0; i < 32; i++)
+        alphas[i] = (float)words[i] * (1.0F / 32767);
+    NAME(fade16)(ones, shares, alphas);
+    NAME(fade16)(ones, shares + 16, alphas + 16);
+    for (int i = 0; i < 32; i++) {
+        float alpha = (float)words[i];
+        factors[i] = alphas[i] * 32767 / (alpha > 1 ? alpha : 1);
+    }
+    for (int c = channels == 2 ? 2 : 0; c < 4; c++) {
+        int plane = channels == 2 && c == 2 ? 0 : c;
+        V(row_store)(words, color[plane]);
+        for (int i = 0; i < 32; i++)
+            words[i] = (int16_t)((float)words[i] * factors[i] + 0.5F);
+        color[plane] = V(row_load)(words);
+    }
+}

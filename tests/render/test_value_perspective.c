@@ -1,0 +1,116 @@
+/* tests/render/test_value_perspective.c - method value in perspective beside
+ * the float64 reference of the value model, and what must not change a bit of
+ * its pictures. */
+#include "frame.h"
+#include "values/pictures.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* The world position of an index position, in shares of the volume's sides. */
+static void place(const reference_scene *s, const double share[3],
+                  double out[3]) {
+    for (int r = 0; r < 3; r++) {
+        out[r] = s->info.matrix[r][3];
+        for (int c = 0; c < 3; c++)
+            out[r] +=
+                s->info.matrix[r][c] * share[c] * (double)(s->info.dims[c] - 1);
+    }
+}
+
+/* The scenes of the parallel test from an eye: with fields of view from narrow
+ * to wide, with cameras off the volume's middle, and near to it. */
+static reference_scene seen_from_an_eye(int n) {
+    static const double fovs[] = {45, 20, 3, 75};
+    static const double off[3] = {0.3, 0.6, 0.4}, middle[3] = {0.5, 0.5, 0.5};
+    reference_scene s = value_picture_scene(n);
+    s.view.fov = fovs[(size_t)n / 5 % COUNT(fovs)];
+    if (n % 6 == 4) {
+        s.view.has_target = true;
+        place(&s, off, s.view.target);
+    }
+    if (n % 4 == 3 && s.info.dims[0] == 23) {
+        double eye[3] = {0.48, 0.5, 0.51};
+        eye[n / 4 % 3] = n / 4 % 2 ? -0.25 : 1.6;
+        s.view.has_target = s.view.has_position = true;
+        place(&s, middle, s.view.target);
+        place(&s, eye, s.view.position);
+        s.view.azimuth = s.view.elevation = 0;
+    }
+    return s;
+}
+
+static void pictures_are_the_references(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    for (int n = 0; n < VALUE_PICTURES; n += 5 * (int)support_stride(5)) {
+        reference_scene s = seen_from_an_eye(n);
+        value_picture_check(&stage, n, &(value_scene){.base = s});
+        value_picture_free(&s);
+    }
+    model_close(&stage);
+}
+
+static void nothing_changes_a_bit(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    for (int n = 3; n < VALUE_PICTURES; n += 7 * (int)support_stride(5)) {
+        reference_scene s = seen_from_an_eye(n);
+        value_picture_check_bits(&stage, n, &(value_scene){.base = s});
+        value_picture_free(&s);
+    }
+    model_close(&stage);
+}
+
+/* --- where the eye is -----------------------------------------------------
+ */
+
+static snow_status shoot(const model_stage *stage, const reference_scene *s) {
+    snow_volume *volume = NULL;
+    snow_image *image = NULL;
+    snow_transfer *transfer = model_transfer(stage->context, s);
+    assert_int_equal(
+        snow_volume_wrap(stage->context, &s->info, s->voxels, &volume),
+        SNOW_STATUS_OK);
+    snow_status status = snow_frame_render(stage->frame, volume, transfer,
+                                           &s->view, &s->settings, &image);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    snow_image_free(image);
+    return status;
+}
+
+/* An eye above the first slice, at such a part of the volume's height. */
+static reference_scene near_scene(double height) {
+    const double eye[3] = {0.5, 0.5, -height}, middle[3] = {0.5, 0.5, 0.5};
+    reference_scene s = value_picture_scene(1);
+    s.view.fov = 60;
+    s.view.has_target = s.view.has_position = s.view.has_up = true;
+    s.view.upward[1] = 1;
+    s.view.azimuth = s.view.elevation = s.view.roll = 0;
+    place(&s, middle, s.view.target);
+    place(&s, eye, s.view.position);
+    return s;
+}
+
+static void an_eye_is_as_near_as_an_eighth(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    reference_scene s = near_scene(1 / 6.99);
+    value_picture_check(&stage, 1, &(value_scene){.base = s});
+    value_picture_free(&s);
+    s = near_scene(1 / 7.01);
+    assert_int_equal(shoot(&stage, &s), SNOW_STATUS_BAD_USAGE);
+    assert_non_null(
+        strstr(snow_context_message(stage.context), "slices beside the eye"));
+    value_picture_free(&s);
+    model_close(&stage);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_are_the_references),
+        cmocka_unit_test(nothing_changes_a_bit),
+        cmocka_unit_test(an_eye_is_as_near_as_an_eighth),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
