@@ -219,15 +219,10 @@ static void what_it_does_not_draw_is_refused(void **state) {
 
 static void looks_that_it_does_not_draw_are_refused(void **state) {
     (void)state;
-    static const snow_opacity_point faint[] = {{0, 0}, {100, 0.0005}};
     static const snow_color_point names[] = {
         {0, 1, 0, 0}, {30, 1, 0, 0}, {30, 0, 1, 0}, {100, 0, 1, 0}};
     const reference_scene plain = value_picture_scene(0);
     reference_scene s = plain;
-    s.opacities = faint;
-    s.opacity_count = COUNT(faint);
-    refused(&s, "opacities below 0.004");
-    s = plain;
     s.colors = names;
     s.color_count = COUNT(names);
     refused(&s, "labels");

@@ -56,8 +56,8 @@ static bool look_up(value_model *model, const value_ray *ray, int slab,
         &table->entries[table->index[ends[0]] * table->nodes +
                         table->index[ends[1]]];
     for (int c = 0; c < 3; c++)
-        rgba[c] = entry->color[c] / 32767.0;
-    rgba[3] = entry->alpha / 32767.0;
+        rgba[c] = entry->color[c] * table->unit;
+    rgba[3] = entry->alpha * table->unit;
     *place = part[0] + (((2 * entry->place + 1) * length + 16) >> 5);
     return entry->alpha > 0;
 }

@@ -73,7 +73,8 @@ static void place_nodes(const value_plan *plan, value_table *table) {
 }
 
 /* Equal steps of the value from the front to the back, composited. */
-static value_entry enter(const value_plan *plan, double front, double back) {
+static value_entry enter(const value_plan *plan, double front, double back,
+                         double unit, double *most) {
     double length = reference_opacity_length(&plan->scene->base);
     double exponent = plan->path / (plan->steps * length);
     double through = 1, color[3] = {0}, places = 0, weights = 0;
@@ -87,12 +88,24 @@ static value_entry enter(const value_plan *plan, double front, double back) {
         weights += through * alpha;
         through *= 1 - alpha;
     }
-    value_entry entry = {.alpha = (int)rint(32767 * (1 - through)),
+    *most = fmax(*most, 1 - through);
+    value_entry entry = {.alpha = (int)rint((1 - through) / unit),
                          .place =
                              weights > 0 ? (int)(16 * places / weights) : 8};
     for (int c = 0; c < 3; c++)
-        entry.color[c] = (int)rint(32767 * color[c]);
+        entry.color[c] = (int)rint(color[c] / unit);
     return entry;
+}
+
+/* Returns the largest alpha. */
+static double fill(const value_plan *plan, value_table *table) {
+    size_t nodes = (size_t)table->nodes;
+    double most = 0;
+    for (size_t f = 0; f < nodes; f++)
+        for (size_t b = 0; b < nodes; b++)
+            table->entries[f * nodes + b] =
+                enter(plan, table->at[f], table->at[b], table->unit, &most);
+    return most;
 }
 
 void value_table_make(const value_plan *plan, value_table *table) {
@@ -101,10 +114,13 @@ void value_table_make(const value_plan *plan, value_table *table) {
     table->at = calloc(nodes, sizeof *table->at);
     table->entries = calloc(nodes * nodes, sizeof *table->entries);
     place_nodes(plan, table);
-    for (size_t f = 0; f < nodes; f++)
-        for (size_t b = 0; b < nodes; b++)
-            table->entries[f * nodes + b] =
-                enter(plan, table->at[f], table->at[b]);
+    table->unit = 1 / 32767.0;
+    double most = fill(plan, table);
+    if (!(most > 0) || most >= 0.004)
+        return;
+    for (; most <= 0.0625; most *= 2)
+        table->unit /= 2;
+    fill(plan, table);
 }
 
 void value_table_free(value_table *table) {

@@ -70,8 +70,8 @@ bool value_plan_of(const value_scene *scene, value_plan *plan);
 void value_plan_sheets(value_plan *plan, int halves);
 double value_plan_path(const value_plan *plan);
 
-/* An entry of the table: 15 bits each, and the place of the opacity in
- * sixteenths of the slab. */
+/* An entry of the table: 15 bits each, in units of the table, and the place of
+ * the opacity in sixteenths of the slab. */
 typedef struct value_entry {
     int color[3], alpha, place;
 } value_entry;
@@ -81,6 +81,7 @@ typedef struct value_table {
     double *at; /* V of each node */
     uint8_t index[VALUE_MOST + 1];
     value_entry *entries; /* nodes x nodes, front first */
+    double unit; /* an alpha of 1 in an entry: 1 / 32767, less of faint looks */
 } value_table;
 
 void value_table_make(const value_plan *plan, value_table *table);

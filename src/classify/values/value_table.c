@@ -13,6 +13,11 @@
 /* Numbers between two looks where nodes are placed by measure. */
 #define MEASURED_STEP 0.25
 
+/* The largest alpha of tables whose words count smaller parts, and how often
+ * these are halved at most. */
+#define FAINTEST 0.004F
+#define HALVINGS_MOST 96
+
 /* A look whose steepest ramp spans fewer nodes has them placed by measure. */
 #define STEEP_NODES 4
 
@@ -179,11 +184,11 @@ static four_floats collect(const snow_value_table *table, int64_t first,
     return sum;
 }
 
-static uint64_t pack(four_floats rgba, float place, bool placed) {
+static uint64_t pack(four_floats rgba, float place, float full, bool placed) {
     uint64_t entry = 0;
     int sixteenths = place * 16 < 15 ? (int)(place * 16) : 15;
     for (int c = 0; c < 4; c++) {
-        int word = (int)(rgba[c] * 32767 + 0.5F);
+        int word = (int)(rgba[c] * full + 0.5F);
         word = word > 32767 ? 32767 : word;
         if (placed)
             word |= (sixteenths >> c & 1) << 15;
@@ -195,12 +200,15 @@ static uint64_t pack(four_floats rgba, float place, bool placed) {
 typedef struct table_job {
     const snow_value_look *look;
     snow_value_table *table;
+    float full;                   /* the word of an alpha of 1 */
+    float most[SNOW_VALUE_PITCH]; /* alpha, of each row */
 } table_job;
 
 static void fill_row(void *of, int64_t front, int worker) {
-    const table_job *job = of;
+    table_job *job = of;
     const snow_value_look *look = job->look;
     const snow_value_table *table = job->table;
+    float most = 0;
     uint64_t *row = table->entries + front * SNOW_VALUE_PITCH;
     int64_t first = look_of(table, look, (int)front);
     (void)worker;
@@ -209,10 +217,35 @@ static void fill_row(void *of, int64_t front, int worker) {
         four_floats rgba =
             collect(table, first, look_of(table, look, back) - first,
                     look->steps, &place);
-        row[back] = rgba[3] > 0 ? pack(rgba, place, look->placed) : 0;
+        most = rgba[3] > most ? rgba[3] : most;
+        row[back] =
+            rgba[3] > 0 ? pack(rgba, place, job->full, look->placed) : 0;
         if ((row[back] >> 48 & 0x7fff) == 0)
             row[back] = 0;
     }
+    job->most[front] = most;
+}
+
+/* All entries; again in smaller parts where all are faint, of which there may
+ * be eight times as many: rays of other pixels are longer in perspective. */
+static snow_status fill_entries(snow_context *context,
+                                const snow_value_look *look,
+                                snow_value_table *table) {
+    table_job job = {.look = look, .table = table, .full = 32767};
+    float most = 0;
+    SNOW_TRY(
+        snow_parallel(context, look->threads, look->nodes, fill_row, &job));
+    for (int n = 0; n < look->nodes; n++)
+        most = job.most[n] > most ? job.most[n] : most;
+    table->faint = most > 0 && most < FAINTEST;
+    for (int n = 0; table->faint && n < HALVINGS_MOST && most <= 0.0625F; n++) {
+        most *= 2;
+        job.full *= 2;
+    }
+    table->unit = 1 / job.full;
+    return table->faint ? snow_parallel(context, look->threads, look->nodes,
+                                        fill_row, &job)
+                        : SNOW_STATUS_OK;
 }
 
 /* --- invisible runs --------------------------------------------------------
@@ -264,17 +297,6 @@ static void find_runs(const snow_value_look *look, snow_value_table *table) {
             end++;
         v = end;
     }
-}
-
-static void find_most(const snow_value_look *look, snow_value_table *table) {
-    uint64_t most = 0;
-    for (int f = 0; f < look->nodes; f++)
-        for (int b = 0; b < look->nodes; b++) {
-            uint64_t alpha =
-                table->entries[f * SNOW_VALUE_PITCH + b] >> 48 & 0x7fff;
-            most = alpha > most ? alpha : most;
-        }
-    table->most = (float)most / 32767;
 }
 
 /* --- the table --------------------------------------------------------------
@@ -332,11 +354,8 @@ snow_status snow_value_table_make(snow_context *context,
         memset(table->entries, 0, bytes);
     SNOW_TRY(place_nodes(context, look, table));
     SNOW_TRY(fill_looks(context, look, table));
-    table_job job = {look, table};
-    SNOW_TRY(
-        snow_parallel(context, look->threads, look->nodes, fill_row, &job));
+    SNOW_TRY(fill_entries(context, look, table));
     find_runs(look, table);
-    find_most(look, table);
     table->made = *look;
     return SNOW_STATUS_OK;
 }

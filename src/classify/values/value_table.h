@@ -45,7 +45,9 @@ typedef struct snow_value_table {
     size_t entries_capacity, node_of_capacity, at_capacity, looks_capacity;
     snow_value_run runs[SNOW_VALUE_RUNS]; /* the longest ones, rising */
     int run_count;
-    float most; /* the largest alpha */
+    bool faint; /* the words count parts of 2^-15 / 2^n, for slabs show little:
+                 */
+    float unit; /* an alpha of 1 in a word */
     /* What was made last. */
     snow_value_look made;
     double *key, *next_key;

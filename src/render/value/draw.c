@@ -226,8 +226,12 @@ static snow_status reserve_plane(draw_job *job, int threads) {
  */
 
 /* Pixels of a phase of a tile to their places. */
-static void store_phase(const draw_job *job, snow_value_plane *plane, int phase,
+static void store_phase(const draw_job *job, const void *planes, int phase,
                         int64_t column, int64_t row) {
+    const bool faint = job->splat.table->faint;
+    const snow_value_plane *plane = (const snow_value_plane *)planes + phase;
+    const snow_value_faint_plane *floats =
+        (const snow_value_faint_plane *)planes + phase;
     const snow_value_lattice *l = &job->path->lattice;
     const snow_value_pixels to = snow_value_lattice_pixels(l, phase);
     const int channels = job->splat.channels;
@@ -242,7 +246,9 @@ static void store_phase(const draw_job *job, snow_value_plane *plane, int phase,
         float pixels[SNOW_VALUE_COLUMNS][4];
         for (int c = 0; c < 4; c++)
             for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
-                pixels[n][c] = (float)(*plane)[c][r][n + 1] * (1.0F / 32767);
+                pixels[n][c] =
+                    faint ? (*floats)[c][r][n + 1]
+                          : (float)(*plane)[c][r][n + 1] * (1.0F / 32767);
         if (channels == 4)
             for (int n = 0; n < SNOW_VALUE_COLUMNS; n++, out += step)
                 memcpy(out, pixels[n], sizeof pixels[n]);
@@ -264,16 +270,15 @@ static void draw_tile(void *of, int64_t item, int worker) {
     int64_t column = (int64_t)x * SNOW_VALUE_COLUMNS;
     int64_t row = (int64_t)y * SNOW_VALUE_ROWS;
     void *room = path->scratch + (size_t)worker * job->scratch_bytes;
-    snow_value_plane *planes = room;
     bool within = column < l->voxels[0] && row < l->voxels[1];
     bool drawn = within && job->tile(&job->splat, x, y, room);
     if (!drawn && !path->drawn[item])
         return;
     if (!drawn)
-        memset(planes, 0, (size_t)l->phases * sizeof *planes);
+        memset(room, 0, snow_value_planes_bytes(&job->splat));
     path->drawn[item] = drawn;
     for (int phase = 0; phase < l->phases; phase++)
-        store_phase(job, &planes[phase], phase, column, row);
+        store_phase(job, room, phase, column, row);
 }
 
 /* --- blocks of a quincunx --------------------------------------------------

@@ -9,9 +9,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Slabs whose largest alpha is less need more than 15 bits. */
-#define FAINTEST 0.004F
-
 snow_status snow_value_path_new(snow_context *context, snow_value_path **out) {
     if (*out)
         return SNOW_STATUS_OK;
@@ -107,13 +104,7 @@ static snow_status make_table(snow_value_path *path,
         .placed = s->shade == SNOW_SHADE_PHONG ||
                   snow_transfer_has_gradient_opacity(params->transfer),
         .threads = s->threads};
-    SNOW_TRY(snow_value_table_make(path->context, &look, &path->table));
-    if (path->table.most > 0 && path->table.most < FAINTEST)
-        return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
-                         "method value cannot draw opacities below %g between "
-                         "two slices yet; take method shear-warp",
-                         (double)FAINTEST);
-    return SNOW_STATUS_OK;
+    return snow_value_table_make(path->context, &look, &path->table);
 }
 
 snow_status snow_value_classify(snow_value_path *path,

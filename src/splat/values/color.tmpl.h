@@ -138,8 +138,8 @@ TARGET static void NAME(fade)(const snow_value_splat *p, const value_queue *q,
     V(row_store)(places, within);
     for (int c = 0; c < 4; c++)
         V(row_store)(colors[c], color[c]);
-    snow_value_fade_colors(p->fade, slopes, q->front + n, q->back + n, places,
-                           colors);
+    snow_value_fade_colors(p->fade, p->table, slopes, q->front + n, q->back + n,
+                           places, colors);
     for (int c = 0; c < 4; c++)
         color[c] = V(row_load)(colors[c]);
 }
@@ -190,12 +190,12 @@ NAME(color)(const snow_value_splat *p, float slope[2][2], value_queue *q,
         if (eye) {
             float shares[32];
             NAME(shares)(p->rays, slope, q, n, cuts, shares);
-            NAME(lengthen)(shares, channels, color);
+            NAME(lengthen)(p->table, shares, channels, color);
         }
         for (int c = 0; c < channels - 1; c++)
             V(row_store)(q->color[c] + n, color[c]);
         V(row_store)(q->color[3] + n, color[3]);
     }
     if (cuts && !eye)
-        snow_value_shorten(q, count, channels);
+        snow_value_shorten(p->table, q, count, channels);
 }

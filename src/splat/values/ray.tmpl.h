@@ -60,7 +60,8 @@ NAME(shares)(const snow_value_rays *rays, float slope[2][2],
 
 /* Alpha and colours of 32 samples, for so much longer a way. */
 TARGET static inline __attribute__((always_inline)) void
-NAME(lengthen)(const float shares[32], const int channels, V(row) color[4]) {
+NAME(lengthen)(const snow_value_table *table, const float shares[32],
+               const int channels, V(row) color[4]) {
     uint32_t ones[16];
     float alphas[32], factors[32];
     int16_t words[32];
@@ -69,8 +70,15 @@ NAME(lengthen)(const float shares[32], const int channels, V(row) color[4]) {
     V(row_store)(words, color[3]);
     for (int i = 0; i < 32; i++)
         alphas[i] = (float)words[i] * (1.0F / 32767);
-    NAME(fade16)(ones, shares, alphas);
-    NAME(fade16)(ones, shares + 16, alphas + 16);
+    if (table->faint) {
+        for (int i = 0; i < 32; i++)
+            alphas[i] = value_lengthen(table, (float)words[i] * table->unit,
+                                       shares[i]) /
+                        (table->unit * 32767);
+    } else {
+        NAME(fade16)(ones, shares, alphas);
+        NAME(fade16)(ones, shares + 16, alphas + 16);
+    }
     for (int i = 0; i < 32; i++) {
         float alpha = (float)words[i];
         factors[i] = alphas[i] * 32767 / (alpha > 1 ? alpha : 1);

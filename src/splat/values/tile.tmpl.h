@@ -6,6 +6,8 @@
 
 #include "splat/values/color.tmpl.h"
 
+#include "splat/values/faint.tmpl.h"
+
 /* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
  * seen; returns whether there are any. */
 TARGET static inline __attribute__((always_inline)) bool
@@ -251,8 +253,13 @@ NAME(slab)(const snow_value_splat *p, int n, int first, int end,
     NAME(color)(p, room->slope, q, count, channels, sloped, cuts, eye);
     count = 0;
     for (int phase = first; phase < end; phase++)
-        count = NAME(blend)(&planes[phase], &room->phase[phase], q, count,
-                            p->closed, channels);
+        if (p->table->faint)
+            count = NAME(blend_faint)(
+                p, (snow_value_faint_plane *)(void *)planes + phase,
+                &room->phase[phase], q, count, channels);
+        else
+            count = NAME(blend)(&planes[phase], &room->phase[phase], q, count,
+                                p->closed, channels);
     return true;
 }
 
@@ -301,13 +308,13 @@ NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
            const int channels, const bool sloped, const bool eye) {
     snow_value_plane *planes = memory;
     value_room *room =
-        (value_room *)(void *)((char *)memory + value_planes_bytes(p));
+        (value_room *)(void *)((char *)memory + snow_value_planes_bytes(p));
     const int tile[2] = {x, y};
     bool drawn = false;
     NAME(open)(p, x, y, room);
     if (eye)
         NAME(aim)(p, tile, room);
-    memset(planes, 0, value_planes_bytes(p));
+    memset(planes, 0, snow_value_planes_bytes(p));
     for (int n = 0; n + 1 < p->sheet_count; n++) {
         uint32_t alive = 0;
         for (int first = 0; first < p->phases; first += TOGETHER) {

@@ -103,13 +103,14 @@ void snow_value_clip(const snow_value_splat *p, const double front[3],
         store_parts(parts, out);
 }
 
-void snow_value_shorten(value_queue *q, int count, int channels) {
+void snow_value_shorten(const snow_value_table *table, value_queue *q,
+                        int count, int channels) {
     for (int n = 0; n < count; n++) {
-        float alpha = (float)q->color[3][n] * (1.0F / 32767);
+        float alpha = (float)q->color[3][n] * table->unit;
         if (q->part[n] == INT16_MAX || !(alpha > 0))
             continue;
         float part = (float)q->part[n] * 0x1p-15F;
-        float share = (1 - powf(1 - alpha, part)) / alpha;
+        float share = value_lengthen(table, alpha, part) / alpha;
         for (int c = channels == 2 ? 3 : 0; c < 4; c++)
             q->color[c][n] = (int16_t)((float)q->color[c][n] * share + 0.5F);
         if (channels == 2)

@@ -19,18 +19,21 @@ static double steepness(const snow_value_fade *fade, int front, int back,
     return log(10) * snow_value_of(fade->scale, v);
 }
 
-static float faded(const snow_value_fade *fade, float alpha, float factor) {
+static float faded(const snow_value_fade *fade, const snow_value_table *table,
+                   float alpha, float factor) {
     if (fade->share == 1)
         return factor * alpha;
-    float opacity = 1 - powf(1 - alpha, 1 / fade->share);
-    return 1 - powf(1 - factor * opacity, fade->share);
+    float opacity = value_lengthen(table, alpha, 1 / fade->share);
+    return value_lengthen(table, factor * opacity, fade->share);
 }
 
-void snow_value_fade_colors(const snow_value_fade *fade, int16_t slopes[3][32],
-                            const int16_t *front, const int16_t *back,
-                            const int16_t places[32], int16_t color[4][32]) {
+void snow_value_fade_colors(const snow_value_fade *fade,
+                            const snow_value_table *table,
+                            int16_t slopes[3][32], const int16_t *front,
+                            const int16_t *back, const int16_t places[32],
+                            int16_t color[4][32]) {
     for (int n = 0; n < 32; n++) {
-        float alpha = (float)color[3][n] * (1.0F / 32767);
+        float alpha = (float)color[3][n] * table->unit;
         if (!(alpha > 0))
             continue;
         double magnitude = magnitude_of(fade->metric, slopes[0][n],
@@ -39,7 +42,7 @@ void snow_value_fade_colors(const snow_value_fade *fade, int16_t slopes[3][32],
         double factor =
             snow_transfer_evaluate_gradient(fade->transfer, magnitude);
         float share =
-            factor < 1 ? faded(fade, alpha, (float)factor) / alpha : 1;
+            factor < 1 ? faded(fade, table, alpha, (float)factor) / alpha : 1;
         for (int c = 0; c < 4; c++)
             color[c][n] = (int16_t)((float)color[c][n] * share + 0.5F);
     }

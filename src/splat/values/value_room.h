@@ -5,6 +5,8 @@
 
 #include "splat/values/value_splat.h"
 
+#include <math.h>
+
 /* Rows of a sheet's tile: one more on each side, for gradients. */
 #define SHEET_ROWS (SNOW_VALUE_ROWS + 2)
 
@@ -72,10 +74,6 @@ typedef struct value_room {
     float slope[2][2];    /* perspective: snow_value_rays' of the tile */
     value_rows rows[][2]; /* [phase][sheet & 1] */
 } value_room;
-
-static inline size_t value_planes_bytes(const snow_value_splat *splat) {
-    return (size_t)splat->phases * sizeof(snow_value_plane);
-}
 
 /* --- places -----------------------------------------------------------------
  */
@@ -194,14 +192,24 @@ typedef struct value_sides {
 void snow_value_bridge(const value_sides *sides, uint32_t lanes,
                        int16_t *across);
 
+/* The alpha of `share` times the length; exact for the least alpha where the
+ * table is faint. */
+static inline float value_lengthen(const snow_value_table *table, float alpha,
+                                   float share) {
+    return table->faint ? -expm1f(share * log1pf(-alpha))
+                        : 1 - powf(1 - alpha, share);
+}
+
 /* --- gradient opacity -------------------------------------------------------
  */
 
 /* The colours and alpha of 32 samples, by their gradients and the places of
  * their opacity between front and back, of 32768. */
-void snow_value_fade_colors(const snow_value_fade *fade, int16_t slopes[3][32],
-                            const int16_t *front, const int16_t *back,
-                            const int16_t places[32], int16_t color[4][32]);
+void snow_value_fade_colors(const snow_value_fade *fade,
+                            const snow_value_table *table,
+                            int16_t slopes[3][32], const int16_t *front,
+                            const int16_t *back, const int16_t places[32],
+                            int16_t color[4][32]);
 
 /* --- cuts -------------------------------------------------------------------
  */
@@ -217,6 +225,7 @@ void snow_value_clip(const snow_value_splat *splat, const double front[3],
                      const double back[3], value_clip *out);
 
 /* Alpha and colours of the samples of slabs that are cut. */
-void snow_value_shorten(value_queue *queue, int count, int channels);
+void snow_value_shorten(const snow_value_table *table, value_queue *queue,
+                        int count, int channels);
 
 #endif

@@ -12,7 +12,7 @@
 #include "simd/each_isa.h"
 
 size_t snow_value_splat_bytes(const snow_value_splat *splat) {
-    size_t bytes = value_planes_bytes(splat) + sizeof(value_room) +
+    size_t bytes = snow_value_planes_bytes(splat) + sizeof(value_room) +
                    (size_t)splat->phases * 2 * sizeof(value_rows);
     return (bytes + 63) / 64 * 64;
 }

@@ -115,8 +115,17 @@ typedef struct snow_value_splat {
     size_t clip_count;
 } snow_value_splat;
 
-/* Pixels of a tile: planes of 15 bits, of which channels are used. */
+/* Pixels of a tile: planes of 15 bits, of which channels are used; of floats
+ * where the table is faint. */
 typedef int16_t snow_value_plane[4][SNOW_VALUE_ROWS][32];
+typedef float snow_value_faint_plane[4][SNOW_VALUE_ROWS][32];
+
+/* Bytes of the planes of all phases. */
+static inline size_t snow_value_planes_bytes(const snow_value_splat *splat) {
+    return (size_t)splat->phases * (splat->table->faint
+                                        ? sizeof(snow_value_faint_plane)
+                                        : sizeof(snow_value_plane));
+}
 
 /* Bytes of a worker's memory. */
 size_t snow_value_splat_bytes(const snow_value_splat *splat);
