@@ -27,12 +27,12 @@ static void to_index(const snow_volume_info *info, const double plane[4],
     }
 }
 
-/* A ray moves as far aside between two slices as they are apart; values there
- * and gradients look two voxels on. */
+/* A ray moves as far aside between two slices as they are apart, in perspective
+ * often twice as far; values there and gradients look two voxels on. */
 static void find_reach(const snow_volume_info *info, double reach[3]) {
     const double *s = info->spacing;
     for (int axis = 0; axis < 3; axis++)
-        reach[axis] = 2 + ceil(fmax(s[0], fmax(s[1], s[2])) / s[axis]);
+        reach[axis] = 2 + ceil(2 * fmax(s[0], fmax(s[1], s[2])) / s[axis]);
 }
 
 snow_status snow_clip_planes_new(snow_context *context,

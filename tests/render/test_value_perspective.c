@@ -1,7 +1,8 @@
 /* tests/render/test_value_perspective.c - method value in perspective beside
  * the float64 reference of the value model, and what must not change a bit of
  * its pictures. */
-#include "frame.h"
+#include <math.h>
+
 #include "values/pictures.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -50,11 +51,48 @@ static void pictures_are_the_references(void **state) {
     model_close(&stage);
 }
 
+/* Makes holes of the voxels of a half, and of some others. */
+static void punch(reference_scene *s, int n) {
+    float *voxels = (float *)(uintptr_t)s->voxels;
+    int64_t count = s->info.dims[0] * s->info.dims[1] * s->info.dims[2];
+    uint64_t random = (uint64_t)n + 1;
+    for (int64_t i = 0; i < count; i++)
+        if (support_uniform(&random) < (2 * i > count ? 0.8 : 0.05))
+            voxels[i] = NAN;
+}
+
+static void holes_are_the_references(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    for (int n = 2; n < VALUE_PICTURES; n += 15 * (int)support_stride(5)) {
+        reference_scene s = seen_from_an_eye(n); /* of floats */
+        punch(&s, n);
+        value_picture_check(&stage, n, &(value_scene){.base = s});
+        value_picture_free(&s);
+    }
+    model_close(&stage);
+}
+
+static void clip_planes_are_the_references(void **state) {
+    (void)state;
+    model_stage stage = model_open();
+    for (int n = 0; n < VALUE_PICTURES; n += 9 * (int)support_stride(7)) {
+        value_scene scene = {.base = seen_from_an_eye(n)};
+        double planes[2][4];
+        value_picture_clip(&scene, n % 2 ? 2 : 1, planes);
+        value_picture_check(&stage, n, &scene);
+        value_picture_free(&scene.base);
+    }
+    model_close(&stage);
+}
+
 static void nothing_changes_a_bit(void **state) {
     (void)state;
     model_stage stage = model_open();
     for (int n = 3; n < VALUE_PICTURES; n += 7 * (int)support_stride(5)) {
         reference_scene s = seen_from_an_eye(n);
+        if (s.info.type == SNOW_TYPE_FLOAT32)
+            punch(&s, n);
         value_picture_check_bits(&stage, n, &(value_scene){.base = s});
         value_picture_free(&s);
     }
@@ -109,6 +147,8 @@ static void an_eye_is_as_near_as_an_eighth(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_the_references),
+        cmocka_unit_test(holes_are_the_references),
+        cmocka_unit_test(clip_planes_are_the_references),
         cmocka_unit_test(nothing_changes_a_bit),
         cmocka_unit_test(an_eye_is_as_near_as_an_eighth),
     };

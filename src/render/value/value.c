@@ -115,11 +115,6 @@ snow_status snow_value_classify(snow_value_path *path,
         path->context, &params->volume->info, params->view, params->placement,
         params->settings->quality, &path->lattice));
     SNOW_TRY(measure_range(path, params));
-    if (params->placement->perspective && path->range.holes)
-        return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
-                         "method value cannot draw masks, clip planes and "
-                         "voxels without a value in perspective yet; take "
-                         "method shear-warp");
     if (path->range.low <= path->range.high)
         SNOW_TRY(make_table(path, params));
     stats->seconds_classify += snow_seconds() - mark;

@@ -25,11 +25,10 @@ NAME(pick_cells)(const snow_value_store *s, const uint32_t *masks,
 /* Whether the coarse mask of a run has anything under a tile. */
 static inline bool NAME(any_cells)(const snow_value_store *s, int run,
                                    int64_t slice, const snow_value_lanes *u,
-                                   const int32_t rows[32]) {
+                                   int32_t top, int32_t bottom) {
     const uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, slice);
     int words = (u->at[31] + 31) / 32 + 2;
-    int first = rows[0] / SNOW_VALUE_COARSE,
-        last = rows[31] / SNOW_VALUE_COARSE;
+    int first = top / SNOW_VALUE_COARSE, last = bottom / SNOW_VALUE_COARSE;
     for (int n = 0; n < words; n++) {
         int64_t word = u->word + n;
         if (word < 0 || word >= (int64_t)s->mask_words)
@@ -42,14 +41,19 @@ static inline bool NAME(any_cells)(const snow_value_store *s, int run,
     return false;
 }
 
-/* The rows of masks under the rows of a tile. */
+/* The row of masks under a lane of v. */
+static inline int32_t NAME(row_of)(const snow_value_store *s,
+                                   const snow_value_lanes *v, int lane) {
+    int32_t row = v->first + v->at[lane] + s->margin + SNOW_VALUE_ROWS;
+    int32_t last = (int32_t)s->mask_rows - 1;
+    return row < 0 ? 0 : row > last ? last : row;
+}
+
+/* The same for the rows of a tile. */
 static inline void NAME(rows_of)(const snow_value_store *s,
                                  const snow_value_lanes *v, int32_t rows[32]) {
-    int32_t last = (int32_t)s->mask_rows - 1;
-    for (int n = 0; n < 32; n++) {
-        int32_t row = v->first + v->at[n + 1] + s->margin + SNOW_VALUE_ROWS;
-        rows[n] = row < 0 ? 0 : row > last ? last : row;
-    }
+    for (int n = 0; n < 32; n++)
+        rows[n] = NAME(row_of)(s, v, n + 1);
 }
 
 /* The cells of a sheet under a tile that are not wholly within a run. */
@@ -60,7 +64,7 @@ TARGET static inline bool NAME(cells_under)(const snow_value_store *s, int run,
                                             uint32_t *out) {
     bool any = false;
     for (int n = 0; n <= sheet->half; n++)
-        if (NAME(any_cells)(s, run, sheet->slice + n, u, rows)) {
+        if (NAME(any_cells)(s, run, sheet->slice + n, u, rows[0], rows[31])) {
             NAME(pick_cells)
             (s, s->masks + snow_value_mask_at(s, run, sheet->slice + n), u,
              rows, out);
@@ -121,6 +125,22 @@ static inline void NAME(cut_eye)(const snow_value_splat *p, int n, int phase,
     }
 }
 
+/* The same within all clip planes. */
+static inline void NAME(clip_eye)(const snow_value_splat *p, int n, int phase,
+                                  const int tile[2], value_clip *clip) {
+    const snow_value_lanes *lanes[2][2];
+    double ends[2][4];
+    NAME(slab_lanes)(p, n, phase, tile, lanes);
+    for (int side = 0; side < 2; side++) {
+        double step = p->rays->sheets[n + side].step;
+        ends[side][0] = lanes[side][0]->start;
+        ends[side][1] = lanes[side][1]->start + step;
+        ends[side][2] = p->sheets[n + side].at;
+        ends[side][3] = step;
+    }
+    snow_value_clip(p, ends[0], ends[1], clip);
+}
+
 /* --- sheets -----------------------------------------------------------------
  */
 
@@ -157,20 +177,25 @@ TARGET static inline __attribute__((always_inline)) V(row)
     return NAME(mix)(ends[0], ends[1], V(row_load)(u->weight));
 }
 
-/* Rows of a sheet, a bit each, into `out`; bit 0 is lane `first` of v.  Rows of
- * voxels stay within `most`, the rows of the store. */
+/* The row of voxels above a lane of v, which the store has. */
+static inline int64_t NAME(voxel_row)(const snow_value_store *s,
+                                      const snow_value_lanes *v, int lane) {
+    int64_t low = -s->margin, high = s->rows + s->margin - 2;
+    int64_t row = v->first + v->at[lane];
+    return row < low ? low : row > high ? high : row;
+}
+
+/* Rows of a sheet, a bit each, into `out`; bit 0 is lane `first` of v. */
 TARGET static inline __attribute__((always_inline)) void
 NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
                const snow_value_lanes *u, const snow_value_lanes *v, int first,
                uint64_t rows, int16_t (*out)[32], const bool half,
                const bool difference) {
-    int64_t low = -store->margin, high = store->rows + store->margin - 2;
-    int64_t last = low - 2;
+    int64_t last = INT64_MIN;
     V(row) below = V(row_set1)(0);
     for (; rows; rows &= rows - 1) {
         int n = __builtin_ctzll(rows);
-        int64_t row = v->first + v->at[first + n];
-        row = row < low ? low : row > high ? high : row;
+        int64_t row = NAME(voxel_row)(store, v, first + n);
         V(row)
         above = row == last + 1
                     ? below
@@ -179,6 +204,99 @@ NAME(fill_eye)(const NAME(source) * s, const snow_value_store *store,
         V(row_store)
         (out[n], NAME(mix)(above, below, V(row_set1)(v->weight[first + n])));
         last = row;
+    }
+}
+
+/* --- holes ------------------------------------------------------------------
+ */
+
+/* As NAME(near_holes). */
+static inline bool NAME(near_holes_eye)(const snow_value_store *s,
+                                        const snow_value_sheet *sheet,
+                                        const snow_value_lanes *u,
+                                        const snow_value_lanes *v) {
+    const int64_t slices[5] = {sheet->slice, sheet->slice + sheet->half,
+                               sheet->before, sheet->after,
+                               sheet->after + sheet->half_across};
+    int32_t rows[2];
+    bool any = false;
+    for (int end = 0; end < 2; end++)
+        rows[end] = NAME(row_of)(s, v, end ? SNOW_VALUE_LANES - 1 : 0);
+    for (int n = 0; s->holes && !any && n < 5; n++)
+        any = NAME(any_cells)(s, s->run_count, slices[n], u, rows[0], rows[1]);
+    return any;
+}
+
+/* As NAME(parts_along). */
+TARGET static inline __attribute__((always_inline)) NAME(part)
+    NAME(parts_under)(const NAME(source) * s, const snow_value_lanes *u,
+                      int64_t row, bool half) {
+    const int16_t *values = s->values + u->first;
+    V(row) here[2], next[2], weight = V(row_load)(u->weight);
+    NAME(part) ends[2];
+    V(row_pairs)(values + s->slice[row], u->at, u->at[31] + 2, here);
+    if (half)
+        V(row_pairs)
+        (values + s->slice[row + s->next], u->at, u->at[31] + 2, next);
+    for (int n = 0; n < 2; n++) {
+        ends[n] = NAME(part_of)(here[n]);
+        if (!half)
+            continue;
+        NAME(part) on = NAME(part_of)(next[n]);
+        ends[n].value = V(row_avg)(ends[n].value, on.value);
+        ends[n].weight = V(row_avg)(ends[n].weight, on.weight);
+    }
+    return (NAME(part)){NAME(mix)(ends[0].value, ends[1].value, weight),
+                        NAME(mix)(ends[0].weight, ends[1].weight, weight)};
+}
+
+/* As NAME(fill_holes); bit 0 of `rows` is lane `first` of v. */
+TARGET static void NAME(fill_holes_eye)(const NAME(source) * s,
+                                        const snow_value_store *store,
+                                        const snow_value_lanes *u,
+                                        const snow_value_lanes *v, int first,
+                                        uint64_t rows, int16_t (*out)[32],
+                                        uint32_t *partial, bool half) {
+    for (; rows; rows &= rows - 1) {
+        int n = __builtin_ctzll(rows);
+        int64_t row = NAME(voxel_row)(store, v, first + n);
+        partial[n] = NAME(mix_parts)(NAME(parts_under)(s, u, row, half),
+                                     NAME(parts_under)(s, u, row + 1, half),
+                                     V(row_set1)(v->weight[first + n]), out[n]);
+    }
+}
+
+/* As NAME(cross_holes). */
+TARGET static void NAME(cross_holes_eye)(const snow_value_splat *p, int n,
+                                         NAME(source) from,
+                                         const snow_value_lanes *u,
+                                         const snow_value_lanes *v,
+                                         uint32_t across, value_rows *out) {
+    const snow_value_store *s = p->store;
+    const snow_value_sheet *sheet = p->sheets + n;
+    const int64_t slices[2] = {sheet->before, sheet->after};
+    int16_t beside[2][SNOW_VALUE_ROWS][32];
+    uint32_t partial[2][SNOW_VALUE_ROWS];
+    for (int side = 0; side < 2; side++) {
+        from.slice = snow_value_at(s, slices[side]);
+        NAME(fill_holes_eye)
+        (&from, s, u, v, 1, across, beside[side], partial[side],
+         sheet->half_across);
+    }
+    for (; across; across &= across - 1) {
+        int r = __builtin_ctz(across);
+        uint32_t lanes = partial[0][r] | partial[1][r];
+        const value_sides sides = {.splat = p,
+                                   .sheet = n,
+                                   .column = u->first,
+                                   .row = NAME(voxel_row)(s, v, 1 + r),
+                                   .weights = {0, v->weight[1 + r]},
+                                   .lanes = u,
+                                   .here = out->values[r + 1],
+                                   .before = beside[0][r],
+                                   .after = beside[1][r]};
+        if (lanes)
+            snow_value_bridge(&sides, lanes, out->across[r]);
     }
 }
 
@@ -196,13 +314,16 @@ NAME(sample_eye)(const snow_value_splat *p, int n, int phase, const int tile[2],
     if (out->sheet != n) {
         out->sheet = n;
         out->has = out->has_across = 0;
-        out->holes = false;
+        out->holes = NAME(near_holes_eye)(s, sheet, u, v);
     }
     NAME(begin)(s, sheet, &rows, &across, out, &from);
-    if (sheet->half)
+    uint32_t partial[SHEET_ROWS];
+    if (out->holes)
+        NAME(fill_holes_eye)
+    (&from, s, u, v, 0, rows, out->values, partial, sheet->half);
+    else if (sheet->half)
         NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, true, false);
-    else
-        NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
+    else NAME(fill_eye)(&from, s, u, v, 0, rows, out->values, false, false);
     if (!across)
         return;
     NAME(begin_across)(s, sheet, &from);
@@ -210,6 +331,8 @@ NAME(sample_eye)(const snow_value_splat *p, int n, int phase, const int tile[2],
         NAME(fill_eye)(&from, s, u, v, 1, across, out->across, true, true);
     else
         NAME(fill_eye)(&from, s, u, v, 1, across, out->across, false, true);
+    if (out->holes)
+        NAME(cross_holes_eye)(p, n, from, u, v, across, out);
 }
 
 /* Samples the neighbours of a phase's samples on a sheet, and says where they
@@ -218,6 +341,7 @@ TARGET static inline __attribute__((always_inline)) void
 NAME(sample_beside)(const snow_value_splat *p, int n, int phase,
                     const int tile[2], uint32_t rows, value_rows (*room)[2],
                     value_beside *out) {
+    out->holes = room[phase][n & 1].holes;
     for (int way = 0; way < 4; way++) {
         int axis = way / 2, by = p->rays->sheets[n].apart[axis], cells;
         int to = value_phase_beside(p->rays, phase, axis, way & 1 ? -by : by,
@@ -227,6 +351,7 @@ NAME(sample_beside)(const snow_value_splat *p, int n, int phase,
             here = cells > 0 ? here << 1 : here >> -cells;
         value_rows *of = &room[to][n & 1];
         NAME(sample_eye)(p, n, to, tile, here, 0, of);
+        out->holes |= of->holes;
         out->at[way] =
             of->values[axis == 1 ? 1 + cells : 1] + (axis == 1 ? 0 : cells);
     }

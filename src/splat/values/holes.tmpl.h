@@ -42,6 +42,21 @@ TARGET static inline __attribute__((always_inline)) NAME(part)
                         NAME(mix)(a.weight, b.weight, weight)};
 }
 
+/* A row of values from those above and below; returns a bit for each number
+ * whose weights are not full. */
+TARGET static inline __attribute__((always_inline)) uint32_t
+NAME(mix_parts)(NAME(part) above, NAME(part) below, V(row) v, int16_t out[32]) {
+    V(row) weight = NAME(mix)(above.weight, below.weight, v);
+    V(row_store)(out, NAME(mix)(above.value, below.value, v));
+    uint32_t partial = V(row_gt)(V(row_set1)(SNOW_VALUE_FULL), weight);
+    if (partial) {
+        int16_t weights[32];
+        V(row_store)(weights, weight);
+        snow_value_weigh(out, weights, partial);
+    }
+    return partial;
+}
+
 /* As NAME(fill); a bit in `partial` for each number whose weights are not
  * full. */
 TARGET static void NAME(fill_holes)(const NAME(source) * s, int64_t first,
@@ -55,14 +70,7 @@ TARGET static void NAME(fill_holes)(const NAME(source) * s, int64_t first,
         int row = __builtin_ctzll(rows);
         NAME(part) above = NAME(parts_along)(s, first + row, u, half);
         NAME(part) below = NAME(parts_along)(s, first + row + 1, u, half);
-        V(row) weight = NAME(mix)(above.weight, below.weight, v);
-        V(row_store)(out[row], NAME(mix)(above.value, below.value, v));
-        partial[row] = V(row_gt)(V(row_set1)(SNOW_VALUE_FULL), weight);
-        if (partial[row]) {
-            int16_t weights[32];
-            V(row_store)(weights, weight);
-            snow_value_weigh(out[row], weights, partial[row]);
-        }
+        partial[row] = NAME(mix_parts)(above, below, v, out[row]);
     }
 }
 
@@ -86,14 +94,15 @@ TARGET static void NAME(cross_holes)(const snow_value_splat *p, int n,
     for (; across; across &= across - 1) {
         int r = __builtin_ctz(across);
         uint32_t lanes = partial[0][r] | partial[1][r];
-        const value_sides sides = {.splat = p,
-                                   .sheet = n,
-                                   .column = from.column,
-                                   .row = row + r,
-                                   .place = place,
-                                   .here = out->values[r + 1],
-                                   .before = beside[0][r],
-                                   .after = beside[1][r]};
+        const value_sides sides = {
+            .splat = p,
+            .sheet = n,
+            .column = from.column,
+            .row = row + r,
+            .weights = {place->weight[0], place->weight[1]},
+            .here = out->values[r + 1],
+            .before = beside[0][r],
+            .after = beside[1][r]};
         if (lanes)
             snow_value_bridge(&sides, lanes, out->across[r]);
     }

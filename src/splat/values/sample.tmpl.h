@@ -83,8 +83,8 @@ static inline void NAME(clip_all)(const snow_value_splat *p, int n, int phase,
     const double u = (double)value_tile_column(p, tile[0]);
     const double v = (double)value_tile_row(p, tile[1]);
     snow_value_clip(
-        p, (double[]){u + place->at[0], v + place->at[1], sheet->at},
-        (double[]){u + next->at[0], v + next->at[1], sheet[1].at}, clip);
+        p, (double[]){u + place->at[0], v + place->at[1], sheet->at, 1},
+        (double[]){u + next->at[0], v + next->at[1], sheet[1].at, 1}, clip);
 }
 
 /* --- sheets -----------------------------------------------------------------

@@ -24,7 +24,9 @@ NAME(activate)(const snow_value_splat *p, int n, int phase, const int tile[2],
         NAME(cut_all)(p, n, phase, tile, cut);
     rows = cut[1].some & V(rows_and)(state->active, state->open, cut[0].some);
     clip->cuts = false;
-    if (p->clip_count && !eye)
+    if (p->clip_count && eye)
+        NAME(clip_eye)(p, n, phase, tile, clip);
+    else if (p->clip_count)
         NAME(clip_all)(p, n, phase, tile, clip);
     if (clip->cuts)
         rows &= V(rows_and)(state->active, clip->some, ~UINT32_C(0));
@@ -76,20 +78,15 @@ NAME(clip)(const value_cut cut[2], const value_clip *clip, int row,
     return V(row_gt)(to, *from);
 }
 
-/* Differences of the neighbours `step` away on both sides. */
+/* Differences of the neighbours on both sides. */
 TARGET static inline __attribute__((always_inline)) V(row)
-    NAME(slope)(const int16_t *at, const int step, bool broken) {
+    NAME(slope)(const int16_t *before, const int16_t *here,
+                const int16_t *after, bool broken) {
     int16_t slopes[32];
     if (!broken)
-        return V(row_subs)(V(row_load)(at + step), V(row_load)(at - step));
-    snow_value_slopes(at, step, slopes);
+        return V(row_subs)(V(row_load)(after), V(row_load)(before));
+    snow_value_slopes(before, here, after, slopes);
     return V(row_load)(slopes);
-}
-
-TARGET static inline __attribute__((always_inline)) V(row)
-    NAME(slope_eye)(const value_beside *beside, int way, int on) {
-    return V(row_subs)(V(row_load)(beside->at[way] + on),
-                       V(row_load)(beside->at[way + 1] + on));
 }
 
 /* Packs the visible samples of a phase, from number `count` on. */
@@ -140,16 +137,15 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
         for (int side = 0; sloped && side < 2; side++) {
             const int16_t *at = side ? back : front;
             int16_t(*slopes)[QUEUE] = q->slopes + 3 * side;
-            bool broken = (side ? b : f)->holes;
-            V(row_compress)
-            (slopes[0] + count,
-             eye ? NAME(slope_eye)(&beside[side], 0, 32 * row)
-                 : NAME(slope)(at, 1, broken),
-             mask);
-            V(row_compress)
-            (slopes[1] + count,
-             eye ? NAME(slope_eye)(&beside[side], 2, 32 * row)
-                 : NAME(slope)(at, 32, broken),
+            const value_beside own = {{at + 1, at - 1, at + 32, at - 32},
+                                      (side ? b : f)->holes};
+            const value_beside *by = eye ? &beside[side] : &own;
+            const int on = eye ? 32 * row : 0;
+            for (int axis = 0; axis < 2; axis++)
+                V(row_compress)
+            (slopes[axis] + count,
+             NAME(slope)(by->at[2 * axis + 1] + on, at, by->at[2 * axis] + on,
+                         by->holes),
              mask);
             V(row_compress)
             (slopes[2] + count, V(row_load)((side ? b : f)->across[row]), mask);

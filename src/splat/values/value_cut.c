@@ -43,16 +43,17 @@ void snow_value_cut(const double front[2], const double back[2], double low,
 
 /* Whether all lanes of all rows of a tile are within a plane (1), beyond it
  * (-1) or neither. */
-static int side_of(const double plane[4], const double at[3]) {
+static int side_of(const double plane[4], const double at[4]) {
     double height = plane[0] * at[0] + plane[1] * at[1] + plane[2] * at[2];
-    double most = height + fmax(0, 31 * plane[0]) + fmax(0, 31 * plane[1]);
-    double least = height + fmin(0, 31 * plane[0]) + fmin(0, 31 * plane[1]);
+    double u = 31 * at[3] * plane[0], v = 31 * at[3] * plane[1];
+    double most = height + fmax(0, u) + fmax(0, v);
+    double least = height + fmin(0, u) + fmin(0, v);
     return most <= plane[3] ? 1 : least > plane[3] ? -1 : 0;
 }
 
 /* Narrows the parts of all samples to those within a plane. */
-static void clip_by(const double plane[4], const double front[3],
-                    const double back[3], double (*parts)[32][2]) {
+static void clip_by(const double plane[4], const double front[4],
+                    const double back[4], double (*parts)[32][2]) {
     double from = 0, to = 0;
     for (int axis = 0; axis < 3; axis++) {
         from += plane[axis] * front[axis];
@@ -61,7 +62,8 @@ static void clip_by(const double plane[4], const double front[3],
     for (int row = 0; row < SNOW_VALUE_ROWS; row++)
         for (int n = 0; n < 32; n++) {
             double aside = plane[0] * n + plane[1] * row;
-            keep_below(from + aside, to + aside, plane[3], parts[row][n]);
+            keep_below(from + aside * front[3], to + aside * back[3], plane[3],
+                       parts[row][n]);
         }
 }
 
@@ -78,8 +80,8 @@ static void store_parts(double (*parts)[32][2], value_clip *out) {
     }
 }
 
-void snow_value_clip(const snow_value_splat *p, const double front[3],
-                     const double back[3], value_clip *out) {
+void snow_value_clip(const snow_value_splat *p, const double front[4],
+                     const double back[4], value_clip *out) {
     double parts[SNOW_VALUE_ROWS][32][2];
     out->cuts = false;
     for (size_t plane = 0; plane < p->clip_count; plane++) {

@@ -40,9 +40,10 @@ static int16_t quotient(int before, int here, int after) {
     return 0;
 }
 
-void snow_value_slopes(const int16_t *at, int step, int16_t out[32]) {
+void snow_value_slopes(const int16_t *before, const int16_t *here,
+                       const int16_t *after, int16_t out[32]) {
     for (int n = 0; n < 32; n++)
-        out[n] = quotient(at[n - step], at[n], at[n + step]);
+        out[n] = quotient(before[n], here[n], after[n]);
 }
 
 static int between(int a, int b, int weight) {
@@ -57,11 +58,13 @@ static int16_t value_at(const value_sides *s, int n, int lane) {
     const snow_value_sheet *sheet = s->splat->sheets + n;
     const int64_t *rows = snow_value_at(store, sheet->slice) + s->row;
     int64_t next = sheet->half ? store->rows + 2 * store->margin : 0;
+    int along = s->lanes ? s->lanes->weight[lane] : s->weights[0];
+    int64_t first = s->column + (s->lanes ? s->lanes->at[lane] : lane);
     int value[2], weight[2];
     for (int y = 0; y < 2; y++) {
         int v[2], w[2];
         for (int x = 0; x < 2; x++) {
-            int64_t column = s->column + lane + x;
+            int64_t column = first + x;
             int a = store->values[rows[y] + column];
             int b = store->values[rows[y + next] + column];
             w[x] = SNOW_VALUE_FULL / 2 *
@@ -70,11 +73,11 @@ static int16_t value_at(const value_sides *s, int n, int lane) {
             b = b == SNOW_VALUE_HOLE ? 0 : b;
             v[x] = (a + b + 1) >> 1;
         }
-        value[y] = between(v[0], v[1], s->place->weight[0]);
-        weight[y] = between(w[0], w[1], s->place->weight[0]);
+        value[y] = between(v[0], v[1], along);
+        weight[y] = between(w[0], w[1], along);
     }
-    return weighed(between(value[0], value[1], s->place->weight[1]),
-                   between(weight[0], weight[1], s->place->weight[1]));
+    return weighed(between(value[0], value[1], s->weights[1]),
+                   between(weight[0], weight[1], s->weights[1]));
 }
 
 /* Between the sheets in front and behind, where slices have nothing. */

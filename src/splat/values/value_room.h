@@ -29,6 +29,7 @@ typedef struct value_rows {
  * back, and the same along v: row r of each is at at[n] + 32 r. */
 typedef struct value_beside {
     const int16_t *at[4];
+    bool holes; /* some may have none */
 } value_beside;
 
 /* The samples of a slab, packed. */
@@ -175,8 +176,9 @@ static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
 void snow_value_weigh(int16_t values[32], const int16_t weights[32],
                       uint32_t lanes);
 
-/* Differences of 32 numbers' neighbours `step` away on both sides. */
-void snow_value_slopes(const int16_t *at, int step, int16_t out[32]);
+/* Differences of 32 numbers' neighbours on both sides. */
+void snow_value_slopes(const int16_t *before, const int16_t *here,
+                       const int16_t *after, int16_t out[32]);
 
 /* A row of sheet `sheet`, from voxel (column, row) on, and of those beside it
  * along P. */
@@ -184,7 +186,8 @@ typedef struct value_sides {
     const snow_value_splat *splat;
     int sheet;
     int64_t column, row;
-    const snow_value_place *place;
+    int16_t weights[2];            /* along u and v */
+    const snow_value_lanes *lanes; /* perspective: u's, instead */
     const int16_t *here, *before, *after;
 } value_sides;
 
@@ -220,9 +223,10 @@ void snow_value_cut(const double front[2], const double back[2], double low,
                     double high, value_cut *out);
 
 /* The parts of a slab within all clip planes, for a tile whose first sample is
- * at these places, u, v and slice, of both sheets. */
-void snow_value_clip(const snow_value_splat *splat, const double front[3],
-                     const double back[3], value_clip *out);
+ * at these places, u, v and slice, of both sheets; [3] is how far lanes and
+ * rows are apart. */
+void snow_value_clip(const snow_value_splat *splat, const double front[4],
+                     const double back[4], value_clip *out);
 
 /* Alpha and colours of the samples of slabs that are cut. */
 void snow_value_shorten(const snow_value_table *table, value_queue *queue,

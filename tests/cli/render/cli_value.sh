@@ -66,8 +66,6 @@ refuse() {
     says '; take method shear-warp$'
     check "no picture is left" test ! -e no.png
 }
-refuse "holes in perspective" "masks, clip planes .* in perspective" \
-    --clip 0.3,0.5,-0.8,4 --perspective
 for mode in mip minip mean sum; do
     refuse "mode $mode" "modes other than over" -m $mode
 done
