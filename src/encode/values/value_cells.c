@@ -136,16 +136,30 @@ snow_status snow_value_cells_band(snow_value_store *s,
     return SNOW_STATUS_OK;
 }
 
-void snow_value_cells_coarse(snow_value_store *s, int64_t slice) {
+/* Bits of the rows of a column of words that have any. */
+static void gather_rows(const uint32_t *masks, size_t rows, uint64_t *coarse) {
+    for (size_t row = 0; row < rows; row++) {
+        size_t block = row / SNOW_VALUE_COARSE;
+        coarse[block / 64] |= (uint64_t)(masks[row] != 0) << block % 64;
+    }
+}
+
+void snow_value_cells_coarse(snow_value_store *s, int64_t eight) {
+    const size_t size = s->mask_words * s->coarse_words;
+    int64_t first = eight * SNOW_VALUE_EIGHT, end = first + SNOW_VALUE_EIGHT;
+    end = end < s->slices ? end : s->slices;
     for (int n = 0; n < snow_value_planes(s); n++) {
-        const uint32_t *masks = s->masks + snow_value_mask_at(s, n, slice);
-        uint64_t *coarse = s->coarse + snow_value_coarse_at(s, n, slice);
-        memset(coarse, 0, s->mask_words * s->coarse_words * sizeof *coarse);
-        for (size_t w = 0; w < s->mask_words;
-             w++, masks += s->mask_rows, coarse += s->coarse_words)
-            for (size_t row = 0; row < s->mask_rows; row++) {
-                size_t block = row / SNOW_VALUE_COARSE;
-                coarse[block / 64] |= (uint64_t)(masks[row] != 0) << block % 64;
-            }
+        uint64_t *all = s->eights + (size_t)(n * s->eight_count + eight) * size;
+        memset(all, 0, size * sizeof *all);
+        for (int64_t slice = first; slice < end; slice++) {
+            const uint32_t *masks = s->masks + snow_value_mask_at(s, n, slice);
+            uint64_t *coarse = s->coarse + snow_value_coarse_at(s, n, slice);
+            memset(coarse, 0, size * sizeof *coarse);
+            for (size_t w = 0; w < s->mask_words; w++)
+                gather_rows(masks + w * s->mask_rows, s->mask_rows,
+                            coarse + w * s->coarse_words);
+            for (size_t word = 0; word < size; word++)
+                all[word] |= coarse[word];
+        }
     }
 }

@@ -29,10 +29,10 @@ static void cells_item(void *of, int64_t band, int worker) {
                                            worker, scratch_of(job, worker)));
 }
 
-static void coarse_item(void *of, int64_t slice, int worker) {
+static void coarse_item(void *of, int64_t eight, int worker) {
     const store_job *job = of;
     (void)worker;
-    snow_value_cells_coarse(job->store, slice);
+    snow_value_cells_coarse(job->store, eight);
 }
 
 static void shell_item(void *of, int64_t band, int worker) {
@@ -70,9 +70,13 @@ static snow_status reserve_masks(snow_value_store *s) {
     SNOW_TRY(snow_reserve(s->context, &s->masks, &s->masks_capacity, 0,
                           (masks + SNOW_VALUE_ROWS) * sizeof *s->masks));
     memset(s->masks, 0, (masks + SNOW_VALUE_ROWS) * sizeof *s->masks);
+    size_t coarse = s->mask_words * s->coarse_words * sizeof *s->coarse;
+    s->eight_count = (s->slices + SNOW_VALUE_EIGHT - 1) / SNOW_VALUE_EIGHT;
+    SNOW_TRY(snow_reserve(s->context, &s->eights, &s->eights_capacity, 0,
+                          (size_t)snow_value_planes(s) *
+                              (size_t)s->eight_count * coarse));
     return snow_reserve(s->context, &s->coarse, &s->coarse_capacity, 0,
-                        slices * s->mask_words * s->coarse_words *
-                            sizeof *s->coarse);
+                        slices * coarse);
 }
 
 static snow_status reserve_bands(snow_value_store *s) {
@@ -178,7 +182,7 @@ snow_status snow_value_store_encode(snow_value_store *s,
     SNOW_TRY(begin(&job));
     snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0, 0.5);
     SNOW_TRY(each(&job, s->band_count, cells_item));
-    SNOW_TRY(each(&job, s->slices, coarse_item));
+    SNOW_TRY(each(&job, s->eight_count, coarse_item));
     s->encoding =
         params->encoding == SNOW_ENCODING_AUTO ? choose(s) : params->encoding;
     snow_monitor_next(s->context->monitor, SNOW_STAGE_ENCODE, 0.5, 1);
@@ -197,6 +201,7 @@ void snow_value_store_fini(snow_value_store *s) {
     snow_release(s->context, s->bands);
     snow_release(s->context, s->masks);
     snow_release(s->context, s->coarse);
+    snow_release(s->context, s->eights);
     snow_release(s->context, s->values);
     snow_release(s->context, s->at);
     snow_release(s->context, s->ends);

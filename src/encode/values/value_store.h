@@ -26,6 +26,8 @@
 #define SNOW_VALUE_ROWS 32
 /* Rows of cells that share a bit of the coarse mask. */
 #define SNOW_VALUE_COARSE 8
+/* Slices that share a coarse mask of their own. */
+#define SNOW_VALUE_EIGHT 8
 /* The most voxels that a ray may move aside from one slice to the next. */
 #define SNOW_VALUE_REACH_MOST 24
 
@@ -42,6 +44,8 @@ typedef struct snow_value_store {
     /* A bit for each SNOW_VALUE_COARSE rows of these. */
     uint64_t *coarse; /* [run][slice][word][row / SNOW_VALUE_COARSE / 64] */
     size_t coarse_words;
+    uint64_t *eights; /* the same for each SNOW_VALUE_EIGHT slices */
+    int64_t eight_count;
     /* EA, IA and PA. */
     snow_sparse *bands;
     int64_t band_count;
@@ -53,8 +57,8 @@ typedef struct snow_value_store {
     int64_t *at;            /* [slice][row + margin] */
     int32_t (*ends)[2];     /* of the rows: first column, and behind the last */
     unsigned char *scratch; /* of the threads, while encoding */
-    size_t masks_capacity, coarse_capacity, bands_capacity, values_capacity,
-        at_capacity, ends_capacity, scratch_capacity;
+    size_t masks_capacity, coarse_capacity, eights_capacity, bands_capacity,
+        values_capacity, at_capacity, ends_capacity, scratch_capacity;
 } snow_value_store;
 
 /* What is encoded. */

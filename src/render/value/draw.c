@@ -67,6 +67,10 @@ static void place_light(const snow_value_params *params,
     project(inverse, params->placement, params->placement->back, scale,
             light->eye);
     measure(inverse, params->placement, scale, light->metric);
+    light->head = memcmp(light->light, light->eye, sizeof light->eye) == 0 &&
+                  memcmp(light->half, light->eye, sizeof light->eye) == 0;
+    light->square =
+        light->metric[3] == 0 && light->metric[4] == 0 && light->metric[5] == 0;
     light->ambient = (float)s->ambient;
     light->diffuse = (float)s->diffuse;
     light->specular = seen ? (float)s->specular : 0;

@@ -35,7 +35,9 @@ TARGET static inline __attribute__((always_inline)) V(vec)
 TARGET static inline __attribute__((always_inline)) void
 NAME(face)(const snow_value_light *l, V(vec) u, V(vec) v, V(vec) p,
            V(vec) out[3]) {
-    out[0] = NAME(dot)(l->eye, u, v, p);
+    out[0] = out[1] = out[2] = NAME(dot)(l->eye, u, v, p);
+    if (l->head)
+        return;
     out[1] = NAME(dot)(l->light, u, v, p);
     out[2] = NAME(dot)(l->half, u, v, p);
 }
@@ -50,12 +52,11 @@ NAME(light)(const snow_value_splat *s, float slope[2][2], const value_queue *q,
     const V(vec) zero = V(set1)(0), one = V(set1)(1);
     V(vec) u = V(row_floats)(gu), v = V(row_floats)(gv), p = V(row_floats)(gp);
     V(vec)
-    length = V(add)(
-        V(add)(
-            NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p)),
-            NAME(dot)(l->metric + 3, V(mul)(u, v), V(mul)(u, p), V(mul)(v, p))),
-        V(set1)(1e-9F));
-    V(vec) inverse = V(row_rsqrt)(length);
+    length = NAME(dot)(l->metric, V(mul)(u, u), V(mul)(v, v), V(mul)(p, p));
+    if (!l->square)
+        length = V(add)(length, NAME(dot)(l->metric + 3, V(mul)(u, v),
+                                          V(mul)(u, p), V(mul)(v, p)));
+    V(vec) inverse = V(row_rsqrt)(V(add)(length, V(set1)(1e-9F)));
     V(vec) to[3];
     if (eye)
         NAME(face_eye)

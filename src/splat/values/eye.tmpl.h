@@ -88,7 +88,8 @@ static inline void NAME(slab_lanes)(const snow_value_splat *p, int n, int phase,
 /* As NAME(activate): rows that may have samples, before cuts. */
 TARGET static uint32_t NAME(activate_eye)(const snow_value_splat *p, int n,
                                           int phase, const int tile[2],
-                                          value_phase *state) {
+                                          const value_phase *state,
+                                          value_slab *slab) {
     const snow_value_store *s = p->store;
     const snow_value_lanes *lanes[2][2];
     int32_t rows[2][32];
@@ -96,14 +97,14 @@ TARGET static uint32_t NAME(activate_eye)(const snow_value_splat *p, int n,
     NAME(slab_lanes)(p, n, phase, tile, lanes);
     for (int side = 0; side < 2; side++)
         NAME(rows_of)(s, lanes[side][1], rows[side]);
-    memcpy(state->active, state->open, sizeof state->active);
+    memcpy(slab->active, state->open, sizeof slab->active);
     for (int run = 0; run < s->run_count && left; run++) {
         uint32_t cells[SNOW_VALUE_ROWS] = {0};
         bool any = false;
         for (int side = 0; side < 2; side++)
             any |= NAME(cells_under)(s, run, p->sheets + n + side,
                                      lanes[side][0], rows[side], cells);
-        left &= any ? V(rows_and)(state->active, cells, ~UINT32_C(0)) : 0;
+        left &= any ? V(rows_and)(slab->active, cells, ~UINT32_C(0)) : 0;
     }
     return left;
 }
@@ -237,7 +238,7 @@ TARGET static inline __attribute__((always_inline)) NAME(part)
     V(row_pairs)(values + s->slice[row], u->at, u->at[31] + 2, here);
     if (half)
         V(row_pairs)
-        (values + s->slice[row + s->next], u->at, u->at[31] + 2, next);
+    (values + s->slice[row + s->next], u->at, u->at[31] + 2, next);
     for (int n = 0; n < 2; n++) {
         ends[n] = NAME(part_of)(here[n]);
         if (!half)

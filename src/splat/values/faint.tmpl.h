@@ -11,12 +11,13 @@ NAME(add_faint)(float *plane, const int16_t *color, V(vec) through) {
 /* As NAME(blend). */
 TARGET static int NAME(blend_faint)(const snow_value_splat *p,
                                     snow_value_faint_plane *plane,
-                                    value_phase *state, const value_queue *q,
-                                    int count, const int channels) {
+                                    value_phase *state, const value_slab *slab,
+                                    const value_queue *q, int count,
+                                    const int channels) {
     const V(vec) one = V(set1)(1), unit = V(set1)(p->table->unit);
-    for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
-        uint32_t mask = state->active[row];
+        uint32_t mask = slab->active[row];
         int16_t color[4][32], alphas[32];
         if (!mask)
             continue;

@@ -18,18 +18,12 @@ NAME(add_cells)(const snow_value_store *s, int run,
     }
 }
 
-static inline bool NAME(has_cells)(const snow_value_store *s, int run,
-                                   const snow_value_sheet *sheet,
-                                   value_window w) {
-    return value_any(s, run, sheet->slice, w) ||
-           (sheet->half && value_any(s, run, sheet->slice + 1, w));
-}
-
 /* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
  * seen, but for cuts; returns their rows. */
 TARGET static uint32_t NAME(activate_all)(const snow_value_splat *p, int n,
                                           int phase, const int tile[2],
-                                          value_phase *state) {
+                                          const value_phase *state,
+                                          value_slab *slab) {
     const snow_value_store *s = p->store;
     const snow_value_sheet *sheet = p->sheets + n;
     const snow_value_place *place = p->places + n * p->phases + phase;
@@ -42,17 +36,13 @@ TARGET static uint32_t NAME(activate_all)(const snow_value_splat *p, int n,
         return 0;
     front = value_window_of(s, column + place->whole[0], row + place->whole[1]);
     back = value_window_of(s, column + next->whole[0], row + next->whole[1]);
-    for (int run = 0; run < s->run_count; run++)
-        if (!NAME(has_cells)(s, run, sheet, front) &&
-            !NAME(has_cells)(s, run, sheet + 1, back))
-            return 0;
     uint32_t rows = ~UINT32_C(0);
-    memcpy(state->active, state->open, sizeof state->active);
+    memcpy(slab->active, state->open, sizeof slab->active);
     for (int run = 0; run < s->run_count; run++) {
         uint32_t cells[SNOW_VALUE_ROWS] = {0};
         NAME(add_cells)(s, run, sheet, front, cells);
         NAME(add_cells)(s, run, sheet + 1, back, cells);
-        rows &= V(rows_and)(state->active, cells, ~UINT32_C(0));
+        rows &= V(rows_and)(slab->active, cells, ~UINT32_C(0));
         if (!rows)
             return 0;
     }

@@ -8,31 +8,7 @@
 
 #include "splat/values/faint.tmpl.h"
 
-/* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
- * seen; returns whether there are any. */
-TARGET static inline __attribute__((always_inline)) bool
-NAME(activate)(const snow_value_splat *p, int n, int phase, const int tile[2],
-               value_cut cut[2], value_clip *clip, value_phase *state,
-               const bool eye) {
-    uint32_t rows = eye ? NAME(activate_eye)(p, n, phase, tile, state)
-                        : NAME(activate_all)(p, n, phase, tile, state);
-    if (!rows)
-        return false;
-    if (eye)
-        NAME(cut_eye)(p, n, phase, tile, cut);
-    else
-        NAME(cut_all)(p, n, phase, tile, cut);
-    rows = cut[1].some & V(rows_and)(state->active, state->open, cut[0].some);
-    clip->cuts = false;
-    if (p->clip_count && eye)
-        NAME(clip_eye)(p, n, phase, tile, clip);
-    else if (p->clip_count)
-        NAME(clip_all)(p, n, phase, tile, clip);
-    if (clip->cuts)
-        rows &= V(rows_and)(state->active, clip->some, ~UINT32_C(0));
-    state->rows = rows;
-    return rows != 0;
-}
+#include "splat/values/ahead.tmpl.h"
 
 /* The values of a sheet in some rows of a tile, and the differences across it
  * in others, unless they are there. */
@@ -93,22 +69,21 @@ TARGET static inline __attribute__((always_inline)) V(row)
 TARGET static inline __attribute__((always_inline)) int
 NAME(collect)(const snow_value_splat *p, const value_rows *f,
               const value_rows *b, const value_beside beside[2],
-              const value_cut cut[2], const value_clip *planes,
-              value_phase *state, value_queue *q, int count, const bool sloped,
-              bool cuts, const bool eye) {
+              const value_phase *state, value_slab *slab, value_queue *q,
+              int count, const bool sloped, bool cuts, const bool eye) {
     const V(row) zero = V(row_set1)(0), most = V(row_set1)(SNOW_VALUE_MOST);
     const V(row) none = V(row_set1)(SNOW_VALUE_HOLE);
     const bool holes = f->holes || b->holes;
-    for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
         const int16_t *front = f->values[row + 1], *back = b->values[row + 1];
         V(row) x = V(row_load)(front), y = V(row_load)(back);
         V(row) from = zero, part = zero;
-        uint32_t mask = state->active[row];
+        uint32_t mask = slab->active[row];
         if (holes)
             mask &= V(row_gt)(x, none) & V(row_gt)(y, none);
         if (cuts) {
-            mask &= NAME(clip)(cut, planes, row, &from, &part);
+            mask &= NAME(clip)(slab->cut, &slab->clip, row, &from, &part);
             V(row) first = x;
             x = NAME(mix)(first, y, from);
             y = NAME(mix)(first, y, V(row_add)(from, part));
@@ -118,7 +93,7 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
             y = V(row_min)(V(row_max)(y, zero), most);
         }
         mask &= NAME(see)(p->table, x, y);
-        state->active[row] = mask;
+        slab->active[row] = mask;
         if (!mask)
             continue;
         V(row_compress)(q->front + count, x, mask);
@@ -158,13 +133,13 @@ NAME(collect)(const snow_value_splat *p, const value_rows *f,
 /* Behind what is in the planes; closes the pixels that nothing shines through.
  */
 TARGET static inline __attribute__((always_inline)) int
-NAME(blend)(snow_value_plane *plane, value_phase *state, const value_queue *q,
-            int count, int16_t end, const int channels) {
+NAME(blend)(snow_value_plane *plane, value_phase *state, const value_slab *slab,
+            const value_queue *q, int count, int16_t end, const int channels) {
     const V(row) one = V(row_set1)(INT16_MAX);
     const V(row) closed = V(row_set1)(end);
-    for (uint32_t rows = state->rows; rows; rows &= rows - 1) {
+    for (uint32_t rows = slab->rows; rows; rows &= rows - 1) {
         int row = __builtin_ctz(rows);
-        uint32_t mask = state->active[row];
+        uint32_t mask = slab->active[row];
         if (!mask)
             continue;
         V(row) alpha = V(row_load)((*plane)[3][row]);
@@ -204,45 +179,51 @@ NAME(end_queue)(const snow_value_splat *p, int n, value_queue *q, int count,
     }
 }
 
-/* Some phases of a slab. */
-TARGET static inline __attribute__((always_inline)) bool
-NAME(slab)(const snow_value_splat *p, int n, int first, int end,
-           const int tile[2], snow_value_plane *planes, value_room *room,
-           const int channels, const bool sloped, const bool eye) {
-    value_queue *q = &room->queue;
+/* Samples of some phases of slab `n`, packed; returns how many. */
+TARGET static inline __attribute__((always_inline)) int
+NAME(gather)(const snow_value_splat *p, int n, int first, int end,
+             const int tile[2], value_room *room, value_slab *slabs, bool cuts,
+             const bool sloped, const bool eye) {
     int count = 0;
-    bool cuts = false;
     for (int phase = first; phase < end; phase++) {
-        value_phase *state = &room->phase[phase];
-        state->rows = 0;
-        if (state->alive &&
-            NAME(activate)(p, n, phase, tile, room->cut[phase - first],
-                           &room->clip[phase - first], state, eye))
-            cuts |= room->cut[phase - first][0].cuts ||
-                    room->cut[phase - first][1].cuts ||
-                    room->clip[phase - first].cuts;
-    }
-    for (int phase = first; phase < end; phase++) {
-        value_phase *state = &room->phase[phase];
+        const value_phase *state = &room->phase[phase];
+        value_slab *slab = &slabs[phase - first];
         value_rows *f = &room->rows[phase][n & 1];
         value_rows *b = &room->rows[phase][~n & 1];
-        uint64_t here = (uint64_t)state->rows << 1;
         value_beside beside[2];
+        if (slab->rows)
+            slab->rows &= V(rows_and)(slab->active, state->open, ~UINT32_C(0));
+        uint64_t here = (uint64_t)slab->rows << 1;
+        uint32_t across = sloped ? slab->rows : 0;
         if (!here)
             continue;
         if (sloped && !eye)
             here |= here << 1 | here >> 1;
-        NAME(sample)
-        (p, n, phase, tile, here, sloped ? state->rows : 0, f, eye);
-        NAME(sample)
-        (p, n + 1, phase, tile, here, sloped ? state->rows : 0, b, eye);
+        NAME(sample)(p, n, phase, tile, here, across, f, eye);
+        NAME(sample)(p, n + 1, phase, tile, here, across, b, eye);
         for (int side = 0; sloped && eye && side < 2; side++)
             NAME(sample_beside)
-        (p, n + side, phase, tile, state->rows, room->rows, &beside[side]);
-        count = NAME(collect)(p, f, b, beside, room->cut[phase - first],
-                              &room->clip[phase - first], state, q, count,
+        (p, n + side, phase, tile, slab->rows, room->rows, &beside[side]);
+        count = NAME(collect)(p, f, b, beside, state, slab, &room->queue, count,
                               sloped, cuts, eye);
     }
+    return count;
+}
+
+/* Some phases of slab `n`. */
+TARGET static inline __attribute__((always_inline)) bool
+NAME(slab)(const snow_value_splat *p, int n, int first, int end,
+           const int tile[2], snow_value_plane *planes, value_room *room,
+           value_slab *slabs, const int channels, const bool sloped,
+           const bool eye) {
+    value_queue *q = &room->queue;
+    bool cuts = false;
+    for (int at = 0; at < end - first; at++)
+        cuts |=
+            slabs[at].rows && (slabs[at].cut[0].cuts || slabs[at].cut[1].cuts ||
+                               slabs[at].clip.cuts);
+    int count =
+        NAME(gather)(p, n, first, end, tile, room, slabs, cuts, sloped, eye);
     if (!count)
         return false;
     NAME(end_queue)(p, n, q, count, eye);
@@ -252,10 +233,11 @@ NAME(slab)(const snow_value_splat *p, int n, int first, int end,
         if (p->table->faint)
             count = NAME(blend_faint)(
                 p, (snow_value_faint_plane *)(void *)planes + phase,
-                &room->phase[phase], q, count, channels);
+                &room->phase[phase], &slabs[phase - first], q, count, channels);
         else
-            count = NAME(blend)(&planes[phase], &room->phase[phase], q, count,
-                                p->closed, channels);
+            count = NAME(blend)(&planes[phase], &room->phase[phase],
+                                &slabs[phase - first], q, count, p->closed,
+                                channels);
     return true;
 }
 
@@ -299,6 +281,65 @@ static void NAME(open)(const snow_value_splat *p, int x, int y,
     }
 }
 
+/* Whether some phases have open pixels. */
+static inline bool NAME(alive)(const value_room *room, int first, int end) {
+    uint32_t alive = 0;
+    for (int phase = first; phase < end; phase++)
+        alive |= room->phase[phase].alive;
+    return alive != 0;
+}
+
+/* Some phases of a tile over the whole depth.  Slabs are looked at before their
+ * turn. */
+TARGET static inline __attribute__((always_inline)) bool
+NAME(phases)(const snow_value_splat *p, int first, int end, const int tile[2],
+             snow_value_plane *planes, value_room *room, const int channels,
+             const bool sloped) {
+    int32_t *list = value_slabs(p, room);
+    int count = value_list_slabs(p, first, end, tile, list);
+    bool drawn = false;
+    for (int n = 0; n < ASKED_RING; n++)
+        room->asked[n].sheet = -1;
+    for (int turn = 0, seen = 0; turn < count; turn++) {
+        for (; seen < count && seen <= turn + AHEAD; seen++) {
+            if (seen + 2 < count)
+                NAME(ask_masks)(p, list[seen + 2], first, tile);
+            NAME(look_ahead)
+            (p, list[seen], first, end, tile, room,
+             room->slab[seen % AHEAD_RING], sloped, false);
+        }
+        drawn |=
+            NAME(slab)(p, list[turn], first, end, tile, planes, room,
+                       room->slab[turn % AHEAD_RING], channels, sloped, false);
+        if (!NAME(alive)(room, first, end))
+            break;
+    }
+    return drawn;
+}
+
+/* The same of all phases in perspective, slab by slab: their samples'
+ * neighbours are of other phases. */
+TARGET static inline __attribute__((always_inline)) bool
+NAME(phases_eye)(const snow_value_splat *p, const int tile[2],
+                 snow_value_plane *planes, value_room *room, const int channels,
+                 const bool sloped) {
+    bool drawn = false;
+    NAME(aim)(p, tile, room);
+    for (int n = 0; n + 1 < p->sheet_count; n++) {
+        for (int first = 0; first < p->phases; first += TOGETHER) {
+            int end =
+                first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
+            NAME(look_ahead)
+            (p, n, first, end, tile, room, room->slab[0], sloped, true);
+            drawn |= NAME(slab)(p, n, first, end, tile, planes, room,
+                                room->slab[0], channels, sloped, true);
+        }
+        if (!NAME(alive)(room, 0, p->phases))
+            break;
+    }
+    return drawn;
+}
+
 TARGET static inline __attribute__((always_inline)) bool
 NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
            const int channels, const bool sloped, const bool eye) {
@@ -308,21 +349,13 @@ NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
     const int tile[2] = {x, y};
     bool drawn = false;
     NAME(open)(p, x, y, room);
-    if (eye)
-        NAME(aim)(p, tile, room);
     memset(planes, 0, snow_value_planes_bytes(p));
-    for (int n = 0; n + 1 < p->sheet_count; n++) {
-        uint32_t alive = 0;
-        for (int first = 0; first < p->phases; first += TOGETHER) {
-            int end =
-                first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
-            drawn |= NAME(slab)(p, n, first, end, tile, planes, room, channels,
-                                sloped, eye);
-            for (int phase = first; phase < end; phase++)
-                alive |= room->phase[phase].alive;
-        }
-        if (!alive)
-            break;
+    if (eye)
+        return NAME(phases_eye)(p, tile, planes, room, channels, sloped);
+    for (int first = 0; first < p->phases; first += TOGETHER) {
+        int end = first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
+        drawn |=
+            NAME(phases)(p, first, end, tile, planes, room, channels, sloped);
     }
     return drawn;
 }

@@ -8,17 +8,62 @@
 /* Narrows [t[0], t[1]] to where from + t (to - from) <= most. */
 static void keep_below(double from, double to, double most, double t[2]) {
     double rest = most - from, way = to - from;
-    if (way > 0)
-        t[1] = fmin(t[1], rest / way);
-    else if (way < 0)
-        t[0] = fmax(t[0], rest / way);
-    else if (rest < 0)
+    if (rest >= 0 && to <= most)
+        return;
+    double at = rest / way;
+    if (way == 0)
         t[1] = -1;
+    else if (way > 0)
+        t[1] = at < t[1] ? at : t[1];
+    else
+        t[0] = at > t[0] ? at : t[0];
 }
 
 static int16_t part_of(double t) {
-    int part = (int)floor(32768 * fmin(fmax(t, 0), 1) + 0.5);
+    int part = t <= 0 ? 0 : t >= 1 ? 32767 : (int)(32768 * t + 0.5);
     return (int16_t)(part < 32767 ? part : 32767);
+}
+
+/* Of lanes at line[0] + n line[1], which rise, the first of 32 that is not
+ * below `least`; 32: all are. */
+static int first_lane(const double line[2], double least) {
+    if (line[0] >= least)
+        return 0;
+    if (!(line[0] + 31 * line[1] >= least))
+        return 32;
+    int n = (int)((least - line[0]) / line[1]);
+    while (n > 0 && line[0] + (n - 1) * line[1] >= least)
+        n--;
+    while (!(line[0] + n * line[1] >= least))
+        n++;
+    return n;
+}
+
+/* How many of them, from the first on, are not above `most`. */
+static int end_lane(const double line[2], double most) {
+    if (line[0] + 31 * line[1] <= most)
+        return 32;
+    if (!(line[0] <= most))
+        return 0;
+    int n = (int)((most - line[0]) / line[1]) + 1;
+    while (n > 0 && !(line[0] + (n - 1) * line[1] <= most))
+        n--;
+    while (line[0] + n * line[1] <= most)
+        n++;
+    return n;
+}
+
+static uint32_t lanes_between(int first, int end) {
+    uint64_t bits = first < end ? (UINT64_C(1) << end) - 1 : 0;
+    return (uint32_t)(bits >> first << first);
+}
+
+static int lesser(int a, int b) {
+    return a < b ? a : b;
+}
+
+static int greater(int a, int b) {
+    return a < b ? b : a;
 }
 
 void snow_value_cut(const double front[2], const double back[2], double low,
@@ -29,8 +74,20 @@ void snow_value_cut(const double front[2], const double back[2], double low,
     out->some = ~UINT32_C(0);
     if (!out->cuts)
         return;
-    out->some = 0;
+    int first[2] = {first_lane(front, low), first_lane(back, low)};
+    int end[2] = {end_lane(front, high), end_lane(back, high)};
+    uint32_t whole =
+        lanes_between(greater(first[0], first[1]), lesser(end[0], end[1]));
+    uint32_t parts =
+        lanes_between(lesser(first[0], first[1]), greater(end[0], end[1])) &
+        ~whole;
     for (int n = 0; n < 32; n++) {
+        out->from[n] = 0;
+        out->to[n] = whole >> n & 1 ? INT16_MAX : 0;
+    }
+    out->some = whole;
+    for (; parts; parts &= parts - 1) {
+        int n = __builtin_ctz(parts);
         double t[2] = {0, 1};
         double from = front[0] + n * front[1], to = back[0] + n * back[1];
         keep_below(from, to, high, t);

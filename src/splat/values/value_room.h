@@ -6,6 +6,7 @@
 #include "splat/values/value_splat.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Rows of a sheet's tile: one more on each side, for gradients. */
 #define SHEET_ROWS (SNOW_VALUE_ROWS + 2)
@@ -58,23 +59,48 @@ typedef struct value_clip {
     bool cuts;
 } value_clip;
 
+/* What a slab of a phase needs, found before its turn. */
+typedef struct value_slab {
+    uint32_t active[SNOW_VALUE_ROWS]; /* samples that can be seen */
+    uint32_t rows;                    /* with such samples */
+    value_cut cut[2];                 /* along u and v */
+    value_clip clip;
+} value_slab;
+
+/* Slabs are looked at so many turns ahead, for their voxels to be in the cache
+ * when they are drawn. */
+#define AHEAD 2
+#define AHEAD_RING 4
+
 typedef struct value_phase {
-    uint32_t active[SNOW_VALUE_ROWS], open[SNOW_VALUE_ROWS];
-    uint32_t rows;  /* with active samples */
-    uint32_t alive; /* rows with open pixels */
+    uint32_t open[SNOW_VALUE_ROWS]; /* pixels that something shines through */
+    uint32_t alive;                 /* rows with such pixels */
     /* Perspective: of its rays, phases from the tile's first cell. */
     int16_t columns[32], line, lines; /* along u; along v, and to the next */
 } value_phase;
 
+/* Rows of voxels of a sheet that the cache was asked for, from row -1 on. */
+typedef struct value_asked {
+    int sheet;
+    uint64_t rows;
+} value_asked;
+#define ASKED_RING 8
+
 /* Laid out in a worker's memory behind the planes. */
 typedef struct value_room {
     value_queue queue;
-    value_cut cut[TOGETHER][2]; /* along u and v */
-    value_clip clip[TOGETHER];
+    value_slab slab[AHEAD_RING][TOGETHER]; /* [number in the list % ring] */
     value_phase phase[SNOW_VALUE_PHASES];
+    value_asked asked[ASKED_RING];
     float slope[2][2];    /* perspective: snow_value_rays' of the tile */
     value_rows rows[][2]; /* [phase][sheet & 1] */
 } value_room;
+
+/* Behind the rows: the slabs of a tile that may be seen. */
+static inline int32_t *value_slabs(const snow_value_splat *splat,
+                                   value_room *room) {
+    return (int32_t *)(void *)&room->rows[splat->phases];
+}
 
 /* --- places -----------------------------------------------------------------
  */
@@ -138,21 +164,14 @@ static inline value_window value_window_of(const snow_value_store *s,
                           (int)(bit % 32)};
 }
 
-/* Whether the coarse mask of a run has anything in a window. */
-static inline bool value_any(const snow_value_store *s, int run, int64_t slice,
-                             value_window w) {
-    const uint64_t *coarse = s->coarse + snow_value_coarse_at(s, run, slice) +
-                             w.word * s->coarse_words;
-    size_t first = w.row / SNOW_VALUE_COARSE;
-    size_t last = (w.row + SNOW_VALUE_ROWS - 1) / SNOW_VALUE_COARSE;
-    const uint64_t *next = coarse + s->coarse_words;
-    uint64_t low = coarse[first / 64] | next[first / 64];
-    uint64_t high = coarse[first / 64 + 1] | next[first / 64 + 1];
-    uint64_t bits = low >> first % 64 | high << 1 << (63 - first % 64);
-    return (bits & ((UINT64_C(2) << (last - first)) - 1)) != 0;
-}
+/* The slabs with cells that no run hides, for some phases of a tile: the
+ * numbers of their front sheets, front to back; returns how many.  In
+ * perspective all slabs. */
+int value_list_slabs(const snow_value_splat *splat, int first, int end,
+                     const int tile[2], int32_t *out);
 
-/* The same for the cells that have a hole, of all rows that gradients reach. */
+/* Whether a window has cells with a hole, with all rows that gradients reach.
+ */
 static inline bool value_has_holes(const snow_value_store *s, int64_t slice,
                                    value_window w) {
     const uint64_t *coarse = s->coarse +

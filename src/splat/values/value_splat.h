@@ -81,6 +81,8 @@ typedef struct snow_value_rays {
 typedef struct snow_value_light {
     float light[3], eye[3], half[3]; /* n . l times |g| */
     float metric[6];                 /* |g|^2: uu vv pp uv up vp */
+    bool head;                       /* light, eye and half are the same */
+    bool square;                     /* the last three of metric are 0 */
     float ambient, diffuse, specular;
     bool bright;    /* ambient + diffuse are more than 1 */
     uint32_t power; /* shininess * 2^SNOW_VALUE_ROOTS */

@@ -1,0 +1,106 @@
+/* splat/values/ahead.tmpl.h - slabs before their turn: which samples can be
+ * seen, and what the cache is asked for.  Included by tile.tmpl.h. */
+
+/* The samples of a phase of slab `n`, between sheets n and n + 1, that can be
+ * seen. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(activate)(const snow_value_splat *p, int n, int phase, const int tile[2],
+               const value_phase *state, value_slab *slab, const bool eye) {
+    slab->rows = 0;
+    if (!state->alive)
+        return;
+    uint32_t rows = eye ? NAME(activate_eye)(p, n, phase, tile, state, slab)
+                        : NAME(activate_all)(p, n, phase, tile, state, slab);
+    if (!rows)
+        return;
+    if (eye)
+        NAME(cut_eye)(p, n, phase, tile, slab->cut);
+    else
+        NAME(cut_all)(p, n, phase, tile, slab->cut);
+    rows = slab->cut[1].some &
+           V(rows_and)(slab->active, state->open, slab->cut[0].some);
+    slab->clip.cuts = false;
+    if (p->clip_count && eye)
+        NAME(clip_eye)(p, n, phase, tile, &slab->clip);
+    else if (p->clip_count)
+        NAME(clip_all)(p, n, phase, tile, &slab->clip);
+    if (slab->clip.cuts)
+        rows &= V(rows_and)(slab->active, slab->clip.some, ~UINT32_C(0));
+    slab->rows = rows;
+}
+
+/* Asks for rows of voxels of a sheet; a bit each, from row -1 on. */
+static inline void NAME(ask)(const snow_value_splat *p, int n, int phase,
+                             const int tile[2], uint64_t rows,
+                             value_asked *asked) {
+    const snow_value_store *s = p->store;
+    const snow_value_sheet *sheet = p->sheets + n;
+    const snow_value_place *place = p->places + n * p->phases + phase;
+    const int64_t next = s->rows + 2 * s->margin;
+    int64_t first = value_tile_row(p, tile[1]) + place->whole[1] - 1;
+    const int64_t *at = snow_value_at(s, sheet->slice) + first;
+    const int16_t *values =
+        s->values + value_tile_column(p, tile[0]) + place->whole[0];
+    if (asked->sheet != n)
+        *asked = (value_asked){.sheet = n};
+    rows &= ~asked->rows;
+    asked->rows |= rows;
+    for (; rows; rows &= rows - 1) {
+        int bit = __builtin_ctzll(rows);
+        if (first + bit < -s->margin || first + bit >= s->rows + s->margin)
+            continue;
+        for (int half = 0; half <= sheet->half; half++) {
+            const int16_t *voxels = values + at[bit + half * next];
+            __builtin_prefetch(voxels);
+            __builtin_prefetch(voxels + 32);
+        }
+    }
+}
+
+/* Asks for the masks of the second sheet of slab `n`. */
+static inline void NAME(ask_masks)(const snow_value_splat *p, int n, int phase,
+                                   const int tile[2]) {
+    const snow_value_store *s = p->store;
+    const snow_value_place *place = p->places + (n + 1) * p->phases + phase;
+    int64_t column = value_tile_column(p, tile[0]) + place->whole[0];
+    int64_t row = value_tile_row(p, tile[1]) + place->whole[1];
+    if (!value_meets(s, column, row))
+        return;
+    value_window w = value_window_of(s, column, row);
+    for (int run = 0; run < s->run_count; run++) {
+        const uint32_t *masks =
+            s->masks + snow_value_mask_at(s, run, p->sheets[n + 1].slice) +
+            w.word * s->mask_rows + w.row;
+        for (int word = 0; word < 2; word++, masks += s->mask_rows) {
+            __builtin_prefetch(masks);
+            __builtin_prefetch(masks + 16);
+            __builtin_prefetch(masks + SNOW_VALUE_ROWS - 1);
+        }
+    }
+}
+
+/* Finds what some phases of slab `n` will need, and asks the cache for it. */
+TARGET static inline __attribute__((always_inline)) void
+NAME(look_ahead)(const snow_value_splat *p, int n, int first, int end,
+                 const int tile[2], value_room *room, value_slab *slabs,
+                 const bool sloped, const bool eye) {
+    uint32_t any = 0;
+    for (int phase = first; phase < end; phase++) {
+        value_slab *slab = &slabs[phase - first];
+        NAME(activate)(p, n, phase, tile, &room->phase[phase], slab, eye);
+        any |= slab->rows;
+    }
+    uint64_t here = (uint64_t)any << 1;
+    int beside = sloped ? 1 + (p->sheets[n].half | p->sheets[n + 1].half) : 0;
+    if (eye || !any)
+        return;
+    for (int m = n - beside; m <= n + 1 + beside; m++) {
+        uint64_t rows = here;
+        if (m < 0 || m >= p->sheet_count)
+            continue;
+        if (sloped && (m == n || m == n + 1))
+            rows |= here << 1 | here >> 1;
+        NAME(ask)
+        (p, m, first, tile, rows | rows << 1, &room->asked[m % ASKED_RING]);
+    }
+}

@@ -1,0 +1,105 @@
+/* splat/values/value_slabs.c - which slabs of a tile have anything, by the
+ * coarse masks: of eight slices first, then of each. */
+#include "splat/values/value_room.h"
+
+/* Cells that the windows of some sheets cover. */
+typedef struct box {
+    int64_t low[2], high[2];
+} box;
+
+/* Those of some phases on a sheet. */
+static void cover(const snow_value_splat *p, int sheet, int first, int end,
+                  const int64_t origin[2], box *b) {
+    const snow_value_place *place = p->places + sheet * p->phases;
+    for (int phase = first; phase < end; phase++)
+        for (int axis = 0; axis < 2; axis++) {
+            int64_t at = origin[axis] + place[phase].whole[axis];
+            b->low[axis] = at < b->low[axis] ? at : b->low[axis];
+            b->high[axis] = at + 31 > b->high[axis] ? at + 31 : b->high[axis];
+        }
+}
+
+static const box nothing = {{INT64_MAX, INT64_MAX}, {INT64_MIN, INT64_MIN}};
+
+/* Whether a coarse mask has anything in a box. */
+static bool has_any(const snow_value_store *s, const uint64_t *coarse,
+                    const box *b) {
+    const int64_t zero = s->margin + 32; /* of cell 0 */
+    const int64_t end[2] = {(int64_t)s->mask_words * 32, (int64_t)s->mask_rows};
+    int64_t low[2], high[2];
+    for (int axis = 0; axis < 2; axis++) {
+        low[axis] = b->low[axis] + zero > 0 ? b->low[axis] + zero : 0;
+        high[axis] = b->high[axis] + zero;
+        high[axis] = high[axis] < end[axis] ? high[axis] : end[axis] - 1;
+        if (low[axis] > high[axis])
+            return false;
+    }
+    size_t top = (size_t)low[1] / SNOW_VALUE_COARSE;
+    size_t bottom = (size_t)high[1] / SNOW_VALUE_COARSE;
+    for (size_t n = top / 64; n <= bottom / 64; n++) {
+        uint64_t rows = n == top / 64 ? ~UINT64_C(0) << top % 64 : ~UINT64_C(0);
+        if (n == bottom / 64)
+            rows &= ~UINT64_C(0) >> (63 - bottom % 64);
+        for (size_t word = (size_t)low[0] / 32; word <= (size_t)high[0] / 32;
+             word++)
+            if (coarse[word * s->coarse_words + n] & rows)
+                return true;
+    }
+    return false;
+}
+
+/* A bit for each run with cells that it does not hide, in a slice (of every
+ * slice, or of each eight) and, for half sheets, in the next one. */
+static unsigned runs_of(const snow_value_store *s, const uint64_t *coarse,
+                        int64_t slices, int64_t slice, bool half,
+                        const box *b) {
+    size_t size = s->mask_words * s->coarse_words;
+    unsigned runs = 0;
+    for (int run = 0; run < s->run_count; run++)
+        for (int64_t k = slice; k <= slice + half && k < slices; k++)
+            if (has_any(s, coarse + (size_t)(run * slices + k) * size, b))
+                runs |= 1U << run;
+    return runs;
+}
+
+/* The last sheet of the same eight slices. */
+static int last_of_eight(const snow_value_splat *p, int sheet) {
+    int64_t eight = p->sheets[sheet].slice / SNOW_VALUE_EIGHT;
+    while (sheet + 1 < p->sheet_count &&
+           p->sheets[sheet + 1].slice / SNOW_VALUE_EIGHT == eight)
+        sheet++;
+    return sheet;
+}
+
+int value_list_slabs(const snow_value_splat *p, int first, int end,
+                     const int tile[2], int32_t *out) {
+    const snow_value_store *s = p->store;
+    const int64_t origin[2] = {value_tile_column(p, tile[0]),
+                               value_tile_row(p, tile[1])};
+    const unsigned all = (1U << s->run_count) - 1;
+    unsigned before = 0;
+    int count = 0;
+    for (int n = 0, last; n < p->sheet_count; n = last + 1) {
+        const snow_value_sheet *sheet = p->sheets + n;
+        box b = nothing;
+        last = last_of_eight(p, n);
+        cover(p, n, first, end, origin, &b);
+        cover(p, last, first, end, origin, &b);
+        bool some = runs_of(s, s->eights, s->eight_count,
+                            sheet->slice / SNOW_VALUE_EIGHT,
+                            sheet->half || p->sheets[last].half, &b) != 0;
+        for (int m = n; m <= last; m++, sheet++) {
+            unsigned here = 0;
+            if (some || !all) {
+                b = nothing;
+                cover(p, m, first, end, origin, &b);
+                here = runs_of(s, s->coarse, s->slices, sheet->slice,
+                               sheet->half, &b);
+            }
+            if (m > 0 && (before | here) == all)
+                out[count++] = m - 1;
+            before = here;
+        }
+    }
+    return count;
+}
