@@ -133,7 +133,7 @@ snow_status snow_flight_prepare(snow_flight *p, const snow_job *job) {
                    : picture_local(p, job);
     p->local.composite_op = composite_op_of(job->settings.mode);
     if (warps)
-        SNOW_TRY(snow_lines_prepare(p->ranks, &p->local));
+        SNOW_TRY(snow_lines_prepare(p->ranks, &p->picture.local.image));
     if (job->settings.deterministic)
         return snow_layers_prepare(p->ranks, &p->local, placement);
     snow_clip_viewer(placement, &sight);

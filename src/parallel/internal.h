@@ -15,6 +15,7 @@
 #include "combine/exchange.h"
 #include "image/image.h"
 #include "render/picture.h"
+#include "render/shear_warp/warping.h"
 
 /* The local image of a rank: in the sheared method an intermediate image. */
 typedef struct snow_local {
@@ -184,6 +185,9 @@ snow_status snow_flight_check_mode(const snow_flight *flight);
 /* Collective.  The range of all parts into the frame's ramp. */
 snow_status snow_flight_agree_range(snow_flight *flight);
 
+/* Collective.  The range of all parts, for the value path. */
+snow_status snow_flight_agree_values(snow_flight *flight);
+
 /* Local work: colours or values of the pairs that were gathered. */
 snow_status snow_flight_paint(snow_flight *flight);
 
@@ -224,7 +228,8 @@ snow_status snow_layers_exchange(snow_ranks *ranks, const snow_local *local,
                                  snow_image_region *out);
 
 /* Local work: room for the lines around a piece. */
-snow_status snow_lines_prepare(snow_ranks *ranks, const snow_local *local);
+snow_status snow_lines_prepare(snow_ranks *ranks,
+                               const snow_shear_warp_image *image);
 
 /* Collective.  Puts this rank's piece, and the lines around it that its warp
  * may read, into the place of its intermediate image.  Errors: those of the

@@ -60,6 +60,34 @@ snow_status snow_flight_agree_range(snow_flight *f) {
         identity->low, identity->high);
 }
 
+/* A part without voxels of its own has none that count. */
+static snow_status measure_values(snow_flight *f, snow_data_range *range) {
+    const snow_extent *part = &f->part;
+    snow_frame *frame = f->picture.frame;
+    const snow_job *job = &f->picture.job;
+    *range = (snow_data_range){
+        .low = INFINITY, .high = -INFINITY, .log = job->transfer->log};
+    SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
+    if (!part->count[0] || !part->count[1] || !part->count[2])
+        return SNOW_STATUS_OK;
+    return snow_value_measure(frame->value_path, job->volume, range->log,
+                              job->settings.threads, range);
+}
+
+snow_status snow_flight_agree_values(snow_flight *f) {
+    enum { MINUS_LOW, HIGH, HOLES, COUNT };
+    snow_comm *comm = f->ranks->comm;
+    snow_data_range range;
+    SNOW_TRY(snow_comm_agree_status(comm, measure_values(f, &range)));
+    double words[COUNT] = {-range.low, range.high, range.holes};
+    SNOW_TRY(snow_comm_reduce_doubles(comm, words, COUNT, SNOW_MAX));
+    range.low = -words[MINUS_LOW];
+    range.high = words[HIGH];
+    range.holes = words[HOLES] > 0;
+    snow_value_set_range(f->picture.frame->value_path, &range);
+    return SNOW_STATUS_OK;
+}
+
 /* --- pairs ---------------------------------------------------------------- */
 
 snow_status snow_flight_paint(snow_flight *f) {

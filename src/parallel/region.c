@@ -31,10 +31,12 @@ static snow_slab region_lines(const snow_ranks *r, int rank, int width) {
 }
 
 /* The lines of `from` that the warp of `piece` reads: before it, or behind. */
-static snow_slab wanted_lines(snow_slab region, snow_slab from, bool behind) {
+static snow_slab wanted_lines(const snow_shear_warp_image *image,
+                              snow_slab region, snow_slab from, bool behind) {
+    const snow_shear_warp_warping *w = image->warping;
     int64_t end = region.first + region.count;
-    int64_t low = behind ? end : region.first - SNOW_WARP_BEFORE;
-    int64_t high = behind ? end + SNOW_WARP_BEHIND : region.first;
+    int64_t low = behind ? end : region.first - w->before;
+    int64_t high = behind ? end + w->behind : region.first;
     if (low < from.first)
         low = from.first;
     if (high > from.first + from.count)
@@ -43,11 +45,13 @@ static snow_slab wanted_lines(snow_slab region, snow_slab from, bool behind) {
     return any ? (snow_slab){low, high - low} : (snow_slab){0, 0};
 }
 
-snow_status snow_lines_prepare(snow_ranks *r, const snow_local *local) {
+snow_status snow_lines_prepare(snow_ranks *r,
+                               const snow_shear_warp_image *image) {
+    int lines = image->warping->before + image->warping->behind;
+    lines = lines < image->height ? lines : image->height;
     return snow_reserve(r->context, &r->lines, &r->lines_capacity, 0,
-                        (SNOW_WARP_BEFORE + SNOW_WARP_BEHIND) *
-                            (size_t)local->width * (size_t)local->channels *
-                            sizeof *r->lines);
+                        (size_t)lines * (size_t)image->width *
+                            (size_t)image->channels * sizeof *r->lines);
 }
 
 /* Sends and receives lines with one other rank. */
@@ -56,12 +60,14 @@ typedef struct traffic {
     float *at; /* where the next ones come */
 } traffic;
 
-static snow_status begin_receives(snow_ranks *r, int rank, int width,
+static snow_status begin_receives(snow_ranks *r,
+                                  const snow_shear_warp_image *image, int rank,
                                   size_t line, traffic *t) {
+    const int width = image->width;
     snow_slab mine = region_lines(r, r->rank, width);
     for (int behind = 0; behind < 2; behind++) {
         snow_slab lines =
-            wanted_lines(mine, region_lines(r, rank, width), behind);
+            wanted_lines(image, mine, region_lines(r, rank, width), behind);
         if (!lines.count)
             continue;
         size_t floats = (size_t)lines.count * line;
@@ -72,12 +78,15 @@ static snow_status begin_receives(snow_ranks *r, int rank, int width,
     return SNOW_STATUS_OK;
 }
 
-static snow_status begin_sends(snow_ranks *r, int rank, int width, size_t line,
-                               const snow_image_region *region, traffic *t) {
+static snow_status begin_sends(snow_ranks *r,
+                               const snow_shear_warp_image *image, int rank,
+                               size_t line, const snow_image_region *region,
+                               traffic *t) {
+    const int width = image->width;
     snow_slab mine = region_lines(r, r->rank, width);
     for (int behind = 0; behind < 2; behind++) {
         snow_slab lines =
-            wanted_lines(region_lines(r, rank, width), mine, behind);
+            wanted_lines(image, region_lines(r, rank, width), mine, behind);
         if (lines.count)
             SNOW_TRY(snow_comm_send(
                 r->comm,
@@ -95,8 +104,8 @@ static void put_lines(const snow_ranks *r, const snow_shear_warp_image *image,
     const float *at = r->lines;
     for (int rank = 0; rank < r->ranks; rank++)
         for (int behind = 0; rank != r->rank && behind < 2; behind++) {
-            snow_slab lines =
-                wanted_lines(mine, region_lines(r, rank, image->width), behind);
+            snow_slab lines = wanted_lines(
+                image, mine, region_lines(r, rank, image->width), behind);
             snow_shear_warp_put_lines(image, (int)lines.first, (int)lines.count,
                                       at);
             at += (size_t)lines.count * line;
@@ -110,16 +119,18 @@ snow_status snow_lines_exchange(snow_ranks *r,
     traffic t = {0, r->lines};
     for (int rank = 0; rank < r->ranks; rank++)
         if (rank != r->rank)
-            SNOW_TRY(begin_receives(r, rank, image->width, line, &t));
+            SNOW_TRY(begin_receives(r, image, rank, line, &t));
     for (int rank = 0; rank < r->ranks; rank++)
         if (rank != r->rank)
-            SNOW_TRY(begin_sends(r, rank, image->width, line, region, &t));
+            SNOW_TRY(begin_sends(r, image, rank, line, region, &t));
     SNOW_TRY(snow_comm_wait_all(r->comm, r->messages, t.count));
     snow_slab mine = region_lines(r, r->rank, image->width);
     snow_shear_warp_empty(image);
     snow_shear_warp_put_lines(image, (int)mine.first, (int)mine.count,
                               region->pixels);
     put_lines(r, image, line);
+    if (image->warping->made)
+        image->warping->made(image->warping);
     return SNOW_STATUS_OK;
 }
 
@@ -198,15 +209,17 @@ typedef struct warp_job {
 static void warp_lines(void *of, int64_t item, int worker) {
     const warp_job *job = of;
     size_t channels = (size_t)job->channels;
-    float *row =
-        job->ranks->rows + (size_t)worker * (size_t)job->width * channels;
+    size_t floats = (size_t)job->width * channels;
+    float *row = job->ranks->rows +
+                 (size_t)worker * (floats + job->image->warping->spare_floats);
     int first = (int)item * WARP_LINES, last = first + WARP_LINES;
     for (int y = first; y < last && y < job->height; y++) {
         int range[2];
         snow_shear_warp_pixels_of(job->image, y, job->first, job->end, range);
         if (range[0] >= range[1])
             continue;
-        snow_shear_warp_warp(job->image, y, range[0], range[1], row);
+        snow_shear_warp_warp(job->image, y, range[0], range[1], row + floats,
+                             row);
         memcpy(job->pixels + job->places[y] * channels,
                row + (size_t)range[0] * channels,
                (size_t)(range[1] - range[0]) * channels * sizeof *row);
@@ -228,14 +241,14 @@ static size_t place_pixels(const warp_job *job) {
 /* Room for what is warped (and then packed in the same place), its runs, and
  * the threads' rows. */
 static snow_status reserve_pixels(snow_ranks *r, size_t pixels, size_t lines,
-                                  int channels, size_t row_pixels) {
+                                  int channels, size_t row_floats) {
     size_t bytes = (size_t)channels * sizeof(float);
     SNOW_TRY(snow_reserve(r->context, &r->packed, &r->packed_capacity, 0,
                           pixels * bytes + 1));
     SNOW_TRY(snow_reserve(r->context, &r->runs, &r->runs_capacity, 0,
                           most_runs(pixels, lines) * sizeof *r->runs));
     return snow_reserve(r->context, &r->rows, &r->rows_capacity, 0,
-                        row_pixels * bytes + 1);
+                        row_floats * sizeof *r->rows + 1);
 }
 
 static void pack_lines(const warp_job *job, int pixel_bits) {
@@ -270,8 +283,9 @@ snow_status snow_pixels_warp(snow_ranks *r, const snow_shear_warp_image *image,
     if (!warp.places)
         return SNOW_STATUS_NO_MEMORY;
     size_t pixels = place_pixels(&warp);
+    size_t row = width * (size_t)job->channels + image->warping->spare_floats;
     snow_status status = reserve_pixels(r, pixels, height, job->channels,
-                                        (size_t)job->settings.threads * width);
+                                        (size_t)job->settings.threads * row);
     if (status == SNOW_STATUS_OK) {
         warp.pixels = (float *)(void *)r->packed;
         status = snow_parallel(job->context, job->settings.threads,

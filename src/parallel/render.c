@@ -193,8 +193,11 @@ static snow_status synchronize(snow_picture *p, snow_status status) {
     snow_flight *f = snow_flight_of(p);
     bool new_parts;
     SNOW_TRY(synchronize_all(f, status, &new_parts));
-    return p->job.settings.mode == SNOW_MODE_OVER ? SNOW_STATUS_OK
-                                                  : snow_flight_agree_range(f);
+    if (p->job.settings.mode != SNOW_MODE_OVER)
+        return snow_flight_agree_range(f);
+    return p->job.settings.method == SNOW_METHOD_VALUE
+               ? snow_flight_agree_values(f)
+               : SNOW_STATUS_OK;
 }
 
 /* --- places --------------------------------------------------------------- */

@@ -25,11 +25,24 @@ static snow_status fail_part(const snow_picture *p, const char *what,
                      what, name);
 }
 
+static snow_status find_values(snow_picture *p) {
+    snow_frame *frame = p->frame;
+    snow_data_range range;
+    SNOW_TRY(snow_value_path_new(frame->context, &frame->value_path));
+    SNOW_TRY(snow_value_measure(frame->value_path, p->job.volume,
+                                p->job.transfer->log, p->job.settings.threads,
+                                &range));
+    snow_value_set_range(frame->value_path, &range);
+    return SNOW_STATUS_OK;
+}
+
 static snow_status synchronize(snow_picture *p, snow_status status) {
     const snow_settings *s = &p->job.settings;
     SNOW_TRY(status);
     snow_image_free(p->frame->depth);
     p->frame->depth = NULL;
+    if (s->method == SNOW_METHOD_VALUE)
+        SNOW_TRY(find_values(p));
     if (s->mode == SNOW_MODE_OVER)
         return s->depth && !snow_job_whole(&p->job) ? fail_part(p, "depth", "")
                                                     : SNOW_STATUS_OK;
@@ -168,8 +181,11 @@ static void blend(float *pixels, const float *layer, float share,
 
 static snow_status warp(snow_picture *p) {
     const snow_local_image *local = &p->local;
+    const snow_render_pass *pass = p->pass;
     if (local->image.layers > 1)
         return fail_part(p, "deterministic rendering", "");
+    if (pass->method->show)
+        return pass->method->show(p, &p->pass->job);
     SNOW_TRY(snow_shear_warp_show(&local->image, &local->params, local->pixels,
                                   &p->stats));
     if (p->layered)

@@ -44,21 +44,37 @@ static void at_least(int64_t *layers, double wanted, int64_t most) {
         *layers = (int64_t)wanted;
 }
 
+static bool splats_values(const question *q) {
+    return q->settings->method == SNOW_METHOD_VALUE &&
+           q->settings->mode == SNOW_MODE_OVER;
+}
+
+/* How far gradients of values look in the plane: in perspective a voxel and a
+ * half. */
+static int values_beside(const question *q) {
+    return q->gradients ? 1 + (q->view->fov > 0) : 0;
+}
+
 /* Layers for kernels of pixels that are `width` voxels wide along an axis that
  * lies in the slices. */
 static double layers_of(const question *q, double width) {
     const snow_settings *settings = q->settings;
+    if (splats_values(q) && !settings->depth) /* depths are of footprints */
+        return 1 + values_beside(q);
     snow_scaled_kernel scaled_kernel =
         snow_scaled_kernel_make(settings->kernel, settings->footprint, width);
-    return floor(snow_scaled_kernel_reach(&scaled_kernel) + 0.5) + q->gradients;
+    return floor(snow_scaled_kernel_reach(&scaled_kernel) + 0.5) +
+           (splats_values(q) ? 1 + values_beside(q) : q->gradients);
 }
 
 static bool finds_surfaces(const question *q) {
     return q->settings->mode == SNOW_MODE_ISO;
 }
 
-/* Those across slices. */
+/* Those across slices: of values, the other sheet of a slab. */
 static double layers_across(const question *q) {
+    if (splats_values(q))
+        return 1 + q->gradients;
     return q->gradients + finds_surfaces(q) +
            (q->settings->quality == SNOW_QUALITY_HIGH &&
             q->settings->method == SNOW_METHOD_SHEAR_WARP);
@@ -106,7 +122,7 @@ static void ask_placement(const question *q, const snow_placement *p,
     const int axes[2] = {p->u_axis, p->v_axis};
     double width[2], slope[2] = {0, 0};
     widest_pixel(p, width);
-    if (finds_surfaces(q))
+    if (finds_surfaces(q) || splats_values(q))
         widest_slope(p, slope);
     for (int n = 0; n < 2; n++)
         at_least(&layers[axes[n]], layers_of(q, width[n]) + ceil(slope[n]),
@@ -221,7 +237,7 @@ static snow_status ask_all(const question *q, int64_t layers[3]) {
         double width =
             slant > 0 ? pitch * steepest(gradients, axis) / slant : INFINITY;
         double wanted = width < 1e9 ? layers_of(q, width) : 1e9;
-        if (finds_surfaces(q))
+        if (finds_surfaces(q) || splats_values(q))
             wanted += ceil(steepest_slope(gradients, axis, slant));
         int64_t most = q->whole->dims[axis] - 1;
         at_least(&layers[axis], fmax(wanted, layers_across(q)), most);

@@ -66,8 +66,7 @@ static snow_status check_value(const snow_job *job) {
     const snow_value_params params = {.volume = job->volume,
                                       .transfer = job->transfer,
                                       .settings = &job->settings,
-                                      .placement = &job->placement,
-                                      .whole = snow_job_whole(job)};
+                                      .placement = &job->placement};
     return job->settings.method == SNOW_METHOD_VALUE
                ? snow_value_check(job->context, &params)
                : SNOW_STATUS_OK;
@@ -194,7 +193,8 @@ static bool has_ghosts(const snow_clip *clip) {
 static snow_status count_own(snow_frame *frame, const snow_job *job) {
     snow_stats *stats = job->stats;
     const int64_t *count = job->clip.count;
-    if (stats->encoded || job->settings.method != SNOW_METHOD_SHEAR_WARP)
+    if (stats->encoded || (job->settings.method != SNOW_METHOD_SHEAR_WARP &&
+                           job->settings.method != SNOW_METHOD_VALUE))
         SNOW_TRY(snow_count_interesting(
             job->volume, job->transfer, job->settings.threshold,
             job->settings.isa, &frame->own_interesting));

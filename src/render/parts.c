@@ -22,11 +22,19 @@ static int64_t nearest_slice(const snow_job *job) {
     return level > 0 ? (int64_t)fmin(floor(level + 0.5), (double)last) : 0;
 }
 
+/* Bytes that the value path encodes a voxel in at most, but for margins:
+ * numbers of 2 bytes, packed and as rows, with places and masks; what grows is
+ * copied.
+ */
+#define VALUE_BYTES 8
+
 /* How many times a slab's bytes its samples take: floats of all voxels that
  * footprints are made of; 0: few. */
 static int64_t made_of(const snow_job *job) {
     int64_t sample = job->channels * (int64_t)sizeof(float);
     int64_t voxel = (int64_t)snow_type_size(job->volume->info.type);
+    if (job->settings.method == SNOW_METHOD_VALUE)
+        return VALUE_BYTES / voxel;
     if (job->settings.mode == SNOW_MODE_ISO ||
         job->settings.method != SNOW_METHOD_FOOTPRINT)
         return 0;
@@ -42,6 +50,8 @@ static snow_status open_slabs(snow_parts *parts) {
             "%s: a deterministic picture by method %s needs all voxels in "
             "memory; allow more memory, or render without deterministic",
             job->volume->path, snow_method_name(job->settings.method));
+    SNOW_TRY(snow_step(parts->picture->pass->method->begin, parts->picture,
+                       parts->whole));
     SNOW_TRY(snow_ghosts_needed(
         job->context, &job->volume->info, job->view, &job->settings,
         snow_transfer_has_gradient_opacity(job->transfer), false, layers));
@@ -77,6 +87,7 @@ static snow_status add_stats(snow_parts *parts) {
     SNOW_TRY(snow_method_figures(parts->picture->pass->method, parts->picture,
                                  &parts->slab));
     all->encoding = here->encoding;
+    all->encoded |= here->encoded;
     all->interesting += here->interesting;
     all->ea_bytes += here->ea_bytes;
     all->ia_bytes += here->ia_bytes;

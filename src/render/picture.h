@@ -19,13 +19,17 @@
 typedef struct snow_picture snow_picture;
 
 /* How a part's voxels become its local image, job->pixels and job->depths or,
- * by shear-warp, picture->local.image.  A step that a method does not need is
- * NULL.  The job is that of the picture's pass, or of a slab of it. */
+ * by those that warp, picture->local.image.  A step that a method does not need
+ * is NULL.  The job is that of the picture's pass, or of a slab of it. */
 typedef snow_status snow_method_fn(snow_picture *picture, snow_job *job);
 typedef struct snow_render_method {
-    snow_method_fn *classify_and_shade;  /* 02 - 03 */
-    snow_method_fn *encode;              /* 04 - 06 */
+    snow_method_fn *begin;              /* before the slabs of a file are cut */
+    snow_method_fn *classify_and_shade; /* 02 - 03 */
+    snow_method_fn *encode;             /* 04 - 06 */
     snow_method_fn *splat_and_composite; /* 07 - 13 */
+    snow_method_fn *show;                /* 19 - 20: the image to all of the
+                                            picture, of one process; NULL:
+                                            snow_shear_warp_show */
     snow_method_fn *figures;             /* of a job whose image is made; NULL:
                                             snow_job_finish */
     bool slabs;  /* of a volume in its file local images are made slab by slab;
@@ -68,11 +72,12 @@ typedef struct snow_local_image {
     /* Deterministic ones of the exact methods have a layer for each node. */
     int layers;
     snow_group_node nodes[SNOW_NODES_MOST];
-    /* By shear-warp. */
-    snow_shear_warp *shear_warp;
+    /* Of methods that warp. */
     snow_placement placement;
-    snow_shear_warp_params params;
     snow_shear_warp_image image;
+    snow_shear_warp *shear_warp;
+    snow_shear_warp_params params;
+    bool begun; /* by the value path: it has what all parts share */
 } snow_local_image;
 
 #define SNOW_PASSES_MOST 4

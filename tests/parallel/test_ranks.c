@@ -2,14 +2,10 @@
  * serial one, whatever the number of ranks, the cut, the view and the method.
  */
 #include "reference/model.h"
+#include "support/play.h"
 
-#include "decompose/deterministic.h"
-#include "decompose/partition.h"
 #include "frame.h"
 #include "image/image.h"
-#include "render/ghosts.h"
-#include "transfer/transfer.h"
-#include "volume/volume.h"
 
 #include <math.h>
 #include <snowglass/ranks.h>
@@ -22,254 +18,6 @@
 #define BOUND 4e-6
 #define BOUND_OPAQUE (1.25 * 1.25 * 0.5 / 255 + BOUND)
 
-#define MOST_RANKS 33
-
-/* --- a scene that ranks share --------------------------------------------- */
-
-/* How it is cut. */
-typedef enum cutting {
-    ACROSS,  /* slabs along the view's slice axis */
-    BESIDE,  /* along another axis */
-    BRICKS,  /* a k-d tree */
-    GROUPED, /* slabs along the slice axis, of whole groups */
-    CUTTINGS
-} cutting;
-
-typedef struct play {
-    snow_volume_info info;
-    const void *voxels;
-    const snow_transfer *transfer; /* whose points every rank copies */
-    snow_view view;
-    snow_settings settings;
-    snow_ranks_options how;
-    cutting cut;
-    snow_box boxes[MOST_RANKS];
-    int pictures; /* one after another, with one frame */
-    float *picture;
-    int channels;
-    float *depths;               /* NULL: not asked for */
-    snow_stats stats;            /* of rank 0 */
-    int ranks;                   /* by snow_ranks_stats of rank 0 */
-    snow_stats each[MOST_RANKS]; /* of every rank */
-    /* Of the serial picture. */
-    int64_t interesting, voxels_drawn;
-    int halvings[3];
-} play;
-
-static size_t floats_of(const play *p) {
-    return (size_t)p->view.width * (size_t)p->view.height * (size_t)p->channels;
-}
-
-static int slice_axis(snow_context *context, const play *p) {
-    snow_placement placement;
-    if (snow_placement_make(context, &p->info, &p->view, &placement) !=
-        SNOW_STATUS_OK)
-        return 0;
-    return placement.slice_axis;
-}
-
-/* Halves a box until each rank has one. */
-static void halve(snow_box box, int first, int count, snow_box *boxes) {
-    int longest = 0;
-    boxes[first] = box;
-    if (count == 1)
-        return;
-    for (int axis = 1; axis < 3; axis++)
-        if (box.count[axis] > box.count[longest])
-            longest = axis;
-    snow_box low = box, high = box;
-    low.count[longest] = box.count[longest] * (count / 2) / count;
-    high.first[longest] += low.count[longest];
-    high.count[longest] -= low.count[longest];
-    halve(low, first, count / 2, boxes);
-    halve(high, first + count / 2, count - count / 2, boxes);
-}
-
-static void cut_up(snow_context *context, play *p, int ranks) {
-    const int64_t *dims = p->info.dims;
-    int axis = slice_axis(context, p);
-    if (p->cut == BESIDE)
-        axis = (axis + 1) % 3;
-    snow_box all = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
-    if (p->cut == BRICKS) {
-        halve(all, 0, ranks, p->boxes);
-        return;
-    }
-    for (int rank = 0; rank < ranks; rank++) {
-        snow_slab slab = p->cut == GROUPED
-                             ? snow_slab_grouped(dims[axis], ranks, rank)
-                             : snow_slab_equal(dims[axis], ranks, rank);
-        p->boxes[rank] = all;
-        p->boxes[rank].first[axis] = slab.first;
-        p->boxes[rank].count[axis] = slab.count;
-    }
-}
-
-/* This rank's box with its ghosts, as a volume; its voxels are to be freed. */
-static snow_status open_part(snow_context *context, const play *p,
-                             const snow_box *box, void **voxels,
-                             snow_volume **volume) {
-    snow_volume_info info = p->info;
-    size_t size = snow_type_size(info.type);
-    int64_t layers[3];
-    snow_extent part = {sizeof part, {0}, {0}, {0}, {0}};
-    bool none = !snow_box_voxels(box);
-    SNOW_TRY(snow_ghosts_needed(context, &p->info, &p->view, &p->settings,
-                                p->transfer->gradient_count > 0, false,
-                                layers));
-    for (int axis = 0; axis < 3; axis++) {
-        int64_t low = none ? 0 : box->first[axis] - layers[axis];
-        int64_t high =
-            none ? 1 : box->first[axis] + box->count[axis] + layers[axis];
-        part.dims[axis] = p->info.dims[axis];
-        part.first[axis] = none ? 0 : box->first[axis];
-        part.count[axis] = none ? 0 : box->count[axis];
-        part.stored[axis] = low > 0 ? low : 0;
-        high = high < part.dims[axis] ? high : part.dims[axis];
-        info.dims[axis] = high - part.stored[axis];
-    }
-    for (int row = 0; row < 3; row++)
-        for (int axis = 0; axis < 3; axis++)
-            info.matrix[row][3] +=
-                info.matrix[row][axis] * (double)part.stored[axis];
-    size_t line = (size_t)info.dims[0] * size;
-    char *to = *voxels = malloc(line * (size_t)(info.dims[1] * info.dims[2]));
-    for (int64_t z = 0; z < info.dims[2]; z++)
-        for (int64_t y = 0; y < info.dims[1]; y++, to += line) {
-            int64_t at =
-                ((part.stored[2] + z) * part.dims[1] + part.stored[1] + y) *
-                    part.dims[0] +
-                part.stored[0];
-            memcpy(to, (const char *)p->voxels + (size_t)at * size, line);
-        }
-    SNOW_TRY(snow_volume_wrap(context, &info, *voxels, volume));
-    snow_volume_freeze(*volume);
-    return snow_volume_set_extent(*volume, &part);
-}
-
-static snow_status copy_transfer(snow_context *context, const snow_transfer *t,
-                                 snow_transfer **out) {
-    SNOW_TRY(snow_transfer_new(context, t->colors, t->color_count, t->opacities,
-                               t->opacity_count, out));
-    return snow_transfer_set_gradient_opacity(*out, t->gradients,
-                                              t->gradient_count);
-}
-
-/* What a rank does. */
-static snow_status perform(snow_comm *comm, void *user) {
-    play *p = user;
-    snow_context *context = snow_comm_context(comm);
-    int rank = snow_comm_rank(comm);
-    void *voxels = NULL;
-    snow_volume *volume = NULL;
-    snow_transfer *transfer = NULL;
-    snow_frame *frame = NULL;
-    snow_status status =
-        open_part(context, p, &p->boxes[rank], &voxels, &volume);
-    if (status == SNOW_STATUS_OK)
-        status = copy_transfer(context, p->transfer, &transfer);
-    if (status == SNOW_STATUS_OK)
-        status = snow_frame_new(context, &frame);
-    for (int n = 0; n < p->pictures && status == SNOW_STATUS_OK; n++) {
-        snow_image *image = NULL;
-        status = snow_ranks_render(frame, comm, volume, transfer, &p->view,
-                                   &p->settings, &p->how, &image);
-        if (status == SNOW_STATUS_OK && (rank == 0) != (image != NULL))
-            status = snow_fail(context, SNOW_STATUS_BAD_OUTPUT,
-                               "a picture too many");
-        if (status == SNOW_STATUS_OK && rank == 0) {
-            memcpy(p->picture, snow_image_pixels(image),
-                   floats_of(p) * sizeof(float));
-            p->stats = *snow_frame_stats(frame);
-            p->ranks = snow_frame_ranks_stats(frame)->ranks;
-            if (p->depths)
-                memcpy(p->depths, snow_frame_depth(frame)->pixels,
-                       floats_of(p) / (size_t)p->channels * sizeof(float));
-        }
-        snow_image_free(image);
-    }
-    if (status == SNOW_STATUS_OK && frame)
-        p->each[rank] = *snow_frame_stats(frame);
-    snow_frame_free(frame);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    free(voxels);
-    return status;
-}
-
-/* --- comparison ----------------------------------------------------------- */
-
-/* The serial picture; its strongest opacity. */
-static float *serial_picture(snow_context *context, play *p,
-                             double *strongest) {
-    snow_volume *volume = NULL;
-    snow_transfer *transfer = NULL;
-    snow_frame *frame = NULL;
-    snow_image *image = NULL;
-    assert_int_equal(snow_volume_wrap(context, &p->info, p->voxels, &volume),
-                     SNOW_STATUS_OK);
-    assert_int_equal(copy_transfer(context, p->transfer, &transfer),
-                     SNOW_STATUS_OK);
-    assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
-    if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
-                          &image) != SNOW_STATUS_OK)
-        fail_msg("%s", snow_context_message(context));
-    p->interesting = snow_frame_stats(frame)->interesting;
-    p->voxels_drawn = snow_frame_stats(frame)->voxels;
-    memcpy(p->halvings, snow_frame_stats(frame)->halvings, sizeof p->halvings);
-    p->channels = snow_image_channels(image);
-    float *pixels = malloc(floats_of(p) * sizeof(float));
-    assert_non_null(pixels);
-    memcpy(pixels, snow_image_pixels(image), floats_of(p) * sizeof(float));
-    if (p->depths)
-        memcpy(p->depths, snow_frame_depth(frame)->pixels,
-               floats_of(p) / (size_t)p->channels * sizeof(float));
-    size_t channels = (size_t)p->channels;
-    *strongest = 0;
-    for (size_t n = channels - 1; n < floats_of(p); n += channels)
-        *strongest = fmax(*strongest, (double)pixels[n]);
-    snow_image_free(image);
-    snow_frame_free(frame);
-    snow_transfer_free(transfer);
-    snow_volume_close(volume);
-    return pixels;
-}
-
-/* Renders by so many ranks. */
-static void enact(snow_context *context, play *p, int ranks) {
-    p->picture = calloc(floats_of(p), sizeof(float));
-    assert_non_null(p->picture);
-    cut_up(context, p, ranks);
-    if (snow_comm_run_threads(context, ranks, perform, p) != SNOW_STATUS_OK)
-        fail_msg("%d ranks: %s", ranks, snow_context_message(context));
-}
-
-static double largest_gap(const play *p, const float *serial) {
-    double most = 0;
-    for (size_t n = 0; n < floats_of(p); n++) {
-        double gap = fabs((double)p->picture[n] - (double)serial[n]);
-        most = gap <= most ? most : gap;
-    }
-    return most;
-}
-
-/* Voxels of borders, which several ranks hold, count for their owner only. */
-static void check_counts(const play *p, int ranks) {
-    int64_t interesting = 0, voxels = 0, all = p->voxels_drawn;
-    for (int rank = 0; rank < ranks; rank++) {
-        interesting += p->each[rank].interesting;
-        voxels += p->each[rank].voxels;
-        assert_memory_equal(p->each[rank].halvings, p->halvings,
-                            sizeof p->halvings);
-    }
-    if (interesting != p->interesting || voxels != all)
-        fail_msg("%d ranks count %lld of %lld voxels as interesting, one "
-                 "counts %lld of %lld; cut %d, method %d, quality %d",
-                 ranks, (long long)interesting, (long long)voxels,
-                 (long long)p->interesting, (long long)all, (int)p->cut,
-                 (int)p->settings.method, (int)p->settings.quality);
-}
-
 /* What a sweep came to. */
 typedef struct sweep_tally {
     int clear, opaque;
@@ -278,8 +26,8 @@ typedef struct sweep_tally {
 
 static void check(snow_context *context, play *p, const float *serial,
                   double strongest, int ranks, sweep_tally *tally) {
-    enact(context, p, ranks);
-    double gap = largest_gap(p, serial);
+    play_by_ranks(context, p, ranks);
+    double gap = play_gap(p, serial);
     bool opaque = strongest > 1 - 0.5 / 255 - 1e-5;
     double bound = opaque ? BOUND_OPAQUE : BOUND;
     if (p->how.pixel_bits == 8)
@@ -291,7 +39,7 @@ static void check(snow_context *context, play *p, const float *serial,
                  (int)p->settings.quality, p->view.fov, (int)p->how.combining,
                  strongest);
     assert_int_equal(p->ranks, ranks);
-    check_counts(p, ranks);
+    play_check_counts(p, ranks);
     if (p->how.pixel_bits != 8) {
         double *most = opaque ? &tally->opaque_most : &tally->clear_most;
         *most = fmax(*most, gap);
@@ -366,7 +114,7 @@ static void sweep(const char *title, int scenes, double fov,
         p.settings.method = methods[n % method_count];
         transfer = model_transfer(context, &scene);
         p.transfer = transfer;
-        float *serial = serial_picture(context, &p, &strongest);
+        float *serial = play_alone(context, &p, &strongest);
         for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
             p.cut = (cutting)((n + i) % CUTTINGS);
             p.how.pixel_bits = (n + i) % 7 == 0 ? 8 : 0;
@@ -422,7 +170,7 @@ static double gap_of(const float *a, const float *b, size_t count) {
 
 static bool shows_something(const play *p, const float *serial) {
     int steps = 0;
-    for (size_t n = 1; n < floats_of(p); n++)
+    for (size_t n = 1; n < play_floats(p); n++)
         steps += serial[n] != serial[n - 1] && !isnan(serial[n]);
     return steps > 20;
 }
@@ -434,14 +182,14 @@ static int compare_modes(snow_context *context, play *p, int n, double bound,
     float *depths = calloc(pixels, sizeof(float));
     double unused;
     p->depths = p->settings.depth ? depths : NULL;
-    float *serial = serial_picture(context, p, &unused);
+    float *serial = play_alone(context, p, &unused);
     bool shows = shows_something(p, serial);
     float *others = calloc(pixels, sizeof(float));
     p->depths = p->settings.depth ? others : NULL;
     for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
         p->cut = (cutting)(i % CUTTINGS);
-        enact(context, p, rank_counts[i]);
-        double gap = gap_of(p->picture, serial, floats_of(p));
+        play_by_ranks(context, p, rank_counts[i]);
+        double gap = gap_of(p->picture, serial, play_floats(p));
         if (p->depths)
             gap = fmax(gap, gap_of(others, depths, pixels));
         if (!(gap <= bound))
@@ -449,7 +197,7 @@ static int compare_modes(snow_context *context, play *p, int n, double bound,
                      snow_mode_name(p->settings.mode), rank_counts[i], gap,
                      (int)p->cut, (int)p->settings.method, p->view.fov);
         *most = fmax(*most, gap);
-        check_counts(p, rank_counts[i]);
+        play_check_counts(p, rank_counts[i]);
         free(p->picture);
     }
     free(serial);
@@ -542,7 +290,7 @@ static void look_around(const char *name, const snow_volume *volume,
         p.settings.quality = (snow_quality)(n % 3);
         if (n / 2 % 2) /* thin */
             p.settings.opacity_length = 100;
-        float *serial = serial_picture(context, &p, &strongest);
+        float *serial = play_alone(context, &p, &strongest);
         for (int i = first_count(n) + n % 2; i < COUNTS;
              i += 2 * COUNT_STRIDE) {
             p.cut = (cutting)((n + i / 2) % CUTTINGS);
@@ -601,7 +349,7 @@ static void drafts_of(const char *name, const snow_volume *volume, int side,
         p.settings.shade = n % 3 ? SNOW_SHADE_PHONG : SNOW_SHADE_NONE;
         if (n / 2 % 2) /* thin */
             p.settings.opacity_length = 100;
-        float *serial = serial_picture(context, &p, &strongest);
+        float *serial = play_alone(context, &p, &strongest);
         int most = 0;
         for (int axis = 0; axis < 3; axis++)
             most = p.halvings[axis] > most ? p.halvings[axis] : most;
@@ -699,17 +447,17 @@ static void deterministic_pictures_are_the_same_bit_for_bit(void **state) {
         p.settings.method = methods[n % 5];
         transfer = model_transfer(context, &scene);
         p.transfer = transfer;
-        float *usual = serial_picture(context, &p, &strongest);
+        float *usual = play_alone(context, &p, &strongest);
         p.settings.deterministic = 1;
-        float *serial = serial_picture(context, &p, &strongest);
-        for (size_t i = 0; i < floats_of(&p); i++)
+        float *serial = play_alone(context, &p, &strongest);
+        for (size_t i = 0; i < play_floats(&p); i++)
             moved = fmax(moved, fabs((double)usual[i] - (double)serial[i]));
         p.cut = GROUPED;
         for (int i = first_count(n); i < COUNTS; i += COUNT_STRIDE) {
-            enact(context, &p, rank_counts[i]);
-            if (memcmp(p.picture, serial, floats_of(&p) * sizeof(float)) != 0)
+            play_by_ranks(context, &p, rank_counts[i]);
+            if (memcmp(p.picture, serial, play_floats(&p) * sizeof(float)) != 0)
                 fail_msg("%d ranks: scene %d, %g", rank_counts[i], n,
-                         largest_gap(&p, serial));
+                         play_gap(&p, serial));
             free(p.picture);
             pictures++;
         }
@@ -746,8 +494,8 @@ static snow_status stumble(snow_comm *comm, void *user) {
     snow_transfer *transfer = NULL;
     snow_frame *frame = NULL;
     snow_image *image = NULL;
-    SNOW_TRY(open_part(context, &p, &p.boxes[rank], &voxels, &volume));
-    SNOW_TRY(copy_transfer(context, p.transfer, &transfer));
+    SNOW_TRY(play_open_part(context, &p, &p.boxes[rank], &voxels, &volume));
+    SNOW_TRY(play_copy_transfer(context, p.transfer, &transfer));
     SNOW_TRY(snow_frame_new(context, &frame));
     if (rank == m->wrong)
         m->spoil(&p, volume);
@@ -844,7 +592,7 @@ static void what_one_rank_finds_wrong_all_are_told(void **state) {
             m.play.settings.quality = SNOW_QUALITY_DRAFT;
             m.play.view.width = m.play.view.height = 6;
         }
-        cut_up(context, &m.play, 5);
+        play_cut(context, &m.play, 5);
         if (snow_comm_run_threads(context, 5, stumble, &m) != SNOW_STATUS_OK)
             fail_msg("case %zu: %s", n, snow_context_message(context));
         snow_transfer_free(transfer);
@@ -907,8 +655,8 @@ static void ranks_without_memory_fail_together(void **state) {
         p.channels = transfer->grey ? 2 : 4;
         if (n == 5)
             p.channels = 1;
-        cut_up(maker, &p, 3);
-        p.picture = malloc(floats_of(&p) * sizeof(float));
+        play_cut(maker, &p, 3);
+        p.picture = malloc(play_floats(&p) * sizeof(float));
         assert_non_null(p.picture);
         long last = 1;
         /* Each of the first ones, then some. */
@@ -919,7 +667,8 @@ static void ranks_without_memory_fail_together(void **state) {
             snow_context *context = NULL;
             if (snow_context_new(&allocator, &context) != SNOW_STATUS_OK)
                 continue;
-            snow_status status = snow_comm_run_threads(context, 3, perform, &p);
+            snow_status status =
+                snow_comm_run_threads(context, 3, play_perform, &p);
             assert_int_equal(status, failing < 0 ? SNOW_STATUS_OK : status);
             assert_true(status == SNOW_STATUS_OK ||
                         status == SNOW_STATUS_NO_MEMORY);

@@ -111,13 +111,11 @@ static snow_volume *frozen(const model_stage *stage, const reference_scene *s) {
 }
 
 static snow_status shoot(const model_stage *stage, const snow_volume *volume,
-                         const reference_scene *s, int parts,
-                         snow_image **image) {
+                         const reference_scene *s, snow_image **image) {
     snow_transfer *transfer = model_transfer(stage->context, s);
     *image = NULL;
-    snow_status status =
-        snow_frame_render_slab(stage->frame, volume, transfer, &s->view,
-                               &s->settings, parts, 0, image);
+    snow_status status = snow_frame_render(stage->frame, volume, transfer,
+                                           &s->view, &s->settings, image);
     snow_transfer_free(transfer);
     return status;
 }
@@ -130,8 +128,8 @@ static bool encodes(const model_stage *stage, const snow_volume *volume,
     model_stage other = {.context = stage->context};
     assert_int_equal(snow_frame_new(stage->context, &other.frame),
                      SNOW_STATUS_OK);
-    assert_int_equal(shoot(stage, volume, s, 1, &image), SNOW_STATUS_OK);
-    assert_int_equal(shoot(&other, volume, s, 1, &fresh), SNOW_STATUS_OK);
+    assert_int_equal(shoot(stage, volume, s, &image), SNOW_STATUS_OK);
+    assert_int_equal(shoot(&other, volume, s, &fresh), SNOW_STATUS_OK);
     assert_memory_equal(snow_image_pixels(image), snow_image_pixels(fresh),
                         (size_t)s->view.width * (size_t)s->view.height *
                             (size_t)snow_image_channels(image) * sizeof(float));
@@ -176,13 +174,11 @@ static void only_what_shows_more_is_encoded_anew(void **state) {
  */
 
 /* One line that says what is not drawn, and what draws it. */
-static void refused_slab(const reference_scene *s, int parts,
-                         const char *what) {
+static void refused(const reference_scene *s, const char *what) {
     model_stage stage = model_open();
     snow_volume *volume = frozen(&stage, s);
     snow_image *image;
-    assert_int_equal(shoot(&stage, volume, s, parts, &image),
-                     SNOW_STATUS_BAD_USAGE);
+    assert_int_equal(shoot(&stage, volume, s, &image), SNOW_STATUS_BAD_USAGE);
     assert_null(image);
     const char *message = snow_context_message(stage.context);
     if (!strstr(message, what) || !strstr(message, " yet") ||
@@ -190,10 +186,6 @@ static void refused_slab(const reference_scene *s, int parts,
         fail_msg("%s: %s", what, message);
     snow_volume_close(volume);
     model_close(&stage);
-}
-
-static void refused(const reference_scene *s, const char *what) {
-    refused_slab(s, 1, what);
 }
 
 static void what_it_does_not_draw_is_refused(void **state) {
@@ -205,15 +197,11 @@ static void what_it_does_not_draw_is_refused(void **state) {
         refused(&s, "modes other than over");
     }
     s = plain;
-    s.settings.deterministic = true;
-    refused(&s, "deterministic pictures");
-    s = plain;
     s.settings.kernel = SNOW_KERNEL_GAUSS;
     refused(&s, "kernels other than the tent");
     s.settings.kernel = SNOW_KERNEL_TENT;
     s.settings.footprint = 3;
     refused(&s, "kernels other than the tent");
-    refused_slab(&plain, 3, "a part of a volume");
     value_picture_free(&s);
 }
 

@@ -267,7 +267,7 @@ static void finish_line(void *of, int64_t y, int worker) {
         pairs = f->pairs + 2 * (size_t)worker * (size_t)width;
         memset(pairs, 0, 2 * (size_t)width * sizeof *pairs);
         if (f->shear_warp->width > 0)
-            snow_shear_warp_warp(f->shear_warp, (int)y, 0, width, pairs);
+            snow_shear_warp_warp(f->shear_warp, (int)y, 0, width, NULL, pairs);
     }
     if (f->weigh)
         weigh_line(f, (int)y, width, pairs);

@@ -11,7 +11,7 @@
 #include "render/shear_warp/bands.h"
 #include "render/shear_warp/encoding_cache.h"
 #include "render/shear_warp/shear_warp.h"
-#include "warp/warp.h"
+#include "render/shear_warp/warping.h"
 
 /* Rows that cells need: cell i needs rows i * stride to i * stride + reach - 1.
  */
@@ -42,18 +42,6 @@ static inline uint64_t snow_cells_of_rows(uint64_t rows, uint64_t cells,
     }
     return some;
 }
-
-/* How the image of a picture is warped. */
-typedef struct snow_shear_warp_warping {
-    snow_intermediate_view plane;
-    bool perspective;
-    snow_shear shear;              /* or */
-    snow_perspective_shear scaled; /* in perspective */
-    snow_filter filter;
-    snow_warp_fn *warp;
-    snow_warp_places_fn *places; /* in perspective */
-    int width, height;           /* of the picture */
-} snow_shear_warp_warping;
 
 /* An intermediate image, and how it is warped. */
 typedef struct snow_intermediate {

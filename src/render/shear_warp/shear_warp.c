@@ -833,7 +833,9 @@ snow_shear_warp_warping_of(snow_shear_warp *s,
         .warp = snow_warp_of(settings->isa, filter, channels),
         .places = snow_warp_places_of(settings->isa, filter, channels),
         .width = params->view->width,
-        .height = params->view->height};
+        .height = params->view->height,
+        .before = SNOW_WARP_BEFORE,
+        .behind = SNOW_WARP_BEHIND};
     return w;
 }
 

@@ -113,16 +113,15 @@ void snow_shear_warp_put_lines(const snow_shear_warp_image *image, int first,
 void snow_shear_warp_pixels_of(const snow_shear_warp_image *image, int y,
                                int first, int end, int range[2]);
 
-/* How many lines before and behind the one that a pixel is in its warp may
- * read; with one to spare for rounding. */
+/* The same of a kernel of 4 lines (warping.h). */
 #define SNOW_WARP_BEFORE 2
 #define SNOW_WARP_BEHIND 3
 
 /* Warps the image, or what was put in its place, to pixels `from` to `to` - 1
- * of line y of the picture, whose pixel 0 is the first of `pixels`; or to all
- * of it. */
+ * of line y of the picture, whose pixel 0 is the first of `pixels`; or, of the
+ * shear-warp method, to all of it.  `spare` has warping->spare_floats. */
 void snow_shear_warp_warp(const snow_shear_warp_image *image, int y, int from,
-                          int to, float *pixels);
+                          int to, float *spare, float *pixels);
 snow_status snow_shear_warp_warp_all(snow_context *context,
                                      const snow_shear_warp_image *image,
                                      int threads, float *pixels);

@@ -16,9 +16,11 @@
 #define SNOW_WARP_LINES 16
 
 void snow_shear_warp_warp(const snow_shear_warp_image *image, int y, int from,
-                          int to, float *pixels) {
+                          int to, float *spare, float *pixels) {
     const snow_shear_warp_warping *w = image->warping;
-    if (w->perspective)
+    if (w->line)
+        w->line(w, y, from, to, spare, pixels);
+    else if (w->perspective)
         snow_warp_row_perspective(&w->plane, &w->scaled, w->filter, w->places,
                                   y, from, to, pixels);
     else
@@ -38,7 +40,7 @@ static void warp_lines(void *of, int64_t item, int worker) {
     (void)worker;
     int first = (int)item * SNOW_WARP_LINES, last = first + SNOW_WARP_LINES;
     for (int y = first; y < last && y < w->height; y++)
-        snow_shear_warp_warp(job->image, y, 0, w->width,
+        snow_shear_warp_warp(job->image, y, 0, w->width, NULL,
                              job->pixels + (size_t)y * (size_t)w->width *
                                                (size_t)w->plane.channels);
 }
@@ -105,7 +107,7 @@ void snow_shear_warp_put_lines(const snow_shear_warp_image *image, int first,
 }
 
 /* Where pixel x of a line of the picture falls in the intermediate image. */
-static double line_of_pixel(const snow_shear_warp_warping *w, int x, int y) {
+static double line_of_place(const snow_shear_warp_warping *w, int x, int y) {
     if (!w->perspective)
         return floor(w->shear.start[1] + x * w->shear.along_x[1] +
                      y * w->shear.along_y[1]);
@@ -113,6 +115,12 @@ static double line_of_pixel(const snow_shear_warp_warping *w, int x, int y) {
     double across = x + 0.5, down = y + 0.5;
     return floor((row[0] + across * row[1] + down * row[2]) /
                  (depth[0] + across * depth[1] + down * depth[2]));
+}
+
+/* One that is a mean may reach lines of the image from outside. */
+static double line_of_pixel(const snow_shear_warp_warping *w, int x, int y) {
+    double line = line_of_place(w, x, y);
+    return w->line ? fmin(fmax(line, 0), w->plane.height - 1) : line;
 }
 
 /* In perspective: the pixels of a line that see the plane of the image, which

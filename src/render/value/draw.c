@@ -9,21 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-/* A side of the blocks of a quincunx, pixels. */
-#define BLOCK 64
-
 /* What shines through a pixel that ends: half a step of 8 bits, and less in
  * quality high. */
 #define FAINT (0.5 / 255)
 #define FAINTER 1e-4
-
-typedef struct draw_job {
-    snow_value_path *path;
-    snow_value_splat splat;
-    snow_value_tile_fn *tile;
-    size_t stride; /* floats of a line of the plane */
-    size_t scratch_bytes;
-} draw_job;
 
 /* --- light ------------------------------------------------------------------
  */
@@ -112,11 +101,13 @@ static snow_status place_sheets(snow_value_path *path,
         places = path->places;
     }
     snow_value_lattice_sheets(l, params->placement, path->sheets, places);
+    snow_value_move_sheets(path, params);
     return l->perspective ? snow_value_place_rays(path, params)
                           : SNOW_STATUS_OK;
 }
 
-/* The planes that have cut the volume. */
+/* The planes that have cut the volume, whose indices are those of its own
+ * voxels. */
 static snow_status place_clips(snow_value_path *path,
                                const snow_value_params *params) {
     const snow_clip_planes *clip = params->volume->clip;
@@ -130,12 +121,16 @@ static snow_status place_clips(snow_value_path *path,
         path->clips[n][1] = clip->planes[n][p->v_axis];
         path->clips[n][2] = clip->planes[n][p->slice_axis];
         path->clips[n][3] = clip->planes[n][3];
+        for (int axis = 0; axis < 3; axis++)
+            path->clips[n][3] +=
+                path->clips[n][axis] * (double)params->clip->stored[axis];
     }
     return SNOW_STATUS_OK;
 }
 
-static void describe(snow_value_path *path, const snow_value_params *params,
-                     draw_job *job) {
+static void describe(snow_value_drawing *job) {
+    snow_value_path *path = job->path;
+    const snow_value_params *params = job->params;
     const snow_value_lattice *l = &path->lattice;
     const int64_t voxels[2] = {params->placement->columns,
                                params->placement->rows};
@@ -163,97 +158,51 @@ static void describe(snow_value_path *path, const snow_value_params *params,
         job->splat.high[axis] =
             voxels[axis] == 1 ? 0.5 : (double)(voxels[axis] - 1);
     }
+    snow_value_own(params, &job->splat);
     job->tile = snow_value_tile_of(params->settings->isa, params->channels,
                                    shaded || fades, l->perspective);
-}
-
-static int wanted_tiles(int64_t cells, int side) {
-    return (int)((cells + side - 1) / side);
-}
-
-/* The grid of a picture: the one before, if its tiles have room there. */
-static bool keep_grid(const draw_job *job, snow_value_grid *grid) {
-    const snow_value_lattice *l = &job->path->lattice;
-    const snow_value_grid *has = &job->path->grid;
-    *grid = (snow_value_grid){
-        .cells = {l->cells[0], l->cells[1]},
-        .tiles = {wanted_tiles(l->voxels[0], SNOW_VALUE_COLUMNS),
-                  wanted_tiles(l->voxels[1], SNOW_VALUE_ROWS)},
-        .channels = job->splat.channels,
-        .quincunx = l->quincunx};
-    bool keep =
-        has->channels == grid->channels && has->quincunx == grid->quincunx &&
-        has->cells[0] == grid->cells[0] && has->cells[1] == grid->cells[1];
-    for (int axis = 0; axis < 2; axis++)
-        keep = keep && has->tiles[axis] >= grid->tiles[axis] &&
-               has->tiles[axis] <= 2 * grid->tiles[axis] + 4;
-    for (int axis = 0; axis < 2; axis++)
-        grid->tiles[axis] = keep ? has->tiles[axis] : grid->tiles[axis] + 2;
-    return keep;
-}
-
-/* A plane of all tiles, which are empty where a new one is made. */
-static snow_status reserve_plane(draw_job *job, int threads) {
-    snow_value_path *path = job->path;
-    snow_value_lattice *l = &path->lattice;
-    snow_value_grid grid;
-    bool keep = keep_grid(job, &grid);
-    size_t width =
-        (size_t)grid.tiles[0] * SNOW_VALUE_COLUMNS * (size_t)l->cells[0];
-    size_t height =
-        (size_t)grid.tiles[1] * SNOW_VALUE_ROWS * (size_t)l->cells[1];
-    if (l->quincunx) { /* cell (0, 0) is at the left, half way down */
-        snow_value_lattice_move(l, 1, (double)height - l->top);
-        l->top = (int)height;
-        width = height = width + height + 1;
-        l->width = l->height = (int)width;
-    }
-    job->stride = width * (size_t)grid.channels;
-    path->grid.tiles[0] = 0; /* until it is cleared */
-    SNOW_TRY(snow_reserve(path->context, &path->plane, &path->plane_capacity, 0,
-                          job->stride * (height + 1) * sizeof *path->plane));
-    size_t tiles = (size_t)grid.tiles[0] * (size_t)grid.tiles[1];
-    SNOW_TRY(snow_reserve(path->context, &path->drawn, &path->drawn_capacity,
-                          keep ? tiles : 0, tiles));
-    if (!keep) {
-        memset(path->plane, 0,
-               job->stride * (height + 1) * sizeof *path->plane);
-        memset(path->drawn, 0, tiles);
-    }
-    path->grid = grid;
     job->scratch_bytes = snow_value_splat_bytes(&job->splat);
-    return snow_reserve(path->context, &path->scratch, &path->scratch_capacity,
-                        0, job->scratch_bytes * (size_t)threads);
+    if (params->settings->deterministic)
+        job->scratch_bytes += snow_value_node_floats(job) * sizeof(float);
+    job->scratch_bytes = (job->scratch_bytes + 63) / 64 * 64;
 }
 
 /* --- tiles ------------------------------------------------------------------
  */
 
+/* Where row `row` of a phase of a tile is in a layer; *step leads to the next
+ * pixel. */
+static float *find_row(const snow_value_drawing *job, int layer, int phase,
+                       int64_t column, int64_t row, ptrdiff_t *step) {
+    const snow_value_path *path = job->path;
+    const snow_value_pixels to =
+        snow_value_lattice_pixels(&path->lattice, phase);
+    const int channels = job->splat.channels;
+    const ptrdiff_t stride = (ptrdiff_t)path->stride;
+    int64_t x = to.at[0] + column * to.along_u[0] + row * to.along_v[0];
+    int64_t y = to.at[1] + column * to.along_u[1] + row * to.along_v[1];
+    *step = to.along_u[0] * channels + to.along_u[1] * stride;
+    return path->plane + (size_t)layer * path->layer_floats + y * stride +
+           x * channels;
+}
+
 /* Pixels of a phase of a tile to their places. */
-static void store_phase(const draw_job *job, const void *planes, int phase,
-                        int64_t column, int64_t row) {
+static void store_phase(const snow_value_drawing *job, const void *planes,
+                        int phase, int64_t column, int64_t row) {
     const bool faint = job->splat.table->faint;
     const snow_value_plane *plane = (const snow_value_plane *)planes + phase;
     const snow_value_faint_plane *floats =
         (const snow_value_faint_plane *)planes + phase;
-    const snow_value_lattice *l = &job->path->lattice;
-    const snow_value_pixels to = snow_value_lattice_pixels(l, phase);
-    const int channels = job->splat.channels;
-    const ptrdiff_t stride = (ptrdiff_t)job->stride;
-    const ptrdiff_t step = to.along_u[0] * channels + to.along_u[1] * stride;
     for (int r = 0; r < SNOW_VALUE_ROWS; r++) {
-        int64_t x =
-            to.at[0] + column * to.along_u[0] + (row + r) * to.along_v[0];
-        int64_t y =
-            to.at[1] + column * to.along_u[1] + (row + r) * to.along_v[1];
-        float *out = job->path->plane + y * stride + x * channels;
+        ptrdiff_t step;
+        float *out = find_row(job, 0, phase, column, row + r, &step);
         float pixels[SNOW_VALUE_COLUMNS][4];
         for (int c = 0; c < 4; c++)
             for (int n = 0; n < SNOW_VALUE_COLUMNS; n++)
                 pixels[n][c] =
                     faint ? (*floats)[c][r][n + 1]
                           : (float)(*plane)[c][r][n + 1] * (1.0F / 32767);
-        if (channels == 4)
+        if (job->splat.channels == 4)
             for (int n = 0; n < SNOW_VALUE_COLUMNS; n++, out += step)
                 memcpy(out, pixels[n], sizeof pixels[n]);
         else
@@ -264,9 +213,29 @@ static void store_phase(const draw_job *job, const void *planes, int phase,
     }
 }
 
+/* The same numbers from there. */
+static void load_phase(const snow_value_drawing *job, void *planes, int phase,
+                       int64_t column, int64_t row) {
+    const int channels = job->splat.channels;
+    snow_value_plane *plane = (snow_value_plane *)planes + phase;
+    snow_value_faint_plane *floats = (snow_value_faint_plane *)planes + phase;
+    for (int r = 0; r < SNOW_VALUE_ROWS; r++) {
+        ptrdiff_t step;
+        const float *from = find_row(job, 0, phase, column, row + r, &step);
+        for (int n = 1; n <= SNOW_VALUE_COLUMNS; n++, from += step)
+            for (int c = 0; c < channels; c++) {
+                int to = c == channels - 1 ? 3 : c;
+                if (job->splat.table->faint)
+                    (*floats)[to][r][n] = from[c];
+                else
+                    (*plane)[to][r][n] = (int16_t)(from[c] * 32767 + 0.5F);
+            }
+    }
+}
+
 /* Draws a tile, or clears what an earlier picture has drawn there. */
 static void draw_tile(void *of, int64_t item, int worker) {
-    const draw_job *job = of;
+    const snow_value_drawing *job = of;
     snow_value_path *path = job->path;
     const snow_value_lattice *l = &path->lattice;
     int x = (int)(item % path->grid.tiles[0]);
@@ -275,8 +244,14 @@ static void draw_tile(void *of, int64_t item, int worker) {
     int64_t row = (int64_t)y * SNOW_VALUE_ROWS;
     void *room = path->scratch + (size_t)worker * job->scratch_bytes;
     bool within = column < l->voxels[0] && row < l->voxels[1];
-    bool drawn = within && job->tile(&job->splat, x, y, room);
-    if (!drawn && !path->drawn[item])
+    snow_value_splat splat = job->splat;
+    splat.resumes = job->params->resumes && path->drawn[item];
+    if (splat.resumes)
+        memset(room, 0, snow_value_planes_bytes(&splat));
+    for (int phase = 0; splat.resumes && phase < l->phases; phase++)
+        load_phase(job, room, phase, column, row);
+    bool drawn = within && job->tile(&splat, x, y, room);
+    if (!drawn && (!path->drawn[item] || splat.resumes))
         return;
     if (!drawn)
         memset(room, 0, snow_value_planes_bytes(&job->splat));
@@ -285,101 +260,97 @@ static void draw_tile(void *of, int64_t item, int worker) {
         store_phase(job, room, phase, column, row);
 }
 
-/* --- blocks of a quincunx --------------------------------------------------
- */
-
-/* Marks the blocks that a drawn tile may reach. */
-static void mark_blocks(const draw_job *job, int blocks, int64_t x, int64_t y) {
-    const snow_value_lattice *l = &job->path->lattice;
-    const snow_value_pixels cell = snow_value_lattice_pixels(l, 0);
-    int64_t left = x * SNOW_VALUE_COLUMNS, top = y * SNOW_VALUE_ROWS;
-    int64_t right = left + SNOW_VALUE_COLUMNS, bottom = top + SNOW_VALUE_ROWS;
-    int64_t a0 = left * cell.along_u[0] + top * cell.along_v[0];
-    int64_t a1 = right * cell.along_u[0] + bottom * cell.along_v[0];
-    int64_t b0 = left * cell.along_u[1] + bottom * cell.along_v[1] + l->top;
-    int64_t b1 = right * cell.along_u[1] + top * cell.along_v[1] + l->top;
-    b0 = b0 > 0 ? b0 : 0;
-    a1 = a1 < l->width - 1 ? a1 : l->width - 1;
-    b1 = b1 < l->height - 1 ? b1 : l->height - 1;
-    for (int64_t b = b0 / BLOCK; b <= b1 / BLOCK; b++)
-        for (int64_t a = a0 / BLOCK; a <= a1 / BLOCK; a++)
-            job->path->blocks[b * blocks + a] = 1;
-}
-
-static snow_status find_blocks(const draw_job *job, int blocks) {
+/* The same in a layer of a deterministic picture. */
+static void draw_layer(const snow_value_drawing *job, int layer, int64_t item,
+                       void *room, float *pixels) {
     snow_value_path *path = job->path;
-    size_t count = (size_t)blocks * (size_t)blocks;
-    SNOW_TRY(snow_reserve(path->context, &path->blocks, &path->blocks_capacity,
-                          0, count));
-    memset(path->blocks, 0, count);
-    for (int y = 0; y < path->grid.tiles[1]; y++)
-        for (int x = 0; x < path->grid.tiles[0]; x++)
-            if (path->drawn[y * path->grid.tiles[0] + x])
-                mark_blocks(job, blocks, x, y);
-    return SNOW_STATUS_OK;
+    const snow_value_lattice *l = &path->lattice;
+    int x = (int)(item % path->grid.tiles[0]);
+    int y = (int)(item / path->grid.tiles[0]);
+    int64_t column = (int64_t)x * SNOW_VALUE_COLUMNS;
+    int64_t row = (int64_t)y * SNOW_VALUE_ROWS;
+    const size_t channels = (size_t)job->splat.channels;
+    unsigned char *flag =
+        path->drawn + (size_t)layer * snow_value_tiles(path) + item;
+    bool drawn =
+        column < l->voxels[0] && row < l->voxels[1] &&
+        snow_value_node_tile(job, path->nodes[layer], x, y, room, pixels);
+    if (!drawn && !*flag)
+        return;
+    if (!drawn)
+        memset(pixels, 0,
+               (size_t)l->phases * SNOW_VALUE_ROWS * SNOW_VALUE_COLUMNS *
+                   channels * sizeof *pixels);
+    *flag = drawn;
+    for (int phase = 0; phase < l->phases; phase++)
+        for (int r = 0; r < SNOW_VALUE_ROWS; r++) {
+            ptrdiff_t step;
+            float *out = find_row(job, layer, phase, column, row + r, &step);
+            for (int n = 0; n < SNOW_VALUE_COLUMNS;
+                 n++, out += step, pixels += channels)
+                memcpy(out, pixels, channels * sizeof *out);
+        }
 }
 
-/* The image as the warp takes it. */
-static snow_status view_image(const draw_job *job,
-                              snow_intermediate_view *image) {
-    const snow_value_lattice *l = &job->path->lattice;
-    int blocks = l->width / BLOCK + 1;
-    *image = (snow_intermediate_view){
-        .pixels = job->path->plane,
-        .stride = job->stride,
-        .width = l->width,
-        .height = l->height,
-        .channels = job->splat.channels,
-        .drawn = job->path->drawn,
-        .block_width = SNOW_VALUE_COLUMNS * l->cells[0],
-        .block_height = SNOW_VALUE_ROWS * l->cells[1],
-        .blocks = job->path->grid.tiles[0]};
-    if (!l->quincunx)
-        return SNOW_STATUS_OK;
-    SNOW_TRY(find_blocks(job, blocks));
-    image->drawn = job->path->blocks;
-    image->block_width = image->block_height = BLOCK;
-    image->blocks = blocks;
-    return SNOW_STATUS_OK;
+static void draw_layers(void *of, int64_t item, int worker) {
+    const snow_value_drawing *job = of;
+    char *room = job->path->scratch + (size_t)worker * job->scratch_bytes;
+    float *pixels =
+        (float *)(void *)(room + snow_value_splat_bytes(&job->splat));
+    for (int n = 0; n < job->path->grid.layers; n++)
+        draw_layer(job, n, item, room, pixels);
 }
 
 /* --- a picture --------------------------------------------------------------
  */
 
-static snow_status draw_image(draw_job *job, int threads,
-                              snow_intermediate_view *image) {
-    snow_context *context = job->path->context;
-    const int *tiles = job->path->grid.tiles;
-    snow_monitor_next(context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
-    SNOW_TRY(snow_parallel(context, threads, (int64_t)tiles[0] * tiles[1],
-                           draw_tile, job));
-    return view_image(job, image);
+static snow_status draw_tiles(snow_value_drawing *job) {
+    snow_value_path *path = job->path;
+    const snow_settings *settings = job->params->settings;
+    SNOW_TRY(snow_reserve(path->context, &path->scratch,
+                          &path->scratch_capacity, 0,
+                          job->scratch_bytes * (size_t)settings->threads));
+    snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0, 0.9);
+    if (!settings->deterministic)
+        job->splat = snow_value_splat_of(job, job->params->slab);
+    return snow_parallel(
+        path->context, settings->threads, (int64_t)snow_value_tiles(path),
+        settings->deterministic ? draw_layers : draw_tile, job);
 }
 
 snow_status snow_value_draw(snow_value_path *path,
-                            const snow_value_params *params, float *pixels,
-                            snow_stats *stats) {
-    const snow_view *view = params->view;
-    draw_job job = {.path = path};
-    snow_intermediate_view image;
+                            const snow_value_params *params, snow_stats *stats,
+                            snow_shear_warp_image *out) {
+    snow_value_drawing job = {.path = path, .params = params};
     double mark = snow_seconds();
-    if (path->lattice.empty || path->range.low > path->range.high) {
-        memset(pixels, 0,
-               (size_t)view->width * (size_t)view->height *
-                   (size_t)params->channels * sizeof *pixels);
+    *out = (snow_shear_warp_image){.channels = params->channels, .layers = 1};
+    if (!snow_value_shows(path))
         return SNOW_STATUS_OK;
-    }
     SNOW_TRY(place_sheets(path, params));
     SNOW_TRY(place_clips(path, params));
     if (params->settings->shade == SNOW_SHADE_PHONG)
         place_light(params, &path->light);
     place_fade(params, path);
-    describe(path, params, &job);
-    SNOW_TRY(reserve_plane(&job, params->settings->threads));
-    SNOW_TRY(draw_image(&job, params->settings->threads, &image));
-    double drawn = snow_seconds();
-    stats->seconds_splat += drawn - mark;
-    SNOW_TRY(snow_value_show(path, params, &image, pixels));
-    stats->seconds_warp += snow_seconds() - drawn;
+    describe(&job);
+    SNOW_TRY(draw_tiles(&job));
+    SNOW_TRY(snow_value_describe_image(path, params, out));
+    stats->seconds_splat += snow_seconds() - mark;
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_value_display(snow_value_path *path,
+                               const snow_value_params *params,
+                               const snow_shear_warp_image *image,
+                               float *pixels, snow_stats *stats) {
+    const snow_view *view = params->view;
+    double mark = snow_seconds();
+    if (image->width == 0) {
+        memset(pixels, 0,
+               (size_t)view->width * (size_t)view->height *
+                   (size_t)params->channels * sizeof *pixels);
+        return SNOW_STATUS_OK;
+    }
+    SNOW_TRY(snow_value_show(path, params, pixels));
+    stats->seconds_warp += snow_seconds() - mark;
     return SNOW_STATUS_OK;
 }

@@ -159,7 +159,7 @@ static void select_lanes(int margin, snow_value_lanes *lanes) {
 
 void snow_value_eye_lanes(const snow_value_lattice *l,
                           const snow_value_sheet *sheet, int axis, int tiles,
-                          int margin, snow_value_lanes *lanes) {
+                          int64_t stored, int margin, snow_value_lanes *lanes) {
     double step = snow_value_eye_step(l, sheet->at), eye = l->eye[axis];
     int phases = l->cells[axis] * (l->quincunx ? 2 : 1);
     int side = axis == 0 ? SNOW_VALUE_COLUMNS : SNOW_VALUE_ROWS;
@@ -168,6 +168,7 @@ void snow_value_eye_lanes(const snow_value_lattice *l,
             double front = (double)(l->first[axis] + (int64_t)tile * side - 1) +
                            (double)phase / phases;
             place_lanes(eye + (front - eye) * step, step, lanes);
+            lanes->first -= (int32_t)stored;
             if (axis == 0)
                 select_lanes(margin, lanes);
         }

@@ -6,6 +6,7 @@
 #include "render/value/internal.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct rays_job {
     snow_value_path *path;
@@ -20,9 +21,10 @@ static void place_lanes(void *of, int64_t item, int worker) {
     (void)worker;
     path->spreads[item] = snow_value_eye_spread(&path->lattice, sheet);
     for (int axis = 0; axis < 2; axis++)
-        snow_value_eye_lanes(
-            &path->lattice, sheet, axis, rays->tiles[axis], path->store.margin,
-            path->lanes[axis] + (size_t)item * job->lanes[axis]);
+        snow_value_eye_lanes(&path->lattice, sheet, axis, rays->tiles[axis],
+                             rays->stored[axis], path->store.margin,
+                             path->lanes[axis] +
+                                 (size_t)item * job->lanes[axis]);
 }
 
 /* How the rays' lengths follow from their ways. */
@@ -77,6 +79,7 @@ snow_status snow_value_place_rays(snow_value_path *path,
     size_t sheets = (size_t)l->sheet_count;
     *rays = (snow_value_rays){0};
     describe(l, rays);
+    memcpy(rays->stored, params->clip->stored, sizeof rays->stored);
     measure_ways(path, params->placement, rays);
     place_light(params, l, rays);
     SNOW_TRY(snow_reserve(path->context, &path->spreads,

@@ -3,6 +3,7 @@
 #ifndef SNOW_RENDER_VALUE_INTERNAL_H
 #define SNOW_RENDER_VALUE_INTERNAL_H
 
+#include "render/shear_warp/warping.h"
 #include "render/value/value.h"
 
 /* What the encoding is of. */
@@ -17,15 +18,16 @@ typedef struct snow_value_key {
  * drawn have to be cleared. */
 typedef struct snow_value_grid {
     int cells[2], tiles[2]; /* the latter may be more than a picture has */
-    int channels;
-    bool quincunx;
+    int channels, layers;
+    bool quincunx, shared;
 } snow_value_grid;
 
 struct snow_value_path {
     snow_context *context;
     snow_value_lattice lattice; /* of the picture */
-    snow_data_range range;
-    uint64_t range_of; /* generation of its volume; 0: of none */
+    snow_data_range range;      /* of the whole */
+    snow_data_range measured; /* of the volume of this generation; 0: of none */
+    uint64_t measured_of;
     snow_value_coder coder;
     snow_value_table table;
     snow_value_store store;
@@ -38,10 +40,16 @@ struct snow_value_path {
     snow_value_rays rays; /* perspective: instead of places */
     snow_value_spread *spreads;
     snow_value_lanes *lanes[2];
-    float *plane;          /* the image on the lattice */
-    snow_value_grid grid;  /* of it; no tiles: anything is there */
-    unsigned char *drawn;  /* its tiles */
-    unsigned char *blocks; /* its blocks, of a quincunx */
+    float *plane;  /* the image on the lattice, layer by layer */
+    size_t stride; /* floats of a line of it */
+    size_t layer_floats;
+    snow_group_node nodes[SNOW_NODES_MOST]; /* of the layers, deterministic */
+    snow_value_grid grid;            /* of it; no tiles: anything is there */
+    unsigned char *drawn;            /* its tiles */
+    unsigned char *blocks;           /* its blocks, of a quincunx */
+    snow_shear_warp_warping warping; /* of that */
+    /* What means read: the same, or an image halved. */
+    snow_shear_warp_warping shown;
     float *halved, *lines; /* the image made smaller; lines of the warp */
     double (*clips)[4];    /* clip planes by u, v and slice */
     char *scratch;
@@ -56,10 +64,70 @@ struct snow_value_path {
 snow_status snow_value_place_rays(snow_value_path *path,
                                   const snow_value_params *params);
 
+/* A part's image in the making. */
+typedef struct snow_value_drawing {
+    snow_value_path *path;
+    const snow_value_params *params;
+    snow_value_splat splat; /* but for its sheets */
+    snow_value_tile_fn *tile;
+    size_t scratch_bytes; /* of a worker */
+} snow_value_drawing;
+
+/* Tiles of the grid. */
+static inline size_t snow_value_tiles(const snow_value_path *path) {
+    return (size_t)path->grid.tiles[0] * (size_t)path->grid.tiles[1];
+}
+
+/* --- image.c --- */
+
+/* Whether there is anything to see; the same for all parts. */
+bool snow_value_shows(const snow_value_path *path);
+
+/* Room for a picture's image, which is cleared but for what it is known that
+ * the next picture will write.  Errors: SNOW_STATUS_NO_MEMORY,
+ * SNOW_STATUS_BAD_USAGE (slices that are not whole groups). */
+snow_status snow_value_reserve_image(snow_value_path *path,
+                                     const snow_value_params *params);
+
+/* What was drawn, and how it is warped.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_describe_image(snow_value_path *path,
+                                      const snow_value_params *params,
+                                      snow_shear_warp_image *out);
+
+/* --- parts.c --- */
+
+/* Moves the sheets of the whole to the voxels that a part has. */
+void snow_value_move_sheets(snow_value_path *path,
+                            const snow_value_params *params);
+
+/* The samples of a tile that are a part's, of those in its slab. */
+void snow_value_own(const snow_value_params *params, snow_value_splat *splat);
+
+/* The splat of the slabs between sheets that belong to some slices: of the two
+ * slices beside it a slab is the nearer one's. */
+snow_value_splat snow_value_splat_of(const snow_value_drawing *drawing,
+                                     snow_slab slices);
+
+/* Floats of a tile of a node, and of what its nodes are made of. */
+size_t snow_value_node_floats(const snow_value_drawing *drawing);
+
+/* Tile (x, y) of a node of the tree of groups: pixels [phase][row][column] of
+ * `out`, each of the picture's channels; false: nothing is there, and anything
+ * in `out`.  `room` is as the splat's. */
+bool snow_value_node_tile(const snow_value_drawing *drawing,
+                          snow_group_node node, int x, int y, void *room,
+                          float *out);
+
+/* --- show.c --- */
+
+/* How the image will be warped.  Errors: SNOW_STATUS_NO_MEMORY. */
+snow_status snow_value_place_show(snow_value_path *path,
+                                  const snow_value_params *params,
+                                  const snow_shear_warp_image *image);
+
 /* The image to all of the picture.  Errors: SNOW_STATUS_NO_MEMORY,
  * SNOW_STATUS_STOPPED. */
 snow_status snow_value_show(snow_value_path *path,
-                            const snow_value_params *params,
-                            const snow_intermediate_view *image, float *pixels);
+                            const snow_value_params *params, float *pixels);
 
 #endif

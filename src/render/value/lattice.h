@@ -79,12 +79,12 @@ double snow_value_eye_reach(const snow_value_lattice *lattice,
                             const snow_placement *placement);
 
 /* How samples are spread on a sheet, and lanes along an axis of it for each
- * phase and tile. */
+ * phase and tile, in voxels from `stored` on. */
 snow_value_spread snow_value_eye_spread(const snow_value_lattice *lattice,
                                         const snow_value_sheet *sheet);
 void snow_value_eye_lanes(const snow_value_lattice *lattice,
                           const snow_value_sheet *sheet, int axis, int tiles,
-                          int margin, snow_value_lanes *lanes);
+                          int64_t stored, int margin, snow_value_lanes *lanes);
 
 /* The sheets, front to back, and the places of all phases on them. */
 void snow_value_lattice_sheets(const snow_value_lattice *lattice,

@@ -1,37 +1,66 @@
-/* render/value/method.c - the value path as a method of figure 8.  Its image
- * is warped within, so that the local image is the picture. */
+/* render/value/method.c - the value path as a method of figure 8.  A picture's
+ * parts, of which those of a file come one after another, share a lattice, a
+ * table and an image. */
 #include "render/picture.h"
 #include "render/value/value.h"
 
-static snow_value_params params_of(const snow_job *job) {
+static snow_value_params params_of(const snow_picture *p, const snow_job *job) {
     return (snow_value_params){.volume = job->volume,
                                .transfer = job->transfer,
                                .view = job->view,
                                .settings = &job->settings,
                                .placement = &job->placement,
+                               .stored = &job->stored,
+                               .clip = &job->clip,
+                               .slab = job->slab,
                                .channels = job->channels,
-                               .whole = snow_job_whole(job)};
+                               .shared = p->combiner != &snow_combine_alone,
+                               .resumes = p->local.image.layers > 0};
+}
+
+/* The image comes first, for the slabs of a file are cut to the memory that it
+ * leaves. */
+static snow_status begin(snow_picture *p, snow_job *job) {
+    const snow_value_params params = params_of(p, job);
+    SNOW_TRY(snow_value_path_new(job->context, &p->frame->value_path));
+    if (job->volume->stream)
+        snow_value_forget(p->frame->value_path);
+    p->local.placement = job->placement;
+    p->local.begun = true;
+    return snow_value_begin(p->frame->value_path, &params, job->stats);
 }
 
 static snow_status classify(snow_picture *p, snow_job *job) {
-    const snow_value_params params = params_of(job);
-    SNOW_TRY(snow_value_path_new(job->context, &p->frame->value_path));
-    return snow_value_classify(p->frame->value_path, &params, job->stats);
+    return p->local.begun ? SNOW_STATUS_OK : begin(p, job);
 }
 
+/* All slabs of a file have one encoding. */
 static snow_status encode(snow_picture *p, snow_job *job) {
-    const snow_value_params params = params_of(job);
+    if (p->pass->job.volume->stream &&
+        job->settings.encoding == SNOW_ENCODING_AUTO)
+        job->settings.encoding = SNOW_ENCODING_BITMAP;
+    const snow_value_params params = params_of(p, job);
     return snow_value_encode(p->frame->value_path, &params, job->stats);
 }
 
 static snow_status draw(snow_picture *p, snow_job *job) {
-    const snow_value_params params = params_of(job);
-    return snow_value_draw(p->frame->value_path, &params, job->pixels,
-                           job->stats);
+    const snow_value_params params = params_of(p, job);
+    return snow_value_draw(p->frame->value_path, &params, job->stats,
+                           &p->local.image);
+}
+
+static snow_status show(snow_picture *p, snow_job *job) {
+    const snow_value_params params = params_of(p, job);
+    return snow_value_display(p->frame->value_path, &params, &p->local.image,
+                              p->local.pixels, job->stats);
 }
 
 const snow_render_method snow_method_value = {
+    .begin = begin,
     .classify_and_shade = classify,
     .encode = encode,
     .splat_and_composite = draw,
+    .show = show,
+    .slabs = true,
+    .warps = true,
 };

@@ -13,13 +13,7 @@
 #define BORDER 3
 
 typedef struct show_job {
-    const snow_value_lattice *lattice;
-    snow_intermediate_view image;
-    snow_shear shear;
-    snow_perspective_shear scaled; /* in perspective */
-    snow_warp_fn *warp;
-    snow_warp_places_fn *places;
-    int width, height; /* of the picture */
+    const snow_shear_warp_warping *warping;
     float *pixels, *lines;
     size_t line_floats; /* of the lines of one worker */
 } show_job;
@@ -48,73 +42,86 @@ static void add_line(const snow_intermediate_view *image, int y, int64_t first,
 
 /* The place of a pixel along an axis, after the image was made `side` times
  * smaller from `low` pixels before its first on. */
-static void shrink(show_job *job, int axis, double low, double side) {
-    double *start = &job->shear.start[axis], *row = job->scaled.warp[axis];
+static void shrink(snow_shear_warp_warping *w, int axis, double low,
+                   double side) {
+    double *start = &w->shear.start[axis], *row = w->scaled.warp[axis];
     *start = (*start + low + 0.5) / side - 0.5 + BORDER;
-    job->shear.along_x[axis] /= side;
-    job->shear.along_y[axis] /= side;
+    w->shear.along_x[axis] /= side;
+    w->shear.along_y[axis] /= side;
     for (int n = 0; n < 3; n++)
-        row[n] = (row[n] + (low + 0.5) * job->scaled.warp[2][n]) / side +
-                 (BORDER - 0.5) * job->scaled.warp[2][n];
+        row[n] = (row[n] + (low + 0.5) * w->scaled.warp[2][n]) / side +
+                 (BORDER - 0.5) * w->scaled.warp[2][n];
+}
+
+/* The first pixel of a block of the halved image, on the lattice. */
+static int64_t first_block(const snow_value_lattice *l, int axis) {
+    return (l->first[axis] * l->cells[axis]) & -(INT64_C(1) << l->halvings);
 }
 
 /* The image halved as often as the lattice says, in blocks that do not depend
  * on what of it is in view. */
-static snow_status halve(snow_value_path *path, show_job *job) {
-    static const unsigned char all = 1;
-    const snow_value_lattice *l = job->lattice;
-    const snow_intermediate_view *image = &job->image;
+static void halve(const snow_shear_warp_warping *w) {
+    const snow_value_path *path = w->of;
+    const snow_value_lattice *l = &path->lattice;
+    const snow_intermediate_view *small = &path->shown.plane;
     const int64_t side = INT64_C(1) << l->halvings;
     const int64_t first[2] = {l->first[0] * l->cells[0],
                               l->first[1] * l->cells[1]};
-    int size[2] = {image->width, image->height};
-    for (int axis = 0; axis < 2; axis++) {
-        int64_t low = first[axis] & -side;
-        size[axis] =
-            (int)((first[axis] + size[axis] - 1 - low) / side) + 1 + 2 * BORDER;
-        shrink(job, axis, (double)(first[axis] - low), (double)side);
-    }
-    size_t stride = (size_t)size[0] * (size_t)image->channels;
-    size_t bytes = stride * (size_t)(size[1] + 1) * sizeof(float);
-    SNOW_TRY(snow_reserve(path->context, &path->halved, &path->halved_capacity,
-                          0, bytes));
-    memset(path->halved, 0, bytes);
-    for (int y = 0; y < image->height; y++)
+    memset(path->halved, 0,
+           small->stride * (size_t)small->height * sizeof *path->halved);
+    for (int y = 0; y < w->plane.height; y++)
         add_line(
-            image, y, first[0], side,
+            &w->plane, y, first[0], side,
             path->halved +
-                (size_t)((first[1] + y - (first[1] & -side)) / side + BORDER) *
-                    stride);
-    job->image = (snow_intermediate_view){.pixels = path->halved,
-                                          .stride = stride,
-                                          .width = size[0],
-                                          .height = size[1],
-                                          .channels = image->channels,
-                                          .drawn = &all,
-                                          .block_width = size[0],
-                                          .block_height = size[1],
-                                          .blocks = 1};
+                (size_t)((first[1] + y - first_block(l, 1)) / side + BORDER) *
+                    small->stride);
+}
+
+/* Room for it, and its map. */
+static snow_status place_halved(snow_value_path *path) {
+    static const unsigned char all = 1;
+    const snow_value_lattice *l = &path->lattice;
+    const int64_t side = INT64_C(1) << l->halvings;
+    snow_intermediate_view *image = &path->shown.plane;
+    int *const sizes[2] = {&image->width, &image->height};
+    for (int axis = 0; axis < 2; axis++) {
+        int64_t first = l->first[axis] * l->cells[axis];
+        int64_t low = first_block(l, axis);
+        *sizes[axis] =
+            (int)((first + *sizes[axis] - 1 - low) / side) + 1 + 2 * BORDER;
+        shrink(&path->shown, axis, (double)(first - low), (double)side);
+    }
+    image->stride = (size_t)image->width * (size_t)image->channels;
+    SNOW_TRY(snow_reserve(
+        path->context, &path->halved, &path->halved_capacity, 0,
+        image->stride * (size_t)(image->height + 1) * sizeof *path->halved));
+    image->pixels = path->halved;
+    image->drawn = &all;
+    image->block_width = image->width;
+    image->block_height = image->height;
+    image->blocks = 1;
     return SNOW_STATUS_OK;
 }
 
 /* --- lines ------------------------------------------------------------------
  */
 
-/* Pixels of line y of the picture, or of places denser by `job`'s maps. */
-static void show_row(const show_job *job, int y, int width, float *out) {
-    const snow_value_lattice *l = job->lattice;
-    if (l->perspective)
-        snow_warp_row_perspective(&job->image, &job->scaled, l->filter,
-                                  job->places, y, 0, width, out);
+/* Pixels of line y of the picture, or of denser places. */
+static void show_row(const snow_shear_warp_warping *w, int y, int from, int to,
+                     float *out) {
+    if (w->perspective)
+        snow_warp_row_perspective(&w->plane, &w->scaled, w->filter, w->places,
+                                  y, from, to, out);
     else
-        snow_warp_row(&job->image, &job->shear, l->filter, job->warp, y, 0,
-                      width, out);
+        snow_warp_row(&w->plane, &w->shear, w->filter, w->warp, y, from, to,
+                      out);
 }
 
 /* The map of places i / n - 1/2 + 1 / 2n across and `down` lower than a
  * pixel's middle. */
-static show_job denser(const show_job *job, int n, double down) {
-    show_job fine = *job;
+static snow_shear_warp_warping denser(const snow_shear_warp_warping *w, int n,
+                                      double down) {
+    snow_shear_warp_warping fine = *w;
     for (int axis = 0; axis < 2; axis++) {
         fine.shear.start[axis] += fine.shear.along_x[axis] * (0.5 / n - 0.5) +
                                   fine.shear.along_y[axis] * down;
@@ -127,62 +134,93 @@ static show_job denser(const show_job *job, int n, double down) {
     return fine;
 }
 
-/* A line of means of `means` x `means` places a pixel. */
-static void show_means(const show_job *job, int y, float *fine, float *out) {
-    int n = job->lattice->means, channels = job->image.channels;
-    size_t floats = (size_t)(job->width * channels);
+/* Means of `means` x `means` places a pixel. */
+static void show_means(const snow_shear_warp_warping *w, int y, int from,
+                       int to, float *fine, float *out) {
+    const snow_value_path *path = w->of;
+    int n = path->lattice.means, channels = w->plane.channels;
     float share = 1.0F / (float)(n * n);
-    memset(out, 0, floats * sizeof *out);
+    memset(out + from * channels, 0,
+           (size_t)((to - from) * channels) * sizeof *out);
     for (int j = 0; j < n; j++) {
-        const show_job places = denser(job, n, (j + 0.5) / n - 0.5);
-        show_row(&places, y, n * job->width, fine);
-        for (int x = 0; x < n * job->width; x++)
+        const snow_shear_warp_warping places =
+            denser(&path->shown, n, (j + 0.5) / n - 0.5);
+        show_row(&places, y, n * from, n * to, fine);
+        for (int x = n * from; x < n * to; x++)
             for (int c = 0; c < channels; c++)
                 out[x / n * channels + c] += share * fine[x * channels + c];
     }
 }
 
+/* Lines that a mean takes before and behind its own: half a pixel's, and what
+ * their samples read; all in perspective, where pixels differ. */
+static int lines_around(const snow_value_lattice *l) {
+    double half = (fabs(l->shear.along_x[1]) + fabs(l->shear.along_y[1])) / 2;
+    if (l->perspective)
+        return l->height;
+    return (int)ceil(half) + (2 << l->halvings) + 3;
+}
+
+snow_status snow_value_place_show(snow_value_path *path,
+                                  const snow_value_params *params,
+                                  const snow_shear_warp_image *image) {
+    const snow_value_lattice *l = &path->lattice;
+    const snow_isa isa = params->settings->isa;
+    snow_shear_warp_warping *w = &path->warping;
+    *w = (snow_shear_warp_warping){
+        .plane = {image->pixels, image->stride, image->width, image->height,
+                  image->channels, image->drawn, image->tile_width,
+                  image->tile_height, image->tiles},
+        .perspective = l->perspective,
+        .shear = l->shear,
+        .scaled = l->scaled,
+        .filter = l->filter,
+        .warp = snow_warp_of(isa, l->filter, image->channels),
+        .places = snow_warp_places_of(isa, l->filter, image->channels),
+        .width = params->view->width,
+        .height = params->view->height,
+        .before = SNOW_WARP_BEFORE,
+        .behind = SNOW_WARP_BEHIND,
+        .of = path};
+    path->shown = *w;
+    if (l->means > 1) {
+        w->line = show_means;
+        w->spare_floats = (size_t)(l->means * w->width * image->channels + 64);
+        w->before = w->behind = lines_around(l);
+    }
+    if (!l->halvings)
+        return SNOW_STATUS_OK;
+    w->made = halve;
+    return place_halved(path);
+}
+
 static void show_lines(void *of, int64_t item, int worker) {
     const show_job *job = of;
-    float *fine = job->lines + (size_t)worker * job->line_floats;
+    const snow_shear_warp_warping *w = job->warping;
+    float *spare = job->lines + (size_t)worker * job->line_floats;
     int first = (int)item * LINES, end = first + LINES;
-    for (int y = first; y < end && y < job->height; y++) {
-        float *out = job->pixels +
-                     (size_t)y * (size_t)(job->width * job->image.channels);
-        if (job->lattice->means > 1)
-            show_means(job, y, fine, out);
+    for (int y = first; y < end && y < w->height; y++) {
+        float *out =
+            job->pixels + (size_t)y * (size_t)(w->width * w->plane.channels);
+        if (w->line)
+            w->line(w, y, 0, w->width, spare, out);
         else
-            show_row(job, y, job->width, out);
+            show_row(w, y, 0, w->width, out);
     }
 }
 
 snow_status snow_value_show(snow_value_path *path,
-                            const snow_value_params *params,
-                            const snow_intermediate_view *image,
-                            float *pixels) {
-    const snow_value_lattice *l = &path->lattice;
-    const snow_settings *settings = params->settings;
+                            const snow_value_params *params, float *pixels) {
+    const snow_shear_warp_warping *w = &path->warping;
     show_job job = {
-        .lattice = l,
-        .image = *image,
-        .shear = l->shear,
-        .scaled = l->scaled,
-        .warp = snow_warp_of(settings->isa, l->filter, image->channels),
-        .places =
-            snow_warp_places_of(settings->isa, l->filter, image->channels),
-        .width = params->view->width,
-        .height = params->view->height,
-        .pixels = pixels};
-    if (l->halvings)
-        SNOW_TRY(halve(path, &job));
-    if (l->means > 1) {
-        job.line_floats = (size_t)(l->means * job.width * image->channels + 64);
-        SNOW_TRY(snow_reserve(
-            path->context, &path->lines, &path->lines_capacity, 0,
-            (size_t)settings->threads * job.line_floats * sizeof(float)));
-        job.lines = path->lines;
-    }
+        .warping = w, .pixels = pixels, .line_floats = w->spare_floats};
+    size_t threads = (size_t)params->settings->threads;
+    if (w->made)
+        w->made(w);
+    SNOW_TRY(snow_reserve(path->context, &path->lines, &path->lines_capacity, 0,
+                          threads * job.line_floats * sizeof *path->lines));
+    job.lines = path->lines;
     snow_monitor_next(path->context->monitor, SNOW_STAGE_RENDER, 0.9, 1);
-    return snow_parallel(path->context, settings->threads,
-                         (job.height + LINES - 1) / LINES, show_lines, &job);
+    return snow_parallel(path->context, params->settings->threads,
+                         (w->height + LINES - 1) / LINES, show_lines, &job);
 }

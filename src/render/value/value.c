@@ -5,6 +5,7 @@
 #include "classify/count_interesting.h"
 #include "classify/gradient_opacity.h"
 #include "render/value/internal.h"
+#include "volume/stream.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,9 +57,6 @@ snow_status snow_value_check(snow_context *context,
              !snow_value_eye_fits(params->placement),
          "slices beside the eye, or 8 times as far from it as the nearest"},
         {s->mode != SNOW_MODE_OVER, "modes other than over"},
-        {params->volume->stream != NULL, "a volume that stays in its file"},
-        {!params->whole, "a part of a volume"},
-        {s->deterministic, "deterministic pictures"},
         {s->kernel != SNOW_KERNEL_TENT || s->footprint != 2,
          "kernels other than the tent of 2 voxels"},
         {snow_transfer_has_labels(params->transfer, params->volume->info.type),
@@ -76,18 +74,55 @@ snow_status snow_value_check(snow_context *context,
 /* --- values -----------------------------------------------------------------
  */
 
-static snow_status measure_range(snow_value_path *path,
-                                 const snow_value_params *params) {
-    const snow_volume *volume = params->volume;
-    bool log = params->transfer->log;
-    if (path->range_of && path->range_of == volume->generation &&
-        path->range.log == log)
-        return SNOW_STATUS_OK;
-    path->range_of = 0;
-    SNOW_TRY(snow_data_range_measure(volume, log, params->settings->threads,
-                                     &path->range));
-    path->range_of = volume->generation;
+/* What the slabs of a file have together. */
+typedef struct measuring {
+    snow_data_range *all;
+    int threads;
+} measuring;
+
+static snow_status measure_slab(const snow_volume *slab, void *user) {
+    measuring *m = user;
+    snow_data_range here;
+    SNOW_TRY(snow_data_range_measure(slab, m->all->log, m->threads, &here));
+    m->all->low = fmin(m->all->low, here.low);
+    m->all->high = fmax(m->all->high, here.high);
+    m->all->holes |= here.holes;
     return SNOW_STATUS_OK;
+}
+
+/* The statistics of a file serve, unless they leave out anything. */
+static snow_status measure_range(const snow_volume *volume, int threads,
+                                 snow_data_range *out) {
+    static const snow_slab_cut cut = {.step = 1};
+    measuring m = {out, threads};
+    if (volume->stream && !out->log) {
+        snow_volume_statistics known;
+        SNOW_TRY(snow_volume_range(volume, &known));
+        out->low = known.min;
+        out->high = known.max;
+        if (known.finite == known.voxels)
+            return SNOW_STATUS_OK;
+    }
+    out->low = INFINITY;
+    out->high = -INFINITY;
+    return snow_slabs_visit(volume, &cut, measure_slab, &m);
+}
+
+snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
+                               bool log, int threads, snow_data_range *out) {
+    if (!path->measured_of || path->measured_of != volume->generation ||
+        path->measured.log != log) {
+        path->measured_of = 0;
+        path->measured = (snow_data_range){.log = log};
+        SNOW_TRY(measure_range(volume, threads, &path->measured));
+        path->measured_of = volume->generation;
+    }
+    *out = path->measured;
+    return SNOW_STATUS_OK;
+}
+
+void snow_value_set_range(snow_value_path *path, const snow_data_range *range) {
+    path->range = *range;
 }
 
 static snow_status make_table(snow_value_path *path,
@@ -107,16 +142,19 @@ static snow_status make_table(snow_value_path *path,
     return snow_value_table_make(path->context, &look, &path->table);
 }
 
-snow_status snow_value_classify(snow_value_path *path,
-                                const snow_value_params *params,
-                                snow_stats *stats) {
+snow_status snow_value_begin(snow_value_path *path,
+                             const snow_value_params *params,
+                             snow_stats *stats) {
     double mark = snow_seconds();
+    snow_volume_info whole;
+    snow_volume_whole(params->volume, &whole);
     SNOW_TRY(snow_value_lattice_make(
-        path->context, &params->volume->info, params->view, params->placement,
+        path->context, &whole, params->view, params->placement,
         params->settings->quality, &path->lattice));
-    SNOW_TRY(measure_range(path, params));
     if (path->range.low <= path->range.high)
         SNOW_TRY(make_table(path, params));
+    if (snow_value_shows(path))
+        SNOW_TRY(snow_value_reserve_image(path, params));
     stats->seconds_classify += snow_seconds() - mark;
     return SNOW_STATUS_OK;
 }
@@ -186,7 +224,7 @@ static snow_status encode_anew(snow_value_path *path,
                                const snow_value_params *params, int reach) {
     const snow_settings *s = params->settings;
     const snow_value_store_params order = {.volume = params->volume,
-                                           .placement = params->placement,
+                                           .placement = params->stored,
                                            .coder = &path->coder,
                                            .runs = path->table.runs,
                                            .run_count = path->table.run_count,
@@ -200,6 +238,11 @@ static snow_status encode_anew(snow_value_path *path,
     SNOW_TRY(snow_value_store_encode(&path->store, &order));
     return snow_count_interesting(params->volume, params->transfer,
                                   s->threshold, s->isa, &path->interesting);
+}
+
+void snow_value_forget(snow_value_path *path) {
+    path->key.generation = 0;
+    snow_value_store_fini(&path->store);
 }
 
 snow_status snow_value_encode(snow_value_path *path,

@@ -3,6 +3,8 @@
 #ifndef SNOW_RENDER_VALUE_VALUE_H
 #define SNOW_RENDER_VALUE_VALUE_H
 
+#include "decompose/deterministic.h"
+#include "render/shear_warp/shear_warp.h"
 #include "render/value/lattice.h"
 
 /* Everything that is kept from picture to picture. */
@@ -12,15 +14,20 @@ typedef struct snow_value_path snow_value_path;
 snow_status snow_value_path_new(snow_context *context, snow_value_path **out);
 void snow_value_path_free(snow_value_path *path);
 
-/* What a picture is made of; settings are resolved. */
+/* What a picture, or a part of it, is made of; settings are resolved. */
 typedef struct snow_value_params {
-    const snow_volume *volume;
+    const snow_volume *volume; /* may be a part, with ghosts */
     const snow_transfer *transfer;
     const snow_view *view;
     const snow_settings *settings;
-    const snow_placement *placement;
-    int channels; /* 2 or 4 */
-    bool whole;   /* all voxels that there are */
+    const snow_placement *placement; /* of the whole */
+    const snow_placement *stored;    /* of the voxels that the volume has */
+    const snow_clip *clip; /* what of the whole it has and answers for */
+    snow_slab slab; /* slices of the whole that are drawn, within these */
+    int channels;   /* 2 or 4 */
+    bool shared;    /* with other ranks: the image's size depends on the picture
+                       alone, and a deterministic one has a layer for each node */
+    bool resumes;   /* draws behind the parts that were drawn before */
 } snow_value_params;
 
 /* Whether the value path draws this picture.  Errors: SNOW_STATUS_BAD_USAGE,
@@ -28,18 +35,42 @@ typedef struct snow_value_params {
 snow_status snow_value_check(snow_context *context,
                              const snow_value_params *params);
 
-/* The table of colours, and the encoding unless it is there.  Errors:
- * SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY, SNOW_STATUS_STOPPED. */
-snow_status snow_value_classify(snow_value_path *path,
-                                const snow_value_params *params,
-                                snow_stats *stats);
+/* The finite values of a volume, or their logarithms, of which those in a file
+ * are read, or of the part of one that it is; unless they are known.  Errors:
+ * as snow_slabs_visit.
+ */
+snow_status snow_value_measure(snow_value_path *path, const snow_volume *volume,
+                               bool log, int threads, snow_data_range *out);
+
+/* Makes the range of the whole known, which the pictures' numbers are of. */
+void snow_value_set_range(snow_value_path *path, const snow_data_range *range);
+
+/* Begins a picture, whose parts follow: its lattice, the table of colours, and
+ * room for its image.  Errors: SNOW_STATUS_BAD_USAGE, SNOW_STATUS_NO_MEMORY,
+ * SNOW_STATUS_STOPPED. */
+snow_status snow_value_begin(snow_value_path *path,
+                             const snow_value_params *params,
+                             snow_stats *stats);
+
+/* Gives up the encoding, so that a part's has its memory. */
+void snow_value_forget(snow_value_path *path);
+
+/* The encoding of a part, unless it is there.  Errors: as above. */
 snow_status snow_value_encode(snow_value_path *path,
                               const snow_value_params *params,
                               snow_stats *stats);
 
-/* Then all pixels: width * height * channels floats.  Errors: as above. */
+/* Then the part's image on the lattice of the whole.  A deterministic one has a
+ * layer for each of some nodes of the tree of groups.  Errors: as above. */
 snow_status snow_value_draw(snow_value_path *path,
-                            const snow_value_params *params, float *pixels,
-                            snow_stats *stats);
+                            const snow_value_params *params, snow_stats *stats,
+                            snow_shear_warp_image *out);
+
+/* The image of one layer to all of the picture: width * height * channels
+ * floats.  Errors: as above. */
+snow_status snow_value_display(snow_value_path *path,
+                               const snow_value_params *params,
+                               const snow_shear_warp_image *image,
+                               float *pixels, snow_stats *stats);
 
 #endif

@@ -17,8 +17,13 @@ NAME(activate)(const snow_value_splat *p, int n, int phase, const int tile[2],
         NAME(cut_eye)(p, n, phase, tile, slab->cut);
     else
         NAME(cut_all)(p, n, phase, tile, slab->cut);
-    rows = slab->cut[1].some &
-           V(rows_and)(slab->active, state->open, slab->cut[0].some);
+    uint32_t lanes = slab->cut[0].some;
+    rows = slab->cut[1].some;
+    if (p->parted) {
+        lanes &= snow_value_own_lanes(p, n, phase, tile, 0);
+        rows &= snow_value_own_lanes(p, n, phase, tile, 1);
+    }
+    rows &= V(rows_and)(slab->active, state->open, lanes);
     slab->clip.cuts = false;
     if (p->clip_count && eye)
         NAME(clip_eye)(p, n, phase, tile, &slab->clip);
@@ -38,6 +43,8 @@ static inline void NAME(ask)(const snow_value_splat *p, int n, int phase,
     const snow_value_place *place = p->places + n * p->phases + phase;
     const int64_t next = s->rows + 2 * s->margin;
     int64_t first = value_tile_row(p, tile[1]) + place->whole[1] - 1;
+    if (sheet->slice < 0 || sheet->slice + sheet->half >= s->slices)
+        return; /* of another part */
     const int64_t *at = snow_value_at(s, sheet->slice) + first;
     const int16_t *values =
         s->values + value_tile_column(p, tile[0]) + place->whole[0];

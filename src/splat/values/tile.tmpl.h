@@ -281,6 +281,37 @@ static void NAME(open)(const snow_value_splat *p, int x, int y,
     }
 }
 
+/* Alphas of a row of a plane. */
+TARGET static inline V(row)
+    NAME(alphas)(const snow_value_splat *p, const void *planes, int phase,
+                 int row) {
+    const snow_value_plane *words = (const snow_value_plane *)planes + phase;
+    const snow_value_faint_plane *floats =
+        (const snow_value_faint_plane *)planes + phase;
+    int16_t alphas[32];
+    if (!p->table->faint)
+        return V(row_load)((*words)[3][row]);
+    for (int n = 0; n < 32; n += LANES)
+        V(row_round)
+    (alphas + n, V(mul)(V(load)((*floats)[3][row] + n), V(set1)(INT16_MAX)));
+    return V(row_load)(alphas);
+}
+
+/* Closes the pixels that nothing shines through, of planes that hold some. */
+TARGET static void NAME(resume)(const snow_value_splat *p, const void *planes,
+                                value_room *room) {
+    const V(row) closed = V(row_set1)(p->closed);
+    for (int phase = 0; phase < p->phases; phase++) {
+        value_phase *state = &room->phase[phase];
+        for (int row = 0; row < SNOW_VALUE_ROWS; row++) {
+            state->open[row] &=
+                V(row_gt)(closed, NAME(alphas)(p, planes, phase, row));
+            if (!state->open[row])
+                state->alive &= ~(UINT32_C(1) << row);
+        }
+    }
+}
+
 /* Whether some phases have open pixels. */
 static inline bool NAME(alive)(const value_room *room, int first, int end) {
     uint32_t alive = 0;
@@ -325,7 +356,7 @@ NAME(phases_eye)(const snow_value_splat *p, const int tile[2],
                  const bool sloped) {
     bool drawn = false;
     NAME(aim)(p, tile, room);
-    for (int n = 0; n + 1 < p->sheet_count; n++) {
+    for (int n = p->slabs[0]; n < p->slabs[1]; n++) {
         for (int first = 0; first < p->phases; first += TOGETHER) {
             int end =
                 first + TOGETHER < p->phases ? first + TOGETHER : p->phases;
@@ -349,7 +380,10 @@ NAME(tile)(const snow_value_splat *p, int x, int y, void *memory,
     const int tile[2] = {x, y};
     bool drawn = false;
     NAME(open)(p, x, y, room);
-    memset(planes, 0, snow_value_planes_bytes(p));
+    if (p->resumes)
+        NAME(resume)(p, planes, room);
+    else
+        memset(planes, 0, snow_value_planes_bytes(p));
     if (eye)
         return NAME(phases_eye)(p, tile, planes, room, channels, sloped);
     for (int first = 0; first < p->phases; first += TOGETHER) {

@@ -162,6 +162,46 @@ void snow_value_clip(const snow_value_splat *p, const double front[4],
         store_parts(parts, out);
 }
 
+/* As a bit of 32, or beyond all. */
+static int lane_of(double place) {
+    return place > 0 ? place < 32 ? (int)place : 32 : 0;
+}
+
+/* Lanes whose places, cells from `first` on, are within a part. */
+static uint32_t lanes_within(const double own[2], int64_t first, double at) {
+    const uint64_t one = 1;
+    int from = lane_of(ceil(own[0] - at) - (double)first);
+    int to = lane_of(ceil(own[1] - at) - (double)first);
+    return to > from ? (uint32_t)((one << to) - (one << from)) : 0;
+}
+
+/* The same in perspective, from lane `skip` on. */
+static uint32_t spread_within(const double own[2], int64_t stored,
+                              const snow_value_lanes *lanes, int skip) {
+    uint32_t within = 0;
+    for (int n = 0; n < 32; n++) {
+        double place = (double)(stored + lanes->first + lanes->at[n + skip]) +
+                       lanes->weight[n + skip] * 0x1p-15;
+        within |= (uint32_t)(place >= own[0] && place < own[1]) << n;
+    }
+    return within;
+}
+
+/* Borders are found from the lane alone, so that two who share one agree. */
+uint32_t snow_value_own_lanes(const snow_value_splat *p, int n, int phase,
+                              const int tile[2], int axis) {
+    int64_t first =
+        axis ? value_tile_row(p, tile[1]) : value_tile_column(p, tile[0]);
+    int spot[2];
+    if (!p->rays)
+        return lanes_within(p->own[axis], first,
+                            p->places[n * p->phases + phase].at[axis]);
+    value_spot(p->rays, phase, spot);
+    return spread_within(
+        p->own[axis], p->rays->stored[axis],
+        value_lanes_of(p->rays, n, axis, spot[axis], tile[axis]), axis);
+}
+
 void snow_value_shorten(const snow_value_table *table, value_queue *q,
                         int count, int channels) {
     for (int n = 0; n < count; n++) {

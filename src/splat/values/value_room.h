@@ -247,6 +247,11 @@ void snow_value_cut(const double front[2], const double back[2], double low,
 void snow_value_clip(const snow_value_splat *splat, const double front[4],
                      const double back[4], value_clip *out);
 
+/* The samples of a tile that are the part's in slab `n`: lanes along u, or
+ * rows. */
+uint32_t snow_value_own_lanes(const snow_value_splat *splat, int n, int phase,
+                              const int tile[2], int axis);
+
 /* Alpha and colours of the samples of slabs that are cut. */
 void snow_value_shorten(const snow_value_table *table, value_queue *queue,
                         int count, int channels);

@@ -65,7 +65,7 @@ static unsigned runs_of(const snow_value_store *s, const uint64_t *coarse,
 /* The last sheet of the same eight slices. */
 static int last_of_eight(const snow_value_splat *p, int sheet) {
     int64_t eight = p->sheets[sheet].slice / SNOW_VALUE_EIGHT;
-    while (sheet + 1 < p->sheet_count &&
+    while (sheet < p->slabs[1] &&
            p->sheets[sheet + 1].slice / SNOW_VALUE_EIGHT == eight)
         sheet++;
     return sheet;
@@ -79,7 +79,9 @@ int value_list_slabs(const snow_value_splat *p, int first, int end,
     const unsigned all = (1U << s->run_count) - 1;
     unsigned before = 0;
     int count = 0;
-    for (int n = 0, last; n < p->sheet_count; n = last + 1) {
+    if (p->slabs[0] >= p->slabs[1])
+        return 0;
+    for (int n = p->slabs[0], last; n <= p->slabs[1]; n = last + 1) {
         const snow_value_sheet *sheet = p->sheets + n;
         box b = nothing;
         last = last_of_eight(p, n);
@@ -96,7 +98,7 @@ int value_list_slabs(const snow_value_splat *p, int first, int end,
                 here = runs_of(s, s->coarse, s->slices, sheet->slice,
                                sheet->half, &b);
             }
-            if (m > 0 && (before | here) == all)
+            if (m > p->slabs[0] && (before | here) == all)
                 out[count++] = m - 1;
             before = here;
         }

@@ -66,6 +66,7 @@ typedef struct snow_value_rays {
     const snow_value_lanes *lanes[2]; /* [(sheet * phases + phase) * tiles +
                                          tile], along u and v */
     const snow_value_spread *sheets;
+    int64_t stored[2];       /* the first voxel of the store */
     int phases[2], tiles[2]; /* of a cell, of the image */
     int cells[2], middles;   /* samples a voxel; 2: of a quincunx */
     double slope[2][2]; /* du and dv of phase 0 of cell 0, and from there to
@@ -115,6 +116,11 @@ typedef struct snow_value_splat {
     double low[2], high[2];   /* the field's ends along u and v */
     const double (*clips)[4]; /* seen is where a u + b v + c slice <= d */
     size_t clip_count;
+    int slabs[2]; /* that are drawn: slab n is between sheets n and n + 1 */
+    bool parted;  /* only samples of slabs whose front sheet has them within
+                    own[0][0] <= u < own[0][1], and so along v */
+    double own[2][2];
+    bool resumes; /* the planes hold what is in front */
 } snow_value_splat;
 
 /* Pixels of a tile: planes of 15 bits, of which channels are used; of floats

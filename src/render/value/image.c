@@ -1,0 +1,191 @@
+/* render/value/image.c - the image on the lattice: its memory, which is kept
+ * from picture to picture, and what others see of it. */
+#include "render/value/internal.h"
+
+#include <string.h>
+
+/* A side of the blocks of a quincunx, pixels. */
+#define BLOCK 64
+
+bool snow_value_shows(const snow_value_path *path) {
+    return !path->lattice.empty && path->range.low <= path->range.high;
+}
+
+/* Blocks along a side of a quincunx. */
+static int blocks_of(const snow_value_lattice *l) {
+    return l->width / BLOCK + 1;
+}
+
+/* --- memory -----------------------------------------------------------------
+ */
+
+static int wanted_tiles(int64_t cells, int side) {
+    return (int)((cells + side - 1) / side);
+}
+
+/* The grid of a picture: the one before, if its tiles have room there. */
+static bool keep_grid(const snow_value_path *path,
+                      const snow_value_params *params, int layers,
+                      snow_value_grid *grid) {
+    const snow_value_lattice *l = &path->lattice;
+    const snow_value_grid *has = &path->grid;
+    const int spare = params->shared ? 0 : 2;
+    *grid = (snow_value_grid){
+        .cells = {l->cells[0], l->cells[1]},
+        .tiles = {wanted_tiles(l->voxels[0], SNOW_VALUE_COLUMNS),
+                  wanted_tiles(l->voxels[1], SNOW_VALUE_ROWS)},
+        .channels = params->channels,
+        .layers = layers,
+        .quincunx = l->quincunx,
+        .shared = params->shared};
+    bool keep =
+        !params->shared && /* the exchange has put lines of others there */
+        has->channels == grid->channels && has->quincunx == grid->quincunx &&
+        has->cells[0] == grid->cells[0] && has->cells[1] == grid->cells[1] &&
+        has->layers == grid->layers && !has->shared;
+    for (int axis = 0; axis < 2; axis++)
+        keep = keep && has->tiles[axis] >= grid->tiles[axis] &&
+               has->tiles[axis] <= 2 * grid->tiles[axis] + 4;
+    for (int axis = 0; axis < 2; axis++)
+        grid->tiles[axis] = keep ? has->tiles[axis] : grid->tiles[axis] + spare;
+    return keep;
+}
+
+/* The plane of all tiles; that of a quincunx becomes the image. */
+static void size_plane(snow_value_path *path, const snow_value_grid *grid) {
+    snow_value_lattice *l = &path->lattice;
+    size_t width =
+        (size_t)grid->tiles[0] * SNOW_VALUE_COLUMNS * (size_t)l->cells[0];
+    size_t height =
+        (size_t)grid->tiles[1] * SNOW_VALUE_ROWS * (size_t)l->cells[1];
+    if (l->quincunx) { /* cell (0, 0) is at the left, half way down */
+        snow_value_lattice_move(l, 1, (double)height - l->top);
+        l->top = (int)height;
+        width = height = width + height + 1;
+        l->width = l->height = (int)width;
+    }
+    if (l->quincunx && grid->shared) /* whole blocks are cleared */
+        width = (size_t)blocks_of(l) * BLOCK;
+    path->stride = width * (size_t)grid->channels;
+    path->layer_floats = path->stride * (height + 1);
+}
+
+/* How many layers; -1: these slices are not whole groups. */
+static int count_layers(snow_value_path *path,
+                        const snow_value_params *params) {
+    if (!params->settings->deterministic)
+        return 1;
+    return snow_group_nodes(params->placement->slices, params->slab,
+                            path->nodes);
+}
+
+snow_status snow_value_reserve_image(snow_value_path *path,
+                                     const snow_value_params *params) {
+    snow_value_grid grid;
+    int layers = count_layers(path, params);
+    if (layers < 0)
+        return snow_fail(path->context, SNOW_STATUS_BAD_USAGE,
+                         "parts of a deterministic picture must begin and end "
+                         "at multiples of %d groups of slices",
+                         SNOW_GROUPS);
+    bool keep = keep_grid(path, params, layers, &grid);
+    size_t planes = layers > 1 ? (size_t)layers : 1;
+    uint64_t floats, bytes;
+    size_plane(path, &grid);
+    path->grid.tiles[0] = 0; /* until it is cleared */
+    if (!snow_mul_u64(path->layer_floats, planes, &floats) ||
+        !snow_mul_u64(floats, sizeof *path->plane, &bytes) || bytes > SIZE_MAX)
+        return snow_fail(path->context, SNOW_STATUS_NO_MEMORY,
+                         "no memory for %zu intermediate images", planes);
+    SNOW_TRY(snow_reserve(path->context, &path->plane, &path->plane_capacity, 0,
+                          (size_t)bytes));
+    size_t tiles = (size_t)grid.tiles[0] * (size_t)grid.tiles[1] * planes;
+    SNOW_TRY(snow_reserve(path->context, &path->drawn, &path->drawn_capacity,
+                          keep ? tiles : 0, tiles));
+    if (!keep) {
+        memset(path->plane, 0, (size_t)bytes);
+        memset(path->drawn, 0, tiles);
+    }
+    path->grid = grid;
+    return SNOW_STATUS_OK;
+}
+
+/* --- blocks of a quincunx --------------------------------------------------
+ */
+
+/* Marks the blocks that a drawn tile may reach. */
+static void mark_blocks(const snow_value_lattice *l, unsigned char *marks,
+                        int64_t x, int64_t y) {
+    const int blocks = blocks_of(l);
+    const snow_value_pixels cell = snow_value_lattice_pixels(l, 0);
+    int64_t left = x * SNOW_VALUE_COLUMNS, top = y * SNOW_VALUE_ROWS;
+    int64_t right = left + SNOW_VALUE_COLUMNS, bottom = top + SNOW_VALUE_ROWS;
+    int64_t a0 = left * cell.along_u[0] + top * cell.along_v[0];
+    int64_t a1 = right * cell.along_u[0] + bottom * cell.along_v[0];
+    int64_t b0 = left * cell.along_u[1] + bottom * cell.along_v[1] + l->top;
+    int64_t b1 = right * cell.along_u[1] + top * cell.along_v[1] + l->top;
+    b0 = b0 > 0 ? b0 : 0;
+    a1 = a1 < l->width - 1 ? a1 : l->width - 1;
+    b1 = b1 < l->height - 1 ? b1 : l->height - 1;
+    for (int64_t b = b0 / BLOCK; b <= b1 / BLOCK; b++)
+        for (int64_t a = a0 / BLOCK; a <= a1 / BLOCK; a++)
+            marks[b * blocks + a] = 1;
+}
+
+/* Those of all layers. */
+static snow_status find_blocks(snow_value_path *path) {
+    const snow_value_grid *grid = &path->grid;
+    const size_t blocks = (size_t)blocks_of(&path->lattice);
+    const size_t layers = grid->layers > 1 ? (size_t)grid->layers : 1;
+    SNOW_TRY(snow_reserve(path->context, &path->blocks, &path->blocks_capacity,
+                          0, layers * blocks * blocks));
+    memset(path->blocks, 0, layers * blocks * blocks);
+    for (size_t n = 0; n < layers; n++)
+        for (int y = 0; y < grid->tiles[1]; y++)
+            for (int x = 0; x < grid->tiles[0]; x++)
+                if (path->drawn[n * snow_value_tiles(path) +
+                                (size_t)(y * grid->tiles[0] + x)])
+                    mark_blocks(&path->lattice,
+                                path->blocks + n * blocks * blocks, x, y);
+    return SNOW_STATUS_OK;
+}
+
+/* --- the image --------------------------------------------------------------
+ */
+
+/* The image as it is combined with others. */
+static snow_status describe_plane(snow_value_path *path,
+                                  snow_shear_warp_image *image) {
+    const snow_value_lattice *l = &path->lattice;
+    const int blocks = blocks_of(l);
+    *image =
+        (snow_shear_warp_image){.width = l->width,
+                                .height = l->height,
+                                .channels = path->grid.channels,
+                                .pixels = path->plane,
+                                .stride = path->stride,
+                                .drawn = path->drawn,
+                                .tile_width = SNOW_VALUE_COLUMNS * l->cells[0],
+                                .tile_height = SNOW_VALUE_ROWS * l->cells[1],
+                                .tiles = path->grid.tiles[0],
+                                .layers = path->grid.layers,
+                                .layer_floats = path->layer_floats,
+                                .layer_tiles = snow_value_tiles(path),
+                                .warping = &path->warping};
+    memcpy(image->nodes, path->nodes, sizeof image->nodes);
+    if (!l->quincunx)
+        return SNOW_STATUS_OK;
+    SNOW_TRY(find_blocks(path));
+    image->drawn = path->blocks;
+    image->tile_width = image->tile_height = BLOCK;
+    image->tiles = blocks;
+    image->layer_tiles = (size_t)(blocks * blocks);
+    return SNOW_STATUS_OK;
+}
+
+snow_status snow_value_describe_image(snow_value_path *path,
+                                      const snow_value_params *params,
+                                      snow_shear_warp_image *out) {
+    SNOW_TRY(describe_plane(path, out));
+    return snow_value_place_show(path, params, out);
+}

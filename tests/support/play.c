@@ -1,0 +1,216 @@
+/* tests/support/play.c - see play.h. */
+#include "support/play.h"
+
+#include "decompose/deterministic.h"
+#include "frame.h"
+#include "image/image.h"
+#include "render/ghosts.h"
+
+#include <math.h>
+
+size_t play_floats(const play *p) {
+    return (size_t)p->view.width * (size_t)p->view.height * (size_t)p->channels;
+}
+
+static int slice_axis(snow_context *context, const play *p) {
+    snow_placement placement;
+    if (snow_placement_make(context, &p->info, &p->view, &placement) !=
+        SNOW_STATUS_OK)
+        return 0;
+    return placement.slice_axis;
+}
+
+/* Halves a box until each rank has one. */
+static void halve(snow_box box, int first, int count, snow_box *boxes) {
+    int longest = 0;
+    boxes[first] = box;
+    if (count == 1)
+        return;
+    for (int axis = 1; axis < 3; axis++)
+        if (box.count[axis] > box.count[longest])
+            longest = axis;
+    snow_box low = box, high = box;
+    low.count[longest] = box.count[longest] * (count / 2) / count;
+    high.first[longest] += low.count[longest];
+    high.count[longest] -= low.count[longest];
+    halve(low, first, count / 2, boxes);
+    halve(high, first + count / 2, count - count / 2, boxes);
+}
+
+void play_cut(snow_context *context, play *p, int ranks) {
+    const int64_t *dims = p->info.dims;
+    int axis = slice_axis(context, p);
+    if (p->cut == BESIDE)
+        axis = (axis + 1) % 3;
+    snow_box all = {{0, 0, 0}, {dims[0], dims[1], dims[2]}};
+    if (p->cut == BRICKS) {
+        halve(all, 0, ranks, p->boxes);
+        return;
+    }
+    for (int rank = 0; rank < ranks; rank++) {
+        snow_slab slab = p->cut == GROUPED
+                             ? snow_slab_grouped(dims[axis], ranks, rank)
+                             : snow_slab_equal(dims[axis], ranks, rank);
+        p->boxes[rank] = all;
+        p->boxes[rank].first[axis] = slab.first;
+        p->boxes[rank].count[axis] = slab.count;
+    }
+}
+
+snow_status play_open_part(snow_context *context, const play *p,
+                           const snow_box *box, void **voxels,
+                           snow_volume **volume) {
+    snow_volume_info info = p->info;
+    size_t size = snow_type_size(info.type);
+    int64_t layers[3];
+    snow_extent part = {sizeof part, {0}, {0}, {0}, {0}};
+    bool none = !snow_box_voxels(box);
+    SNOW_TRY(snow_ghosts_needed(context, &p->info, &p->view, &p->settings,
+                                p->transfer->gradient_count > 0, false,
+                                layers));
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t low = none ? 0 : box->first[axis] - layers[axis];
+        int64_t high =
+            none ? 1 : box->first[axis] + box->count[axis] + layers[axis];
+        part.dims[axis] = p->info.dims[axis];
+        part.first[axis] = none ? 0 : box->first[axis];
+        part.count[axis] = none ? 0 : box->count[axis];
+        part.stored[axis] = low > 0 ? low : 0;
+        high = high < part.dims[axis] ? high : part.dims[axis];
+        info.dims[axis] = high - part.stored[axis];
+    }
+    for (int row = 0; row < 3; row++)
+        for (int axis = 0; axis < 3; axis++)
+            info.matrix[row][3] +=
+                info.matrix[row][axis] * (double)part.stored[axis];
+    size_t line = (size_t)info.dims[0] * size;
+    char *to = *voxels = malloc(line * (size_t)(info.dims[1] * info.dims[2]));
+    for (int64_t z = 0; z < info.dims[2]; z++)
+        for (int64_t y = 0; y < info.dims[1]; y++, to += line) {
+            int64_t at =
+                ((part.stored[2] + z) * part.dims[1] + part.stored[1] + y) *
+                    part.dims[0] +
+                part.stored[0];
+            memcpy(to, (const char *)p->voxels + (size_t)at * size, line);
+        }
+    SNOW_TRY(snow_volume_wrap(context, &info, *voxels, volume));
+    snow_volume_freeze(*volume);
+    return snow_volume_set_extent(*volume, &part);
+}
+
+snow_status play_copy_transfer(snow_context *context, const snow_transfer *t,
+                               snow_transfer **out) {
+    SNOW_TRY(snow_transfer_new(context, t->colors, t->color_count, t->opacities,
+                               t->opacity_count, out));
+    return snow_transfer_set_gradient_opacity(*out, t->gradients,
+                                              t->gradient_count);
+}
+
+snow_status play_perform(snow_comm *comm, void *user) {
+    play *p = user;
+    snow_context *context = snow_comm_context(comm);
+    int rank = snow_comm_rank(comm);
+    void *voxels = NULL;
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_status status =
+        play_open_part(context, p, &p->boxes[rank], &voxels, &volume);
+    if (status == SNOW_STATUS_OK)
+        status = play_copy_transfer(context, p->transfer, &transfer);
+    if (status == SNOW_STATUS_OK)
+        status = snow_frame_new(context, &frame);
+    for (int n = 0; n < p->pictures && status == SNOW_STATUS_OK; n++) {
+        snow_image *image = NULL;
+        status = snow_ranks_render(frame, comm, volume, transfer, &p->view,
+                                   &p->settings, &p->how, &image);
+        if (status == SNOW_STATUS_OK && (rank == 0) != (image != NULL))
+            status = snow_fail(context, SNOW_STATUS_BAD_OUTPUT,
+                               "a picture too many");
+        if (status == SNOW_STATUS_OK && rank == 0) {
+            memcpy(p->picture, snow_image_pixels(image),
+                   play_floats(p) * sizeof(float));
+            p->stats = *snow_frame_stats(frame);
+            p->ranks = snow_frame_ranks_stats(frame)->ranks;
+            if (p->depths)
+                memcpy(p->depths, snow_frame_depth(frame)->pixels,
+                       play_floats(p) / (size_t)p->channels * sizeof(float));
+        }
+        snow_image_free(image);
+    }
+    if (status == SNOW_STATUS_OK && frame)
+        p->each[rank] = *snow_frame_stats(frame);
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    free(voxels);
+    return status;
+}
+
+float *play_alone(snow_context *context, play *p, double *strongest) {
+    snow_volume *volume = NULL;
+    snow_transfer *transfer = NULL;
+    snow_frame *frame = NULL;
+    snow_image *image = NULL;
+    assert_int_equal(snow_volume_wrap(context, &p->info, p->voxels, &volume),
+                     SNOW_STATUS_OK);
+    assert_int_equal(play_copy_transfer(context, p->transfer, &transfer),
+                     SNOW_STATUS_OK);
+    assert_int_equal(snow_frame_new(context, &frame), SNOW_STATUS_OK);
+    if (snow_frame_render(frame, volume, transfer, &p->view, &p->settings,
+                          &image) != SNOW_STATUS_OK)
+        fail_msg("%s", snow_context_message(context));
+    p->interesting = snow_frame_stats(frame)->interesting;
+    p->voxels_drawn = snow_frame_stats(frame)->voxels;
+    memcpy(p->halvings, snow_frame_stats(frame)->halvings, sizeof p->halvings);
+    p->channels = snow_image_channels(image);
+    float *pixels = malloc(play_floats(p) * sizeof(float));
+    assert_non_null(pixels);
+    memcpy(pixels, snow_image_pixels(image), play_floats(p) * sizeof(float));
+    if (p->depths)
+        memcpy(p->depths, snow_frame_depth(frame)->pixels,
+               play_floats(p) / (size_t)p->channels * sizeof(float));
+    size_t channels = (size_t)p->channels;
+    *strongest = 0;
+    for (size_t n = channels - 1; n < play_floats(p); n += channels)
+        *strongest = fmax(*strongest, (double)pixels[n]);
+    snow_image_free(image);
+    snow_frame_free(frame);
+    snow_transfer_free(transfer);
+    snow_volume_close(volume);
+    return pixels;
+}
+
+void play_by_ranks(snow_context *context, play *p, int ranks) {
+    p->picture = calloc(play_floats(p), sizeof(float));
+    assert_non_null(p->picture);
+    play_cut(context, p, ranks);
+    if (snow_comm_run_threads(context, ranks, play_perform, p) !=
+        SNOW_STATUS_OK)
+        fail_msg("%d ranks: %s", ranks, snow_context_message(context));
+}
+
+double play_gap(const play *p, const float *serial) {
+    double most = 0;
+    for (size_t n = 0; n < play_floats(p); n++) {
+        double gap = fabs((double)p->picture[n] - (double)serial[n]);
+        most = gap <= most ? most : gap;
+    }
+    return most;
+}
+
+void play_check_counts(const play *p, int ranks) {
+    int64_t interesting = 0, voxels = 0, all = p->voxels_drawn;
+    for (int rank = 0; rank < ranks; rank++) {
+        interesting += p->each[rank].interesting;
+        voxels += p->each[rank].voxels;
+        assert_memory_equal(p->each[rank].halvings, p->halvings,
+                            sizeof p->halvings);
+    }
+    if (interesting != p->interesting || voxels != all)
+        fail_msg("%d ranks count %lld of %lld voxels as interesting, one "
+                 "counts %lld of %lld; cut %d, method %d, quality %d",
+                 ranks, (long long)interesting, (long long)voxels,
+                 (long long)p->interesting, (long long)all, (int)p->cut,
+                 (int)p->settings.method, (int)p->settings.quality);
+}
